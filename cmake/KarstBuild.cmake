@@ -1,0 +1,58 @@
+# Compiler settings and the few functions every folder uses.
+include(GNUInstallDirs)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+# No more than x86-64-v2: Debian's libraries are plain x86-64, and Eigen's alignment must agree with theirs.
+# No contraction: a fused multiply-add would make results depend on the compiler's mood.
+add_compile_options(-march=x86-64-v2 -ffp-contract=off)
+set(KARST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+if(KARST_WERROR)
+  list(APPEND KARST_WARNINGS -Werror)
+endif()
+if(KARST_SANITIZE)
+  add_compile_options(-fsanitize=${KARST_SANITIZE} -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${KARST_SANITIZE})
+endif()
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+endif()
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+find_package(Threads REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+
+# karst_library(NAME sources... [LINK libs...]): a static library with the project's warnings; includes are
+# written from the project's root.
+function(karst_library name)
+  cmake_parse_arguments(A "" "" "LINK" ${ARGN})
+  add_library(${name} STATIC ${A_UNPARSED_ARGUMENTS})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_compile_options(${name} PRIVATE ${KARST_WARNINGS})
+  target_link_libraries(${name} PUBLIC Eigen3::Eigen Threads::Threads ${A_LINK})
+endfunction()
+
+# karst_test(NAME sources... [LINK libs...] [LABELS labels...]): a GoogleTest program, one CTest entry a test.
+# Label "unit" is the default; "flight" marks closed-loop missions.
+function(karst_test name)
+  cmake_parse_arguments(A "" "" "LINK;LABELS" ${ARGN})
+  if(NOT A_LABELS)
+    set(A_LABELS unit)
+  endif()
+  add_executable(${name} ${A_UNPARSED_ARGUMENTS})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_options(${name} PRIVATE ${KARST_WARNINGS})
+  target_compile_definitions(${name} PRIVATE KARST_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             KARST_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${A_LABELS}" TIMEOUT 900)
+endfunction()

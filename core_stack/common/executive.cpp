@@ -1,0 +1,124 @@
+#include "core_stack/common/executive.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <thread>
+
+namespace karst::core {
+
+struct Executive::Event {
+  TimeNs time;
+  std::uint64_t sequence;
+  std::function<void()> step;
+  // std::push_heap keeps the greatest in front: order by later-is-less.
+  bool operator<(const Event& o) const { return time != o.time ? time > o.time : sequence > o.sequence; }
+};
+
+/// One thread that runs tasks first in, first out.
+struct Executive::Worker {
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::deque<std::packaged_task<double()>> tasks;
+  bool stopping = false;
+  std::thread thread{[this] { loop(); }};
+
+  ~Worker() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    wake.notify_one();
+    thread.join();
+  }
+  void loop() {
+    for (;;) {
+      std::unique_lock lock(mutex);
+      wake.wait(lock, [this] { return stopping || !tasks.empty(); });
+      if (tasks.empty()) return;
+      std::packaged_task<double()> task = std::move(tasks.front());
+      tasks.pop_front();
+      lock.unlock();
+      task();
+    }
+  }
+};
+
+namespace {
+
+double run_timed_ms(const std::function<void()>& f) {
+  const auto begin = std::chrono::steady_clock::now();
+  f();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+Executive::Executive(int threads) {
+  if (threads <= 1) return;
+  for (auto& w : workers_) w = std::make_unique<Worker>();
+}
+
+Executive::~Executive() = default;
+
+void Executive::push(TimeNs time, std::function<void()> step) {
+  queue_.push_back({std::max(time, now_), next_sequence_++, std::move(step)});
+  std::push_heap(queue_.begin(), queue_.end());
+}
+
+void Executive::timed(const std::string& name, const std::function<void()>& f) {
+  costs_[name].milliseconds.push_back(static_cast<float>(run_timed_ms(f)));
+}
+
+void Executive::at(TimeNs time, std::function<void()> step) { push(time, std::move(step)); }
+
+void Executive::every(std::string name, TimeNs first, TimeNs period, std::function<void()> step) {
+  push(first, [this, name = std::move(name), first, period, step = std::move(step)]() mutable {
+    timed(name, step);
+    every(std::move(name), first + period, period, std::move(step));
+  });
+}
+
+void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
+                    std::function<void()> publish) {
+  std::packaged_task<double()> task([work = std::move(work)] { return run_timed_ms(work); });
+  auto cost = std::make_shared<std::future<double>>(task.get_future());
+  if (const auto& worker = workers_[static_cast<std::size_t>(lane)]) {
+    {
+      const std::lock_guard lock(worker->mutex);
+      worker->tasks.push_back(std::move(task));
+    }
+    worker->wake.notify_one();
+  } else {
+    task();
+  }
+  push(now_ + budget, [this, name = std::move(name), cost, publish = std::move(publish)] {
+    costs_[name].milliseconds.push_back(static_cast<float>(cost->get()));  // waits, rethrows
+    publish();
+  });
+}
+
+void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
+  while (!queue_.empty() && queue_.front().time <= limit) {
+    std::pop_heap(queue_.begin(), queue_.end());
+    Event event = std::move(queue_.back());
+    queue_.pop_back();
+    now_ = event.time;
+    event.step();
+    if (done()) return;
+  }
+  now_ = std::max(now_, limit);
+}
+
+void Executive::drain() {
+  for (auto& w : workers_) {
+    if (!w) continue;
+    w.reset();
+    w = std::make_unique<Worker>();
+  }
+}
+
+}  // namespace karst::core

@@ -1,0 +1,67 @@
+// The executive runs every module from time-stamped events.
+//
+// Periodic steps run on the loop's thread at exact times. Longer work is a *job*: it starts at time t on
+// a worker lane and its result is published on the loop's thread at t + budget. In lockstep the clock
+// waits for a job that is late, so every result appears at the same simulated time whatever the
+// machine's load or number of threads. Jobs of one lane run one after another in the order submitted,
+// so whatever a lane owns (the map, the sensor models) needs no lock.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core_stack/common/time.h"
+
+namespace karst::core {
+
+enum class Lane { sensing, map };
+
+/// Wall-clock cost of one named step or job, for timing.json only: nothing decides by it.
+struct Cost {
+  std::vector<float> milliseconds;
+};
+
+class Executive {
+ public:
+  /// `threads` <= 1 runs jobs on the loop's thread at the moment they are submitted.
+  explicit Executive(int threads);
+  ~Executive();
+  Executive(const Executive&) = delete;
+  Executive& operator=(const Executive&) = delete;
+
+  TimeNs now() const { return now_; }
+
+  /// Runs `step` at `first`, `first + period`, ... Steps due at one time run in the order of registration.
+  void every(std::string name, TimeNs first, TimeNs period, std::function<void()> step);
+  /// Runs `step` once at `time` (not before now).
+  void at(TimeNs time, std::function<void()> step);
+  /// Runs `work` on `lane`, then `publish` on the loop's thread at now + budget. An exception in `work`
+  /// is rethrown from run_until() at that time.
+  void job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
+           std::function<void()> publish);
+
+  /// Advances the clock event by event until `done()` holds after an event or `limit` is passed.
+  void run_until(TimeNs limit, const std::function<bool()>& done);
+  /// Waits for jobs still running; their results are not published.
+  void drain();
+
+  const std::map<std::string, Cost>& costs() const { return costs_; }
+
+ private:
+  struct Event;
+  struct Worker;
+  void push(TimeNs time, std::function<void()> step);
+  void timed(const std::string& name, const std::function<void()>& f);
+
+  TimeNs now_ = 0;
+  std::uint64_t next_sequence_ = 0;
+  std::vector<Event> queue_;  // heap on (time, sequence)
+  std::array<std::unique_ptr<Worker>, 2> workers_;
+  std::map<std::string, Cost> costs_;
+};
+
+}  // namespace karst::core

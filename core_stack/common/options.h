@@ -1,0 +1,70 @@
+// Options: each module has one plain struct with defaults and one `describe` function that names every
+// field with unit, range and a line of help. Reading, validation, help and the resolved mission file
+// all come from that one table.
+//
+//   struct MapOptions { double resolution_m = 0.2; };
+//   inline void describe(OptionTable& t, MapOptions& o) {
+//     t.add("resolution", o.resolution_m, "m", 0.05, 1.0, "edge length of a map cell");
+//   }
+#pragma once
+#include <boost/property_tree/ptree_fwd.hpp>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace karst::core {
+
+class OptionTable {
+ public:
+  struct Row {
+    std::string key;
+    std::variant<double*, std::int64_t*, bool*, std::string*> target;
+    std::string unit;  // "" for a plain number
+    double low = 0, high = 0;
+    std::vector<std::string> choices;  // for text: the values allowed, empty for any
+    std::string help;
+  };
+
+  void add(std::string key, double& v, std::string unit, double low, double high, std::string help);
+  void add(std::string key, std::int64_t& v, double low, double high, std::string help);
+  void add(std::string key, bool& v, std::string help);
+  void add(std::string key, std::string& v, std::vector<std::string> choices, std::string help);
+  /// A module's table below `prefix.`; keys become "prefix.key".
+  template <class Options>
+  void section(const std::string& prefix, Options& o) {
+    const std::string outer = prefix_;
+    prefix_ += prefix + ".";
+    describe(*this, o);
+    prefix_ = outer;
+  }
+
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// Sets one value from text such as "2", "2 m/s" or "90 deg" (units of the same dimension are
+  /// converted). Throws InputError naming `source`, the key, what was expected, and the nearest key.
+  void set(const std::string& source, const std::string& key, const std::string& text);
+
+  /// Every leaf of `tree` is set; the tree's paths are the table's keys.
+  void read(const std::string& source, const boost::property_tree::ptree& tree);
+
+  /// All values as resolved, in the table's order.
+  boost::property_tree::ptree resolved() const;
+  /// Help: a line an option with unit, range and default (the value as it is now).
+  std::string help() const;
+
+ private:
+  std::vector<Row> rows_;
+  std::string prefix_;
+};
+
+/// Text of a row's current value with its unit, as `set` reads it.
+std::string value_text(const OptionTable::Row& row);
+
+/// The candidate with the least edit distance to `key`, or "" if none is near.
+std::string nearest_name(const std::string& key, const std::vector<std::string>& candidates);
+
+/// Reads an INFO file; throws InputError with the line on a syntax error.
+boost::property_tree::ptree read_info(const std::string& path);
+
+}  // namespace karst::core

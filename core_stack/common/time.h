@@ -1,0 +1,16 @@
+// Time is integer nanoseconds since the mission's start: sums never round, so replays never differ.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+namespace karst::core {
+
+using TimeNs = std::int64_t;
+
+constexpr TimeNs kMillisecond = 1'000'000;
+constexpr TimeNs kSecond = 1'000'000'000;
+
+constexpr double seconds(TimeNs t) { return static_cast<double>(t) * 1e-9; }
+inline TimeNs from_seconds(double s) { return static_cast<TimeNs>(std::llround(s * 1e9)); }
+
+}  // namespace karst::core

@@ -1,0 +1,49 @@
+// Reference tracker: an MPC steers an ideal virtual vehicle along the trajectory, so that what the controller
+// is asked to follow is always feasible: position, velocity, acceleration and jerk within limits, 100 Hz.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core_stack/localization/state.h"
+#include "core_stack/planning/trajectory.h"
+
+namespace karst::core {
+
+struct Reference {
+  TimeNs stamp = 0;
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity_mps = Vec3::Zero();
+  Vec3 acceleration_mps2 = Vec3::Zero();
+  Vec3 jerk_mps3 = Vec3::Zero();
+  double heading_rad = 0;
+  double heading_rate_radps = 0;
+};
+
+struct MpcOptions {
+  std::int64_t steps = 40;
+  double step_s = 0.05;      // of the prediction, not of the output
+  double position_weight = 100.0;
+  double velocity_weight = 1.0;
+  double acceleration_weight = 0.3;
+  double jerk_weight = 0.01;
+};
+void describe(OptionTable& t, MpcOptions& o);
+
+class MpcTracker {
+ public:
+  MpcTracker(const MpcOptions& options, const MotionLimits& limits);
+  ~MpcTracker();
+  /// The virtual vehicle stands at `position`.
+  void reset(TimeNs now, const Vec3& position, double heading_rad);
+  /// Advances the virtual vehicle to `now` (10 ms after the last call) along `trajectory`.
+  const Reference& step(const Trajectory& trajectory, TimeNs now);
+  const Reference& reference() const;
+  /// Positions predicted over the horizon, step_s apart, the first at now + step_s.
+  const std::vector<Vec3>& prediction() const;
+
+ private:
+  struct Solver;
+  std::unique_ptr<Solver> solver_;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,36 @@
+// The state estimate, and its recent past: scans and poses arrive late and are matched at their stamp.
+#pragma once
+#include <deque>
+
+#include "core_stack/common/geometry.h"
+#include "core_stack/common/options.h"
+#include "core_stack/common/time.h"
+
+namespace karst::core {
+
+struct State {
+  TimeNs stamp = 0;
+  Vec3 position = Vec3::Zero();               // world frame
+  Vec3 velocity_mps = Vec3::Zero();           // world frame
+  Quat orientation = Quat::Identity();        // body to world
+  Vec3 body_rate_radps = Vec3::Zero();        // body frame
+  Pose pose() const { return {position, orientation}; }
+};
+
+enum class Health { good, degraded, lost };
+
+/// The last seconds of states, oldest first.
+class StateHistory {
+ public:
+  explicit StateHistory(TimeNs length = 2 * kSecond) : length_(length) {}
+  void push(const State& s);
+  /// Pose at `t`: linear in position, spherical in rotation; the nearest end outside the range.
+  Pose pose_at(TimeNs t) const;
+  const std::deque<State>& states() const { return states_; }
+
+ private:
+  std::deque<State> states_;
+  TimeNs length_;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,23 @@
+// The map as an octomap::OcTree, for storage (map.bt, map.ot) and for tools that read OctoMap.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "core_stack/mapping/voxel_map.h"
+
+namespace octomap {
+class OcTree;
+}
+
+namespace karst::core {
+
+/// A pruned tree with the same log-odds in every known cell (built in Morton order).
+std::unique_ptr<octomap::OcTree> to_octree(const VoxelMap& map);
+/// Writes `stem`.bt (classes) and `stem`.ot (log-odds); throws InputError when the disk refuses.
+void write_octomap(const VoxelMap& map, const std::string& stem);
+/// Occupied cells as a binary PLY of points (x y z float32).
+void write_ply(const VoxelMap& map, const std::string& path);
+/// Reads a .bt or .ot file; throws InputError when it is truncated or no such file.
+VoxelMap read_octomap(const std::string& path);
+
+}  // namespace karst::core

@@ -1,0 +1,20 @@
+// 26-connected A* over known-free cells; a cell is feasible if no obstacle lies within the clearance.
+#pragma once
+#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/planning/path.h"
+
+namespace karst::core {
+
+/// Unknown space is never assumed free. If the start itself is nearer to an obstacle than the clearance (the
+/// map changed, or the vehicle was pushed), the search may first leave through free cells of growing
+/// clearance. The result is raw: pass it to refine_path.
+Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options);
+
+/// Feasibility as the planner judges it: p's cell and every cell within the clearance is free or clear.
+bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m);
+/// Every point of the segment is clear.
+bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m);
+/// Index of the first segment of `points` that is not clear, or -1.
+int first_blocked_segment(const VoxelMap& map, const std::vector<Vec3>& points, double clearance_m);
+
+}  // namespace karst::core

@@ -1,0 +1,32 @@
+// A path and what came of looking for it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+#include "core_stack/common/options.h"
+
+namespace karst::core {
+
+struct PlanningOptions {
+  double clearance_m = 0.55;        // least distance of the path from the centre of any occupied or
+                                    // unknown-boundary cell; must exceed the vehicle's radius
+  double preferred_clearance_m = 1.0;  // post-processing pushes the path out to this where there is room
+  double heuristic_weight = 1.2;    // bounded sub-optimality of the grid search; 1: optimal
+  std::int64_t max_expansions = 400000;
+};
+void describe(OptionTable& t, PlanningOptions& o);
+
+enum class PlanStatus { found, start_blocked, goal_blocked, no_path, gave_up };
+
+struct Path {
+  PlanStatus status = PlanStatus::no_path;
+  std::string reason;        // when not found: a sentence a user can act on
+  std::vector<Vec3> points;  // world frame, first is the start, last the goal
+  double length_m = 0;
+  bool found() const { return status == PlanStatus::found; }
+};
+
+double path_length_m(const std::vector<Vec3>& points);
+
+}  // namespace karst::core

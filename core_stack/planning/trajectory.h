@@ -1,0 +1,50 @@
+// Trajectory sampling: from a path to positions and headings at a fixed rate, slow where it bends
+// (section III-C of the paper; the unit slip in its a_k is resolved in docs/planning.md).
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+#include "core_stack/common/options.h"
+#include "core_stack/common/time.h"
+
+namespace karst::core {
+
+struct MotionLimits {
+  double max_speed_mps = 2.0;
+  double min_speed_mps = 0.3;       // v_min of the sampling: floor in bends
+  double max_acceleration_mps2 = 2.0;
+  double max_jerk_mps3 = 12.0;
+  double max_heading_rate_radps = 1.0;
+  double max_heading_acceleration_radps2 = 2.0;
+};
+void describe(OptionTable& t, MotionLimits& o);
+
+struct TrajectorySample {
+  Vec3 position = Vec3::Zero();
+  double heading_rad = 0;
+};
+
+/// Samples at `period` from `start`; before it the first holds, after it the last.
+struct Trajectory {
+  TimeNs start = 0;
+  TimeNs period = 200 * kMillisecond;
+  std::vector<TrajectorySample> samples;
+
+  TrajectorySample at(TimeNs t) const;  // linear between samples, heading along the shorter arc
+  TimeNs end() const { return start + period * static_cast<TimeNs>(samples.empty() ? 0 : samples.size() - 1); }
+};
+
+struct HeadingPlan {
+  bool along_path = true;            // look where the vehicle goes
+  double start_heading_rad = 0;
+  std::optional<double> goal_heading_rad;  // turned to over the last stretch and at the goal
+};
+
+/// Samples `points` from `start_speed_mps` along the path to rest at its end. Accelerations along and across
+/// the path stay within the limits (up to the sampling); turning on the spot comes first where heading must
+/// lead and the path turns by more than the rate allows.
+Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
+                             const MotionLimits& limits, const HeadingPlan& heading);
+
+}  // namespace karst::core

@@ -1,0 +1,81 @@
+// The interface to what carries the core stack: a simulator, a replay, one day a real autopilot.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core_stack/common/executive.h"
+#include "core_stack/common/options.h"
+#include "core_stack/vehicle/messages.h"
+
+namespace karst::core {
+
+/// What the core stack must know of a vehicle before it flies.
+struct VehicleDescription {
+  std::string name;
+  double radius_m = 0.3;  // of the sphere that holds the vehicle
+  double mass_kg = 2.0;
+  double max_thrust_n = 45.0;
+  double max_body_rate_radps = 6.0;
+  double pose_delay_s = 0.0;          // declared delay of the pose sensor
+  double pose_noise_m = 0.0;          // declared standard deviation
+  bool has_lidar = false;
+  std::vector<std::shared_ptr<const CameraModel>> cameras;
+  Pose T_world_start;                 // the pose it stands at before take-off, in the mission's world frame
+  double hover_power_w = 0.0;
+};
+
+/// Where a vehicle delivers its messages. All calls come on the executive's loop thread.
+class VehicleSink {
+ public:
+  virtual ~VehicleSink() = default;
+  virtual void on_lidar(std::shared_ptr<const LidarScan>) = 0;
+  virtual void on_depth(std::shared_ptr<const DepthImage>) = 0;
+  virtual void on_imu(const ImuSample&) = 0;
+  virtual void on_magnetometer(const MagnetometerSample&) = 0;
+  virtual void on_pose(const PoseSample&) = 0;
+  virtual void on_battery(const BatteryStatus&) = 0;
+  /// The vehicle stands on the ground, or has left it.
+  virtual void on_ground(TimeNs stamp, bool standing) = 0;
+  /// Nothing more will come from this vehicle (crash, empty battery, end of a recording).
+  virtual void on_lost(TimeNs stamp, const std::string& outcome, const std::string& reason) = 0;
+};
+
+class Vehicle {
+ public:
+  virtual ~Vehicle() = default;
+  virtual VehicleDescription description() const = 0;
+  /// Registers the vehicle's periodic work. `sink` outlives the executive's run.
+  virtual void start(Executive& executive, VehicleSink& sink) = 0;
+  virtual void command(const AttitudeRateCommand&) = 0;
+  /// Called once after the run, to close files.
+  virtual void finish() {}
+};
+
+/// What a vehicle plugin is given to set itself up.
+struct VehicleSetup {
+  std::string mission_file;  // for error messages
+  std::string cave;          // cave .info or mesh, "" if the vehicle needs none
+  std::string start;         // "x y z [heading_deg]", "" for the cave's own
+  std::string run_dir;       // it may write its own files here, such as ground truth; "" for none
+  std::uint64_t seed = 1;
+};
+
+/// A vehicle plugin's factory. `options()` describes the section of the mission file that bears the
+/// plugin's name; `create` throws InputError on bad input.
+class VehiclePlugin {
+ public:
+  virtual ~VehiclePlugin() = default;
+  virtual void describe_options(OptionTable& table) = 0;  // rows keep pointing into this object
+  virtual std::unique_ptr<Vehicle> create(const VehicleSetup& setup) = 0;
+};
+
+}  // namespace karst::core
+
+/// The one symbol a vehicle plugin exports: C++ inside one build, not a promise to outsiders.
+using karst_vehicle_plugin_fn = karst::core::VehiclePlugin* (*)();
+#define KARST_VEHICLE_PLUGIN(Type)                                                              \
+  extern "C" __attribute__((visibility("default"))) karst::core::VehiclePlugin* karst_vehicle_plugin() { \
+    static Type plugin;                                                                         \
+    return &plugin;                                                                             \
+  }
