@@ -19,7 +19,7 @@ struct VehicleDescription {
   double max_body_rate_radps = 6.0;
   double pose_delay_s = 0.0;          // declared delay of the pose sensor
   double pose_noise_m = 0.0;          // declared standard deviation
-  bool has_lidar = false;
+  std::shared_ptr<const LidarModel> lidar;  // null: none
   std::vector<std::shared_ptr<const CameraModel>> cameras;
   Pose T_world_start;                 // the pose it stands at before take-off, in the mission's world frame
   double hover_power_w = 0.0;
