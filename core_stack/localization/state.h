@@ -10,21 +10,24 @@ namespace karst::core {
 
 struct State {
   TimeNs stamp = 0;
-  Vec3 position = Vec3::Zero();               // world frame
-  Vec3 velocity_mps = Vec3::Zero();           // world frame
-  Quat orientation = Quat::Identity();        // body to world
-  Vec3 body_rate_radps = Vec3::Zero();        // body frame
+  Vec3 position = Vec3::Zero();         // world frame
+  Vec3 velocity_mps = Vec3::Zero();     // world frame
+  Quat orientation = Quat::Identity();  // body to world
+  Vec3 body_rate_radps = Vec3::Zero();  // body frame
   Pose pose() const { return {position, orientation}; }
 };
 
 enum class Health { good, degraded, lost };
 
-/// The last seconds of states, oldest first.
+/// The last seconds of states, oldest first, stamps strictly increasing.
 class StateHistory {
  public:
   explicit StateHistory(TimeNs length = 2 * kSecond) : length_(length) {}
+  /// Appends `s`. States at its stamp or later are forgotten first: a correction in the past pushes the
+  /// replayed states over the ones they replace.
   void push(const State& s);
-  /// Pose at `t`: linear in position, spherical in rotation; the nearest end outside the range.
+  /// Pose at `t`: linear in position, spherical in rotation; the nearest end outside the range. The identity
+  /// while the history is empty.
   Pose pose_at(TimeNs t) const;
   const std::deque<State>& states() const { return states_; }
 
