@@ -16,13 +16,13 @@ namespace karst::core {
 
 struct FrontierOptions {
   double tile_m = 3.2;
-  std::int64_t min_cells = 8;       // smaller clusters are noise, not openings
+  std::int64_t min_cells = 8;    // smaller clusters are noise, not openings
   double neighbourhood_m = 2.0;  // half edge of the box in which free and unknown cells are counted
 };
 void describe(OptionTable& t, FrontierOptions& o);
 
 struct FrontierCluster {
-  std::uint32_t id = 0;      // never used twice; kept while the cluster still shares cells with its former self
+  std::uint32_t id = 0;  // never used twice; kept while the cluster still shares cells with its former self
   std::vector<CellKey> cells;  // sorted
   Vec3 centroid = Vec3::Zero();
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // bounds of the cells, metres

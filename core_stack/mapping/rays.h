@@ -13,7 +13,8 @@ struct Ray {
 };
 
 /// Removes the sweep's distortion with the poses in `history`; NaN returns and returns nearer than
-/// `self_radius_m` to the body's origin are dropped. What lies beyond `max_range_m` only clears space up to it.
+/// `self_radius_m` to the body's origin are dropped. What lies beyond `max_range_m` only clears space up to
+/// it.
 std::vector<Ray> to_rays(const LidarScan& scan, const StateHistory& history, double self_radius_m,
                          double max_range_m);
 std::vector<Ray> to_rays(const DepthImage& image, const StateHistory& history, double self_radius_m);

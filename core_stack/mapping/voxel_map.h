@@ -2,7 +2,8 @@
 //
 // The working copy is a hash of 8x8x8 blocks of log-odds, an order of magnitude faster to update and to
 // query than a tree; octomap::OcTree is made from it for storage and for others (octomap_io.h). Cell
-// boundaries are OctoMap's: cell k covers [k, k+1) * resolution in each axis.
+// boundaries are OctoMap's: cell k covers [k, k+1) * resolution in each axis, and so is the world's size:
+// keys from -32768 to 32767 (6.5 km at 0.2 m). What lies beyond is unknown and stays so.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -30,7 +31,7 @@ struct CellKeyHash {
 
 struct MapOptions {
   double resolution_m = 0.2;
-  double hit_probability = 0.7;   // OctoMap's defaults
+  double hit_probability = 0.7;  // OctoMap's defaults
   double miss_probability = 0.4;
   double min_probability = 0.12;
   double max_probability = 0.97;
@@ -59,7 +60,9 @@ class VoxelMap {
   std::optional<float> log_odds(const CellKey& k) const;
 
   /// Updates the map with one scan: a cell hit by any ray is hit once, a cell only passed is missed once
-  /// (OctoMap's insertPointCloud semantics, discretized). Returns the cells whose class changed, sorted by key.
+  /// (the semantics of OctoMap's insertPointCloud). Of the rays from one cell to another only the first is
+  /// cast: origins in one cell count as one. The end's cell of a ray without a hit is not passed. Rays that
+  /// are not finite or leave the world are ignored. Returns the cells whose class changed, sorted by key.
   std::vector<CellChange> insert(std::span<const Ray> rays);
   /// Declares a ball free (the launch site, which the operator vouches for); cells known already keep
   /// their value.
@@ -69,14 +72,14 @@ class VoxelMap {
   std::size_t occupied_cells() const;
   double free_volume_m3() const;
 
-  /// Number of the last insertion that changed the class of a cell within the blocks that touch the ball.
-  /// A place is "as before" while this number stands.
+  /// Number of the last write (insert or declare_free) that changed the class of a cell within the blocks
+  /// that touch the ball. A place is "as before" while this number stands.
   std::uint64_t revision_near(const Vec3& center, double radius_m) const;
-  std::uint64_t revision() const;
+  std::uint64_t revision() const;  // writes so far
 
   /// First cell on the segment that is not free, if any (every cell the segment passes is visited).
   std::optional<CellKey> first_not_free(const Vec3& from, const Vec3& to) const;
-  /// First occupied or unknown cell seen along a ray as a sensor would: unknown is transparent if asked.
+  /// First occupied cell on the segment, if any; free and unknown cells are transparent.
   std::optional<CellKey> first_occupied(const Vec3& from, const Vec3& to) const;
 
   /// All known cells in a deterministic order (blocks sorted by key, then x fastest).
@@ -86,12 +89,13 @@ class VoxelMap {
                        const std::function<void(const CellKey&, Cell)>& f) const;
 
  private:
+  friend class VoxelReader;  // voxel_reader.h: faster reading of neighbouring cells
   struct Storage;
   std::unique_ptr<Storage> storage_;
 };
 
 /// Visits the cells a segment passes, in order, including both ends' cells; stops when `visit` returns
-/// false. Amanatides and Woo, 1987.
+/// false. Amanatides and Woo, 1987. Visits nothing if an end is not finite or beyond 1e9 cells.
 void traverse(const Vec3& from, const Vec3& to, double resolution_m,
               const std::function<bool(const CellKey&)>& visit);
 

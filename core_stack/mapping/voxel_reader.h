@@ -1,0 +1,30 @@
+// Reads neighbouring cells faster than VoxelMap::at: it remembers the block it read last.
+#pragma once
+#include "core_stack/mapping/voxel_storage.h"
+
+namespace karst::core {
+
+/// Each reader keeps its own memory, so several may read one map at once. Not to be used after the map has
+/// been written to.
+class VoxelReader {
+ public:
+  explicit VoxelReader(const VoxelMap& map) : blocks_(map.storage_->blocks) {}
+
+  Cell at(const CellKey& k) {
+    if (!in_world(k)) return Cell::unknown;
+    const BlockId id = block_of(k);
+    if (id != id_) id_ = id, block_ = blocks_.find(id);
+    return block_ == nullptr ? Cell::unknown : class_of(block_->log_odds[local_of(k)]);
+  }
+
+ private:
+  const BlockTable& blocks_;
+  BlockId id_ = ~BlockId{0};
+  const Block* block_ = nullptr;
+};
+
+/// The six cells that share a face with a cell.
+constexpr std::array<CellKey, 6> kFaces = {CellKey{-1, 0, 0}, CellKey{1, 0, 0},  CellKey{0, -1, 0},
+                                           CellKey{0, 1, 0},  CellKey{0, 0, -1}, CellKey{0, 0, 1}};
+
+}  // namespace karst::core
