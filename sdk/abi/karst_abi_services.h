@@ -1,0 +1,155 @@
+/*
+ * karst policy ABI 1.0: what the host does for a policy.
+ *
+ * Work goes in batches: one call for a thousand points costs little more than one for a single point.
+ * Results go into arrays the caller owns. A call that fails leaves its outputs unspecified.
+ *
+ * Tags of each slot:
+ *   [decision thread]  the thread on which the host calls the policy, only
+ *   [any thread]       threads of the policy's own are welcome
+ *   {deciding}         only while decide() runs;   {any state} from create() to destroy()
+ */
+#ifndef KARST_ABI_SERVICES_H
+#define KARST_ABI_SERVICES_H
+#include "karst_abi_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct karst_host karst_host_t;
+typedef struct karst_map karst_map_t; /* opaque: a snapshot of the occupancy map */
+
+/* Most items one call takes; more is KARST_ERROR_LIMIT. */
+#define KARST_MAX_BATCH 1000000u
+#define KARST_MAX_GAIN_VIEWPOINTS 4096u
+
+typedef uint8_t karst_cell_t;
+enum { KARST_CELL_UNKNOWN = 0, KARST_CELL_FREE = 1, KARST_CELL_OCCUPIED = 2 };
+
+/* [frozen] Cell k covers [k, k + 1) * resolution_m in each axis. */
+typedef struct karst_map_info {
+  double resolution_m;
+  uint64_t revision; /* grows when any cell's class changes */
+  uint64_t free_cells, occupied_cells;
+} karst_map_info_t;
+
+/* [frozen] Where a ray ended. */
+typedef struct karst_ray_end {
+  karst_vec3_t center; /* of the cell that stopped it, or of the last cell passed */
+  double length_m;     /* from the ray's start to that centre */
+  karst_cell_t state;  /* FREE: nothing stopped it. UNKNOWN, OCCUPIED: what did */
+  uint8_t reserved[7];
+} karst_ray_end_t;
+
+/* Bits of cast_rays' flags. */
+enum { KARST_RAY_THROUGH_UNKNOWN = 1u }; /* unknown cells do not stop the ray */
+
+/* [frozen] Cells by class whose centres lie in a box. */
+typedef struct karst_cell_counts {
+  uint64_t unknown, free, occupied;
+} karst_cell_counts_t;
+
+/*
+ * [appendable] The occupancy map.
+ *
+ * The request's snapshot is a view of the core's map: it lives until decide() returns, unless the policy
+ * retains it. Retaining copies (tens of milliseconds for a large map), so that what the policy
+ * holds never changes under it. Who retains releases.
+ */
+typedef struct karst_map_service {
+  uint32_t size;
+  uint32_t reserved;
+  /* [any thread] {any state} */
+  int32_t (*info)(const karst_host_t*, const karst_map_t*, karst_map_info_t* out,
+                  karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} Class of the cell that holds each point. */
+  int32_t (*cell_states)(const karst_host_t*, const karst_map_t*, const karst_vec3_t* points, uint64_t count,
+                         karst_cell_t* out, karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} Each ray visits every cell it passes, both ends' included. */
+  int32_t (*cast_rays)(const karst_host_t*, const karst_map_t*, const karst_segment_t* rays, uint64_t count,
+                       uint32_t flags, karst_ray_end_t* out, karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} */
+  int32_t (*count_in_boxes)(const karst_host_t*, const karst_map_t*, const karst_box_t* boxes, uint64_t count,
+                            karst_cell_counts_t* out, karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} Centres of the occupied cells in the box that have a free face neighbour, in
+     ascending (z, y, x). Writes at most `capacity` of them; `*total` is how many there are. */
+  int32_t (*surface_cells)(const karst_host_t*, const karst_map_t*, karst_box_t box, karst_vec3_t* out,
+                           uint64_t capacity, uint64_t* total, karst_error_t*) KARST_NOEXCEPT;
+  /* [decision thread] {deciding} Returns a snapshot to keep, or NULL with the error filled. */
+  const karst_map_t* (*retain)(const karst_host_t*, const karst_map_t*, karst_error_t*)KARST_NOEXCEPT;
+  /* [any thread] {any state} What retain() returned, once. */
+  void (*release)(const karst_host_t*, const karst_map_t*) KARST_NOEXCEPT;
+} karst_map_service_t;
+
+/* [appendable] Ways through the map of this request. */
+typedef struct karst_path_service {
+  uint32_t size;
+  uint32_t reserved;
+  /* [any thread] {deciding} Length of a clear path from `from` to within `tolerance_m` of each goal, in
+     metres; +infinity if no way is known. One search answers for all the goals. */
+  int32_t (*lengths)(const karst_host_t*, karst_vec3_t from, const karst_vec3_t* goals, uint64_t count,
+                     double tolerance_m, double* out, karst_error_t*) KARST_NOEXCEPT;
+} karst_path_service_t;
+
+/* [appendable] What a look from somewhere would teach. */
+typedef struct karst_gain_service {
+  uint32_t size;
+  uint32_t reserved;
+  /* [any thread] {any state} Unknown cells each sensor would see from each viewpoint: rays end at occupied
+     cells and at max_range_m and pass unknown ones. out[v * sensor_count + s] is for viewpoint v, sensor s;
+     a cell is counted once for each pair. The cost grows with the cube of max_range_m: pass a shortened
+     sensor to ask only what lies near. Neighbouring rays are at most one cell apart where they end. */
+  int32_t (*newly_seen)(const karst_host_t*, const karst_map_t*, const karst_sensor_t* sensors,
+                        uint64_t sensor_count, const karst_viewpoint_t* viewpoints, uint64_t count,
+                        uint64_t* out, karst_error_t*) KARST_NOEXCEPT;
+} karst_gain_service_t;
+
+/* [appendable] Drawings go into the report, next to the decision that made them. Colours are 0xRRGGBB. */
+typedef struct karst_draw_service {
+  uint32_t size;
+  uint32_t reserved;
+  /* [decision thread] {deciding} */
+  int32_t (*points)(const karst_host_t*, const karst_vec3_t* points, uint64_t count, uint32_t rgb,
+                    karst_error_t*) KARST_NOEXCEPT;
+  /* [decision thread] {deciding} */
+  int32_t (*lines)(const karst_host_t*, const karst_segment_t* lines, uint64_t count, uint32_t rgb,
+                   karst_error_t*) KARST_NOEXCEPT;
+  /* [decision thread] {deciding} At most 240 bytes. */
+  int32_t (*text)(const karst_host_t*, karst_vec3_t at, karst_text_t text, uint32_t rgb,
+                  karst_error_t*) KARST_NOEXCEPT;
+} karst_draw_service_t;
+
+enum { KARST_LOG_DEBUG = 0, KARST_LOG_INFO = 1, KARST_LOG_WARNING = 2 };
+
+/*
+ * [appendable] Given to create(); lives until destroy() has returned. Every call takes it back as its first
+ * argument. A service this host does not offer is NULL or beyond `size`: ask with KARST_HAS.
+ */
+struct karst_host {
+  uint32_t size;
+  uint32_t abi_minor; /* the host's; its major is the plugin's, or it would not have been loaded */
+  void* context;      /* the host's own */
+  const karst_map_service_t* map;
+  const karst_path_service_t* path;
+  const karst_gain_service_t* gain;
+  const karst_draw_service_t* draw;
+  /* [any thread] {any state} One line; longer than 1000 bytes is cut. */
+  void (*log)(const karst_host_t*, uint32_t level, karst_text_t text) KARST_NOEXCEPT;
+  /* [decision thread] {any state} The only chance a policy may use: independent numbers, uniform in [0, 1),
+     the same in every replay of the mission's seed. */
+  void (*random)(const karst_host_t*, double* out, uint64_t count) KARST_NOEXCEPT;
+  /* [any thread] {any state} The only clock a policy may use: mission time of the request (of the latest
+     event or request between two). It stands still while decide() runs. */
+  int64_t (*now_ns)(const karst_host_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} Nonzero once the host waits no longer: return at once. Long loops ask now and
+   * then. */
+  uint32_t (*should_stop)(const karst_host_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} An optional feature such as "karst.example/1", or NULL. */
+  const void* (*extension)(const karst_host_t*, karst_text_t id)KARST_NOEXCEPT;
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,41 @@
+// Which policies are there: from names to files, without running a stranger's code in this process.
+//
+// Order: files named explicitly, KARST_PLUGIN_PATH (ignored in a privileged process), the user's folder,
+// the installed folder next to the executable. The first file that offers a name wins. Each candidate is
+// opened in a child process, so that one that crashes or hangs costs one line in a list.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace karst::host {
+
+/// Where policies are looked for.
+struct SearchPath {
+  std::vector<std::string> files;    // named explicitly, in order
+  std::vector<std::string> folders;  // after the files, in order; those that do not exist are skipped
+  double probe_limit_s = 5.0;        // a candidate that takes longer to say its name is broken
+};
+
+/// The search path of this process.
+SearchPath default_search_path(std::vector<std::string> plugin_files = {});
+
+struct ParameterListing {
+  std::string id, type, unit, default_text, help;
+  double low = 0, high = 0;          // of numbers
+  std::vector<std::string> choices;  // of texts
+};
+
+/// One policy, or one file that could not be read as a plugin.
+struct PolicyListing {
+  std::string file;
+  std::string broken;  // reason; empty if the file is sound
+  std::string id, name, version, one_line;
+  std::string abi;     // "1.0"
+  std::string shadowed_by;  // the file earlier in the order that offers the same id; "" if none
+  std::vector<ParameterListing> parameters;
+};
+
+/// All policies and broken candidates, in the order of the search; within a folder by file name.
+std::vector<PolicyListing> list_policies(const SearchPath& path);
+
+}  // namespace karst::host

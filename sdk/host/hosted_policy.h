@@ -1,0 +1,51 @@
+// A policy plugin behind the core's port.
+//
+// The plugin runs on a decision thread of its own. A call that does not return within the hang limit is
+// abandoned: its services fail from then on, should_stop() says so, and PolicyFailure is thrown. This is
+// the only thing a wall clock decides, and it is a failure path: a replay of a run in which
+// no policy hangs is bit-identical.
+//
+// A thread cannot be killed. If it never returns, it stays until the process ends; `abandoned()` tells, and
+// a tool that sees it ends with std::quick_exit or _exit once its files are written, because
+// the stuck code may still run while static objects are destroyed.
+#pragma once
+#include <boost/property_tree/ptree.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core_stack/mission/policy_port.h"
+#include "sdk/host/discovery.h"
+
+namespace karst::host {
+
+/// What a mission file or a command line says about its policy.
+struct PolicyChoice {
+  std::string name;
+  std::vector<std::string> plugin_files;   // --plugin, before everything else
+  boost::property_tree::ptree parameters;  // values as text with units, such as "2 m"
+  std::string source = "policy";           // the file the parameters come from, for messages
+  std::uint64_t seed = 1;
+  double hang_limit_s = 10.0;
+  int failures_allowed = 2;  // in a row; one more is a PolicyFailure
+};
+
+class HostedPolicy : public core::PolicyPort {
+ public:
+  ~HostedPolicy() override = default;
+  virtual const std::string& version() const = 0;
+  virtual const std::string& file() const = 0;
+  /// Every parameter with the value in force, as read from a mission file.
+  virtual const boost::property_tree::ptree& parameters() const = 0;
+  /// True once the plugin hangs on its thread.
+  virtual bool abandoned() const = 0;
+};
+
+/// Finds, loads, initializes and activates. Throws core::InputError: a name nobody offers (with what there
+/// is, the nearest name and the folders searched), a plugin of another ABI (with both versions and what to
+/// do), a parameter that is unknown, of another unit, or out of range.
+std::unique_ptr<HostedPolicy> load_policy(const PolicyChoice& choice);
+std::unique_ptr<HostedPolicy> load_policy(const PolicyChoice& choice, const SearchPath& path);
+
+}  // namespace karst::host
