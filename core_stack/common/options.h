@@ -30,13 +30,18 @@ class OptionTable {
   void add(std::string key, std::int64_t& v, double low, double high, std::string help);
   void add(std::string key, bool& v, std::string help);
   void add(std::string key, std::string& v, std::vector<std::string> choices, std::string help);
-  /// A module's table below `prefix.`; keys become "prefix.key".
-  template <class Options>
-  void section(const std::string& prefix, Options& o) {
+  /// What `fill` adds stands below `prefix.`; keys become "prefix.key".
+  template <class Fill>
+  void under(const std::string& prefix, Fill fill) {
     const std::string outer = prefix_;
     prefix_ += prefix + ".";
-    describe(*this, o);
+    fill(*this);
     prefix_ = outer;
+  }
+  /// A module's table below `prefix.`.
+  template <class Options>
+  void section(const std::string& prefix, Options& o) {
+    under(prefix, [&o](OptionTable& t) { describe(t, o); });
   }
 
   const std::vector<Row>& rows() const { return rows_; }

@@ -1,0 +1,233 @@
+#include "core_stack/mission/explorer.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core_stack/homing/home.h"
+#include "core_stack/planning/grid_planner.h"
+#include "core_stack/planning/planner.h"
+
+namespace karst::core {
+namespace {
+
+/// A round tries no more plans than this: the rest of a ranked list waits for the next round.
+constexpr int kMostPlans = 5;
+/// Rounds in which every goal of the policy was refused before the fallback is asked.
+constexpr int kMostFruitlessRounds = 4;
+/// A path under way is judged a little milder than a new one, or noise would stop every flight.
+constexpr double kClearanceSlack_m = 0.12;
+/// A cluster that has lost this share of its cells has been seen; flying on to it is a waste.
+constexpr double kSeenShare = 0.75;
+
+double elapsed_ms(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
+}
+
+}  // namespace
+
+Explorer::Explorer(const CoreOptions& options, const VehicleDescription& vehicle, PolicyPort& policy)
+    : options_(options),
+      vehicle_(vehicle),
+      policy_(&policy),
+      map_(options.map),
+      frontiers_(options.frontiers),
+      roadmap_(options.planning),
+      home_(vehicle.T_world_start.position + Vec3(0, 0, options.mission.takeoff_height_m)) {}
+
+std::vector<CellChange> Explorer::integrate(const std::vector<Ray>& rays) {
+  std::vector<CellChange> changes = map_.insert(rays);
+  frontiers_.update(map_, changes);
+  roadmap_.update(map_, changes);
+  return changes;
+}
+
+std::vector<CellChange> Explorer::declare_launch_site(const Vec3& hover_point) {
+  std::vector<CellChange> changes = map_.declare_free(hover_point, options_.mission.launch_clear_radius_m);
+  frontiers_.update(map_, changes);
+  roadmap_.update(map_, changes);
+  return changes;
+}
+
+bool Explorer::cluster_alive(std::uint32_t id) const {
+  const auto it = frontiers_.clusters().find(id);
+  if (it == frontiers_.clusters().end()) return false;
+  const auto chosen = cells_when_chosen_.find(id);
+  return chosen == cells_when_chosen_.end() ||
+         static_cast<double>(it->second.cells.size()) >= (1 - kSeenShare) * static_cast<double>(chosen->second);
+}
+
+std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
+  std::vector<FrontierOffer> open;
+  std::map<std::uint32_t, KnownViewpoint> kept;
+  for (const auto& [id, cluster] : frontiers_.clusters()) {
+    if (ledger_.closed(map_, cluster.centroid, input.now)) continue;
+    if (input.appending && input.last_goal && input.last_goal->frontier_id == id) continue;
+    const std::uint64_t revision = map_.revision_near(cluster.centroid, 2.0);
+    const auto known = viewpoints_.find(id);
+    const bool fresh = known != viewpoints_.end() && known->second.revision == revision &&
+                       known->second.cells == cluster.cells;
+    KnownViewpoint entry =
+        fresh ? known->second
+              : KnownViewpoint{revision, cluster.cells,
+                               find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m)};
+    FrontierOffer offer;
+    offer.cluster = &cluster;
+    offer.path_length_m = std::numeric_limits<double>::infinity();
+    if (entry.viewpoint && !ledger_.closed(map_, entry.viewpoint->position, input.now)) {
+      offer.viewpoint = entry.viewpoint->position;
+      offer.viewpoint_heading_rad = entry.viewpoint->heading_rad;
+      open.push_back(offer);
+    }
+    kept.emplace(id, std::move(entry));
+  }
+  viewpoints_ = std::move(kept);
+
+  std::vector<Vec3> places;
+  for (const FrontierOffer& o : open) places.push_back(o.viewpoint);
+  const std::vector<double> lengths = roadmap_.distances(map_, input.from, places, map_.resolution_m());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i].path_length_m = lengths[i];
+  return open;
+}
+
+Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
+  if (!policy_failed_ && fruitless_rounds_ < kMostFruitlessRounds) {
+    try {
+      result.policy = policy_->name();
+      return policy_->decide(request);
+    } catch (const PolicyFailure& failure) {
+      policy_failed_ = true;
+      result.log.push_back("policy failed, the fallback takes over: " + std::string(failure.what()));
+    }
+  }
+  result.policy = fallback_.name();
+  fruitless_rounds_ = 0;
+  return fallback_.decide(request);
+}
+
+std::optional<std::string> Explorer::objection(const RoundInput& input, const Goal& goal) const {
+  const Vec3& p = goal.position;
+  if (!p.allFinite()) return "its position is not finite";
+  if (std::isinf(goal.heading_rad)) return "its heading is not finite";
+  if (map_.at(p) != Cell::free)
+    return map_.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
+  if (!is_clear(map_, p, options_.planning.clearance_m)) return "it is too near to rock or unknown space";
+  if (const auto why = ledger_.closed(map_, p, input.now)) return "it was tried before: " + *why;
+  return std::nullopt;
+}
+
+HomeEstimate Explorer::estimate_home(const Vec3& from) const {
+  const HomePlan plan = plan_home(map_, roadmap_, from, home_, options_.planning);
+  if (!plan.found) return {};
+  return {plan.length_m, home_time_s(plan.length_m, vehicle_.T_world_start.position.z(), home_.z(),
+                                     options_.motion, options_.mission.landing_speed_mps)};
+}
+
+void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, RoundResult& result) {
+  int plans = 0;
+  for (const Goal& goal : goals) {
+    if (plans == kMostPlans) break;
+    std::string why;
+    if (const auto problem = objection(input, goal)) {
+      why = *problem;
+    } else {
+      ++plans;
+      const Path path = plan(map_, roadmap_, input.from, goal.position, options_.planning);
+      if (path.found()) {
+        const HomeEstimate home = estimate_home(goal.position);
+        const double there_s = path.length_m / (0.6 * options_.motion.max_speed_mps);
+        const double back_s = home.time_s * (1 + options_.mission.home_margin) + options_.mission.home_reserve_s;
+        if (there_s + back_s < input.battery_seconds_left) {
+          result.goal = goal;
+          result.path = path.points;
+          if (goal.frontier_id != 0) {
+            const auto cluster = frontiers_.clusters().find(goal.frontier_id);
+            if (cluster != frontiers_.clusters().end() &&
+                (!input.last_goal || input.last_goal->frontier_id != goal.frontier_id))
+              cells_when_chosen_[goal.frontier_id] = cluster->second.cells.size();
+          }
+          return;
+        }
+        why = "the battery does not last for going there and home";
+      } else {
+        why = "no path: " + path.reason;
+        ledger_.close(map_, goal.position, input.now, why);
+      }
+    }
+    result.rejected.push_back({goal, why});
+  }
+}
+
+void Explorer::learn(const RoundInput& input) {
+  for (const PolicyEvent& event : input.events) {
+    if (!policy_failed_) policy_->notify(event);
+    const auto cluster = frontiers_.clusters().find(event.goal.frontier_id);
+    if (event.kind == PolicyEvent::Kind::goal_reached && cluster != frontiers_.clusters().end())
+      ledger_.close(map_, cluster->second.centroid, input.now, "seen from its viewpoint, it stays a frontier");
+    if (event.kind == PolicyEvent::Kind::goal_abandoned)
+      ledger_.close(map_, event.goal.position, input.now, event.reason);
+  }
+}
+
+RoundResult Explorer::decide(const RoundInput& input) {
+  RoundResult result;
+  const auto begin = std::chrono::steady_clock::now();
+  learn(input);
+
+  DecisionRequest request;
+  request.stamp = input.now;
+  request.deadline = input.deadline;
+  request.sequence = ++sequence_;
+  request.state = input.state;
+  request.direction_of_flight = input.direction;
+  request.T_world_start = vehicle_.T_world_start;
+  const HomeEstimate home = estimate_home(input.from);
+  request.seconds_before_homing =
+      input.battery_seconds_left - home.time_s * (1 + options_.mission.home_margin) - options_.mission.home_reserve_s;
+  request.max_speed_mps = options_.motion.max_speed_mps;
+  request.clearance_m = options_.planning.clearance_m;
+  request.vehicle_radius_m = vehicle_.radius_m;
+  request.last_fate = input.last_fate;
+  if (input.last_goal) request.last_goal = input.last_goal->position;
+  request.map = &map_;
+  request.roadmap = &roadmap_;
+  request.vehicle = &vehicle_;
+  request.frontiers = offers(input);
+
+  const auto asked = std::chrono::steady_clock::now();
+  Decision decision = ask(request, result);
+  result.decide_ms = elapsed_ms(asked);
+  result.outcome = decision.outcome;
+  result.reason = decision.reason;
+  result.drawings = std::move(decision.drawings);
+  result.log.insert(result.log.end(), decision.log.begin(), decision.log.end());
+  result.goals_proposed = decision.goals.size();
+  if (decision.outcome == Outcome::goals) {
+    choose(input, decision.goals, result);
+    if (!result.goal) result.outcome = Outcome::hold, result.reason = "no goal of the policy could be accepted";
+  }
+  const bool fruitless = result.outcome == Outcome::hold && !input.appending;
+  fruitless_rounds_ = fruitless ? fruitless_rounds_ + 1 : 0;
+  if (!policy_failed_)
+    for (const RejectedGoal& r : result.rejected)
+      policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});
+
+  for (const auto& [id, cluster] : frontiers_.clusters()) {
+    FrontierCluster brief = cluster;
+    brief.unknown_cells = static_cast<std::uint32_t>(cluster.cells.size());
+    brief.cells.clear();
+    result.frontiers.push_back(std::move(brief));
+  }
+  result.plan_ms = elapsed_ms(begin) - result.decide_ms;
+  return result;
+}
+
+Path Explorer::plan_to(const Vec3& from, const Vec3& to) {
+  return plan(map_, roadmap_, from, to, options_.planning);
+}
+
+int Explorer::blocked_segment(const std::vector<Vec3>& points) const {
+  return first_blocked_segment(map_, points, options_.planning.clearance_m - kClearanceSlack_m);
+}
+
+}  // namespace karst::core

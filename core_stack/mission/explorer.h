@@ -1,0 +1,107 @@
+// Everything that works on the map: it takes in rays, asks the policy, checks its goals, and plans.
+//
+// An Explorer lives on the map lane of the executive: all its calls run there one after another, so the map
+// needs no lock and a decision sees the map as it was when the decision began.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core_stack/mapping/frontiers.h"
+#include "core_stack/mission/fallback_policy.h"
+#include "core_stack/mission/goal_ledger.h"
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/policy_port.h"
+#include "core_stack/mission/viewpoints.h"
+#include "core_stack/planning/roadmap.h"
+
+namespace karst::core {
+
+/// What one round of decision starts from.
+struct RoundInput {
+  TimeNs now = 0, deadline = 0;
+  State state;              // predicted at the deadline
+  Vec3 from = Vec3::Zero();  // where the new path begins: the end of the stretch already committed to
+  Vec3 direction = Vec3::UnitX();
+  double battery_seconds_left = 0;
+  GoalFate last_fate = GoalFate::none;
+  std::optional<Goal> last_goal;
+  bool appending = false;   // the last goal will be reached before the new one is flown to
+  std::vector<PolicyEvent> events;  // since the last round
+};
+
+struct RejectedGoal {
+  Goal goal;
+  std::string reason;
+};
+
+struct RoundResult {
+  Outcome outcome = Outcome::hold;
+  std::string reason, policy;
+  std::optional<Goal> goal;   // accepted, with `path` from RoundInput::from to it
+  std::vector<Vec3> path;
+  std::vector<RejectedGoal> rejected;
+  std::vector<Drawing> drawings;
+  std::vector<std::string> log;
+  std::size_t goals_proposed = 0;
+  std::vector<FrontierCluster> frontiers;  // without their cells: for the report
+  double decide_ms = 0, plan_ms = 0;       // wall clock, for timing.json only
+};
+
+struct HomeEstimate {
+  std::optional<double> length_m;  // none: no way is known through the map
+  double time_s = 0;
+};
+
+class Explorer {
+ public:
+  Explorer(const CoreOptions& options, const VehicleDescription& vehicle, PolicyPort& policy);
+
+  /// Takes one sensor's rays into the map; returns what changed.
+  std::vector<CellChange> integrate(const std::vector<Ray>& rays);
+  std::vector<CellChange> declare_launch_site(const Vec3& hover_point);
+
+  RoundResult decide(const RoundInput& input);
+  /// A way from `from` to `to` for going home or around a new obstacle.
+  Path plan_to(const Vec3& from, const Vec3& to);
+  HomeEstimate estimate_home(const Vec3& from) const;
+  /// Index of the first segment of `points` that the map now forbids, or -1.
+  int blocked_segment(const std::vector<Vec3>& points) const;
+  /// True if the cluster is still open enough to be worth flying to.
+  bool cluster_alive(std::uint32_t id) const;
+
+  const VoxelMap& map() const { return map_; }
+  const Vec3& home() const { return home_; }
+
+ private:
+  struct KnownViewpoint {
+    std::uint64_t revision;
+    std::vector<CellKey> cells;
+    std::optional<Viewpoint> viewpoint;
+  };
+  void learn(const RoundInput& input);
+  std::vector<FrontierOffer> offers(const RoundInput& input);
+  Decision ask(const DecisionRequest& request, RoundResult& result);
+  std::optional<std::string> objection(const RoundInput& input, const Goal& goal) const;
+  void choose(const RoundInput& input, const std::vector<Goal>& goals, RoundResult& result);
+
+  CoreOptions options_;
+  VehicleDescription vehicle_;
+  PolicyPort* policy_;
+  FallbackPolicy fallback_;
+  bool policy_failed_ = false;
+  int fruitless_rounds_ = 0;
+  std::uint32_t sequence_ = 0;
+
+  VoxelMap map_;
+  Frontiers frontiers_;
+  Roadmap roadmap_;
+  GoalLedger ledger_;
+  std::map<std::uint32_t, KnownViewpoint> viewpoints_;
+  std::map<std::uint32_t, std::size_t> cells_when_chosen_;
+  Vec3 home_;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,106 @@
+#include "core_stack/mission/flight.h"
+
+#include <limits>
+
+namespace karst::core {
+namespace {
+
+constexpr double kControlPeriod_s = 0.01;
+
+/// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
+constexpr double kBrakingShare = 0.6;
+
+}  // namespace
+
+Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
+    : limits_(options.motion),
+      estimator_(options.localization, vehicle.T_world_start),
+      tracker_(options.tracker, options.motion),
+      controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps) {
+  const Pose& start = vehicle.T_world_start;
+  trajectory_.samples = {{start.position, heading_of(start.orientation)}};
+  tracker_.reset(0, start.position, heading_of(start.orientation));
+}
+
+AttitudeRateCommand Flight::control(TimeNs now) {
+  if (!armed_) return {};
+  const Reference& reference = tracker_.step(trajectory_, now);
+  AttitudeRateCommand command = controller_.update(state(), reference, kControlPeriod_s);
+  command.armed = true;
+  return command;
+}
+
+void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
+                    const HeadingPlan& heading) {
+  trajectory_ = sample_trajectory(points, start_speed_mps, start, limits_, heading);
+}
+
+void Flight::climb(TimeNs now, double height_m, double speed_mps) {
+  if (!armed_) {
+    // The estimate has settled while standing: begin from it, not from the pose that was declared.
+    tracker_.reset(now, state().position, heading_of(state().orientation));
+    controller_.reset();
+    armed_ = true;
+  }
+  const Vec3 from = reference().position;
+  MotionLimits slow = limits_;
+  slow.max_speed_mps = speed_mps;
+  slow.min_speed_mps = std::min(limits_.min_speed_mps, speed_mps);
+  HeadingPlan keep;
+  keep.along_path = false;
+  keep.start_heading_rad = reference().heading_rad;
+  trajectory_ = sample_trajectory({from, from + Vec3(0, 0, height_m)}, 0, now, slow, keep);
+}
+
+void Flight::look_around(TimeNs now) {
+  const Vec3 here = reference().position;
+  const double heading = reference().heading_rad;
+  const double rate = 0.6 * limits_.max_heading_rate_radps;
+  Trajectory turn;
+  turn.start = now;
+  const int steps = static_cast<int>(std::ceil(2 * std::numbers::pi / (rate * seconds(turn.period))));
+  for (int i = 0; i <= steps; ++i)
+    turn.samples.push_back({here, wrap_angle(heading + 2 * std::numbers::pi * i / steps)});
+  trajectory_ = std::move(turn);
+}
+
+void Flight::brake(TimeNs now) {
+  const Onward stop = until_stop(now);
+  HeadingPlan keep;
+  keep.along_path = false;
+  keep.start_heading_rad = stop.heading_rad;
+  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, limits_, keep);
+}
+
+void Flight::disarm() {
+  armed_ = false;
+  trajectory_.samples.resize(1);
+}
+
+double Flight::speed_at(TimeNs t) const {
+  constexpr TimeNs dt = 50 * kMillisecond;
+  return (trajectory_.at(t + dt).position - trajectory_.at(t).position).norm() / seconds(dt);
+}
+
+Flight::Onward Flight::onward(TimeNs t, double length_m) const {
+  Onward out{{trajectory_.at(t).position}, speed_at(t), trajectory_.at(t).heading_rad};
+  double length = 0;
+  for (std::size_t i = 0; i < trajectory_.samples.size() && length < length_m; ++i) {
+    if (trajectory_.start + trajectory_.period * static_cast<TimeNs>(i) <= t) continue;
+    const Vec3& next = trajectory_.samples[i].position;
+    const double step = (next - out.points.back()).norm();
+    if (step < 1e-6) continue;
+    length += step;
+    out.points.push_back(next);
+  }
+  return out;
+}
+
+Flight::Onward Flight::until_stop(TimeNs t) const {
+  const double v = speed_at(t);
+  return onward(t, v * v / (2 * kBrakingShare * limits_.max_acceleration_mps2));
+}
+
+Flight::Onward Flight::until_end(TimeNs t) const { return onward(t, std::numeric_limits<double>::infinity()); }
+
+}  // namespace karst::core

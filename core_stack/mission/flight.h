@@ -1,0 +1,65 @@
+// The inner loop: state estimate, trajectory, MPC reference, SE(3) command. Mission control hands it paths.
+#pragma once
+#include <vector>
+
+#include "core_stack/control/mpc_tracker.h"
+#include "core_stack/control/se3_controller.h"
+#include "core_stack/localization/estimator.h"
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+class Flight {
+ public:
+  Flight(const CoreOptions& options, const VehicleDescription& vehicle);
+
+  void on_imu(const ImuSample& s) { estimator_.on_imu(s); }
+  void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
+  void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
+
+  /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.
+  AttitudeRateCommand control(TimeNs now);
+
+  /// Flies along `points` from `start` on (not before now); the first point is where the reference will be then.
+  void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start, const HeadingPlan& heading);
+  /// Straight up or down at `speed_mps` by `height_m` from the present reference.
+  void climb(TimeNs now, double height_m, double speed_mps);
+  /// Turns once around on the spot: a camera's first look.
+  void look_around(TimeNs now);
+  /// Stops within the shortest stretch of the present trajectory, which is known to be free.
+  void brake(TimeNs now);
+  /// Motors off: on the ground.
+  void disarm();
+
+  /// The trajectory's course from `t` on, for planning ahead.
+  struct Onward {
+    std::vector<Vec3> points;  // from the position at t to where it may turn off; at least one point
+    double speed_mps = 0;      // at t
+    double heading_rad = 0;    // at t
+  };
+  /// Up to where the vehicle could have stopped.
+  Onward until_stop(TimeNs t) const;
+  /// Up to the trajectory's end.
+  Onward until_end(TimeNs t) const;
+
+  bool airborne() const { return armed_; }
+  bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
+  double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }
+  const State& state() const { return estimator_.state(); }
+  const Estimator& estimator() const { return estimator_; }
+  const Reference& reference() const { return tracker_.reference(); }
+
+ private:
+  Onward onward(TimeNs t, double length_m) const;
+  double speed_at(TimeNs t) const;
+
+  MotionLimits limits_;
+  Estimator estimator_;
+  MpcTracker tracker_;
+  Se3Controller controller_;
+  Trajectory trajectory_;
+  bool armed_ = false;
+};
+
+}  // namespace karst::core

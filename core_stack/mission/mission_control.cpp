@@ -1,0 +1,199 @@
+#include "core_stack/mission/mission_control.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mapping/rays.h"
+
+namespace karst::core {
+namespace {
+
+constexpr TimeNs kControlPeriod = 10 * kMillisecond;
+constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
+constexpr TimeNs kMappingBudget = 60 * kMillisecond;
+constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
+constexpr double kClimbSpeed_mps = 0.5;
+/// Returns within this margin around the vehicle are the vehicle.
+constexpr double kSelfMargin_m = 0.05;
+
+}  // namespace
+
+const char* name_of(Phase phase) {
+  switch (phase) {
+    case Phase::standby: return "standby";
+    case Phase::takeoff: return "takeoff";
+    case Phase::look: return "look";
+    case Phase::explore: return "explore";
+    case Phase::home: return "home";
+    case Phase::land: return "land";
+    case Phase::done: return "done";
+  }
+  return "?";
+}
+
+MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive,
+                               PolicyPort& policy, Recorder& recorder)
+    : options_(options),
+      description_(vehicle.description()),
+      vehicle_(vehicle),
+      executive_(executive),
+      recorder_(recorder),
+      flight_(options, description_),
+      explorer_(options, description_, policy) {
+  battery_.seconds_left = options.mission.max_flight_time_s;
+}
+
+MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)>& watch) {
+  enter(Phase::standby, "");
+  executive_.job(
+      "launch site", Lane::map, kMappingBudget,
+      [this] { explorer_.declare_launch_site(explorer_.home()); }, [] {});
+  vehicle_.start(executive_, *this);
+  executive_.every("control", kControlPeriod, kControlPeriod, [this] { control(); });
+  executive_.every("supervise", kSupervisionPeriod, kSupervisionPeriod, [this] { supervise(); });
+  executive_.every("watch", kSecond, kSecond, [this, &watch] {
+    const MissionStatus status{now(), phase_, battery_.fraction_left, battery_.seconds_left, explored_m3_,
+                               flight_.state().velocity_mps.norm(), goal_ ? goal_->why : ""};
+    if (!watch(status)) finish("aborted", "stopped by the operator");
+  });
+  const TimeNs limit = from_seconds(options_.mission.max_flight_time_s + 600);
+  executive_.run_until(limit, [this] { return result_.has_value(); });
+  executive_.drain();
+  if (!result_) finish("aborted", "the vehicle did not come back within ten minutes after the time limit");
+  vehicle_.finish();
+  recorder_.final_map(explorer_.map());
+  return *result_;
+}
+
+void MissionControl::finish(const std::string& outcome, const std::string& reason) {
+  if (result_) return;
+  enter(Phase::done, reason);
+  recorder_.event(now(), "outcome", {{"outcome", outcome}, {"reason", reason}});
+  recorder_.flush();
+  result_ = MissionResult{outcome, reason};
+}
+
+void MissionControl::enter(Phase phase, const std::string& reason) {
+  phase_ = phase;
+  phase_since_ = now();
+  last_landmark_ = flight_.reference().position;
+  last_landmark_time_ = now();
+  recorder_.event(now(), "phase", {{"phase", name_of(phase)}, {"reason", reason}});
+}
+
+void MissionControl::control() { vehicle_.command(flight_.control(now())); }
+
+void MissionControl::supervise() {
+  record();
+  if (phase_ != Phase::land && phase_ != Phase::done && flight_.airborne() &&
+      flight_.estimator().health(now()) == Health::lost) {
+    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", "the state estimate is lost"}});
+    flight_.brake(now());
+    enter(Phase::land, "the state estimate is lost");
+  }
+  switch (phase_) {
+    case Phase::standby:
+      if (now() - phase_since_ < kSettling) break;
+      flight_.climb(now(), options_.mission.takeoff_height_m, kClimbSpeed_mps);
+      enter(Phase::takeoff, "");
+      break;
+    case Phase::takeoff:
+      if (!flight_.at_rest(now() - kSettling)) break;
+      has_taken_off_ = true;
+      // A vehicle that sees all around already has nothing to look around for.
+      if (!description_.lidar) flight_.look_around(now());
+      enter(description_.lidar ? Phase::explore : Phase::look, "");
+      break;
+    case Phase::look:
+      if (flight_.at_rest(now() - kSettling)) enter(Phase::explore, "");
+      break;
+    case Phase::explore:
+      explore();
+      watch_battery();
+      break;
+    case Phase::home:
+      go_home();
+      break;
+    case Phase::land:
+      land();
+      break;
+    case Phase::done: break;
+  }
+}
+
+void MissionControl::record() {
+  recorder_.pose(flight_.state());
+  recorder_.telemetry({now(), name_of(phase_), flight_.state(), flight_.reference().position,
+                       battery_.fraction_left, battery_.seconds_left, explored_m3_, home_distance_m_});
+  if (flown_.empty() || (flown_.back() - flight_.reference().position).norm() > 0.5)
+    flown_.push_back(flight_.reference().position);
+  if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
+    enter(Phase::home, "the run directory cannot be written any more (disk full?)");
+}
+
+void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
+  integrate([scan, history = flight_.estimator().history(), options = options_, radius = description_.radius_m] {
+    LidarScan filtered = *scan;
+    filter_low_intensity(filtered, options.perception);
+    return to_rays(filtered, history, radius + kSelfMargin_m, options.mission.mapping_range_m);
+  });
+}
+
+void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
+  integrate([image, history = flight_.estimator().history(), radius = description_.radius_m] {
+    return to_rays(*image, history, radius + kSelfMargin_m);
+  });
+}
+
+void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
+  struct Result {
+    std::vector<CellChange> changes;
+    double explored_m3 = 0;
+    int blocked = -1;
+    bool goal_alive = true;
+  };
+  auto result = std::make_shared<Result>();
+  const std::uint32_t frontier = goal_ ? goal_->frontier_id : 0;
+  const bool check = phase_ == Phase::explore || phase_ == Phase::home;
+  executive_.job(
+      "mapping", Lane::map, kMappingBudget,
+      [this, result, frontier, make_rays = std::move(make_rays),
+       ahead = check ? path_ahead() : std::vector<Vec3>{}] {
+        result->changes = explorer_.integrate(make_rays());
+        result->explored_m3 = explorer_.map().free_volume_m3();
+        if (ahead.size() > 1) result->blocked = explorer_.blocked_segment(ahead);
+        if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
+      },
+      [this, result, frontier] {
+        explored_m3_ = result->explored_m3;
+        const bool same_goal = goal_ && goal_->frontier_id == frontier;
+        on_map_update(result->changes, result->blocked, result->goal_alive || !same_goal);
+      });
+}
+
+void MissionControl::on_map_update(const std::vector<CellChange>& changes, int blocked_segment, bool goal_alive) {
+  recorder_.map_changes(now(), changes);
+  goal_alive_ = goal_alive;
+  if (blocked_segment < 0 || path_blocked_ || ignore_blocks_ || flight_.at_rest(now())) return;
+  path_blocked_ = true;
+  next_goal_.reset();
+  recorder_.event(now(), "safety", {{"action", "brake"}, {"reason", "the map now forbids the path ahead"}});
+  flight_.brake(now());
+}
+
+void MissionControl::on_ground(TimeNs stamp, bool standing) {
+  if (!standing || !has_taken_off_ || phase_ == Phase::done) return;
+  flight_.disarm();
+  vehicle_.command(flight_.control(stamp));
+  const double off_m = (flight_.state().position - description_.T_world_start.position).head<2>().norm();
+  if (off_m < 1.0) {
+    finish("landed", "at the start");
+  } else {
+    finish("stuck", "on the ground " + std::to_string(off_m).substr(0, 5) + " m from the start");
+  }
+}
+
+void MissionControl::on_lost(TimeNs, const std::string& outcome, const std::string& reason) {
+  finish(outcome, reason);
+}
+
+}  // namespace karst::core

@@ -1,0 +1,113 @@
+// Mission control: the top loop. Sensor messages come in, the policy's goals become paths, paths become
+// commands; and whatever happens, the vehicle comes home and lands.
+//
+//   standby -> takeoff -> (look) -> explore -> home -> land -> done
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core_stack/common/executive.h"
+#include "core_stack/mission/explorer.h"
+#include "core_stack/mission/flight.h"
+#include "core_stack/mission/recorder.h"
+
+namespace karst::core {
+
+enum class Phase { standby, takeoff, look, explore, home, land, done };
+const char* name_of(Phase phase);
+
+/// For a person watching.
+struct MissionStatus {
+  TimeNs time = 0;
+  Phase phase = Phase::standby;
+  double battery_fraction = 1, battery_seconds_left = 0, explored_m3 = 0, speed_mps = 0;
+  std::string goal;
+};
+
+struct MissionResult {
+  std::string outcome;  // landed | contact | stuck | battery | aborted
+  std::string reason;
+};
+
+class MissionControl final : public VehicleSink {
+ public:
+  MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive, PolicyPort& policy,
+                 Recorder& recorder);
+
+  /// Flies the mission. `watch` is called every second of flight; it returns false to abort.
+  MissionResult run(const std::function<bool(const MissionStatus&)>& watch);
+
+  void on_lidar(std::shared_ptr<const LidarScan> scan) override;
+  void on_depth(std::shared_ptr<const DepthImage> image) override;
+  void on_imu(const ImuSample& s) override { flight_.on_imu(s); }
+  void on_magnetometer(const MagnetometerSample& s) override { flight_.on_magnetometer(s); }
+  void on_pose(const PoseSample& s) override { flight_.on_pose(s); }
+  void on_battery(const BatteryStatus& s) override { battery_ = s; }
+  void on_ground(TimeNs stamp, bool standing) override;
+  void on_lost(TimeNs stamp, const std::string& outcome, const std::string& reason) override;
+
+ private:
+  void control();
+  void supervise();
+  void record();
+  void enter(Phase phase, const std::string& reason);
+  void finish(const std::string& outcome, const std::string& reason);
+
+  // Mapping.
+  void integrate(std::function<std::vector<Ray>()> make_rays);
+  void on_map_update(const std::vector<CellChange>& changes, int blocked_segment, bool goal_alive);
+
+  // Exploring.
+  void explore();
+  void begin_round(bool appending);
+  void on_round(const RoundInput& input, const Flight::Onward& lead, const RoundResult& result);
+  void settle_goal(GoalFate fate, PolicyEvent::Kind kind, const std::string& reason);
+  void record_round(const RoundInput& input, const RoundResult& result);
+
+  // Going home and landing.
+  void watch_battery();
+  void go_home();
+  void plan_home_path();
+  void fly_back_as_come();
+  void land();
+  void watch_progress();
+
+  TimeNs now() const { return executive_.now(); }
+  std::vector<Vec3> path_ahead() const { return flight_.until_end(now()).points; }
+
+  CoreOptions options_;
+  VehicleDescription description_;
+  Vehicle& vehicle_;
+  Executive& executive_;
+  Recorder& recorder_;
+  Flight flight_;
+  Explorer explorer_;  // touched by jobs on the map lane only
+
+  Phase phase_ = Phase::standby;
+  TimeNs phase_since_ = 0;
+  std::optional<MissionResult> result_;
+  BatteryStatus battery_;
+  bool has_taken_off_ = false;
+
+  // The goal under way, and what the policy has yet to be told.
+  std::optional<Goal> goal_;
+  std::optional<Goal> next_goal_;      // appended behind goal_
+  TimeNs goal_passed_at_ = 0;          // when goal_ will be passed, if next_goal_ is set
+  GoalFate last_fate_ = GoalFate::none;
+  std::optional<Goal> last_goal_;
+  std::vector<PolicyEvent> events_;
+  bool round_running_ = false, append_tried_ = false, path_blocked_ = false, goal_alive_ = true;
+  TimeNs last_round_ = 0, last_landmark_time_ = 0;
+  Vec3 last_landmark_ = Vec3::Zero();  // for judging progress
+
+  // The way home.
+  std::vector<Vec3> flown_;            // every half metre of the way come
+  double home_distance_m_ = 0;
+  int home_failures_ = 0;
+  bool home_planning_ = false, ignore_blocks_ = false;
+  double explored_m3_ = 0;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,188 @@
+// Exploring: when the policy is asked, and how its goal joins the trajectory in flight.
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mission/mission_control.h"
+
+namespace karst::core {
+namespace {
+
+/// Between two rounds: time for a scan or two to come in at a place just reached.
+constexpr TimeNs kPause = 400 * kMillisecond;
+constexpr double kSameGoal_m = 0.3;
+constexpr double kProgress_m = 0.5;
+
+nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+nlohmann::json list(const std::vector<Vec3>& points) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Vec3& p : points) all.push_back(list(p));
+  return all;
+}
+
+nlohmann::json to_json(const Goal& goal, const char* state, const std::string& reason) {
+  nlohmann::json j{{"position", list(goal.position)}, {"frontier", goal.frontier_id}, {"score", goal.score},
+                   {"why", goal.why},                 {"state", state},               {"reason", reason}};
+  j["heading"] = std::isfinite(goal.heading_rad) ? nlohmann::json(goal.heading_rad) : nlohmann::json();
+  return j;
+}
+
+const char* state_of(PolicyEvent::Kind kind) {
+  switch (kind) {
+    case PolicyEvent::Kind::goal_reached: return "reached";
+    case PolicyEvent::Kind::goal_rejected: return "rejected";
+    case PolicyEvent::Kind::goal_unreachable: return "unreachable";
+    case PolicyEvent::Kind::goal_abandoned: return "abandoned";
+    case PolicyEvent::Kind::goal_superseded: return "superseded";
+    case PolicyEvent::Kind::homing: return "homing";
+  }
+  return "?";
+}
+
+}  // namespace
+
+void MissionControl::settle_goal(GoalFate fate, PolicyEvent::Kind kind, const std::string& reason) {
+  if (!goal_) return;
+  recorder_.event(now(), "goal", to_json(*goal_, state_of(kind), reason));
+  events_.push_back({kind, now(), *goal_, reason});
+  last_fate_ = fate;
+  last_goal_ = goal_;
+  goal_.reset();
+}
+
+void MissionControl::explore() {
+  if (next_goal_ && now() >= goal_passed_at_) {
+    settle_goal(GoalFate::reached, PolicyEvent::Kind::goal_reached, "passed on the way to the next");
+    goal_ = next_goal_;
+    next_goal_.reset();
+    append_tried_ = false;
+  }
+  watch_progress();
+  if (round_running_ || now() - last_round_ < kPause) return;
+
+  if (flight_.at_rest(now())) {
+    if (goal_ && !path_blocked_) {
+      settle_goal(GoalFate::reached, PolicyEvent::Kind::goal_reached, "");
+      last_round_ = now();  // let the sensors look before the next goal is chosen
+      return;
+    }
+    begin_round(false);
+  } else if (path_blocked_ || next_goal_) {
+    return;  // wait for the brake, or for the goal to be passed
+  } else if (goal_ && !goal_alive_) {
+    begin_round(false);
+  } else if (flight_.remaining_s(now()) < options_.mission.append_before_s) {
+    if (!append_tried_) begin_round(true);
+    append_tried_ = true;
+  } else if (now() - last_round_ > from_seconds(options_.mission.decision_period_s)) {
+    begin_round(false);
+  }
+}
+
+void MissionControl::begin_round(bool appending) {
+  round_running_ = true;
+  last_round_ = now();
+  const TimeNs budget = from_seconds(options_.mission.decision_budget_s);
+  const Flight::Onward lead =
+      appending ? flight_.until_end(now() + budget) : flight_.until_stop(now() + budget);
+  RoundInput input;
+  input.now = now();
+  input.deadline = now() + budget;
+  input.state = flight_.state();
+  input.state.position = lead.points.front();
+  input.from = lead.points.back();
+  const Vec3 velocity = flight_.reference().velocity_mps;
+  input.direction = velocity.norm() > 0.2 ? velocity.normalized()
+                                          : Vec3(std::cos(lead.heading_rad), std::sin(lead.heading_rad), 0);
+  input.battery_seconds_left = battery_.seconds_left;
+  input.last_fate = goal_ ? GoalFate::under_way : last_fate_;
+  input.last_goal = goal_ ? goal_ : last_goal_;
+  input.appending = appending;
+  input.events = std::move(events_);
+  events_.clear();
+  auto result = std::make_shared<RoundResult>();
+  executive_.job(
+      "decision", Lane::map, budget, [this, input, result] { *result = explorer_.decide(input); },
+      [this, input, lead, result] { on_round(input, lead, *result); });
+}
+
+void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lead, const RoundResult& result) {
+  round_running_ = false;
+  record_round(input, result);
+  if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
+
+  if (result.goal) {
+    const bool same = goal_ && (goal_->position - result.goal->position).norm() < kSameGoal_m;
+    if (same && !path_blocked_ && !input.appending) return;  // keep to the path under way
+    std::vector<Vec3> points = lead.points;
+    points.insert(points.end(), result.path.begin() + 1, result.path.end());
+    const double speed = flight_.at_rest(now()) ? 0.0 : lead.speed_mps;
+    HeadingPlan heading;
+    heading.along_path = !description_.lidar;
+    heading.start_heading_rad = lead.heading_rad;
+    if (std::isfinite(result.goal->heading_rad)) heading.goal_heading_rad = result.goal->heading_rad;
+    recorder_.event(now(), "goal", to_json(*result.goal, "accepted", ""));
+    recorder_.event(now(), "plan", {{"length", path_length_m(points)}, {"from", list(points.front())},
+                                    {"to", list(points.back())}, {"points", list(points)}});
+    if (input.appending && goal_) {
+      next_goal_ = result.goal;
+      goal_passed_at_ = now() + from_seconds(flight_.remaining_s(now()));
+    } else {
+      if (!same) settle_goal(GoalFate::superseded, PolicyEvent::Kind::goal_superseded,
+                             goal_alive_ ? "the policy chose another" : "its frontier has been seen");
+      goal_ = result.goal;
+      append_tried_ = false;
+    }
+    flight_.follow(points, speed, now(), heading);
+    goal_alive_ = true;
+    path_blocked_ = false;
+    last_landmark_ = flight_.reference().position;
+    last_landmark_time_ = now();
+  } else if (input.appending) {
+    return;  // ask again on arrival
+  } else if (result.outcome == Outcome::explored && flight_.at_rest(now())) {
+    enter(Phase::home, "explored: " + result.reason);
+  } else if (result.outcome == Outcome::go_home) {
+    enter(Phase::home, "the policy asked for it: " + result.reason);
+  } else if (path_blocked_ && flight_.at_rest(now())) {
+    settle_goal(GoalFate::unreachable, PolicyEvent::Kind::goal_unreachable, result.reason);
+    path_blocked_ = false;
+  }
+}
+
+void MissionControl::watch_progress() {
+  const Vec3& here = flight_.reference().position;
+  if (!goal_ || (here - last_landmark_).norm() > kProgress_m) {
+    last_landmark_ = here;
+    last_landmark_time_ = now();
+    return;
+  }
+  if (now() - last_landmark_time_ < from_seconds(options_.mission.goal_timeout_s)) return;
+  settle_goal(GoalFate::abandoned, PolicyEvent::Kind::goal_abandoned, "no progress towards it");
+  next_goal_.reset();
+  if (!flight_.at_rest(now())) flight_.brake(now());
+}
+
+void MissionControl::record_round(const RoundInput& input, const RoundResult& result) {
+  static constexpr const char* kOutcomes[] = {"goals", "hold", "explored", "go_home"};
+  recorder_.decision_cost(now(), result.decide_ms, result.plan_ms);
+  recorder_.event(now(), "decision",
+                  {{"policy", result.policy},
+                   {"outcome", kOutcomes[static_cast<int>(result.outcome)]},
+                   {"goals", result.goals_proposed},
+                   {"reason", result.reason},
+                   {"appending", input.appending},
+                   {"frontiers", result.frontiers.size()}});
+  nlohmann::json clusters = nlohmann::json::array();
+  for (const FrontierCluster& c : result.frontiers)
+    clusters.push_back({c.id, c.centroid.x(), c.centroid.y(), c.centroid.z(), c.unknown_cells});
+  recorder_.event(now(), "frontiers", {{"clusters", clusters}});
+  for (const RejectedGoal& r : result.rejected)
+    recorder_.event(now(), "goal", to_json(r.goal, "rejected", r.reason));
+  static constexpr const char* kShapes[] = {"points", "lines", "text"};
+  for (const Drawing& d : result.drawings)
+    recorder_.event(now(), "drawing", {{"shape", kShapes[static_cast<int>(d.kind)]},
+                                       {"points", list(d.points)}, {"rgb", d.rgb}, {"text", d.text}});
+  for (const std::string& text : result.log) recorder_.event(now(), "log", {{"text", text}});
+}
+
+}  // namespace karst::core

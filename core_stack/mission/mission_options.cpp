@@ -1,0 +1,35 @@
+#include "core_stack/mission/mission_options.h"
+
+namespace karst::core {
+
+void describe(OptionTable& t, MissionOptions& o) {
+  t.add("takeoff_height", o.takeoff_height_m, "m", 0.3, 20, "height of the first hover above the launch site");
+  t.add("launch_clear_radius", o.launch_clear_radius_m, "m", 0.5, 5,
+        "ball around the first hover which the operator vouches to be clear");
+  t.add("decision_period", o.decision_period_s, "s", 0.5, 60,
+        "the policy is asked again after this long under way, and when a goal is near or has lost its sense");
+  t.add("decision_budget", o.decision_budget_s, "s", 0.05, 2, "simulated time a decision and its plan take");
+  t.add("append_before", o.append_before_s, "s", 0.5, 10,
+        "the next goal is asked for this long before the present one is reached");
+  t.add("goal_timeout", o.goal_timeout_s, "s", 2, 60, "a goal without progress for this long is abandoned");
+  t.add("home_margin", o.home_margin, "", 0, 2, "share added to the time estimated for flying home");
+  t.add("home_reserve", o.home_reserve_s, "s", 5, 600, "battery time kept for after the way home");
+  t.add("landing_speed", o.landing_speed_mps, "m/s", 0.1, 0.7, "vertical speed of the landing");
+  t.add("max_flight_time", o.max_flight_time_s, "s", 10, 86400, "homing begins at the latest in time for this");
+  t.add("mapping_range", o.mapping_range_m, "m", 1, 200,
+        "LiDAR measurements beyond this only clear space up to it");
+}
+
+void describe(OptionTable& t, CoreOptions& o) {
+  t.section("mission", o.mission);
+  t.section("map", o.map);
+  t.section("frontiers", o.frontiers);
+  t.section("perception", o.perception);
+  t.section("localization", o.localization);
+  t.section("planning", o.planning);
+  t.section("motion", o.motion);
+  t.section("tracker", o.tracker);
+  t.section("controller", o.controller);
+}
+
+}  // namespace karst::core

@@ -1,0 +1,42 @@
+// Every setting of the core stack, as one struct and one table: the mission file's sections.
+#pragma once
+#include "core_stack/control/mpc_tracker.h"
+#include "core_stack/control/se3_controller.h"
+#include "core_stack/localization/estimator.h"
+#include "core_stack/mapping/frontiers.h"
+#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/perception/intensity_filter.h"
+#include "core_stack/planning/path.h"
+#include "core_stack/planning/trajectory.h"
+
+namespace karst::core {
+
+struct MissionOptions {
+  double takeoff_height_m = 0.7;
+  double launch_clear_radius_m = 1.0;
+  double decision_period_s = 4.0;
+  double decision_budget_s = 0.3;
+  double append_before_s = 2.5;
+  double goal_timeout_s = 10.0;
+  double home_margin = 0.25;
+  double home_reserve_s = 30.0;
+  double landing_speed_mps = 0.4;
+  double max_flight_time_s = 3600.0;
+  double mapping_range_m = 30.0;
+};
+void describe(OptionTable& t, MissionOptions& o);
+
+struct CoreOptions {
+  MissionOptions mission;
+  MapOptions map;
+  FrontierOptions frontiers;
+  IntensityFilterOptions perception;
+  EstimatorOptions localization;
+  PlanningOptions planning;
+  MotionLimits motion;
+  MpcOptions tracker;
+  Se3Options controller;
+};
+void describe(OptionTable& t, CoreOptions& o);
+
+}  // namespace karst::core

@@ -1,0 +1,50 @@
+// The run directory, written as the flight goes: complete up to the last second whatever happens.
+// docs/run_directory.md describes every file.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+
+#include "core_stack/localization/state.h"
+#include "core_stack/mapping/voxel_map.h"
+
+namespace karst::core {
+
+/// One line of telemetry.csv.
+struct Telemetry {
+  TimeNs stamp = 0;
+  std::string phase;
+  State state;
+  Vec3 reference = Vec3::Zero();
+  double battery_fraction = 0, battery_seconds_left = 0;
+  double explored_m3 = 0;
+  double home_distance_m = 0;  // by path; NaN while unknown
+};
+
+class Recorder {
+ public:
+  /// Creates the directory; throws InputError if it cannot be written or holds another run's files.
+  explicit Recorder(const std::filesystem::path& run_dir);
+
+  /// A line of events.jsonl: {"t": ..., "kind": kind, ...fields}.
+  void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
+  void pose(const State& state);
+  void telemetry(const Telemetry& row);
+  void map_changes(TimeNs t, std::span<const CellChange> changes);
+  /// Wall-clock costs of a decision, apart from what must replay byte for byte.
+  void decision_cost(TimeNs t, double decide_ms, double plan_ms);
+  /// Final map in all its formats.
+  void final_map(const VoxelMap& map);
+  /// Pushes what is buffered to the file system; false once a write has failed (disk full, removed).
+  bool flush();
+
+  const std::filesystem::path& directory() const { return directory_; }
+
+ private:
+  std::filesystem::path directory_;
+  std::ofstream events_, trajectory_, telemetry_, growth_, decisions_;
+};
+
+}  // namespace karst::core

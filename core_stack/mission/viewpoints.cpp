@@ -1,0 +1,84 @@
+#include "core_stack/mission/viewpoints.h"
+
+#include <array>
+#include <cmath>
+
+#include "core_stack/planning/grid_planner.h"
+
+namespace karst::core {
+namespace {
+
+/// Distances tried, metres. A little back is best: near enough for a dense scan, far enough to see around.
+constexpr std::array kShells = {1.0, 1.8, 2.8, 4.0, 0.4};
+constexpr std::array kElevations = {0.0, -0.35, 0.35, -0.8, 0.8, -1.4, 1.4};
+constexpr int kAzimuths = 12;
+
+/// LiDAR rings spread with range: beyond this a scan is too sparse to close a frontier.
+constexpr double kLidarViewRange_m = 10.0;
+
+/// Cells of the cluster that can be seen along a free line, out of at most eight looked at.
+int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const VehicleDescription& vehicle,
+               const Viewpoint& from) {
+  const std::size_t stride = std::max<std::size_t>(1, cluster.cells.size() / 8);
+  int seen = 0;
+  for (std::size_t i = stride / 2; i < cluster.cells.size(); i += stride) {
+    const Vec3 cell = map.center_of(cluster.cells[i]);
+    if (in_view(vehicle, from, cell, kLidarViewRange_m) && !map.first_not_free(from.position, cell)) ++seen;
+  }
+  return seen;
+}
+
+}  // namespace
+
+bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target, double lidar_range_m) {
+  const Pose T_world_body{from.position, from_heading(from.heading_rad)};
+  const Vec3 target_body = T_world_body.inverse() * target;
+  if (vehicle.lidar) {
+    const Vec3 p = vehicle.lidar->T_body_lidar.inverse() * target_body;
+    const double elevation = std::atan2(p.z(), std::hypot(p.x(), p.y()));
+    if (p.norm() <= lidar_range_m && elevation <= vehicle.lidar->elevation_rad.front() &&
+        elevation >= vehicle.lidar->elevation_rad.back())
+      return true;
+  }
+  for (const auto& camera : vehicle.cameras) {
+    const Vec3 p = camera->T_body_camera.inverse() * target_body;
+    if (p.x() > 0 && p.norm() <= 0.9 * camera->max_range_m &&
+        std::abs(p.y()) <= p.x() * std::tan(camera->horizontal_fov_rad / 2) &&
+        std::abs(p.z()) <= p.x() * std::tan(camera->vertical_fov_rad / 2))
+      return true;
+  }
+  return false;
+}
+
+std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
+                                        const VehicleDescription& vehicle, double clearance_m) {
+  // The frontier cell nearest the centroid stands for the cluster: the centroid itself may lie in rock.
+  Vec3 target = cluster.centroid;
+  double least = 1e9;
+  for (const CellKey& k : cluster.cells) {
+    const double d = (map.center_of(k) - cluster.centroid).squaredNorm();
+    if (d < least) least = d, target = map.center_of(k);
+  }
+  std::optional<Viewpoint> best;
+  double best_value = 0;
+  for (const double radius : kShells) {
+    for (const double elevation : kElevations) {
+      const int azimuths = std::abs(elevation) > 1.2 ? 4 : kAzimuths;
+      for (int i = 0; i < azimuths; ++i) {
+        const double azimuth = 2 * std::numbers::pi * i / azimuths;
+        const Vec3 away(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                        std::sin(elevation));
+        const Viewpoint v{target + radius * away, std::atan2(-away.y(), -away.x())};
+        if (map.at(v.position) != Cell::free || map.first_not_free(v.position, target)) continue;
+        if (!in_view(vehicle, v, target, kLidarViewRange_m) || !is_clear(map, v.position, clearance_m)) continue;
+        // Facing the opening squarely counts as one more cell seen.
+        const double value = cells_seen(map, cluster, vehicle, v) - away.dot(cluster.normal) - 0.2 * radius;
+        if (!best || value > best_value) best = v, best_value = value;
+      }
+    }
+    if (best) return best;
+  }
+  return best;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,24 @@
+// Where to look from: for a frontier cluster, a clear place near it from which the vehicle's sensors see it.
+#pragma once
+#include <optional>
+
+#include "core_stack/mapping/frontiers.h"
+#include "core_stack/planning/path.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+struct Viewpoint {
+  Vec3 position = Vec3::Zero();
+  double heading_rad = 0;
+};
+
+/// True if some sensor of a level vehicle at the viewpoint has `target` in its field of view and range.
+bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target, double lidar_range_m);
+
+/// The best of a fixed set of candidates on shells around the cluster: clear, with a free line of sight, the
+/// cluster in a sensor's view. None if there is no such place.
+std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
+                                        const VehicleDescription& vehicle, double clearance_m);
+
+}  // namespace karst::core
