@@ -1,0 +1,58 @@
+// A cave: rock to collide with and to measure, where to start, what the rock is made of.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+#include "plugins/simulator/cave/ray_scene.h"
+
+namespace karst::cave {
+
+/// Where the vehicle would hover to begin; it is set down on the floor below.
+struct StartPose {
+  core::Vec3 position = core::Vec3::Zero();
+  double heading_rad = 0;
+};
+
+/// Rock of another reflectivity within a ball: wet walls, a chalk band, a sheet of metal.
+struct Patch {
+  core::Vec3 position = core::Vec3::Zero();
+  double radius_m = 1, reflectivity = 0.1;
+};
+
+/// Ferromagnetic ore as a magnetic dipole; the moment in A m^2, world frame.
+struct OreBody {
+  core::Vec3 position = core::Vec3::Zero(), moment_am2 = core::Vec3::Zero();
+};
+
+struct CaveDescription {
+  std::string file;       // what the user named
+  std::string mesh_path;  // the same, or what the .info file names
+  StartPose start;
+  double reflectivity = 0.5;  // of bare rock, 0..1
+  std::vector<Patch> patches;
+  std::vector<OreBody> ore_bodies;
+};
+
+/// Reads a cave `.info` file, or describes a bare mesh, which needs `start` ("x y z [heading_deg]"; a
+/// non-empty one replaces the file's own). Throws InputError. The file's keys, by example:
+///
+///   mesh tunnel.ply              ; relative to this file
+///   start "1 2 1.5 90"           ; x y z in metres, heading in degrees counter-clockwise from east
+///   reflectivity 0.5
+///   patch { position "4 2 1" radius "3 m" reflectivity 0.1 }     ; any number of these
+///   ore { position "9 0 -2" moment "0 0 4000" }                  ; and of these
+CaveDescription describe_cave(const std::string& path, const std::string& start);
+
+struct Cave {
+  CaveDescription description;
+  RayScene scene;
+};
+
+/// describe_cave, then its mesh.
+Cave load_cave(const std::string& path, const std::string& start);
+
+/// Reflectivity of the rock at a place: that of the last patch that holds it.
+double reflectivity_at(const CaveDescription& cave, const core::Vec3& place);
+
+}  // namespace karst::cave

@@ -1,0 +1,130 @@
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "core_stack/common/error.h"
+#include "plugins/simulator/cave/triangle_mesh.h"
+
+namespace karst::cave {
+namespace {
+
+using core::InputError;
+using core::Vec3f;
+
+std::string lower_extension(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
+
+void append_mesh(const std::string& path, const aiMesh& part, const aiMatrix4x4& T, TriangleMesh& out) {
+  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+  for (unsigned i = 0; i < part.mNumVertices; ++i) {
+    const aiVector3D v = T * part.mVertices[i];
+    // 1e5 m: floats still resolve 8 mm there; a cave further off is in other units or map coordinates.
+    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) ||
+        std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e5f)
+      throw InputError(path, "vertex " + std::to_string(first + i),
+                       "coordinates must be finite and within 100 km of the origin");
+    out.vertices.emplace_back(v.x, v.y, v.z);
+  }
+  for (unsigned f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    std::array<std::uint32_t, 3> t{};
+    for (unsigned k = 0; k < 3; ++k) {
+      if (face.mIndices[k] >= part.mNumVertices)
+        throw InputError(path, "face " + std::to_string(f), "names a vertex that does not exist");
+      t[k] = first + face.mIndices[k];
+    }
+    const Vec3f& a = out.vertices[t[0]];
+    if ((out.vertices[t[1]] - a).cross(out.vertices[t[2]] - a).squaredNorm() > 0) out.triangles.push_back(t);
+  }
+}
+
+void append_node(const std::string& path, const aiScene& scene, const aiNode& node,
+                 const aiMatrix4x4& T_parent, TriangleMesh& out) {
+  const aiMatrix4x4 T = T_parent * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(path, *scene.mMeshes[node.mMeshes[i]], T, out);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(path, scene, *node.mChildren[i], T, out);
+}
+
+template <class T>
+void put(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string stl_bytes(const TriangleMesh& mesh) {
+  std::string bytes(80, ' ');
+  put(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& t : mesh.triangles) {
+    const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Vec3f normal = (b - a).cross(c - a).normalized();
+    for (const Vec3f& v : {normal, a, b, c})
+      for (int k = 0; k < 3; ++k) put(bytes, v[k]);
+    put(bytes, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+std::string ply_bytes(const TriangleMesh& mesh) {
+  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment units metres; z up\nelement vertex " +
+                      std::to_string(mesh.vertices.size()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                      std::to_string(mesh.triangles.size()) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3f& v : mesh.vertices)
+    for (int k = 0; k < 3; ++k) put(bytes, v[k]);
+  for (const auto& t : mesh.triangles) {
+    put(bytes, std::uint8_t{3});
+    for (const std::uint32_t i : t) put(bytes, i);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+TriangleMesh load_mesh(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".dae")
+    throw InputError(path, "", "a mesh must be a .stl, .ply, .obj or .dae file");
+  check_declared_size(path);
+
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+                                  aiComponent_TEXCOORDS | aiComponent_MATERIALS | aiComponent_TEXTURES);
+  const unsigned steps = aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_JoinIdenticalVertices;
+  const aiScene* scene = importer.ReadFile(path, steps);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw InputError(path, "", std::string("is no mesh that can be read: ") + importer.GetErrorString());
+
+  // The Collada importer turns every file to y up: turn it back to z up.
+  aiMatrix4x4 T_world_file;
+  if (extension == ".dae") aiMatrix4x4::RotationX(AI_MATH_HALF_PI_F, T_world_file);
+  TriangleMesh mesh;
+  append_node(path, *scene, *scene->mRootNode, T_world_file, mesh);
+  if (mesh.triangles.empty()) throw InputError(path, "", "the mesh has no triangle");
+  return mesh;
+}
+
+void write_mesh(const std::string& path, const TriangleMesh& mesh) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".stl" && extension != ".ply")
+    throw InputError(path, "", "meshes are written as .ply or .stl");
+  const std::string bytes = extension == ".stl" ? stl_bytes(mesh) : ply_bytes(mesh);
+  std::ofstream out(path, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.flush();
+  if (!out) throw InputError(path, "", "cannot be written");
+}
+
+}  // namespace karst::cave

@@ -1,0 +1,66 @@
+#include "plugins/simulator/cave/preflight.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core_stack/common/error.h"
+
+namespace karst::cave {
+
+using core::InputError;
+using core::Vec3;
+using core::Vec3f;
+
+Surroundings look_around(const RayScene& scene, const Vec3& place) {
+  constexpr int kRays = 4096;
+  Surroundings s;
+  s.clearance_m = scene.distance_to_rock(place, 100.0);
+  int escaped = 0, odd = 0;
+  for (int i = 0; i < kRays; ++i) {
+    // Fibonacci lattice: equal areas on the sphere.
+    const double z = 1 - (2 * i + 1.0) / kRays, r = std::sqrt(1 - z * z);
+    const double azimuth = 2 * std::numbers::pi * i / std::numbers::phi;
+    const Vec3 d(r * std::cos(azimuth), r * std::sin(azimuth), z);
+    const int n = scene.crossings({place.cast<float>(), d.cast<float>()});
+    odd += n % 2;
+    if (n > 0) continue;
+    ++escaped;
+    s.escape_direction += d;
+  }
+  s.escape_share = static_cast<double>(escaped) / kRays;
+  s.odd_share = static_cast<double>(odd) / kRays;
+  if (escaped > 0 && s.escape_direction.norm() > 0) s.escape_direction.normalize();
+  return s;
+}
+
+void check_start(const Cave& cave, double vehicle_radius_m) {
+  const CaveDescription& d = cave.description;
+  const Surroundings s = look_around(cave.scene, d.start.position);
+  char text[200];
+  const auto refuse = [&] { throw InputError(d.file, "start", text); };
+  const auto& p = d.start.position;
+  if (s.clearance_m < vehicle_radius_m) {
+    std::snprintf(text, sizeof text, "(%.2f %.2f %.2f) is %.2f m from rock; the vehicle's radius is %.2f m",
+                  p.x(), p.y(), p.z(), s.clearance_m, vehicle_radius_m);
+    refuse();
+  }
+  if (s.odd_share < 0.5) {
+    std::snprintf(text, sizeof text,
+                  "(%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces", p.x(),
+                  p.y(), p.z(), s.escape_share > 0.25 ? "outside of the cave" : "inside rock",
+                  100 * s.odd_share);
+    refuse();
+  }
+  constexpr double kPinholes = 0.0005;  // 2 of 4096 rays may slip between triangles that do not quite join
+  if (s.escape_share > kPinholes) {
+    const auto& e = s.escape_direction;
+    std::snprintf(
+        text, sizeof text,
+        "the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about (%.2f %.2f %.2f)",
+        100 * s.escape_share, p.x(), p.y(), p.z(), e.x(), e.y(), e.z());
+    refuse();
+  }
+}
+
+}  // namespace karst::cave

@@ -1,0 +1,66 @@
+// Ray casts and closest points on a triangle mesh (Embree 3).
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "plugins/simulator/cave/triangle_mesh.h"
+
+namespace karst::cave {
+
+struct Ray {
+  core::Vec3f origin, direction;  // direction of unit length
+};
+
+struct Hit {
+  float range_m = std::numeric_limits<float>::infinity();  // infinity: nothing within the range asked for
+  std::uint32_t triangle = 0;
+  core::Vec3f normal = core::Vec3f::Zero();  // unit, on the side the ray came from
+  bool any() const { return range_m < std::numeric_limits<float>::infinity(); }
+};
+
+/// Rock nearest to a point. With nothing within the radius asked for, the distance is that radius.
+struct Nearest {
+  double distance_m = 0;
+  core::Vec3 point = core::Vec3::Zero();
+  bool found = false;
+};
+
+/// All queries are const and may run on several threads at once. Results depend on the mesh and the query
+/// only: one instruction set is fixed, so that they are the same bits on every machine.
+class RayScene {
+ public:
+  static constexpr const char* kDevice = "threads=1,isa=sse4.2";  // Embree's configuration
+
+  explicit RayScene(TriangleMesh mesh);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  const TriangleMesh& mesh() const { return *mesh_; }
+
+  /// `out[i]` is the first hit of `rays[i]`. Neighbouring rays should point to neighbouring places: they are
+  /// cast in packets of eight. Same bits as casting one at a time.
+  void cast(std::span<const Ray> rays, float max_range_m, std::span<Hit> out) const;
+  Hit cast(const Ray& ray, float max_range_m) const;
+
+  /// Range to rock from `from` along `direction` (of any length), or infinity.
+  double ray_cast(const core::Vec3& from, const core::Vec3& direction, double max_range_m) const;
+  /// Nothing lies on the straight line between two points.
+  bool visible(const core::Vec3& a, const core::Vec3& b) const;
+  /// How many surfaces the ray passes, surfaces closer together than 0.1 mm counted once.
+  int crossings(const Ray& ray) const;
+
+  Nearest nearest(const core::Vec3& p, double within_m) const;
+  double distance_to_rock(const core::Vec3& p, double within_m) const {
+    return nearest(p, within_m).distance_m;
+  }
+
+ private:
+  struct Handles;
+  std::unique_ptr<const TriangleMesh> mesh_;
+  std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace karst::cave

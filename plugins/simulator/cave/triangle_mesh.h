@@ -1,0 +1,30 @@
+// A cave's rock surface: triangles in metres, z up. Winding is arbitrary and the surface may have gaps.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+
+namespace karst::cave {
+
+struct TriangleMesh {
+  std::vector<core::Vec3f> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Reads .stl, .ply, .obj or .dae: all parts of the file joined into one mesh, its node transforms applied.
+/// STL, PLY and OBJ are taken as metres with z up; Collada files say their unit and axis and are turned to
+/// that. Throws InputError on a file that is missing, truncated, empty, no mesh, or has a vertex that is
+/// not finite. Triangles without area are dropped.
+TriangleMesh load_mesh(const std::string& path);
+
+/// Writes a binary .ply, or a binary .stl if the path ends so. Throws InputError if it cannot.
+void write_mesh(const std::string& path, const TriangleMesh& mesh);
+
+/// Throws InputError where a .stl or .ply file is shorter than its own header says, in places where an
+/// importer would fill the gap with silence.
+void check_declared_size(const std::string& path);
+
+}  // namespace karst::cave
