@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -33,15 +34,40 @@ struct FrontierCluster {
 class Frontiers {
  public:
   explicit Frontiers(const FrontierOptions& options);
-  /// Brings the clusters up to date after one or more insertions.
+  /// Brings the clusters up to date after one or more insertions, given all their changes. Everything in the
+  /// clusters, the counts around them included, then holds for the map as it is.
   void update(const VoxelMap& map, std::span<const CellChange> changes);
   /// Clusters of at least min_cells, by id.
-  const std::map<std::uint32_t, FrontierCluster>& clusters() const;
+  const std::map<std::uint32_t, FrontierCluster>& clusters() const { return clusters_; }
   bool is_frontier(const CellKey& k) const;
-  std::size_t cell_count() const;
+  std::size_t cell_count() const { return cell_count_; }
 
  private:
-  // the implementer's
+  struct Part {  // a component of any size
+    std::uint32_t id = 0;
+    std::vector<CellKey> cells;  // sorted
+  };
+  struct Tile {
+    std::vector<std::uint64_t> frontier;  // a bit a cell, z fastest
+    std::vector<Part> parts;
+  };
+
+  CellKey tile_of(const CellKey& k) const;
+  std::uint32_t bit_of(const CellKey& k, const CellKey& tile) const;
+  CellKey cell_of(std::uint32_t bit, const CellKey& tile) const;
+  std::vector<CellKey> update_cells(const VoxelMap& map, std::span<const CellChange> changes);
+  std::vector<Part> components(const CellKey& tile) const;
+  void name(std::vector<Part>& parts, const std::vector<Part>& former);
+  void publish(const VoxelMap& map, const Part& part);
+  void add_clusters_near(const VoxelMap& map, std::span<const CellChange> changes,
+                         std::set<std::uint32_t>& ids) const;
+
+  FrontierOptions options_;
+  std::int32_t edge_ = 0;                                 // of a tile, in cells; known with the first map
+  std::unordered_map<CellKey, Tile, CellKeyHash> tiles_;  // looked up, never iterated
+  std::map<std::uint32_t, FrontierCluster> clusters_;
+  std::size_t cell_count_ = 0;
+  std::uint32_t last_id_ = 0;
 };
 
 }  // namespace karst::core

@@ -12,11 +12,13 @@ struct Ray {
   bool hit = false;
 };
 
-/// Removes the sweep's distortion with the poses in `history`; NaN returns and returns nearer than
-/// `self_radius_m` to the body's origin are dropped. What lies beyond `max_range_m` only clears space up to
-/// it.
+/// Removes the sweep's distortion with the poses in `history` (one a column); returns that are NaN or nearer
+/// than `self_radius_m` to the body's origin are dropped. What lies beyond `max_range_m`, and +inf, only
+/// clears space up to it. A scan whose arrays do not fit its model gives no rays. Order: by column, then by
+/// channel.
 std::vector<Ray> to_rays(const LidarScan& scan, const StateHistory& history, double self_radius_m,
                          double max_range_m);
+/// The same for a depth image, taken at one moment; its range ends where the model's does. Order: row-major.
 std::vector<Ray> to_rays(const DepthImage& image, const StateHistory& history, double self_radius_m);
 
 }  // namespace karst::core

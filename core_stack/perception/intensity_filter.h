@@ -12,7 +12,8 @@ struct IntensityFilterOptions {
 };
 void describe(OptionTable& t, IntensityFilterOptions& o);
 
-/// Returns nearer than the radius whose intensity lies below the percentile of all the scan's returns become NaN.
+/// Returns nearer than the radius whose intensity lies below the percentile of all the scan's returns become
+/// NaN.
 void filter_low_intensity(LidarScan& scan, const IntensityFilterOptions& options);
 
 }  // namespace karst::core

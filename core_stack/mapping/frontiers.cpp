@@ -1,0 +1,259 @@
+#include "core_stack/mapping/frontiers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core_stack/mapping/voxel_reader.h"
+
+namespace karst::core {
+namespace {
+
+std::int32_t floor_div(std::int32_t a, std::int32_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+void sort_unique(std::vector<CellKey>& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+bool touches_unknown(VoxelReader& reader, const CellKey& k) {
+  return std::any_of(kFaces.begin(), kFaces.end(),
+                     [&](const CellKey& f) { return reader.at(k + f) == Cell::unknown; });
+}
+
+/// Cells in both of two sorted lists.
+std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b) {
+  std::size_t n = 0;
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j)
+      ++n, ++i, ++j;
+    else if (*i < *j)
+      ++i;
+    else
+      ++j;
+  }
+  return n;
+}
+
+/// The box in which a cluster's free and unknown cells are counted.
+struct CellBox {
+  CellKey low, high;
+  CellBox(const VoxelMap& map, const FrontierCluster& c, double reach_m)
+      : low(map.key_of(c.centroid - Vec3::Constant(reach_m))),
+        high(map.key_of(c.centroid + Vec3::Constant(reach_m))) {}
+};
+
+void count_around(const VoxelMap& map, double reach_m, FrontierCluster& c) {
+  const CellBox box(map, c, reach_m);
+  std::uint32_t known = 0, free = 0;
+  map.for_each_in_box(box.low, box.high,
+                      [&](const CellKey&, Cell cell) { ++known, free += cell == Cell::free; });
+  const auto span = [](std::int32_t a, std::int32_t b) { return static_cast<std::uint32_t>(b - a + 1); };
+  c.free_cells = free;
+  c.unknown_cells =
+      span(box.low.x, box.high.x) * span(box.low.y, box.high.y) * span(box.low.z, box.high.z) - known;
+}
+
+}  // namespace
+
+void describe(OptionTable& t, FrontierOptions& o) {
+  t.add("tile", o.tile_m, "m", 0.4, 12.8, "edge of the tiles that bound a cluster's size");
+  t.add("min_cells", o.min_cells, 1, 1000, "clusters of fewer cells are not offered");
+  t.add("neighbourhood", o.neighbourhood_m, "m", 0.2, 10,
+        "half edge of the box in which free and unknown cells are counted");
+}
+
+Frontiers::Frontiers(const FrontierOptions& options) : options_(options) {}
+
+CellKey Frontiers::tile_of(const CellKey& k) const {
+  return {floor_div(k.x, edge_), floor_div(k.y, edge_), floor_div(k.z, edge_)};
+}
+std::uint32_t Frontiers::bit_of(const CellKey& k, const CellKey& tile) const {
+  return static_cast<std::uint32_t>(((k.x - tile.x * edge_) * edge_ + k.y - tile.y * edge_) * edge_ + k.z -
+                                    tile.z * edge_);
+}
+CellKey Frontiers::cell_of(std::uint32_t bit, const CellKey& tile) const {
+  const auto b = static_cast<std::int32_t>(bit);
+  return {tile.x * edge_ + b / (edge_ * edge_), tile.y * edge_ + b / edge_ % edge_,
+          tile.z * edge_ + b % edge_};
+}
+
+bool Frontiers::is_frontier(const CellKey& k) const {
+  if (edge_ == 0) return false;
+  const CellKey t = tile_of(k);
+  const auto tile = tiles_.find(t);
+  if (tile == tiles_.end()) return false;
+  const std::uint32_t bit = bit_of(k, t);
+  return tile->second.frontier[bit >> 6] >> (bit & 63) & 1;
+}
+
+void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes) {
+  if (changes.empty()) return;
+  if (edge_ == 0)
+    edge_ = std::max(1, static_cast<std::int32_t>(std::lround(options_.tile_m / map.resolution_m())));
+  std::set<std::uint32_t> stale;  // clusters to count around again
+  for (const CellKey& t : update_cells(map, changes)) {
+    Tile& tile = tiles_.at(t);
+    std::vector<Part> parts = components(t);
+    name(parts, tile.parts);
+    for (const Part& p : tile.parts) clusters_.erase(p.id);
+    for (const Part& p : parts) {
+      publish(map, p);
+      stale.insert(p.id);
+    }
+    tile.parts = std::move(parts);
+    if (tile.parts.empty()) tiles_.erase(t);
+  }
+  add_clusters_near(map, changes, stale);
+  for (const std::uint32_t id : stale)
+    if (const auto c = clusters_.find(id); c != clusters_.end())
+      count_around(map, options_.neighbourhood_m, c->second);
+}
+
+/// Brings the frontier bits up to date; returns the tiles to cluster again, sorted. Those are also the tiles
+/// of cells that were and are frontier but see less of the unknown than before.
+std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<const CellChange> changes) {
+  // Only a cell that leaves the unknown matters to its neighbours.
+  std::vector<CellKey> candidates;
+  for (const CellChange& c : changes) {
+    candidates.push_back(c.key);
+    if (c.before != Cell::unknown) continue;
+    for (const CellKey& f : kFaces) candidates.push_back(c.key + f);
+  }
+  sort_unique(candidates);
+
+  std::vector<CellKey> dirty;
+  VoxelReader reader(map);
+  for (const CellKey& k : candidates) {
+    const bool now = reader.at(k) == Cell::free && touches_unknown(reader, k);
+    const bool before = is_frontier(k);
+    if (!now && !before) continue;
+    const CellKey t = tile_of(k);
+    dirty.push_back(t);
+    if (now == before) continue;
+    Tile& tile = tiles_[t];
+    const auto cells = static_cast<std::size_t>(edge_) * edge_ * edge_;
+    if (tile.frontier.empty()) tile.frontier.resize((cells + 63) / 64);
+    const std::uint32_t bit = bit_of(k, t);
+    tile.frontier[bit >> 6] ^= std::uint64_t{1} << (bit & 63);
+    cell_count_ = now ? cell_count_ + 1 : cell_count_ - 1;
+  }
+  sort_unique(dirty);
+  return dirty;
+}
+
+/// The tile's frontier cells as 26-connected components, in the order of their lowest cells.
+std::vector<Frontiers::Part> Frontiers::components(const CellKey& tile) const {
+  std::vector<std::uint64_t> left = tiles_.at(tile).frontier;
+  std::vector<Part> parts;
+  std::vector<CellKey> stack;
+  const auto take = [&](std::uint32_t bit) {
+    std::uint64_t& word = left[bit >> 6];
+    const std::uint64_t mask = std::uint64_t{1} << (bit & 63);
+    if ((word & mask) == 0) return;
+    word &= ~mask;
+    stack.push_back(cell_of(bit, tile));
+  };
+  const auto inside = [&](const CellKey& k) { return tile_of(k) == tile; };
+  for (std::uint32_t w = 0; w < left.size(); ++w) {
+    while (left[w] != 0) {
+      take(w * 64 + static_cast<std::uint32_t>(std::countr_zero(left[w])));
+      Part part;
+      while (!stack.empty()) {
+        const CellKey k = stack.back();
+        stack.pop_back();
+        part.cells.push_back(k);
+        for (std::int32_t dx = -1; dx <= 1; ++dx)
+          for (std::int32_t dy = -1; dy <= 1; ++dy)
+            for (std::int32_t dz = -1; dz <= 1; ++dz) {
+              const CellKey n = k + CellKey{dx, dy, dz};
+              if (inside(n)) take(bit_of(n, tile));
+            }
+      }
+      std::sort(part.cells.begin(), part.cells.end());
+      parts.push_back(std::move(part));
+    }
+  }
+  return parts;
+}
+
+/// Each part inherits the id of the former part with which it shares most cells, each id going to one heir;
+/// larger shares choose first. The others get new ids.
+void Frontiers::name(std::vector<Part>& parts, const std::vector<Part>& former) {
+  struct Claim {
+    std::size_t cells, part, former;
+  };
+  std::vector<Claim> claims;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (std::size_t j = 0; j < former.size(); ++j)
+      if (const std::size_t n = shared(parts[i].cells, former[j].cells); n > 0) claims.push_back({n, i, j});
+  std::stable_sort(claims.begin(), claims.end(),
+                   [](const Claim& a, const Claim& b) { return a.cells > b.cells; });
+  std::vector<bool> inherited(former.size());
+  for (const Claim& c : claims) {
+    if (parts[c.part].id != 0 || inherited[c.former]) continue;
+    parts[c.part].id = former[c.former].id;
+    inherited[c.former] = true;
+  }
+  for (Part& p : parts)
+    if (p.id == 0) p.id = ++last_id_;
+}
+
+/// Everything of a cluster but the counts.
+void Frontiers::publish(const VoxelMap& map, const Part& part) {
+  if (static_cast<std::int64_t>(part.cells.size()) < options_.min_cells) return;
+  FrontierCluster c;
+  c.id = part.id;
+  c.cells = part.cells;
+  VoxelReader reader(map);
+  Vec3 sum = Vec3::Zero(), into_unknown = Vec3::Zero();
+  CellKey low = part.cells.front(), high = low;
+  for (const CellKey& k : part.cells) {
+    sum += map.center_of(k);
+    low = {std::min(low.x, k.x), std::min(low.y, k.y), std::min(low.z, k.z)};
+    high = {std::max(high.x, k.x), std::max(high.y, k.y), std::max(high.z, k.z)};
+    for (const CellKey& f : kFaces)
+      if (reader.at(k + f) == Cell::unknown) into_unknown += Vec3(f.x, f.y, f.z);
+  }
+  const Vec3 half = Vec3::Constant(map.resolution_m() / 2);
+  c.centroid = sum / static_cast<double>(part.cells.size());
+  c.low = map.center_of(low) - half;
+  c.high = map.center_of(high) + half;
+  if (into_unknown.norm() > 1e-9) c.normal = into_unknown.normalized();
+  clusters_[c.id] = std::move(c);
+}
+
+/// Clusters in whose box a cell may have changed.
+void Frontiers::add_clusters_near(const VoxelMap& map, std::span<const CellChange> changes,
+                                  std::set<std::uint32_t>& ids) const {
+  std::vector<CellKey> changed;
+  for (const CellChange& c : changes)
+    if (const CellKey t = tile_of(c.key); changed.empty() || changed.back() != t) changed.push_back(t);
+  sort_unique(changed);
+  // A cluster's box reaches from its centroid, which lies in its tile, over so many tiles.
+  const auto reach =
+      static_cast<std::int32_t>(std::ceil(options_.neighbourhood_m / (edge_ * map.resolution_m())));
+  std::vector<CellKey> near;
+  for (const CellKey& t : changed)
+    for (std::int32_t dx = -reach; dx <= reach; ++dx)
+      for (std::int32_t dy = -reach; dy <= reach; ++dy)
+        for (std::int32_t dz = -reach; dz <= reach; ++dz) near.push_back(t + CellKey{dx, dy, dz});
+  sort_unique(near);
+  for (const CellKey& t : near) {
+    const auto tile = tiles_.find(t);
+    if (tile == tiles_.end()) continue;
+    for (const Part& p : tile->second.parts) {
+      const auto c = clusters_.find(p.id);
+      if (c == clusters_.end()) continue;
+      const CellBox box(map, c->second, options_.neighbourhood_m);
+      const CellKey low = tile_of(box.low), high = tile_of(box.high);
+      const bool touched = std::any_of(changed.begin(), changed.end(), [&](const CellKey& k) {
+        return k.x >= low.x && k.x <= high.x && k.y >= low.y && k.y <= high.y && k.z >= low.z &&
+               k.z <= high.z;
+      });
+      if (touched) ids.insert(p.id);
+    }
+  }
+}
+
+}  // namespace karst::core

@@ -1,0 +1,110 @@
+#include "core_stack/mapping/obstacle_tree.h"
+
+#include <limits>
+#include <nanoflann.hpp>
+
+#include "core_stack/mapping/voxel_reader.h"
+
+namespace karst::core {
+namespace {
+
+struct Cloud {
+  std::vector<Vec3f> points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// nanoflann result set: the nearest point within a bound; `first_will_do` stops at any point within it.
+struct NearestWithin {
+  using DistanceType = float;
+  float bound;  // squared metres
+  bool first_will_do;
+  std::uint32_t index = 0;
+  bool found = false;
+
+  std::size_t size() const { return found ? 1 : 0; }
+  bool full() const { return found; }
+  float worstDist() const { return bound; }
+  bool addPoint(float squared_distance, std::uint32_t i) {
+    if (squared_distance >= bound) return true;
+    bound = squared_distance, index = i, found = true;
+    return !first_will_do;
+  }
+};
+
+std::vector<Vec3f> obstacle_centers(const VoxelMap& map, const CellKey& low, const CellKey& high) {
+  std::vector<Vec3f> points;
+  VoxelReader reader(map);
+  const auto in_box = [&](const CellKey& k) {
+    return k.x >= low.x && k.x <= high.x && k.y >= low.y && k.y <= high.y && k.z >= low.z && k.z <= high.z;
+  };
+  const auto add = [&](const CellKey& k) { points.push_back(map.center_of(k).cast<float>()); };
+  std::vector<CellKey> unknown;
+  const CellKey one{1, 1, 1}, minus_one{-1, -1, -1};
+  map.for_each_in_box(low + minus_one, high + one, [&](const CellKey& k, Cell cell) {
+    if (cell == Cell::occupied) {
+      if (in_box(k)) add(k);
+      return;
+    }
+    for (const CellKey& face : kFaces)
+      if (in_box(k + face) && reader.at(k + face) == Cell::unknown) unknown.push_back(k + face);
+  });
+  std::sort(unknown.begin(), unknown.end());
+  unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
+  for (const CellKey& k : unknown) add(k);
+  return points;
+}
+
+}  // namespace
+
+struct ObstacleTree::Storage {
+  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3,
+                                                    std::uint32_t>;
+  Cloud cloud;
+  Index index;
+
+  explicit Storage(std::vector<Vec3f> points)
+      : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
+
+  NearestWithin search(const Vec3& p, double radius_m, bool first_will_do) const {
+    NearestWithin result{static_cast<float>(radius_m * radius_m), first_will_do};
+    const Vec3f query = p.cast<float>();
+    if (!cloud.points.empty() && query.allFinite())
+      index.findNeighbors(result, query.data(), nanoflann::SearchParams());
+    return result;
+  }
+};
+
+ObstacleTree::ObstacleTree(const VoxelMap& map, const Vec3& low, const Vec3& high)
+    : storage_(std::make_unique<Storage>(obstacle_centers(map, map.key_of(low), map.key_of(high)))) {}
+ObstacleTree::~ObstacleTree() = default;
+ObstacleTree::ObstacleTree(ObstacleTree&&) noexcept = default;
+ObstacleTree& ObstacleTree::operator=(ObstacleTree&&) noexcept = default;
+
+std::size_t ObstacleTree::size() const { return storage_->cloud.points.size(); }
+
+double ObstacleTree::distance(const Vec3& p) const {
+  Vec3 center;
+  double distance_m = 0;
+  return nearest(p, center, distance_m) ? distance_m : std::numeric_limits<double>::infinity();
+}
+
+bool ObstacleTree::nearest(const Vec3& p, Vec3& center, double& distance_m) const {
+  const NearestWithin found = storage_->search(p, std::numeric_limits<double>::infinity(), false);
+  if (!found.found) return false;
+  center = storage_->cloud.points[found.index].cast<double>();
+  distance_m = (center - p).norm();
+  return true;
+}
+
+bool ObstacleTree::any_within(const Vec3& p, double radius_m) const {
+  return storage_->search(p, radius_m, true).found;
+}
+
+}  // namespace karst::core
