@@ -39,8 +39,6 @@ inline double heading_of(const Quat& q) {
   return std::atan2(forward.y(), forward.x());
 }
 
-inline Quat from_heading(double heading_rad) {
-  return Quat(Eigen::AngleAxisd(heading_rad, Vec3::UnitZ()));
-}
+inline Quat from_heading(double heading_rad) { return Quat(Eigen::AngleAxisd(heading_rad, Vec3::UnitZ())); }
 
 }  // namespace karst::core

@@ -80,8 +80,7 @@ std::string nearest_name(const std::string& key, const std::vector<std::string>&
   std::size_t best_distance = 1 + key.size() / 2;
   for (const std::string& c : candidates) {
     // A right name in the wrong section is the commonest slip: compare the last parts as well.
-    const std::size_t d =
-        std::min(edit_distance(key, c), edit_distance(last_part(key), last_part(c)) + 1);
+    const std::size_t d = std::min(edit_distance(key, c), edit_distance(last_part(key), last_part(c)) + 1);
     if (d < best_distance) best_distance = d, best = c;
   }
   return best;
@@ -100,7 +99,8 @@ std::string value_text(const Row& row) {
   return std::visit(Text{row}, row.target);
 }
 
-void OptionTable::add(std::string key, double& v, std::string unit, double low, double high, std::string help) {
+void OptionTable::add(std::string key, double& v, std::string unit, double low, double high,
+                      std::string help) {
   rows_.push_back({prefix_ + std::move(key), &v, std::move(unit), low, high, {}, std::move(help)});
 }
 void OptionTable::add(std::string key, std::int64_t& v, double low, double high, std::string help) {
@@ -131,7 +131,8 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
     return;
   }
   if (auto* const* words = std::get_if<std::string*>(&row->target)) {
-    if (!row->choices.empty() && std::find(row->choices.begin(), row->choices.end(), text) == row->choices.end()) {
+    if (!row->choices.empty() &&
+        std::find(row->choices.begin(), row->choices.end(), text) == row->choices.end()) {
       const std::string near = nearest_name(text, row->choices);
       bad(near.empty() ? "" : "; did you mean " + near + "?");
     }
@@ -144,8 +145,7 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
   const std::string unit = trimmed(std::string(end, text.data() + text.size()));
   if (!unit.empty()) {
     const auto factor = unit_factor(unit, row->unit);
-    if (!factor)
-      bad(row->unit.empty() ? " (this key has no unit)" : " (\"" + unit + "\" is no unit for it)");
+    if (!factor) bad(row->unit.empty() ? " (this key has no unit)" : " (\"" + unit + "\" is no unit for it)");
     value *= *factor;
   }
   if (value < row->low || value > row->high) bad("");
@@ -177,7 +177,8 @@ pt::ptree OptionTable::resolved() const {
 std::string OptionTable::help() const {
   std::ostringstream out;
   for (const Row& r : rows_) {
-    out << "  " << r.key << " = " << value_text(r) << "\n      " << r.help << " (" << expected_text(r) << ")\n";
+    out << "  " << r.key << " = " << value_text(r) << "\n      " << r.help << " (" << expected_text(r)
+        << ")\n";
   }
   return out.str();
 }

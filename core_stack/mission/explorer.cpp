@@ -53,8 +53,8 @@ bool Explorer::cluster_alive(std::uint32_t id) const {
   const auto it = frontiers_.clusters().find(id);
   if (it == frontiers_.clusters().end()) return false;
   const auto chosen = cells_when_chosen_.find(id);
-  return chosen == cells_when_chosen_.end() ||
-         static_cast<double>(it->second.cells.size()) >= (1 - kSeenShare) * static_cast<double>(chosen->second);
+  return chosen == cells_when_chosen_.end() || static_cast<double>(it->second.cells.size()) >=
+                                                   (1 - kSeenShare) * static_cast<double>(chosen->second);
 }
 
 std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
@@ -136,7 +136,8 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
       if (path.found()) {
         const HomeEstimate home = estimate_home(goal.position);
         const double there_s = path.length_m / (0.6 * options_.motion.max_speed_mps);
-        const double back_s = home.time_s * (1 + options_.mission.home_margin) + options_.mission.home_reserve_s;
+        const double back_s =
+            home.time_s * (1 + options_.mission.home_margin) + options_.mission.home_reserve_s;
         if (there_s + back_s < input.battery_seconds_left) {
           result.goal = goal;
           result.path = path.points;
@@ -163,7 +164,8 @@ void Explorer::learn(const RoundInput& input) {
     if (!policy_failed_) policy_->notify(event);
     const auto cluster = frontiers_.clusters().find(event.goal.frontier_id);
     if (event.kind == PolicyEvent::Kind::goal_reached && cluster != frontiers_.clusters().end())
-      ledger_.close(map_, cluster->second.centroid, input.now, "seen from its viewpoint, it stays a frontier");
+      ledger_.close(map_, cluster->second.centroid, input.now,
+                    "seen from its viewpoint, it stays a frontier");
     if (event.kind == PolicyEvent::Kind::goal_abandoned)
       ledger_.close(map_, event.goal.position, input.now, event.reason);
   }
@@ -182,8 +184,9 @@ RoundResult Explorer::decide(const RoundInput& input) {
   request.direction_of_flight = input.direction;
   request.T_world_start = vehicle_.T_world_start;
   const HomeEstimate home = estimate_home(input.from);
-  request.seconds_before_homing =
-      input.battery_seconds_left - home.time_s * (1 + options_.mission.home_margin) - options_.mission.home_reserve_s;
+  request.seconds_before_homing = input.battery_seconds_left -
+                                  home.time_s * (1 + options_.mission.home_margin) -
+                                  options_.mission.home_reserve_s;
   request.max_speed_mps = options_.motion.max_speed_mps;
   request.clearance_m = options_.planning.clearance_m;
   request.vehicle_radius_m = vehicle_.radius_m;
@@ -204,7 +207,8 @@ RoundResult Explorer::decide(const RoundInput& input) {
   result.goals_proposed = decision.goals.size();
   if (decision.outcome == Outcome::goals) {
     choose(input, decision.goals, result);
-    if (!result.goal) result.outcome = Outcome::hold, result.reason = "no goal of the policy could be accepted";
+    if (!result.goal)
+      result.outcome = Outcome::hold, result.reason = "no goal of the policy could be accepted";
   }
   const bool fruitless = result.outcome == Outcome::hold && !input.appending;
   fruitless_rounds_ = fruitless ? fruitless_rounds_ + 1 : 0;

@@ -22,13 +22,13 @@ namespace karst::core {
 /// What one round of decision starts from.
 struct RoundInput {
   TimeNs now = 0, deadline = 0;
-  State state;              // predicted at the deadline
+  State state;               // predicted at the deadline
   Vec3 from = Vec3::Zero();  // where the new path begins: the end of the stretch already committed to
   Vec3 direction = Vec3::UnitX();
   double battery_seconds_left = 0;
   GoalFate last_fate = GoalFate::none;
   std::optional<Goal> last_goal;
-  bool appending = false;   // the last goal will be reached before the new one is flown to
+  bool appending = false;           // the last goal will be reached before the new one is flown to
   std::vector<PolicyEvent> events;  // since the last round
 };
 
@@ -40,7 +40,7 @@ struct RejectedGoal {
 struct RoundResult {
   Outcome outcome = Outcome::hold;
   std::string reason, policy;
-  std::optional<Goal> goal;   // accepted, with `path` from RoundInput::from to it
+  std::optional<Goal> goal;  // accepted, with `path` from RoundInput::from to it
   std::vector<Vec3> path;
   std::vector<RejectedGoal> rejected;
   std::vector<Drawing> drawings;

@@ -101,6 +101,8 @@ Flight::Onward Flight::until_stop(TimeNs t) const {
   return onward(t, v * v / (2 * kBrakingShare * limits_.max_acceleration_mps2));
 }
 
-Flight::Onward Flight::until_end(TimeNs t) const { return onward(t, std::numeric_limits<double>::infinity()); }
+Flight::Onward Flight::until_end(TimeNs t) const {
+  return onward(t, std::numeric_limits<double>::infinity());
+}
 
 }  // namespace karst::core

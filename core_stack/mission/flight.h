@@ -21,8 +21,10 @@ class Flight {
   /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.
   AttitudeRateCommand control(TimeNs now);
 
-  /// Flies along `points` from `start` on (not before now); the first point is where the reference will be then.
-  void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start, const HeadingPlan& heading);
+  /// Flies along `points` from `start` on (not before now); the first point is where the reference will be
+  /// then.
+  void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
+              const HeadingPlan& heading);
   /// Straight up or down at `speed_mps` by `height_m` from the present reference.
   void climb(TimeNs now, double height_m, double speed_mps);
   /// Turns once around on the spot: a camera's first look.

@@ -19,13 +19,20 @@ constexpr double kSelfMargin_m = 0.05;
 
 const char* name_of(Phase phase) {
   switch (phase) {
-    case Phase::standby: return "standby";
-    case Phase::takeoff: return "takeoff";
-    case Phase::look: return "look";
-    case Phase::explore: return "explore";
-    case Phase::home: return "home";
-    case Phase::land: return "land";
-    case Phase::done: return "done";
+    case Phase::standby:
+      return "standby";
+    case Phase::takeoff:
+      return "takeoff";
+    case Phase::look:
+      return "look";
+    case Phase::explore:
+      return "explore";
+    case Phase::home:
+      return "home";
+    case Phase::land:
+      return "land";
+    case Phase::done:
+      return "done";
   }
   return "?";
 }
@@ -45,14 +52,19 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
 MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)>& watch) {
   enter(Phase::standby, "");
   executive_.job(
-      "launch site", Lane::map, kMappingBudget,
-      [this] { explorer_.declare_launch_site(explorer_.home()); }, [] {});
+      "launch site", Lane::map, kMappingBudget, [this] { explorer_.declare_launch_site(explorer_.home()); },
+      [] {});
   vehicle_.start(executive_, *this);
   executive_.every("control", kControlPeriod, kControlPeriod, [this] { control(); });
   executive_.every("supervise", kSupervisionPeriod, kSupervisionPeriod, [this] { supervise(); });
   executive_.every("watch", kSecond, kSecond, [this, &watch] {
-    const MissionStatus status{now(), phase_, battery_.fraction_left, battery_.seconds_left, explored_m3_,
-                               flight_.state().velocity_mps.norm(), goal_ ? goal_->why : ""};
+    const MissionStatus status{now(),
+                               phase_,
+                               battery_.fraction_left,
+                               battery_.seconds_left,
+                               explored_m3_,
+                               flight_.state().velocity_mps.norm(),
+                               goal_ ? goal_->why : ""};
     if (!watch(status)) finish("aborted", "stopped by the operator");
   });
   const TimeNs limit = from_seconds(options_.mission.max_flight_time_s + 600);
@@ -116,7 +128,8 @@ void MissionControl::supervise() {
     case Phase::land:
       land();
       break;
-    case Phase::done: break;
+    case Phase::done:
+      break;
   }
 }
 
@@ -131,11 +144,12 @@ void MissionControl::record() {
 }
 
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
-  integrate([scan, history = flight_.estimator().history(), options = options_, radius = description_.radius_m] {
-    LidarScan filtered = *scan;
-    filter_low_intensity(filtered, options.perception);
-    return to_rays(filtered, history, radius + kSelfMargin_m, options.mission.mapping_range_m);
-  });
+  integrate(
+      [scan, history = flight_.estimator().history(), options = options_, radius = description_.radius_m] {
+        LidarScan filtered = *scan;
+        filter_low_intensity(filtered, options.perception);
+        return to_rays(filtered, history, radius + kSelfMargin_m, options.mission.mapping_range_m);
+      });
 }
 
 void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
@@ -170,7 +184,8 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
       });
 }
 
-void MissionControl::on_map_update(const std::vector<CellChange>& changes, int blocked_segment, bool goal_alive) {
+void MissionControl::on_map_update(const std::vector<CellChange>& changes, int blocked_segment,
+                                   bool goal_alive) {
   recorder_.map_changes(now(), changes);
   goal_alive_ = goal_alive;
   if (blocked_segment < 0 || path_blocked_ || ignore_blocks_ || flight_.at_rest(now())) return;

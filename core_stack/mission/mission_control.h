@@ -93,8 +93,8 @@ class MissionControl final : public VehicleSink {
 
   // The goal under way, and what the policy has yet to be told.
   std::optional<Goal> goal_;
-  std::optional<Goal> next_goal_;      // appended behind goal_
-  TimeNs goal_passed_at_ = 0;          // when goal_ will be passed, if next_goal_ is set
+  std::optional<Goal> next_goal_;  // appended behind goal_
+  TimeNs goal_passed_at_ = 0;      // when goal_ will be passed, if next_goal_ is set
   GoalFate last_fate_ = GoalFate::none;
   std::optional<Goal> last_goal_;
   std::vector<PolicyEvent> events_;
@@ -103,7 +103,7 @@ class MissionControl final : public VehicleSink {
   Vec3 last_landmark_ = Vec3::Zero();  // for judging progress
 
   // The way home.
-  std::vector<Vec3> flown_;            // every half metre of the way come
+  std::vector<Vec3> flown_;  // every half metre of the way come
   double home_distance_m_ = 0;
   int home_failures_ = 0;
   bool home_planning_ = false, ignore_blocks_ = false;

@@ -20,20 +20,30 @@ nlohmann::json list(const std::vector<Vec3>& points) {
 }
 
 nlohmann::json to_json(const Goal& goal, const char* state, const std::string& reason) {
-  nlohmann::json j{{"position", list(goal.position)}, {"frontier", goal.frontier_id}, {"score", goal.score},
-                   {"why", goal.why},                 {"state", state},               {"reason", reason}};
+  nlohmann::json j{{"position", list(goal.position)},
+                   {"frontier", goal.frontier_id},
+                   {"score", goal.score},
+                   {"why", goal.why},
+                   {"state", state},
+                   {"reason", reason}};
   j["heading"] = std::isfinite(goal.heading_rad) ? nlohmann::json(goal.heading_rad) : nlohmann::json();
   return j;
 }
 
 const char* state_of(PolicyEvent::Kind kind) {
   switch (kind) {
-    case PolicyEvent::Kind::goal_reached: return "reached";
-    case PolicyEvent::Kind::goal_rejected: return "rejected";
-    case PolicyEvent::Kind::goal_unreachable: return "unreachable";
-    case PolicyEvent::Kind::goal_abandoned: return "abandoned";
-    case PolicyEvent::Kind::goal_superseded: return "superseded";
-    case PolicyEvent::Kind::homing: return "homing";
+    case PolicyEvent::Kind::goal_reached:
+      return "reached";
+    case PolicyEvent::Kind::goal_rejected:
+      return "rejected";
+    case PolicyEvent::Kind::goal_unreachable:
+      return "unreachable";
+    case PolicyEvent::Kind::goal_abandoned:
+      return "abandoned";
+    case PolicyEvent::Kind::goal_superseded:
+      return "superseded";
+    case PolicyEvent::Kind::homing:
+      return "homing";
   }
   return "?";
 }
@@ -105,7 +115,8 @@ void MissionControl::begin_round(bool appending) {
       [this, input, lead, result] { on_round(input, lead, *result); });
 }
 
-void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lead, const RoundResult& result) {
+void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lead,
+                              const RoundResult& result) {
   round_running_ = false;
   record_round(input, result);
   if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
@@ -121,14 +132,18 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
     heading.start_heading_rad = lead.heading_rad;
     if (std::isfinite(result.goal->heading_rad)) heading.goal_heading_rad = result.goal->heading_rad;
     recorder_.event(now(), "goal", to_json(*result.goal, "accepted", ""));
-    recorder_.event(now(), "plan", {{"length", path_length_m(points)}, {"from", list(points.front())},
-                                    {"to", list(points.back())}, {"points", list(points)}});
+    recorder_.event(now(), "plan",
+                    {{"length", path_length_m(points)},
+                     {"from", list(points.front())},
+                     {"to", list(points.back())},
+                     {"points", list(points)}});
     if (input.appending && goal_) {
       next_goal_ = result.goal;
       goal_passed_at_ = now() + from_seconds(flight_.remaining_s(now()));
     } else {
-      if (!same) settle_goal(GoalFate::superseded, PolicyEvent::Kind::goal_superseded,
-                             goal_alive_ ? "the policy chose another" : "its frontier has been seen");
+      if (!same)
+        settle_goal(GoalFate::superseded, PolicyEvent::Kind::goal_superseded,
+                    goal_alive_ ? "the policy chose another" : "its frontier has been seen");
       goal_ = result.goal;
       append_tried_ = false;
     }
@@ -180,8 +195,11 @@ void MissionControl::record_round(const RoundInput& input, const RoundResult& re
     recorder_.event(now(), "goal", to_json(r.goal, "rejected", r.reason));
   static constexpr const char* kShapes[] = {"points", "lines", "text"};
   for (const Drawing& d : result.drawings)
-    recorder_.event(now(), "drawing", {{"shape", kShapes[static_cast<int>(d.kind)]},
-                                       {"points", list(d.points)}, {"rgb", d.rgb}, {"text", d.text}});
+    recorder_.event(now(), "drawing",
+                    {{"shape", kShapes[static_cast<int>(d.kind)]},
+                     {"points", list(d.points)},
+                     {"rgb", d.rgb},
+                     {"text", d.text}});
   for (const std::string& text : result.log) recorder_.event(now(), "log", {{"text", text}});
 }
 

@@ -12,7 +12,7 @@ constexpr int kMostHomeFailures = 3;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 constexpr TimeNs kPatience = 60 * kSecond;
-constexpr double kLandAnywhere_s = 12.0;  // battery time at which the vehicle lands wherever it is
+constexpr double kLandAnywhere_s = 12.0;   // battery time at which the vehicle lands wherever it is
 constexpr double kReturnSpeedShare = 0.5;  // of max_speed, when no better estimate of the way home exists
 
 }  // namespace
@@ -34,10 +34,11 @@ void MissionControl::watch_battery() {
             estimate->time_s * (1 + options_.mission.home_margin) + options_.mission.home_reserve_s;
         const double time_s = seconds(now()), limit_s = options_.mission.max_flight_time_s;
         if (battery_.seconds_left > needed_s && time_s + needed_s < limit_s) return;
-        recorder_.event(now(), "homing", {{"reason", time_s + needed_s < limit_s ? "battery" : "time limit"},
-                                          {"distance", home_distance_m_},
-                                          {"seconds_left", battery_.seconds_left},
-                                          {"seconds_needed", needed_s}});
+        recorder_.event(now(), "homing",
+                        {{"reason", time_s + needed_s < limit_s ? "battery" : "time limit"},
+                         {"distance", home_distance_m_},
+                         {"seconds_left", battery_.seconds_left},
+                         {"seconds_needed", needed_s}});
         enter(Phase::home, "the time left only just suffices for the way home");
       });
 }
@@ -101,8 +102,11 @@ void MissionControl::plan_home_path() {
         path_blocked_ = false;
         nlohmann::json list = nlohmann::json::array();
         for (const Vec3& p : points) list.push_back({p.x(), p.y(), p.z()});
-        recorder_.event(now(), "plan", {{"length", path_length_m(points)}, {"from", list.front()},
-                                        {"to", list.back()}, {"points", list}});
+        recorder_.event(now(), "plan",
+                        {{"length", path_length_m(points)},
+                         {"from", list.front()},
+                         {"to", list.back()},
+                         {"points", list}});
       });
 }
 
@@ -129,7 +133,8 @@ void MissionControl::fly_back_as_come() {
   ignore_blocks_ = true;
   path_blocked_ = false;
   home_failures_ = 0;
-  recorder_.event(now(), "safety", {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
+  recorder_.event(now(), "safety",
+                  {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
 }
 
 void MissionControl::land() {

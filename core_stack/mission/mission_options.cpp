@@ -3,7 +3,8 @@
 namespace karst::core {
 
 void describe(OptionTable& t, MissionOptions& o) {
-  t.add("takeoff_height", o.takeoff_height_m, "m", 0.3, 20, "height of the first hover above the launch site");
+  t.add("takeoff_height", o.takeoff_height_m, "m", 0.3, 20,
+        "height of the first hover above the launch site");
   t.add("launch_clear_radius", o.launch_clear_radius_m, "m", 0.5, 5,
         "ball around the first hover which the operator vouches to be clear");
   t.add("decision_period", o.decision_period_s, "s", 0.5, 60,
@@ -15,7 +16,8 @@ void describe(OptionTable& t, MissionOptions& o) {
   t.add("home_margin", o.home_margin, "", 0, 2, "share added to the time estimated for flying home");
   t.add("home_reserve", o.home_reserve_s, "s", 5, 600, "battery time kept for after the way home");
   t.add("landing_speed", o.landing_speed_mps, "m/s", 0.1, 0.7, "vertical speed of the landing");
-  t.add("max_flight_time", o.max_flight_time_s, "s", 10, 86400, "homing begins at the latest in time for this");
+  t.add("max_flight_time", o.max_flight_time_s, "s", 10, 86400,
+        "homing begins at the latest in time for this");
   t.add("mapping_range", o.mapping_range_m, "m", 1, 200,
         "LiDAR measurements beyond this only clear space up to it");
 }

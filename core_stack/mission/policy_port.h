@@ -16,18 +16,19 @@ namespace karst::core {
 /// A frontier cluster as offered to the policy.
 struct FrontierOffer {
   const FrontierCluster* cluster = nullptr;
-  Vec3 viewpoint = Vec3::Zero();  // a clear, reachable place from which the cluster is seen; NaN if none was found
+  Vec3 viewpoint =
+      Vec3::Zero();  // a clear, reachable place from which the cluster is seen; NaN if none was found
   double viewpoint_heading_rad = 0;
-  double path_length_m = 0;    // from the vehicle to the viewpoint; +inf if no way is known
+  double path_length_m = 0;  // from the vehicle to the viewpoint; +inf if no way is known
 };
 
 enum class GoalFate { none, under_way, reached, rejected, unreachable, abandoned, superseded };
 
 struct DecisionRequest {
   TimeNs stamp = 0;
-  TimeNs deadline = 0;              // the result is used at this time
-  std::uint32_t sequence = 0;       // 1, 2, ...
-  State state;                      // predicted at the deadline when flying
+  TimeNs deadline = 0;                       // the result is used at this time
+  std::uint32_t sequence = 0;                // 1, 2, ...
+  State state;                               // predicted at the deadline when flying
   Vec3 direction_of_flight = Vec3::UnitX();  // unit, world frame; heading when it stands
   Pose T_world_start;
   double seconds_before_homing = 0;
@@ -42,12 +43,12 @@ struct DecisionRequest {
 
 struct Goal {
   Vec3 position = Vec3::Zero();
-  double heading_rad = 0;       // NaN: any
+  double heading_rad = 0;  // NaN: any
   double tolerance_m = 0.5;
-  double max_speed_mps = 0;     // 0: the mission's
+  double max_speed_mps = 0;       // 0: the mission's
   std::uint32_t frontier_id = 0;  // 0: none
   double score = 0;
-  std::string why;              // one line for the report
+  std::string why;  // one line for the report
 };
 
 enum class Outcome { goals, hold, explored, go_home };
@@ -62,14 +63,21 @@ struct Drawing {
 
 struct Decision {
   Outcome outcome = Outcome::hold;
-  std::vector<Goal> goals;   // best first
-  std::string reason;        // for hold, explored and go_home
+  std::vector<Goal> goals;  // best first
+  std::string reason;       // for hold, explored and go_home
   std::vector<Drawing> drawings;
   std::vector<std::string> log;
 };
 
 struct PolicyEvent {
-  enum class Kind { goal_reached, goal_rejected, goal_unreachable, goal_abandoned, goal_superseded, homing } kind;
+  enum class Kind {
+    goal_reached,
+    goal_rejected,
+    goal_unreachable,
+    goal_abandoned,
+    goal_superseded,
+    homing
+  } kind;
   TimeNs stamp = 0;
   Goal goal;
   std::string reason;

@@ -30,7 +30,8 @@ int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const Vehicl
 
 }  // namespace
 
-bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target, double lidar_range_m) {
+bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target,
+             double lidar_range_m) {
   const Pose T_world_body{from.position, from_heading(from.heading_rad)};
   const Vec3 target_body = T_world_body.inverse() * target;
   if (vehicle.lidar) {
@@ -70,7 +71,8 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
                         std::sin(elevation));
         const Viewpoint v{target + radius * away, std::atan2(-away.y(), -away.x())};
         if (map.at(v.position) != Cell::free || map.first_not_free(v.position, target)) continue;
-        if (!in_view(vehicle, v, target, kLidarViewRange_m) || !is_clear(map, v.position, clearance_m)) continue;
+        if (!in_view(vehicle, v, target, kLidarViewRange_m) || !is_clear(map, v.position, clearance_m))
+          continue;
         // Facing the opening squarely counts as one more cell seen.
         const double value = cells_seen(map, cluster, vehicle, v) - away.dot(cluster.normal) - 0.2 * radius;
         if (!best || value > best_value) best = v, best_value = value;

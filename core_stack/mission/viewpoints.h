@@ -14,7 +14,8 @@ struct Viewpoint {
 };
 
 /// True if some sensor of a level vehicle at the viewpoint has `target` in its field of view and range.
-bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target, double lidar_range_m);
+bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target,
+             double lidar_range_m);
 
 /// The best of a fixed set of candidates on shells around the cluster: clear, with a free line of sight, the
 /// cluster in a sensor's view. None if there is no such place.

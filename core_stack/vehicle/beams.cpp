@@ -9,7 +9,8 @@ Vec3f LidarModel::direction(int channel, int column) const {
   const float azimuth = std::numbers::pi_v<float> *
                         (1.0f - 2.0f * (static_cast<float>(column) + 0.5f) / static_cast<float>(columns));
   const float elevation = elevation_rad[static_cast<std::size_t>(channel)];
-  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+          std::sin(elevation)};
 }
 
 Vec3f CameraModel::direction(int row, int column) const {

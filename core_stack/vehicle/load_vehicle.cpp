@@ -35,7 +35,8 @@ VehiclePlugin& load_vehicle(const std::string& name, const std::filesystem::path
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw InputError(file.string(), "", dlerror());
   const auto entry = reinterpret_cast<karst_vehicle_plugin_fn>(dlsym(library, "karst_vehicle_plugin"));
-  if (entry == nullptr) throw InputError(file.string(), "", "exports no karst_vehicle_plugin: no vehicle plugin");
+  if (entry == nullptr)
+    throw InputError(file.string(), "", "exports no karst_vehicle_plugin: no vehicle plugin");
   return *entry();
 }
 

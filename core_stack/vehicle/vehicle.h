@@ -17,11 +17,11 @@ struct VehicleDescription {
   double mass_kg = 2.0;
   double max_thrust_n = 45.0;
   double max_body_rate_radps = 6.0;
-  double pose_delay_s = 0.0;          // declared delay of the pose sensor
-  double pose_noise_m = 0.0;          // declared standard deviation
+  double pose_delay_s = 0.0;                // declared delay of the pose sensor
+  double pose_noise_m = 0.0;                // declared standard deviation
   std::shared_ptr<const LidarModel> lidar;  // null: none
   std::vector<std::shared_ptr<const CameraModel>> cameras;
-  Pose T_world_start;                 // the pose it stands at before take-off, in the mission's world frame
+  Pose T_world_start;  // the pose it stands at before take-off, in the mission's world frame
   double hover_power_w = 0.0;
 };
 
@@ -74,8 +74,8 @@ class VehiclePlugin {
 
 /// The one symbol a vehicle plugin exports: C++ inside one build, not a promise to outsiders.
 using karst_vehicle_plugin_fn = karst::core::VehiclePlugin* (*)();
-#define KARST_VEHICLE_PLUGIN(Type)                                                              \
+#define KARST_VEHICLE_PLUGIN(Type)                                                                       \
   extern "C" __attribute__((visibility("default"))) karst::core::VehiclePlugin* karst_vehicle_plugin() { \
-    static Type plugin;                                                                         \
-    return &plugin;                                                                             \
+    static Type plugin;                                                                                  \
+    return &plugin;                                                                                      \
   }

@@ -1,0 +1,63 @@
+# `make demo` and `make test` install what they need (Debian 12), build, and run. `make help` lists the rest.
+BUILD ?= build
+JOBS ?= $(shell nproc)
+CMAKE_FLAGS ?=
+DEMO_RUN ?= runs/demo
+
+.PHONY: help demo test build bench format lint asan tsan install clean
+help:
+	@echo "make demo     install, build, generate a cave, fly a mission through it, write the report"
+	@echo "make test     install, build, run every test"
+	@echo "make bench    benchmarks: ratios against stock OctoMap, NLopt and the naive way"
+	@echo "make format   clang-format on every source file;  make lint  checks format, tidiness, layering"
+	@echo "make asan     unit tests under AddressSanitizer and UBSan;  make tsan  under ThreadSanitizer"
+	@echo "make install  into PREFIX (/usr/local)"
+
+build:
+	@.ci/install
+	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=OFF $(CMAKE_FLAGS) >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS)
+
+demo: build
+	@mkdir -p runs
+	@test -f runs/demo_cave.info || $(BUILD)/bin/karst cave generate --preset small --seed 7 --out runs/demo_cave
+	@rm -rf $(DEMO_RUN)
+	@$(BUILD)/bin/karst fly examples/missions/demo.info --out $(DEMO_RUN)
+
+test:
+	@.ci/install test
+	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS)
+	@.ci/ctest $(BUILD)
+
+bench:
+	@.ci/install test
+	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target benchmarks
+	@.ci/bench $(BUILD)
+
+SOURCES = $$(git ls-files '*.h' '*.hpp' '*.c' '*.cpp')
+format:
+	@clang-format -i $(SOURCES)
+lint:
+	@.ci/install test
+	@clang-format --dry-run -Werror $(SOURCES)
+	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
+	@.ci/tidy $(BUILD)
+
+asan:
+	@.ci/install test
+	@cmake -S . -B build-asan -G Ninja -DKARST_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
+	@cmake --build build-asan -j $(JOBS)
+	@.ci/ctest build-asan -LE flight
+tsan:
+	@.ci/install test
+	@cmake -S . -B build-tsan -G Ninja -DKARST_SANITIZE=thread -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
+	@cmake --build build-tsan -j $(JOBS)
+	@.ci/ctest build-tsan -LE flight
+
+PREFIX ?= /usr/local
+install: build
+	@cmake --install $(BUILD) --prefix $(PREFIX)
+clean:
+	@rm -rf $(BUILD) build-asan build-tsan

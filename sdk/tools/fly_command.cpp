@@ -1,0 +1,176 @@
+#include "sdk/tools/fly_command.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <atomic>
+#include <boost/property_tree/info_parser.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core_stack/common/error.h"
+#include "sdk/host/hosted_policy.h"
+#include "sdk/tools/mission_file.h"
+#include "sdk/tools/report_command.h"
+#include "sdk/tools/status_line.h"
+#include "sdk/tools/timing.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNotLanded = 2;  // exit code of a flight that did not end with the vehicle at its start
+
+std::atomic<bool> interrupted{false};
+void on_signal(int) { interrupted = true; }
+
+struct FlyArguments {
+  std::string mission_file, out;
+  MissionOverrides overrides;
+  std::vector<std::string> plugins;
+  std::optional<std::int64_t> seed;
+  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool json = false, quiet = false, keys = false, no_report = false;
+};
+
+/// runs/POLICY-CAVE-SEED, with a number behind it if that is taken.
+fs::path default_run_dir(const Mission& m) {
+  const std::string name = m.policy + "-" + fs::path(m.cave).stem().string() + "-" + std::to_string(m.seed);
+  fs::path dir = fs::path("runs") / name;
+  for (int i = 2; fs::exists(dir); ++i) dir = fs::path("runs") / (name + "-" + std::to_string(i));
+  return dir;
+}
+
+void write_mission_info(const fs::path& run_dir, const Mission& m, const host::HostedPolicy& policy) {
+  boost::property_tree::ptree tree = m.resolved;
+  tree.put("cave.file", m.cave.empty() ? "" : fs::absolute(m.cave).lexically_normal().string());
+  tree.put("cave.start", m.start);
+  tree.put("policy.name", m.policy);
+  tree.put("policy.version", policy.version());
+  if (!policy.parameters().empty()) tree.put_child("policy.parameters", policy.parameters());
+  tree.put("karst.version", KARST_VERSION);
+  const fs::path file = run_dir / "mission.info";
+  try {
+    boost::property_tree::write_info(file.string(), tree);
+  } catch (const boost::property_tree::info_parser_error& e) {
+    throw core::InputError(file.string(), "", e.message());
+  }
+}
+
+void print_summary(const nlohmann::json& metrics, const fs::path& run_dir) {
+  const auto number = [&](const char* key, const char* format) {
+    if (metrics[key].is_null()) return std::string("unknown");
+    std::array<char, 64> text;
+    std::snprintf(text.data(), text.size(), format, metrics[key].get<double>());
+    return std::string(text.data());
+  };
+  std::printf("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
+              metrics["reason"].get<std::string>().c_str());
+  std::printf("  flight time      %s\n  path length      %s\n  mean speed       %s\n",
+              number("flight_time_s", "%.0f s").c_str(), number("path_length_m", "%.0f m").c_str(),
+              number("mean_speed_mps", "%.2f m/s").c_str());
+  std::printf("  explored volume  %s", number("explored_volume_m3", "%.0f m^3").c_str());
+  if (!metrics["coverage"].is_null())
+    std::printf(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
+  std::printf("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
+  std::printf("Look next at:\n  %s   the flight in 3D with plots; open it in a browser\n  %s   all figures\n",
+              (run_dir / "report.html").c_str(), (run_dir / "metrics.json").c_str());
+}
+
+int fly(const FlyArguments& args) {
+  if (args.keys) {
+    std::fputs(mission_help("simulator").c_str(), stdout);
+    return 0;
+  }
+  if (args.mission_file.empty() && args.overrides.cave.empty())
+    throw core::InputError("karst fly", "", "needs a MISSION file or --cave FILE; see karst fly --help");
+  MissionOverrides overrides = args.overrides;
+  if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
+  const Mission mission = read_mission(args.mission_file, overrides);
+
+  // Everything that can be wrong is looked at before anything is written.
+  host::PolicyChoice choice;
+  choice.name = mission.policy;
+  choice.plugin_files = args.plugins;
+  choice.parameters = mission.policy_parameters;
+  choice.source = mission.file;
+  choice.seed = static_cast<std::uint64_t>(mission.seed);
+  const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(choice);
+  const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
+  core::VehicleSetup setup;
+  setup.mission_file = mission.file;
+  setup.cave = mission.cave;
+  setup.start = mission.start;
+  setup.run_dir = run_dir.string();
+  setup.seed = static_cast<std::uint64_t>(mission.seed);
+  core::Recorder recorder(run_dir);
+  std::unique_ptr<core::Vehicle> vehicle;
+  try {
+    vehicle = mission.vehicle_plugin->create(setup);
+  } catch (...) {
+    fs::remove(run_dir / "events.jsonl");  // nothing flew: leave the name free for the next try
+    throw;
+  }
+  write_mission_info(run_dir, mission, *policy);
+
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  core::Executive executive(args.threads);
+  core::MissionControl control(mission.core, *vehicle, executive, *policy, recorder);
+  StatusLine line(args.quiet || args.json);
+  const auto begin = std::chrono::steady_clock::now();
+  const core::MissionResult result = control.run([&](const core::MissionStatus& status) {
+    line.show(status);
+    return !interrupted.load();
+  });
+  line.end();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  write_timing(run_dir, executive, wall.count(), args.threads);
+  const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.no_report);
+  if (args.json) {
+    std::cout << metrics.dump(2) << std::endl;
+  } else {
+    print_summary(metrics, run_dir);
+  }
+  std::fflush(stdout);
+  const int code = result.outcome == "landed" ? 0 : kNotLanded;
+  if (policy->abandoned()) std::_Exit(code);  // its thread hangs in the plugin: nothing may be torn down
+  return code;
+}
+
+}  // namespace
+
+void add_fly_command(CLI::App& app) {
+  auto args = std::make_shared<FlyArguments>();
+  CLI::App* fly_app = app.add_subcommand(
+      "fly",
+      "Fly one mission and write its run directory and report.\n\n"
+      "  karst fly examples/missions/demo.info\n"
+      "  karst fly --cave caves/tunnel.stl --start \"1 2 1.5 90\" --policy highest_frontier\n"
+      "  karst fly demo.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
+      "Exit code: 0 landed at the start, 2 flown but not landed there, 1 not flown.");
+  fly_app->add_option("mission", args->mission_file, "mission file (.info)");
+  fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)");
+  fly_app->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" of the first hover");
+  fly_app->add_option("--policy", args->overrides.policy, "exploration policy; see karst policy list");
+  fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first");
+  fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys");
+  fly_app->add_option("--seed", args->seed, "seed of every random stream");
+  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED");
+  fly_app->add_option("--threads", args->threads, "worker threads; results do not depend on it")
+      ->check(CLI::Range(1, 256));
+  fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
+  fly_app->add_flag("--quiet", args->quiet, "no status line");
+  fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
+  fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
+  fly_app->callback([args] {
+    if (const int code = fly(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace karst::tools

@@ -1,0 +1,110 @@
+#include "sdk/tools/mission_file.h"
+
+#include <filesystem>
+
+#include "core_stack/common/error.h"
+#include "core_stack/vehicle/load_vehicle.h"
+#include "sdk/tools/install_place.h"
+
+namespace karst::tools {
+namespace {
+
+namespace pt = boost::property_tree;
+using core::InputError;
+using core::OptionTable;
+
+constexpr const char* kParameters = "policy.parameters";
+
+void describe_mission(OptionTable& t, Mission& m) {
+  t.add("seed", m.seed, 0, 9e15, "seed of every random stream of the mission");
+  t.add("vehicle", m.vehicle, {}, "the vehicle's plugin");
+  t.under("cave", [&m](OptionTable& c) {
+    c.add("file", m.cave, {},
+          "cave .info file, or a mesh (STL, PLY, OBJ, DAE); relative to the mission file");
+    c.add("start", m.start, {}, "\"x y z [heading_deg]\" of the first hover; empty: the cave's own");
+  });
+  t.under("policy", [&m](OptionTable& p) {
+    p.add("name", m.policy, {}, "the exploration policy; `karst policy list` shows what there is");
+  });
+  describe(t, m.core);
+}
+
+/// The parameters' subtree leaves `tree`: the policy itself says which keys it knows.
+pt::ptree take_parameters(pt::ptree& tree) {
+  const auto found = tree.get_child_optional(kParameters);
+  if (!found) return {};
+  pt::ptree parameters = *found;
+  tree.get_child("policy").erase("parameters");
+  if (tree.get_child("policy").empty()) tree.erase("policy");
+  return parameters;
+}
+
+std::pair<std::string, std::string> split_setting(const std::string& setting) {
+  const auto equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError("--set", setting, "expected key=value, such as motion.max_speed=1.5");
+  return {setting.substr(0, equals), setting.substr(equals + 1)};
+}
+
+std::string relative_to(const std::string& file, const std::string& path) {
+  if (path.empty() || std::filesystem::path(path).is_absolute()) return path;
+  return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
+}
+
+}  // namespace
+
+Mission read_mission(const std::string& file, const MissionOverrides& overrides) {
+  Mission m;
+  m.file = file.empty() ? "command line" : file;
+  pt::ptree tree = file.empty() ? pt::ptree() : core::read_info(file);
+  m.policy_parameters = take_parameters(tree);
+
+  std::vector<std::pair<std::string, std::string>> settings;
+  for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
+  settings.insert(settings.end(), overrides.values.begin(), overrides.values.end());
+
+  // The vehicle comes first: its plugin adds its own section to the table.
+  m.vehicle = tree.get("vehicle", m.vehicle);
+  for (const auto& [key, value] : settings)
+    if (key == "vehicle") m.vehicle = value;
+  m.vehicle_plugin = &core::load_vehicle(m.vehicle, plugin_root() / "vehicles");
+  OptionTable table;
+  describe_mission(table, m);
+  table.under(m.vehicle, [&m](OptionTable& t) { m.vehicle_plugin->describe_options(t); });
+
+  table.read(m.file, tree);
+  m.cave = relative_to(file, m.cave);
+  const std::string parameters_prefix = std::string(kParameters) + ".";
+  for (const auto& [key, value] : settings) {
+    if (key.starts_with(parameters_prefix)) {
+      m.policy_parameters.put(key.substr(parameters_prefix.size()), value);
+    } else {
+      table.set("--set", key, value);
+    }
+  }
+  if (!overrides.cave.empty()) {
+    m.cave = overrides.cave;
+    m.start = "";  // another cave, another start
+  }
+  if (!overrides.start.empty()) m.start = overrides.start;
+  if (!overrides.policy.empty() && overrides.policy != m.policy) {
+    m.policy = overrides.policy;
+    m.policy_parameters.clear();  // another policy, other parameters
+    for (const auto& [key, value] : settings)
+      if (key.starts_with(parameters_prefix))
+        m.policy_parameters.put(key.substr(parameters_prefix.size()), value);
+  }
+  m.resolved = table.resolved();
+  return m;
+}
+
+std::string mission_help(const std::string& vehicle) {
+  Mission m;
+  OptionTable table;
+  describe_mission(table, m);
+  core::VehiclePlugin& plugin = core::load_vehicle(vehicle, plugin_root() / "vehicles");
+  table.under(vehicle, [&plugin](OptionTable& t) { plugin.describe_options(t); });
+  return table.help();
+}
+
+}  // namespace karst::tools

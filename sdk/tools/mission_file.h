@@ -1,0 +1,42 @@
+// A mission file: everything `karst fly` needs to know, in Boost.PropertyTree INFO.
+//
+//   seed 7
+//   cave { file caves/demo.info }
+//   policy { name nearest_frontier  parameters { max_distance "30 m" } }
+//   motion { max_speed "1.5 m/s" }
+#pragma once
+#include <boost/property_tree/ptree.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::tools {
+
+/// What the command line adds to, or sets against, a mission file.
+struct MissionOverrides {
+  std::string cave, start, policy;                          // "" leaves the file's
+  std::vector<std::string> settings;                        // "key=value"
+  std::vector<std::pair<std::string, std::string>> values;  // further keys with values
+};
+
+struct Mission {
+  std::string file;  // as named, for messages
+  std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
+  std::int64_t seed = 1;
+  core::CoreOptions core;
+  core::VehiclePlugin* vehicle_plugin = nullptr;
+  boost::property_tree::ptree policy_parameters;
+  boost::property_tree::ptree resolved;  // every setting but the policy's parameters, as in mission.info
+};
+
+/// Reads, overrides, checks. `file` may be "" for a mission given on the command line alone. Throws
+/// core::InputError naming file, key, what was expected and the nearest key.
+Mission read_mission(const std::string& file, const MissionOverrides& overrides);
+
+/// Every key with unit, range, default and a line of help, for a vehicle.
+std::string mission_help(const std::string& vehicle);
+
+}  // namespace karst::tools

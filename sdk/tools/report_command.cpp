@@ -1,0 +1,88 @@
+#include "sdk/tools/report_command.h"
+
+#include <CLI/CLI.hpp>
+#include <boost/property_tree/ptree.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
+#include "plugins/simulator/cave/cave.h"
+#include "sdk/evaluation/metrics.h"
+#include "sdk/evaluation/reachable.h"
+#include "sdk/evaluation/report.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Farther from rock than this, a map cell is simply wrong; the search for its nearest rock ends here.
+constexpr double kRockSearch_m = 20.0;
+
+double cell_size_m(const fs::path& run_dir) {
+  core::MapOptions map;
+  core::OptionTable table;
+  table.section("map", map);
+  const auto tree = core::read_info((run_dir / "mission.info").string());
+  if (const auto text = tree.get_optional<std::string>("map.resolution"))
+    table.set((run_dir / "mission.info").string(), "map.resolution", *text);
+  return map.resolution_m;
+}
+
+/// What the cave's mesh says. Holds the cave that its functions look into.
+evaluation::Truth truth_of(const std::string& cave_file, const std::string& start, double resolution_m) {
+  const auto cave = std::make_shared<cave::Cave>(cave::load_cave(cave_file, start));
+  evaluation::ReachableOptions options;
+  options.resolution_m = resolution_m;
+  const auto reachable = std::make_shared<evaluation::Reachable>(
+      evaluation::find_reachable(cave->scene.mesh(), cave->description.start.position, options, cave_file));
+  evaluation::Truth truth;
+  truth.reachable_volume_m3 = reachable->volume_m3();
+  truth.is_reachable = [reachable, resolution_m](const core::Vec3& p) {
+    const Eigen::Vector3d k = (p / resolution_m).array().floor();
+    return reachable->contains({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())});
+  };
+  truth.distance_to_rock = [cave](const core::Vec3& p) {
+    return cave->scene.distance_to_rock(p, kRockSearch_m);
+  };
+  return truth;
+}
+
+}  // namespace
+
+nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, const std::string& start,
+                          bool with_report) {
+  evaluation::Truth truth;
+  if (!cave.empty()) {
+    try {
+      truth = truth_of(cave, start, cell_size_m(run_dir));
+    } catch (const core::InputError& e) {
+      std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());
+    }
+  }
+  std::vector<std::string> problems;
+  const nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &problems);
+  for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
+  evaluation::write_metrics(run_dir, metrics);
+  if (with_report) evaluation::write_report(run_dir);
+  return metrics;
+}
+
+void add_report_command(CLI::App& app) {
+  CLI::App* report = app.add_subcommand(
+      "report",
+      "Evaluate a run directory again and rewrite its metrics.json and report.html; also for a run that was "
+      "cut short.\n\n  karst report runs/demo");
+  auto run = std::make_shared<std::string>();
+  report->add_option("run", *run, "run directory")->required();
+  report->callback([run] {
+    if (!fs::exists(fs::path(*run) / "mission.info"))
+      throw core::InputError(*run, "", "no run directory: it holds no mission.info");
+    const auto info = core::read_info((fs::path(*run) / "mission.info").string());
+    finish_run(*run, info.get("cave.file", ""), info.get("cave.start", ""), true);
+    std::printf("%s\n", (fs::path(*run) / "report.html").c_str());
+  });
+}
+
+}  // namespace karst::tools

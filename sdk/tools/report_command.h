@@ -1,0 +1,22 @@
+// `karst report RUN`: evaluates a run directory again and rewrites its metrics.json and report.html.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "sdk/evaluation/reachable.h"
+
+namespace CLI {
+class App;
+}
+
+namespace karst::tools {
+
+void add_report_command(CLI::App& app);
+
+/// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics. `cave` and
+/// `start` may be
+/// "" when the cave is not known: what needs it is null.
+nlohmann::json finish_run(const std::filesystem::path& run_dir, const std::string& cave,
+                          const std::string& start, bool with_report);
+
+}  // namespace karst::tools
