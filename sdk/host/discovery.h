@@ -30,7 +30,7 @@ struct PolicyListing {
   std::string file;
   std::string broken;  // reason; empty if the file is sound
   std::string id, name, version, one_line;
-  std::string abi;     // "1.0"
+  std::string abi;          // "1.0"
   std::string shadowed_by;  // the file earlier in the order that offers the same id; "" if none
   std::vector<ParameterListing> parameters;
 };

@@ -1,0 +1,9 @@
+/* Compiles only while every struct of the ABI lies in memory as karst_abi_layout.inc says. */
+#include "karst_abi.h"
+
+_Static_assert(sizeof(void*) == 8, "the policy ABI is defined for 64-bit platforms");
+
+#define KARST_SIZE(type, bytes) _Static_assert(sizeof(struct type) == (bytes), "size of " #type);
+#define KARST_FIELD(type, field, offset) \
+  _Static_assert(offsetof(struct type, field) == (offset), "offset of " #type "." #field);
+#include "karst_abi_layout.inc"

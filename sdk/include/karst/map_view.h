@@ -1,0 +1,82 @@
+// The occupancy map as a policy sees it. Questions go in batches.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include <karst/types.h>
+
+namespace karst {
+
+/// A view of the map, good until decide() returns; `retained()` gives one that lasts.
+class MapView {
+ public:
+  MapView() = default;
+  MapView(const karst_host_t* host, const karst_map_t* map) : host_(host), map_(map) {}
+
+  karst_map_info_t info() const {
+    karst_map_info_t out{};
+    karst_error_t e{};
+    check(host_->map->info(host_, map_, &out, &e), e);
+    return out;
+  }
+  double resolution_m() const { return info().resolution_m; }
+
+  std::vector<Cell> cells(const std::vector<Vec3>& points) const {
+    std::vector<Cell> out(points.size());
+    karst_error_t e{};
+    check(host_->map->cell_states(host_, map_, points.data(), points.size(),
+                                  reinterpret_cast<karst_cell_t*>(out.data()), &e),
+          e);
+    return out;
+  }
+  Cell cell(const Vec3& point) const { return cells({point}).front(); }
+
+  std::vector<karst_ray_end_t> cast(const std::vector<karst_segment_t>& rays, bool through_unknown) const {
+    std::vector<karst_ray_end_t> out(rays.size());
+    karst_error_t e{};
+    const std::uint32_t flags = through_unknown ? std::uint32_t{KARST_RAY_THROUGH_UNKNOWN} : 0u;
+    check(host_->map->cast_rays(host_, map_, rays.data(), rays.size(), flags, out.data(), &e), e);
+    return out;
+  }
+
+  std::vector<karst_cell_counts_t> counts(const std::vector<Box>& boxes) const {
+    std::vector<karst_box_t> in;
+    in.reserve(boxes.size());
+    for (const Box& b : boxes) in.push_back({b.low, b.high});
+    std::vector<karst_cell_counts_t> out(boxes.size());
+    karst_error_t e{};
+    check(host_->map->count_in_boxes(host_, map_, in.data(), in.size(), out.data(), &e), e);
+    return out;
+  }
+
+  /// Centres of occupied cells in the box that border on free space.
+  std::vector<Vec3> surface(const Box& box) const {
+    const karst_box_t in{box.low, box.high};
+    std::uint64_t total = 0;
+    karst_error_t e{};
+    check(host_->map->surface_cells(host_, map_, in, nullptr, 0, &total, &e), e);
+    std::vector<Vec3> out(total);
+    check(host_->map->surface_cells(host_, map_, in, out.data(), out.size(), &total, &e), e);
+    return out;
+  }
+
+  /// A copy that outlives the request, released with the last view of it. Costs tens of milliseconds for a
+  /// large map; keep none beyond the policy's own life.
+  MapView retained() const {
+    karst_error_t e{};
+    const karst_map_t* kept = host_->map->retain(host_, map_, &e);
+    if (kept == nullptr) throw Error(e.text, e.code);
+    MapView view(host_, kept);
+    view.owner_.reset(kept, [host = host_](const karst_map_t* m) { host->map->release(host, m); });
+    return view;
+  }
+
+  const karst_map_t* handle() const { return map_; }
+
+ private:
+  const karst_host_t* host_ = nullptr;
+  const karst_map_t* map_ = nullptr;
+  std::shared_ptr<const karst_map_t> owner_;
+};
+
+}  // namespace karst

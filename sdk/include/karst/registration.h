@@ -1,0 +1,161 @@
+// From karst::Policy to the C tables: what KARST_POLICY expands to. An author need not read it.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <utility>
+
+#include <karst/policy.h>
+
+namespace karst::border {
+
+inline void fill(karst_error_t* error, std::int32_t code, const char* text) noexcept {
+  if (error == nullptr) return;
+  error->code = code;
+  std::size_t n = std::min<std::size_t>(std::strlen(text), KARST_ERROR_TEXT_SIZE - 1);
+  while (n > 0 && n == KARST_ERROR_TEXT_SIZE - 1 && (text[n] & 0xC0) == 0x80) --n;  // cut no UTF-8 sequence
+  std::memcpy(error->text, text, n);
+  error->text[n] = '\0';
+}
+
+/// Runs `f`; whatever it throws becomes an error code and a text.
+template <class F>
+std::int32_t guarded(karst_error_t* error, F&& f) noexcept {
+  try {
+    f();
+    return KARST_OK;
+  } catch (const Error& e) {
+    const std::int32_t code = e.code() == KARST_OK ? KARST_ERROR_FAILED : e.code();
+    fill(error, code, e.what());
+    return code;
+  } catch (const std::exception& e) {
+    fill(error, KARST_ERROR_EXCEPTION, e.what());
+  } catch (...) {
+    fill(error, KARST_ERROR_EXCEPTION, "an exception that is not a std::exception");
+  }
+  return KARST_ERROR_EXCEPTION;
+}
+
+struct Hosted {
+  const karst_host_t* host = nullptr;
+  std::unique_ptr<Policy> policy;
+  Parameters table;
+};
+inline Hosted& self_of(void* self) noexcept { return *static_cast<Hosted*>(self); }
+
+inline std::int32_t init(void* self, const karst_parameter_value_t* values, std::uint64_t count,
+                         karst_error_t* error) noexcept {
+  return guarded(error, [&] {
+    Hosted& h = self_of(self);
+    h.table.assign(values, count);
+    h.policy->init();
+  });
+}
+inline std::int32_t activate(void* self, karst_error_t* error) noexcept {
+  return guarded(error, [&] { self_of(self).policy->activate(); });
+}
+inline std::int32_t decide(void* self, const karst_request_t* request, const karst_decision_sink_t* sink,
+                           karst_error_t* error) noexcept {
+  return guarded(error, [&] {
+    Hosted& h = self_of(self);
+    const Request view(h.host, *request);
+    const Decision decision = h.policy->decide(view);
+    std::vector<karst_goal_t> goals;
+    goals.reserve(decision.goals.size());
+    for (const Goal& g : decision.goals) goals.push_back(to_abi(g));
+    karst_error_t e{};
+    if (!goals.empty()) check(sink->add_goals(sink, goals.data(), goals.size(), &e), e);
+    const std::uint32_t flags = decision.in_order ? std::uint32_t{KARST_DECISION_TOUR} : 0u;
+    check(sink->set_outcome(sink, decision.outcome, flags, to_abi(decision.reason), &e), e);
+  });
+}
+inline std::int32_t on_event(void* self, const karst_event_t* event, karst_error_t* error) noexcept {
+  return guarded(error, [&] {
+    self_of(self).policy->on_event(
+        {event->kind, event->stamp_ns, from_abi(event->goal), from_abi(event->reason)});
+  });
+}
+inline void deactivate(void* self) noexcept {
+  guarded(nullptr, [&] { self_of(self).policy->deactivate(); });
+}
+inline void destroy(void* self) noexcept {
+  guarded(nullptr, [&] { delete &self_of(self); });
+}
+inline const void* extension(void*, karst_text_t) noexcept { return nullptr; }
+
+template <class P>
+void* create(const karst_host_t* host, karst_error_t* error) noexcept {
+  Hosted* made = nullptr;
+  guarded(error, [&] {
+    auto h = std::make_unique<Hosted>();
+    h->host = host;
+    h->policy = std::make_unique<P>();
+    h->policy->parameters(h->table);
+    made = h.release();
+  });
+  return made;
+}
+
+/// A policy's table, descriptor and the texts they point to.
+struct Entry {
+  std::string id, version, one_line;
+  Parameters table;
+  std::vector<karst_parameter_t> parameters;
+  karst_policy_descriptor_t descriptor{};
+  karst_policy_t policy{};
+};
+
+/// The table only serves for its declarations: the fields it points to are gone when this returns.
+template <class P>
+std::unique_ptr<Entry> make_entry(const char* id, const char* version, const char* one_line) {
+  auto e = std::make_unique<Entry>();
+  e->id = id, e->version = version, e->one_line = one_line;
+  P defaults;
+  defaults.parameters(e->table);
+  e->parameters = e->table.declarations();
+  e->descriptor.size = sizeof e->descriptor;
+  e->descriptor.id = e->descriptor.name = to_abi(e->id);
+  e->descriptor.version = to_abi(e->version);
+  e->descriptor.min_host[1] = 1;  // ABI 1.0 came with karst 0.1.0
+  e->descriptor.parameter_count = static_cast<std::uint32_t>(e->parameters.size());
+  e->descriptor.parameters = e->parameters.data();
+  e->descriptor.one_line = to_abi(e->one_line);
+  e->policy = {sizeof e->policy, 0,         &e->descriptor, &create<P>, &init,     &activate,
+               &decide,          &on_event, &deactivate,    &destroy,   &extension};
+  return e;
+}
+
+/// Made once and kept for the process's life: the host may ask for it until the very end. NULL, which
+/// the host reports, if the policy cannot even be constructed.
+template <class P>
+const karst_policy_t* entry(const char* id, const char* version, const char* one_line) noexcept {
+  try {
+    static const Entry* const made = make_entry<P>(id, version, one_line).release();
+    return &made->policy;
+  } catch (...) {
+    return nullptr;
+  }
+}
+
+}  // namespace karst::border
+
+/// One policy in this plugin. id: [a-z][a-z0-9_]*; version: semantic; one_line: what it does.
+#define KARST_POLICY(Type, id, version, one_line) \
+  KARST_PLUGIN(karst::border::entry<Type>(id, version, one_line))
+
+/// Several policies in one plugin: a list of karst::border::entry<Type>(id, version, one_line).
+#define KARST_PLUGIN(...)                                                                    \
+  extern "C" KARST_EXPORT const karst_plugin_t* karst_plugin_entry(void) KARST_NOEXCEPT {    \
+    static const auto policy = [](std::uint32_t i) noexcept -> const karst_policy_t* {       \
+      const karst_policy_t* const all[] = {__VA_ARGS__};                                     \
+      return i < sizeof all / sizeof all[0] ? all[i] : nullptr;                              \
+    };                                                                                       \
+    static const karst_plugin_t plugin = [] {                                                \
+      const karst_policy_t* const all[] = {__VA_ARGS__};                                     \
+      return karst_plugin_t{sizeof(karst_plugin_t), KARST_ABI_MAJOR, KARST_ABI_MINOR,        \
+                            static_cast<std::uint32_t>(sizeof all / sizeof all[0]), policy}; \
+    }();                                                                                     \
+    return &plugin;                                                                          \
+  }

@@ -1,0 +1,95 @@
+// One request: where the vehicle is, what it knows, and what the host can find out for the policy.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <karst/map_view.h>
+#include <karst/types.h>
+
+namespace karst {
+
+class Request {
+ public:
+  Request(const karst_host_t* host, const karst_request_t& r)
+      : sequence(r.sequence),
+        stamp_ns(r.stamp_ns),
+        deadline_ns(r.deadline_ns),
+        state(r.state),
+        direction_of_flight(r.direction_of_flight),
+        T_world_start(r.T_world_start),
+        seconds_before_homing(r.seconds_before_homing),
+        max_speed_mps(r.max_speed_mps),
+        clearance_m(r.clearance_m),
+        vehicle_radius_m(r.vehicle_radius_m),
+        last_fate(r.last_fate),
+        last_goal(r.last_goal),
+        map(host, r.map),
+        sensors(r.sensors, r.sensors + r.sensor_count),
+        teammates(r.teammates, r.teammates + r.teammate_count),
+        host_(host) {
+    frontiers.reserve(r.frontier_count);
+    for (std::uint64_t i = 0; i < r.frontier_count; ++i) frontiers.push_back(from_abi(r.frontiers[i]));
+  }
+
+  const std::uint32_t sequence;  // 1, 2, ...
+  const std::int64_t stamp_ns, deadline_ns;
+  const State state;               // predicted at the deadline when flying
+  const Vec3 direction_of_flight;  // unit; the heading when the vehicle stands
+  const Pose T_world_start;
+  const double seconds_before_homing;
+  const double max_speed_mps, clearance_m, vehicle_radius_m;
+  const karst_goal_fate_t last_fate;  // KARST_FATE_*
+  const Vec3 last_goal;               // meaningless if the fate is KARST_FATE_NONE
+  const MapView map;
+  std::vector<Frontier> frontiers;  // by id
+  const std::vector<Sensor> sensors;
+  const std::vector<Teammate> teammates;
+
+  Vec3 position() const { return state.position; }
+
+  /// Lengths of clear paths in metres, +infinity where no way is known; one search for all goals.
+  std::vector<double> path_lengths(const Vec3& from, const std::vector<Vec3>& goals,
+                                   double tolerance_m) const {
+    std::vector<double> out(goals.size());
+    karst_error_t e{};
+    check(host_->path->lengths(host_, from, goals.data(), goals.size(), tolerance_m, out.data(), &e), e);
+    return out;
+  }
+
+  /// Unknown cells `sensor` would see from each viewpoint. A sensor with a shortened range costs less.
+  std::vector<std::uint64_t> newly_seen(const Sensor& sensor, const std::vector<Viewpoint>& from) const {
+    std::vector<std::uint64_t> out(from.size());
+    karst_error_t e{};
+    check(host_->gain->newly_seen(host_, map.handle(), &sensor, 1, from.data(), from.size(), out.data(), &e),
+          e);
+    return out;
+  }
+
+  void draw_points(const std::vector<Vec3>& points, std::uint32_t rgb) const {
+    karst_error_t e{};
+    check(host_->draw->points(host_, points.data(), points.size(), rgb, &e), e);
+  }
+  void draw_lines(const std::vector<karst_segment_t>& lines, std::uint32_t rgb) const {
+    karst_error_t e{};
+    check(host_->draw->lines(host_, lines.data(), lines.size(), rgb, &e), e);
+  }
+  void draw_text(const Vec3& at, const std::string& text, std::uint32_t rgb) const {
+    karst_error_t e{};
+    check(host_->draw->text(host_, at, to_abi(text), rgb, &e), e);
+  }
+
+  void log(const std::string& line) const { host_->log(host_, KARST_LOG_INFO, to_abi(line)); }
+  /// Uniform in [0, 1), the same in every replay of the mission's seed.
+  double random() const {
+    double v = 0;
+    host_->random(host_, &v, 1);
+    return v;
+  }
+  /// True once the host waits no longer: long loops ask now and then, and return.
+  bool should_stop() const { return host_->should_stop(host_) != 0; }
+
+ private:
+  const karst_host_t* host_;
+};
+
+}  // namespace karst

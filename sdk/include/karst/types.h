@@ -1,0 +1,150 @@
+// The values a policy works with. World frame: x east, y north, z up. Metres, seconds, radians.
+#pragma once
+#include <karst_abi.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace karst {
+
+/// A service refused, or a policy gives up: the text reaches the mission's log.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& text, std::int32_t code = KARST_ERROR_FAILED)
+      : std::runtime_error(text), code_(code) {}
+  std::int32_t code() const { return code_; }
+
+ private:
+  std::int32_t code_;
+};
+
+struct Vec3 : karst_vec3_t {
+  constexpr Vec3() : karst_vec3_t{0, 0, 0} {}
+  constexpr Vec3(double x_, double y_, double z_) : karst_vec3_t{x_, y_, z_} {}
+  constexpr Vec3(const karst_vec3_t& v) : karst_vec3_t(v) {}  // NOLINT: the ABI's vector is this one
+};
+static_assert(sizeof(Vec3) == sizeof(karst_vec3_t), "arrays of one are arrays of the other");
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator*(double s, const Vec3& v) { return {s * v.x, s * v.y, s * v.z}; }
+inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double norm(const Vec3& v) { return std::sqrt(dot(v, v)); }
+inline double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
+inline bool is_finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+using Pose = karst_pose_t;  // T_a_b: position and orientation of b in a
+using State = karst_state_t;
+using Sensor = karst_sensor_t;
+using Teammate = karst_teammate_t;
+using Viewpoint = karst_viewpoint_t;
+struct Box {
+  Vec3 low, high;  // closed
+};
+inline Box box_around(const Vec3& center, double half_edge_m) {
+  const Vec3 h{half_edge_m, half_edge_m, half_edge_m};
+  return {center - h, center + h};
+}
+
+enum class Cell : karst_cell_t {
+  unknown = KARST_CELL_UNKNOWN,
+  free = KARST_CELL_FREE,
+  occupied = KARST_CELL_OCCUPIED
+};
+
+/// A group of neighbouring free cells that border on the unknown.
+struct Frontier {
+  std::uint32_t id = 0;  // kept while the cluster shares cells with its former self
+  std::uint32_t cells = 0;
+  Vec3 centroid, low, high;
+  Vec3 normal;                                      // unit, from free into unknown; zero if it has none
+  std::uint32_t unknown_cells = 0, free_cells = 0;  // in a box of a few metres around the centroid
+  Vec3 viewpoint;                                   // a clear place that sees it; NaN if none was found
+  double viewpoint_heading_rad = 0;
+  double path_length_m = 0;  // from the vehicle to the viewpoint; +infinity if no way is known
+
+  bool reachable() const { return is_finite(viewpoint) && std::isfinite(path_length_m); }
+};
+
+inline Frontier from_abi(const karst_frontier_cluster_t& c) {
+  return {c.id,           c.cells,         c.centroid,   c.bounds.low,         c.bounds.high,
+          c.normal,       c.unknown_cells, c.free_cells, c.viewpoint.position, c.viewpoint.heading_rad,
+          c.path_length_m};
+}
+
+struct Goal {
+  Vec3 position;
+  double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: any
+  double tolerance_m = 0.5;
+  double max_speed_mps = 0;       // 0: the mission's
+  std::uint32_t frontier_id = 0;  // 0: none
+  double score = 0;               // higher is better, in the policy's own unit
+  std::string why;                // one line for the report
+};
+
+/// The goal that looks at a frontier from the viewpoint the core proposes.
+inline Goal goal_at(const Frontier& f, double score, std::string why) {
+  Goal g;
+  g.position = f.viewpoint;
+  g.heading_rad = f.viewpoint_heading_rad;
+  g.frontier_id = f.id;
+  g.score = score;
+  g.why = std::move(why);
+  return g;
+}
+
+/// What decide() answers. Make one with `fly`, `tour`, `hold`, `explored` or `go_home`.
+struct Decision {
+  karst_outcome_t outcome = KARST_OUTCOME_HOLD;
+  bool in_order = false;  // a tour
+  std::vector<Goal> goals;
+  std::string reason;
+
+  /// Ranked choices, best first: the core flies to the first that passes its checks.
+  static Decision fly(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, false, std::move(goals), ""}; }
+  /// Goals to visit one after the other.
+  static Decision tour(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, true, std::move(goals), ""}; }
+  static Decision hold(std::string reason) { return {KARST_OUTCOME_HOLD, false, {}, std::move(reason)}; }
+  static Decision explored(std::string reason) {
+    return {KARST_OUTCOME_EXPLORED, false, {}, std::move(reason)};
+  }
+  static Decision go_home(std::string reason) {
+    return {KARST_OUTCOME_GO_HOME, false, {}, std::move(reason)};
+  }
+};
+
+/// News between two requests. `kind` is one of KARST_EVENT_*; later minor versions add kinds.
+struct Event {
+  karst_event_kind_t kind = 0;
+  std::int64_t stamp_ns = 0;
+  Goal goal;
+  std::string reason;
+};
+
+inline std::string from_abi(const karst_text_t& t) {
+  return t.length == 0 ? std::string() : std::string(t.data, t.length);
+}
+/// A view: the string must outlive it.
+inline karst_text_t to_abi(const std::string& s) { return {s.data(), s.size()}; }
+
+inline karst_goal_t to_abi(const Goal& g) {
+  return {g.position, g.heading_rad, g.tolerance_m, g.max_speed_mps, g.frontier_id,
+          0,          g.score,       to_abi(g.why)};
+}
+inline Goal from_abi(const karst_goal_t& g) {
+  return {g.position, g.heading_rad, g.tolerance_m, g.max_speed_mps, g.frontier_id, g.score, from_abi(g.why)};
+}
+
+/// Throws Error when a service failed.
+inline void check(std::int32_t code, const karst_error_t& error) {
+  if (code != KARST_OK) throw Error(error.text, code);
+}
+
+}  // namespace karst
