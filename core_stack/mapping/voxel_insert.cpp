@@ -129,4 +129,25 @@ std::vector<CellChange> VoxelMap::declare_free(const Vec3& center, double radius
   return changes;
 }
 
+void VoxelMap::assign(const CellKey& low, std::int32_t edge_cells, float log_odds) {
+  Storage& s = *storage_;
+  ++s.revision;
+  const float limit = kLogOddsScale * 8 - 1;
+  const auto value =
+      static_cast<std::int16_t>(std::clamp(std::round(log_odds * kLogOddsScale), -limit, limit));
+  const auto clamped = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -kWorldCells, kWorldCells));
+  };
+  const CellKey from{clamped(low.x), clamped(low.y), clamped(low.z)};
+  const auto end = [&](std::int32_t v) { return clamped(std::int64_t{v} + edge_cells); };
+  std::vector<CellChange> changes;
+  for (std::int32_t x = from.x; x < end(low.x); ++x)
+    for (std::int32_t y = from.y; y < end(low.y); ++y)
+      for (std::int32_t z = from.z; z < end(low.z); ++z) {
+        const BlockId id = block_of({x, y, z});
+        s.set(s.blocks.find_or_add(id), corner_of(id), local_of({x, y, z}), value, changes);
+        changes.clear();
+      }
+}
+
 }  // namespace karst::core

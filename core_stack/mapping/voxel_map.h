@@ -68,6 +68,10 @@ class VoxelMap {
   /// their value.
   std::vector<CellChange> declare_free(const Vec3& center, double radius_m);
 
+  /// Gives every cell of a cube the same log-odds, clamped to what the map stores (+-7.9); for maps that are
+  /// read from storage or drawn by hand. What of the cube lies outside the world is ignored.
+  void assign(const CellKey& low, std::int32_t edge_cells, float log_odds);
+
   std::size_t free_cells() const;
   std::size_t occupied_cells() const;
   double free_volume_m3() const;

@@ -16,6 +16,7 @@ class VoxelReader {
     if (id != id_) id_ = id, block_ = blocks_.find(id);
     return block_ == nullptr ? Cell::unknown : class_of(block_->log_odds[local_of(k)]);
   }
+  const BlockTable& blocks() const { return blocks_; }
 
  private:
   const BlockTable& blocks_;
