@@ -1,0 +1,162 @@
+#include "core_stack/mission/explorer.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "core_stack/planning/grid_planner.h"
+#include "tests/unit/mission/drawn_map.h"
+
+namespace karst::core {
+namespace {
+
+/// A policy that does as the test says.
+struct Scripted final : PolicyPort {
+  std::function<Decision(const DecisionRequest&)> script;
+  std::vector<PolicyEvent> heard;
+  std::string name() const override { return "scripted"; }
+  Decision decide(const DecisionRequest& r) override { return script(r); }
+  void notify(const PolicyEvent& e) override { heard.push_back(e); }
+};
+
+/// A room with one open side, the vehicle hovering in it.
+struct Room {
+  Scripted policy;
+  VehicleDescription vehicle;
+  std::unique_ptr<Explorer> explorer;
+  RoundInput input;
+
+  Room() {
+    auto lidar = std::make_shared<LidarModel>();
+    lidar->columns = 8;
+    lidar->elevation_rad = {0.5f, -0.5f};
+    vehicle.lidar = lidar;
+    vehicle.T_world_start.position = Vec3(3, 3, 1);
+    explorer = std::make_unique<Explorer>(CoreOptions{}, vehicle, policy);
+    std::vector<Ray> rays;
+    VoxelMap drawn{MapOptions{}};
+    carve_box(drawn, Vec3(0, 0, 0), Vec3(8, 6, 4), {"x+"});
+    drawn.for_each_known([&](const CellKey& k, Cell c, float) {
+      const Vec3f p = drawn.center_of(k).cast<float>();
+      rays.push_back({p, p + Vec3f(0.001f, 0, 0), c == Cell::occupied});
+    });
+    explorer->integrate(rays);
+    input.from = input.state.position = Vec3(3, 3, 2);
+    input.battery_seconds_left = 600;
+  }
+  RoundResult decide(std::function<Decision(const DecisionRequest&)> script) {
+    policy.script = std::move(script);
+    return explorer->decide(input);
+  }
+  RoundResult propose(const Vec3& p) {
+    return decide([p](const DecisionRequest&) {
+      Decision d;
+      d.outcome = Outcome::goals;
+      d.goals.resize(1);
+      d.goals[0].position = p;
+      return d;
+    });
+  }
+};
+
+TEST(Explorer, OffersTheOpenSideWithAReachableViewpoint) {
+  Room room;
+  bool some_reachable = false;
+  room.decide([&](const DecisionRequest& r) {
+    for (const FrontierOffer& o : r.frontiers) {
+      some_reachable = some_reachable || std::isfinite(o.path_length_m);
+      EXPECT_NEAR(o.cluster->centroid.x(), 7.9, 0.2);
+    }
+    return Decision{};
+  });
+  EXPECT_TRUE(some_reachable);
+}
+
+TEST(Explorer, PlansAPathInKnownFreeSpaceToAnAcceptedGoal) {
+  Room room;
+  const RoundResult r = room.propose(Vec3(6.5, 4, 2));
+  ASSERT_TRUE(r.goal);
+  ASSERT_GE(r.path.size(), 2u);
+  EXPECT_TRUE(r.path.front().isApprox(room.input.from));
+  EXPECT_LT((r.path.back() - Vec3(6.5, 4, 2)).norm(), 0.2);
+  EXPECT_EQ(room.explorer->blocked_segment(r.path), -1);
+}
+
+TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<Vec3, std::string> bad[] = {{Vec3(nan, 0, 0), "not finite"},
+                                              {Vec3(50, 50, 50), "unknown space"},
+                                              {Vec3(0.1, 3, 2), "occupied"},
+                                              {Vec3(0.5, 3, 2), "too near"}};
+  for (const auto& [place, reason] : bad) {
+    Room room;
+    const RoundResult r = room.propose(place);
+    EXPECT_FALSE(r.goal);
+    ASSERT_EQ(r.rejected.size(), 1u);
+    EXPECT_NE(r.rejected[0].reason.find(reason), std::string::npos) << r.rejected[0].reason;
+    ASSERT_EQ(room.policy.heard.size(), 1u);
+    EXPECT_EQ(room.policy.heard[0].kind, PolicyEvent::Kind::goal_rejected);
+  }
+}
+
+TEST(Explorer, RefusesAGoalTheBatteryDoesNotAllow) {
+  Room room;
+  room.input.battery_seconds_left = 31;  // just over the reserve
+  const RoundResult r = room.propose(Vec3(6.5, 4, 2));
+  ASSERT_EQ(r.rejected.size(), 1u);
+  EXPECT_NE(r.rejected[0].reason.find("battery"), std::string::npos);
+}
+
+TEST(Explorer, TheFirstGoalThatPassesIsTaken) {
+  Room room;
+  const RoundResult r = room.decide([](const DecisionRequest&) {
+    Decision d;
+    d.outcome = Outcome::goals;
+    d.goals.resize(3);
+    d.goals[0].position = Vec3(50, 50, 50);
+    d.goals[1].position = Vec3(5, 3, 2);
+    d.goals[2].position = Vec3(4, 3, 2);
+    return d;
+  });
+  ASSERT_TRUE(r.goal);
+  EXPECT_TRUE(r.goal->position.isApprox(Vec3(5, 3, 2)));
+  EXPECT_EQ(r.rejected.size(), 1u);
+}
+
+TEST(Explorer, AFailedPolicyIsReplacedByTheFallbackForGood) {
+  Room room;
+  int asked = 0;
+  const auto fail = [&](const DecisionRequest&) -> Decision {
+    ++asked;
+    throw PolicyFailure("it hangs");
+  };
+  for (int i = 0; i < 3; ++i) {
+    const RoundResult r = room.decide(fail);
+    EXPECT_EQ(r.policy, "fallback");
+    EXPECT_TRUE(r.goal) << "the fallback finds the open side";
+  }
+  EXPECT_EQ(asked, 1);
+}
+
+TEST(Explorer, APolicyThatOnlyProposesTheImpossibleIsPassedOverForARound) {
+  Room room;
+  int fallback_rounds = 0;
+  for (int i = 0; i < 10; ++i) fallback_rounds += room.propose(Vec3(50, 50, 50)).policy == "fallback";
+  EXPECT_EQ(fallback_rounds, 2);
+}
+
+TEST(Explorer, AnAbandonedGoalIsNotAcceptedAgainWhileTheMapIsUnchanged) {
+  Room room;
+  const RoundResult first = room.propose(Vec3(6.5, 4, 2));
+  ASSERT_TRUE(first.goal);
+  room.input.events = {{PolicyEvent::Kind::goal_abandoned, 0, *first.goal, "no progress towards it"}};
+  room.input.now = 1000 * kSecond;
+  const RoundResult again = room.propose(Vec3(6.5, 4, 2));
+  EXPECT_FALSE(again.goal);
+  ASSERT_EQ(again.rejected.size(), 1u);
+  EXPECT_NE(again.rejected[0].reason.find("no progress"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace karst::core

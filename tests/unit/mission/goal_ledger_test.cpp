@@ -1,0 +1,49 @@
+#include "core_stack/mission/goal_ledger.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/mission/drawn_map.h"
+
+namespace karst::core {
+namespace {
+
+TEST(GoalLedger, APlaceIsOpenUntilItIsClosed) {
+  const VoxelMap map{MapOptions{}};
+  GoalLedger ledger;
+  EXPECT_FALSE(ledger.closed(map, Vec3(1, 2, 3), 0));
+  ledger.close(map, Vec3(1, 2, 3), 0, "tried");
+  EXPECT_EQ(ledger.closed(map, Vec3(1, 2, 3), kSecond), "tried");
+  EXPECT_EQ(ledger.closed(map, Vec3(1.3, 2, 3), kSecond), "tried") << "a step aside is the same place";
+  EXPECT_FALSE(ledger.closed(map, Vec3(3, 2, 3), kSecond));
+}
+
+TEST(GoalLedger, StaysClosedForeverWhileTheMapThereIsUnchanged) {
+  VoxelMap map{MapOptions{}};
+  GoalLedger ledger;
+  ledger.close(map, Vec3::Zero(), 0, "tried");
+  EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), 100000 * kSecond));
+  carve_box(map, Vec3(20, 20, 20), Vec3(22, 22, 22));  // far away
+  EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), 100000 * kSecond));
+}
+
+TEST(GoalLedger, ReopensAfterThePauseWhenTheMapThereChanged) {
+  VoxelMap map{MapOptions{}};
+  GoalLedger ledger;
+  ledger.close(map, Vec3::Zero(), 0, "tried");
+  carve_box(map, Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), 9 * kSecond));
+  EXPECT_FALSE(ledger.closed(map, Vec3::Zero(), 11 * kSecond));
+}
+
+TEST(GoalLedger, ThePauseDoublesWithEveryAttempt) {
+  VoxelMap map{MapOptions{}};
+  GoalLedger ledger;
+  ledger.close(map, Vec3::Zero(), 0, "first");
+  ledger.close(map, Vec3::Zero(), 0, "second");
+  carve_box(map, Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  EXPECT_EQ(ledger.closed(map, Vec3::Zero(), 19 * kSecond), "second");
+  EXPECT_FALSE(ledger.closed(map, Vec3::Zero(), 21 * kSecond));
+}
+
+}  // namespace
+}  // namespace karst::core

@@ -1,0 +1,78 @@
+// The architecture's one-way dependencies, read from the sources themselves (docs/architecture.md).
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+  std::string file, target;
+};
+
+std::vector<Include> includes_below(const std::string& folder) {
+  std::vector<Include> found;
+  const fs::path root = KARST_SOURCE_DIR;
+  const std::regex line(R"re(^\s*#\s*include\s*["<]([^">]+)[">])re");
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".h" && extension != ".hpp" && extension != ".cpp" && extension != ".c") continue;
+    std::ifstream in(entry.path());
+    std::string text;
+    for (std::smatch m; std::getline(in, text);)
+      if (std::regex_search(text, m, line))
+        found.push_back({fs::relative(entry.path(), root).string(), m[1]});
+  }
+  return found;
+}
+
+void expect_none(const std::string& folder, const std::vector<std::string>& forbidden) {
+  const std::vector<Include> all = includes_below(folder);
+  EXPECT_FALSE(all.empty()) << folder << " holds no sources: the test looks at nothing";
+  for (const Include& i : all)
+    for (const std::string& start : forbidden)
+      EXPECT_FALSE(i.target.starts_with(start)) << i.file << " includes " << i.target;
+}
+
+TEST(IncludeDirection, ThePolicyKnowsTheSdkOnly) {
+  expect_none("policies", {"core_stack/", "plugins/", "sdk/", "Eigen", "octomap", "boost"});
+}
+TEST(IncludeDirection, TheAbiIsPlainC) {
+  expect_none("sdk/abi", {"core_stack/", "plugins/", "Eigen", "octomap", "boost"});
+}
+TEST(IncludeDirection, TheCppFaceKnowsTheAbiOnly) {
+  expect_none("sdk/include", {"core_stack/", "plugins/", "sdk/", "Eigen", "octomap", "boost"});
+}
+TEST(IncludeDirection, TheCoreKnowsNeitherAbiNorSimulatorNorPolicies) {
+  expect_none("core_stack", {"sdk/", "plugins/", "policies/", "karst"});
+}
+TEST(IncludeDirection, TheHostKnowsNoSimulator) {
+  expect_none("sdk/host", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation"});
+}
+TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
+  expect_none("plugins",
+              {"sdk/", "policies/", "core_stack/mapping", "core_stack/planning", "core_stack/mission"});
+}
+
+TEST(IncludeDirection, CoreModulesUseOnlyThoseAboveThem) {
+  const std::vector<std::string> order = {"common",   "vehicle", "perception", "localization", "mapping",
+                                          "planning", "control", "homing",     "mission"};
+  std::map<std::string, std::size_t> rank;
+  for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
+  for (const std::string& module : order)
+    for (const Include& i : includes_below("core_stack/" + module)) {
+      if (!i.target.starts_with("core_stack/")) continue;
+      const std::string used = i.target.substr(11, i.target.find('/', 11) - 11);
+      ASSERT_TRUE(rank.contains(used)) << i.file << " includes " << i.target;
+      EXPECT_LE(rank[used], rank[module]) << i.file << " includes " << i.target;
+    }
+}
+
+}  // namespace
