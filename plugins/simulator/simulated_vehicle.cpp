@@ -1,0 +1,218 @@
+#include "plugins/simulator/simulated_vehicle.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "plugins/simulator/cave/preflight.h"
+
+namespace karst::sim {
+
+using core::kMillisecond;
+using core::kSecond;
+using core::Lane;
+using core::Random;
+using core::TimeNs;
+using core::Vec3;
+
+namespace {
+
+constexpr TimeNs kTick = 5 * kMillisecond;  // also the period of the IMU
+constexpr int kStepsPerTick = 5;
+constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond;
+
+std::shared_ptr<cave::Cave> open_cave(const SimulatorOptions& o, const core::VehicleSetup& setup) {
+  auto cave = std::make_shared<cave::Cave>(cave::load_cave(setup.cave, setup.start));
+  cave::check_start(*cave, o.body.radius_m);
+  return cave;
+}
+
+/// Whole ticks nearest to a rate, at least one.
+TimeNs period_of(double rate_hz) {
+  return std::max<TimeNs>(1, std::llround(static_cast<double>(kSecond) / rate_hz / kTick)) * kTick;
+}
+
+std::vector<std::shared_ptr<const DepthCamera>> mount_cameras(const SimulatorOptions& o) {
+  const auto facing =
+      o.vehicle == "camera_uav" ? std::vector{Facing::forward} : std::vector{Facing::up, Facing::down};
+  std::vector<std::shared_ptr<const DepthCamera>> cameras;
+  for (const Facing f : facing)
+    cameras.push_back(std::make_shared<const DepthCamera>(o.camera, camera_model(o.camera, f)));
+  return cameras;
+}
+
+/// Mean rotation rate between two orientations, body frame.
+Vec3 mean_rate_radps(const core::Quat& from, const core::Quat& to, double dt_s) {
+  core::Quat turn = from.conjugate() * to;
+  if (turn.w() < 0) turn.coeffs() *= -1;
+  return 2 / dt_s * turn.vec();
+}
+
+}  // namespace
+
+SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup)
+    : options_(options),
+      seed_(setup.seed),
+      cave_(open_cave(options, setup)),
+      site_(set_down(*cave_, options.body.radius_m)),
+      quadrotor_({options.body, options.motors, options.autopilot, options.battery}, site_.T_world_start,
+                 cave_->scene, Wind(options.wind, Random::stream(setup.seed, "wind"))),
+      lidar_(options.vehicle == "lidar_uav" ? std::make_shared<const Lidar>(options.lidar) : nullptr),
+      cameras_(mount_cameras(options)),
+      imu_(options.imu, Random::stream(setup.seed, "imu")),
+      magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
+      pose_sensor_(options.pose, site_.T_world_start, Random::stream(setup.seed, "pose")),
+      log_(setup.run_dir) {
+  description_.name = options.vehicle;
+  description_.radius_m = options.body.radius_m;
+  description_.mass_kg = options.body.mass_kg;
+  description_.max_thrust_n = 4 * max_motor_thrust_n(options.motors, options.body);
+  description_.max_body_rate_radps = options.autopilot.max_body_rate_radps;
+  description_.pose_delay_s = options.pose.delay_s;
+  description_.pose_noise_m = options.pose.noise_m;
+  if (lidar_) description_.lidar = lidar_->model();
+  for (const auto& camera : cameras_) description_.cameras.push_back(camera->model());
+  description_.T_world_start = site_.T_world_start;
+  description_.hover_power_w = options.battery.hover_power_w;
+}
+
+void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
+  executive_ = &executive;
+  sink_ = &sink;
+  start_time_ = now();
+  last_orientation_ = quadrotor_.state().T_world_body.orientation;
+  append(track_, {now(), quadrotor_.state().T_world_body}, now());
+  schedule_sensors();
+  executive.at(now(), [this] {
+    log_.event(now(), "start", quadrotor_.state(), site_.pad ? "on a launch pad" : "on the floor");
+    log_truth();
+    sink_->on_battery(quadrotor_.battery().status(now()));
+    sink_->on_ground(now(), true);
+  });
+  executive.every("vehicle", now() + kTick, kTick, [this] {
+    if (!lost_) tick();
+  });
+}
+
+/// Sensors are read from the vehicle's own tick, right after its motion: each sees the state of this instant.
+void SimulatedVehicle::schedule_sensors() {
+  const auto every = [this](TimeNs period, TimeNs phase, std::function<void()> read) {
+    schedule_.push_back({period, phase, std::move(read)});
+  };
+  every(period_of(options_.pose.rate_hz), 0, [this] { report_pose(); });
+  every(20 * kMillisecond, 0, [this] {
+    sink_->on_magnetometer(measure_field(options_.magnetometer, cave_->description.ore_bodies,
+                                         quadrotor_.state().T_world_body, now(), magnetometer_random_));
+  });
+  every(kSecond / 2, 0, [this] { sink_->on_battery(quadrotor_.battery().status(now())); });
+  if (lidar_) every(lidar_->model()->period, 0, [this] { fire_lidar(); });
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    // Between two sweeps and apart from each other, so that the sensing lane is loaded evenly.
+    const TimeNs period = cameras_[i]->model()->period;
+    every(period, static_cast<TimeNs>(i + 1) * 30 * kMillisecond % period, [this, i] { fire_camera(i); });
+  }
+  every(10 * kMillisecond, 0, [this] { log_truth(); });
+}
+
+void SimulatedVehicle::tick() {
+  quadrotor_.gyroscope_bias_radps = imu_.gyroscope_bias_radps();
+  for (int left = kStepsPerTick; left > 0 && !lost_; left -= quadrotor_.steps_done())
+    react(quadrotor_.advance(left));
+  if (lost_) return;
+  if (quadrotor_.battery().empty()) return lose("battery", "the battery is empty");
+
+  const BodyState& s = quadrotor_.state();
+  const double dt_s = core::seconds(kTick);
+  const Vec3 acceleration = (s.velocity_mps - last_velocity_mps_) / dt_s;
+  const core::Quat midway = last_orientation_.slerp(0.5, s.T_world_body.orientation);
+  const Vec3 specific_force = midway.conjugate() * (acceleration + Vec3(0, 0, kGravity_mps2));
+  const Vec3 rate = mean_rate_radps(last_orientation_, s.T_world_body.orientation, dt_s);
+  last_velocity_mps_ = s.velocity_mps;
+  last_orientation_ = s.T_world_body.orientation;
+  const TimeNs sweep = lidar_ ? lidar_->model()->period : 0;
+  append(track_, {now(), s.T_world_body}, now() - sweep);
+  sink_->on_imu(imu_.sample(now(), specific_force, rate, dt_s));
+  for (const Reading& r : schedule_)
+    if (!lost_ && (now() - start_time_) % r.period == r.phase) r.read();
+}
+
+void SimulatedVehicle::react(QuadrotorEvent event) {
+  const BodyState& s = quadrotor_.state();
+  switch (event) {
+    case QuadrotorEvent::none:
+      return;
+    case QuadrotorEvent::take_off:
+      log_.event(now(), "take-off", s, "");
+      return sink_->on_ground(now(), false);
+    case QuadrotorEvent::landed:
+      log_.event(now(), "landed", s, "");
+      return sink_->on_ground(now(), true);
+    case QuadrotorEvent::crashed: {
+      const Touch& t = *quadrotor_.last_touch();
+      char text[200];
+      std::snprintf(text, sizeof text,
+                    "touched rock at (%.2f %.2f %.2f) at %.2f m/s after %.2f s, %.0f deg from straight down",
+                    t.place.x(), t.place.y(), t.place.z(), s.velocity_mps.norm(), core::seconds(now()),
+                    angle_from_down_rad(t) * 180 / std::numbers::pi);
+      return lose("contact", text);
+    }
+  }
+}
+
+void SimulatedVehicle::lose(const std::string& outcome, const std::string& reason) {
+  lost_ = true;
+  log_truth();
+  log_.event(now(), outcome, quadrotor_.state(), reason);
+  sink_->on_lost(now(), outcome, reason);
+}
+
+Random SimulatedVehicle::measurement_random(const std::string& sensor) {
+  return Random::stream(seed_, sensor + " at " + std::to_string(now()));
+}
+
+void SimulatedVehicle::fire_lidar() {
+  auto scan = std::make_shared<core::LidarScan>();
+  executive_->job(
+      "lidar", Lane::sensing, kLidarBudget,
+      [scan, lidar = lidar_, cave = cave_, track = track_, stamp = now(),
+       random = measurement_random("lidar")] { *scan = lidar->sweep(*cave, track, stamp, random); },
+      [this, scan] {
+        if (!lost_) sink_->on_lidar(scan);
+      });
+}
+
+void SimulatedVehicle::fire_camera(std::size_t index) {
+  auto image = std::make_shared<core::DepthImage>();
+  const auto& camera = cameras_[index];
+  executive_->job(
+      "depth camera", Lane::sensing, kCameraBudget,
+      [image, camera, cave = cave_, T = quadrotor_.state().T_world_body, stamp = now(),
+       random = measurement_random(camera->model()->name)] {
+        *image = camera->image(*cave, T, stamp, random);
+      },
+      [this, image] {
+        if (!lost_) sink_->on_depth(image);
+      });
+}
+
+void SimulatedVehicle::report_pose() {
+  const core::PoseSample sample = pose_sensor_.sample(now(), quadrotor_.state().T_world_body);
+  executive_->at(now() + core::from_seconds(options_.pose.delay_s), [this, sample] {
+    if (!lost_) sink_->on_pose(sample);
+  });
+}
+
+void SimulatedVehicle::log_truth() {
+  const BodyState& s = quadrotor_.state();
+  log_.pose(now(), s.T_world_body);
+  if (now() % (50 * kMillisecond) == 0 || lost_) {
+    const core::BatteryStatus b = quadrotor_.battery().status(now());
+    log_.row(now(), {quadrotor_.clearance_m(), s.velocity_mps.norm(), b.fraction_left, b.power_w,
+                     quadrotor_.wind_mps()});
+  }
+  if (now() % kSecond == 0 || lost_) log_.flush();
+}
+
+void SimulatedVehicle::finish() { log_.close(); }
+
+}  // namespace karst::sim

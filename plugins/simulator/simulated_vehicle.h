@@ -1,0 +1,69 @@
+// The simulator as the core stack sees it: a vehicle that delivers sensor messages and takes commands.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core_stack/vehicle/vehicle.h"
+#include "plugins/simulator/launch_site.h"
+#include "plugins/simulator/quadrotor.h"
+#include "plugins/simulator/simulator_options.h"
+#include "plugins/simulator/truth_log.h"
+
+namespace karst::sim {
+
+class SimulatedVehicle final : public core::Vehicle {
+ public:
+  /// Throws InputError on a bad cave or start pose.
+  SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup);
+
+  core::VehicleDescription description() const override { return description_; }
+  void start(core::Executive& executive, core::VehicleSink& sink) override;
+  void command(const core::AttitudeRateCommand& c) override { quadrotor_.command = c; }
+  void finish() override;
+
+ private:
+  /// Something read once a period; both times are whole ticks.
+  struct Reading {
+    core::TimeNs period, phase;
+    std::function<void()> read;
+  };
+
+  void schedule_sensors();
+  void tick();
+  void react(QuadrotorEvent event);
+  void lose(const std::string& outcome, const std::string& reason);
+  void fire_lidar();
+  void fire_camera(std::size_t index);
+  void report_pose();
+  void log_truth();
+  core::TimeNs now() const { return executive_->now(); }
+  /// A random stream of its own for each measurement, so that it matters not which thread makes it when.
+  core::Random measurement_random(const std::string& sensor);
+
+  SimulatorOptions options_;
+  std::uint64_t seed_;
+  std::shared_ptr<cave::Cave> cave_;
+  LaunchSite site_;
+  Quadrotor quadrotor_;
+  std::shared_ptr<const Lidar> lidar_;
+  std::vector<std::shared_ptr<const DepthCamera>> cameras_;
+  Imu imu_;
+  core::Random magnetometer_random_;
+  PoseSensor pose_sensor_;
+  TruthLog log_;
+  core::VehicleDescription description_;
+
+  core::Executive* executive_ = nullptr;
+  core::VehicleSink* sink_ = nullptr;
+  core::TimeNs start_time_ = 0;
+  std::vector<Reading> schedule_;
+  bool lost_ = false;
+  PoseTrack track_;  // of the last sweep
+  core::Vec3 last_velocity_mps_ = core::Vec3::Zero();
+  core::Quat last_orientation_ = core::Quat::Identity();
+};
+
+}  // namespace karst::sim

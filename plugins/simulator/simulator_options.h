@@ -1,0 +1,30 @@
+// Everything that can be set in the mission file's section `simulator`.
+#pragma once
+#include "plugins/simulator/autopilot.h"
+#include "plugins/simulator/battery.h"
+#include "plugins/simulator/depth_camera.h"
+#include "plugins/simulator/imu.h"
+#include "plugins/simulator/lidar.h"
+#include "plugins/simulator/magnetometer.h"
+#include "plugins/simulator/motors.h"
+#include "plugins/simulator/pose_sensor.h"
+#include "plugins/simulator/wind.h"
+
+namespace karst::sim {
+
+struct SimulatorOptions {
+  std::string vehicle = "lidar_uav";
+  BatteryOptions battery;
+  WindOptions wind;
+  LidarOptions lidar;
+  CameraOptions camera;
+  ImuOptions imu;
+  MagnetometerOptions magnetometer;
+  PoseSensorOptions pose;
+  BodyModel body;
+  MotorModel motors;
+  AutopilotOptions autopilot;
+};
+void describe(core::OptionTable& t, SimulatorOptions& o);
+
+}  // namespace karst::sim

@@ -1,0 +1,72 @@
+#include "plugins/simulator/truth_log.h"
+
+#include <cstdio>
+
+#include "core_stack/common/error.h"
+
+namespace karst::sim {
+
+using core::Vec3;
+
+TruthLog::TruthLog(const std::string& run_dir) : run_dir_(run_dir) {
+  if (run_dir.empty()) return;
+  const auto open = [&](std::ofstream& file, const std::string& name) {
+    file.open(run_dir + "/" + name, std::ios::binary);
+    if (!file) throw core::InputError(run_dir + "/" + name, "", "cannot be written");
+  };
+  open(tum_, "ground_truth.tum");
+  open(csv_, "truth.csv");
+  open(events_, "truth_events.jsonl");
+  csv_ << "time_s,clearance_m,speed_mps,battery,power_w,wind_east_mps,wind_north_mps,wind_up_mps\n";
+}
+
+void TruthLog::pose(core::TimeNs stamp, const core::Pose& T) {
+  if (!tum_.is_open()) return;
+  char line[200];
+  const auto& p = T.position;
+  const auto& q = T.orientation;
+  std::snprintf(line, sizeof line, "%.3f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", core::seconds(stamp), p.x(),
+                p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  tum_ << line;
+}
+
+void TruthLog::row(core::TimeNs stamp, const TruthRow& r) {
+  if (!csv_.is_open()) return;
+  char line[200];
+  std::snprintf(line, sizeof line, "%.3f,%.4f,%.4f,%.6f,%.2f,%.4f,%.4f,%.4f\n", core::seconds(stamp),
+                r.clearance_m, r.speed_mps, r.battery, r.power_w, r.wind_mps.x(), r.wind_mps.y(),
+                r.wind_mps.z());
+  csv_ << line;
+}
+
+void TruthLog::event(core::TimeNs stamp, const std::string& what, const BodyState& s,
+                     const std::string& detail) {
+  if (!events_.is_open()) return;
+  char line[400];
+  const Vec3& p = s.T_world_body.position;
+  std::snprintf(
+      line, sizeof line,
+      "{\"time_s\": %.3f, \"event\": \"%s\", \"x\": %.4f, \"y\": %.4f, \"z\": %.4f, \"speed_mps\": %.4f, "
+      "\"detail\": \"%s\"}\n",
+      core::seconds(stamp), what.c_str(), p.x(), p.y(), p.z(), s.velocity_mps.norm(), detail.c_str());
+  events_ << line;
+}
+
+void TruthLog::flush() {
+  tum_.flush();
+  csv_.flush();
+  events_.flush();
+}
+
+void TruthLog::close() {
+  if (run_dir_.empty()) return;
+  flush();
+  const bool whole = tum_.good() && csv_.good() && events_.good();
+  tum_.close();
+  csv_.close();
+  events_.close();
+  if (!whole)
+    throw core::InputError(run_dir_, "", "ground truth could not be written completely; is the disk full?");
+}
+
+}  // namespace karst::sim

@@ -1,0 +1,37 @@
+// Ground truth, into files only: nothing in flight ever reads it.
+#pragma once
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "core_stack/common/time.h"
+#include "plugins/simulator/rigid_body.h"
+
+namespace karst::sim {
+
+struct TruthRow {
+  double clearance_m = 0, speed_mps = 0, battery = 0, power_w = 0;
+  core::Vec3 wind_mps = core::Vec3::Zero();
+};
+
+/// `ground_truth.tum` (time x y z qx qy qz qw), `truth.csv` and `truth_events.jsonl` in a run directory.
+/// Numbers have fixed digits, so that replays give the same bytes. Without a directory nothing is written.
+class TruthLog {
+ public:
+  /// Throws InputError if the files cannot be made.
+  explicit TruthLog(const std::string& run_dir);
+  void pose(core::TimeNs stamp, const core::Pose& T_world_body);
+  void row(core::TimeNs stamp, const TruthRow& row);
+  /// `what` is one of start, take-off, landed, contact, battery.
+  void event(core::TimeNs stamp, const std::string& what, const BodyState& s, const std::string& detail);
+  /// Hands everything to the operating system, so that a run cut short is complete to the last second.
+  void flush();
+  /// Throws InputError if anything could not be written, such as on a full disk.
+  void close();
+
+ private:
+  std::string run_dir_;
+  std::ofstream tum_, csv_, events_;
+};
+
+}  // namespace karst::sim
