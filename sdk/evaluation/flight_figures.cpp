@@ -1,0 +1,161 @@
+#include "sdk/evaluation/flight_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace karst::evaluation {
+namespace {
+
+using core::Vec3;
+
+constexpr double kStandingSpeed_mps = 0.2;
+
+bool within(const RunRecord& run, double t_s, std::initializer_list<const char*> names) {
+  for (const Phase& p : run.phases)
+    for (const char* name : names)
+      if (p.name == name && t_s >= p.begin_s && t_s <= p.end_s) return true;
+  return false;
+}
+
+double flight_end_s(const RunRecord& run) {
+  return run.phases.empty() ? run.last_time_s() : run.phases.back().end_s;
+}
+
+/// Root of the mean of the squares; none without samples.
+class RootMeanSquare {
+ public:
+  void add(double v) { sum_ += v * v, ++count_; }
+  std::optional<double> value() const {
+    if (count_ == 0) return std::nullopt;
+    return std::sqrt(sum_ / static_cast<double>(count_));
+  }
+
+ private:
+  double sum_ = 0;
+  std::size_t count_ = 0;
+};
+
+std::optional<double> standing_share(const RunRecord& run) {
+  std::vector<double> t_s, speed;
+  if (run.truth_table.column("t_s") && run.truth_table.column("speed_mps")) {
+    t_s = *run.truth_table.column("t_s");
+    speed = *run.truth_table.column("speed_mps");
+  } else if (run.telemetry.column("t_s") && run.telemetry.column("vx") && run.telemetry.column("vy") &&
+             run.telemetry.column("vz")) {
+    t_s = *run.telemetry.column("t_s");
+    for (std::size_t i = 0; i < t_s.size(); ++i)
+      speed.push_back(Vec3((*run.telemetry.column("vx"))[i], (*run.telemetry.column("vy"))[i],
+                           (*run.telemetry.column("vz"))[i])
+                          .norm());
+  }
+  double exploring = 0, standing = 0;
+  for (std::size_t i = 1; i < t_s.size(); ++i) {
+    if (!within(run, t_s[i - 1], {"explore"}) || !within(run, t_s[i], {"explore"})) continue;
+    exploring += t_s[i] - t_s[i - 1];
+    if (speed[i] < kStandingSpeed_mps) standing += t_s[i] - t_s[i - 1];
+  }
+  if (exploring <= 0) return std::nullopt;
+  return standing / exploring;
+}
+
+std::optional<double> min_clearance_m(const RunRecord& run) {
+  const auto* t_s = run.truth_table.column("t_s");
+  const auto* clearance = run.truth_table.column("clearance_m");
+  if (!t_s || !clearance) return std::nullopt;
+  std::optional<double> least;
+  for (std::size_t i = 0; i < t_s->size(); ++i) {
+    const double c = (*clearance)[i];
+    if (std::isfinite(c) && within(run, (*t_s)[i], {"explore", "home"}))
+      least = std::min(least.value_or(c), c);
+  }
+  return least;
+}
+
+/// Separate touches: times at which the truth's contact column rises, or contact events, but at least the
+/// one that ended the flight.
+std::optional<std::int64_t> contacts(const RunRecord& run) {
+  const auto* column = run.truth_table.column("contact");
+  const nlohmann::json* outcome = run.last_event("outcome");
+  if (!column && run.events.empty()) return std::nullopt;
+  std::int64_t count = 0;
+  if (column) {
+    for (std::size_t i = 0; i < column->size(); ++i)
+      count += (*column)[i] > 0.5 && (i == 0 || !((*column)[i - 1] > 0.5));
+  } else {
+    for (const auto& e : run.events) count += e["kind"] == "contact";
+  }
+  const bool ended_so = outcome && event_text(*outcome, "outcome") == "contact";
+  return std::max<std::int64_t>(count, ended_so ? 1 : 0);
+}
+
+/// Where the vehicle truly was against where the controller wanted it, over the flight.
+std::optional<double> tracking_rms_m(const RunRecord& run) {
+  const auto* t_s = run.telemetry.column("t_s");
+  const auto* x = run.telemetry.column("ref_x");
+  const auto* y = run.telemetry.column("ref_y");
+  const auto* z = run.telemetry.column("ref_z");
+  if (!t_s || !x || !y || !z || run.truth.empty()) return std::nullopt;
+  RootMeanSquare rms;
+  for (std::size_t i = 0; i < t_s->size(); ++i) {
+    const Vec3 reference((*x)[i], (*y)[i], (*z)[i]);
+    if ((*t_s)[i] < run.truth.front().t_s || (*t_s)[i] > run.truth.back().t_s) continue;
+    if (!reference.allFinite() || !within(run, (*t_s)[i], {"takeoff", "explore", "home", "land"})) continue;
+    rms.add((pose_at(run.truth, (*t_s)[i]).position - reference).norm());
+  }
+  return rms.value();
+}
+
+void estimate_errors(const RunRecord& run, double begin_s, double end_s, FlightFigures& f) {
+  if (run.truth.empty()) return;
+  RootMeanSquare heading;
+  std::optional<double> last_error_m;
+  for (const StampedPose& e : run.estimate) {
+    if (e.t_s < std::max(begin_s, run.truth.front().t_s) || e.t_s > std::min(end_s, run.truth.back().t_s))
+      continue;
+    const core::Pose truth = pose_at(run.truth, e.t_s);
+    heading.add(
+        core::wrap_angle(core::heading_of(e.T_world_body.orientation) - core::heading_of(truth.orientation)));
+    last_error_m = (e.T_world_body.position - truth.position).norm();
+  }
+  f.heading_error_rad = heading.value();
+  if (last_error_m && f.path_length_m && *f.path_length_m > 0)
+    f.drift_percent = 100.0 * *last_error_m / *f.path_length_m;
+}
+
+}  // namespace
+
+std::optional<double> last_finite(const std::vector<double>* column) {
+  if (!column) return std::nullopt;
+  const auto last = std::find_if(column->rbegin(), column->rend(), [](double v) { return std::isfinite(v); });
+  if (last == column->rend()) return std::nullopt;
+  return *last;
+}
+
+double flight_begin_s(const RunRecord& run) {
+  if (!run.phases.empty()) return run.phases.front().begin_s;
+  const auto* t_s = run.telemetry.column("t_s");
+  return t_s && !t_s->empty() ? t_s->front() : 0.0;
+}
+
+FlightFigures flight_figures(const RunRecord& run) {
+  FlightFigures f;
+  const double begin_s = flight_begin_s(run), end_s = flight_end_s(run);
+  f.contacts = contacts(run);
+  if (end_s > begin_s) f.flight_time_s = end_s - begin_s;
+  for (const Phase& p : run.phases)
+    if (p.name == "explore") f.exploration_time_s = f.exploration_time_s.value_or(0) + p.end_s - p.begin_s;
+  const auto& poses = run.truth.empty() ? run.estimate : run.truth;
+  if (!poses.empty()) f.path_length_m = path_length_m(poses, begin_s, end_s);
+  if (f.path_length_m && f.flight_time_s) f.mean_speed_mps = *f.path_length_m / *f.flight_time_s;
+  f.standing_share = standing_share(run);
+  f.min_clearance_m = min_clearance_m(run);
+  if (!run.truth.empty())
+    f.landing_error_m =
+        (run.truth.back().T_world_body.position - run.truth.front().T_world_body.position).head<2>().norm();
+  f.battery_left = last_finite(run.telemetry.column("battery_fraction"));
+  estimate_errors(run, begin_s, end_s, f);
+  f.tracking_rms_m = tracking_rms_m(run);
+  return f;
+}
+
+}  // namespace karst::evaluation

@@ -1,0 +1,25 @@
+// Figures of the flight itself: times, speeds, clearances and errors, from the run's record.
+#pragma once
+#include <optional>
+
+#include "sdk/evaluation/run_record.h"
+
+namespace karst::evaluation {
+
+/// Empty where the record does not tell. Definitions: docs/metrics.md.
+struct FlightFigures {
+  std::optional<std::int64_t> contacts;
+  std::optional<double> flight_time_s, exploration_time_s, path_length_m, mean_speed_mps, standing_share;
+  std::optional<double> min_clearance_m, landing_error_m, battery_left;
+  std::optional<double> drift_percent, heading_error_rad, tracking_rms_m;
+};
+
+FlightFigures flight_figures(const RunRecord& run);
+
+/// When the vehicle took off: the first phase's begin, or the first telemetry row.
+double flight_begin_s(const RunRecord& run);
+
+/// The last finite value of a column; none if there is no such column or value.
+std::optional<double> last_finite(const std::vector<double>* column);
+
+}  // namespace karst::evaluation

@@ -1,0 +1,57 @@
+#include "sdk/evaluation/map_growth.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace karst::evaluation {
+namespace {
+
+constexpr std::size_t kRecordBytes = 16;
+
+std::int32_t little_endian(const char* bytes) {
+  std::array<unsigned char, 4> b;
+  std::memcpy(b.data(), bytes, 4);
+  const std::uint32_t v = b[0] | (b[1] << 8) | (b[2] << 16) | (static_cast<std::uint32_t>(b[3]) << 24);
+  return static_cast<std::int32_t>(v);
+}
+
+}  // namespace
+
+std::vector<OccupiedSpan> read_map_growth(const std::filesystem::path& file,
+                                          std::vector<std::string>& problems) {
+  std::error_code absent;
+  if (!std::filesystem::exists(file, absent)) return {};
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (bytes.size() % kRecordBytes != 0)
+    problems.push_back(file.filename().string() + ": byte " +
+                       std::to_string(bytes.size() / kRecordBytes * kRecordBytes) +
+                       ": a record is cut off; only those before it are used");
+
+  struct Change {
+    core::CellKey key;
+    std::int32_t t_ms;
+  };
+  std::vector<Change> changes;
+  for (std::size_t i = 0; i + kRecordBytes <= bytes.size(); i += kRecordBytes) {
+    const char* p = bytes.data() + i;
+    changes.push_back(
+        {{little_endian(p), little_endian(p + 4), little_endian(p + 8)}, little_endian(p + 12)});
+  }
+  // The file is in the order of time: a stable sort by key keeps each cell's changes in that order.
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const Change& a, const Change& b) { return a.key < b.key; });
+  std::vector<OccupiedSpan> spans;
+  for (const Change& c : changes) {
+    const bool open =
+        !spans.empty() && spans.back().key == c.key && spans.back().until_ms == OccupiedSpan::kNever;
+    if (c.t_ms >= 0 && !open) spans.push_back({c.key, c.t_ms, OccupiedSpan::kNever});
+    if (c.t_ms < 0 && open) spans.back().until_ms = -std::max(c.t_ms, -INT32_MAX);
+  }
+  return spans;
+}
+
+}  // namespace karst::evaluation

@@ -1,0 +1,177 @@
+#include "sdk/evaluation/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core_stack/common/error.h"
+#include "core_stack/mapping/octomap_io.h"
+#include "sdk/evaluation/flight_figures.h"
+#include "sdk/evaluation/whole_file.h"
+
+namespace karst::evaluation {
+namespace {
+
+using core::Cell;
+using core::CellKey;
+using core::Vec3;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+/// Null for what is not known; otherwise rounded, so that a number's text is short and the same everywhere.
+ordered_json value(std::optional<double> v) {
+  if (!v || !std::isfinite(*v)) return nullptr;
+  const double rounded = std::round(*v * 1e6) / 1e6;
+  return rounded == 0 ? 0.0 : rounded;  // no negative zero
+}
+
+std::string first_setting(const RunRecord& run, std::initializer_list<const char*> keys) {
+  for (const char* key : keys)
+    if (const std::string text = run.setting(key); !text.empty()) return text;
+  return "";
+}
+
+ordered_json text_or_null(const std::string& text) {
+  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+}
+
+std::size_t count_goals(const RunRecord& run, const char* state) {
+  return static_cast<std::size_t>(std::count_if(run.events.begin(), run.events.end(), [&](const json& e) {
+    return e["kind"] == "goal" && event_text(e, "state") == state;
+  }));
+}
+
+std::size_t count_events(const RunRecord& run, const char* kind) {
+  return static_cast<std::size_t>(
+      std::count_if(run.events.begin(), run.events.end(), [&](const json& e) { return e["kind"] == kind; }));
+}
+
+struct Volume {
+  std::optional<double> explored_m3, coverage;
+};
+
+/// Of the final map; without one, the telemetry's last value (which counts the same cells).
+Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
+  Volume volume;
+  if (!map) {
+    volume.explored_m3 = last_finite(run.telemetry.column("explored_m3"));
+    return volume;
+  }
+  volume.explored_m3 = map->free_volume_m3();
+  if (!truth.is_reachable || !truth.reachable_volume_m3 || *truth.reachable_volume_m3 <= 0) return volume;
+  std::size_t inside = 0;
+  map->for_each_known([&](const CellKey& k, Cell c, float) {
+    inside += c == Cell::free && truth.is_reachable(map->center_of(k));
+  });
+  const double cell_m3 = std::pow(map->resolution_m(), 3);
+  volume.coverage = static_cast<double>(inside) * cell_m3 / *truth.reachable_volume_m3;
+  return volume;
+}
+
+/// When the coverage first reached `share`. Only the free volume is recorded over time; the part of it that
+/// lies in R is taken to grow in proportion, and is exact at the end.
+std::optional<double> time_of_coverage(const RunRecord& run, const Volume& volume, double share) {
+  const auto* t_s = run.telemetry.column("t_s");
+  const auto* explored = run.telemetry.column("explored_m3");
+  const auto final_m3 = last_finite(explored);
+  if (!t_s || !volume.coverage || !final_m3 || *final_m3 <= 0) return std::nullopt;
+  for (std::size_t i = 0; i < t_s->size(); ++i)
+    if (*volume.coverage * (*explored)[i] / *final_m3 >= share) return (*t_s)[i] - flight_begin_s(run);
+  return std::nullopt;
+}
+
+struct MeanAndDeviation {
+  std::optional<double> mean, deviation;
+};
+
+MeanAndDeviation map_error(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
+  if (!truth.distance_to_rock) return {};
+  std::vector<double> errors;
+  const auto measure = [&](const Vec3& centre) {
+    if (const double d = truth.distance_to_rock(centre); std::isfinite(d)) errors.push_back(std::abs(d));
+  };
+  const double cell = run.map_resolution_m();
+  if (map) {
+    map->for_each_known([&](const CellKey& k, Cell c, float) {
+      if (c == Cell::occupied) measure(map->center_of(k));
+    });
+  } else {
+    for (const OccupiedSpan& s : run.growth)
+      if (s.until_ms == OccupiedSpan::kNever)
+        measure(cell * (Vec3(s.key.x, s.key.y, s.key.z) + Vec3::Constant(0.5)));
+  }
+  if (errors.empty()) return {};
+  const double n = static_cast<double>(errors.size());
+  double sum = 0, squares = 0;
+  for (const double e : errors) sum += e;
+  for (const double e : errors) squares += (e - sum / n) * (e - sum / n);
+  return {sum / n, std::sqrt(squares / n)};
+}
+
+}  // namespace
+
+ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
+  const json* end = run.last_event("outcome");
+  const std::string outcome = end ? event_text(*end, "outcome") : "aborted";
+  const std::string cave = first_setting(run, {"cave.file", "cave"});
+  const std::string seed = first_setting(run, {"seed", "mission.seed"});
+  const Volume volume = volume_of(run, map, truth);
+  const MeanAndDeviation error = map_error(run, map, truth);
+  const FlightFigures f = flight_figures(run);
+  const bool has_events = !run.events.empty();
+
+  ordered_json m;
+  m["schema"] = "karst.metrics/1";
+  m["policy"] = text_or_null(first_setting(run, {"policy.name", "policy"}));
+  m["cave"] = text_or_null(std::filesystem::path(cave).stem().string());
+  m["seed"] = nullptr;
+  if (!seed.empty()) {
+    const json number = json::parse(seed, nullptr, false);
+    if (number.is_number_integer()) m["seed"] = number;
+  }
+  m["outcome"] = outcome;
+  m["reason"] = end ? event_text(*end, "reason") : "the record ends without an outcome";
+  m["contacts"] = f.contacts ? ordered_json(*f.contacts) : ordered_json(nullptr);
+  m["flight_time_s"] = value(f.flight_time_s);
+  m["exploration_time_s"] = value(f.exploration_time_s);
+  m["path_length_m"] = value(f.path_length_m);
+  m["mean_speed_mps"] = value(f.mean_speed_mps);
+  m["standing_share"] = value(f.standing_share);
+  m["explored_volume_m3"] = value(volume.explored_m3);
+  m["reachable_volume_m3"] = value(truth.reachable_volume_m3);
+  m["coverage"] = value(volume.coverage);
+  m["t50_s"] = value(time_of_coverage(run, volume, 0.50));
+  m["t90_s"] = value(time_of_coverage(run, volume, 0.90));
+  m["t95_s"] = value(time_of_coverage(run, volume, 0.95));
+  m["min_clearance_m"] = value(f.min_clearance_m);
+  m["landing_error_m"] = value(outcome == "landed" ? f.landing_error_m : std::nullopt);
+  m["battery_left"] = value(f.battery_left);
+  m["map_error_mean_m"] = value(error.mean);
+  m["map_error_std_m"] = value(error.deviation);
+  m["drift_percent"] = value(f.drift_percent);
+  m["heading_error_rad"] = value(f.heading_error_rad);
+  m["tracking_rms_m"] = value(f.tracking_rms_m);
+  m["goals_accepted"] = has_events ? ordered_json(count_goals(run, "accepted")) : ordered_json(nullptr);
+  m["goals_rejected"] = has_events ? ordered_json(count_goals(run, "rejected")) : ordered_json(nullptr);
+  m["overruns"] = has_events ? ordered_json(count_events(run, "overrun")) : ordered_json(nullptr);
+  return m;
+}
+
+ordered_json evaluate_run(const std::filesystem::path& run_dir, const Truth& truth,
+                          std::vector<std::string>* problems) {
+  RunRecord run = read_run(run_dir);
+  std::optional<core::VoxelMap> map;
+  try {
+    if (std::filesystem::exists(run_dir / "map.bt")) map = core::read_octomap((run_dir / "map.bt").string());
+  } catch (const core::InputError& e) {
+    run.problems.push_back(e.what());
+  }
+  if (problems) *problems = run.problems;
+  return evaluate(run, map ? &*map : nullptr, truth);
+}
+
+void write_metrics(const std::filesystem::path& run_dir, const ordered_json& metrics) {
+  write_whole_file(run_dir / "metrics.json", metrics.dump(2) + "\n");
+}
+
+}  // namespace karst::evaluation

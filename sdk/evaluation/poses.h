@@ -1,0 +1,25 @@
+// Time-stamped poses in the TUM format: a line "t x y z qx qy qz qw", seconds and metres.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+
+namespace karst::evaluation {
+
+struct StampedPose {
+  double t_s = 0;
+  core::Pose T_world_body;
+};
+
+/// In the order of time. Lines starting with # are comments; bad lines are left out and reported.
+std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector<std::string>& problems);
+
+/// Linear in position, spherical in rotation; the nearest end outside the range. `poses` must not be empty.
+core::Pose pose_at(const std::vector<StampedPose>& poses, double t_s);
+
+/// Length in metres of the polyline through the poses stamped within [from, to].
+double path_length_m(const std::vector<StampedPose>& poses, double from_s, double to_s);
+
+}  // namespace karst::evaluation

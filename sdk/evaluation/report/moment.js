@@ -1,0 +1,60 @@
+// The panel that says what the vehicle and its policy were about at the chosen moment.
+
+/** Value of a plotted curve at t, linear between samples; NaN without one. */
+function curveAt(points, t) {
+  const i = points ? lastAt(points.length, (k) => points[k][0], t) : -1;
+  if (i < 0) return NaN;
+  if (i + 1 >= points.length) return points[i][1];
+  const [a, b] = [points[i], points[i + 1]];
+  return b[0] > a[0] ? a[1] + (b[1] - a[1]) * (t - a[0]) / (b[0] - a[0]) : b[1];
+}
+
+function rows(list) {
+  const dl = make("dl");
+  for (const [name, text] of list) if (text !== null) dl.append(make("dt", {}, name), make("dd", {}, text));
+  return dl;
+}
+function withUnit(v, unit, digits = 3) {
+  const text = numberText(v, digits);
+  return text === "–" ? text : text + "\u202f" + unit;
+}
+
+function goalPanel(t) {
+  const goal = goalAt(t);
+  if (!goal) return [make("div", { className: "quiet" }, "none")];
+  const place = goal.position ? goal.position.map((v) => v.toFixed(1)).join(", ") : "–";
+  const end = goal.until !== null && goal.fate ? `${goal.fate} at ${clockText(goal.until)}` : "–";
+  return [
+    make("div", { className: "why" }, goal.why || "(the policy gave no reason)"),
+    rows([["score", numberText(goal.score)], ["at", place], ["since", clockText(goal.t)], ["then", end],
+          ["because", goal.fate_reason || null]]),
+  ];
+}
+
+function decisionPanel(t) {
+  const i = lastAt(decisions.length, (k) => decisions[k].t, t);
+  if (i < 0) return [make("div", { className: "quiet" }, "none yet")];
+  const d = decisions[i];
+  return [
+    rows([["number", String(d.sequence ?? i + 1)], ["at", clockText(d.t)], ["outcome", String(d.outcome ?? "–")],
+          ["goals offered", String(d.goals ?? "–")], ["frontiers", String(d.frontiers ?? "–")]]),
+    make("div", {}, d.reason || ""),
+  ];
+}
+const decisions = data.events.filter((e) => e.kind === "decision");
+
+function startMomentPanel() {
+  const box = element("moment");
+  moment.listeners.push((t) => {
+    const c = data.curves;
+    const distance = curveAt(c.home, t);
+    box.replaceChildren(
+      make("h3", {}, "Now"),
+      make("div", { className: "phase" }, phaseAt(t) || "–"),
+      rows([["speed", withUnit(curveAt(c.speed, t), "m/s", 2)], ["explored", withUnit(curveAt(c.volume, t), "m³", 4)],
+            ["battery", withUnit(curveAt(c.battery, t), "%", 2)],
+            ["clearance", withUnit(curveAt(c.clearance, t), "m", 2)], ["way home", withUnit(distance, "m", 3)]]),
+      make("h3", {}, "Goal"), ...goalPanel(t),
+      make("h3", {}, "Last decision"), ...decisionPanel(t));
+  });
+}

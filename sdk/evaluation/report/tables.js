@@ -1,0 +1,112 @@
+// Header, events, metrics, timing and settings.
+
+function isTrouble(e) {
+  return e.kind === "safety" || e.kind === "contact" || e.kind === "overrun" ||
+    (e.kind === "goal" && /rejected|unreachable|abandoned/.test(e.state)) ||
+    (e.kind === "outcome" && e.outcome !== "landed");
+}
+
+/** What an event says, in a line. */
+function eventText(e) {
+  const place = (p) => Array.isArray(p) ? "(" + p.map((v) => Number(v).toFixed(1)).join(", ") + ")" : "";
+  const because = (text) => text ? ": " + text : "";
+  switch (e.kind) {
+    case "phase": return `phase ${e.phase}`;
+    case "goal": return [`${e.state} ${place(e.position)}`, e.why, e.reason].filter(Boolean).join(" – ");
+    case "decision": return `no. ${e.sequence ?? "–"}: ${e.outcome}, ${e.goals ?? 0} goals, ${e.frontiers ?? "–"} frontiers${because(e.reason)}`;
+    case "plan": return `path of ${numberText(e.length)} m`;
+    case "homing": return `flies home${because(e.reason)} (${numberText(e.distance)} m, ${numberText(e.seconds_left)} s left)`;
+    case "safety": return `${e.action}${because(e.reason)}`;
+    case "outcome": return `${e.outcome}${because(e.reason)}`;
+    case "log": return e.text || "";
+    default: {
+      const { t, kind, ...rest } = e;
+      return Object.entries(rest).map(([k, v]) => `${k} ${typeof v === "object" ? JSON.stringify(v) : v}`).join(", ");
+    }
+  }
+}
+
+function showHeader() {
+  const m = data.metrics;
+  const title = [m.policy || "unknown policy", m.cave || "unknown cave", m.seed === null ? "" : "seed " + m.seed].filter(Boolean);
+  element("title").textContent = title.join(" · ");
+  document.title = "karst: " + title.join(", ");
+  element("outcome").textContent = (m.outcome === "landed" ? "✓ " : "✕ ") + m.outcome;
+  element("outcome").className = "badge " + (m.outcome === "landed" ? "landed" : "");
+  element("reason").textContent = m.reason || "";
+  const share = (v) => typeof v === "number" ? [numberText(100 * v, 3), "%"] : ["–", ""];
+  const unit = (v, u, digits) => typeof v === "number" ? [numberText(v, digits), u] : ["–", ""];
+  const figures = [
+    ["flight time", typeof m.flight_time_s === "number" ? [clockText(m.flight_time_s), "min"] : ["–", ""]],
+    ["explored volume", unit(m.explored_volume_m3, "m³", 4)], ["coverage", share(m.coverage)],
+    ["path length", unit(m.path_length_m, "m")], ["mean speed", unit(m.mean_speed_mps, "m/s")],
+    ["least clearance", unit(m.min_clearance_m, "m", 2)], ["contacts", unit(m.contacts, "", 3)],
+    ["landing error", unit(m.landing_error_m, "m", 2)], ["map error, mean", unit(m.map_error_mean_m, "m", 2)],
+    ["battery left", share(m.battery_left)],
+    ["goals taken / refused", [`${m.goals_accepted ?? "–"} / ${m.goals_rejected ?? "–"}`, ""]],
+  ];
+  for (const [name, [value, u]] of figures)
+    element("figures").append(make("div", { className: "figure" },
+      make("b", {}, value, u ? make("small", {}, " " + u) : ""), make("span", {}, name)));
+  if (data.problems.length) {
+    const box = element("problems"), n = data.problems.length;
+    box.hidden = false;
+    box.querySelector("summary").textContent = `${n} ${n === 1 ? "note" : "notes"} on this record: what is missing, damaged or thinned out`;
+    for (const p of data.problems) box.querySelector("ul").append(make("li", {}, p));
+  }
+}
+
+function showEvents() {
+  const body = document.querySelector("#events tbody"), count = {};
+  const hidden = new Set(["plan"]);
+  for (const e of data.events) count[e.kind] = (count[e.kind] || 0) + 1;
+  const fill = () => {
+    const shown = data.events.filter((e) => !hidden.has(e.kind)).slice(0, 5000);
+    body.replaceChildren(...shown.map((e) => {
+      const row = make("tr", { className: isTrouble(e) ? "bad" : "" }, make("td", {}, clockText(e.t)),
+        make("td", {}, e.kind), make("td", {}, eventText(e)));
+      row.addEventListener("click", () => setMoment(e.t));
+      return row;
+    }));
+    element("event-count").textContent = data.events.length
+      ? `${shown.length} of ${data.events.length} shown; click a row to go to that moment` : "none recorded";
+  };
+  for (const kind of Object.keys(count)) {
+    const button = make("button", { type: "button" }, `${kind} ${count[kind]}`);
+    button.classList.toggle("on", !hidden.has(kind));
+    button.addEventListener("click", () => {
+      if (!hidden.delete(kind)) hidden.add(kind);
+      button.classList.toggle("on", !hidden.has(kind));
+      fill();
+    });
+    element("event-kinds").append(button);
+  }
+  fill();
+}
+
+function table(target, list) {
+  for (const [name, text] of list)
+    target.append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, text)));
+}
+
+function showTiming() {
+  const box = element("timing"), timing = data.timing;
+  if (!timing || typeof timing !== "object") { box.append(make("p", { className: "quiet" }, "not recorded")); return; }
+  if (typeof timing.simulated_s_per_wall_s === "number")
+    box.append(make("p", {}, `${numberText(timing.simulated_s_per_wall_s)} simulated seconds per second`));
+  const rows = make("table", {}, make("tr", {}, ...["job", "count", "p50 ms", "p99 ms", "max ms"].map((t) => make("th", {}, t))));
+  for (const [name, j] of Object.entries(timing.jobs || {})) {
+    const cell = (v, digits) => make("td", { className: "number" }, numberText(v, digits));
+    rows.append(make("tr", {}, make("td", {}, name), cell(j.count, 7), cell(j.p50_ms), cell(j.p99_ms), cell(j.max_ms)));
+  }
+  box.append(rows);
+}
+
+function startTables() {
+  showHeader();
+  showEvents();
+  table(element("metrics"), Object.entries(data.metrics).map(([k, v]) =>
+    [k, v === null ? "–" : typeof v === "number" ? (Number.isInteger(v) ? String(v) : numberText(v, 4)) : String(v)]));
+  table(element("settings"), data.settings.length ? data.settings : [["not recorded", ""]]);
+  showTiming();
+}

@@ -1,0 +1,26 @@
+// Colours: Okabe and Ito's palette for marks, a cividis-like ramp for height (both safe for the colour-blind).
+const colours = {
+  explore: "#e8590c", home: "#56b4e9", other: "#8d96a0", plan: "#009e73", frontier: "#e07ab5", goal: "#ffd43b",
+  truth: "#b197fc", blue: "#0072b2",
+};
+const ramp = ["#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"];
+
+const themeListeners = [];
+function isDark() { return document.documentElement.dataset.theme === "dark"; }
+function cssColour(name) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
+
+function setTheme(dark) {
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+  for (const listener of themeListeners) listener();
+}
+
+function startTheme() {
+  const preference = window.matchMedia("(prefers-color-scheme: dark)");
+  setTheme(preference.matches);
+  preference.addEventListener("change", (e) => setTheme(e.matches));
+  element("theme").addEventListener("click", () => setTheme(!isDark()));
+}
+
+function phaseColour(name) {
+  return { explore: colours.explore, home: colours.home }[name] || colours.other;
+}

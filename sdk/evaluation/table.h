@@ -1,0 +1,24 @@
+// A CSV file read by column name. Runs end abruptly: a cut or damaged row is left out and reported.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace karst::evaluation {
+
+struct Table {
+  std::size_t rows = 0;
+  std::map<std::string, std::vector<double>> numbers;    // empty cells and "nan" are NaN
+  std::map<std::string, std::vector<std::string>> text;  // the columns asked for as text
+
+  /// The column, or null if the file has none of this name.
+  const std::vector<double>* column(const std::string& name) const;
+};
+
+/// An absent file is an empty table. What cannot be read is left out and one sentence for each cause, with
+/// the file and the first line, is added to `problems`.
+Table read_table(const std::filesystem::path& file, const std::vector<std::string>& text_columns,
+                 std::vector<std::string>& problems);
+
+}  // namespace karst::evaluation

@@ -1,0 +1,11 @@
+// Writes a file whole or not at all.
+#pragma once
+#include <filesystem>
+#include <string_view>
+
+namespace karst::evaluation {
+
+/// Writes beside `file` and renames; throws InputError with the system's reason when the disk refuses.
+void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace karst::evaluation
