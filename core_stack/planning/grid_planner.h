@@ -1,4 +1,5 @@
-// 26-connected A* over known-free cells; a cell is feasible if no obstacle lies within the clearance.
+// 26-connected A* over known-free cells; a cell is feasible if no obstacle's centre is nearer than the
+// clearance to the cell's centre.
 #pragma once
 #include "core_stack/mapping/voxel_map.h"
 #include "core_stack/planning/path.h"
@@ -10,7 +11,8 @@ namespace karst::core {
 /// clearance. The result is raw: pass it to refine_path.
 Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options);
 
-/// Feasibility as the planner judges it: p's cell and every cell within the clearance is free or clear.
+/// Feasibility as the planner judges it: p's cell is free, and no obstacle's centre is nearer than the
+/// clearance. False if p is not finite.
 bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m);
 /// Every point of the segment is clear.
 bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m);

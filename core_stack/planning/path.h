@@ -9,20 +9,28 @@
 namespace karst::core {
 
 struct PlanningOptions {
-  double clearance_m = 0.55;        // least distance of the path from the centre of any occupied or
-                                    // unknown-boundary cell; must exceed the vehicle's radius
+  double clearance_m = 0.45;           // least distance of the path from the centre of any occupied or
+                                       // unknown-boundary cell; must exceed the vehicle's radius
   double preferred_clearance_m = 1.0;  // post-processing pushes the path out to this where there is room
-  double heuristic_weight = 1.2;    // bounded sub-optimality of the grid search; 1: optimal
+  double heuristic_weight = 1.2;       // bounded sub-optimality of the grid search; 1: optimal
   std::int64_t max_expansions = 400000;
 };
 void describe(OptionTable& t, PlanningOptions& o);
+
+/// Clearance the searches on cells' centres work with; refining makes up for the difference. Centres sample
+/// space at the resolution only, and the middle of a narrow passage may lie between two of them.
+inline double search_clearance_m(const PlanningOptions& o, double resolution_m) {
+  return o.clearance_m - 0.25 * resolution_m;
+}
 
 enum class PlanStatus { found, start_blocked, goal_blocked, no_path, gave_up };
 
 struct Path {
   PlanStatus status = PlanStatus::no_path;
-  std::string reason;        // when not found: a sentence a user can act on
-  std::vector<Vec3> points;  // world frame, first is the start, last the goal
+  std::string reason;             // when not found: a sentence a user can act on
+  std::vector<Vec3> points;       // world frame, first is the start, last the goal
+  std::size_t escape_points = 0;  // this many leading points lie nearer to obstacles than the clearance: the
+                                  // way out of a place that turned out to be tight
   double length_m = 0;
   bool found() const { return status == PlanStatus::found; }
 };

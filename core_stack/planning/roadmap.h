@@ -2,11 +2,15 @@
 // answers "how far, and can I get there" for many goals at once, and finds kilometres of path in
 // milliseconds.
 //
-// One node a block of cells: the clearest free cell of the block, if clear at all. Nodes of neighbouring
-// blocks are joined when the straight line between them is clear. Only blocks near a change are revisited.
+// Space is cut into blocks of 4 x 4 x 4 cells. A node is a 26-connected component of clear cells inside a
+// block, placed at its cell nearest the block's middle. Two nodes of neighbouring blocks are joined when a
+// cell of one touches a cell of the other. So the graph connects exactly what the grid search connects,
+// narrow passages included; it is wholly determined by the clear cells, and an update looks only at tiles
+// near a change.
 #pragma once
+#include <memory>
+#include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core_stack/mapping/voxel_map.h"
@@ -14,21 +18,33 @@
 
 namespace karst::core {
 
+struct RoadmapGraph;  // private to planning
+
 class Roadmap {
  public:
   explicit Roadmap(const PlanningOptions& options);
+  ~Roadmap();
+  Roadmap(Roadmap&&) noexcept;
+  Roadmap& operator=(Roadmap&&) noexcept;
+
+  /// `changes` must hold every cell whose class changed since the last update; the first update may hold
+  /// every known cell of a map read from a file. Throws InputError if the clearance is more than 15 cells.
   void update(const VoxelMap& map, std::span<const CellChange> changes);
 
   /// Path lengths in metres from `from` to each goal through the graph (one Dijkstra run); +inf where there
-  /// is no way. A goal is joined to nodes it sees along a clear line, or, if itself not clear, to the
-  /// nearest clear node within `goal_tolerance_m` and a free line of sight.
+  /// is no way. The graph's ways zigzag a little: some per cent longer than the path flown. A goal is joined
+  /// to nodes it sees along a clear line, or, if itself not clear, to `approach(goal)`.
   std::vector<double> distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
                                 double goal_tolerance_m) const;
+  /// A path of the search's clearance (search_clearance_m); raw: pass it to refine_path.
   Path find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const;
+  /// `goal` if it is clear, else the nearest node within `tolerance_m` that sees it through free cells.
+  std::optional<Vec3> approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const;
+
   std::size_t node_count() const;
 
  private:
-  // the implementer's
+  std::unique_ptr<RoadmapGraph> graph_;
 };
 
 }  // namespace karst::core

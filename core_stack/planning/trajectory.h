@@ -12,7 +12,7 @@ namespace karst::core {
 
 struct MotionLimits {
   double max_speed_mps = 2.0;
-  double min_speed_mps = 0.3;       // v_min of the sampling: floor in bends
+  double min_speed_mps = 0.3;  // v_min of the sampling: floor in bends
   double max_acceleration_mps2 = 2.0;
   double max_jerk_mps3 = 12.0;
   double max_heading_rate_radps = 1.0;
@@ -28,15 +28,17 @@ struct TrajectorySample {
 /// Samples at `period` from `start`; before it the first holds, after it the last.
 struct Trajectory {
   TimeNs start = 0;
-  TimeNs period = 200 * kMillisecond;
+  TimeNs period = 100 * kMillisecond;
   std::vector<TrajectorySample> samples;
 
   TrajectorySample at(TimeNs t) const;  // linear between samples, heading along the shorter arc
-  TimeNs end() const { return start + period * static_cast<TimeNs>(samples.empty() ? 0 : samples.size() - 1); }
+  TimeNs end() const {
+    return start + period * static_cast<TimeNs>(samples.empty() ? 0 : samples.size() - 1);
+  }
 };
 
 struct HeadingPlan {
-  bool along_path = true;            // look where the vehicle goes
+  bool along_path = true;  // look where the vehicle goes
   double start_heading_rad = 0;
   std::optional<double> goal_heading_rad;  // turned to over the last stretch and at the goal
 };

@@ -1,0 +1,21 @@
+#include "core_stack/planning/path.h"
+
+namespace karst::core {
+
+void describe(OptionTable& t, PlanningOptions& o) {
+  t.add("clearance", o.clearance_m, "m", 0.1, 3.0,
+        "least distance of a path from the centres of occupied cells and of the unknown's border");
+  t.add("preferred_clearance", o.preferred_clearance_m, "m", 0.1, 5.0,
+        "paths are pushed out to this distance where there is room");
+  t.add("heuristic_weight", o.heuristic_weight, "", 1.0, 5.0,
+        "the grid search's path is at most this times longer than the shortest on the grid");
+  t.add("max_expansions", o.max_expansions, 1000, 1e8, "the grid search gives up after so many cells");
+}
+
+double path_length_m(const std::vector<Vec3>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,19 @@
+// Planning as mission control calls it: search, refine, and a last look at every segment.
+#pragma once
+#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/planning/path.h"
+#include "core_stack/planning/roadmap.h"
+
+namespace karst::core {
+
+/// Near goals by grid search, far ones (or where the grid search gives up) by the roadmap. The path is
+/// refined and flyable as it stands: every segment is clear at options.clearance_m, but for the leading
+/// `escape_points`.
+///
+/// Cells' centres sample space at the map's resolution only: the middle of a passage may lie between two of
+/// them. So the search works with a clearance less by `search_slack_m`, refining lifts the path to the full
+/// clearance, and where that fails the search is repeated with the full clearance.
+Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
+          const PlanningOptions& options);
+
+}  // namespace karst::core

@@ -1,0 +1,241 @@
+#include "core_stack/planning/roadmap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core_stack/planning/escape.h"
+#include "core_stack/planning/roadmap_graph.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+/// Goals as near as this are looked at directly: the graph's zigzag would matter there.
+constexpr double kDirect_m = 5.0;
+
+/// One run over the graph from several joins, by least length plus least possible rest.
+class GraphSearch {
+ public:
+  explicit GraphSearch(const RoadmapGraph& graph) : graph_(graph) {
+    std::uint32_t count = 0;
+    for (const RoadmapTile& t : graph.tiles) {
+      base_.push_back(count);
+      count += static_cast<std::uint32_t>(t.nodes.size());
+    }
+    length_.assign(count, kInf);
+    parent_.assign(count, kNone);
+    done_.assign(count, false);
+  }
+
+  /// Runs until `settled(index, length)` returns true. With a target the search is drawn towards it.
+  template <class Settled>
+  void run(const std::vector<Join>& from, const std::optional<Vec3>& target, Settled&& settled) {
+    const auto rest = [&](const Vec3& p) { return target ? (*target - p).norm() : 0.0; };
+    for (const Join& j : from) {
+      const std::uint32_t i = index_of(j.node);
+      if (j.length_m >= length_[i]) continue;
+      length_[i] = j.length_m;
+      push({j.length_m + rest(graph_.position_of(j.node)), i, j.node});
+    }
+    while (!heap_.empty()) {
+      std::pop_heap(heap_.begin(), heap_.end());
+      const Entry top = heap_.back();
+      heap_.pop_back();
+      if (done_[top.index]) continue;
+      done_[top.index] = true;
+      if (settled(top.index, length_[top.index])) return;
+      const Vec3 p = graph_.position_of(top.node);
+      graph_.for_each_neighbour(top.node, [&](const NodeRef& n) {
+        const std::uint32_t i = index_of(n);
+        if (done_[i]) return;
+        const Vec3 q = graph_.position_of(n);
+        const double length = length_[top.index] + (q - p).norm();
+        if (length >= length_[i]) return;
+        length_[i] = length;
+        parent_[i] = top.index;
+        push({length + rest(q), i, n});
+      });
+    }
+  }
+
+  std::uint32_t index_of(const NodeRef& n) const { return base_[n.tile] + n.local; }
+  NodeRef node_at(std::uint32_t index) const {
+    // The last tile that begins at or before the index holds it: tiles without nodes begin where the next
+    // does.
+    const auto tile = std::upper_bound(base_.begin(), base_.end(), index) - base_.begin() - 1;
+    return {static_cast<std::uint32_t>(tile), index - base_[static_cast<std::size_t>(tile)]};
+  }
+  double length(std::uint32_t index) const { return length_[index]; }
+  std::uint32_t parent(std::uint32_t index) const { return parent_[index]; }
+
+ private:
+  struct Entry {
+    double estimate;
+    std::uint32_t index;
+    NodeRef node;
+    bool operator<(const Entry& o) const {
+      return estimate != o.estimate ? estimate > o.estimate : index > o.index;
+    }
+  };
+  void push(const Entry& e) {
+    heap_.push_back(e);
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+
+  const RoadmapGraph& graph_;
+  std::vector<std::uint32_t> base_, parent_;
+  std::vector<double> length_;
+  std::vector<bool> done_;
+  std::vector<Entry> heap_;
+};
+
+/// From `p` to a clear point: p itself, or the way out of a tight place. Empty if there is none.
+std::vector<Vec3> way_to_clear(const VoxelMap& map, const RoadmapGraph& graph, const Vec3& p) {
+  if (graph.free.is_clear(p, graph.clearance_m)) return {p};
+  FreeTiles free(map.resolution_m());
+  return escape_path(map, free, p, graph.clearance_m).value_or(std::vector<Vec3>{});
+}
+
+/// Appends the way to `to` (not itself the last point yet), straight where that is clear.
+void append_way(const RoadmapGraph& graph, const CellKey& from, const CellKey& to,
+                std::vector<Vec3>& points) {
+  if (graph.free.segment_clear(points.back(), graph.free.center_of(to), graph.clearance_m)) {
+    points.push_back(graph.free.center_of(to));
+    return;
+  }
+  const std::vector<CellKey> cells = graph.cells_between(from, to);
+  for (std::size_t i = 1; i < cells.size(); ++i) points.push_back(graph.free.center_of(cells[i]));
+}
+
+}  // namespace
+
+Roadmap::Roadmap(const PlanningOptions& options) : graph_(std::make_unique<RoadmapGraph>(options)) {}
+Roadmap::~Roadmap() = default;
+Roadmap::Roadmap(Roadmap&&) noexcept = default;
+Roadmap& Roadmap::operator=(Roadmap&&) noexcept = default;
+
+void Roadmap::update(const VoxelMap& map, std::span<const CellChange> changes) {
+  graph_->update(map, changes);
+}
+
+std::size_t Roadmap::node_count() const {
+  std::size_t n = 0;
+  for (const RoadmapTile& t : graph_->tiles) n += t.nodes.size();
+  return n;
+}
+
+std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const {
+  const RoadmapGraph& g = *graph_;
+  if (!g.ball) return std::nullopt;
+  if (g.free.is_clear(goal, g.clearance_m)) return goal;
+  if (!(goal.cwiseAbs().maxCoeff() < 1e6) || !(tolerance_m > 0)) return std::nullopt;
+  const Vec3 reach = Vec3::Constant(tolerance_m);
+  const CellKey low = g.free.key_of(goal - reach), high = g.free.key_of(goal + reach);
+  std::optional<Vec3> best;
+  double least = tolerance_m + 1e-9;
+  for (std::int32_t z = low.z & ~3; z <= high.z; z += 4)
+    for (std::int32_t y = low.y & ~3; y <= high.y; y += 4)
+      for (std::int32_t x = low.x & ~3; x <= high.x; x += 4)
+        g.for_each_node_in_block({x, y, z}, [&](const NodeRef& n, const RoadmapNode&) {
+          const Vec3 p = g.position_of(n);
+          const double d = (p - goal).norm();
+          if (d < least && !map.first_not_free(p, goal)) best = p, least = d;
+        });
+  return best;
+}
+
+std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
+                                       double goal_tolerance_m) const {
+  const RoadmapGraph& g = *graph_;
+  std::vector<double> out(goals.size(), kInf);
+  if (!g.ball) return out;
+  const std::vector<Vec3> way_out = way_to_clear(map, g, from);
+  if (way_out.empty()) return out;
+  const Vec3 start = way_out.back();
+  const double escape_m = path_length_m(way_out);
+
+  GraphSearch search(g);
+  std::vector<std::vector<Join>> goal_joins(goals.size());
+  std::vector<std::uint32_t> wanted;
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const std::optional<Vec3> goal = approach(map, goals[i], goal_tolerance_m);
+    if (!goal) continue;
+    const double straight = (*goal - start).norm();
+    if (straight <= kDirect_m && g.free.segment_clear(start, *goal, g.clearance_m)) {
+      out[i] = escape_m + straight;
+      continue;
+    }
+    goal_joins[i] = g.joins(*goal);
+    for (const Join& j : goal_joins[i]) wanted.push_back(search.index_of(j.node));
+  }
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  std::size_t left = wanted.size();
+  if (left > 0)
+    search.run(g.joins(start), std::nullopt, [&](std::uint32_t node, double) {
+      return std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0;
+    });
+  for (std::size_t i = 0; i < goals.size(); ++i)
+    for (const Join& j : goal_joins[i])
+      out[i] = std::min(out[i], escape_m + search.length(search.index_of(j.node)) + j.length_m);
+  return out;
+}
+
+Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const {
+  const RoadmapGraph& g = *graph_;
+  Path path;
+  const auto fail = [&path](PlanStatus status, const char* reason) {
+    path = Path{};
+    path.status = status, path.reason = reason;
+    return path;
+  };
+  if (!g.ball) return fail(PlanStatus::no_path, "the roadmap is empty");
+  if (!g.free.is_clear(goal, g.clearance_m))
+    return fail(PlanStatus::goal_blocked, "the goal is nearer to an obstacle than the clearance");
+  path.points = way_to_clear(map, g, from);
+  if (path.points.empty())
+    return fail(PlanStatus::start_blocked,
+                "the start is nearer to an obstacle than the clearance and no way leads out");
+  path.escape_points = path.points.size() - 1;
+  const Vec3 start = path.points.back();
+
+  GraphSearch search(g);
+  const std::vector<Join> outs = g.joins(start), ins = g.joins(goal);
+  const Join* in = nullptr;
+  double best = kInf;
+  search.run(outs, goal, [&](std::uint32_t node, double length) {
+    for (const Join& j : ins)
+      if (search.index_of(j.node) == node && length + j.length_m < best) best = length + j.length_m, in = &j;
+    // No later node can lead to a shorter way than the least estimate settled so far.
+    return length + (g.position_of(search.node_at(node)) - goal).norm() >= best;
+  });
+  if (in == nullptr) return fail(PlanStatus::no_path, "no way through known free space leads to the goal");
+
+  std::vector<NodeRef> nodes;
+  for (std::uint32_t i = search.index_of(in->node); i != kNone; i = search.parent(i))
+    nodes.push_back(search.node_at(i));
+  std::reverse(nodes.begin(), nodes.end());
+  for (const Join& j : outs)
+    if (search.index_of(j.node) == search.index_of(nodes.front()) && j.via) {
+      path.points.push_back(g.free.center_of(*j.via));
+      append_way(g, *j.via, g.cell_of(nodes.front()), path.points);
+    } else if (search.index_of(j.node) == search.index_of(nodes.front())) {
+      path.points.push_back(g.position_of(nodes.front()));
+    }
+  for (std::size_t i = 1; i < nodes.size(); ++i)
+    append_way(g, g.cell_of(nodes[i - 1]), g.cell_of(nodes[i]), path.points);
+  if (in->via) append_way(g, g.cell_of(nodes.back()), *in->via, path.points);
+  path.points.push_back(goal);
+  path.points.erase(std::unique(path.points.begin(), path.points.end(),
+                                [](const Vec3& a, const Vec3& b) { return (a - b).norm() < 1e-9; }),
+                    path.points.end());
+  if (path.points.size() < 2) path.points.push_back(goal);
+  path.status = PlanStatus::found;
+  path.length_m = path_length_m(path.points);
+  return path;
+}
+
+}  // namespace karst::core

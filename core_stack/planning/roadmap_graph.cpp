@@ -1,0 +1,160 @@
+#include "core_stack/planning/roadmap_graph.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace karst::core {
+namespace {
+
+/// Cells of block b out of the rows of its tile.
+BlockBits block_bits(const TileBits& rows, std::uint32_t b) {
+  const std::uint32_t bx = b & 7, by = b >> 3 & 1, bz = b >> 4;
+  BlockBits out = 0;
+  for (std::uint32_t z = 0; z < 4; ++z)
+    for (std::uint32_t y = 0; y < 4; ++y) {
+      const BlockBits four = rows[(by * 4 + y) | (bz * 4 + z) << 3] >> (bx * 4) & 15;
+      out |= four << (y * 4 + z * 16);
+    }
+  return out;
+}
+
+/// Twice the squared distance of each cell from the block's middle, in cells.
+int eccentricity(int bit) {
+  const int x = 2 * (bit & 3) - 3, y = 2 * (bit >> 2 & 3) - 3, z = 2 * (bit >> 4) - 3;
+  return x * x + y * y + z * z;
+}
+
+std::uint8_t middle_cell(BlockBits cells) {
+  int best = std::countr_zero(cells);
+  for (BlockBits rest = cells; rest != 0; rest &= rest - 1)
+    if (const int bit = std::countr_zero(rest); eccentricity(bit) < eccentricity(best)) best = bit;
+  return static_cast<std::uint8_t>(best);
+}
+
+CellKey cell_in_block(const CellKey& corner, int bit) {
+  return {corner.x + (bit & 3), corner.y + (bit >> 2 & 3), corner.z + (bit >> 4)};
+}
+
+}  // namespace
+
+void RoadmapGraph::update(const VoxelMap& map, std::span<const CellChange> changes) {
+  if (!ball) {
+    free = FreeTiles(map.resolution_m());
+    clearance_m = search_clearance_m(options, map.resolution_m());
+    ball.emplace(clearance_m / map.resolution_m());
+  }
+  std::vector<std::uint32_t> dirty;
+  for (const CellChange& c : changes) {
+    free.refresh(map, c.key);
+    mark_dirty(c.key, dirty);
+  }
+  for (const std::uint32_t i : dirty) rebuild(i);
+}
+
+void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty) {
+  const int r = ball->reach();
+  const TileKey a = tile_of({k.x - r, k.y - r, k.z - r}), b = tile_of({k.x + r, k.y + r, k.z + r});
+  for (std::int32_t z = a.z; z <= b.z; ++z)
+    for (std::int32_t y = a.y; y <= b.y; ++y)
+      for (std::int32_t x = a.x; x <= b.x; ++x) {
+        std::uint32_t i = table.find({x, y, z});
+        if (i == TileTable::none) {
+          i = table.add({x, y, z});
+          tiles.emplace_back();
+        }
+        if (!tiles[i].dirty) dirty.push_back(i);
+        tiles[i].dirty = true;
+      }
+}
+
+void RoadmapGraph::rebuild(std::uint32_t tile_index) {
+  RoadmapTile& tile = tiles[tile_index];
+  tile.dirty = false;
+  const TileBits rows = free.clear_cells(table.keys()[tile_index], *ball);
+  tile.nodes.clear();
+  for (std::uint32_t b = 0; b < kTileBlocks; ++b) {
+    tile.first[b] = static_cast<std::uint16_t>(tile.nodes.size());
+    tile.clear[b] = block_bits(rows, b);
+    for (BlockBits rest = tile.clear[b]; rest != 0;) {
+      const BlockBits part = first_component(rest);
+      tile.nodes.push_back({part, middle_cell(part)});
+      rest &= ~part;
+    }
+  }
+  tile.first[kTileBlocks] = static_cast<std::uint16_t>(tile.nodes.size());
+}
+
+bool RoadmapGraph::is_clear_cell(const CellKey& k) const {
+  bool clear = false;
+  const int bit = (k.x & 3) | (k.y & 3) << 2 | (k.z & 3) << 4;
+  for_each_node_in_block(k,
+                         [&](const NodeRef&, const RoadmapNode& n) { clear |= (n.cells >> bit & 1) != 0; });
+  return clear;
+}
+
+CellKey RoadmapGraph::block_corner(const NodeRef& n) const {
+  const auto& first = tiles[n.tile].first;
+  const auto b =
+      static_cast<std::int32_t>(std::upper_bound(first.begin(), first.end(), n.local) - first.begin() - 1);
+  return corner_of(table.keys()[n.tile]) + CellKey{(b & 7) * 4, (b >> 3 & 1) * 4, (b >> 4) * 4};
+}
+
+CellKey RoadmapGraph::cell_of(const NodeRef& n) const {
+  return cell_in_block(block_corner(n), tiles[n.tile].nodes[n.local].place);
+}
+
+std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {
+  std::vector<Join> out;
+  const auto add = [&out](const NodeRef& n, double length_m, std::optional<CellKey> via) {
+    for (Join& j : out)
+      if (j.node.tile == n.tile && j.node.local == n.local) {
+        if (length_m < j.length_m) j.length_m = length_m, j.via = via;
+        return;
+      }
+    out.push_back({n, length_m, via});
+  };
+  const CellKey k = free.key_of(p);
+  for (int i = 0; i < 27; ++i) {
+    const CellKey d{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    for_each_node_in_block(k + CellKey{4 * d.x, 4 * d.y, 4 * d.z}, [&](const NodeRef& n, const RoadmapNode&) {
+      const Vec3 q = position_of(n);
+      if (free.segment_clear(p, q, clearance_m)) add(n, (q - p).norm(), std::nullopt);
+    });
+    const CellKey c = k + d;
+    const Vec3 q = free.center_of(c);
+    const int bit = (c.x & 3) | (c.y & 3) << 2 | (c.z & 3) << 4;
+    for_each_node_in_block(c, [&](const NodeRef& n, const RoadmapNode& node) {
+      if ((node.cells >> bit & 1) && free.segment_clear(p, q, clearance_m))
+        add(n, (q - p).norm() + (position_of(n) - q).norm(), c);
+    });
+  }
+  return out;
+}
+
+std::vector<CellKey> RoadmapGraph::cells_between(const CellKey& a, const CellKey& b) const {
+  const CellKey low{std::min(a.x, b.x) & ~3, std::min(a.y, b.y) & ~3, std::min(a.z, b.z) & ~3};
+  const CellKey high{std::max(a.x, b.x) | 3, std::max(a.y, b.y) | 3, std::max(a.z, b.z) | 3};
+  const int nx = high.x - low.x + 1, ny = high.y - low.y + 1, nz = high.z - low.z + 1;
+  const auto index = [&](const CellKey& k) { return ((k.z - low.z) * ny + k.y - low.y) * nx + k.x - low.x; };
+  // Breadth first from b, so that following the parents from a leads to b.
+  std::vector<int> parent(static_cast<std::size_t>(nx * ny * nz), -1);
+  std::vector<CellKey> queue{b};
+  parent[static_cast<std::size_t>(index(b))] = index(b);
+  for (std::size_t i = 0; i < queue.size() && parent[static_cast<std::size_t>(index(a))] < 0; ++i)
+    for (int m = 0; m < 27; ++m) {
+      const CellKey n = queue[i] + CellKey{m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1};
+      if (n.x < low.x || n.y < low.y || n.z < low.z || n.x > high.x || n.y > high.y || n.z > high.z) continue;
+      if (parent[static_cast<std::size_t>(index(n))] >= 0 || !is_clear_cell(n)) continue;
+      parent[static_cast<std::size_t>(index(n))] = index(queue[i]);
+      queue.push_back(n);
+    }
+  std::vector<CellKey> out{a};
+  while (!(out.back() == b)) {
+    const int at = parent[static_cast<std::size_t>(index(out.back()))];
+    if (at < 0) break;
+    out.push_back({low.x + at % nx, low.y + at / nx % ny, low.z + at / nx / ny});
+  }
+  return out;
+}
+
+}  // namespace karst::core

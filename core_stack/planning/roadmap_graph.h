@@ -1,0 +1,87 @@
+// What a roadmap holds: clear cells by tile, and the nodes made from them. Private to planning.
+#pragma once
+#include "core_stack/planning/block_bits.h"
+#include "core_stack/planning/free_tiles.h"
+#include "core_stack/planning/roadmap.h"
+
+namespace karst::core {
+
+constexpr std::uint32_t kTileBlocks = 32;  // 8 x 2 x 2 blocks; index x | y << 3 | z << 4
+
+struct RoadmapNode {
+  BlockBits cells = 0;
+  std::uint8_t place = 0;  // bit of the cell it is placed at
+};
+
+struct RoadmapTile {
+  std::array<BlockBits, kTileBlocks> clear{};
+  std::array<std::uint16_t, kTileBlocks + 1> first{};  // nodes of block b: first[b] to first[b + 1]
+  std::vector<RoadmapNode> nodes;
+  bool dirty = false;
+};
+
+/// A node's name: its tile and its place in the tile's list.
+struct NodeRef {
+  std::uint32_t tile = 0, local = 0;
+};
+
+/// A node seen from a point, and the cell through which the way leads if it does not lead straight there.
+struct Join {
+  NodeRef node;
+  double length_m = 0;
+  std::optional<CellKey> via;
+};
+
+struct RoadmapGraph {
+  explicit RoadmapGraph(const PlanningOptions& o) : options(o), free(0) {}
+
+  PlanningOptions options;
+  double clearance_m = 0;  // of the search; set by the first update
+  FreeTiles free;          // of the map as of the last update
+  std::optional<Ball> ball;
+  TileTable table;
+  std::vector<RoadmapTile> tiles;
+
+  void update(const VoxelMap& map, std::span<const CellChange> changes);
+  bool is_clear_cell(const CellKey& k) const;
+  CellKey cell_of(const NodeRef& n) const;
+  Vec3 position_of(const NodeRef& n) const { return free.center_of(cell_of(n)); }
+  CellKey block_corner(const NodeRef& n) const;
+  /// Nodes of the block that holds cell k: calls visit(NodeRef, const RoadmapNode&).
+  template <class Visit>
+  void for_each_node_in_block(const CellKey& k, Visit&& visit) const {
+    const TileKey t = tile_of(k);
+    const std::uint32_t i = table.find(t);
+    if (i == TileTable::none) return;
+    const RoadmapTile& tile = tiles[i];
+    const std::uint32_t b =
+        static_cast<std::uint32_t>((k.x >> 2 & 7) | (k.y >> 2 & 1) << 3 | (k.z >> 2 & 1) << 4);
+    for (std::uint32_t n = tile.first[b]; n < tile.first[b + 1]; ++n) visit(NodeRef{i, n}, tile.nodes[n]);
+  }
+  /// Nodes joined to n: calls visit(NodeRef).
+  template <class Visit>
+  void for_each_neighbour(const NodeRef& n, Visit&& visit) const {
+    const BlockBits cells = tiles[n.tile].nodes[n.local].cells;
+    const CellKey corner = block_corner(n);
+    for (int i = 0; i < 27; ++i) {
+      const int dx = i % 3 - 1, dy = i / 3 % 3 - 1, dz = i / 9 - 1;
+      if (i == 13) continue;
+      const BlockBits touched = touched_in_neighbour(cells, dx, dy, dz);
+      if (touched == 0) continue;
+      for_each_node_in_block(corner + CellKey{4 * dx, 4 * dy, 4 * dz},
+                             [&](const NodeRef& m, const RoadmapNode& node) {
+                               if (node.cells & touched) visit(m);
+                             });
+    }
+  }
+  /// Ways from a clear point into the graph.
+  std::vector<Join> joins(const Vec3& p) const;
+  /// Clear cells from a to b, both included, inside the blocks that hold them. They must be connected there.
+  std::vector<CellKey> cells_between(const CellKey& a, const CellKey& b) const;
+
+ private:
+  void mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty);
+  void rebuild(std::uint32_t tile_index);
+};
+
+}  // namespace karst::core
