@@ -1,0 +1,149 @@
+#include "plugins/simulator/cave_generator/field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "plugins/simulator/cave_generator/noise.h"
+#include "plugins/simulator/cave_generator/shapes.h"
+
+namespace karst::cave {
+namespace {
+
+using core::Vec3;
+
+constexpr double kRockM = 1e3;        // value where nothing is hollow
+constexpr double kJoinM = 1.2;        // roundness where two passages meet
+constexpr double kSolidJoinM = 0.25;  // where a block lies on the floor
+constexpr double kWayJoinM = 0.4;     // where the vehicle's way was cut free
+
+struct Box {
+  Vec3 low, high;
+};
+
+Box around(const Vec3& center, double radius) {
+  return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)};
+}
+
+double reach_of(const Station& s) {
+  return std::max({s.half_width_m, s.half_height_m, s.slot > 0 ? s.half_height_m * (1 + s.slot) : 0.0});
+}
+
+Box box_of(const Station& a, const Station& b) {
+  const Box x = around(a.center, reach_of(a)), y = around(b.center, reach_of(b));
+  return {x.low.cwiseMin(y.low), x.high.cwiseMax(y.high)};
+}
+
+Box box_of(const Speleothem& s) {
+  const Box x = around(s.base, s.base_radius_m), y = around(s.tip, s.base_radius_m);
+  return {x.low.cwiseMin(y.low), x.high.cwiseMax(y.high)};
+}
+
+}  // namespace
+
+CaveField::CaveField(const CavePlan& plan, double cube_m, double way_radius_m)
+    : plan_(plan), cube_m_(cube_m), way_radius_m_(way_radius_m) {
+  // What the roughness, the joins and the way can add to a shape, with something to spare.
+  const double margin = 3 * plan.roughness_m + 0.6;
+  Box all{Vec3::Constant(std::numeric_limits<double>::infinity()),
+          Vec3::Constant(-std::numeric_limits<double>::infinity())};
+  const auto each_hollow = [&](const auto& visit) {
+    for (std::size_t i = 0; i < plan.passages.size(); ++i)
+      for (std::size_t j = 0; j + 1 < plan.passages[i].size(); ++j)
+        visit(box_of(plan.passages[i][j], plan.passages[i][j + 1]), [i, j](Cube& c) {
+          c.segments.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
+        });
+    for (std::size_t i = 0; i < plan.chambers.size(); ++i)
+      visit(around(plan.chambers[i].center, plan.chambers[i].radii.maxCoeff()),
+            [i](Cube& c) { c.chambers.push_back(static_cast<std::int32_t>(i)); });
+  };
+  each_hollow([&](const Box& b, const auto&) {
+    all.low = all.low.cwiseMin(b.low);
+    all.high = all.high.cwiseMax(b.high);
+  });
+  const double spare = margin + 1.5 * cube_m;
+  low_ = ((all.low - Vec3::Constant(spare)) / cube_m).array().floor() * cube_m;
+  for (int i = 0; i < 3; ++i)
+    count_[static_cast<std::size_t>(i)] =
+        static_cast<std::int32_t>(std::ceil((all.high[i] + spare - low_[i]) / cube_m)) + 1;
+  cubes_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
+  const auto fill = [&](const Box& b, double extra, const auto& put) {
+    const Eigen::Array3i first =
+        ((b.low - Vec3::Constant(extra) - low_) / cube_m).array().floor().cast<int>().max(0);
+    const Eigen::Array3i last =
+        ((b.high + Vec3::Constant(extra) - low_) / cube_m).array().floor().cast<int>();
+    for (int z = first.z(); z <= std::min(last.z(), count_[2] - 1); ++z)
+      for (int y = first.y(); y <= std::min(last.y(), count_[1] - 1); ++y)
+        for (int x = first.x(); x <= std::min(last.x(), count_[0] - 1); ++x)
+          put(cubes_[(static_cast<std::size_t>(z) * count_[1] + y) * count_[0] + x]);
+  };
+  each_hollow([&](const Box& b, const auto& put) { fill(b, margin, put); });
+  for (std::size_t i = 0; i < plan.boulders.size(); ++i)
+    fill(around(plan.boulders[i].center, plan.boulders[i].half.norm()), kSolidJoinM + 0.2,
+         [i](Cube& c) { c.boulders.push_back(static_cast<std::int32_t>(i)); });
+  for (std::size_t i = 0; i < plan.speleothems.size(); ++i)
+    fill(box_of(plan.speleothems[i]), kSolidJoinM + 0.2,
+         [i](Cube& c) { c.speleothems.push_back(static_cast<std::int32_t>(i)); });
+}
+
+const CaveField::Cube& CaveField::cube(std::int32_t x, std::int32_t y, std::int32_t z) const {
+  return cubes_[(static_cast<std::size_t>(z) * count_[1] + y) * count_[0] + x];
+}
+
+double CaveField::hollow(const Vec3& p, const Cube& cube) const {
+  // Segments of one passage meet without a rounded join: it would widen the passage once a segment.
+  double d = kRockM, passage = kRockM;
+  std::int32_t current = -1;
+  for (const auto& [i, j] : cube.segments) {
+    if (i != current) {
+      d = smooth_min(d, passage, kJoinM);
+      passage = kRockM;
+      current = i;
+    }
+    const Passage& stations = plan_.passages[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(j);
+    passage = std::min(passage, passage_distance(p, stations[at], stations[at + 1]));
+  }
+  d = smooth_min(d, passage, kJoinM);
+  for (const std::int32_t i : cube.chambers)
+    d = smooth_min(d, chamber_distance(p, plan_.chambers[static_cast<std::size_t>(i)]), kJoinM);
+  return d;
+}
+
+double CaveField::roughness(const Vec3& p) const {
+  const std::uint32_t s = plan_.noise_seed;
+  const double bends = gradient_noise(Vec3(p / 5.5), s) + 0.5 * gradient_noise(Vec3(p / 2.3), s + 1) +
+                       0.3 * gradient_noise(Vec3(p / 1.0), s + 2);
+  // Beds of limestone weather to ledges: quick change with height, slow along the bed.
+  const double beds = std::abs(gradient_noise(Vec3(p.x() / 9, p.y() / 9, p.z() / 1.1), s + 3));
+  return bends + 0.8 * (0.3 - beds);
+}
+
+double CaveField::value(const Vec3& p, const Cube& cube) const {
+  if (!cube.any()) return kRockM;
+  double d = hollow(p, cube);
+  if (d < 3 * plan_.roughness_m + 1 && d > -8) {  // deeper inside, only the sign matters
+    const double from_start = (p - plan_.start).norm();
+    const double fade = std::clamp((from_start - 2.5) / 3, 0.0, 1.0);  // level ground at the start
+    d += plan_.roughness_m * fade * roughness(p);
+  }
+  for (const std::int32_t i : cube.boulders)
+    d = -smooth_min(-d, boulder_distance(p, plan_.boulders[static_cast<std::size_t>(i)]), kSolidJoinM);
+  for (const std::int32_t i : cube.speleothems)
+    d = -smooth_min(-d, speleothem_distance(p, plan_.speleothems[static_cast<std::size_t>(i)]), kSolidJoinM);
+  double way = kRockM;
+  for (const auto& [i, j] : cube.segments) {
+    const Passage& stations = plan_.passages[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(j);
+    way = std::min(way, line_distance(p, stations[at].center, stations[at + 1].center));
+  }
+  return smooth_min(d, way - way_radius_m_, kWayJoinM);
+}
+
+double CaveField::value(const Vec3& p) const {
+  const Eigen::Array3i c = ((p - low_) / cube_m_).array().floor().cast<int>();
+  if ((c < 0).any() || c.x() >= count_[0] || c.y() >= count_[1] || c.z() >= count_[2]) return kRockM;
+  return value(p, cube(c.x(), c.y(), c.z()));
+}
+
+}  // namespace karst::cave

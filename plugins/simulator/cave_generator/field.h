@@ -1,0 +1,41 @@
+// The cave as a signed distance field, negative in free space.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "plugins/simulator/cave_generator/plan.h"
+
+namespace karst::cave {
+
+/// Cuts space into cubes and knows for each what of the plan matters there. The plan must outlive it.
+class CaveField {
+ public:
+  CaveField(const CavePlan& plan, double cube_m, double way_radius_m);
+
+  struct Cube {
+    std::vector<std::array<std::int32_t, 2>> segments;  // passage, station; sorted
+    std::vector<std::int32_t> chambers, boulders, speleothems;
+    bool any() const { return !segments.empty() || !chambers.empty(); }
+  };
+  /// Cubes along each axis; those at the border are empty, as all that nothing matters in: solid rock.
+  const std::array<std::int32_t, 3>& cubes_along() const { return count_; }
+  const core::Vec3& low() const { return low_; }
+  const Cube& cube(std::int32_t x, std::int32_t y, std::int32_t z) const;
+
+  /// Metres, near the surface about the distance to it; `cube` is the one that holds p, or touches it.
+  double value(const core::Vec3& p, const Cube& cube) const;
+  double value(const core::Vec3& p) const;
+
+ private:
+  double hollow(const core::Vec3& p, const Cube& cube) const;
+  double roughness(const core::Vec3& p) const;
+
+  const CavePlan& plan_;
+  double cube_m_, way_radius_m_;
+  core::Vec3 low_ = core::Vec3::Zero();
+  std::array<std::int32_t, 3> count_{};
+  std::vector<Cube> cubes_;
+};
+
+}  // namespace karst::cave

@@ -1,0 +1,27 @@
+// Procedural caves: the same recipe and seed give the same mesh, to the byte.
+#pragma once
+#include <functional>
+
+#include "plugins/simulator/cave/cave.h"
+#include "plugins/simulator/cave_generator/recipe.h"
+
+namespace karst::cave {
+
+struct GeneratedCave {
+  TriangleMesh mesh;     // one closed surface, normals into the cave
+  StartPose start;       // in the entrance chamber over level ground, at least 1 m from rock
+  double volume_m3 = 0;  // enclosed by the mesh
+  std::vector<std::vector<core::Vec3>> ways;  // centre lines, each at least kWayClearanceM from rock
+  std::size_t boulders = 0, speleothems = 0;
+};
+
+constexpr double kWayClearanceM = 0.6;
+/// The volume comes within this share of the recipe's, unless its chambers and shafts alone hold more.
+constexpr double kVolumeBand = 0.15;
+
+/// `progress(step, share done)` is told what goes on. Throws InputError if a value of the recipe is out of
+/// its range.
+GeneratedCave generate_cave(const CaveRecipe& recipe, std::uint64_t seed,
+                            const std::function<void(const char*, double)>& progress = {});
+
+}  // namespace karst::cave

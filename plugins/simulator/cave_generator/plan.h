@@ -1,0 +1,61 @@
+// A cave as a drawing: centre lines with cross-sections, chambers, and what stands or lies in them.
+#pragma once
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+#include "core_stack/common/random.h"
+#include "plugins/simulator/cave_generator/recipe.h"
+
+namespace karst::cave {
+
+/// A cross-section: an ellipse, cut flat at the floor, with a slot below it where water cut down (keyhole).
+struct Station {
+  core::Vec3 center = core::Vec3::Zero();
+  double half_width_m = 1, half_height_m = 1;
+  double floor_m = 1;  // from the centre down
+  double slot = 0;     // 0: none, 1: as deep as the ellipse is high
+};
+
+using Passage =
+    std::vector<Station>;  // about kStationStepM apart; a way for the vehicle leads along the centres
+constexpr double kStationStepM = 1.25;
+
+/// An ellipsoid, level, cut flat at its floor.
+struct Chamber {
+  core::Vec3 center = core::Vec3::Zero();
+  core::Vec3 radii = core::Vec3::Ones();
+  double heading_rad = 0;
+  double floor_z = 0;
+};
+
+struct Boulder {
+  core::Vec3 center = core::Vec3::Zero(), half = core::Vec3::Ones();
+  core::Quat orientation = core::Quat::Identity();
+};
+
+/// A stalactite, stalagmite or column: a cone with round ends.
+struct Speleothem {
+  core::Vec3 base = core::Vec3::Zero(), tip = core::Vec3::Zero();
+  double base_radius_m = 0.3, tip_radius_m = 0.1;
+};
+
+struct CavePlan {
+  core::Vec3 start = core::Vec3(0, 0, 1.15);  // in the entrance chamber, whose floor is at height 0
+  double start_heading_rad = 0;
+  std::vector<Passage> passages;  // the first begins in the entrance chamber
+  std::vector<Chamber> chambers;  // the first is the entrance
+  std::vector<Boulder> boulders;
+  std::vector<Speleothem> speleothems;
+  double roughness_m = 0.3;
+  std::uint32_t noise_seed = 0;
+};
+
+/// Lays out passages of about `length_m` in total, every cross-section scaled by `scale`, without boulders
+/// and speleothems. A little more length changes a little of the cave, so that the volume can be steered by
+/// it.
+CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m, double scale);
+
+/// Heaps of blocks on the floors, dripstone on floors and ceilings.
+void furnish(CavePlan& plan, const CaveRecipe& recipe, std::uint64_t seed);
+
+}  // namespace karst::cave
