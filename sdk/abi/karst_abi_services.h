@@ -23,6 +23,9 @@ typedef struct karst_map karst_map_t; /* opaque: a snapshot of the occupancy map
 /* Most items one call takes; more is KARST_ERROR_LIMIT. */
 #define KARST_MAX_BATCH 1000000u
 #define KARST_MAX_GAIN_VIEWPOINTS 4096u
+#define KARST_MAX_PATH_GOALS 4096u
+#define KARST_MAX_RAY_LENGTH_M 1000.0
+#define KARST_MAX_GAIN_RANGE_M 60.0
 
 typedef uint8_t karst_cell_t;
 enum { KARST_CELL_UNKNOWN = 0, KARST_CELL_FREE = 1, KARST_CELL_OCCUPIED = 2 };

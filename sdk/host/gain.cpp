@@ -1,0 +1,113 @@
+#include "sdk/host/gain.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "sdk/host/snapshot.h"
+
+namespace karst::host {
+namespace {
+
+using core::Cell;
+using core::CellKey;
+using core::Vec3;
+
+/// Marks cells of a cube around a centre.
+class CubeMarks {
+ public:
+  CubeMarks(const CellKey& center, std::int32_t reach)
+      : corner_{center.x - reach, center.y - reach, center.z - reach},
+        edge_(static_cast<std::size_t>(2 * reach + 1)),
+        bits_((edge_ * edge_ * edge_ + 63) / 64) {}
+
+  /// True if the cell was not marked before.
+  bool mark(const CellKey& k) {
+    const auto at = [](std::int32_t v, std::int32_t low) { return static_cast<std::size_t>(v - low); };
+    const std::size_t i = (at(k.z, corner_.z) * edge_ + at(k.y, corner_.y)) * edge_ + at(k.x, corner_.x);
+    const std::uint64_t bit = std::uint64_t{1} << (i & 63);
+    if ((bits_[i >> 6] & bit) != 0) return false;
+    bits_[i >> 6] |= bit;
+    return true;
+  }
+
+ private:
+  CellKey corner_;
+  std::size_t edge_;
+  std::vector<std::uint64_t> bits_;
+};
+
+/// Evenly spread values over [low, high], both included, at most `step` apart.
+std::vector<double> spread(double low, double high, double step) {
+  const int n = std::max(1, static_cast<int>(std::ceil((high - low) / step)));
+  std::vector<double> out;
+  for (int i = 0; i <= n; ++i) out.push_back(low + (high - low) * i / n);
+  return out;
+}
+
+}  // namespace
+
+std::string sensor_fault(const karst_sensor_t& s) {
+  constexpr double pi = std::numbers::pi;
+  if (s.kind != KARST_SENSOR_LIDAR && s.kind != KARST_SENSOR_CAMERA) return "unknown kind of sensor";
+  if (!(s.max_range_m > 0 && s.max_range_m <= KARST_MAX_GAIN_RANGE_M))
+    return "max_range_m is not in (0, 60] m";
+  if (!(s.min_range_m >= 0 && s.min_range_m < s.max_range_m)) return "min_range_m is not in [0, max_range_m)";
+  if (!(s.low_elevation_rad >= -pi / 2 - 1e-9 && s.low_elevation_rad <= s.high_elevation_rad &&
+        s.high_elevation_rad <= pi / 2 + 1e-9))
+    return "the elevations are not a range within [-pi/2, pi/2]";
+  const double widest = s.kind == KARST_SENSOR_CAMERA ? 3.0 : 2 * pi + 1e-9;
+  if (!(s.horizontal_fov_rad > 0 && s.horizontal_fov_rad <= widest))
+    return "horizontal_fov_rad is out of range";
+  if (s.kind == KARST_SENSOR_CAMERA && !(s.low_elevation_rad > -1.5 && s.high_elevation_rad < 1.5))
+    return "a camera sees less than 1.5 rad up or down";
+  const karst_quaternion_t& q = s.T_body_sensor.orientation;
+  if (!(std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 1e-6))
+    return "T_body_sensor is not a unit quaternion";
+  if (!to_core(s.T_body_sensor.position).allFinite()) return "T_body_sensor is not finite";
+  return "";
+}
+
+SensorRays::SensorRays(const karst_sensor_t& s, double resolution_m)
+    : min_range_m_(s.min_range_m), max_range_m_(s.max_range_m) {
+  const karst_quaternion_t& q = s.T_body_sensor.orientation;
+  T_body_sensor_ = {to_core(s.T_body_sensor.position), core::Quat(q.w, q.x, q.y, q.z)};
+  const double step = resolution_m / s.max_range_m;
+  if (s.kind == KARST_SENSOR_CAMERA) {
+    const double half = std::tan(0.5 * s.horizontal_fov_rad);
+    for (const double up : spread(std::tan(s.low_elevation_rad), std::tan(s.high_elevation_rad), step))
+      for (const double left : spread(-half, half, step))
+        directions_.push_back(Vec3(1, left, up).normalized());
+    return;
+  }
+  for (const double elevation : spread(s.low_elevation_rad, s.high_elevation_rad, step)) {
+    const double circle = std::max(std::cos(elevation), 1e-3);
+    for (const double azimuth :
+         spread(-0.5 * s.horizontal_fov_rad, 0.5 * s.horizontal_fov_rad, step / circle))
+      directions_.emplace_back(std::cos(elevation) * std::cos(azimuth),
+                               std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+  }
+}
+
+std::uint64_t SensorRays::newly_seen(const core::VoxelMap& map, const karst_viewpoint_t& from) const {
+  const core::Pose T_world_sensor =
+      core::Pose{to_core(from.position), core::from_heading(from.heading_rad)} * T_body_sensor_;
+  const Vec3 eye = T_world_sensor.position;
+  const double cell = map.resolution_m();
+  CubeMarks seen(map.key_of(eye), static_cast<std::int32_t>(max_range_m_ / cell) + 2);
+  std::uint64_t count = 0;
+  for (const Vec3& direction : directions_) {
+    const Vec3 end = eye + max_range_m_ * (T_world_sensor.orientation * direction);
+    core::traverse(eye, end, cell, [&](const CellKey& k) {
+      const Cell c = map.at(k);
+      if (c == Cell::occupied) return false;
+      if (c == Cell::unknown && seen.mark(k)) {
+        const double away = (map.center_of(k) - eye).norm();
+        if (away >= min_range_m_ && away <= max_range_m_) ++count;
+      }
+      return true;
+    });
+  }
+  return count;
+}
+
+}  // namespace karst::host

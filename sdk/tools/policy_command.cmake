@@ -1,0 +1,2 @@
+find_package(nlohmann_json REQUIRED)
+karst_library(karst_policy_command policy_command.cpp LINK karst_host nlohmann_json::nlohmann_json CLI11::CLI11)

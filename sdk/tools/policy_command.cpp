@@ -1,0 +1,97 @@
+#include "sdk/tools/policy_command.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "sdk/host/discovery.h"
+
+namespace karst::tools {
+namespace {
+
+using host::ParameterListing;
+using host::PolicyListing;
+using nlohmann::ordered_json;
+
+struct Arguments {
+  std::vector<std::string> plugins;
+  bool json = false, verbose = false;
+};
+
+ordered_json parameter_json(const ParameterListing& p) {
+  ordered_json j{{"id", p.id}, {"type", p.type}, {"default", p.default_text}};
+  if (!p.unit.empty()) j["unit"] = p.unit;
+  if (p.type == "real" || p.type == "integer") j["low"] = p.low, j["high"] = p.high;
+  if (!p.choices.empty()) j["choices"] = p.choices;
+  j["help"] = p.help;
+  return j;
+}
+
+ordered_json to_json(const PolicyListing& p) {
+  if (!p.broken.empty()) return {{"file", p.file}, {"broken", p.broken}};
+  ordered_json j{
+      {"id", p.id}, {"version", p.version}, {"one_line", p.one_line}, {"abi", p.abi}, {"file", p.file}};
+  if (!p.shadowed_by.empty()) j["shadowed_by"] = p.shadowed_by;
+  j["parameters"] = ordered_json::array();
+  for (const ParameterListing& q : p.parameters) j["parameters"].push_back(parameter_json(q));
+  return j;
+}
+
+void print_json(const std::vector<PolicyListing>& all) {
+  ordered_json out{{"policies", ordered_json::array()}, {"broken", ordered_json::array()}};
+  for (const PolicyListing& p : all) out[p.broken.empty() ? "policies" : "broken"].push_back(to_json(p));
+  std::cout << out.dump(2) << "\n";
+}
+
+std::string allowed_text(const ParameterListing& p) {
+  if (p.type == "boolean") return "true or false";
+  const auto number = [](double v) {
+    std::ostringstream s;
+    s << v;
+    return s.str();
+  };
+  if (p.type != "text") return number(p.low) + " to " + number(p.high) + (p.unit.empty() ? "" : " " + p.unit);
+  std::string out = p.choices.empty() ? "any text" : "";
+  for (const std::string& c : p.choices) out += (out.empty() ? "" : ", ") + c;
+  return out;
+}
+
+void print_text(const std::vector<PolicyListing>& all, const host::SearchPath& path, bool verbose) {
+  for (const PolicyListing& p : all) {
+    if (!p.broken.empty()) continue;
+    std::cout << p.id << " " << p.version << "\n    " << p.one_line << "\n    " << p.file << "\n";
+    if (!p.shadowed_by.empty()) std::cout << "    hidden by " << p.shadowed_by << "\n";
+    if (!verbose) continue;
+    for (const ParameterListing& q : p.parameters)
+      std::cout << "      " << q.id << " = " << q.default_text << (q.unit.empty() ? "" : " " + q.unit)
+                << "  (" << allowed_text(q) << ")\n          " << q.help << "\n";
+  }
+  for (const PolicyListing& p : all)
+    if (!p.broken.empty()) std::cout << "broken: " << p.file << "\n    " << p.broken << "\n";
+  if (!all.empty() && !verbose) return;
+  std::cout << (all.empty() ? "no policies found; searched:\n" : "searched:\n");
+  for (const std::string& folder : path.folders) std::cout << "    " << folder << "\n";
+}
+
+}  // namespace
+
+void add_policy_command(CLI::App& app) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* policy = app.add_subcommand("policy", "Exploration policies this installation can fly");
+  policy->require_subcommand(1);
+  CLI::App* list =
+      policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
+  list->add_option("--plugin", args->plugins, "Look at this plugin file first")->type_name("FILE");
+  list->add_flag("--json", args->json, "Write JSON");
+  list->add_flag("--verbose,-v", args->verbose, "With parameters and the folders searched");
+  list->callback([args] {
+    const host::SearchPath path = host::default_search_path(args->plugins);
+    const std::vector<PolicyListing> all = host::list_policies(path);
+    if (args->json)
+      print_json(all);
+    else
+      print_text(all, path, args->verbose);
+  });
+}
+
+}  // namespace karst::tools
