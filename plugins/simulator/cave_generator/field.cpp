@@ -25,12 +25,8 @@ Box around(const Vec3& center, double radius) {
   return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)};
 }
 
-double reach_of(const Station& s) {
-  return std::max({s.half_width_m, s.half_height_m, s.slot > 0 ? s.half_height_m * (1 + s.slot) : 0.0});
-}
-
-Box box_of(const Station& a, const Station& b) {
-  const Box x = around(a.center, reach_of(a)), y = around(b.center, reach_of(b));
+Box box_of(const Segment& s) {
+  const Box x = around(s.from.center, s.reach_m), y = around(s.to.center, s.reach_m);
   return {x.low.cwiseMin(y.low), x.high.cwiseMax(y.high)};
 }
 
@@ -42,17 +38,21 @@ Box box_of(const Speleothem& s) {
 }  // namespace
 
 CaveField::CaveField(const CavePlan& plan, double cube_m, double way_radius_m)
-    : plan_(plan), cube_m_(cube_m), way_radius_m_(way_radius_m) {
-  // What the roughness, the joins and the way can add to a shape, with something to spare.
-  const double margin = 3 * plan.roughness_m + 0.6;
+    : plan_(plan),
+      cube_m_(cube_m),
+      way_radius_m_(way_radius_m),
+      most_roughness_m_(2 * plan.roughness_m + plan.undulation_m) {
+  for (std::size_t i = 0; i < plan.passages.size(); ++i)
+    for (std::size_t j = 0; j + 1 < plan.passages[i].size(); ++j) {
+      segments_.emplace_back(plan.passages[i][j], plan.passages[i][j + 1]);
+      passage_of_.push_back(static_cast<std::int32_t>(i));
+    }
+  const double margin = most_roughness_m_ + kJoinM;  // what can be added to a shape
   Box all{Vec3::Constant(std::numeric_limits<double>::infinity()),
           Vec3::Constant(-std::numeric_limits<double>::infinity())};
   const auto each_hollow = [&](const auto& visit) {
-    for (std::size_t i = 0; i < plan.passages.size(); ++i)
-      for (std::size_t j = 0; j + 1 < plan.passages[i].size(); ++j)
-        visit(box_of(plan.passages[i][j], plan.passages[i][j + 1]), [i, j](Cube& c) {
-          c.segments.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
-        });
+    for (std::size_t i = 0; i < segments_.size(); ++i)
+      visit(box_of(segments_[i]), [i](Cube& c) { c.segments.push_back(static_cast<std::int32_t>(i)); });
     for (std::size_t i = 0; i < plan.chambers.size(); ++i)
       visit(around(plan.chambers[i].center, plan.chambers[i].radii.maxCoeff()),
             [i](Cube& c) { c.chambers.push_back(static_cast<std::int32_t>(i)); });
@@ -90,54 +90,65 @@ const CaveField::Cube& CaveField::cube(std::int32_t x, std::int32_t y, std::int3
   return cubes_[(static_cast<std::size_t>(z) * count_[1] + y) * count_[0] + x];
 }
 
-double CaveField::hollow(const Vec3& p, const Cube& cube) const {
+CaveField::Smooth CaveField::smooth(const Vec3& p, const Cube& cube) const {
   // Segments of one passage meet without a rounded join: it would widen the passage once a segment.
-  double d = kRockM, passage = kRockM;
+  double d = kRockM, passage = kRockM, way = kRockM;
   std::int32_t current = -1;
-  for (const auto& [i, j] : cube.segments) {
-    if (i != current) {
+  for (const std::int32_t i : cube.segments) {
+    const auto at = static_cast<std::size_t>(i);
+    if (passage_of_[at] != current) {
       d = smooth_min(d, passage, kJoinM);
       passage = kRockM;
-      current = i;
+      current = passage_of_[at];
     }
-    const Passage& stations = plan_.passages[static_cast<std::size_t>(i)];
-    const auto at = static_cast<std::size_t>(j);
-    passage = std::min(passage, passage_distance(p, stations[at], stations[at + 1]));
+    const Segment& s = segments_[at];
+    const Foot foot = foot_of(p, s);
+    const double from_line = foot.offset.norm();
+    way = std::min(way, from_line);
+    if (from_line - s.reach_m < passage) passage = std::min(passage, segment_distance(foot, s));
   }
   d = smooth_min(d, passage, kJoinM);
   for (const std::int32_t i : cube.chambers)
     d = smooth_min(d, chamber_distance(p, plan_.chambers[static_cast<std::size_t>(i)]), kJoinM);
-  return d;
+  return {d, way};
 }
 
 double CaveField::roughness(const Vec3& p) const {
   const std::uint32_t s = plan_.noise_seed;
-  const double bends = gradient_noise(Vec3(p / 5.5), s) + 0.5 * gradient_noise(Vec3(p / 2.3), s + 1) +
-                       0.3 * gradient_noise(Vec3(p / 1.0), s + 2);
+  const double bends = gradient_noise(Vec3(p / 3.1), s) + 0.6 * gradient_noise(Vec3(p / 1.5), s + 1) +
+                       0.35 * gradient_noise(Vec3(p / 0.8), s + 2);
   // Beds of limestone weather to ledges: quick change with height, slow along the bed.
-  const double beds = std::abs(gradient_noise(Vec3(p.x() / 9, p.y() / 9, p.z() / 1.1), s + 3));
-  return bends + 0.8 * (0.3 - beds);
+  const double beds = 0.3 - std::abs(gradient_noise(Vec3(p.x() / 9, p.y() / 9, p.z() / 1.1), s + 3));
+  const double large = 1.8 * gradient_noise(Vec3(p / plan_.undulation_length_m), s + 4) +
+                       0.8 * gradient_noise(Vec3(2.1 / plan_.undulation_length_m * p), s + 5);
+  return std::clamp(plan_.roughness_m * (1.6 * bends + 1.2 * beds) + plan_.undulation_m * large,
+                    -most_roughness_m_, most_roughness_m_);
 }
 
 double CaveField::value(const Vec3& p, const Cube& cube) const {
   if (!cube.any()) return kRockM;
-  double d = hollow(p, cube);
-  if (d < 3 * plan_.roughness_m + 1 && d > -8) {  // deeper inside, only the sign matters
+  const Smooth s = smooth(p, cube);
+  double d = s.hollow;
+  if (std::abs(d) < most_roughness_m_ + 1) {  // elsewhere only the sign matters
     const double from_start = (p - plan_.start).norm();
     const double fade = std::clamp((from_start - 2.5) / 3, 0.0, 1.0);  // level ground at the start
-    d += plan_.roughness_m * fade * roughness(p);
+    d += fade * roughness(p);
   }
   for (const std::int32_t i : cube.boulders)
     d = -smooth_min(-d, boulder_distance(p, plan_.boulders[static_cast<std::size_t>(i)]), kSolidJoinM);
   for (const std::int32_t i : cube.speleothems)
     d = -smooth_min(-d, speleothem_distance(p, plan_.speleothems[static_cast<std::size_t>(i)]), kSolidJoinM);
-  double way = kRockM;
-  for (const auto& [i, j] : cube.segments) {
-    const Passage& stations = plan_.passages[static_cast<std::size_t>(i)];
-    const auto at = static_cast<std::size_t>(j);
-    way = std::min(way, line_distance(p, stations[at].center, stations[at + 1].center));
-  }
-  return smooth_min(d, way - way_radius_m_, kWayJoinM);
+  return smooth_min(d, s.way - way_radius_m_, kWayJoinM);
+}
+
+double CaveField::value_around(const Vec3& p, double radius_m, const Cube& cube) const {
+  if (!cube.any()) return kRockM;
+  const Smooth s = smooth(p, cube);
+  // The shapes' distances grow at most about twice as fast as the way to them.
+  const double unsure = 2 * radius_m + most_roughness_m_ + kJoinM;
+  if (s.hollow > unsure && s.way - way_radius_m_ > radius_m + kWayJoinM) return s.hollow;
+  if (s.hollow < -unsure && !cube.solids()) return s.hollow;
+  return 0;
 }
 
 double CaveField::value(const Vec3& p) const {

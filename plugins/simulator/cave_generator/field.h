@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "plugins/simulator/cave_generator/plan.h"
+#include "plugins/simulator/cave_generator/shapes.h"
 
 namespace karst::cave {
 
@@ -14,9 +14,9 @@ class CaveField {
   CaveField(const CavePlan& plan, double cube_m, double way_radius_m);
 
   struct Cube {
-    std::vector<std::array<std::int32_t, 2>> segments;  // passage, station; sorted
-    std::vector<std::int32_t> chambers, boulders, speleothems;
+    std::vector<std::int32_t> segments, chambers, boulders, speleothems;
     bool any() const { return !segments.empty() || !chambers.empty(); }
+    bool solids() const { return !boulders.empty() || !speleothems.empty(); }
   };
   /// Cubes along each axis; those at the border are empty, as all that nothing matters in: solid rock.
   const std::array<std::int32_t, 3>& cubes_along() const { return count_; }
@@ -27,12 +27,21 @@ class CaveField {
   double value(const core::Vec3& p, const Cube& cube) const;
   double value(const core::Vec3& p) const;
 
+  /// A value that has the right sign for all places within `radius_m` of p, or 0 if there is none.
+  double value_around(const core::Vec3& p, double radius_m, const Cube& cube) const;
+
  private:
-  double hollow(const core::Vec3& p, const Cube& cube) const;
+  struct Smooth {
+    double hollow, way;  // distances to the passages' and chambers' walls, and to the nearest centre line
+  };
+  Smooth smooth(const core::Vec3& p, const Cube& cube) const;
   double roughness(const core::Vec3& p) const;
 
   const CavePlan& plan_;
+  std::vector<Segment> segments_;         // passage by passage
+  std::vector<std::int32_t> passage_of_;  // of each segment
   double cube_m_, way_radius_m_;
+  double most_roughness_m_;  // the walls are never farther from where they would be without
   core::Vec3 low_ = core::Vec3::Zero();
   std::array<std::int32_t, 3> count_{};
   std::vector<Cube> cubes_;

@@ -49,7 +49,7 @@ std::vector<Place> places(const CavePlan& plan) {
       out.push_back({passage[i].center, passage[i].half_width_m});
     }
   for (std::size_t i = 1; i < plan.chambers.size(); ++i)  // chambers have more room, and more lies in them
-    for (int n = 0; n < 6; ++n)
+    for (int n = 0; n < 2; ++n)
       out.push_back(
           {Vec3(plan.chambers[i].center.x(), plan.chambers[i].center.y(), plan.chambers[i].floor_z + 1.5),
            0.8 * plan.chambers[i].radii.head<2>().minCoeff()});

@@ -50,7 +50,9 @@ class Layout {
       station.center = p;
       if (w.level_start && s < kLevelStartM) station.floor_m = p.z(), station.slot = 0;
       passage.push_back(station);
-      turn = 0.8 * turn + 0.06 * random.normal();
+      turn = 0.8 * turn + 0.07 * random.normal();
+      // Water follows joints: now and then it turns a corner.
+      if (random.uniform() < 0.05) turn += random.uniform() < 0.5 ? -0.22 : 0.22;
       double pitch = trend + steepness * 1.3 * gradient_noise(s / 14, noise + 7);
       pitch = std::clamp(pitch, -1.05, 1.05);
       if (w.level_start && s < kLevelStartM) pitch = 0;
@@ -93,7 +95,7 @@ class Layout {
  private:
   Station section(double s, double width_factor, std::uint32_t noise, bool keyhole) const {
     const double size =
-        std::exp(0.4 * gradient_noise(s / 11, noise + 1) + 0.2 * gradient_noise(s / 4, noise + 2));
+        std::exp(0.65 * gradient_noise(s / 11, noise + 1) + 0.3 * gradient_noise(s / 4, noise + 2));
     const double aspect = std::exp(0.55 * gradient_noise(s / 17, noise + 3) - 0.25);
     const double width = 0.5 * recipe_.passage_width_m * width_factor * size * scale_;
     Station out;
@@ -181,6 +183,17 @@ void add_dome(Layout& l, const CaveRecipe& recipe, Random& random) {
   c.heading_rad = heading;
   c.floor_z = s.center.z() - s.floor_m - 0.3;
   l.plan.chambers.push_back(c);
+  for (int lobe = 0; lobe < 3; ++lobe) {  // one ellipsoid alone would look turned on a lathe
+    const double towards = heading + 2.1 * lobe + random.uniform(-0.6, 0.6), part = random.uniform(0.45, 0.7);
+    Chamber bay = c;
+    bay.radii = part * c.radii;
+    bay.radii.z() = std::max(2.0, bay.radii.z() * random.uniform(0.8, 1.4));
+    bay.heading_rad = towards;
+    bay.center += size * random.uniform(0.5, 0.8) * direction(towards, 0) +
+                  Vec3(0, 0, random.uniform(-0.2, 0.3) * c.radii.z());
+    bay.floor_z += random.uniform(-0.4, 1.2);
+    l.plan.chambers.push_back(bay);
+  }
 }
 
 /// A vertical way from a station, with a foot passage if it goes down.
@@ -272,7 +285,9 @@ void add_loop(Layout& l, const CaveRecipe& recipe, Random& random) {
 
 CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m, double scale) {
   Layout l(recipe, seed, scale);
-  l.plan.roughness_m = std::min(recipe.roughness_m, 0.18 * recipe.passage_width_m);
+  l.plan.roughness_m = std::min(recipe.roughness_m, 0.15 * recipe.passage_width_m);
+  l.plan.undulation_m = 0.1 * recipe.passage_width_m;
+  l.plan.undulation_length_m = 2 + recipe.passage_width_m;
   l.plan.noise_seed = static_cast<std::uint32_t>(Random::stream(seed, "walls").bits());
   Random entrance = Random::stream(seed, "entrance");
   add_entrance(l, recipe, entrance);

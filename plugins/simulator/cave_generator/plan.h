@@ -46,7 +46,9 @@ struct CavePlan {
   std::vector<Chamber> chambers;  // the first is the entrance
   std::vector<Boulder> boulders;
   std::vector<Speleothem> speleothems;
-  double roughness_m = 0.3;
+  double roughness_m = 0.3;   // amplitude of what is smaller than a passage
+  double undulation_m = 0.6;  // and of what is as large
+  double undulation_length_m = 6;
   std::uint32_t noise_seed = 0;
 };
 

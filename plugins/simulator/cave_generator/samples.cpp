@@ -52,12 +52,18 @@ Samples::Samples(const CaveField& field, double grid_m)
       const Node c = block_corner(i);
       const CaveField::Cube& cube = field.cube(c.x >> 3, c.y >> 3, c.z >> 3);
       if (!cube.any()) continue;
-      std::vector<float> values;
-      values.reserve(kEdge * kEdge * kEdge);
-      for (int z = 0; z < kEdge; ++z)
-        for (int y = 0; y < kEdge; ++y)
-          for (int x = 0; x < kEdge; ++x)
-            values.push_back(static_cast<float>(field.value(position(c + Node{x, y, z}), cube)));
+      std::vector<float> values(kEdge * kEdge * kEdge);
+      constexpr int kPart = 4;  // eighths of a block that the surface does not come near are told at once
+      for (int part = 0; part < 8; ++part) {
+        const Node origin = c + Node{kPart * (part & 1), kPart * (part >> 1 & 1), kPart * (part >> 2 & 1)};
+        const double half_m = 0.5 * (kPart - 1) * grid_m;
+        const double all = field.value_around(position(origin) + core::Vec3::Constant(half_m),
+                                              half_m * std::sqrt(3.0), cube);
+        for (int k = 0; k < kPart * kPart * kPart; ++k) {
+          const Node n = origin + Node{k % kPart, k / kPart % kPart, k / (kPart * kPart)};
+          values[inside(n)] = static_cast<float>(all != 0 ? all : field.value(position(n), cube));
+        }
+      }
       blocks_[i] = std::move(values);
     }
   };

@@ -31,30 +31,41 @@ double smooth_min(double a, double b, double k) {
   return std::min(a, b) - h * h / (4 * k);
 }
 
-double line_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
-  return (p - a - along(p, a, b) * (b - a)).norm();
+Segment::Segment(const Station& a, const Station& b) : from(a), to(b) {
+  const Vec3 ab = b.center - a.center;
+  length_m = ab.norm();
+  axis = length_m > 0 ? Vec3(ab / length_m) : Vec3::UnitX();
+  const Vec3 level = axis.cross(Vec3::UnitZ());
+  flatness = level.norm();
+  side = flatness > 1e-3 ? Vec3(level / flatness) : Vec3::UnitX();
+  up = side.cross(axis);
+  const auto reach = [](const Station& s) {
+    return std::max(s.half_width_m, s.half_height_m * (1 + s.slot));
+  };
+  reach_m = std::max(reach(a), reach(b));
 }
 
-double passage_distance(const Vec3& p, const Station& from, const Station& to) {
-  const double t = along(p, from.center, to.center);
-  const auto mix = [t](double a, double b) { return a + t * (b - a); };
-  const double a = mix(from.half_width_m, to.half_width_m), b = mix(from.half_height_m, to.half_height_m);
-  const Vec3 axis = (to.center - from.center).normalized();
-  const Vec3 level = axis.cross(Vec3::UnitZ());
-  const double flatness = level.norm();  // cosine of the slope; a vertical passage has neither side nor floor
-  const Vec3 side = flatness > 1e-3 ? Vec3(level / flatness) : Vec3::UnitX();
-  const Vec3 up = side.cross(axis);
-  const Vec3 w = p - (from.center + t * (to.center - from.center));
-  const Vec3 local(w.dot(side), w.dot(up), w.dot(axis));
+Foot foot_of(const Vec3& p, const Segment& s) {
+  const Vec3 w = p - s.from.center;
+  const double along_m = std::clamp(w.dot(s.axis), 0.0, s.length_m);
+  return {s.length_m > 0 ? along_m / s.length_m : 0, w - along_m * s.axis};
+}
+
+double segment_distance(const Foot& foot, const Segment& s) {
+  const auto mix = [t = foot.along](double a, double b) { return a + t * (b - a); };
+  const double a = mix(s.from.half_width_m, s.to.half_width_m),
+               b = mix(s.from.half_height_m, s.to.half_height_m);
+  const Vec3 local(foot.offset.dot(s.side), foot.offset.dot(s.up), foot.offset.dot(s.axis));
   double d = ellipsoid_distance(local, {a, b, std::min(a, b)});
-  const double slot = mix(from.slot, to.slot) * std::clamp((flatness - 0.6) * 5, 0.0, 1.0);
+  // A steep passage has no floor, and water fell through it instead of cutting a slot.
+  const double level = std::clamp((s.flatness - 0.6) * 5, 0.0, 1.0);
+  const double slot = mix(s.from.slot, s.to.slot) * level;
   if (slot > 0.05) {
     const Vec3 radii(std::max(0.8, 0.35 * a), b * (0.3 + slot), std::min(a, b));
     d = smooth_min(d, ellipsoid_distance(local + Vec3(0, b * 0.7, 0), radii), 0.5);
   }
-  if (flatness < 0.6) return d;
-  const double floor =
-      mix(from.floor_m, to.floor_m) + slot * b + (1 - std::min(1.0, (flatness - 0.6) * 5)) * b;
+  if (level == 0) return d;
+  const double floor = mix(s.from.floor_m, s.to.floor_m) + (slot + 1 - level) * b;
   return smooth_max(d, -local.y() - floor, 0.5);
 }
 

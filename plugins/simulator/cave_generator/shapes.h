@@ -7,10 +7,25 @@ namespace karst::cave {
 /// Minimum with a rounded edge `k` wide (Quilez); the maximum likewise is -smooth_min(-a, -b, k).
 double smooth_min(double a, double b, double k);
 
-double passage_distance(const core::Vec3& p, const Station& from, const Station& to);
+/// The stretch of a passage between two stations.
+struct Segment {
+  Segment(const Station& from, const Station& to);
+  Station from, to;
+  core::Vec3 axis, side, up;
+  double length_m, flatness;  // flatness: cosine of the slope
+  double reach_m;             // no part of the surface is farther from the centre line
+};
+
+/// Where a point stands to a segment's centre line.
+struct Foot {
+  double along = 0;  // 0 at the first station, 1 at the second
+  core::Vec3 offset = core::Vec3::Zero();
+};
+Foot foot_of(const core::Vec3& p, const Segment& s);
+double segment_distance(const Foot& foot, const Segment& s);
+
 double chamber_distance(const core::Vec3& p, const Chamber& c);
 double boulder_distance(const core::Vec3& p, const Boulder& b);
 double speleothem_distance(const core::Vec3& p, const Speleothem& s);
-double line_distance(const core::Vec3& p, const core::Vec3& a, const core::Vec3& b);
 
 }  // namespace karst::cave
