@@ -30,13 +30,15 @@ Wrench wrench_of(const MotorModel& model, const MotorThrusts& f) {
 
 MotorThrusts mix(const MotorModel& model, double max_n, const Wrench& wanted) {
   const double lever = model.arm_m / std::numbers::sqrt2;
+  const MotorThrusts yaw = wanted.torque_nm.z() / (4 * model.yaw_moment_m) * kSpin;
   MotorThrusts tilt = (wanted.torque_nm.x() * kLeft - wanted.torque_nm.y() * kForward) / (4 * lever);
+  const MotorThrusts exact = tilt.array() + yaw.array() + wanted.thrust_n / 4;
+  if (exact.minCoeff() >= 0 && exact.maxCoeff() <= max_n) return exact;
+
   const double span = tilt.maxCoeff() - tilt.minCoeff();
   if (span > max_n) tilt *= max_n / span;
   const double collective = std::clamp(wanted.thrust_n / 4, -tilt.minCoeff(), max_n - tilt.maxCoeff());
   const MotorThrusts f = tilt.array() + collective;
-
-  const MotorThrusts yaw = wanted.torque_nm.z() / (4 * model.yaw_moment_m) * kSpin;
   double share = 1;
   for (int i = 0; i < 4; ++i) {
     if (yaw[i] > 0) share = std::min(share, (max_n - f[i]) / yaw[i]);

@@ -41,7 +41,8 @@ class RayScene {
   const TriangleMesh& mesh() const { return *mesh_; }
 
   /// `out[i]` is the first hit of `rays[i]`. Neighbouring rays should point to neighbouring places: they are
-  /// cast in packets of eight. Same bits as casting one at a time.
+  /// cast in packets of eight. Ranges have the same bits as cast one at a time; where a ray meets the edge of
+  /// two triangles, either may be named.
   void cast(std::span<const Ray> rays, float max_range_m, std::span<Hit> out) const;
   Hit cast(const Ray& ray, float max_range_m) const;
 

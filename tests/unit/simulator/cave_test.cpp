@@ -1,0 +1,79 @@
+#include "plugins/simulator/cave/cave.h"
+
+#include "meshes.h"
+
+namespace karst::test {
+namespace {
+
+class CaveFiles : public testing::Test {
+ protected:
+  CaveFiles() { cave::write_mesh(folder_ + "/box.ply", box_mesh({-5, -5, 0}, {5, 5, 4})); }
+  std::string info(const std::string& text) const {
+    write_bytes(folder_ + "/cave.info", text);
+    return folder_ + "/cave.info";
+  }
+  std::string error_for(const std::string& text, const std::string& start = "") const {
+    const std::string file = info(text);
+    return error_of([&] { cave::load_cave(file, start); });
+  }
+  std::string folder_ = scratch_folder();
+};
+
+TEST_F(CaveFiles, InfoFileIsReadWithItsMeshBesideIt) {
+  const cave::Cave c = cave::load_cave(info(R"(
+mesh box.ply
+start "1 2 1.5 90"
+reflectivity 0.4
+patch { position "5 0 2"  radius "300 cm"  reflectivity 0.9 }
+ore { position "3 0 -1"  moment "0 0 4000" }
+ore { position "4 0 -1"  moment "10 0 0" }
+)"),
+                                       "");
+  EXPECT_EQ(c.scene.mesh().triangles.size(), 12u);
+  EXPECT_EQ(c.description.start.position, Vec3(1, 2, 1.5));
+  EXPECT_NEAR(c.description.start.heading_rad, std::numbers::pi / 2, 1e-12);
+  ASSERT_EQ(c.description.ore_bodies.size(), 2u);
+  EXPECT_EQ(c.description.ore_bodies[0].moment_am2, Vec3(0, 0, 4000));
+  EXPECT_EQ(cave::reflectivity_at(c.description, {-5, 0, 2}), 0.4);
+  EXPECT_EQ(cave::reflectivity_at(c.description, {5, 2.9, 2}), 0.9);
+}
+
+TEST_F(CaveFiles, AStartThatIsGivenReplacesTheFilesOwn) {
+  const cave::Cave c = cave::load_cave(info("mesh box.ply\nstart \"1 2 1.5 90\""), "-1 0 1");
+  EXPECT_EQ(c.description.start.position, Vec3(-1, 0, 1));
+  EXPECT_EQ(c.description.start.heading_rad, 0);
+}
+
+TEST_F(CaveFiles, ABareMeshNeedsAStart) {
+  EXPECT_NE(error_of([&] { cave::load_cave(folder_ + "/box.ply", ""); }).find("start"), std::string::npos);
+  EXPECT_EQ(cave::load_cave(folder_ + "/box.ply", "1 1 1 45").description.start.position, Vec3(1, 1, 1));
+}
+
+TEST_F(CaveFiles, ErrorsNameTheKeyAndWhatWasExpected) {
+  const auto expect = [&](const std::string& text, const std::string& part) {
+    const std::string e = error_for(text);
+    EXPECT_NE(e.find(part), std::string::npos) << "\"" << e << "\" lacks \"" << part << "\"";
+    EXPECT_NE(e.find("cave.info"), std::string::npos) << e;
+  };
+  expect("mash box.ply\nstart \"0 0 1\"", "did you mean mesh?");
+  expect("start \"0 0 1\"", "mesh: missing");
+  expect("mesh box.ply", "start: missing");
+  expect("mesh box.ply\nstart \"0 0\"", "x y z");
+  expect("mesh box.ply\nstart \"0 0 up\"", "x y z");
+  expect("mesh box.ply\nstart \"0 0 1 0 0\"", "x y z");
+  expect("mesh box.ply\nstart \"0 0 nan\"", "x y z");
+  expect("mesh box.ply\nstart \"0 0 1\"\nreflectivity 2", "0 to 1");
+  expect("mesh box.ply\nstart \"0 0 1\"\npatch { position \"0 0 0\" radus 3 }", "did you mean patch.radius?");
+  expect("mesh box.ply\nstart \"0 0 1\"\nore { position \"0 0 0\" }", "ore.moment");
+  expect("mesh box.ply\nstart \"0 0 1", "line");
+  EXPECT_NE(error_for("mesh other.ply\nstart \"0 0 1\"").find("other.ply"), std::string::npos);
+}
+
+TEST_F(CaveFiles, ACaveThatIsNotThereIsAnError) {
+  EXPECT_NE(error_of([&] { cave::load_cave("/no/such.info", ""); }).find("/no/such.info"), std::string::npos);
+  EXPECT_NE(error_of([&] { cave::load_cave("", ""); }), "");
+  EXPECT_NE(error_of([&] { cave::load_cave(folder_, "0 0 0"); }), "");
+}
+
+}  // namespace
+}  // namespace karst::test

@@ -1,0 +1,174 @@
+#include <cstring>
+
+#include "meshes.h"
+#include "plugins/simulator/cave/triangle_mesh.h"
+
+namespace karst::test {
+namespace {
+
+using cave::load_mesh;
+using cave::TriangleMesh;
+
+/// All triangles' corners in order, for comparing meshes whose vertices are numbered differently.
+std::vector<std::array<float, 9>> corners(const TriangleMesh& m) {
+  std::vector<std::array<float, 9>> all;
+  for (const auto& t : m.triangles) {
+    std::array<float, 9> c{};
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i) c[3 * k + i] = m.vertices[t[k]][static_cast<int>(i)];
+    all.push_back(c);
+  }
+  return all;
+}
+
+class MeshFiles : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  /// Loads a file with these bytes and returns the error.
+  std::string error_for(const std::string& name, const std::string& bytes) const {
+    write_bytes(path(name), bytes);
+    return error_of([&] { load_mesh(path(name)); });
+  }
+  void expect_refused(const std::string& name, const std::string& bytes, const std::string& reason) const {
+    const std::string error = error_for(name, bytes);
+    EXPECT_NE(error.find(reason), std::string::npos)
+        << name << ": \"" << error << "\" lacks \"" << reason << "\"";
+    EXPECT_NE(error.find(name), std::string::npos) << "the error names the file: " << error;
+  }
+  std::string written(const std::string& name) const {
+    cave::write_mesh(path(name), tunnel_);
+    return read_bytes(path(name));
+  }
+
+  std::string folder_ = scratch_folder();
+  TriangleMesh tunnel_ = tunnel_mesh(10, 2, 1);
+};
+
+TEST_F(MeshFiles, WrittenMeshesReadBackTheSame) {
+  for (const char* name : {"a.ply", "a.stl"}) {
+    cave::write_mesh(path(name), tunnel_);
+    const TriangleMesh back = load_mesh(path(name));
+    EXPECT_EQ(corners(back), corners(tunnel_)) << name;
+    EXPECT_EQ(back.vertices.size(), tunnel_.vertices.size()) << "joined vertices, " << name;
+  }
+}
+
+TEST_F(MeshFiles, TextFormatsAndObjAreRead) {
+  const std::string obj = "v 0 0 1\nv 1 0 1\nv 0 1 3\nv 1 1 3\nf 1 2 3\nf 2 4 3\n";
+  EXPECT_EQ(error_for("a.obj", obj), "");
+  const TriangleMesh m = load_mesh(path("a.obj"));
+  ASSERT_EQ(m.triangles.size(), 2u);
+  EXPECT_EQ(m.vertices[m.triangles[0][2]], Vec3f(0, 1, 3)) << "z stays up";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(error_for("a.ply", ply), "");
+  const std::string stl =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+      "endfacet\nendsolid a\n";
+  EXPECT_EQ(error_for("a.stl", stl), "");
+}
+
+TEST_F(MeshFiles, PolygonsBecomeTriangles) {
+  EXPECT_EQ(error_for("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"), "");
+  EXPECT_EQ(load_mesh(path("a.obj")).triangles.size(), 2u);
+}
+
+TEST_F(MeshFiles, ColladaAgreesWithItsStlTwin) {
+  SKIP_WITHOUT_CAVES();
+  const TriangleMesh dae = load_mesh(caves_folder() + "indian_tunnel.dae");
+  const TriangleMesh stl = load_mesh(caves_folder() + "indian_tunnel.stl");
+  ASSERT_EQ(dae.triangles.size(), stl.triangles.size());
+  const cave::RayScene scene(stl);
+  for (const Vec3f& v : dae.vertices) ASSERT_LT(scene.distance_to_rock(v.cast<double>(), 10), 1e-4);
+}
+
+TEST_F(MeshFiles, ColladaWithYUpIsTurned) {
+  const auto collada = [](const std::string& axis) {
+    return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+           "version=\"1.4.1\">"
+           "<asset><unit name=\"centimeter\" meter=\"0.01\"/><up_axis>" +
+           axis +
+           "</up_axis></asset>"
+           "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"pa\" count=\"9\">"
+           "0 0 0 100 0 0 0 300 0</float_array><technique_common><accessor source=\"#pa\" count=\"3\" "
+           "stride=\"3\">"
+           "<param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" "
+           "type=\"float\"/>"
+           "</accessor></technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+           "source=\"#p\"/>"
+           "</vertices><triangles count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 1 "
+           "2</p>"
+           "</triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene "
+           "id=\"s\"><node>"
+           "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes><scene>"
+           "<instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+  };
+  ASSERT_EQ(error_for("y.dae", collada("Y_UP")), "");
+  ASSERT_EQ(error_for("z.dae", collada("Z_UP")), "");
+  const TriangleMesh y = load_mesh(path("y.dae")), z = load_mesh(path("z.dae"));
+  EXPECT_TRUE(y.vertices[2].isApprox(Vec3f(0, 0, 3), 1e-5f)) << y.vertices[2].transpose();
+  EXPECT_TRUE(z.vertices[2].isApprox(Vec3f(0, 3, 0), 1e-5f)) << z.vertices[2].transpose();
+}
+
+TEST_F(MeshFiles, TruncatedFilesAreRefusedWhereverTheyEnd) {
+  for (const char* name : {"t.stl", "t.ply"}) {
+    const std::string whole = written(name);
+    for (const double share : {0.02, 0.3, 0.5, 0.9, 0.999}) {
+      const auto bytes = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+      expect_refused(name, whole.substr(0, bytes), "truncated");
+    }
+    expect_refused(name, whole.substr(0, whole.size() - 1), "truncated");
+  }
+  expect_refused("text.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n",
+                 "truncated");
+  expect_refused(
+      "text.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n",
+      "truncated");
+}
+
+TEST_F(MeshFiles, EmptyFilesAndFilesWithoutTrianglesAreRefused) {
+  for (const char* name : {"e.stl", "e.ply", "e.obj", "e.dae"}) expect_refused(name, "", "empty");
+  expect_refused("no.stl", std::string(84, '\0'), "");
+  expect_refused("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "");
+  expect_refused("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "no triangle");
+}
+
+TEST_F(MeshFiles, VerticesThatAreNotFiniteAreRefused) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e20f}) {
+    std::string stl = written("n.stl"), ply = written("n.ply");
+    std::memcpy(stl.data() + 84 + 50 * 3 + 12, &bad, sizeof bad);
+    expect_refused("n.stl", stl, "finite");
+    std::memcpy(ply.data() + ply.find("end_header\n") + 11 + 24, &bad, sizeof bad);
+    expect_refused("n.ply", ply, "finite");
+  }
+}
+
+TEST_F(MeshFiles, FacesThatNameNoVertexAreRefused) {
+  std::string ply = written("i.ply");
+  const std::uint32_t beyond = 1'000'000;
+  std::memcpy(ply.data() + ply.size() - 4, &beyond, sizeof beyond);
+  write_bytes(path("i.ply"), ply);
+  EXPECT_NE(error_of([&] { load_mesh(path("i.ply")); }), "");
+}
+
+TEST_F(MeshFiles, OtherFilesAreRefused) {
+  expect_refused("a.txt", "hello", ".stl, .ply, .obj or .dae");
+  expect_refused("not.ply", "hello, this is no mesh at all", "ply");
+  expect_refused("not.stl", "hello", "truncated");
+  expect_refused("not.dae", "<html></html>", "");
+  expect_refused("not.obj", std::string("\x00\x01\x02garbage", 10), "");
+  EXPECT_NE(error_of([&] { load_mesh(path("absent.ply")); }).find("absent.ply"), std::string::npos);
+  EXPECT_NE(error_of([&] { load_mesh(folder_); }), "");
+}
+
+TEST_F(MeshFiles, WritingToNowhereIsAnError) {
+  EXPECT_NE(error_of([&] { cave::write_mesh("/nowhere/at/all.ply", tunnel_); }).find("/nowhere/at/all.ply"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace karst::test
