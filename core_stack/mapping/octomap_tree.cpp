@@ -17,10 +17,12 @@ constexpr int kBlockDepthBits = 13;  // of OctoMap's 16 levels, those above the 
 
 /// The block's place in the tree: three bits a level, OctoMap's child index in each (x lowest).
 std::uint64_t morton_of(BlockId id) {
+  const CellKey corner = corner_of(id);
+  const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v + kWorldCells) >> 3; };
   std::uint64_t code = 0;
   for (int level = 0; level < kBlockDepthBits; ++level) {
-    const auto bit = [&](int shift) { return (id >> (shift + level)) & 1; };
-    code |= (bit(26) | bit(13) << 1 | bit(0) << 2) << (3 * level);
+    const auto bit = [&](std::int32_t v) { return part(v) >> level & 1; };
+    code |= (bit(corner.x) | bit(corner.y) << 1 | bit(corner.z) << 2) << (3 * level);
   }
   return code;
 }

@@ -1,8 +1,7 @@
 // Blocks of 8x8x8 log-odds and the table that finds them; private to mapping.
 //
-// Coordinates are OctoMap's keys: 16 bits an axis, of which 13 name the block and 3 the cell in it. The
-// table is open-addressed with linear probing over one plain vector: one multiplication and, nearly always,
-// one cache line a look-up. Blocks have stable addresses.
+// The table is open-addressed with linear probing over one plain vector: one multiplication and, nearly
+// always, one cache line a look-up. Blocks have stable addresses.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/packed_cell.h"
 
 namespace karst::core {
 
@@ -25,20 +24,11 @@ inline bool in_world(const CellKey& k) {
   return ((offset(k.x) | offset(k.y) | offset(k.z)) & ~0xffffu) == 0;
 }
 
-/// A block's name: 13 bits an axis, x highest, so that the numeric order is the order of (x, y, z).
-using BlockId = std::uint64_t;
+/// A block's name: its lowest cell.
+using BlockId = PackedCell;
 
-inline BlockId block_of(const CellKey& k) {
-  const auto part = [](std::int32_t v) { return static_cast<BlockId>((v + kWorldCells) >> 3); };
-  return part(k.x) << 26 | part(k.y) << 13 | part(k.z);
-}
-/// The block's lowest cell.
-inline CellKey corner_of(BlockId id) {
-  const auto part = [id](int shift) {
-    return static_cast<std::int32_t>((id >> shift) & 0x1fff) * kBlockEdge - kWorldCells;
-  };
-  return {part(26), part(13), part(0)};
-}
+inline BlockId block_of(const CellKey& k) { return pack(k) & ~kInBlock; }
+inline CellKey corner_of(BlockId id) { return unpack(id); }
 /// Index of a cell in its block, x fastest.
 inline std::uint32_t local_of(const CellKey& k) {
   return static_cast<std::uint32_t>((k.x & 7) | (k.y & 7) << 3 | (k.z & 7) << 6);
@@ -68,7 +58,7 @@ class BlockTable {
   BlockTable() : slots_(1024) {}
 
   Block* find(BlockId id) const {
-    for (std::size_t i = slot_of(id);; i = (i + 1) & (slots_.size() - 1)) {
+    for (std::size_t i = slot_of(id, slots_.size());; i = (i + 1) & (slots_.size() - 1)) {
       if (slots_[i].block == nullptr || slots_[i].id == id) return slots_[i].block;
     }
   }
@@ -97,9 +87,8 @@ class BlockTable {
     BlockId id = 0;
     Block* block = nullptr;
   };
-  std::size_t slot_of(BlockId id) const { return (id * 0x9e3779b97f4a7c15ull >> 20) & (slots_.size() - 1); }
   void place(Block* b) {
-    std::size_t i = slot_of(b->id);
+    std::size_t i = slot_of(b->id, slots_.size());
     while (slots_[i].block != nullptr) i = (i + 1) & (slots_.size() - 1);
     slots_[i] = {b->id, b};
   }

@@ -7,34 +7,54 @@
 namespace karst::core {
 namespace {
 
-/// Ends seen so far, by the cells of origin and end: rays from one cell to another say the same but once.
+/// Rays seen so far, by the cell of their origin and the half cell (an eighth of the volume) of their end.
+/// Rays alike in both pass the same cells but for a few in ten thousand. The table grows with what it holds,
+/// a fraction of the rays, so that it stays in the cache.
 class RaySet {
  public:
-  explicit RaySet(std::size_t rays) : slots_(std::bit_ceil(2 * rays + 1)) {}
-
-  /// True if no such ray was there before.
-  bool add(const CellKey& origin, const CellKey& end, bool hit) {
-    const std::uint64_t a = packed(origin) | std::uint64_t{1} << 63;  // never zero: zero marks an empty slot
-    const std::uint64_t b = packed(end) | (hit ? std::uint64_t{1} << 62 : 0);
-    std::uint64_t h = (a ^ b * 0x9e3779b97f4a7c15ull) * 0xbf58476d1ce4e5b9ull;
-    for (h >>= 20;; ++h) {
-      Slot& s = slots_[h & (slots_.size() - 1)];
-      if (s.origin == a && s.end == b) return false;
-      if (s.origin != 0) continue;
-      s = {a, b};
-      return true;
-    }
+  /// True if no such ray was there before. A sweep starts from few cells; the rays of one that starts from
+  /// more than kOrigins count as new beyond that.
+  bool add(const CellKey& origin, const CellKey& end_in_half_cells, bool hit) {
+    const std::optional<std::uint64_t> from = number_of(pack(origin));
+    if (!from) return true;
+    const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v + 2 * kWorldCells); };
+    const std::uint64_t ray = (*from + 1) << 52 | std::uint64_t{hit} << 51 | part(end_in_half_cells.x) << 34 |
+                              part(end_in_half_cells.y) << 17 | part(end_in_half_cells.z);
+    if (ray == last_) return false;
+    last_ = ray;
+    if (!place(ray)) return false;
+    if (++count_ * 2 > slots_.size()) grow();
+    return true;
   }
 
  private:
-  struct Slot {
-    std::uint64_t origin = 0, end = 0;
-  };
-  static std::uint64_t packed(const CellKey& k) {
-    const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v + kWorldCells); };
-    return part(k.x) << 32 | part(k.y) << 16 | part(k.z);
+  static constexpr std::size_t kOrigins = 64;
+
+  std::optional<std::size_t> number_of(PackedCell origin) {
+    if (current_ < origins_.size() && origins_[current_] == origin) return current_;
+    current_ =
+        static_cast<std::size_t>(std::find(origins_.begin(), origins_.end(), origin) - origins_.begin());
+    if (current_ == kOrigins) return std::nullopt;
+    if (current_ == origins_.size()) origins_.push_back(origin);
+    return current_;
   }
-  std::vector<Slot> slots_;
+  bool place(std::uint64_t ray) {
+    for (std::size_t i = slot_of(ray, slots_.size());; i = (i + 1) & (slots_.size() - 1)) {
+      if (slots_[i] == ray) return false;
+      if (slots_[i] == 0) return slots_[i] = ray, true;
+    }
+  }
+  void grow() {
+    std::vector<std::uint64_t> former(2 * slots_.size());
+    former.swap(slots_);
+    for (const std::uint64_t ray : former)
+      if (ray != 0) place(ray);
+  }
+
+  std::vector<PackedCell> origins_;  // those numbered so far
+  std::size_t current_ = 0, count_ = 0;
+  std::uint64_t last_ = 0;
+  std::vector<std::uint64_t> slots_ = std::vector<std::uint64_t>(4096);
 };
 
 /// Marks cells in the blocks' bitsets and remembers which blocks it touched.
@@ -42,27 +62,43 @@ class Marker {
  public:
   explicit Marker(BlockTable& blocks) : blocks_(blocks) {}
 
-  void hit(const CellKey& k) { mark(block(k).hit, k); }
-  void miss(const CellKey& k) { mark(block(k).miss, k); }
+  void hit(PackedCell p) { block(p).hit[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p); }
+  /// All cells of the walk but the last.
+  void miss(CellWalk walk) {
+    for (std::int32_t left = walk.steps(); left > 0; --left, walk.advance()) {
+      const PackedCell p = walk.cell();
+      block(p).miss[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p);
+    }
+  }
   const std::vector<Block*>& touched() const { return touched_; }
 
  private:
-  static void mark(std::array<std::uint64_t, 8>& bits, const CellKey& k) {
-    const std::uint32_t i = local_of(k);
-    bits[i >> 6] |= std::uint64_t{1} << (i & 63);
+  Block& block(PackedCell p) {
+    if ((p & ~kInBlock) != id_) [[unlikely]]
+      enter(p & ~kInBlock);
+    return *last_;
   }
-  Block& block(const CellKey& k) {
-    const BlockId id = block_of(k);
-    if (last_ != nullptr && last_->id == id) return *last_;
+  void enter(BlockId id) {
+    id_ = id;
     last_ = &blocks_.find_or_add(id);
     if (!last_->touched) last_->touched = true, touched_.push_back(last_);
-    return *last_;
   }
 
   BlockTable& blocks_;
+  BlockId id_ = ~BlockId{0};
   Block* last_ = nullptr;
   std::vector<Block*> touched_;
 };
+
+/// `p` in cells; false for NaN.
+bool inside(const Vec3& p) {
+  const auto in = [](double v) { return v >= -kWorldCells && v < kWorldCells; };
+  return in(p.x()) && in(p.y()) && in(p.z());
+}
+CellKey cell_at(const Vec3& p) {
+  const auto floor_of = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
+  return {floor_of(p.x()), floor_of(p.y()), floor_of(p.z())};
+}
 
 void sort_by_key(std::vector<CellChange>& changes) {
   std::sort(changes.begin(), changes.end(),
@@ -81,29 +117,28 @@ void for_each_bit(const std::array<std::uint64_t, 8>& bits, Visit&& visit) {
 std::vector<CellChange> VoxelMap::insert(std::span<const Ray> rays) {
   Storage& s = *storage_;
   ++s.revision;
-  RaySet seen(rays.size());
+  RaySet seen;
   Marker marker(s.blocks);
   for (const Ray& ray : rays) {
-    const Vec3 from = ray.origin.cast<double>(), to = ray.end.cast<double>();
-    const CellKey origin = key_of(from), end = key_of(to);
-    if (!in_world(origin) || !in_world(end) || !seen.add(origin, end, ray.hit)) continue;
-    walk_cells(from * s.cells_per_m, to * s.cells_per_m, [&](const CellKey& k) {
-      if (k != end) marker.miss(k);
-      return true;
-    });
-    if (ray.hit) marker.hit(end);
+    const Vec3 from = ray.origin.cast<double>() * s.cells_per_m, to = ray.end.cast<double>() * s.cells_per_m;
+    if (!inside(from) || !inside(to)) continue;
+    if (!seen.add(cell_at(from), cell_at(2.0 * to), ray.hit)) continue;
+    marker.miss(CellWalk(from, to));
+    if (ray.hit) marker.hit(pack(cell_at(to)));
   }
 
   std::vector<CellChange> changes;
   for (Block* b : marker.touched()) {
     const CellKey corner = corner_of(b->id);
-    const auto add = [&](std::uint32_t i, std::int16_t step) {
-      const int before = b->log_odds[i] == kUnknown ? 0 : b->log_odds[i];
-      s.set(*b, corner, i, static_cast<std::int16_t>(std::clamp<int>(before + step, s.low, s.high)), changes);
+    const auto add = [&](std::uint32_t i, std::int16_t step, std::int16_t bound) {
+      const std::int16_t v = b->log_odds[i];
+      if (v == bound) return;  // as sure as it may become: most cells of a place seen before
+      const int sum = (v == kUnknown ? 0 : v) + step;
+      s.set(*b, corner, i, static_cast<std::int16_t>(std::clamp<int>(sum, s.low, s.high)), changes);
     };
     for (std::size_t w = 0; w < b->miss.size(); ++w) b->miss[w] &= ~b->hit[w];
-    for_each_bit(b->hit, [&](std::uint32_t i) { add(i, s.hit); });
-    for_each_bit(b->miss, [&](std::uint32_t i) { add(i, s.miss); });
+    for_each_bit(b->hit, [&](std::uint32_t i) { add(i, s.hit, s.high); });
+    for_each_bit(b->miss, [&](std::uint32_t i) { add(i, s.miss, s.low); });
     b->hit.fill(0), b->miss.fill(0), b->touched = false;
   }
   sort_by_key(changes);

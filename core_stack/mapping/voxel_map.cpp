@@ -171,10 +171,10 @@ void VoxelMap::for_each_in_box(const CellKey& low, const CellKey& high,
 
 void traverse(const Vec3& from, const Vec3& to, double resolution_m,
               const std::function<bool(const CellKey&)>& visit) {
-  constexpr double limit = 1e9;  // cells; keeps keys inside int32
+  constexpr double limit = kPackedLimit;
   const Vec3 a = from / resolution_m, b = to / resolution_m;
   if (!(a.cwiseAbs().maxCoeff() < limit) || !(b.cwiseAbs().maxCoeff() < limit)) return;
-  walk_cells(a, b, visit);
+  walk_cells(a, b, [&](PackedCell k) { return visit(unpack(k)); });
 }
 
 }  // namespace karst::core

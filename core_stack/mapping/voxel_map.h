@@ -60,9 +60,10 @@ class VoxelMap {
   std::optional<float> log_odds(const CellKey& k) const;
 
   /// Updates the map with one scan: a cell hit by any ray is hit once, a cell only passed is missed once
-  /// (the semantics of OctoMap's insertPointCloud). Of the rays from one cell to another only the first is
-  /// cast: origins in one cell count as one. The end's cell of a ray without a hit is not passed. Rays that
-  /// are not finite or leave the world are ignored. Returns the cells whose class changed, sorted by key.
+  /// (the semantics of OctoMap's insertPointCloud). Of the rays that start in one cell and end in one half
+  /// cell (half a cell's edge in each axis) only the first is cast. The end's cell of a ray without a hit is
+  /// not passed. Rays that are not finite or leave the world are ignored. Returns the cells whose class
+  /// changed, sorted by key.
   std::vector<CellChange> insert(std::span<const Ray> rays);
   /// Declares a ball free (the launch site, which the operator vouches for); cells known already keep
   /// their value.
@@ -99,7 +100,8 @@ class VoxelMap {
 };
 
 /// Visits the cells a segment passes, in order, including both ends' cells; stops when `visit` returns
-/// false. Amanatides and Woo, 1987. Visits nothing if an end is not finite or beyond 1e9 cells.
+/// false. Amanatides and Woo, 1987. Visits nothing if an end is not finite or 2^20 cells or more from the
+/// origin.
 void traverse(const Vec3& from, const Vec3& to, double resolution_m,
               const std::function<bool(const CellKey&)>& visit);
 
