@@ -40,7 +40,7 @@ struct Speleothem {
 };
 
 struct CavePlan {
-  core::Vec3 start = core::Vec3(0, 0, 1.15);  // in the entrance chamber, whose floor is at height 0
+  core::Vec3 start = core::Vec3(0, 0, 0.9);  // in the entrance chamber, whose floor lies at -0.3 to 0
   double start_heading_rad = 0;
   std::vector<Passage> passages;  // the first begins in the entrance chamber
   std::vector<Chamber> chambers;  // the first is the entrance

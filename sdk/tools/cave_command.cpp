@@ -1,0 +1,258 @@
+#include "sdk/tools/cave_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core_stack/common/error.h"
+#include "plugins/simulator/cave/cave.h"
+#include "plugins/simulator/cave_generator/generate_cave.h"
+#include "sdk/tools/cave_facts.h"
+
+namespace karst::tools {
+namespace {
+
+using core::InputError;
+using core::Vec3;
+using nlohmann::ordered_json;
+
+struct GenerateArguments {
+  std::string preset = "small", out, format = "ply";
+  std::vector<std::string> set;
+  std::uint64_t seed = 1;
+};
+
+struct InfoArguments {
+  std::string file, start;
+  bool json = false;
+  evaluation::ReachableOptions options;
+};
+
+std::string text(const char* format, auto... values) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+/// One line that renews itself on a terminal, a line for each new step elsewhere.
+class Progress {
+ public:
+  void operator()(const char* step, double share) {
+    const bool fresh = last_ != step;
+    last_ = step;
+    if (terminal_)
+      std::fprintf(stderr, "\r%-24s %3.0f %%", step, 100 * share);
+    else if (fresh)
+      std::fprintf(stderr, "%s\n", step);
+  }
+  void end() const {
+    if (terminal_) std::fprintf(stderr, "\r%30s\r", "");
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  std::string last_;
+};
+
+cave::CaveRecipe recipe_of(const GenerateArguments& args) {
+  cave::CaveRecipe recipe = cave::cave_preset(args.preset);
+  core::OptionTable table;
+  describe(table, recipe);
+  for (const std::string& s : args.set) {
+    const auto equals = s.find('=');
+    if (equals == std::string::npos) throw InputError("--set", s, "expected key=value, such as volume=2500");
+    table.set("--set", s.substr(0, equals), s.substr(equals + 1));
+  }
+  return recipe;
+}
+
+void write_info(const std::string& path, const std::string& mesh, const cave::GeneratedCave& cave,
+                cave::CaveRecipe recipe, const GenerateArguments& args) {
+  std::ofstream out(path);
+  out << "; made by: karst cave generate --preset " << args.preset << " --seed " << args.seed;
+  for (const std::string& s : args.set) out << " --set \"" << s << "\"";
+  out << "\n; recipe:\n";
+  core::OptionTable table;
+  describe(table, recipe);
+  for (const auto& row : table.rows()) out << ";   " << row.key << " = " << core::value_text(row) << "\n";
+  const Vec3& p = cave.start.position;
+  out << "mesh \"" << mesh << "\"\n"
+      << "start \""
+      << text("%g %g %g %.1f", p.x(), p.y(), p.z(), cave.start.heading_rad * 180 / std::numbers::pi)
+      << "\"\nreflectivity 0.5\n";
+  out.flush();
+  if (!out) throw InputError(path, "", "cannot be written");
+}
+
+void generate(const GenerateArguments& args) {
+  namespace fs = std::filesystem;
+  const cave::CaveRecipe recipe = recipe_of(args);
+  const fs::path stem(args.out);
+  if (stem.filename().empty())
+    throw InputError("--out", args.out, "expected a file name without ending, such as caves/demo");
+  if (std::error_code failed;
+      stem.has_parent_path() && (fs::create_directories(stem.parent_path(), failed), failed))
+    throw InputError(stem.parent_path().string(), "", "cannot be made: " + failed.message());
+  const std::string mesh_path = args.out + "." + args.format, info_path = args.out + ".info";
+
+  Progress progress;
+  const cave::GeneratedCave cave =
+      cave::generate_cave(recipe, args.seed, [&](const char* step, double share) { progress(step, share); });
+  cave::write_mesh(mesh_path, cave.mesh);
+  write_info(info_path, stem.filename().string() + "." + args.format, cave, recipe, args);
+  progress("measuring", 0.9);
+  const evaluation::Reachable r = evaluation::find_reachable(cave.mesh, cave.start.position, {}, mesh_path);
+  progress.end();
+
+  double length_m = 0;
+  for (const auto& way : cave.ways)
+    for (std::size_t i = 1; i < way.size(); ++i) length_m += (way[i] - way[i - 1]).norm();
+  const MeshFacts facts = mesh_facts(cave.mesh);
+  const Vec3 extent = facts.high - facts.low;
+  std::printf("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", info_path.c_str(),
+              cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.ways.size(), length_m);
+  std::printf("  %zu triangles; %zu fallen blocks, %zu speleothems\n", facts.triangles, cave.boulders,
+              cave.speleothems);
+  std::printf("  on the map's grid: %.0f m3 to explore, %.0f m3 of it at least %.1f m from rock\n",
+              r.volume_m3(), r.flyable_volume_m3(), r.options.clearance_m);
+  std::printf("next:\n  karst fly --cave %s --policy nearest_frontier\n  karst cave info %s\n",
+              info_path.c_str(), info_path.c_str());
+}
+
+ordered_json json_of(const InfoArguments& args, const MeshFacts& m) {
+  const auto vector = [](const Vec3& v) { return ordered_json{v.x(), v.y(), v.z()}; };
+  return {{"file", args.file},        {"triangles", m.triangles},   {"low_m", vector(m.low)},
+          {"high_m", vector(m.high)}, {"closed", m.odd_edges == 0}, {"edges", m.edges},
+          {"odd_edges", m.odd_edges}};
+}
+
+void print_mesh(const InfoArguments& args, const MeshFacts& m) {
+  const Vec3 e = m.high - m.low;
+  std::printf("%s\n", args.file.c_str());
+  std::printf("  triangles          %zu\n", m.triangles);
+  std::printf("  extent             %.1f x %.1f x %.1f m, heights %.1f to %.1f m\n", e.x(), e.y(), e.z(),
+              m.low.z(), m.high.z());
+  if (m.odd_edges == 0)
+    std::printf("  closed             yes, every edge joins two triangles that face the same side\n");
+  else
+    std::printf(
+        "  closed             no, %zu of %zu edges do not join two triangles that face the same side\n",
+        m.odd_edges, m.edges);
+}
+
+void info(const InfoArguments& args) {
+  const bool bare = std::filesystem::path(args.file).extension() != ".info";
+  if (bare && args.start.empty()) {
+    if (!std::filesystem::is_regular_file(args.file)) throw InputError(args.file, "", "no such cave file");
+    const MeshFacts facts = mesh_facts(cave::load_mesh(args.file));
+    if (args.json) {
+      std::printf("%s\n", json_of(args, facts).dump(2).c_str());
+    } else {
+      print_mesh(args, facts);
+      std::printf("  no start pose: give --start \"x y z\" for clearance and volumes\n");
+    }
+    return;
+  }
+  const cave::Cave cave = cave::load_cave(args.file, args.start);
+  const MeshFacts facts = mesh_facts(cave.scene.mesh());
+  const Vec3 start = cave.description.start.position;
+  const double clearance_m = cave.scene.distance_to_rock(start, 100);
+  const evaluation::Reachable r =
+      evaluation::find_reachable(cave.scene.mesh(), start, args.options, cave.description.mesh_path);
+  const PassageFacts passages = passage_facts(cave.scene, r);
+  double lowest = 1e9, highest = -1e9;
+  r.flyable.for_each([&](const core::CellKey& k) {
+    const double z = (k.z + 0.5) * r.options.resolution_m;
+    lowest = std::min(lowest, z), highest = std::max(highest, z);
+  });
+  if (args.json) {
+    ordered_json j = json_of(args, facts);
+    j["start"] = {start.x(), start.y(), start.z()};
+    j["start_heading_rad"] = cave.description.start.heading_rad;
+    j["start_clearance_m"] = clearance_m;
+    j["resolution_m"] = r.options.resolution_m;
+    j["clearance_m"] = r.options.clearance_m;
+    j["free_volume_m3"] = r.free_volume_m3();
+    j["reachable_volume_m3"] = r.volume_m3();
+    j["fly_through_volume_m3"] = r.flyable_volume_m3();
+    j["fly_through_heights_m"] = {lowest, highest};
+    j["width_m_p10_p50_p90"] = passages.width_m;
+    j["height_m_p10_p50_p90"] = passages.height_m;
+    std::printf("%s\n", j.dump(2).c_str());
+    return;
+  }
+  print_mesh(args, facts);
+  std::printf("  start              %.2f %.2f %.2f, %.2f m from rock\n", start.x(), start.y(), start.z(),
+              clearance_m);
+  std::printf("  free volume        %.0f m3, connected to the start, in cells of %g m\n", r.free_volume_m3(),
+              r.options.resolution_m);
+  std::printf("  reachable volume   %.0f m3, what coverage is measured by\n", r.volume_m3());
+  std::printf("  fly-through volume %.0f m3, at least %g m from rock, heights %.1f to %.1f m\n",
+              r.flyable_volume_m3(), r.options.clearance_m, lowest, highest);
+  std::printf("  width there        %.1f m; %.1f m and %.1f m at the 10th and 90th percentile\n",
+              passages.width_m[1], passages.width_m[0], passages.width_m[2]);
+  std::printf("  height there       %.1f m; %.1f m and %.1f m\n", passages.height_m[1], passages.height_m[0],
+              passages.height_m[2]);
+}
+
+std::string generate_footer() {
+  cave::CaveRecipe recipe;
+  core::OptionTable table;
+  describe(table, recipe);
+  std::string presets;
+  for (const std::string& name : cave::cave_presets()) {
+    const cave::CaveRecipe r = cave::cave_preset(name);
+    presets +=
+        text("  %-9s %6.0f m3, passages about %.1f m wide, %d loops, %d domes, %d shafts, %d chimneys\n",
+             name.c_str(), r.volume_m3, r.passage_width_m, static_cast<int>(r.loops),
+             static_cast<int>(r.domes), static_cast<int>(r.shafts), static_cast<int>(r.chimneys));
+  }
+  return "Examples:\n"
+         "  karst cave generate --preset small --seed 7 --out caves/demo\n"
+         "  karst cave generate --preset maze --set volume=9000 --set \"passage_width=4 m\" --out "
+         "caves/labyrinth\n\n"
+         "Presets:\n" +
+         presets + "\nKeys for --set, with the values of the preset medium:\n" + table.help() +
+         "\nThe same preset, keys and seed give the same cave.";
+}
+
+}  // namespace
+
+void add_cave_command(CLI::App& app) {
+  CLI::App* cave = app.add_subcommand("cave", "Make caves, and say what a cave is like");
+  cave->require_subcommand(1);
+
+  auto g = std::make_shared<GenerateArguments>();
+  CLI::App* make = cave->add_subcommand("generate", "Make a cave: writes OUT.ply and OUT.info");
+  make->add_option("--preset", g->preset, "The kind of cave to start from")->capture_default_str();
+  make->add_option("--seed", g->seed, "Another seed, another cave of the kind")->capture_default_str();
+  make->add_option("--out,-o", g->out, "Path of the cave without ending, such as caves/demo")->required();
+  make->add_option("--set", g->set, "A value of the recipe, key=value; any number of these")
+      ->allow_extra_args(false);
+  make->add_option("--format", g->format, "Of the mesh")
+      ->check(CLI::IsMember({"ply", "stl"}))
+      ->capture_default_str();
+  make->footer(generate_footer);
+  make->callback([g] { generate(*g); });
+
+  auto i = std::make_shared<InfoArguments>();
+  CLI::App* tell = cave->add_subcommand("info", "Size, start, clearance and reachable volume of a cave");
+  tell->add_option("file", i->file, "A cave's .info file, or a mesh")->required();
+  tell->add_option("--start", i->start, "\"x y z\", for a mesh or instead of the file's own");
+  tell->add_option("--resolution", i->options.resolution_m, "Edge of the map's cells, m")
+      ->check(CLI::Range(0.05, 1.0))
+      ->capture_default_str();
+  tell->add_option("--clearance", i->options.clearance_m, "Least distance to rock when flying, m")
+      ->check(CLI::Range(0.05, 5.0))
+      ->capture_default_str();
+  tell->add_flag("--json", i->json, "Write JSON");
+  tell->footer("Example:\n  karst cave info tunnel.stl --start \"1 2 1.5\"");
+  tell->callback([i] { info(*i); });
+}
+
+}  // namespace karst::tools
