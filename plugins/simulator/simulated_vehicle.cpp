@@ -84,7 +84,9 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
   append(track_, {now(), quadrotor_.state().T_world_body}, now());
   schedule_sensors();
   executive.at(now(), [this] {
-    log_.event(now(), "start", quadrotor_.state(), site_.pad ? "on a launch pad" : "on the floor");
+    log_.event(now(), "start", quadrotor_.state(),
+               std::string(site_.pad ? "on a launch pad" : "on the floor") + "; Embree " +
+                   cave::RayScene::device_config());
     log_truth();
     sink_->on_battery(quadrotor_.battery().status(now()));
     sink_->on_ground(now(), true);

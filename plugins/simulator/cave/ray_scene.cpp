@@ -14,7 +14,7 @@ using core::Vec3;
 using core::Vec3f;
 
 struct RayScene::Handles {
-  RTCDevice device = rtcNewDevice(kDevice);
+  RTCDevice device = rtcNewDevice(device_config());
   RTCScene scene = rtcNewScene(device);
   ~Handles() {
     rtcReleaseScene(scene);
@@ -62,6 +62,11 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 }
 
 }  // namespace
+
+const char* RayScene::device_config() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? "threads=1,isa=avx2"
+                                                                         : "threads=1,isa=sse4.2";
+}
 
 RayScene::RayScene(TriangleMesh mesh)
     : mesh_(std::make_unique<const TriangleMesh>(std::move(mesh))), handles_(std::make_unique<Handles>()) {
@@ -113,12 +118,10 @@ void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<Hit>
 }
 
 Hit RayScene::cast(const Ray& ray, float max_range_m) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRayHit r = to_embree(ray, 0, max_range_m);
-  rtcIntersect1(handles_->scene, &context, &r);
-  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return to_hit(r.ray.tfar, r.hit.primID, {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z}, ray.direction);
+  // A packet of one: rtcIntersect1 uses another kernel, whose ranges differ in the last bits.
+  Hit hit;
+  cast({&ray, 1}, max_range_m, {&hit, 1});
+  return hit;
 }
 
 double RayScene::ray_cast(const Vec3& from, const Vec3& direction, double max_range_m) const {
