@@ -45,13 +45,9 @@ struct CellBox {
 
 void count_around(const VoxelMap& map, double reach_m, FrontierCluster& c) {
   const CellBox box(map, c, reach_m);
-  std::uint32_t known = 0, free = 0;
-  map.for_each_in_box(box.low, box.high,
-                      [&](const CellKey&, Cell cell) { ++known, free += cell == Cell::free; });
-  const auto span = [](std::int32_t a, std::int32_t b) { return static_cast<std::uint32_t>(b - a + 1); };
-  c.free_cells = free;
-  c.unknown_cells =
-      span(box.low.x, box.high.x) * span(box.low.y, box.high.y) * span(box.low.z, box.high.z) - known;
+  const CellCounts counts = VoxelReader(map).count(box.low, box.high);
+  c.free_cells = counts.free;
+  c.unknown_cells = counts.unknown;
 }
 
 }  // namespace
@@ -68,29 +64,24 @@ Frontiers::Frontiers(const FrontierOptions& options) : options_(options) {}
 CellKey Frontiers::tile_of(const CellKey& k) const {
   return {floor_div(k.x, edge_), floor_div(k.y, edge_), floor_div(k.z, edge_)};
 }
-std::uint32_t Frontiers::bit_of(const CellKey& k, const CellKey& tile) const {
-  return static_cast<std::uint32_t>(((k.x - tile.x * edge_) * edge_ + k.y - tile.y * edge_) * edge_ + k.z -
-                                    tile.z * edge_);
+std::size_t Frontiers::row_of(const CellKey& k, const CellKey& t) const {
+  return static_cast<std::size_t>((k.x - t.x * edge_) * edge_ + k.y - t.y * edge_);
 }
-CellKey Frontiers::cell_of(std::uint32_t bit, const CellKey& tile) const {
-  const auto b = static_cast<std::int32_t>(bit);
-  return {tile.x * edge_ + b / (edge_ * edge_), tile.y * edge_ + b / edge_ % edge_,
-          tile.z * edge_ + b % edge_};
+std::uint64_t Frontiers::bit_of(const CellKey& k, const CellKey& t) const {
+  return std::uint64_t{1} << (k.z - t.z * edge_);
 }
 
 bool Frontiers::is_frontier(const CellKey& k) const {
   if (edge_ == 0) return false;
   const CellKey t = tile_of(k);
   const auto tile = tiles_.find(t);
-  if (tile == tiles_.end()) return false;
-  const std::uint32_t bit = bit_of(k, t);
-  return tile->second.frontier[bit >> 6] >> (bit & 63) & 1;
+  return tile != tiles_.end() && (tile->second.rows[row_of(k, t)] & bit_of(k, t)) != 0;
 }
 
 void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes) {
   if (changes.empty()) return;
   if (edge_ == 0)
-    edge_ = std::max(1, static_cast<std::int32_t>(std::lround(options_.tile_m / map.resolution_m())));
+    edge_ = std::clamp(static_cast<std::int32_t>(std::lround(options_.tile_m / map.resolution_m())), 1, 64);
   std::set<std::uint32_t> stale;  // clusters to count around again
   for (const CellKey& t : update_cells(map, changes)) {
     Tile& tile = tiles_.at(t);
@@ -132,10 +123,8 @@ std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<cons
     dirty.push_back(t);
     if (now == before) continue;
     Tile& tile = tiles_[t];
-    const auto cells = static_cast<std::size_t>(edge_) * edge_ * edge_;
-    if (tile.frontier.empty()) tile.frontier.resize((cells + 63) / 64);
-    const std::uint32_t bit = bit_of(k, t);
-    tile.frontier[bit >> 6] ^= std::uint64_t{1} << (bit & 63);
+    if (tile.rows.empty()) tile.rows.resize(static_cast<std::size_t>(edge_) * edge_);
+    tile.rows[row_of(k, t)] ^= bit_of(k, t);
     cell_count_ = now ? cell_count_ + 1 : cell_count_ - 1;
   }
   sort_unique(dirty);
@@ -143,37 +132,47 @@ std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<cons
 }
 
 /// The tile's frontier cells as 26-connected components, in the order of their lowest cells.
-std::vector<Frontiers::Part> Frontiers::components(const CellKey& tile) const {
-  std::vector<std::uint64_t> left = tiles_.at(tile).frontier;
+std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
+  const std::vector<std::uint64_t>& rows = tiles_.at(t).rows;
+  std::vector<std::uint64_t> left = rows;
+  std::vector<std::uint32_t> part_of(rows.size() * 64);  // by row and z
+  std::vector<CellKey> stack;                            // cells within the tile, from 0 to edge_ - 1
   std::vector<Part> parts;
-  std::vector<CellKey> stack;
-  const auto take = [&](std::uint32_t bit) {
-    std::uint64_t& word = left[bit >> 6];
-    const std::uint64_t mask = std::uint64_t{1} << (bit & 63);
-    if ((word & mask) == 0) return;
-    word &= ~mask;
-    stack.push_back(cell_of(bit, tile));
-  };
-  const auto inside = [&](const CellKey& k) { return tile_of(k) == tile; };
-  for (std::uint32_t w = 0; w < left.size(); ++w) {
-    while (left[w] != 0) {
-      take(w * 64 + static_cast<std::uint32_t>(std::countr_zero(left[w])));
-      Part part;
-      while (!stack.empty()) {
-        const CellKey k = stack.back();
-        stack.pop_back();
-        part.cells.push_back(k);
-        for (std::int32_t dx = -1; dx <= 1; ++dx)
-          for (std::int32_t dy = -1; dy <= 1; ++dy)
-            for (std::int32_t dz = -1; dz <= 1; ++dz) {
-              const CellKey n = k + CellKey{dx, dy, dz};
-              if (inside(n)) take(bit_of(n, tile));
-            }
-      }
-      std::sort(part.cells.begin(), part.cells.end());
-      parts.push_back(std::move(part));
+  const auto take = [&](std::int32_t x, std::int32_t y, std::uint64_t cells) {
+    const auto row = static_cast<std::size_t>(x * edge_ + y);
+    cells &= left[row];
+    left[row] &= ~cells;
+    for (; cells != 0; cells &= cells - 1) {
+      const auto z = std::countr_zero(cells);
+      part_of[row * 64 + static_cast<std::size_t>(z)] = static_cast<std::uint32_t>(parts.size() - 1);
+      stack.push_back({x, y, z});
     }
-  }
+  };
+  const auto flood = [&] {
+    while (!stack.empty()) {
+      const CellKey k = stack.back();
+      stack.pop_back();
+      const std::uint64_t at = std::uint64_t{1} << k.z, around = at | at << 1 | at >> 1;
+      for (std::int32_t x = std::max(k.x - 1, 0); x <= std::min(k.x + 1, edge_ - 1); ++x)
+        for (std::int32_t y = std::max(k.y - 1, 0); y <= std::min(k.y + 1, edge_ - 1); ++y)
+          take(x, y, around);
+    }
+  };
+  // In the order of keys, so that each part's cells come out sorted.
+  for (std::int32_t x = 0; x < edge_; ++x)
+    for (std::int32_t y = 0; y < edge_; ++y) {
+      const auto row = static_cast<std::size_t>(x * edge_ + y);
+      for (std::uint64_t cells = rows[row]; cells != 0; cells &= cells - 1) {
+        const auto z = std::countr_zero(cells);
+        if (left[row] >> z & 1) {
+          parts.emplace_back();
+          take(x, y, std::uint64_t{1} << z);
+          flood();
+        }
+        parts[part_of[row * 64 + static_cast<std::size_t>(z)]].cells.push_back(
+            {t.x * edge_ + x, t.y * edge_ + y, t.z * edge_ + z});
+      }
+    }
   return parts;
 }
 

@@ -16,7 +16,7 @@
 namespace karst::core {
 
 struct FrontierOptions {
-  double tile_m = 3.2;
+  double tile_m = 3.2;           // at most 64 cells
   std::int64_t min_cells = 8;    // smaller clusters are noise, not openings
   double neighbourhood_m = 2.0;  // half edge of the box in which free and unknown cells are counted
 };
@@ -48,13 +48,13 @@ class Frontiers {
     std::vector<CellKey> cells;  // sorted
   };
   struct Tile {
-    std::vector<std::uint64_t> frontier;  // a bit a cell, z fastest
+    std::vector<std::uint64_t> rows;  // a word a row of cells along z, a bit a cell; rows by x, then y
     std::vector<Part> parts;
   };
 
   CellKey tile_of(const CellKey& k) const;
-  std::uint32_t bit_of(const CellKey& k, const CellKey& tile) const;
-  CellKey cell_of(std::uint32_t bit, const CellKey& tile) const;
+  std::size_t row_of(const CellKey& k, const CellKey& tile) const;
+  std::uint64_t bit_of(const CellKey& k, const CellKey& tile) const;
   std::vector<CellKey> update_cells(const VoxelMap& map, std::span<const CellChange> changes);
   std::vector<Part> components(const CellKey& tile) const;
   void name(std::vector<Part>& parts, const std::vector<Part>& former);

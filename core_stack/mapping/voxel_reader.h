@@ -4,6 +4,10 @@
 
 namespace karst::core {
 
+struct CellCounts {
+  std::uint32_t unknown = 0, free = 0, occupied = 0;
+};
+
 /// Each reader keeps its own memory, so several may read one map at once. Not to be used after the map has
 /// been written to.
 class VoxelReader {
@@ -16,6 +20,8 @@ class VoxelReader {
     if (id != id_) id_ = id, block_ = blocks_.find(id);
     return block_ == nullptr ? Cell::unknown : class_of(block_->log_odds[local_of(k)]);
   }
+  /// Counts the cells of a closed box by class, about a nanosecond a cell.
+  CellCounts count(const CellKey& low, const CellKey& high) const;
   const BlockTable& blocks() const { return blocks_; }
 
  private:
