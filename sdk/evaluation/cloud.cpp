@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
+#include <unordered_map>
 
 namespace karst::evaluation {
 namespace {
@@ -35,23 +35,50 @@ std::vector<OccupiedSpan> halved(std::vector<OccupiedSpan> spans) {
   return merge(std::move(spans), 0);
 }
 
-using KeySet = std::unordered_set<CellKey, core::CellKeyHash>;
+/// Cells as bits of 4x4x4 blocks, so that the neighbourhood of a cell takes eight look-ups.
+class CellBits {
+ public:
+  explicit CellBits(const std::vector<OccupiedSpan>& points) {
+    for (const OccupiedSpan& p : points) blocks_[block_of(p.key)] |= bit_of(p.key);
+  }
+
+  /// Calls visit(dx, dy, dz) for the cells within two of `k` in each axis.
+  template <class Visit>
+  void for_neighbours(const CellKey& k, const Visit& visit) const {
+    const CellKey low = block_of(k + CellKey{-2, -2, -2});
+    std::array<std::uint64_t, 8> near{};
+    for (int i = 0; i < 8; ++i) {
+      const auto found = blocks_.find(low + CellKey{i & 1, i >> 1 & 1, i >> 2});
+      if (found != blocks_.end()) near[static_cast<std::size_t>(i)] = found->second;
+    }
+    for (int dz = -2; dz <= 2; ++dz)
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx) {
+          const CellKey cell = k + CellKey{dx, dy, dz}, block = block_of(cell);
+          const int i = (block.x - low.x) + 2 * (block.y - low.y) + 4 * (block.z - low.z);
+          if (near[static_cast<std::size_t>(i)] & bit_of(cell)) visit(dx, dy, dz);
+        }
+  }
+
+ private:
+  static CellKey block_of(const CellKey& k) { return {k.x >> 2, k.y >> 2, k.z >> 2}; }
+  static std::uint64_t bit_of(const CellKey& k) {
+    return std::uint64_t{1} << ((k.x & 3) | (k.y & 3) << 2 | (k.z & 3) << 4);
+  }
+  std::unordered_map<CellKey, std::uint64_t, core::CellKeyHash> blocks_;
+};
 
 /// Normal of the plane through the cells nearby: the axis along which they spread least.
-Vec3 surface_normal(const KeySet& cells, const CellKey& k) {
-  constexpr int kReach = 2;
+Vec3 surface_normal(const CellBits& cells, const CellKey& k) {
   Vec3 sum = Vec3::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   double n = 0;
-  for (int dz = -kReach; dz <= kReach; ++dz)
-    for (int dy = -kReach; dy <= kReach; ++dy)
-      for (int dx = -kReach; dx <= kReach; ++dx) {
-        if (!cells.contains(k + CellKey{dx, dy, dz})) continue;
-        const Vec3 d(dx, dy, dz);
-        sum += d;
-        squares += d * d.transpose();
-        n += 1;
-      }
+  cells.for_neighbours(k, [&](int dx, int dy, int dz) {
+    const Vec3 d(dx, dy, dz);
+    sum += d;
+    squares += d * d.transpose();
+    n += 1;
+  });
   const Eigen::Matrix3d covariance = squares / n - (sum / n) * (sum / n).transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
@@ -67,9 +94,7 @@ Cloud make_cloud(const std::vector<OccupiedSpan>& growth, double resolution_m, s
     cloud.points = halved(std::move(cloud.points));
     cloud.cell_m *= 2;
   }
-  KeySet cells;
-  cells.reserve(cloud.points.size());
-  for (const OccupiedSpan& p : cloud.points) cells.insert(p.key);
+  const CellBits cells(cloud.points);
   for (const OccupiedSpan& p : cloud.points) {
     Vec3 normal = surface_normal(cells, p.key);
     if (!seen_from.empty()) {

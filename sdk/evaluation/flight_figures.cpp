@@ -37,12 +37,12 @@ class RootMeanSquare {
 
 std::optional<double> standing_share(const RunRecord& run) {
   std::vector<double> t_s, speed;
-  if (run.truth_table.column("t_s") && run.truth_table.column("speed_mps")) {
-    t_s = *run.truth_table.column("t_s");
+  if (run.truth_table.times() && run.truth_table.column("speed_mps")) {
+    t_s = *run.truth_table.times();
     speed = *run.truth_table.column("speed_mps");
-  } else if (run.telemetry.column("t_s") && run.telemetry.column("vx") && run.telemetry.column("vy") &&
+  } else if (run.telemetry.times() && run.telemetry.column("vx") && run.telemetry.column("vy") &&
              run.telemetry.column("vz")) {
-    t_s = *run.telemetry.column("t_s");
+    t_s = *run.telemetry.times();
     for (std::size_t i = 0; i < t_s.size(); ++i)
       speed.push_back(Vec3((*run.telemetry.column("vx"))[i], (*run.telemetry.column("vy"))[i],
                            (*run.telemetry.column("vz"))[i])
@@ -59,38 +59,31 @@ std::optional<double> standing_share(const RunRecord& run) {
 }
 
 std::optional<double> min_clearance_m(const RunRecord& run) {
-  const auto* t_s = run.truth_table.column("t_s");
+  const auto* t_s = run.truth_table.times();
   const auto* clearance = run.truth_table.column("clearance_m");
   if (!t_s || !clearance) return std::nullopt;
   std::optional<double> least;
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const double c = (*clearance)[i];
-    if (std::isfinite(c) && within(run, (*t_s)[i], {"explore", "home"}))
+    if (std::isfinite(c) && within(run, (*t_s)[i], {"look", "explore", "home"}))
       least = std::min(least.value_or(c), c);
   }
   return least;
 }
 
-/// Separate touches: times at which the truth's contact column rises, or contact events, but at least the
-/// one that ended the flight.
+/// Touches the simulator saw, or, without its record, the one that ended the flight, if one did.
 std::optional<std::int64_t> contacts(const RunRecord& run) {
-  const auto* column = run.truth_table.column("contact");
   const nlohmann::json* outcome = run.last_event("outcome");
-  if (!column && run.events.empty()) return std::nullopt;
+  if (run.truth_events.empty() && !outcome) return std::nullopt;
   std::int64_t count = 0;
-  if (column) {
-    for (std::size_t i = 0; i < column->size(); ++i)
-      count += (*column)[i] > 0.5 && (i == 0 || !((*column)[i - 1] > 0.5));
-  } else {
-    for (const auto& e : run.events) count += e["kind"] == "contact";
-  }
+  for (const auto& e : run.truth_events) count += event_text(e, "event") == "contact";
   const bool ended_so = outcome && event_text(*outcome, "outcome") == "contact";
   return std::max<std::int64_t>(count, ended_so ? 1 : 0);
 }
 
 /// Where the vehicle truly was against where the controller wanted it, over the flight.
 std::optional<double> tracking_rms_m(const RunRecord& run) {
-  const auto* t_s = run.telemetry.column("t_s");
+  const auto* t_s = run.telemetry.times();
   const auto* x = run.telemetry.column("ref_x");
   const auto* y = run.telemetry.column("ref_y");
   const auto* z = run.telemetry.column("ref_z");
@@ -99,7 +92,8 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const Vec3 reference((*x)[i], (*y)[i], (*z)[i]);
     if ((*t_s)[i] < run.truth.front().t_s || (*t_s)[i] > run.truth.back().t_s) continue;
-    if (!reference.allFinite() || !within(run, (*t_s)[i], {"takeoff", "explore", "home", "land"})) continue;
+    if (!reference.allFinite() || !within(run, (*t_s)[i], {"takeoff", "look", "explore", "home", "land"}))
+      continue;
     rms.add((pose_at(run.truth, (*t_s)[i]).position - reference).norm());
   }
   return rms.value();
@@ -132,8 +126,9 @@ std::optional<double> last_finite(const std::vector<double>* column) {
 }
 
 double flight_begin_s(const RunRecord& run) {
-  if (!run.phases.empty()) return run.phases.front().begin_s;
-  const auto* t_s = run.telemetry.column("t_s");
+  for (const Phase& p : run.phases)
+    if (p.name != "standby") return p.begin_s;
+  const auto* t_s = run.telemetry.times();
   return t_s && !t_s->empty() ? t_s->front() : 0.0;
 }
 

@@ -16,7 +16,7 @@ struct FlightFigures {
 
 FlightFigures flight_figures(const RunRecord& run);
 
-/// When the vehicle took off: the first phase's begin, or the first telemetry row.
+/// When the vehicle took off: the begin of the first phase after standby, or the first telemetry row.
 double flight_begin_s(const RunRecord& run);
 
 /// The last finite value of a column; none if there is no such column or value.

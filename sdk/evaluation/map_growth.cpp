@@ -10,6 +10,12 @@ namespace karst::evaluation {
 namespace {
 
 constexpr std::size_t kRecordBytes = 16;
+constexpr std::int32_t kFarthestCell = 1 << 24;  // thousands of kilometres: no cave, but a damaged file
+
+bool plausible(const core::CellKey& k) {
+  const auto near = [](std::int32_t v) { return v > -kFarthestCell && v < kFarthestCell; };
+  return near(k.x) && near(k.y) && near(k.z);
+}
 
 std::int32_t little_endian(const char* bytes) {
   std::array<unsigned char, 4> b;
@@ -36,11 +42,16 @@ std::vector<OccupiedSpan> read_map_growth(const std::filesystem::path& file,
     std::int32_t t_ms;
   };
   std::vector<Change> changes;
+  std::size_t implausible = 0;
   for (std::size_t i = 0; i + kRecordBytes <= bytes.size(); i += kRecordBytes) {
     const char* p = bytes.data() + i;
-    changes.push_back(
-        {{little_endian(p), little_endian(p + 4), little_endian(p + 8)}, little_endian(p + 12)});
+    const core::CellKey key{little_endian(p), little_endian(p + 4), little_endian(p + 8)};
+    if (plausible(key)) changes.push_back({key, little_endian(p + 12)});
+    implausible += !plausible(key);
   }
+  if (implausible > 0)
+    problems.push_back(file.filename().string() + ": " + std::to_string(implausible) +
+                       " records name cells out of this world; left out");
   // The file is in the order of time: a stable sort by key keeps each cell's changes in that order.
   std::stable_sort(changes.begin(), changes.end(),
                    [](const Change& a, const Change& b) { return a.key < b.key; });

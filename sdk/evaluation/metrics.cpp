@@ -71,7 +71,7 @@ Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& t
 /// When the coverage first reached `share`. Only the free volume is recorded over time; the part of it that
 /// lies in R is taken to grow in proportion, and is exact at the end.
 std::optional<double> time_of_coverage(const RunRecord& run, const Volume& volume, double share) {
-  const auto* t_s = run.telemetry.column("t_s");
+  const auto* t_s = run.telemetry.times();
   const auto* explored = run.telemetry.column("explored_m3");
   const auto final_m3 = last_finite(explored);
   if (!t_s || !volume.coverage || !final_m3 || *final_m3 <= 0) return std::nullopt;

@@ -1,25 +1,43 @@
 #include "sdk/evaluation/poses.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "sdk/evaluation/lines.h"
 
 namespace karst::evaluation {
 
+namespace {
+
+/// The eight finite numbers of a line; false if it holds anything else.
+bool parse_line(const std::string& line, std::array<double, 8>& v) {
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  const auto skip = [&] {
+    while (at < end && (*at == ' ' || *at == '\t')) ++at;
+  };
+  for (double& number : v) {
+    skip();
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || !std::isfinite(number)) return false;
+    at = next;
+  }
+  skip();
+  return at == end;
+}
+
+}  // namespace
+
 std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector<std::string>& problems) {
   std::vector<StampedPose> poses;
   const std::vector<std::string> lines = read_lines(file, problems);
   BadLines bad(file);
+  std::array<double, 8> v;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].empty() || lines[i][0] == '#') continue;
-    std::istringstream words(lines[i]);
-    std::string word;
-    double v[8];
-    int n = 0;
-    while (n < 8 && words >> word && parse_number(word, v[n]) && std::isfinite(v[n])) ++n;
-    if (n < 8 || words >> word) {
+    if (!parse_line(lines[i], v)) {
       bad.add(i + 1, "is not eight numbers");
       continue;
     }

@@ -4,6 +4,7 @@
 #include "sdk/evaluation/decimate.h"
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/report_goals.h"
 #include "sdk/evaluation/report_scene.h"
 
 namespace karst::evaluation {
@@ -29,13 +30,13 @@ ordered_json curve(const std::vector<double>* t_s, const std::vector<double>* y,
 
 ordered_json curves(const RunRecord& run) {
   const Table& t = run.telemetry;
-  const auto* t_s = t.column("t_s");
+  const auto* t_s = t.times();
   std::vector<double> speed;
   if (t_s && t.column("vx") && t.column("vy") && t.column("vz"))
     for (std::size_t i = 0; i < t_s->size(); ++i)
       speed.push_back(std::hypot((*t.column("vx"))[i], (*t.column("vy"))[i], (*t.column("vz"))[i]));
-  const auto* truth_s = run.truth_table.column("t_s");
-  const auto* decision_s = run.decisions.column("t_s");
+  const auto* truth_s = run.truth_table.times();
+  const auto* decision_s = run.decisions.times();
   return {{"volume", curve(t_s, t.column("explored_m3"))},
           {"speed", curve(t_s, &speed)},
           {"battery", curve(t_s, t.column("battery_fraction"), 100)},
@@ -43,45 +44,6 @@ ordered_json curves(const RunRecord& run) {
           {"clearance", curve(truth_s, run.truth_table.column("clearance_m"))},
           {"decide", curve(decision_s, run.decisions.column("decide_ms"))},
           {"plan", curve(decision_s, run.decisions.column("plan_ms"))}};
-}
-
-bool is_end_of_goal(const std::string& state) {
-  return state == "reached" || state == "unreachable" || state == "abandoned" || state == "superseded";
-}
-
-/// Accepted goals with the time and manner of their end. A goal ends at the latest with the next one or with
-/// the exploration.
-ordered_json goals(const RunRecord& run) {
-  ordered_json list = ordered_json::array();
-  const auto end = [&](double t_s, const std::string& fate, const std::string& reason) {
-    if (list.empty() || !list.back()["until"].is_null()) return;
-    list.back()["until"] = t_s;
-    list.back()["fate"] = fate;
-    list.back()["fate_reason"] = reason;
-  };
-  for (const json& e : run.events) {
-    const double t_s = e["t"];
-    const std::string state = event_text(e, "state");
-    if (e["kind"] == "phase" && event_text(e, "phase") != "explore") end(t_s, "", "");
-    if (e["kind"] != "goal") continue;
-    if (is_end_of_goal(state)) end(t_s, state, event_text(e, "reason"));
-    if (state != "accepted") continue;
-    end(t_s, "superseded", "");
-    const auto position = e.find("position");
-    const bool placed =
-        position != e.end() && position->is_array() && position->size() == 3 &&
-        std::all_of(position->begin(), position->end(), [](const json& v) { return v.is_number(); });
-    list.push_back(
-        {{"t", t_s},
-         {"until", nullptr},
-         {"position", placed ? ordered_json(*position) : ordered_json(nullptr)},
-         {"heading", event_number(e, "heading") ? ordered_json(*event_number(e, "heading")) : nullptr},
-         {"score", event_number(e, "score") ? ordered_json(*event_number(e, "score")) : nullptr},
-         {"why", event_text(e, "why")},
-         {"fate", ""},
-         {"fate_reason", ""}});
-  }
-  return list;
 }
 
 /// Events for the table: without the bulk that is drawn instead.
@@ -93,6 +55,15 @@ ordered_json event_rows(const RunRecord& run) {
     for (const char* bulk : {"points", "from", "to"}) row.erase(bulk);
     rows.push_back(std::move(row));
   }
+  for (const json& e : run.truth_events) {
+    const std::string detail = event_text(e, "detail");
+    rows.push_back({{"t", e["time_s"]},
+                    {"kind", "truth"},
+                    {"text", event_text(e, "event") + (detail.empty() ? "" : ": " + detail)}});
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const ordered_json& a, const ordered_json& b) {
+    return a["t"].get<double>() < b["t"].get<double>();
+  });
   return rows;
 }
 
@@ -111,7 +82,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   for (const Setting& s : run.settings) d["settings"].push_back({s.key, s.value});
   d["timing"] = run.timing;
   d["curves"] = curves(run);
-  d["goals"] = goals(run);
+  d["goals"] = goal_spans(run);
   d["events"] = event_rows(run);
   d["cloud"] = scene_cloud(run, duration_s, problems);
   d["track"] = scene_track(run.estimate.empty() ? run.truth : run.estimate);

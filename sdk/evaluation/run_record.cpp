@@ -35,16 +35,19 @@ std::vector<Setting> read_settings(const fs::path& file, std::vector<std::string
   return settings;
 }
 
-std::vector<json> read_events(const fs::path& file, std::vector<std::string>& problems) {
+/// One JSON object a line, each with a number and a text of the given names.
+std::vector<json> read_events(const fs::path& file, const char* time, const char* kind,
+                              std::vector<std::string>& problems) {
   std::vector<json> events;
   BadLines bad(file);
   const std::vector<std::string> lines = read_lines(file, problems);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     json event = json::parse(lines[i], nullptr, false);
-    const bool valid = event.is_object() && event.contains("t") && event["t"].is_number() &&
-                       event.contains("kind") && event["kind"].is_string();
+    const bool valid = event.is_object() && event_number(event, time) && !event_text(event, kind).empty();
     if (valid) events.push_back(std::move(event));
-    if (!valid) bad.add(i + 1, "is not an event (a JSON object with \"t\" and \"kind\")");
+    if (!valid)
+      bad.add(i + 1,
+              std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind + "\")");
   }
   bad.report(problems);
   return events;
@@ -72,7 +75,7 @@ std::vector<Phase> find_phases(const RunRecord& run) {
     if (e["kind"] == "outcome" && !phases.empty()) enter("done", e["t"]);
   }
   if (phases.empty()) {
-    const auto* t_s = run.telemetry.column("t_s");
+    const auto* t_s = run.telemetry.times();
     const auto names = run.telemetry.text.find("phase");
     if (t_s && names != run.telemetry.text.end())
       for (std::size_t i = 0; i < t_s->size(); ++i) enter(names->second[i], (*t_s)[i]);
@@ -129,7 +132,7 @@ double RunRecord::last_time_s() const {
   double last = 0;
   for (const json& e : events) last = std::max(last, e["t"].get<double>());
   for (const Table* table : {&telemetry, &truth_table})
-    if (const auto* t_s = table->column("t_s"); t_s && !t_s->empty()) last = std::max(last, t_s->back());
+    if (const auto* t_s = table->times(); t_s && !t_s->empty()) last = std::max(last, t_s->back());
   if (!estimate.empty()) last = std::max(last, estimate.back().t_s);
   return last;
 }
@@ -146,7 +149,8 @@ RunRecord read_run(const fs::path& run_dir) {
   note_absent(run, "map_growth.bin", "the map cannot be drawn", problems);
   note_absent(run, "map.bt", "the run did not come to its end; the volume is the telemetry's last", problems);
   run.settings = read_settings(run_dir / "mission.info", problems);
-  run.events = read_events(run_dir / "events.jsonl", problems);
+  run.events = read_events(run_dir / "events.jsonl", "t", "kind", problems);
+  run.truth_events = read_events(run_dir / "truth_events.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);
   run.truth = read_tum(run_dir / "ground_truth.tum", problems);
   run.telemetry = read_table(run_dir / "telemetry.csv", {"phase"}, problems);

@@ -18,14 +18,15 @@ struct Setting {
 };
 
 struct Phase {
-  std::string name;  // takeoff, explore, home, land
+  std::string name;  // standby, takeoff, look, explore, home, land
   double begin_s = 0, end_s = 0;
 };
 
 struct RunRecord {
   std::filesystem::path directory;
-  std::vector<Setting> settings;       // mission.info, in its order
-  std::vector<nlohmann::json> events;  // each an object with "t" and "kind", in the file's order
+  std::vector<Setting> settings;             // mission.info, in its order
+  std::vector<nlohmann::json> events;        // each an object with "t" and "kind", in the file's order
+  std::vector<nlohmann::json> truth_events;  // the simulator's: each an object with "time_s" and "event"
   std::vector<StampedPose> estimate, truth;
   Table telemetry, truth_table, decisions;
   std::vector<OccupiedSpan> growth;

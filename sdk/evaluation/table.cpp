@@ -23,6 +23,8 @@ const std::vector<double>* Table::column(const std::string& name) const {
   return found == numbers.end() ? nullptr : &found->second;
 }
 
+const std::vector<double>* Table::times() const { return column("t_s") ? column("t_s") : column("time_s"); }
+
 Table read_table(const std::filesystem::path& file, const std::vector<std::string>& text_columns,
                  std::vector<std::string>& problems) {
   Table table;

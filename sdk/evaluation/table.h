@@ -14,6 +14,8 @@ struct Table {
 
   /// The column, or null if the file has none of this name.
   const std::vector<double>* column(const std::string& name) const;
+  /// The times in seconds: column t_s or time_s.
+  const std::vector<double>* times() const;
 };
 
 /// An absent file is an empty table. What cannot be read is left out and one sentence for each cause, with

@@ -1,7 +1,8 @@
 // The 3D view: camera, cells, flight, and the controls over it.
 
-/** The frame that shows all `points` from unit vector `direction` (from target to camera): { target, distance }. */
-function frameFor(points, direction, up, camera) {
+/** The frame that shows all `points` from unit vector `direction` (from target to camera) in the middle `clear`
+ *  share of the width: { target, distance }. */
+function frameFor(points, direction, up, camera, clear) {
   const right = new THREE.Vector3().crossVectors(up, direction).normalize();
   const above = new THREE.Vector3().crossVectors(direction, right);
   const range = (axis) => {
@@ -11,7 +12,7 @@ function frameFor(points, direction, up, camera) {
   };
   const target = right.clone().multiplyScalar(range(right)).addScaledVector(above, range(above))
     .addScaledVector(direction, range(direction));
-  const tanV = Math.tan(THREE.Math.degToRad(camera.fov / 2)), tanH = tanV * camera.aspect;
+  const tanV = Math.tan(THREE.Math.degToRad(camera.fov / 2)), tanH = tanV * camera.aspect * clear;
   let distance = 5;
   for (const p of points) {
     const d = p.clone().sub(target);
@@ -81,7 +82,7 @@ function makeRenderer(box) {
   }
 }
 
-/** { setTime(t) }; shows what there is, and says so where there is nothing. */
+/** { setTime(t), setView(name) }; shows what there is, and says so where there is nothing. */
 function startCaveView() {
   const box = element("view"), empty = element("view-empty");
   const refuse = (text) => {
@@ -89,7 +90,7 @@ function startCaveView() {
     empty.hidden = false;
     element("view-controls").hidden = element("scale").hidden = true;
     element("view-controls").style.display = "none";
-    return { setTime() {} };
+    return { setTime() {}, setView() {} };
   };
   if (!data.cloud && !data.track) return refuse("This run recorded neither a map nor a trajectory.");
   const renderer = makeRenderer(box);
@@ -111,11 +112,12 @@ function startCaveView() {
   const across = broadside(points);
   const directions = {
     oblique: across.clone().multiplyScalar(0.75).setZ(0.66).normalize(),
-    top: new THREE.Vector3(across.x * 0.002, across.y * 0.002, 1).normalize(),
+    top: new THREE.Vector3(0, -0.002, 1).normalize(),  // north up
     side: across.clone().setZ(0.02).normalize(),
   };
 
-  let size = [1, 1], frame = 0, follow = false, view = "oblique";
+  const beside = element("view-controls").offsetWidth + 10;
+  let size = [1, 1], frame = 0, follow = false, touched = false, view = "oblique";
   const draw = () => {
     frame = 0;
     const distance = camera.position.distanceTo(controls.target);
@@ -132,20 +134,9 @@ function startCaveView() {
   };
   const redraw = () => { if (!frame) frame = requestAnimationFrame(draw); };
 
-  const resize = () => {
-    size = [box.clientWidth, box.clientHeight];
-    renderer.setSize(...size);
-    camera.aspect = size[0] / size[1];
-    camera.updateProjectionMatrix();
-    flight.setResolution(...size);
-    if (cloud) {
-      cloud.pixelsPerMetre = size[1] * window.devicePixelRatio / (2 * Math.tan(THREE.Math.degToRad(camera.fov / 2)));
-      cloud.uniforms.pixels.value = cloud.pixelsPerMetre * data.cloud.cell_m;
-    }
-    redraw();
-  };
   const setView = (name) => {
     view = name;
+    touched = false;
     follow = name === "follow";
     const pose = flight.now;
     if (follow) {
@@ -153,7 +144,7 @@ function startCaveView() {
       camera.position.copy(pose.position)
         .add(new THREE.Vector3(-11 * Math.cos(pose.heading), -11 * Math.sin(pose.heading), 6));
     } else {
-      const { target, distance } = frameFor(points, directions[name], camera.up, camera);
+      const { target, distance } = frameFor(points, directions[name], camera.up, camera, 1 - beside / size[0]);
       controls.target.copy(target);
       camera.position.copy(target).addScaledVector(directions[name], distance);
     }
@@ -162,6 +153,20 @@ function startCaveView() {
     redraw();
   };
 
+  const resize = () => {
+    size = [box.clientWidth, box.clientHeight];
+    renderer.setSize(...size);
+    camera.setViewOffset(...size, -beside / 2, 0, ...size);  // the middle of what the controls leave free
+    camera.aspect = size[0] / size[1];
+    camera.updateProjectionMatrix();
+    flight.setResolution(...size);
+    if (cloud) {
+      cloud.pixelsPerMetre = size[1] * window.devicePixelRatio / (2 * Math.tan(THREE.Math.degToRad(camera.fov / 2)));
+      cloud.uniforms.pixels.value = cloud.pixelsPerMetre * data.cloud.cell_m;
+    }
+    if (!touched && !follow) setView(view);  // the frame depends on the window's shape
+    draw();  // at once: setting the size has emptied the canvas
+  };
   const recolour = () => {
     const background = new THREE.Color(cssColour("--stage"));
     scene.background = background;
@@ -170,14 +175,15 @@ function startCaveView() {
   };
   themeListeners.push(recolour);
   controls.addEventListener("change", redraw);
+  controls.addEventListener("start", () => { touched = true; });
   new ResizeObserver(resize).observe(box);
   for (const b of document.querySelectorAll("[data-view]")) b.addEventListener("click", () => setView(b.dataset.view));
   connectControls(cloud, flight, grid, step, redraw);
-  resize();
-  setView(view);
   recolour();
+  resize();
 
   return {
+    setView(name) { if (name === "follow" || directions[name]) setView(name); },
     setTime(t) {
       const before = flight.now.position.clone();
       if (cloud) cloud.setTime(t);

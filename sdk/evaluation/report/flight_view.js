@@ -91,9 +91,7 @@ function phaseAt(t) {
   return data.phases.length && t >= data.phases[data.phases.length - 1][2] ? "done" : "";
 }
 function goalAt(t) {
-  const i = lastAt(data.goals.length, (k) => data.goals[k].t, t);
-  const goal = i < 0 ? null : data.goals[i];
-  return goal && (goal.until === null || t < goal.until) ? goal : null;
+  return data.goals.find((g) => g.t <= t && (g.until === null || t < g.until)) || null;
 }
 
 /** The policy's drawings of one moment as an object, and its texts as labels. */

@@ -5,5 +5,8 @@ startMomentPanel();
 startPlots();
 const caveView = startCaveView();
 moment.listeners.push((t) => caveView.setTime(t));
-setMoment(data.duration_s);
+const asked = new URLSearchParams(location.hash.slice(1));  // report.html#t=63.5&view=top&theme=dark
+if (asked.get("theme")) setTheme(asked.get("theme") === "dark");
+setMoment(asked.has("t") ? Number(asked.get("t")) || 0 : data.duration_s);
+if (asked.get("view")) caveView.setView(asked.get("view"));
 document.documentElement.dataset.ready = "yes";

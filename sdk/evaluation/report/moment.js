@@ -36,11 +36,15 @@ function decisionPanel(t) {
   if (i < 0) return [make("div", { className: "quiet" }, "none yet")];
   const d = decisions[i];
   return [
-    rows([["number", String(d.sequence ?? i + 1)], ["at", clockText(d.t)], ["outcome", String(d.outcome ?? "–")],
+    rows([["number", String(d.sequence ?? i + 1)], ["at", clockText(d.t)],
+          ["by", d.policy && d.policy !== data.metrics.policy ? d.policy : null], ["outcome", String(d.outcome ?? "–")],
           ["goals offered", String(d.goals ?? "–")], ["frontiers", String(d.frontiers ?? "–")]]),
     make("div", {}, d.reason || ""),
+    ...refusals.filter((e) => e.t === d.t).map((e) =>
+      make("div", { className: "refused" }, `refused: ${e.why || "a goal"}`, make("br"), e.reason || "")),
   ];
 }
+const refusals = data.events.filter((e) => e.kind === "goal" && e.state === "rejected");
 const decisions = data.events.filter((e) => e.kind === "decision");
 
 function startMomentPanel() {

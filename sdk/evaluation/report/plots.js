@@ -20,13 +20,15 @@ function timeStep(duration) {
   return [5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200].find((s) => duration / s <= 8) || 14400;
 }
 
+function axisText(v) { return Math.abs(v) >= 1e4 ? numberText(v) : String(Number(v.toPrecision(3))); }
+
 function axes(plot) {
   const grid = { color: cssColour("--line"), borderColor: cssColour("--line") }, ticks = { color: cssColour("--quiet") };
   const scales = {
     x: { type: "linear", min: 0, max: data.duration_s, grid, title: { display: true, text: "time, min:s", color: ticks.color, padding: 0 },
          ticks: { ...ticks, stepSize: timeStep(data.duration_s), maxRotation: 0, includeBounds: false, callback: clockText } },
     y: { type: plot.log ? "logarithmic" : "linear", min: plot.log ? undefined : 0, max: plot.max, suggestedMax: plot.suggestedMax,
-         grid, ticks: { ...ticks, maxTicksLimit: 6, callback: (v) => plot.log && Math.log10(v) % 1 ? null : numberText(v, 2) } },
+         grid, ticks: { ...ticks, maxTicksLimit: 6, callback: (v) => plot.log && Math.log10(v) % 1 ? null : axisText(v) } },
   };
   if (plot.percentOf)
     scales.share = { type: "linear", position: "right", min: 0, grid: { drawOnChartArea: false, borderColor: grid.borderColor },

@@ -1,7 +1,7 @@
 // Header, events, metrics, timing and settings.
 
 function isTrouble(e) {
-  return e.kind === "safety" || e.kind === "contact" || e.kind === "overrun" ||
+  return e.kind === "safety" || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
     (e.kind === "goal" && /rejected|unreachable|abandoned/.test(e.state)) ||
     (e.kind === "outcome" && e.outcome !== "landed");
 }
@@ -11,14 +11,14 @@ function eventText(e) {
   const place = (p) => Array.isArray(p) ? "(" + p.map((v) => Number(v).toFixed(1)).join(", ") + ")" : "";
   const because = (text) => text ? ": " + text : "";
   switch (e.kind) {
-    case "phase": return `phase ${e.phase}`;
+    case "phase": return e.phase + because(e.reason);
     case "goal": return [`${e.state} ${place(e.position)}`, e.why, e.reason].filter(Boolean).join(" – ");
-    case "decision": return `no. ${e.sequence ?? "–"}: ${e.outcome}, ${e.goals ?? 0} goals, ${e.frontiers ?? "–"} frontiers${because(e.reason)}`;
+    case "decision": return `${e.outcome}, ${e.goals ?? 0} goals, ${e.frontiers ?? "–"} frontiers${because(e.reason)}`;
     case "plan": return `path of ${numberText(e.length)} m`;
     case "homing": return `flies home${because(e.reason)} (${numberText(e.distance)} m, ${numberText(e.seconds_left)} s left)`;
     case "safety": return `${e.action}${because(e.reason)}`;
     case "outcome": return `${e.outcome}${because(e.reason)}`;
-    case "log": return e.text || "";
+    case "log": case "truth": return e.text || "";
     default: {
       const { t, kind, ...rest } = e;
       return Object.entries(rest).map(([k, v]) => `${k} ${typeof v === "object" ? JSON.stringify(v) : v}`).join(", ");
@@ -43,7 +43,7 @@ function showHeader() {
     ["least clearance", unit(m.min_clearance_m, "m", 2)], ["contacts", unit(m.contacts, "", 3)],
     ["landing error", unit(m.landing_error_m, "m", 2)], ["map error, mean", unit(m.map_error_mean_m, "m", 2)],
     ["battery left", share(m.battery_left)],
-    ["goals taken / refused", [`${m.goals_accepted ?? "–"} / ${m.goals_rejected ?? "–"}`, ""]],
+    ["goals (refused)", [`${m.goals_accepted ?? "–"}`, `(${m.goals_rejected ?? "–"})`]],
   ];
   for (const [name, [value, u]] of figures)
     element("figures").append(make("div", { className: "figure" },
@@ -97,7 +97,7 @@ function showTiming() {
   const rows = make("table", {}, make("tr", {}, ...["job", "count", "p50 ms", "p99 ms", "max ms"].map((t) => make("th", {}, t))));
   for (const [name, j] of Object.entries(timing.jobs || {})) {
     const cell = (v, digits) => make("td", { className: "number" }, numberText(v, digits));
-    rows.append(make("tr", {}, make("td", {}, name), cell(j.count, 7), cell(j.p50_ms), cell(j.p99_ms), cell(j.max_ms)));
+    rows.append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, String(j.count ?? "–")), cell(j.p50_ms), cell(j.p99_ms), cell(j.max_ms)));
   }
   box.append(rows);
 }

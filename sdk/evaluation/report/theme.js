@@ -3,7 +3,7 @@ const colours = {
   explore: "#e8590c", home: "#56b4e9", other: "#8d96a0", plan: "#009e73", frontier: "#e07ab5", goal: "#ffd43b",
   truth: "#b197fc", blue: "#0072b2",
 };
-const ramp = ["#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"];
+const ramp = ["#2b57a5", "#4b679b", "#66758e", "#7f8384", "#989178", "#b19f68", "#cab055", "#e3c542", "#fde333"];
 
 const themeListeners = [];
 function isDark() { return document.documentElement.dataset.theme === "dark"; }
@@ -22,5 +22,5 @@ function startTheme() {
 }
 
 function phaseColour(name) {
-  return { explore: colours.explore, home: colours.home }[name] || colours.other;
+  return { look: "#f4a261", explore: colours.explore, home: colours.home }[name] || colours.other;
 }

@@ -40,11 +40,11 @@ function connectLayers(objects, redraw) {
       mark.style.background = mark.style.borderColor = colour;
       label.append(mark);
     }
-    label.append(name === "path" ? "path: exploring, " : name);
+    label.append(name === "path" ? "out" : name);
     if (name === "path") {
       const home = make("i");
       home.style.background = colours.home;
-      home.style.marginLeft = "4px";
+      home.style.marginLeft = "10px";
       label.append(home, "home");
     }
     element("layers").append(label);

@@ -1,0 +1,67 @@
+// The report's page in a real browser.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "sdk/evaluation/report.h"
+#include "tests/unit/evaluation/fake_run.h"
+
+namespace karst::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryDirectory;
+
+/// The page's DOM after its scripts ran in headless chromium, or "" if there is none.
+std::string dom_of(const fs::path& page) {
+  if (std::system("command -v chromium >/dev/null 2>&1") != 0) return "";
+  TemporaryDirectory profile;
+  const std::string command =
+      "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
+      "--disable-background-networking --disable-component-update --use-angle=swiftshader "
+      "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 --user-data-dir=" +
+      profile.path().string() + " --dump-dom file://" + page.string() + " 2>/dev/null";
+  std::FILE* pipe = popen(command.c_str(), "r");
+  std::string dom;
+  char buffer[65536];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) dom.append(buffer, n);
+  pclose(pipe);
+  return dom;
+}
+
+TEST(ReportInBrowser, ShowsTheFlightWithoutAnError) {
+  TemporaryDirectory dir;
+  test::FakeRunOptions small;
+  small.length_m = 36;
+  small.map_resolution_m = 0.5;
+  test::write_fake_run(dir.path(), small);
+  write_report(dir.path());
+  const std::string dom = dom_of(dir.path() / "report.html");
+  if (dom.empty()) GTEST_SKIP() << "skipped: no chromium";
+  const std::string root = dom.substr(0, dom.find("<head>"));
+  EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << root;
+  EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
+  const std::string body = dom.substr(dom.find("<body>"), dom.find("id=\"data\"") - dom.find("<body>"));
+  EXPECT_NE(body.find("lateral · winding_tunnel · seed 7"), std::string::npos);
+  EXPECT_NE(body.find("largest opening – not in known free space"), std::string::npos);
+  EXPECT_NE(body.find("Explored volume"), std::string::npos);
+  std::size_t canvases = 0;
+  for (std::size_t at = body.find("<canvas"); at != std::string::npos; at = body.find("<canvas", at + 1))
+    ++canvases;
+  EXPECT_EQ(canvases, 7u);  // the view and six plots
+}
+
+TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {
+  TemporaryDirectory dir;
+  write_report(dir.path());
+  const std::string dom = dom_of(dir.path() / "report.html");
+  if (dom.empty()) GTEST_SKIP() << "skipped: no chromium";
+  const std::string root = dom.substr(0, dom.find("<head>"));
+  EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << root;
+  EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
+  EXPECT_NE(dom.find("This run recorded neither a map nor a trajectory."), std::string::npos);
+}
+
+}  // namespace
+}  // namespace karst::evaluation
