@@ -4,30 +4,13 @@
 #include <bit>
 #include <cmath>
 
-#include "core_stack/common/error.h"
 #include "core_stack/planning/segment_rows.h"
 
 namespace karst::core {
 namespace {
 
-constexpr int kMostReach = 16;     // a row of 32 cells is widened to 64 bits
 constexpr int kNearestReach = 15;  // a window of 32 cells around the point
 constexpr TileBits kUnknownTile{};
-
-/// True if the ball of radius r around one end or the other of the move from 0 to d holds o, or no point of
-/// the move is nearer to o than r.
-bool ends_cover(const Eigen::Vector3i& o, const Eigen::Vector3i& d, double r2) {
-  const double o2 = o.squaredNorm(), along = o.dot(d), d2 = d.squaredNorm();
-  if (along <= 0 || along >= d2) return true;
-  return o2 - along * along / d2 >= r2 || o2 - 2 * along + d2 < r2;
-}
-
-bool in_ball(const Eigen::Vector3i& o, double r2) {
-  if (o.squaredNorm() < r2) return true;
-  for (int i = 0; i < 27; ++i)
-    if (!ends_cover(o, {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, r2)) return true;
-  return false;
-}
 
 struct Offset {
   int dy, dz;
@@ -46,24 +29,6 @@ std::vector<Offset> rows_by_distance() {
 }
 
 }  // namespace
-
-Ball::Ball(double radius_cells) {
-  if (!(radius_cells <= kMostReach - 1))
-    throw InputError("planning", "clearance",
-                     "is more than 15 cells of the map; make it less or the cells larger");
-  const double r2 = radius_cells * radius_cells - 1e-6;
-  const int n = static_cast<int>(std::ceil(radius_cells)) + 1;
-  for (int dz = -n; dz <= n; ++dz)
-    for (int dy = -n; dy <= n; ++dy) {
-      int half_width = -1;
-      for (int dx = 0; dx <= n; ++dx)
-        if (in_ball({dx, dy, dz}, r2)) half_width = dx;
-      if (half_width < 0 && dy == 0 && dz == 0) half_width = 0;  // the cell itself must be free
-      if (half_width < 0) continue;
-      rows_.push_back({dy, dz, half_width});
-      reach_ = std::max({reach_, half_width, std::abs(dy), std::abs(dz)});
-    }
-}
 
 CellKey FreeTiles::key_of(const Vec3& p) const {
   const auto cell = [&](double v) {
@@ -130,36 +95,6 @@ bool FreeTiles::row_free(std::int32_t x_low, std::int32_t x_high, std::int32_t y
     if ((row(x_low, y, z) & mask) != mask) return false;
   }
   return true;
-}
-
-TileBits FreeTiles::clear_cells(const TileKey& t, const Ball& ball) const {
-  TileBits out = bits(t);
-  if (std::all_of(out.begin(), out.end(), [](std::uint32_t r) { return r == 0; })) return out;
-  const int p = ball.reach(), n = 8 + 2 * p;
-  const CellKey c = corner_of(t);
-  // eroded[w]: cells whose neighbours up to w on both sides along x are free; 16 cells of margin each side.
-  std::vector<std::uint64_t> eroded(static_cast<std::size_t>((p + 1) * n * n));
-  for (int z = 0; z < n; ++z)
-    for (int y = 0; y < n; ++y) {
-      const std::int32_t ky = c.y + y - p, kz = c.z + z - p;
-      const std::uint64_t wide = std::uint64_t{row(c.x - 16, ky, kz)} | std::uint64_t{row(c.x + 16, ky, kz)}
-                                                                            << 32;
-      std::uint64_t e = wide;
-      for (int w = 0; w <= p; ++w) {
-        if (w > 0) e &= wide << w & wide >> w;
-        eroded[static_cast<std::size_t>((w * n + z) * n + y)] = e;
-      }
-    }
-  for (int z = 0; z < 8; ++z)
-    for (int y = 0; y < 8; ++y) {
-      std::uint32_t& result = out[row_of(y, z)];
-      if (result == 0) continue;
-      std::uint64_t e = ~std::uint64_t{0};
-      for (const Ball::Row& r : ball.rows())
-        e &= eroded[static_cast<std::size_t>((r.half_width * n + z + p + r.dz) * n + y + p + r.dy)];
-      result = static_cast<std::uint32_t>(e >> 16);
-    }
-  return out;
 }
 
 bool FreeTiles::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const {

@@ -14,22 +14,41 @@ namespace karst::core {
 
 using TileBits = std::array<std::uint32_t, kTileRows>;
 
-/// Cells that must be free around a clear cell: |dx| <= half_width in each row (dy, dz).
+/// Cells that must be free around a point: rows (dy, dz) of them, from -half_width to half_width + wide in x.
+/// The point is a cell's centre, or shifted from it by half a cell in each axis marked in `shift` (bits x, y,
+/// z).
 class Ball {
  public:
-  /// Besides the cells nearer than the radius it holds those that a move to one of the 26 neighbours would
-  /// come nearer to than that, so that moves between clear cells are clear. Throws InputError beyond 16
-  /// cells.
-  explicit Ball(double radius_cells);
+  /// Besides the cells nearer than the radius, a ball around a centre holds those that a move to one of the
+  /// 26 neighbours would come nearer to, so that moves between clear cells are clear.
+  explicit Ball(double radius_cells, int shift = 0);
   struct Row {
     int dy, dz, half_width;
   };
   const std::vector<Row>& rows() const { return rows_; }
+  int shift() const { return shift_; }
   int reach() const { return reach_; }
 
  private:
   std::vector<Row> rows_;
-  int reach_ = 0;
+  int shift_, reach_ = 0;
+};
+
+/// Which cells a search may use.
+class ClearanceRule {
+ public:
+  /// Those whose centre is clear. Throws InputError beyond 14 cells.
+  explicit ClearanceRule(double clearance_cells);
+  /// Also those clear by `search_cells` only, if a point at most half a cell from the centre in each axis is
+  /// clear by the whole clearance.
+  ClearanceRule(double clearance_cells, double search_cells);
+  const Ball& ball() const { return balls_.front(); }
+  const std::vector<Ball>& shifted() const { return shifted_; }  // none: no half cells
+  const Ball& search_ball() const { return balls_.back(); }
+  int reach() const;
+
+ private:
+  std::vector<Ball> balls_, shifted_;
 };
 
 struct NearestObstacle {
@@ -51,8 +70,8 @@ class FreeTiles {
   bool at(const CellKey& k) const;
   /// Free cells x to x + 31 of the row (y, z), lowest bit first.
   std::uint32_t row(std::int32_t x, std::int32_t y, std::int32_t z) const;
-  /// Cells of tile `t` around which the whole ball is free.
-  TileBits clear_cells(const TileKey& t, const Ball& ball) const;
+  /// Cells of tile `t` that a search may use.
+  TileBits clear_cells(const TileKey& t, const ClearanceRule& rule) const;
 
   /// No obstacle's centre is nearer than `clearance_m` to the segment, and it runs through free cells.
   bool segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const;

@@ -37,11 +37,10 @@ std::vector<CellKey> cells_that_see(const FreeTiles& free, const Vec3& p, double
   return out;
 }
 
-}  // namespace
-
-Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options) {
-  const double clearance = options.clearance_m, res = map.resolution_m();
-  const Ball ball(clearance / res);
+/// `clearance` is what points and segments of the path are asked for.
+Path search_path(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options,
+                 const ClearanceRule& rule, double clearance) {
+  const double res = map.resolution_m();
   FreeTiles free(res);
   Path path;
   const auto fail = [&path](PlanStatus status, std::string reason) {
@@ -67,7 +66,7 @@ Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, cons
   }
   const Vec3 from = path.points.back(), half = Vec3::Constant(0.5);
   const GridSearchResult found =
-      search_grid(map, free, ball, cells_that_see(free, from, clearance), from / res - half,
+      search_grid(map, free, rule, cells_that_see(free, from, clearance), from / res - half,
                   cells_that_see(free, goal, clearance), goal / res - half, options.heuristic_weight,
                   options.max_expansions);
   if (found.end == GridSearchResult::End::gave_up)
@@ -82,6 +81,20 @@ Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, cons
   path.status = PlanStatus::found;
   path.length_m = path_length_m(path.points);
   return path;
+}
+
+}  // namespace
+
+Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options) {
+  return search_path(map, start, goal, options, ClearanceRule(options.clearance_m / map.resolution_m()),
+                     options.clearance_m);
+}
+
+Path plan_on_grid_squeezing(const VoxelMap& map, const Vec3& start, const Vec3& goal,
+                            const PlanningOptions& options) {
+  const double res = map.resolution_m(), search_m = search_clearance_m(options, res);
+  return search_path(map, start, goal, options, ClearanceRule(options.clearance_m / res, search_m / res),
+                     search_m);
 }
 
 bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m) {

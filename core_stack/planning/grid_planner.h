@@ -11,6 +11,12 @@ namespace karst::core {
 /// clearance. The result is raw: pass it to refine_path.
 Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options);
 
+/// As above, and also through cells where a point half a cell beside the centre is clear: centres sample
+/// space at the resolution only, and the middle of a narrow passage may lie between two of them. The raw path
+/// is clear by search_clearance_m; refine_path lifts it to the whole clearance.
+Path plan_on_grid_squeezing(const VoxelMap& map, const Vec3& start, const Vec3& goal,
+                            const PlanningOptions& options);
+
 /// Feasibility as the planner judges it: p's cell is free, and no obstacle's centre is nearer than the
 /// clearance. False if p is not finite.
 bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m);

@@ -51,9 +51,9 @@ struct Entry {
 
 class Search {
  public:
-  Search(const VoxelMap& map, FreeTiles& free, const Ball& ball, const std::vector<CellKey>& goals,
+  Search(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule, const std::vector<CellKey>& goals,
          const Vec3& to, double weight)
-      : map_(map), free_(free), ball_(ball), goals_(goals), to_(to), weight_(static_cast<float>(weight)) {}
+      : map_(map), free_(free), rule_(rule), goals_(goals), to_(to), weight_(static_cast<float>(weight)) {}
 
   GridSearchResult run(const std::vector<CellKey>& starts, const Vec3& from, std::int64_t max_expansions) {
     for (const CellKey& k : starts)
@@ -89,11 +89,11 @@ class Search {
     tiles_.push_back(std::make_unique<SearchTile>());
     SearchTile& tile = *tiles_.back();
     tile.corner = corner_of(t);
-    const CellKey margin{16, ball_.reach(), ball_.reach()};
+    const CellKey margin{16, rule_.reach(), rule_.reach()};
     const CellKey far = tile.corner + CellKey{kTileX - 1, kTileY - 1, kTileZ - 1};
     free_.load(map_, {tile.corner.x - margin.x, tile.corner.y - margin.y, tile.corner.z - margin.z},
                far + margin);
-    tile.clear = free_.clear_cells(t, ball_);
+    tile.clear = free_.clear_cells(t, rule_);
     tile.cost.fill(std::numeric_limits<float>::infinity());
     tile.parent.fill(0);
     return i;
@@ -148,7 +148,7 @@ class Search {
 
   const VoxelMap& map_;
   FreeTiles& free_;
-  const Ball& ball_;
+  const ClearanceRule& rule_;
   const std::vector<CellKey>& goals_;
   Vec3 to_;
   float weight_;
@@ -167,11 +167,11 @@ double octile_cells(const Vec3& displacement) {
   return (most - middle) + std::numbers::sqrt2 * (middle - least) + std::numbers::sqrt3 * least;
 }
 
-GridSearchResult search_grid(const VoxelMap& map, FreeTiles& free, const Ball& ball,
+GridSearchResult search_grid(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule,
                              const std::vector<CellKey>& starts, const Vec3& from,
                              const std::vector<CellKey>& goals, const Vec3& to, double weight,
                              std::int64_t max_expansions) {
-  return Search(map, free, ball, goals, to, weight).run(starts, from, max_expansions);
+  return Search(map, free, rule, goals, to, weight).run(starts, from, max_expansions);
 }
 
 }  // namespace karst::core

@@ -19,7 +19,7 @@ double octile_cells(const Vec3& displacement);
 /// Shortest way through clear cells from any of `starts` to any of `goals`, at most `weight` times longer
 /// than the best; ends count with their octile distance to `from` and `to` (in cells, centres at whole
 /// numbers). Tiles of `free` are read from the map as the search gets there.
-GridSearchResult search_grid(const VoxelMap& map, FreeTiles& free, const Ball& ball,
+GridSearchResult search_grid(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule,
                              const std::vector<CellKey>& starts, const Vec3& from,
                              const std::vector<CellKey>& goals, const Vec3& to, double weight,
                              std::int64_t max_expansions);

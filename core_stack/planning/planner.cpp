@@ -1,5 +1,6 @@
 #include "core_stack/planning/planner.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "core_stack/planning/grid_planner.h"
@@ -8,39 +9,83 @@
 namespace karst::core {
 namespace {
 
-/// Straight distance up to which the grid search comes first.
-constexpr double kNear_m = 30.0;
+/// Straight distance up to which the grid search comes first, and how far it may go: a goal behind a wall is
+/// near only as the crow flies.
+constexpr double kNear_m = 12.0;
+constexpr std::int64_t kNearExpansions = 30000;
 
 /// A start that lies in the slack below the clearance must have left it after this much of the path.
 constexpr double kSlackLeft_m = 1.0;
+/// A place where refining failed is planned anew from this far before it to this far behind, so many times.
+constexpr double kDetourReach_m = 2.0;
+constexpr int kMostDetours = 6;
 
-/// Refines `raw` and looks at every segment once more.
-Path finished(const VoxelMap& map, const Path& raw, const PlanningOptions& options) {
-  const double search_m = search_clearance_m(options, map.resolution_m());
+/// Refines `raw`, which begins with an escape of so many points.
+Path refined(const VoxelMap& map, const Path& raw, const PlanningOptions& options) {
   Path path = raw;
   path.points = refine_path(map, raw.points, options);
   path.length_m = path_length_m(path.points);
-  double since_escape_m = 0;
-  for (std::size_t i = raw.escape_points; i + 1 < path.points.size(); ++i) {
+  return path;
+}
+
+/// Looks at every segment: index of the first that is not clear, or -1. The escape is let pass, and so is the
+/// slack around the start; both count as escape points then.
+int first_flaw(const VoxelMap& map, Path& path, const PlanningOptions& options) {
+  const double search_m = search_clearance_m(options, map.resolution_m());
+  double slack_left_m = kSlackLeft_m;
+  for (std::size_t i = path.escape_points; i + 1 < path.points.size(); ++i) {
     const Vec3 &a = path.points[i], &b = path.points[i + 1];
     if (segment_clear(map, a, b, options.clearance_m)) {
-      since_escape_m = kSlackLeft_m;
+      slack_left_m = 0;
       continue;
     }
-    since_escape_m += (b - a).norm();
-    if (since_escape_m <= kSlackLeft_m && segment_clear(map, a, b, search_m)) {
-      path.escape_points = i + 1;
+    slack_left_m -= (b - a).norm();
+    if (slack_left_m < 0 || !segment_clear(map, a, b, search_m)) return static_cast<int>(i);
+    path.escape_points = i + 1;
+  }
+  return -1;
+}
+
+/// Replaces the stretch around segment `flaw` by a way of full clearance; false if there is none nearby.
+bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOptions& options) {
+  std::size_t from = flaw, to = flaw + 1;
+  const Vec3 place = path.points[flaw];
+  const auto good_end = [&](const Vec3& p) {
+    return (p - place).norm() >= kDetourReach_m && is_clear(map, p, options.clearance_m);
+  };
+  while (from > path.escape_points && !good_end(path.points[from])) --from;
+  while (to + 1 < path.points.size() && !good_end(path.points[to])) ++to;
+  PlanningOptions local = options;
+  local.max_expansions = std::min(options.max_expansions, kNearExpansions);
+  const Path way = plan_on_grid(map, path.points[from], path.points[to], local);
+  if (!way.found() || (way.escape_points > 0 && from > path.escape_points)) return false;
+  std::vector<Vec3> points(path.points.begin(), path.points.begin() + static_cast<std::ptrdiff_t>(from));
+  points.insert(points.end(), way.points.begin(), way.points.end());
+  points.insert(points.end(), path.points.begin() + static_cast<std::ptrdiff_t>(to) + 1, path.points.end());
+  path.points = std::move(points);
+  return true;
+}
+
+/// Refines `raw` until every segment is clear, planning anew where the passage turns out too narrow.
+Path finished(const VoxelMap& map, const Path& raw, const PlanningOptions& options) {
+  Path path = refined(map, raw, options);
+  for (int round = 0;; ++round) {
+    const int flaw = first_flaw(map, path, options);
+    if (flaw < 0) return path;
+    const Vec3 p = path.points[static_cast<std::size_t>(flaw)];
+    path.escape_points = raw.escape_points;
+    if (round < kMostDetours && detour(map, path, static_cast<std::size_t>(flaw), options)) {
+      path = refined(map, path, options);
       continue;
     }
     char text[160];
     std::snprintf(text, sizeof text,
-                  "the passage at (%.1f, %.1f, %.1f) is narrower than twice the clearance of %.2f m", a.x(),
-                  a.y(), a.z(), options.clearance_m);
+                  "the passage at (%.1f, %.1f, %.1f) is narrower than twice the clearance of %.2f m", p.x(),
+                  p.y(), p.z(), options.clearance_m);
     path = Path{};
     path.reason = text;
-    break;
+    return path;
   }
-  return path;
 }
 
 }  // namespace
@@ -48,11 +93,11 @@ Path finished(const VoxelMap& map, const Path& raw, const PlanningOptions& optio
 Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
           const PlanningOptions& options) {
   if (!is_clear(map, goal, options.clearance_m)) return plan_on_grid(map, start, goal, options);  // says why
-  PlanningOptions search = options;
-  search.clearance_m = search_clearance_m(options, map.resolution_m());
+  PlanningOptions near = options;
+  near.max_expansions = std::min(options.max_expansions, kNearExpansions);
   Path raw;
   raw.status = PlanStatus::gave_up;
-  if ((goal - start).norm() <= kNear_m) raw = plan_on_grid(map, start, goal, search);
+  if ((goal - start).norm() <= kNear_m) raw = plan_on_grid_squeezing(map, start, goal, near);
   if (raw.status == PlanStatus::gave_up) raw = roadmap.find(map, start, goal);
   if (!raw.found()) return raw;
   Path path = finished(map, raw, options);

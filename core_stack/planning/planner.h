@@ -10,9 +10,8 @@ namespace karst::core {
 /// refined and flyable as it stands: every segment is clear at options.clearance_m, but for the leading
 /// `escape_points`.
 ///
-/// Cells' centres sample space at the map's resolution only: the middle of a passage may lie between two of
-/// them. So the search works with a clearance less by `search_slack_m`, refining lifts the path to the full
-/// clearance, and where that fails the search is repeated with the full clearance.
+/// The searches may squeeze (plan_on_grid_squeezing), refining lifts the path to the full clearance, and
+/// where that fails the grid is searched without squeezing.
 Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
           const PlanningOptions& options);
 

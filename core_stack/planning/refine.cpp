@@ -8,9 +8,8 @@
 namespace karst::core {
 namespace {
 
-/// Points of the given path are lifted off obstacles in steps no longer than this.
-constexpr double kLiftStep_m = 0.03;
-constexpr int kLiftSteps = 12;
+/// Points of the given path are lifted off obstacles in steps from the first to the second of these.
+constexpr double kLiftStep_m = 0.04, kLeastLiftStep_m = 0.004;
 /// Lifted that much more, so that the lines between lifted points are clear too.
 constexpr double kLiftSlack_m = 0.02;
 /// The band's points stand this far apart; the finished path's points at most `kFineSpacing_m`.
@@ -29,17 +28,23 @@ std::vector<Vec3> densified(const std::vector<Vec3>& points, double spacing_m) {
   return out;
 }
 
-/// Inner points nearer to obstacles than the clearance move away from what is nearest.
+/// Inner points nearer to obstacles than the clearance climb to more distance, by the best of 26 directions
+/// with steps that shrink: the gradient of the distance to the nearest obstacle alone would swing between
+/// the two sides of a narrow passage.
 void lift(const FreeTiles& free, double clearance_m, std::vector<Vec3>& points) {
-  for (std::size_t i = 1; i + 1 < points.size(); ++i)
-    for (int k = 0; k < kLiftSteps; ++k) {
-      const NearestObstacle o = free.nearest(points[i], clearance_m + 1e-6);
-      if (o.distance_m >= clearance_m || o.distance_m < 1e-6) break;
-      const Vec3 away = (points[i] - o.center) / o.distance_m;
-      const Vec3 q = points[i] + away * std::min(kLiftStep_m, clearance_m + 1e-4 - o.distance_m);
-      if (!free.at(free.key_of(q))) break;
-      points[i] = q;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    double distance = free.nearest(points[i], clearance_m).distance_m;
+    for (double step = kLiftStep_m; step > kLeastLiftStep_m && distance < clearance_m;) {
+      Vec3 best = points[i];
+      for (int m = 0; m < 27; ++m) {
+        const Vec3 q = points[i] + step * Vec3(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
+        const double d = free.nearest(q, clearance_m).distance_m;
+        if (d > distance + 1e-6 && free.at(free.key_of(q))) distance = d, best = q;
+      }
+      if (best == points[i]) step /= 2;
+      points[i] = best;
     }
+  }
 }
 
 /// Pulls the string: from each point straight to the farthest later one that a clear line reaches.
@@ -91,6 +96,8 @@ std::vector<Vec3> refine_path(const VoxelMap& map, const std::vector<Vec3>& poin
   const double raw_length = path_length_m(rest);
   std::vector<Vec3> best;
   if (rest.size() >= 2) {
+    lift(free, clearance + kLiftSlack_m, rest);
+    rest = densified(rest, kFineSpacing_m);
     lift(free, clearance + kLiftSlack_m, rest);
     const std::vector<Vec3> string = shortened(free, clearance, rest);
     best = string;

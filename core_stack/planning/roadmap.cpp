@@ -129,7 +129,7 @@ std::size_t Roadmap::node_count() const {
 
 std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const {
   const RoadmapGraph& g = *graph_;
-  if (!g.ball) return std::nullopt;
+  if (!g.rule) return std::nullopt;
   if (g.free.is_clear(goal, g.clearance_m)) return goal;
   if (!(goal.cwiseAbs().maxCoeff() < 1e6) || !(tolerance_m > 0)) return std::nullopt;
   const Vec3 reach = Vec3::Constant(tolerance_m);
@@ -151,7 +151,7 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
                                        double goal_tolerance_m) const {
   const RoadmapGraph& g = *graph_;
   std::vector<double> out(goals.size(), kInf);
-  if (!g.ball) return out;
+  if (!g.rule) return out;
   const std::vector<Vec3> way_out = way_to_clear(map, g, from);
   if (way_out.empty()) return out;
   const Vec3 start = way_out.back();
@@ -192,7 +192,7 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
     path.status = status, path.reason = reason;
     return path;
   };
-  if (!g.ball) return fail(PlanStatus::no_path, "the roadmap is empty");
+  if (!g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");
   if (!g.free.is_clear(goal, g.clearance_m))
     return fail(PlanStatus::goal_blocked, "the goal is nearer to an obstacle than the clearance");
   path.points = way_to_clear(map, g, from);

@@ -38,10 +38,10 @@ CellKey cell_in_block(const CellKey& corner, int bit) {
 }  // namespace
 
 void RoadmapGraph::update(const VoxelMap& map, std::span<const CellChange> changes) {
-  if (!ball) {
+  if (!rule) {
     free = FreeTiles(map.resolution_m());
     clearance_m = search_clearance_m(options, map.resolution_m());
-    ball.emplace(clearance_m / map.resolution_m());
+    rule.emplace(options.clearance_m / map.resolution_m(), clearance_m / map.resolution_m());
   }
   std::vector<std::uint32_t> dirty;
   for (const CellChange& c : changes) {
@@ -52,7 +52,7 @@ void RoadmapGraph::update(const VoxelMap& map, std::span<const CellChange> chang
 }
 
 void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty) {
-  const int r = ball->reach();
+  const int r = rule->reach();
   const TileKey a = tile_of({k.x - r, k.y - r, k.z - r}), b = tile_of({k.x + r, k.y + r, k.z + r});
   for (std::int32_t z = a.z; z <= b.z; ++z)
     for (std::int32_t y = a.y; y <= b.y; ++y)
@@ -70,7 +70,7 @@ void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirt
 void RoadmapGraph::rebuild(std::uint32_t tile_index) {
   RoadmapTile& tile = tiles[tile_index];
   tile.dirty = false;
-  const TileBits rows = free.clear_cells(table.keys()[tile_index], *ball);
+  const TileBits rows = free.clear_cells(table.keys()[tile_index], *rule);
   tile.nodes.clear();
   for (std::uint32_t b = 0; b < kTileBlocks; ++b) {
     tile.first[b] = static_cast<std::uint16_t>(tile.nodes.size());

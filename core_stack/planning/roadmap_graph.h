@@ -38,7 +38,7 @@ struct RoadmapGraph {
   PlanningOptions options;
   double clearance_m = 0;  // of the search; set by the first update
   FreeTiles free;          // of the map as of the last update
-  std::optional<Ball> ball;
+  std::optional<ClearanceRule> rule;
   TileTable table;
   std::vector<RoadmapTile> tiles;
 
