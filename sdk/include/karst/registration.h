@@ -113,7 +113,7 @@ std::unique_ptr<Entry> make_entry(const char* id, const char* version, const cha
   auto e = std::make_unique<Entry>();
   e->id = id, e->version = version, e->one_line = one_line;
   P defaults;
-  defaults.parameters(e->table);
+  static_cast<Policy&>(defaults).parameters(e->table);  // may be private in P
   e->parameters = e->table.declarations();
   e->descriptor.size = sizeof e->descriptor;
   e->descriptor.id = e->descriptor.name = to_abi(e->id);

@@ -1,0 +1,161 @@
+// A policy on the bench: asked through its C tables, as the host asks it, with requests a test writes.
+//
+//   Bench bench(karst_plugin_entry(), map, {{"min_cells", "4"}});
+//   bench.position = map.place('a');
+//   bench.offer(1, map.place('b'), map.place('c'));
+//   const karst::Decision d = bench.decide();
+//
+// The test is linked with the policy's own source, which defines karst_plugin_entry. Any test framework will
+// do.
+#pragma once
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <karst/testing/drawn_host.h>
+
+namespace karst::testing {
+
+class Bench {
+ public:
+  using Values = std::vector<std::pair<std::string, std::string>>;  // in SI units, without the unit
+
+  Bench(const karst_plugin_t* plugin, DrawnMap map, const Values& values = {}, std::uint32_t index = 0)
+      : host_(std::move(map)), policy_(plugin->policy(index)) {
+    if (policy_ == nullptr) throw Error("the plugin has no such policy");
+    karst_error_t e{};
+    self_ = policy_->create(host_.host(), &e);
+    if (self_ == nullptr) throw Error(e.text, e.code);
+    std::vector<karst_parameter_value_t> resolved = defaults();
+    for (const auto& [id, text] : values) set(resolved, id, text);
+    check(policy_->init(self_, resolved.data(), resolved.size(), &e), e);
+    check(policy_->activate(self_, &e), e);
+  }
+  ~Bench() {
+    policy_->deactivate(self_);
+    policy_->destroy(self_);
+  }
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  // What the next request says; change it as the test needs.
+  Vec3 position;
+  Vec3 direction_of_flight{1, 0, 0};
+  double time_s = 0, seconds_before_homing = 600;
+  karst_goal_fate_t last_fate = KARST_FATE_NONE;
+  Vec3 last_goal;
+  std::vector<Sensor> sensors;
+  std::vector<Frontier> frontiers;
+
+  const DrawnHost& host() const { return host_; }
+
+  /// Adds a frontier seen from `viewpoint`, its path measured through the map, its cells counted in a box.
+  Frontier& offer(std::uint32_t id, const Vec3& viewpoint, const Vec3& centroid, std::uint32_t cells = 20) {
+    Frontier f;
+    f.id = id;
+    f.cells = cells;
+    f.centroid = f.low = f.high = centroid;
+    f.viewpoint = viewpoint;
+    f.path_length_m = host_.map().path_length_m(position, viewpoint);
+    const Box box = box_around(centroid, 2.0);
+    const karst_box_t in{box.low, box.high};
+    karst_cell_counts_t counts{};
+    host_.host()->map->count_in_boxes(host_.host(), host_.map_handle(), &in, 1, &counts, nullptr);
+    f.unknown_cells = static_cast<std::uint32_t>(counts.unknown);
+    f.free_cells = static_cast<std::uint32_t>(counts.free);
+    frontiers.push_back(f);
+    return frontiers.back();
+  }
+
+  /// Asks once. Throws Error if the policy fails.
+  Decision decide() {
+    std::vector<karst_frontier_cluster_t> clusters;
+    for (const Frontier& f : frontiers)
+      clusters.push_back({f.id,
+                          f.cells,
+                          f.centroid,
+                          {f.low, f.high},
+                          f.normal,
+                          f.unknown_cells,
+                          f.free_cells,
+                          {f.viewpoint, f.viewpoint_heading_rad},
+                          f.path_length_m,
+                          {0, 0}});
+    host_.now_ns = static_cast<std::int64_t>(time_s * 1e9);
+    karst_request_t r{};
+    r.size = sizeof r;
+    r.sequence = ++sequence_;
+    r.stamp_ns = r.deadline_ns = r.state.stamp_ns = host_.now_ns;
+    r.state.position = position;
+    r.state.orientation.w = r.T_world_start.orientation.w = 1;
+    r.direction_of_flight = direction_of_flight;
+    r.seconds_before_homing = seconds_before_homing;
+    r.max_speed_mps = 2.0;
+    r.clearance_m = 0.5;
+    r.vehicle_radius_m = 0.3;
+    r.last_goal = last_goal;
+    r.last_fate = last_fate;
+    r.sensor_count = static_cast<std::uint32_t>(sensors.size());
+    r.sensors = sensors.data();
+    r.map = host_.map_handle();
+    r.frontiers = clusters.data();
+    r.frontier_count = clusters.size();
+    Decision answer;
+    karst_decision_sink_t sink{sizeof(karst_decision_sink_t), 64, &answer, &add_goals, &set_outcome};
+    karst_error_t e{};
+    check(policy_->decide(self_, &r, &sink, &e), e);
+    return answer;
+  }
+
+  void tell(karst_event_kind_t kind, const Goal& goal, const std::string& reason = "") {
+    karst_event_t event{sizeof(karst_event_t), kind, static_cast<std::int64_t>(time_s * 1e9), to_abi(goal),
+                        to_abi(reason)};
+    karst_error_t e{};
+    check(policy_->on_event(self_, &event, &e), e);
+  }
+
+ private:
+  static std::int32_t add_goals(const karst_decision_sink_t* sink, const karst_goal_t* goals,
+                                std::uint64_t count, karst_error_t*) noexcept {
+    for (std::uint64_t i = 0; i < count; ++i)
+      static_cast<Decision*>(sink->context)->goals.push_back(from_abi(goals[i]));
+    return KARST_OK;
+  }
+  static std::int32_t set_outcome(const karst_decision_sink_t* sink, karst_outcome_t outcome,
+                                  std::uint32_t flags, karst_text_t reason, karst_error_t*) noexcept {
+    Decision& d = *static_cast<Decision*>(sink->context);
+    d.outcome = outcome;
+    d.in_order = (flags & KARST_DECISION_TOUR) != 0;
+    d.reason = from_abi(reason);
+    return KARST_OK;
+  }
+
+  std::vector<karst_parameter_value_t> defaults() const {
+    std::vector<karst_parameter_value_t> out;
+    const karst_policy_descriptor_t& d = *policy_->descriptor;
+    for (std::uint32_t i = 0; i < d.parameter_count; ++i) {
+      const karst_parameter_t& p = d.parameters[i];
+      out.push_back({p.id, p.default_text, p.default_number, p.type, 0});
+    }
+    return out;
+  }
+  static void set(std::vector<karst_parameter_value_t>& all, const std::string& id, const std::string& text) {
+    for (karst_parameter_value_t& v : all) {
+      if (from_abi(v.id) != id) continue;
+      if (v.type == KARST_PARAMETER_TEXT)
+        v.text = to_abi(text);
+      else
+        v.number = text == "true" ? 1.0 : text == "false" ? 0.0 : std::strtod(text.c_str(), nullptr);
+      return;
+    }
+    throw Error("the policy declares no parameter " + id);
+  }
+
+  DrawnHost host_;
+  const karst_policy_t* policy_;
+  void* self_ = nullptr;
+  std::uint32_t sequence_ = 0;
+};
+
+}  // namespace karst::testing

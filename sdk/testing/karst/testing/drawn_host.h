@@ -1,0 +1,214 @@
+// The host's services over a drawn map: slow, simple, and complete.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <karst/testing/drawn_map.h>
+
+namespace karst::testing {
+
+/// Also an example of how each service is meant: see karst_abi_services.h.
+class DrawnHost {
+ public:
+  explicit DrawnHost(DrawnMap map) : map_(std::move(map)) {
+    map_service_ = {sizeof map_service_, 0,       &info,   &cell_states, &cast_rays, &count_in_boxes,
+                    &surface_cells,      &retain, &release};
+    path_service_ = {sizeof path_service_, 0, &lengths};
+    gain_service_ = {sizeof gain_service_, 0, &newly_seen};
+    draw_service_ = {sizeof draw_service_, 0, &draw_points, &draw_lines, &draw_text};
+    host_ = {sizeof host_,   KARST_ABI_MINOR, this, &map_service_, &path_service_,
+             &gain_service_, &draw_service_,  &log, &random,       &now,
+             &should_stop,   &extension};
+  }
+  DrawnHost(const DrawnHost&) = delete;
+  DrawnHost& operator=(const DrawnHost&) = delete;
+
+  const karst_host_t* host() const { return &host_; }
+  const karst_map_t* map_handle() const { return reinterpret_cast<const karst_map_t*>(this); }
+  const DrawnMap& map() const { return map_; }
+  std::int64_t now_ns = 0;
+  std::vector<std::string> log_lines;
+  std::size_t drawings = 0;
+
+ private:
+  static DrawnHost& self(const karst_host_t* h) { return *static_cast<DrawnHost*>(h->context); }
+
+  static std::int32_t info(const karst_host_t* h, const karst_map_t*, karst_map_info_t* out,
+                           karst_error_t*) noexcept {
+    const DrawnMap& m = self(h).map_;
+    *out = {m.resolution_m(), 1, 0, 0};
+    for (const auto& [index, cell] : m.known())
+      ++(cell == Cell::free ? out->free_cells : out->occupied_cells);
+    return KARST_OK;
+  }
+  static std::int32_t cell_states(const karst_host_t* h, const karst_map_t*, const karst_vec3_t* points,
+                                  std::uint64_t count, karst_cell_t* out, karst_error_t*) noexcept {
+    for (std::uint64_t i = 0; i < count; ++i)
+      out[i] = static_cast<karst_cell_t>(self(h).map_.at(Vec3(points[i])));
+    return KARST_OK;
+  }
+
+  /// First cell along the segment that stops it, found in steps of a hundredth of a cell.
+  static karst_ray_end_t cast(const DrawnMap& m, const Vec3& from, const Vec3& to, bool through_unknown) {
+    const double length = distance(from, to);
+    const int steps = static_cast<int>(std::ceil(length / (0.01 * m.resolution_m())));
+    karst_ray_end_t end{};
+    for (int i = 0; i <= steps; ++i) {
+      const Index at = m.index_of(from + (steps == 0 ? 0.0 : static_cast<double>(i) / steps) * (to - from));
+      const Cell c = m.at(at);
+      end.center = m.center_of(at);
+      end.length_m = distance(from, m.center_of(at));
+      end.state = static_cast<karst_cell_t>(Cell::free);
+      if (c == Cell::occupied || (c == Cell::unknown && !through_unknown)) {
+        end.state = static_cast<karst_cell_t>(c);
+        break;
+      }
+    }
+    return end;
+  }
+  static std::int32_t cast_rays(const karst_host_t* h, const karst_map_t*, const karst_segment_t* rays,
+                                std::uint64_t count, std::uint32_t flags, karst_ray_end_t* out,
+                                karst_error_t*) noexcept {
+    for (std::uint64_t i = 0; i < count; ++i)
+      out[i] = cast(self(h).map_, rays[i].from, rays[i].to, (flags & KARST_RAY_THROUGH_UNKNOWN) != 0);
+    return KARST_OK;
+  }
+
+  /// Calls visit(index) for each cell whose centre lies in the box.
+  template <class Visit>
+  static void for_each_in(const DrawnMap& m, const karst_box_t& box, Visit&& visit) {
+    const Index low = m.index_of(box.low), high = m.index_of(box.high);
+    const auto in = [](double v, double a, double b) { return v >= a && v <= b; };
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+          const Vec3 c = m.center_of({x, y, z});
+          if (in(c.x, box.low.x, box.high.x) && in(c.y, box.low.y, box.high.y) &&
+              in(c.z, box.low.z, box.high.z))
+            visit(Index{x, y, z});
+        }
+  }
+  static std::int32_t count_in_boxes(const karst_host_t* h, const karst_map_t*, const karst_box_t* boxes,
+                                     std::uint64_t count, karst_cell_counts_t* out, karst_error_t*) noexcept {
+    const DrawnMap& m = self(h).map_;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      out[i] = {};
+      for_each_in(m, boxes[i], [&](const Index& k) {
+        const Cell c = m.at(k);
+        ++(c == Cell::free ? out[i].free : c == Cell::occupied ? out[i].occupied : out[i].unknown);
+      });
+    }
+    return KARST_OK;
+  }
+  static std::int32_t surface_cells(const karst_host_t* h, const karst_map_t*, karst_box_t box,
+                                    karst_vec3_t* out, std::uint64_t capacity, std::uint64_t* total,
+                                    karst_error_t*) noexcept {
+    const DrawnMap& m = self(h).map_;
+    *total = 0;
+    for_each_in(m, box, [&](const Index& k) {
+      if (m.at(k) != Cell::occupied) return;
+      const Index faces[] = {{k.x - 1, k.y, k.z}, {k.x + 1, k.y, k.z}, {k.x, k.y - 1, k.z},
+                             {k.x, k.y + 1, k.z}, {k.x, k.y, k.z - 1}, {k.x, k.y, k.z + 1}};
+      if (std::none_of(std::begin(faces), std::end(faces),
+                       [&](const Index& f) { return m.at(f) == Cell::free; }))
+        return;
+      if (*total < capacity) out[*total] = m.center_of(k);
+      ++*total;
+    });
+    return KARST_OK;
+  }
+  static const karst_map_t* retain(const karst_host_t*, const karst_map_t* map, karst_error_t*) noexcept {
+    return map;  // a drawn map never changes
+  }
+  static void release(const karst_host_t*, const karst_map_t*) noexcept {}
+
+  static std::int32_t lengths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
+                              std::uint64_t count, double, double* out, karst_error_t*) noexcept {
+    for (std::uint64_t i = 0; i < count; ++i) out[i] = self(h).map_.path_length_m(from, goals[i]);
+    return KARST_OK;
+  }
+
+  /// Whether the direction, in the sensor's frame, is within its field of view.
+  static bool in_view(const karst_sensor_t& s, const Vec3& d) {
+    const double azimuth = std::atan2(d.y, d.x);
+    if (s.kind == KARST_SENSOR_CAMERA && d.x <= 0) return false;
+    const double flat = s.kind == KARST_SENSOR_CAMERA ? d.x : std::hypot(d.x, d.y);
+    const double elevation = std::atan2(d.z, flat);
+    return std::abs(azimuth) <= 0.5 * s.horizontal_fov_rad && elevation >= s.low_elevation_rad &&
+           elevation <= s.high_elevation_rad;
+  }
+  static Vec3 rotated(const karst_quaternion_t& q, const Vec3& v) {
+    const Vec3 u{q.x, q.y, q.z};
+    const auto cross = [](const Vec3& a, const Vec3& b) {
+      return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    };
+    const Vec3 t = 2.0 * cross(u, v);
+    return v + q.w * t + cross(u, t);
+  }
+  /// Cell by cell: unknown, in range, in view, and no occupied cell on the line to its centre.
+  static std::uint64_t count_seen(const DrawnMap& m, const karst_sensor_t& s, const karst_viewpoint_t& v) {
+    const double c = std::cos(v.heading_rad), w = std::sin(v.heading_rad);
+    const Vec3 p = s.T_body_sensor.position;
+    const Vec3 eye = Vec3(v.position) + Vec3(c * p.x - w * p.y, w * p.x + c * p.y, p.z);
+    const karst_quaternion_t q = s.T_body_sensor.orientation;
+    std::uint64_t count = 0;
+    const Box around = box_around(eye, s.max_range_m);
+    for_each_in(m, {around.low, around.high}, [&](const Index& k) {
+      const Vec3 there = m.center_of(k), away = there - eye;
+      if (m.at(k) != Cell::unknown || norm(away) < s.min_range_m || norm(away) > s.max_range_m) return;
+      const Vec3 body{c * away.x + w * away.y, -w * away.x + c * away.y, away.z};
+      if (!in_view(s, rotated({q.w, -q.x, -q.y, -q.z}, body))) return;
+      if (cast(m, eye, there, true).state == static_cast<karst_cell_t>(Cell::free)) ++count;
+    });
+    return count;
+  }
+  static std::int32_t newly_seen(const karst_host_t* h, const karst_map_t*, const karst_sensor_t* sensors,
+                                 std::uint64_t sensor_count, const karst_viewpoint_t* viewpoints,
+                                 std::uint64_t count, std::uint64_t* out, karst_error_t*) noexcept {
+    for (std::uint64_t i = 0; i < count; ++i)
+      for (std::uint64_t j = 0; j < sensor_count; ++j)
+        out[i * sensor_count + j] = count_seen(self(h).map_, sensors[j], viewpoints[i]);
+    return KARST_OK;
+  }
+
+  static std::int32_t draw_points(const karst_host_t* h, const karst_vec3_t*, std::uint64_t, std::uint32_t,
+                                  karst_error_t*) noexcept {
+    ++self(h).drawings;
+    return KARST_OK;
+  }
+  static std::int32_t draw_lines(const karst_host_t* h, const karst_segment_t*, std::uint64_t, std::uint32_t,
+                                 karst_error_t*) noexcept {
+    ++self(h).drawings;
+    return KARST_OK;
+  }
+  static std::int32_t draw_text(const karst_host_t* h, karst_vec3_t, karst_text_t, std::uint32_t,
+                                karst_error_t*) noexcept {
+    ++self(h).drawings;
+    return KARST_OK;
+  }
+  static void log(const karst_host_t* h, std::uint32_t, karst_text_t text) noexcept {
+    self(h).log_lines.push_back(from_abi(text));
+  }
+  /// A linear congruential generator (Knuth's MMIX constants), the same in every run.
+  static void random(const karst_host_t* h, double* out, std::uint64_t count) noexcept {
+    std::uint64_t& s = self(h).chance_;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      s = s * 6364136223846793005ull + 1442695040888963407ull;
+      out[i] = static_cast<double>(s >> 11) / 9007199254740992.0;
+    }
+  }
+  static std::int64_t now(const karst_host_t* h) noexcept { return self(h).now_ns; }
+  static std::uint32_t should_stop(const karst_host_t*) noexcept { return 0; }
+  static const void* extension(const karst_host_t*, karst_text_t) noexcept { return nullptr; }
+
+  DrawnMap map_;
+  std::uint64_t chance_ = 1;
+  karst_map_service_t map_service_{};
+  karst_path_service_t path_service_{};
+  karst_gain_service_t gain_service_{};
+  karst_draw_service_t draw_service_{};
+  karst_host_t host_{};
+};
+
+}  // namespace karst::testing

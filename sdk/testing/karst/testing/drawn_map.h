@@ -1,0 +1,119 @@
+// A map drawn by hand, for a policy's own tests.
+//
+//   const karst::testing::DrawnMap map(0.5, {R"(
+//     #######
+//     #a..b?
+//     #######)"});
+//
+// A layer is seen from above: the first row is the northernmost. '#' is occupied, '?' unknown, '.' free; a
+// letter is a free cell with a name. Blanks before a row are ignored; a row that ends early goes on unknown,
+// as does everything outside. Layers go up. The lower south-western corner is the world's origin.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <queue>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <karst/types.h>
+
+namespace karst::testing {
+
+struct Index {
+  int x = 0, y = 0, z = 0;
+  bool operator<(const Index& o) const { return std::tie(x, y, z) < std::tie(o.x, o.y, o.z); }
+  bool operator==(const Index& o) const { return std::tie(x, y, z) == std::tie(o.x, o.y, o.z); }
+};
+
+class DrawnMap {
+ public:
+  DrawnMap(double resolution_m, const std::vector<std::string>& layers) : resolution_m_(resolution_m) {
+    for (std::size_t z = 0; z < layers.size(); ++z) draw(layers[z], static_cast<int>(z));
+  }
+
+  double resolution_m() const { return resolution_m_; }
+  const std::map<Index, Cell>& known() const { return known_; }
+  Cell at(const Index& i) const {
+    const auto found = known_.find(i);
+    return found == known_.end() ? Cell::unknown : found->second;
+  }
+  Cell at(const Vec3& p) const { return at(index_of(p)); }
+  Index index_of(const Vec3& p) const {
+    const auto cell = [&](double v) { return static_cast<int>(std::floor(v / resolution_m_)); };
+    return {cell(p.x), cell(p.y), cell(p.z)};
+  }
+  Vec3 center_of(const Index& i) const {
+    return {(i.x + 0.5) * resolution_m_, (i.y + 0.5) * resolution_m_, (i.z + 0.5) * resolution_m_};
+  }
+  /// Centre of the cell named by a letter.
+  Vec3 place(char letter) const {
+    const auto found = places_.find(letter);
+    if (found == places_.end()) throw std::out_of_range(std::string("no cell is named ") + letter);
+    return center_of(found->second);
+  }
+
+  /// Length of the shortest way through free cells that share a face, an edge or a corner; +infinity if none.
+  double path_length_m(const Vec3& from, const Vec3& to) const {
+    const Index start = index_of(from), goal = index_of(to);
+    if (at(start) != Cell::free || at(goal) != Cell::free) return std::numeric_limits<double>::infinity();
+    std::map<Index, double> best{{start, 0.0}};
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    open.push({0.0, start});
+    while (!open.empty()) {
+      const auto [length, i] = open.top();
+      open.pop();
+      if (i == goal) return length * resolution_m_;
+      if (length > best.at(i)) continue;
+      for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy)
+          for (int dz = -1; dz <= 1; ++dz) {
+            const Index n{i.x + dx, i.y + dy, i.z + dz};
+            if (at(n) != Cell::free) continue;
+            const double there = length + std::sqrt(static_cast<double>(dx * dx + dy * dy + dz * dz));
+            const auto known_best = best.find(n);
+            if (known_best != best.end() && known_best->second <= there) continue;
+            best[n] = there;
+            open.push({there, n});
+          }
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  void draw(const std::string& layer, int z) {
+    std::vector<std::string> rows;
+    std::istringstream in(layer);
+    for (std::string row; std::getline(in, row);) {
+      row.erase(0, std::min(row.find_first_not_of(" \t"), row.size()));
+      if (!row.empty()) rows.push_back(row);
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t x = 0; x < rows[r].size(); ++x) {
+        const Index i{static_cast<int>(x), static_cast<int>(rows.size() - 1 - r), z};
+        const char c = rows[r][x];
+        const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        if (c == '#')
+          known_[i] = Cell::occupied;
+        else if (c == '.' || is_letter)
+          known_[i] = Cell::free;
+        else if (c != '?')
+          throw std::invalid_argument(std::string("a drawn map holds '#', '.', '?' and letters, not '") + c +
+                                      "'");
+        if (is_letter) places_[c] = i;
+      }
+  }
+
+  double resolution_m_;
+  std::map<Index, Cell> known_;
+  std::map<char, Index> places_;
+};
+
+}  // namespace karst::testing

@@ -1,0 +1,2 @@
+#define DEFAULT_STEP 99.0
+#include "plain.h"

@@ -1,0 +1,2 @@
+#define DECIDE_SLOT 0
+#include "plain.h"

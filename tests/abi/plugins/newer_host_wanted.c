@@ -1,0 +1,3 @@
+#define MIN_HOST \
+  { 99, 0, 0 }
+#include "plain.h"

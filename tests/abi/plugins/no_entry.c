@@ -1,0 +1,3 @@
+/* A shared object, but no policy. */
+int unrelated(void);
+int unrelated(void) { return 1; }

@@ -1,0 +1,2 @@
+#define ABI_MAJOR 2
+#include "plain.h"
