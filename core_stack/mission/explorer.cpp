@@ -52,9 +52,9 @@ std::vector<CellChange> Explorer::declare_launch_site(const Vec3& hover_point) {
 bool Explorer::cluster_alive(std::uint32_t id) const {
   const auto it = frontiers_.clusters().find(id);
   if (it == frontiers_.clusters().end()) return false;
-  const auto chosen = cells_when_chosen_.find(id);
-  return chosen == cells_when_chosen_.end() || static_cast<double>(it->second.cells.size()) >=
-                                                   (1 - kSeenShare) * static_cast<double>(chosen->second);
+  const auto chosen = chosen_.find(id);
+  return chosen == chosen_.end() || static_cast<double>(it->second.cells.size()) >=
+                                        (1 - kSeenShare) * static_cast<double>(chosen->second.cells);
 }
 
 std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
@@ -145,7 +145,7 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
             const auto cluster = frontiers_.clusters().find(goal.frontier_id);
             if (cluster != frontiers_.clusters().end() &&
                 (!input.last_goal || input.last_goal->frontier_id != goal.frontier_id))
-              cells_when_chosen_[goal.frontier_id] = cluster->second.cells.size();
+              chosen_[goal.frontier_id] = {cluster->second.cells.size(), cluster->second.centroid};
           }
           return;
         }
@@ -162,13 +162,13 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
 void Explorer::learn(const RoundInput& input) {
   for (const PolicyEvent& event : input.events) {
     if (!policy_failed_) policy_->notify(event);
-    const auto cluster = frontiers_.clusters().find(event.goal.frontier_id);
-    if (event.kind == PolicyEvent::Kind::goal_reached && cluster != frontiers_.clusters().end())
-      ledger_.close(map_, cluster->second.centroid, input.now,
-                    "seen from its viewpoint, it stays a frontier");
     if (event.kind == PolicyEvent::Kind::goal_abandoned)
       ledger_.close(map_, event.goal.position, input.now, event.reason);
   }
+  // What was looked at and opens again right there is mostly noise at a wall: it may wait.
+  for (const std::uint32_t id : input.looked_at)
+    if (const auto chosen = chosen_.find(id); chosen != chosen_.end())
+      ledger_.close(map_, chosen->second.centroid, input.now, "looked at a short while ago");
 }
 
 RoundResult Explorer::decide(const RoundInput& input) {

@@ -28,8 +28,9 @@ struct RoundInput {
   double battery_seconds_left = 0;
   GoalFate last_fate = GoalFate::none;
   std::optional<Goal> last_goal;
-  bool appending = false;           // the last goal will be reached before the new one is flown to
-  std::vector<PolicyEvent> events;  // since the last round
+  bool appending = false;                // the last goal will be reached before the new one is flown to
+  std::vector<PolicyEvent> events;       // since the last round
+  std::vector<std::uint32_t> looked_at;  // frontiers reached, or seen on the way, since the last round
 };
 
 struct RejectedGoal {
@@ -100,7 +101,11 @@ class Explorer {
   Roadmap roadmap_;
   GoalLedger ledger_;
   std::map<std::uint32_t, KnownViewpoint> viewpoints_;
-  std::map<std::uint32_t, std::size_t> cells_when_chosen_;
+  struct Chosen {
+    std::size_t cells;
+    Vec3 centroid;
+  };
+  std::map<std::uint32_t, Chosen> chosen_;  // clusters as they were when a goal was accepted for them
   Vec3 home_;
 };
 

@@ -98,6 +98,7 @@ class MissionControl final : public VehicleSink {
   GoalFate last_fate_ = GoalFate::none;
   std::optional<Goal> last_goal_;
   std::vector<PolicyEvent> events_;
+  std::vector<std::uint32_t> looked_at_;
   bool round_running_ = false, append_tried_ = false, path_blocked_ = false, goal_alive_ = true;
   TimeNs last_round_ = 0, last_landmark_time_ = 0;
   Vec3 last_landmark_ = Vec3::Zero();  // for judging progress

@@ -1,5 +1,6 @@
 // Exploring: when the policy is asked, and how its goal joins the trajectory in flight.
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core_stack/mission/mission_control.h"
 
@@ -54,6 +55,8 @@ void MissionControl::settle_goal(GoalFate fate, PolicyEvent::Kind kind, const st
   if (!goal_) return;
   recorder_.event(now(), "goal", to_json(*goal_, state_of(kind), reason));
   events_.push_back({kind, now(), *goal_, reason});
+  if (goal_->frontier_id != 0 && (fate == GoalFate::reached || !goal_alive_))
+    looked_at_.push_back(goal_->frontier_id);
   last_fate_ = fate;
   last_goal_ = goal_;
   goal_.reset();
@@ -107,8 +110,8 @@ void MissionControl::begin_round(bool appending) {
   input.last_fate = goal_ ? GoalFate::under_way : last_fate_;
   input.last_goal = goal_ ? goal_ : last_goal_;
   input.appending = appending;
-  input.events = std::move(events_);
-  events_.clear();
+  input.events = std::exchange(events_, {});
+  input.looked_at = std::exchange(looked_at_, {});
   auto result = std::make_shared<RoundResult>();
   executive_.job(
       "decision", Lane::map, budget, [this, input, result] { *result = explorer_.decide(input); },

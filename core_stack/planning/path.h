@@ -9,7 +9,7 @@
 namespace karst::core {
 
 struct PlanningOptions {
-  double clearance_m = 0.45;           // least distance of the path from the centre of any occupied or
+  double clearance_m = 0.6;            // least distance of the path from the centre of any occupied or
                                        // unknown-boundary cell; must exceed the vehicle's radius
   double preferred_clearance_m = 1.0;  // post-processing pushes the path out to this where there is room
   double heuristic_weight = 1.2;       // bounded sub-optimality of the grid search; 1: optimal
