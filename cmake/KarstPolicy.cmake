@@ -9,7 +9,12 @@ function(karst_add_policy name)
     set(destination ${KARST_POLICY_DESTINATION})
   endif()
   add_library(${name} MODULE ${ARGN})
-  target_link_libraries(${name} PRIVATE karst::sdk)
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  if(CXX IN_LIST languages)
+    target_link_libraries(${name} PRIVATE karst::sdk)
+  else()
+    target_link_libraries(${name} PRIVATE karst::abi)  # a project in C has no C++17 to ask for
+  endif()
   target_link_options(${name} PRIVATE LINKER:--version-script=${support}/karst_policy.map)
   set_target_properties(${name} PROPERTIES
     PREFIX "" C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
