@@ -27,27 +27,51 @@ Samples sample(const CavePlan& plan, double grid_m, double way_radius_m) {
   return s;
 }
 
-/// Finds the length of passages, then the scale of their cross-sections, that give the volume wanted. Volumes
-/// are measured on a grid twice as coarse as the mesh's.
-CavePlan fitted_plan(const CaveRecipe& recipe, std::uint64_t seed, double way_radius_m,
-                     const std::function<void(const char*, double)>& progress) {
+struct Fit {
+  double length_m = 0;  // of all passages
+  double scale = 1;     // of their cross-sections
+};
+
+CavePlan plan_for(const CaveRecipe& recipe, std::uint64_t seed, const Fit& fit) {
+  CavePlan plan = lay_out(recipe, seed, fit.length_m);
+  scale_sections(plan, fit.scale);
+  furnish(plan, recipe, seed);
+  return plan;
+}
+
+/// The next scale when this one gave `ratio` of the volume wanted: an area goes with its square, but passages
+/// already at their least width do not shrink.
+double next_scale(double scale, double ratio) {
+  return std::clamp(scale / std::pow(std::clamp(ratio, 0.5, 2.0), 0.55), 0.6, 1.6);
+}
+
+/// Finds the length of passages, then the scale of their cross-sections, that give the volume wanted: the
+/// length changes in steps of whole branches, the scale does the rest. Volumes are measured on a grid coarser
+/// than the mesh's.
+Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double way_radius_m,
+           const std::function<void(const char*, double)>& progress) {
+  constexpr int kRounds = 4;
+  constexpr double kGoodEnough = 0.04;
+  const double grid_m = std::min(0.6, 2 * recipe.grid_m);
+  int measured = 0;
+  const auto ratio = [&](const Fit& fit) {
+    progress("laying out passages", 0.5 * measured++ / kRounds);
+    return hollow_volume_m3(sample(plan_for(recipe, seed, fit), grid_m, way_radius_m)) / recipe.volume_m3;
+  };
   const double section_m2 = 0.7 * recipe.passage_width_m * recipe.passage_width_m;
-  double length_m = std::max(20.0, 0.8 * recipe.volume_m3 / section_m2), scale = 1;
-  CavePlan best;
-  double best_error = std::numeric_limits<double>::infinity();
-  constexpr int kRounds = 9;
-  for (int round = 0; round < kRounds && best_error > 0.03; ++round) {
-    progress("laying out passages", static_cast<double>(round) / kRounds);
-    CavePlan plan = lay_out(recipe, seed, length_m, scale);
-    furnish(plan, recipe, seed);
-    const double ratio = hollow_volume_m3(sample(plan, 2 * recipe.grid_m, way_radius_m)) / recipe.volume_m3;
-    const double error = std::abs(std::log(ratio));
-    if (error < best_error) best_error = error, best = std::move(plan);
-    // The length changes in steps of whole branches: near the goal the cross-sections do the rest.
-    if (round < 5 && error > 0.12)
-      length_m = std::clamp(length_m / std::clamp(ratio, 0.5, 2.0), 15.0, 20000.0);
-    else
-      scale = std::clamp(scale / std::pow(std::clamp(ratio, 0.7, 1.4), 0.6), 0.7, 1.4);
+  Fit fit{std::max(20.0, 0.8 * recipe.volume_m3 / section_m2), 1}, best = fit;
+  double best_error = std::numeric_limits<double>::infinity(), best_ratio = 1;
+  const auto measure = [&] {
+    const double r = ratio(fit), error = std::abs(std::log(r));
+    if (error < best_error) best_error = error, best_ratio = r, best = fit;
+    return r;
+  };
+  for (int round = 0; round < kRounds && best_error > 0.15; ++round)
+    fit.length_m = std::clamp(fit.length_m / std::clamp(measure(), 0.5, 2.0), 15.0, 20000.0);
+  for (int round = 0; round < kRounds && best_error > kGoodEnough; ++round) {
+    fit = best;
+    fit.scale = next_scale(fit.scale, best_ratio);
+    measure();
   }
   return best;
 }
@@ -73,20 +97,26 @@ GeneratedCave generate_cave(const CaveRecipe& recipe, std::uint64_t seed,
   };
   // Meshing rounds corners off by up to half a grid step: widen the way until it is as free as promised.
   double way_radius_m = kWayClearanceM + 0.2;
-  const CavePlan plan = fitted_plan(recipe, seed, way_radius_m, tell);
-  for (int attempt = 0; attempt < 4; ++attempt, way_radius_m += 0.1) {
-    tell("sampling rock", 0);
-    const Samples samples = sample(plan, recipe.grid_m, way_radius_m);
-    tell("meshing", 0);
+  Fit fit = fitted(recipe, seed, way_radius_m, tell);
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    tell("making rock", 0.2 * attempt);
+    const CavePlan plan = plan_for(recipe, seed, fit);
     GeneratedCave cave;
-    cave.mesh = surface_net(samples);
-    tell("checking clearance", 0);
+    cave.mesh = surface_net(sample(plan, recipe.grid_m, way_radius_m));
+    cave.volume_m3 = enclosed_volume_m3(cave.mesh);
+    const double ratio = cave.volume_m3 / recipe.volume_m3, scale = next_scale(fit.scale, ratio);
+    if (std::abs(ratio - 1) > 0.8 * kVolumeBand && scale != fit.scale && attempt < 3) {
+      fit.scale = scale;
+      continue;
+    }
+    tell("checking clearance", 0.9);
     const RayScene scene(cave.mesh);
     if (least_clearance_m(scene, plan) < kWayClearanceM ||
-        scene.distance_to_rock(plan.start, 2 * kStartClearanceM) < kStartClearanceM)
+        scene.distance_to_rock(plan.start, 2 * kStartClearanceM) < kStartClearanceM) {
+      way_radius_m += 0.1;
       continue;
+    }
     cave.start = {plan.start, plan.start_heading_rad};
-    cave.volume_m3 = enclosed_volume_m3(cave.mesh);
     for (const Passage& passage : plan.passages) {
       cave.ways.emplace_back();
       for (const Station& s : passage) cave.ways.back().push_back(s.center);

@@ -14,7 +14,6 @@ using core::Random;
 using core::Vec3;
 
 constexpr double kLevelStartM = 6;  // the first passage leaves the entrance chamber level
-constexpr double kLeastHalfM = 1.05;
 
 Vec3 direction(double heading, double pitch) {
   return {std::cos(pitch) * std::cos(heading), std::cos(pitch) * std::sin(heading), std::sin(pitch)};
@@ -29,8 +28,7 @@ struct Walk {
 
 class Layout {
  public:
-  Layout(const CaveRecipe& recipe, std::uint64_t seed, double scale)
-      : recipe_(recipe), seed_(seed), scale_(scale) {}
+  Layout(const CaveRecipe& recipe, std::uint64_t seed) : recipe_(recipe), seed_(seed) {}
 
   /// Passages are numbered as they are asked for; each has its own random stream, so that one more or less
   /// leaves the others as they are.
@@ -97,7 +95,7 @@ class Layout {
     const double size =
         std::exp(0.65 * gradient_noise(s / 11, noise + 1) + 0.3 * gradient_noise(s / 4, noise + 2));
     const double aspect = std::exp(0.55 * gradient_noise(s / 17, noise + 3) - 0.25);
-    const double width = 0.5 * recipe_.passage_width_m * width_factor * size * scale_;
+    const double width = 0.5 * recipe_.passage_width_m * width_factor * size;
     Station out;
     out.half_width_m = std::max(kLeastHalfM, width);
     out.half_height_m = std::max(kLeastHalfM, width * aspect);
@@ -132,7 +130,6 @@ class Layout {
 
   const CaveRecipe& recipe_;
   std::uint64_t seed_;
-  double scale_;
 };
 
 struct Spot {
@@ -283,8 +280,8 @@ void add_loop(Layout& l, const CaveRecipe& recipe, Random& random) {
 
 }  // namespace
 
-CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m, double scale) {
-  Layout l(recipe, seed, scale);
+CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m) {
+  Layout l(recipe, seed);
   l.plan.roughness_m = std::min(recipe.roughness_m, 0.15 * recipe.passage_width_m);
   l.plan.undulation_m = 0.1 * recipe.passage_width_m;
   l.plan.undulation_length_m = 2 + recipe.passage_width_m;
@@ -326,6 +323,17 @@ CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m, 
   each(recipe.loops, "loop", [&](Random& r, const std::string&) { add_loop(l, recipe, r); });
   each(recipe.domes, "dome", [&](Random& r, const std::string&) { add_dome(l, recipe, r); });
   return l.plan;
+}
+
+void scale_sections(CavePlan& plan, double factor) {
+  for (Passage& passage : plan.passages)
+    for (Station& s : passage) {
+      s.half_width_m = std::max(kLeastHalfM, factor * s.half_width_m);
+      s.half_height_m = std::max(kLeastHalfM, factor * s.half_height_m);
+      const bool at_entrance = (s.center - plan.start).norm() < kLevelStartM;
+      if (!at_entrance) s.floor_m = std::max(kLeastHalfM, factor * s.floor_m);
+    }
+  for (std::size_t i = 1; i < plan.chambers.size(); ++i) plan.chambers[i].radii *= factor;
 }
 
 }  // namespace karst::cave

@@ -52,10 +52,14 @@ struct CavePlan {
   std::uint32_t noise_seed = 0;
 };
 
-/// Lays out passages of about `length_m` in total, every cross-section scaled by `scale`, without boulders
-/// and speleothems. A little more length changes a little of the cave, so that the volume can be steered by
-/// it.
-CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m, double scale);
+constexpr double kLeastHalfM = 1.05;  // no passage is narrower or lower than twice this
+
+/// Lays out passages of about `length_m` in total, without boulders and speleothems.
+CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m);
+
+/// Makes every cross-section, and every chamber but the entrance, wider and higher by a factor; the ways stay
+/// as they are.
+void scale_sections(CavePlan& plan, double factor);
 
 /// Heaps of blocks on the floors, dripstone on floors and ceilings.
 void furnish(CavePlan& plan, const CaveRecipe& recipe, std::uint64_t seed);
