@@ -12,7 +12,7 @@ HeadingState step_heading(const HeadingState& s, double target_rad, double targe
   // The rate at which an error e can still be braked away with half of the acceleration is sqrt(a |e|); below
   // e = a T^2 a linear approach with time constant T meets it and does not chatter.
   constexpr double kApproach_s = 0.15;
-  const double error = wrap_angle(target_rad - s.heading_rad);
+  const double error = wrap_angle(target_rad - target_rate_radps * dt_s - s.heading_rad);  // before the step
   const double closing =
       std::min(std::sqrt(limits.max_acceleration_radps2 * std::abs(error)), std::abs(error) / kApproach_s);
   const double wanted = std::clamp(target_rate_radps + std::copysign(closing, error), -limits.max_rate_radps,

@@ -8,8 +8,8 @@
 namespace karst::core {
 namespace {
 
-// Limits hold at the ends of the prediction's steps and softly; what is asked of the solver is less by this.
-constexpr double kTightening = 0.98;
+// Limits hold softly: what is asked of the solver is less by this.
+constexpr double kTightening = 0.985;
 
 JerkMpcSetup setup_of(const MpcOptions& o, const MotionLimits& limits) {
   JerkMpcSetup s;
@@ -19,7 +19,10 @@ JerkMpcSetup setup_of(const MpcOptions& o, const MotionLimits& limits) {
   s.velocity_weight = o.velocity_weight;
   s.acceleration_weight = o.acceleration_weight;
   s.jerk_weight = o.jerk_weight;
-  s.max_speed_mps = kTightening * limits.max_speed_mps;
+  // They hold at the ends of the steps, too: between them speed is a parabola that rises by up to J dt^2 / 8,
+  // whereas acceleration is linear and jerk constant.
+  const double bulge_mps = limits.max_jerk_mps3 * o.step_s * o.step_s / 8;
+  s.max_speed_mps = std::max(0.5 * limits.max_speed_mps, kTightening * limits.max_speed_mps - bulge_mps);
   s.max_acceleration_mps2 = kTightening * limits.max_acceleration_mps2;
   s.max_jerk_mps3 = kTightening * limits.max_jerk_mps3;
   return s;

@@ -7,11 +7,11 @@
 namespace karst::core {
 
 struct Se3Options {
-  double position_gain = 6.0;        // 1/s^2
-  double velocity_gain = 4.0;        // 1/s
-  double attitude_gain = 8.0;        // rad/s per rad
-  double world_integral_gain = 1.0;  // 1/s^3
-  double body_integral_gain = 0.5;   // 1/s^3
+  double position_gain = 12.0;        // 1/s^2
+  double velocity_gain = 6.5;         // 1/s
+  double attitude_gain = 12.0;        // rad/s per rad
+  double world_integral_gain = 10.0;  // 1/s^3
+  double body_integral_gain = 2.0;    // 1/s^3
   double max_disturbance_mps2 = 3.0;
   double max_tilt_rad = 0.6;
 };
