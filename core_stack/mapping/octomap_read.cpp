@@ -32,21 +32,28 @@ class Reader {
     const Header header = read_header();
     MapOptions options;
     options.resolution_m = header.resolution_m;
-    VoxelMap map(options);
     const auto logit = [](double p) { return static_cast<float>(std::log(p / (1 - p))); };
     free_ = logit(options.min_probability), occupied_ = logit(options.max_probability);
     if (header.nodes > 0) {
       const CellKey low{-kWorldEdge / 2, -kWorldEdge / 2, -kWorldEdge / 2};
-      header.binary ? read_classes(map, low, kWorldEdge) : read_values(map, low, kWorldEdge);
+      header.binary ? read_classes(low, kWorldEdge) : read_values(low, kWorldEdge);
       nodes_ += header.binary ? 1 : 0;  // the root has no entry of its own there
     }
     if (nodes_ != header.nodes)
       fail(place(), "holds " + std::to_string(nodes_) + " nodes where its header says " +
                         std::to_string(header.nodes));
+    VoxelMap map(options);
+    for (const Leaf& l : leaves_) map.assign(l.low, l.edge, l.log_odds);
     return map;
   }
 
  private:
+  struct Leaf {
+    CellKey low;
+    std::int32_t edge;
+    float log_odds;
+  };
+
   [[noreturn]] void fail(const std::string& where, const std::string& reason) const {
     throw InputError(path_, where, reason);
   }
@@ -87,10 +94,10 @@ class Reader {
     return std::bit_cast<T>(raw);
   }
 
-  void leaf(VoxelMap& map, const CellKey& low, std::int32_t edge, float log_odds) {
+  void leaf(const CellKey& low, std::int32_t edge, float log_odds) {
     cells_ += std::pow(static_cast<double>(edge), 3);
     if (cells_ > kMostCells) fail(place(), "says more than 300 million cells are known");
-    map.assign(low, edge, log_odds);
+    leaves_.push_back({low, edge, log_odds});
   }
 
   static CellKey child(const CellKey& low, std::int32_t half, unsigned i) {
@@ -98,35 +105,36 @@ class Reader {
   }
 
   /// .bt: two bits a child (1 free, 2 occupied, 3 with children of its own), then the children's entries.
-  void read_classes(VoxelMap& map, const CellKey& low, std::int32_t edge) {
+  void read_classes(const CellKey& low, std::int32_t edge) {
     if (edge == 1) fail(place(), "has a tree deeper than 16 levels");
     const auto kinds = take<std::uint16_t>();
     const std::int32_t half = edge / 2;
     for (unsigned i = 0; i < 8; ++i) {
       const unsigned kind = kinds >> (2 * i) & 3;
       nodes_ += kind != 0;
-      if (kind == 1 || kind == 2) leaf(map, child(low, half, i), half, kind == 1 ? free_ : occupied_);
+      if (kind == 1 || kind == 2) leaf(child(low, half, i), half, kind == 1 ? free_ : occupied_);
     }
     for (unsigned i = 0; i < 8; ++i)
-      if ((kinds >> (2 * i) & 3) == 3) read_classes(map, child(low, half, i), half);
+      if ((kinds >> (2 * i) & 3) == 3) read_classes(child(low, half, i), half);
   }
 
   /// .ot: a node's log-odds and one bit for each child it has, then the children.
-  void read_values(VoxelMap& map, const CellKey& low, std::int32_t edge) {
+  void read_values(const CellKey& low, std::int32_t edge) {
     const auto log_odds = take<float>();
     const auto children = take<std::uint8_t>();
     ++nodes_;
     if (!std::isfinite(log_odds)) fail(place(), "holds a log-odds value that is no number");
-    if (children == 0) return leaf(map, low, edge, log_odds);
+    if (children == 0) return leaf(low, edge, log_odds);
     if (edge == 1) fail(place(), "has a tree deeper than 16 levels");
     for (unsigned i = 0; i < 8; ++i)
-      if (children >> i & 1) read_values(map, child(low, edge / 2, i), edge / 2);
+      if (children >> i & 1) read_values(child(low, edge / 2, i), edge / 2);
   }
 
   std::string path_;
   std::ifstream in_;
   std::uint64_t bytes_ = 0, nodes_ = 0;
   double cells_ = 0;
+  std::vector<Leaf> leaves_;
   float free_ = 0, occupied_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -30,13 +31,28 @@ void write_whole(const std::string& path, Write&& write) {
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be put in place");
 }
 
+/// OctoMap's own functions that write a header also write to the terminal.
+void write_header(std::ostream& out, const char* kind, const octomap::OcTree& tree) {
+  char resolution[32];
+  const auto end = std::to_chars(resolution, resolution + sizeof resolution, tree.getResolution()).ptr;
+  out << kind << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+      << std::string_view(resolution, end) << "\ndata\n";
+}
+
 }  // namespace
 
 void write_octomap(const VoxelMap& map, const std::string& stem) {
   const auto tree = to_octree(map);
-  write_whole(stem + ".ot", [&](std::ostream& out) { tree->write(out); });
-  // Reduces the log-odds to classes, and so comes second.
-  write_whole(stem + ".bt", [&](std::ostream& out) { tree->writeBinary(out); });
+  write_whole(stem + ".ot", [&](std::ostream& out) {
+    write_header(out, "# Octomap OcTree file", *tree);
+    if (tree->size() > 0) tree->writeData(out);
+  });
+  tree->toMaxLikelihood();  // to classes, of which more can be pruned
+  tree->prune();
+  write_whole(stem + ".bt", [&](std::ostream& out) {
+    write_header(out, "# Octomap OcTree binary file", *tree);
+    if (tree->size() > 0) tree->writeBinaryData(out);
+  });
 }
 
 void write_ply(const VoxelMap& map, const std::string& path) {

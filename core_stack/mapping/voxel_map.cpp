@@ -125,11 +125,13 @@ std::uint64_t VoxelMap::revision_near(const Vec3& center, double radius_m) const
 std::optional<CellKey> VoxelMap::first_not_free(const Vec3& from, const Vec3& to) const {
   VoxelReader reader(*this);
   std::optional<CellKey> found;
-  if (!in_world(key_of(from))) return key_of(from);
   traverse(from, to, storage_->resolution_m, [&](const CellKey& k) {
     if (reader.at(k) != Cell::free) found = k;
     return !found;
   });
+  // An end that is no place (not finite, far outside the world) cannot be walked to, and is not free.
+  if (!found && !in_world(key_of(to))) found = key_of(to);
+  if (!found && !in_world(key_of(from))) found = key_of(from);
   return found;
 }
 
@@ -173,7 +175,7 @@ void traverse(const Vec3& from, const Vec3& to, double resolution_m,
               const std::function<bool(const CellKey&)>& visit) {
   constexpr double limit = kPackedLimit;
   const Vec3 a = from / resolution_m, b = to / resolution_m;
-  if (!(a.cwiseAbs().maxCoeff() < limit) || !(b.cwiseAbs().maxCoeff() < limit)) return;
+  if (!(a.array().abs() < limit).all() || !(b.array().abs() < limit).all()) return;  // NaN as well
   walk_cells(a, b, [&](PackedCell k) { return visit(unpack(k)); });
 }
 

@@ -1,0 +1,82 @@
+#include "core_stack/perception/intensity_filter.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core_stack/common/random.h"
+
+namespace karst::core {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+LidarScan scan_of(std::vector<float> range_m, std::vector<float> intensity) {
+  return {0, nullptr, std::move(range_m), std::move(intensity)};
+}
+
+TEST(IntensityFilter, DropsTheWeakestReturnsNearTheSensorOnly) {
+  std::vector<float> range_m, intensity;
+  for (int i = 0; i < 100; ++i) {
+    range_m.push_back(i % 2 == 0 ? 1.0f : 5.0f);
+    intensity.push_back(static_cast<float>(i) / 100);
+  }
+  LidarScan scan = scan_of(range_m, intensity);
+  filter_low_intensity(scan, {});  // 10th percentile, 1.5 m
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(std::isnan(scan.range_m[i]), i < 10 && i % 2 == 0) << i;
+  EXPECT_EQ(scan.intensity, intensity);
+}
+
+TEST(IntensityFilter, ThePercentileIsThatOfAllReturns) {
+  EXPECT_TRUE(rc::check([](std::uint64_t seed) {
+    Random random(seed);
+    const double percentile = random.uniform(0, 100);
+    LidarScan scan;
+    for (int i = 0; i < 200; ++i) {
+      const double kind = random.uniform();
+      scan.range_m.push_back(kind < 0.1   ? kNan
+                             : kind < 0.2 ? kInf
+                                          : static_cast<float>(random.uniform(0.3, 3)));
+      scan.intensity.push_back(static_cast<float>(std::floor(random.uniform(0, 50)) / 50));  // many ties
+    }
+    const LidarScan before = scan;
+    filter_low_intensity(scan, {percentile, 1.5});
+    std::vector<float> returns;
+    for (std::size_t i = 0; i < 200; ++i)
+      if (std::isfinite(before.range_m[i])) returns.push_back(before.intensity[i]);
+    for (std::size_t i = 0; i < 200; ++i) {
+      const auto weaker_or_equal =
+          std::count_if(returns.begin(), returns.end(), [&](float v) { return v <= before.intensity[i]; });
+      const bool weak =
+          100.0 * static_cast<double>(weaker_or_equal) <= percentile * static_cast<double>(returns.size());
+      const bool drop = before.range_m[i] < 1.5f && weak;
+      RC_ASSERT(std::isnan(scan.range_m[i]) == (std::isnan(before.range_m[i]) || drop));
+      if (!drop && !std::isnan(before.range_m[i])) RC_ASSERT(scan.range_m[i] == before.range_m[i]);
+    }
+  }));
+}
+
+TEST(IntensityFilter, LeavesScansAloneThatItCannotJudge) {
+  const std::vector<float> ranges{1, 1, 1, kNan};
+  LidarScan no_intensity = scan_of({1, 1, 1}, {});
+  filter_low_intensity(no_intensity, {});
+  EXPECT_EQ(no_intensity.range_m, (std::vector<float>{1, 1, 1}));
+  LidarScan empty;
+  filter_low_intensity(empty, {});
+  LidarScan nothing_seen = scan_of({kNan, kInf}, {0.5f, 0.1f});
+  filter_low_intensity(nothing_seen, {50, 2});
+  EXPECT_EQ(nothing_seen.range_m[1], kInf);
+  LidarScan uniform = scan_of({1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, kNan});
+  filter_low_intensity(uniform, {50, 2});
+  EXPECT_EQ(uniform.range_m, (std::vector<float>{1, 1, 1, 1})) << "none is weaker than the others";
+  LidarScan off = scan_of({1, 1}, {0.0f, 1.0f});
+  filter_low_intensity(off, {0, 2});
+  EXPECT_EQ(off.range_m, (std::vector<float>{1, 1}));
+}
+
+}  // namespace
+}  // namespace karst::core
