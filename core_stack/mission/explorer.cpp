@@ -67,10 +67,12 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
     const auto known = viewpoints_.find(id);
     const bool fresh = known != viewpoints_.end() && known->second.revision == revision &&
                        known->second.cells == cluster.cells;
-    KnownViewpoint entry =
-        fresh ? known->second
-              : KnownViewpoint{revision, cluster.cells,
-                               find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m)};
+    KnownViewpoint entry{revision, cluster.cells, std::nullopt};
+    if (fresh) {
+      entry.viewpoint = known->second.viewpoint;
+    } else if (open_cells(map_, cluster) >= options_.mission.min_open_cells) {
+      entry.viewpoint = find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m);
+    }
     FrontierOffer offer;
     offer.cluster = &cluster;
     offer.path_length_m = std::numeric_limits<double>::infinity();
@@ -216,9 +218,9 @@ RoundResult Explorer::decide(const RoundInput& input) {
     for (const RejectedGoal& r : result.rejected)
       policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});
 
-  for (const auto& [id, cluster] : frontiers_.clusters()) {
-    FrontierCluster brief = cluster;
-    brief.unknown_cells = static_cast<std::uint32_t>(cluster.cells.size());
+  for (const FrontierOffer& offer : request.frontiers) {
+    FrontierCluster brief = *offer.cluster;
+    brief.unknown_cells = static_cast<std::uint32_t>(brief.cells.size());
     brief.cells.clear();
     result.frontiers.push_back(std::move(brief));
   }

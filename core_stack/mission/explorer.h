@@ -47,7 +47,7 @@ struct RoundResult {
   std::vector<Drawing> drawings;
   std::vector<std::string> log;
   std::size_t goals_proposed = 0;
-  std::vector<FrontierCluster> frontiers;  // without their cells: for the report
+  std::vector<FrontierCluster> frontiers;  // as offered, without their cells: for the report
   double decide_ms = 0, plan_ms = 0;       // wall clock, for timing.json only
 };
 

@@ -20,6 +20,8 @@ void describe(OptionTable& t, MissionOptions& o) {
         "homing begins at the latest in time for this");
   t.add("mapping_range", o.mapping_range_m, "m", 1, 200,
         "LiDAR measurements beyond this only clear space up to it");
+  t.add("min_open_cells", o.min_open_cells, 0, 1000,
+        "a frontier is offered to the policy if so many of its cells have no rock beside them");
 }
 
 void describe(OptionTable& t, CoreOptions& o) {

@@ -23,6 +23,7 @@ struct MissionOptions {
   double landing_speed_mps = 0.4;
   double max_flight_time_s = 3600.0;
   double mapping_range_m = 30.0;
+  std::int64_t min_open_cells = 4;
 };
 void describe(OptionTable& t, MissionOptions& o);
 

@@ -51,6 +51,17 @@ bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec
   return false;
 }
 
+int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
+  int open = 0;
+  for (const CellKey& k : cluster.cells) {
+    bool rock = false;
+    for (int i = 0; i < 27 && !rock; ++i)
+      rock = map.at(k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}) == Cell::occupied;
+    open += !rock;
+  }
+  return open;
+}
+
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
                                         const VehicleDescription& vehicle, double clearance_m) {
   // The frontier cell nearest the centroid stands for the cluster: the centroid itself may lie in rock.

@@ -17,6 +17,10 @@ struct Viewpoint {
 bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target,
              double lidar_range_m);
 
+/// Cells of the cluster with no rock among their 26 neighbours. Chinks in a wall have none: their unknown is
+/// the inside of the rock. An opening that a vehicle fits through has some in its middle.
+int open_cells(const VoxelMap& map, const FrontierCluster& cluster);
+
 /// The best of a fixed set of candidates on shells around the cluster: clear, with a free line of sight, the
 /// cluster in a sensor's view. None if there is no such place.
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,

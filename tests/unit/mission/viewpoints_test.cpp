@@ -74,6 +74,17 @@ TEST_P(ViewpointInARoom, IsClearAndSeesTheOpening) {
 }
 INSTANTIATE_TEST_SUITE_P(Sensors, ViewpointInARoom, ::testing::Bool());
 
+TEST(OpenCells, AnOpeningHasSomeAndAChinkHasNone) {
+  VoxelMap map{MapOptions{}};
+  carve_box(map, Vec3(0, 0, 0), Vec3(4, 2, 2), {"x+"});  // walls of one cell: 8 x 8 free cells at x = 4
+  FrontierCluster opening, chink;
+  for (int y = 1; y <= 8; ++y)
+    for (int z = 1; z <= 8; ++z) opening.cells.push_back({19, y, z});
+  EXPECT_EQ(open_cells(map, opening), 6 * 6);
+  for (int y = 1; y <= 8; ++y) chink.cells.push_back({10, y, 1});  // a seam along the floor
+  EXPECT_EQ(open_cells(map, chink), 0);
+}
+
 TEST(FindViewpoint, ThereIsNoneInASpaceTooSmallForTheVehicle) {
   VoxelMap map{MapOptions{}};
   carve_box(map, Vec3(0, 0, 0), Vec3(8, 0.8, 0.8), {"x+"});
