@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -23,14 +24,10 @@ using nlohmann::json;
 std::string string_of(const karst_text_t& t) { return cleaned(t, kLogLineLimit); }
 
 std::string default_text(const karst_parameter_t& p) {
-  switch (p.type) {
-    case KARST_PARAMETER_BOOLEAN:
-      return p.default_number != 0 ? "true" : "false";
-    case KARST_PARAMETER_TEXT:
-      return string_of(p.default_text);
-    default:
-      return json(p.default_number).dump();
-  }
+  if (p.type == KARST_PARAMETER_BOOLEAN) return p.default_number != 0 ? "true" : "false";
+  if (p.type == KARST_PARAMETER_TEXT) return string_of(p.default_text);
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, p.default_number).ptr};
 }
 
 json parameter_json(const karst_parameter_t& p) {
