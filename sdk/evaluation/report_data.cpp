@@ -35,12 +35,20 @@ ordered_json curves(const RunRecord& run) {
   if (t_s && t.column("vx") && t.column("vy") && t.column("vz"))
     for (std::size_t i = 0; i < t_s->size(); ++i)
       speed.push_back(std::hypot((*t.column("vx"))[i], (*t.column("vy"))[i], (*t.column("vz"))[i]));
+  std::vector<double> distance;
+  if (t_s && !t_s->empty() && t.column("x") && t.column("y") && t.column("z"))
+    for (std::size_t i = 0; i < t_s->size(); ++i) {
+      const auto from_first = [&](const char* axis) {
+        return (*t.column(axis))[i] - t.column(axis)->front();
+      };
+      distance.push_back(std::hypot(from_first("x"), from_first("y"), from_first("z")));
+    }
   const auto* truth_s = run.truth_table.times();
   const auto* decision_s = run.decisions.times();
   return {{"volume", curve(t_s, t.column("explored_m3"))},
           {"speed", curve(t_s, &speed)},
           {"battery", curve(t_s, t.column("battery_fraction"), 100)},
-          {"home", curve(t_s, t.column("home_distance_m"))},
+          {"distance", curve(t_s, &distance)},
           {"clearance", curve(truth_s, run.truth_table.column("clearance_m"))},
           {"decide", curve(decision_s, run.decisions.column("decide_ms"))},
           {"plan", curve(decision_s, run.decisions.column("plan_ms"))}};

@@ -43,13 +43,14 @@ class GoalSpans {
     open_.push_back(spans_.size());
     spans_.push_back(goal);
   }
-  /// Ends the open goal nearest to `position`, or the oldest, and those accepted before it.
+  /// Ends the open goal at `position`, and those accepted before it; without a position, the oldest.
   void end(double t_s, const std::optional<Vec3>& position, const std::string& fate,
            const std::string& reason) {
     if (open_.empty()) return;
     const auto nearest = std::min_element(open_.begin(), open_.end(), [&](std::size_t a, std::size_t b) {
       return distance(spans_[a].position, position) < distance(spans_[b].position, position);
     });
+    if (position && !(distance(spans_[*nearest].position, position) < kSameGoal_m)) return;  // ended before
     for (auto i = open_.begin(); i != nearest; ++i) close(*i, t_s, "superseded", "");
     close(*nearest, t_s, fate, reason);
     open_.erase(open_.begin(), nearest + 1);

@@ -23,7 +23,7 @@ function roundMarks(colour) {
                     gl_PointSize = size * ratio; }`,
     fragmentShader: `uniform vec3 colour;
       void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
-                    gl_FragColor = vec4(r > 0.36 ? vec3(0.08) : colour, 0.92); }` });
+                    gl_FragColor = vec4(r > 0.4 ? colour * 0.45 : colour, 0.85); }` });
   const points = new THREE.Points(new THREE.BufferGeometry(), material);
   points.frustumCulled = false;
   return points;
@@ -182,9 +182,9 @@ function makeFlight() {
       shownFrontiers = clusters;
       const list = clusters ? clusters[1] : [];
       setMarks(frontiers, [].concat(...list.map((c) => c.slice(0, 3))),
-               list.map((c) => Math.min(16, 5 + 0.55 * Math.sqrt(c[3]))));
+               list.map((c) => Math.min(11, 3.5 + 0.3 * Math.sqrt(c[3]))));
     }
-    const drawings = entryAt(data.drawings, t);
+    const drawings = /^(home|land|done)$/.test(phaseAt(t)) ? null : entryAt(data.drawings, t);
     if (drawings !== shownDrawings) {
       shownDrawings = drawings;
       layer.drawings.children.forEach((g) => g.children.forEach((c) => { c.geometry.dispose(); c.material.dispose(); }));

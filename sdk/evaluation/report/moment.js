@@ -51,13 +51,12 @@ function startMomentPanel() {
   const box = element("moment");
   moment.listeners.push((t) => {
     const c = data.curves;
-    const distance = curveAt(c.home, t);
     box.replaceChildren(
       make("h3", {}, "Now"),
       make("div", { className: "phase" }, phaseAt(t) || "–"),
       rows([["speed", withUnit(curveAt(c.speed, t), "m/s", 2)], ["explored", withUnit(curveAt(c.volume, t), "m³", 4)],
             ["battery", withUnit(curveAt(c.battery, t), "%", 2)],
-            ["clearance", withUnit(curveAt(c.clearance, t), "m", 2)], ["way home", withUnit(distance, "m", 3)]]),
+            ["clearance", withUnit(curveAt(c.clearance, t), "m", 2)], ["from the start", withUnit(curveAt(c.distance, t), "m", 3)]]),
       make("h3", {}, "Goal"), ...goalPanel(t),
       make("h3", {}, "Last decision"), ...decisionPanel(t));
   });

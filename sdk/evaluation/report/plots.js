@@ -26,7 +26,11 @@ function axes(plot) {
   const grid = { color: cssColour("--line"), borderColor: cssColour("--line") }, ticks = { color: cssColour("--quiet") };
   const scales = {
     x: { type: "linear", min: 0, max: data.duration_s, grid, title: { display: true, text: "time, min:s", color: ticks.color, padding: 0 },
-         ticks: { ...ticks, stepSize: timeStep(data.duration_s), maxRotation: 0, includeBounds: false, callback: clockText } },
+         ticks: { ...ticks, maxRotation: 0, callback: clockText },
+         afterBuildTicks: (axis) => {
+           const step = timeStep(data.duration_s);
+           axis.ticks = Array.from({ length: Math.floor(data.duration_s / step) + 1 }, (_, i) => ({ value: i * step }));
+         } },
     y: { type: plot.log ? "logarithmic" : "linear", min: plot.log ? undefined : 0, max: plot.max, suggestedMax: plot.suggestedMax,
          grid, ticks: { ...ticks, maxTicksLimit: 6, callback: (v) => plot.log && Math.log10(v) % 1 ? null : axisText(v) } },
   };
@@ -86,7 +90,8 @@ function startPlots() {
             sets: [{ label: "clearance", points: c.clearance, colour: colours.plan }] });
   addPlot({ title: "Battery left, %", unit: "%", max: 100,
             sets: [{ label: "battery", points: c.battery, colour: "#cc79a7", fill: "rgba(204,121,167,.16)" }] });
-  addPlot({ title: "Distance to the start, m", unit: "m", sets: [{ label: "distance", points: c.home, colour: colours.home }] });
+  addPlot({ title: "Distance from the start, m (straight)", unit: "m",
+            sets: [{ label: "distance", points: c.distance, colour: colours.home }] });
   addPlot({ title: "Decision and planning time, ms (wall clock)", unit: "ms", log: true,
             sets: [{ label: "decision", points: positive(c.decide), colour: colours.blue, marks: true, style: "circle" },
                    { label: "planning", points: positive(c.plan), colour: "#e69f00", marks: true, style: "triangle" }] });

@@ -38,10 +38,10 @@ function showHeader() {
   const unit = (v, u, digits) => typeof v === "number" ? [numberText(v, digits), u] : ["–", ""];
   const figures = [
     ["flight time", typeof m.flight_time_s === "number" ? [clockText(m.flight_time_s), "min"] : ["–", ""]],
-    ["explored volume", unit(m.explored_volume_m3, "m³", 4)], ["coverage", share(m.coverage)],
+    ["explored", unit(m.explored_volume_m3, "m³", 4)], ["coverage", share(m.coverage)],
     ["path length", unit(m.path_length_m, "m")], ["mean speed", unit(m.mean_speed_mps, "m/s")],
     ["least clearance", unit(m.min_clearance_m, "m", 2)], ["contacts", unit(m.contacts, "", 3)],
-    ["landing error", unit(m.landing_error_m, "m", 2)], ["map error, mean", unit(m.map_error_mean_m, "m", 2)],
+    ["landing error", unit(m.landing_error_m, "m", 2)], ["map error", unit(m.map_error_mean_m, "m", 2)],
     ["battery left", share(m.battery_left)],
     ["goals (refused)", [`${m.goals_accepted ?? "–"}`, `(${m.goals_rejected ?? "–"})`]],
   ];

@@ -178,6 +178,24 @@ TEST(Goals, AreSupersededInWhicheverOrderTheEventsCome) {
   }
 }
 
+TEST(Goals, AreNotEndedByTheEndOfAnother) {
+  const json g = goals_of(goal_line(1, 10, "accepted") + goal_line(2, 20, "accepted") +
+                          goal_line(3, 30, "accepted") + goal_line(4, 20, "reached"));
+  ASSERT_EQ(g.size(), 3u);
+  EXPECT_EQ(g[1]["until"], 3.0);  // the third took its place behind the first
+  EXPECT_TRUE(g[0]["until"].is_null());
+  EXPECT_TRUE(g[2]["until"].is_null());
+}
+
+TEST(Goals, AcceptedAgainAtTheSamePlaceArePlannedAnew) {
+  const json g =
+      goals_of(goal_line(1, 10, "accepted") + goal_line(2, 10.2, "accepted") + goal_line(5, 10.2, "reached"));
+  ASSERT_EQ(g.size(), 2u);
+  EXPECT_EQ(g[0]["fate"], "planned anew");
+  EXPECT_EQ(g[0]["until"], 2.0);
+  EXPECT_EQ(g[1]["fate"], "reached");
+}
+
 TEST(Goals, EndWithTheExploration) {
   const json g =
       goals_of(goal_line(1, 10, "accepted") + "{\"t\": 4, \"kind\": \"phase\", \"phase\": \"home\"}\n");
