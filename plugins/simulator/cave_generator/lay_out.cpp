@@ -1,136 +1,16 @@
-// Passages grow as random walks that keep out of each other's way; chambers, shafts and chimneys hang on
-// them.
+// The passages of a cave, and the chambers, shafts, chimneys and loops that hang on them.
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "plugins/simulator/cave_generator/noise.h"
-#include "plugins/simulator/cave_generator/plan.h"
+#include "plugins/simulator/cave_generator/passage_walk.h"
 
 namespace karst::cave {
 namespace {
 
 using core::Random;
 using core::Vec3;
-
-constexpr double kLevelStartM = 6;  // the first passage leaves the entrance chamber level
-
-Vec3 direction(double heading, double pitch) {
-  return {std::cos(pitch) * std::cos(heading), std::cos(pitch) * std::sin(heading), std::sin(pitch)};
-}
-
-struct Walk {
-  Vec3 from = Vec3::Zero();
-  double heading_rad = 0, pitch_rad = 0, length_m = 0;
-  double width_factor = 1;
-  bool level_start = false;
-};
-
-class Layout {
- public:
-  Layout(const CaveRecipe& recipe, std::uint64_t seed) : recipe_(recipe), seed_(seed) {}
-
-  /// Passages are numbered as they are asked for; each has its own random stream, so that one more or less
-  /// leaves the others as they are.
-  Passage walk(const Walk& w, const std::string& name) const {
-    Random random = Random::stream(seed_, name);
-    const auto noise = static_cast<std::uint32_t>(random.bits());
-    const double steepness = 0.06 + 0.6 * recipe_.verticality;
-    const double trend = w.pitch_rad + steepness * 0.5 * random.normal();
-    const bool keyhole = random.uniform() < 0.3;
-    double heading = w.heading_rad, turn = 0;
-    Vec3 p = w.from;
-    Passage passage;
-    const int steps = std::max(3, static_cast<int>(w.length_m / kStationStepM));
-    for (int i = 0; i <= steps; ++i) {
-      const double s = i * kStationStepM;
-      Station station = section(s, w.width_factor, noise, keyhole);
-      station.center = p;
-      if (w.level_start && s < kLevelStartM) station.floor_m = p.z(), station.slot = 0;
-      passage.push_back(station);
-      turn = 0.8 * turn + 0.07 * random.normal();
-      // Water follows joints: now and then it turns a corner.
-      if (random.uniform() < 0.05) turn += random.uniform() < 0.5 ? -0.22 : 0.22;
-      double pitch = trend + steepness * 1.3 * gradient_noise(s / 14, noise + 7);
-      pitch = std::clamp(pitch, -1.05, 1.05);
-      if (w.level_start && s < kLevelStartM) pitch = 0;
-      const double best = freest_turn(p, heading + turn, pitch, w.from, passage);
-      heading += turn + best;
-      p += kStationStepM * direction(heading, pitch);
-      // A walk that has come up against another passage ends there.
-      if (i > 6 && i + 1 < steps && room(p + 3 * direction(heading, pitch), w.from, passage) < -1.5) break;
-    }
-    taper(passage);
-    return passage;
-  }
-
-  void add(Passage p) { plan.passages.push_back(std::move(p)); }
-
-  /// Distance from p to the nearest cross-section of the plan, but for those round `but`, less what lies
-  /// between passages at least; negative in one.
-  double room(const Vec3& p, const Vec3& but, const Passage& own) const {
-    const double self = 0.5 * recipe_.passage_width_m, ignored = 2.2 * recipe_.passage_width_m + 3;
-    double least = 20;
-    const auto meet = [&](const Station& s) {
-      least = std::min(least, (s.center - p).norm() - std::max(s.half_width_m, s.half_height_m) - self - 1.5);
-    };
-    for (const Passage& passage : plan.passages)
-      for (const Station& s : passage)
-        if ((s.center - but).norm() > ignored) meet(s);
-    const auto recent = static_cast<std::size_t>(ignored / kStationStepM);
-    for (std::size_t i = 0; i + recent < own.size(); ++i) meet(own[i]);
-    return least;
-  }
-
-  double length_m() const {
-    double sum = 0;
-    for (const Passage& p : plan.passages) sum += kStationStepM * static_cast<double>(p.size() - 1);
-    return sum;
-  }
-
-  CavePlan plan;
-
- private:
-  Station section(double s, double width_factor, std::uint32_t noise, bool keyhole) const {
-    const double size =
-        std::exp(0.65 * gradient_noise(s / 11, noise + 1) + 0.3 * gradient_noise(s / 4, noise + 2));
-    const double aspect = std::exp(0.55 * gradient_noise(s / 17, noise + 3) - 0.25);
-    const double width = 0.5 * recipe_.passage_width_m * width_factor * size;
-    Station out;
-    out.half_width_m = std::max(kLeastHalfM, width);
-    out.half_height_m = std::max(kLeastHalfM, width * aspect);
-    const double sediment = 0.75 + 0.35 * gradient_noise(s / 9, noise + 4);
-    out.floor_m = std::max(kLeastHalfM, sediment * out.half_height_m);
-    const double cut = gradient_noise(s / 20, noise + 5) + 0.25;
-    if (keyhole) out.slot = std::clamp(2 * cut, 0.0, 0.9);
-    return out;
-  }
-
-  double freest_turn(const Vec3& p, double heading, double pitch, const Vec3& but, const Passage& own) const {
-    double best = 0, best_score = -1e9;
-    for (const double offset : {0.0, 0.12, -0.12, 0.25, -0.25, 0.4, -0.4}) {
-      const Vec3 ahead = direction(heading + offset, pitch);
-      const double near = room(p + 5 * ahead, but, own), far = room(p + 10 * ahead, but, own);
-      const double score = std::min(near, 2.0) + 0.5 * std::min(far, 2.0) - 2.5 * std::abs(offset);
-      if (score > best_score) best_score = score, best = offset;
-    }
-    return best;
-  }
-
-  static void taper(Passage& passage) {
-    const std::size_t n = std::min<std::size_t>(passage.size() - 1, 4);
-    for (std::size_t i = 0; i < n; ++i) {
-      Station& s = passage[passage.size() - n + i];
-      const double shrink = 1 - 0.45 * static_cast<double>(i + 1) / static_cast<double>(n);
-      s.half_width_m = std::max(kLeastHalfM, s.half_width_m * shrink);
-      s.half_height_m = std::max(kLeastHalfM, s.half_height_m * shrink);
-      s.floor_m = std::max(kLeastHalfM, s.floor_m * shrink);
-    }
-  }
-
-  const CaveRecipe& recipe_;
-  std::uint64_t seed_;
-};
 
 struct Spot {
   std::size_t passage = 0, station = 0;
@@ -158,28 +38,37 @@ double heading_at(const Passage& p, std::size_t i) {
   return std::atan2(d.y(), d.x());
 }
 
-void add_entrance(Layout& l, const CaveRecipe& recipe, Random& random) {
+void add_entrance(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
   const double radius = std::max(3.6, 0.8 * recipe.passage_width_m);
   Chamber c;
   c.heading_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
   c.center = Vec3(0, 0, 0.25 * radius);
   c.radii = Vec3(1.15 * radius, radius, std::max(2.9, 0.75 * radius));
-  l.plan.start_heading_rad = c.heading_rad;
-  l.plan.chambers.push_back(c);
+  plan.start_heading_rad = c.heading_rad;
+  plan.chambers.push_back(c);
 }
 
-void add_dome(Layout& l, const CaveRecipe& recipe, Random& random) {
-  const auto spot = pick(l.plan, random, 14);
+void add_dome(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
+  std::optional<Spot> spot;  // of a few, that farthest from other chambers
+  double apart = 0;
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    const auto other = pick(plan, random, 14);
+    if (!other) continue;
+    double nearest = 1e9;
+    for (const Chamber& c : plan.chambers)
+      nearest = std::min(nearest, (c.center - plan.passages[other->passage][other->station].center).norm());
+    if (nearest > apart) apart = nearest, spot = other;
+  }
   const double size = recipe.passage_width_m * random.uniform(0.9, 1.6), high = random.uniform(0.6, 1.3),
                oblong = random.uniform(0.75, 1.3), heading = random.uniform(0, std::numbers::pi);
   if (!spot) return;
-  const Station& s = l.plan.passages[spot->passage][spot->station];
+  const Station& s = plan.passages[spot->passage][spot->station];
   Chamber c;
   c.radii = Vec3(size * oblong, size / oblong, std::max(2.5, size * high));
   c.center = s.center + Vec3(0, 0, 0.35 * c.radii.z());
   c.heading_rad = heading;
   c.floor_z = s.center.z() - s.floor_m - 0.3;
-  l.plan.chambers.push_back(c);
+  plan.chambers.push_back(c);
   for (int lobe = 0; lobe < 3; ++lobe) {  // one ellipsoid alone would look turned on a lathe
     const double towards = heading + 2.1 * lobe + random.uniform(-0.6, 0.6), part = random.uniform(0.45, 0.7);
     Chamber bay = c;
@@ -189,21 +78,22 @@ void add_dome(Layout& l, const CaveRecipe& recipe, Random& random) {
     bay.center += size * random.uniform(0.5, 0.8) * direction(towards, 0) +
                   Vec3(0, 0, random.uniform(-0.2, 0.3) * c.radii.z());
     bay.floor_z += random.uniform(-0.4, 1.2);
-    l.plan.chambers.push_back(bay);
+    plan.chambers.push_back(bay);
   }
 }
 
 /// A vertical way from a station, with a foot passage if it goes down.
-void add_vertical(Layout& l, const CaveRecipe& recipe, Random& random, bool down, const std::string& name) {
+void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, bool down, std::uint64_t seed,
+                  const std::string& name) {
   for (int attempt = 0; attempt < 12; ++attempt) {
-    const auto spot = pick(l.plan, random, 10);
+    const auto spot = pick(plan, random, 10);
     if (!spot) return;
-    const Station& s = l.plan.passages[spot->passage][spot->station];
+    const Station& s = plan.passages[spot->passage][spot->station];
     const double drop = random.uniform(7, 13) * (1 + recipe.verticality) + s.half_height_m;
     const double radius = std::max(1.25, recipe.passage_width_m * random.uniform(0.24, 0.4));
     const double sign = down ? -1 : 1;
-    if (l.room(s.center + Vec3(0, 0, sign * drop), s.center, {}) < 2 ||
-        l.room(s.center + Vec3(0, 0, sign * (0.5 * drop + 3)), s.center, {}) < 0)
+    if (room(plan, recipe, s.center + Vec3(0, 0, sign * drop), s.center) < 2 ||
+        room(plan, recipe, s.center + Vec3(0, 0, sign * (0.5 * drop + 3)), s.center) < 0)
       continue;
     Passage way;
     const int steps = static_cast<int>(drop / kStationStepM);
@@ -221,27 +111,28 @@ void add_vertical(Layout& l, const CaveRecipe& recipe, Random& random, bool down
                 sign * kStationStepM);
     }
     const Vec3 foot = way.back().center;
-    l.add(std::move(way));
+    plan.passages.push_back(std::move(way));
     if (down)
-      l.add(l.walk({.from = foot,
-                    .heading_rad = random.uniform(-std::numbers::pi, std::numbers::pi),
-                    .length_m = random.uniform(2, 4) * recipe.passage_width_m + 5,
-                    .width_factor = 0.85},
-                   name + " foot"));
+      plan.passages.push_back(
+          walk_passage(plan, recipe, seed,
+                       {.from = foot,
+                        .heading_rad = random.uniform(-std::numbers::pi, std::numbers::pi),
+                        .length_m = random.uniform(2, 4) * recipe.passage_width_m + 5,
+                        .width_factor = 0.85},
+                       name + " foot"));
     return;
   }
 }
 
 /// A curved passage between two stations that are near in space and far apart along the passages, if any.
-void add_loop(Layout& l, const CaveRecipe& recipe, Random& random) {
+void add_loop(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
   const double shortest = 2.5 * recipe.passage_width_m, longest = 6 * recipe.passage_width_m + 10;
   std::optional<std::pair<Spot, Spot>> best;
   double best_score = 1.0;
   for (int attempt = 0; attempt < 60; ++attempt) {
-    const auto a = pick(l.plan, random, 8), b = pick(l.plan, random, 8);
+    const auto a = pick(plan, random, 8), b = pick(plan, random, 8);
     if (!a || !b) return;
-    const Station &sa = l.plan.passages[a->passage][a->station],
-                  &sb = l.plan.passages[b->passage][b->station];
+    const Station &sa = plan.passages[a->passage][a->station], &sb = plan.passages[b->passage][b->station];
     const double apart = (sa.center - sb.center).norm();
     if (apart < shortest || apart > longest || std::abs(sa.center.z() - sb.center.z()) > 0.6 * apart)
       continue;
@@ -250,13 +141,13 @@ void add_loop(Layout& l, const CaveRecipe& recipe, Random& random) {
                 kStationStepM <
             2 * apart)
       continue;
-    const double clear = std::min(l.room(0.5 * (sa.center + sb.center), sa.center, {}), 3.0);
+    const double clear = std::min(room(plan, recipe, 0.5 * (sa.center + sb.center), sa.center), 3.0);
     const double score = 3 + clear - apart / longest;
     if (score > best_score) best_score = score, best = {*a, *b};
   }
   if (!best) return;
-  const Station a = l.plan.passages[best->first.passage][best->first.station];
-  const Station b = l.plan.passages[best->second.passage][best->second.station];
+  const Station a = plan.passages[best->first.passage][best->first.station];
+  const Station b = plan.passages[best->second.passage][best->second.station];
   const Vec3 across = (b.center - a.center).cross(Vec3::UnitZ()).normalized();
   const double apart = (b.center - a.center).norm();
   const double bow = random.uniform(-0.25, 0.25) * apart, wave = random.uniform(-0.1, 0.1) * apart;
@@ -275,40 +166,42 @@ void add_loop(Layout& l, const CaveRecipe& recipe, Random& random) {
     s.floor_m = std::max(kLeastHalfM, 0.8 * s.half_height_m);
     way.push_back(s);
   }
-  l.add(std::move(way));
+  plan.passages.push_back(std::move(way));
 }
 
 }  // namespace
 
 CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m) {
-  Layout l(recipe, seed);
-  l.plan.roughness_m = std::min(recipe.roughness_m, 0.15 * recipe.passage_width_m);
-  l.plan.undulation_m = 0.1 * recipe.passage_width_m;
-  l.plan.undulation_length_m = 2 + recipe.passage_width_m;
-  l.plan.noise_seed = static_cast<std::uint32_t>(Random::stream(seed, "walls").bits());
+  CavePlan plan;
+  plan.roughness_m = std::min(recipe.roughness_m, 0.15 * recipe.passage_width_m);
+  plan.undulation_m = 0.1 * recipe.passage_width_m;
+  plan.undulation_length_m = 2 + recipe.passage_width_m;
+  plan.noise_seed = static_cast<std::uint32_t>(Random::stream(seed, "walls").bits());
   Random entrance = Random::stream(seed, "entrance");
-  add_entrance(l, recipe, entrance);
+  add_entrance(plan, recipe, entrance);
 
-  Walk main{.from = l.plan.start, .heading_rad = l.plan.start_heading_rad, .level_start = true};
+  Walk main{.from = plan.start, .heading_rad = plan.start_heading_rad, .level_start = true};
   main.length_m = std::max(15.0, length_m * (1 - 0.65 * recipe.branching));
-  l.add(l.walk(main, "main passage"));
+  plan.passages.push_back(walk_passage(plan, recipe, seed, main, "main passage"));
   Random branches = Random::stream(seed, "branches");
-  for (int i = 0; recipe.branching > 0 && i < 400 && l.length_m() + 8 < length_m; ++i) {
-    const auto spot = pick(l.plan, branches, 9);
+  for (int i = 0; recipe.branching > 0 && i < 400 && passages_length_m(plan) + 8 < length_m; ++i) {
+    const auto spot = pick(plan, branches, 9);
     const double side = branches.uniform() < 0.5 ? -1 : 1, angle = branches.uniform(0.8, 1.7);
     const double length = recipe.passage_width_m * branches.uniform(2.5, 9),
                  factor = branches.uniform(0.6, 1);
     if (!spot) break;
-    const Passage& parent = l.plan.passages[spot->passage];
+    const Passage& parent = plan.passages[spot->passage];
     const Vec3 from = parent[spot->station].center;
     const double heading = heading_at(parent, spot->station) + side * angle;
     const double reach = 2 * recipe.passage_width_m + 4;
-    if (l.room(from + reach * direction(heading, 0), from, {}) < 0.5) continue;
-    l.add(l.walk({.from = from,
-                  .heading_rad = heading,
-                  .length_m = std::min(length + 6, length_m - l.length_m()),
-                  .width_factor = factor},
-                 "branch " + std::to_string(i)));
+    if (room(plan, recipe, from + reach * direction(heading, 0), from) < 0.5) continue;
+    plan.passages.push_back(
+        walk_passage(plan, recipe, seed,
+                     {.from = from,
+                      .heading_rad = heading,
+                      .length_m = std::min(length + 6, length_m - passages_length_m(plan)),
+                      .width_factor = factor},
+                     "branch " + std::to_string(i)));
   }
   const auto each = [&](std::int64_t count, const std::string& what, const auto& make) {
     for (std::int64_t i = 0; i < count; ++i) {
@@ -317,12 +210,13 @@ CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m) 
       make(random, name);
     }
   };
-  each(recipe.shafts, "shaft", [&](Random& r, const std::string& n) { add_vertical(l, recipe, r, true, n); });
+  each(recipe.shafts, "shaft",
+       [&](Random& r, const std::string& n) { add_vertical(plan, recipe, r, true, seed, n); });
   each(recipe.chimneys, "chimney",
-       [&](Random& r, const std::string& n) { add_vertical(l, recipe, r, false, n); });
-  each(recipe.loops, "loop", [&](Random& r, const std::string&) { add_loop(l, recipe, r); });
-  each(recipe.domes, "dome", [&](Random& r, const std::string&) { add_dome(l, recipe, r); });
-  return l.plan;
+       [&](Random& r, const std::string& n) { add_vertical(plan, recipe, r, false, seed, n); });
+  each(recipe.loops, "loop", [&](Random& r, const std::string&) { add_loop(plan, recipe, r); });
+  each(recipe.domes, "dome", [&](Random& r, const std::string&) { add_dome(plan, recipe, r); });
+  return plan;
 }
 
 void scale_sections(CavePlan& plan, double factor) {
