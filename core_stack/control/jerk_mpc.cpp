@@ -7,11 +7,12 @@
 namespace karst::core {
 namespace {
 
-constexpr double kSoftness = 3e-6;       // m/s, m/s^2 or m/s^3 of violation for one unit of multiplier
+constexpr double kSoftness = 4e-6;       // m/s, m/s^2 or m/s^3 of violation for one unit of multiplier
 constexpr double kFinalMu = 1e-3;        // mean slack * multiplier at which a solution is good
 constexpr double kResidual = 1e-5;       // of slacks against their limits
 constexpr double kJerkTolerance = 3e-3;  // last Newton step, as a share of the jerk limit
 constexpr int kMaxIterations = 30;
+constexpr double kGoodExcess = 0.005;  // over a limit, as a share of it, that a plan given up early may have
 constexpr double kToBoundary = 0.99;
 // A shifted plan touches its limits; the iteration starts a little inside, with products near a small mu.
 constexpr double kWarmShare = 1e-3;                    // of the mu of a cold start
@@ -96,6 +97,17 @@ void JerkMpc::start_multipliers(bool warm, double cost) {
     begin(stages_[k].acceleration, plan_.motion[k].acceleration_mps2, setup_.max_acceleration_mps2);
     begin(stages_[k].jerk, plan_.jerk_mps3[k], setup_.max_jerk_mps3);
   }
+}
+
+double JerkMpc::excess() const {
+  double worst = 0;
+  for (std::size_t k = 0; k < stages_.size(); ++k) {
+    const Motion& m = plan_.motion[k];
+    worst = std::max({worst, m.velocity_mps.norm() / setup_.max_speed_mps,
+                      m.acceleration_mps2.norm() / setup_.max_acceleration_mps2,
+                      plan_.jerk_mps3[k].norm() / setup_.max_jerk_mps3});
+  }
+  return worst - 1;
 }
 
 /// One Newton step on the perturbed optimality conditions, with e = multiplier * softness the violation
@@ -194,6 +206,7 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
 
 const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget> targets, double elapsed_s) {
   const bool warm = elapsed_s >= 0;
+  const bool known_multipliers = warm && plan_.converged;
   if (warm)
     shift(elapsed_s, start);
   else
@@ -202,7 +215,9 @@ const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget
   double cost = 0;
   for (std::size_t i = 0; i < stages_.size(); ++i)
     cost += setup_.position_weight / 2 * (plan_.motion[i].position - targets[i].position).squaredNorm();
-  start_multipliers(warm, cost);
+  start_multipliers(known_multipliers, cost);
+  const std::vector<Vec3> shifted = plan_.jerk_mps3;
+  const double shifted_excess = excess();
 
   const auto for_each_ball = [this](auto&& f) {
     for (Stage& s : stages_) f(s.speed), f(s.acceleration), f(s.jerk);
@@ -237,6 +252,10 @@ const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget
     }
   }
   roll_out(start);  // sheds the rounding of the summed steps
+  if (warm && !plan_.converged && excess() > std::max(shifted_excess, kGoodExcess)) {
+    plan_.jerk_mps3 = shifted;  // going on as planned keeps the limits; the next solution may do better
+    roll_out(start);
+  }
   return plan_;
 }
 

@@ -78,6 +78,7 @@ class JerkMpc {
   };
   void shift(double elapsed_s, const Motion& start);
   void roll_out(const Motion& start);
+  double excess() const;  // of the plan over its limits, as a share of them; negative within
   /// `cost` of the plan to start from scales the first mu.
   void start_multipliers(bool warm, double cost);
   /// Fills in all steps; returns the share of them that keeps slacks and multipliers positive.

@@ -10,6 +10,7 @@ namespace {
 
 // Limits hold softly: what is asked of the solver is less by this.
 constexpr double kTightening = 0.985;
+constexpr double kReachMargin_s = 0.3;
 
 JerkMpcSetup setup_of(const MpcOptions& o, const MotionLimits& limits) {
   JerkMpcSetup s;
@@ -45,6 +46,7 @@ struct MpcTracker::Solver {
         step(from_seconds(options.step_s)),
         targets(static_cast<std::size_t>(options.steps)),
         prediction(static_cast<std::size_t>(options.steps), Vec3::Zero()),
+        max_speed_mps(limits.max_speed_mps),
         heading_limits{limits.max_heading_rate_radps, limits.max_heading_acceleration_radps2} {}
 
   /// The sample at `t`, or the last good one where the trajectory has none.
@@ -68,6 +70,7 @@ struct MpcTracker::Solver {
   TimeNs step;
   std::vector<MotionTarget> targets;
   std::vector<Vec3> prediction;
+  double max_speed_mps;
   HeadingLimits heading_limits;
   HeadingState heading;
   Motion motion;
@@ -106,7 +109,12 @@ const Reference& MpcTracker::step(const Trajectory& trajectory, TimeNs now) {
   // velocity.
   for (std::size_t k = 0; k < s.targets.size(); ++k) {
     const TimeNs t = now + s.step * static_cast<TimeNs>(k + 1);
-    s.targets[k].position = s.target_at(trajectory, t).position;
+    // A target out of reach is drawn in: it pulls the same way, with a force that keeps the problem well
+    // scaled.
+    const double reach_m = s.max_speed_mps * (seconds(t - now) + kReachMargin_s);
+    const Vec3 offset = s.target_at(trajectory, t).position - s.motion.position;
+    s.targets[k].position =
+        s.motion.position + offset * std::min(1.0, reach_m / std::max(offset.norm(), 1e-9));
     s.targets[k].velocity_mps = (s.target_at(trajectory, t + s.step / 2).position -
                                  s.target_at(trajectory, t - s.step / 2).position) /
                                 seconds(s.step);
