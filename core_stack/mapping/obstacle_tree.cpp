@@ -3,7 +3,7 @@
 #include <limits>
 #include <nanoflann.hpp>
 
-#include "core_stack/mapping/voxel_reader.h"
+#include "core_stack/mapping/obstacle_cells.h"
 
 namespace karst::core {
 namespace {
@@ -40,24 +40,7 @@ struct NearestWithin {
 
 std::vector<Vec3f> obstacle_centers(const VoxelMap& map, const CellKey& low, const CellKey& high) {
   std::vector<Vec3f> points;
-  VoxelReader reader(map);
-  const auto in_box = [&](const CellKey& k) {
-    return k.x >= low.x && k.x <= high.x && k.y >= low.y && k.y <= high.y && k.z >= low.z && k.z <= high.z;
-  };
-  const auto add = [&](const CellKey& k) { points.push_back(map.center_of(k).cast<float>()); };
-  std::vector<CellKey> unknown;
-  const CellKey one{1, 1, 1}, minus_one{-1, -1, -1};
-  map.for_each_in_box(low + minus_one, high + one, [&](const CellKey& k, Cell cell) {
-    if (cell == Cell::occupied) {
-      if (in_box(k)) add(k);
-      return;
-    }
-    for (const CellKey& face : kFaces)
-      if (in_box(k + face) && reader.at(k + face) == Cell::unknown) unknown.push_back(k + face);
-  });
-  std::sort(unknown.begin(), unknown.end());
-  unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
-  for (const CellKey& k : unknown) add(k);
+  for (const CellKey& k : obstacle_cells(map, low, high)) points.push_back(map.center_of(k).cast<float>());
   return points;
 }
 

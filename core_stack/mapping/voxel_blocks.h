@@ -97,4 +97,7 @@ class BlockTable {
   std::vector<std::unique_ptr<Block>> blocks_;
 };
 
+/// Blocks that touch the closed box of cells, sorted. Goes over whichever is fewer: the box's blocks or all.
+std::vector<const Block*> blocks_in_box(const BlockTable& table, const CellKey& low, const CellKey& high);
+
 }  // namespace karst::core

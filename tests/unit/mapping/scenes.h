@@ -9,6 +9,9 @@
 
 namespace karst::core::scenes {
 
+/// What octomap::OcTree uses unless told otherwise.
+inline MapOptions octomap_options() { return {0.2, 0.7, 0.4, 0.12, 0.97}; }
+
 /// Directions spread evenly over the sphere (Fibonacci lattice).
 inline Vec3 direction(int i, int n) {
   const double z = 1.0 - 2.0 * (i + 0.5) / n, r = std::sqrt(1.0 - z * z), a = 2.399963229728653 * i;

@@ -16,7 +16,7 @@ Ray ray(const Vec3f& from, const Vec3f& to, bool hit = true) { return {from, to,
 const Vec3f kOrigin(0.1f, 0.1f, 0.1f);
 
 TEST(Insert, AHitAndThePassedCellsGetTheirLogOdds) {
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   map.insert(std::vector{ray(kOrigin, {2.1f, 0.1f, 0.1f})});
   EXPECT_NEAR(*map.log_odds({10, 0, 0}), kHit, kStep);
   for (int x = 0; x < 10; ++x) EXPECT_NEAR(*map.log_odds({x, 0, 0}), kMiss, kStep);
@@ -25,14 +25,14 @@ TEST(Insert, AHitAndThePassedCellsGetTheirLogOdds) {
 }
 
 TEST(Insert, ARayWithoutAHitFreesAllButItsEnd) {
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   map.insert(std::vector{ray(kOrigin, {2.1f, 0.1f, 0.1f}, false)});
   EXPECT_EQ(map.free_cells(), 10u);
   EXPECT_EQ(map.at(CellKey{10, 0, 0}), Cell::unknown);
 }
 
 TEST(Insert, LogOddsStayWithinTheClampingValues) {
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   for (int i = 0; i < 30; ++i) map.insert(std::vector{ray(kOrigin, {2.1f, 0.1f, 0.1f})});
   EXPECT_NEAR(*map.log_odds({10, 0, 0}), std::log(0.97 / 0.03), kStep);
   EXPECT_NEAR(*map.log_odds({5, 0, 0}), std::log(0.12 / 0.88), kStep);
@@ -45,7 +45,7 @@ TEST(Insert, LogOddsStayWithinTheClampingValues) {
 }
 
 TEST(Insert, WithinAScanEachCellChangesOnceAndAHitWinsOverMisses) {
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   std::vector<Ray> scan;
   for (int i = 0; i < 8; ++i) {
     const float y = 0.1f + 0.01f * static_cast<float>(i);
@@ -60,12 +60,12 @@ TEST(Insert, WithinAScanEachCellChangesOnceAndAHitWinsOverMisses) {
 }
 
 TEST(Insert, RaysToOneCellFromDifferentOriginsAreAllCast) {
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   map.insert(std::vector{ray({-3.1f, 0.1f, 0.1f}, kOrigin), ray({0.1f, 3.1f, 0.1f}, kOrigin)});
   EXPECT_EQ(map.at(Vec3(-1.5, 0.1, 0.1)), Cell::free);
   EXPECT_EQ(map.at(Vec3(0.1, 1.5, 0.1)), Cell::free);
   // More origins than the ray set numbers.
-  VoxelMap many{MapOptions{}};
+  VoxelMap many{scenes::octomap_options()};
   std::vector<Ray> fan;
   for (int i = 0; i < 200; ++i)
     fan.push_back(ray({0.1f + 0.2f * static_cast<float>(i), 5.1f, 0.1f}, {20.1f, 0.1f, 0.1f}));
@@ -75,7 +75,7 @@ TEST(Insert, RaysToOneCellFromDifferentOriginsAreAllCast) {
 
 TEST(Insert, IgnoresRaysThatAreNoRays) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   const auto changes = map.insert(std::vector{ray({nan, 0, 0}, {1, 1, 1}), ray({0, 0, 0}, {1, nan, 1}),
                                               ray({0, 0, 0}, {inf, 0, 0}), ray({0, -inf, 0}, {1, 0, 0}),
                                               ray({0, 0, 0}, {1e30f, 0, 0}), ray({0, 0, 0}, {0, 0, 7000}),
@@ -86,7 +86,7 @@ TEST(Insert, IgnoresRaysThatAreNoRays) {
 }
 
 TEST(Insert, WorksUpToTheWorldsEdge) {
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   map.insert(std::vector{ray({6553.0f, 0.1f, 0.1f}, {6553.5f, 0.1f, 0.1f}),
                          ray({0.1f, -6553.0f, 0.1f}, {0.1f, -6553.5f, 0.1f})});
   EXPECT_EQ(map.at(Vec3(6553.5, 0.1, 0.1)), Cell::occupied);
@@ -96,7 +96,7 @@ TEST(Insert, WorksUpToTheWorldsEdge) {
 TEST(Insert, GivesTheSameMapAndChangesEveryTime) {
   const auto run = [] {
     Random random(31);
-    VoxelMap map{MapOptions{}};
+    VoxelMap map{scenes::octomap_options()};
     std::vector<std::int32_t> trace;
     for (int i = 0; i < 4; ++i)
       for (const CellChange& c : map.insert(scenes::random_scan(random, 500, 8)))
@@ -125,7 +125,7 @@ Cell class_in(const octomap::OcTree& tree, const CellKey& k) {
 
 TEST(Insert, AgreesWithStockOctoMapOnScansOfARoom) {
   Random random(13);
-  VoxelMap map{MapOptions{}};
+  VoxelMap map{scenes::octomap_options()};
   octomap::OcTree tree(0.2);
   const double max_range_m = 8;  // the room's far ends are out of range
   for (int i = 0; i < 6; ++i) {
@@ -154,7 +154,7 @@ TEST(Insert, OneRayLeavesThePreciseLogOddsOfOctoMap) {
       return Vec3(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4)).cast<float>().eval();
     };
     const std::vector<Ray> scan{ray(point(), point())};
-    VoxelMap map{MapOptions{}};
+    VoxelMap map{scenes::octomap_options()};
     octomap::OcTree tree(0.2);
     map.insert(scan);
     insert_into(tree, scan, -1);
