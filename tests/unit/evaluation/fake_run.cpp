@@ -256,7 +256,8 @@ void write_fake_run(const std::filesystem::path& dir, const FakeRunOptions& o) {
 }
 
 TemporaryDirectory::TemporaryDirectory() {
-  std::string name = (std::filesystem::temp_directory_path() / "karst_evaluation_XXXXXX").string();
+  std::string name =
+      (std::filesystem::temp_directory_path() / "karst_evaluation_").string() + std::string(6, 'X');
   if (!mkdtemp(name.data())) throw std::runtime_error("no temporary directory: " + name);
   path_ = name;
 }
