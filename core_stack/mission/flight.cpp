@@ -8,12 +8,21 @@ namespace {
 constexpr double kControlPeriod_s = 0.01;
 
 /// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
-constexpr double kBrakingShare = 0.6;
+constexpr double kBrakingShare = 0.8;
+
+/// Trajectories keep below the tracker's limits. Were they sampled at the limits themselves, the virtual
+/// vehicle could never make up for a delay: it would fall ever further behind, and cut the corners.
+MotionLimits with_room_to_catch_up(MotionLimits limits) {
+  limits.max_speed_mps *= 0.93;
+  limits.max_acceleration_mps2 *= 0.75;
+  limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  return limits;
+}
 
 }  // namespace
 
 Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
-    : limits_(options.motion),
+    : limits_(with_room_to_catch_up(options.motion)),
       estimator_(options.localization, vehicle.T_world_start),
       tracker_(options.tracker, options.motion),
       controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps) {

@@ -7,6 +7,7 @@
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/report_command.h"
+#include "sdk/tools/table_command.h"
 
 int main(int argc, char** argv) {
   CLI::App app{
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   karst::tools::add_policy_command(app);
   karst::tools::add_cave_command(app);
   karst::tools::add_report_command(app);
+  karst::tools::add_table_command(app);
   try {
     app.parse(argc, argv);
     return 0;
