@@ -62,7 +62,7 @@ void write_mission_info(const fs::path& run_dir, const Mission& m, const host::H
   }
 }
 
-void print_summary(const nlohmann::json& metrics, const fs::path& run_dir) {
+void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool with_report) {
   const auto number = [&](const char* key, const char* format) {
     if (metrics[key].is_null()) return std::string("unknown");
     std::array<char, 64> text;
@@ -78,8 +78,10 @@ void print_summary(const nlohmann::json& metrics, const fs::path& run_dir) {
   if (!metrics["coverage"].is_null())
     std::printf(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
   std::printf("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
-  std::printf("Look next at:\n  %s   the flight in 3D with plots; open it in a browser\n  %s   all figures\n",
-              (run_dir / "report.html").c_str(), (run_dir / "metrics.json").c_str());
+  std::printf("Look next at:\n");
+  if (with_report)
+    std::printf("  %s   the flight in 3D with plots; open it in a browser\n", (run_dir / "report.html").c_str());
+  std::printf("  %s   all figures\n", (run_dir / "metrics.json").c_str());
 }
 
 int fly(const FlyArguments& args) {
@@ -135,7 +137,7 @@ int fly(const FlyArguments& args) {
   if (args.json) {
     std::cout << metrics.dump(2) << std::endl;
   } else {
-    print_summary(metrics, run_dir);
+    print_summary(metrics, run_dir, !args.no_report);
   }
   std::fflush(stdout);
   const int code = result.outcome == "landed" ? 0 : kNotLanded;

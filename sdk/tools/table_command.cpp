@@ -1,0 +1,77 @@
+#include "sdk/tools/table_command.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+
+namespace karst::tools {
+namespace {
+
+struct Column {
+  const char *key, *title, *format;
+  double factor;
+};
+constexpr std::array kColumns = {
+    Column{"explored_volume_m3", "explored m^3", "%.0f", 1},
+    Column{"coverage", "coverage %", "%.1f", 100},
+    Column{"path_length_m", "path m", "%.0f", 1},
+    Column{"flight_time_s", "time s", "%.0f", 1},
+    Column{"mean_speed_mps", "mean m/s", "%.2f", 1},
+    Column{"standing_share", "standing %", "%.1f", 100},
+    Column{"min_clearance_m", "clearance m", "%.2f", 1},
+    Column{"landing_error_m", "landed off m", "%.2f", 1},
+    Column{"battery_left", "battery %", "%.0f", 100},
+    Column{"map_error_mean_m", "map error m", "%.3f", 1},
+};
+
+nlohmann::json metrics_of(const std::string& run) {
+  const std::filesystem::path file = std::filesystem::path(run) / "metrics.json";
+  std::ifstream in(file);
+  if (!in) return {{"cave", run}, {"outcome", "no metrics.json"}};  // under way, or never flew
+  const nlohmann::json metrics = nlohmann::json::parse(in, nullptr, false);
+  if (!metrics.is_object()) throw core::InputError(file.string(), "", "is no JSON object");
+  return metrics;
+}
+
+std::string text_of(const nlohmann::json& metrics, const char* key) {
+  const auto value = metrics.find(key);
+  if (value == metrics.end() || value->is_null()) return "-";
+  return value->is_string() ? value->get<std::string>() : value->dump();
+}
+
+std::string text_of(const nlohmann::json& metrics, const Column& column) {
+  const auto value = metrics.find(column.key);
+  if (value == metrics.end() || !value->is_number()) return "-";
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), column.format, column.factor * value->get<double>());
+  return text.data();
+}
+
+}  // namespace
+
+void add_table_command(CLI::App& app) {
+  CLI::App* table = app.add_subcommand(
+      "table", "Print the figures of finished runs as a Markdown table.\n\n  karst table runs/*/");
+  auto runs = std::make_shared<std::vector<std::string>>();
+  table->add_option("runs", *runs, "run directories")->required();
+  table->callback([runs] {
+    std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
+    for (const Column& c : kColumns) head += std::string(" ") + c.title + " |", rule += "---:|";
+    std::printf("%s\n%s\n", head.c_str(), rule.c_str());
+    for (const std::string& run : *runs) {
+      const nlohmann::json m = metrics_of(run);
+      std::string line = "|";
+      for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
+      for (const Column& c : kColumns) line += " " + text_of(m, c) + " |";
+      std::printf("%s\n", line.c_str());
+    }
+  });
+}
+
+}  // namespace karst::tools
