@@ -34,13 +34,7 @@ struct Room {
     vehicle.lidar = lidar;
     vehicle.T_world_start.position = Vec3(3, 3, 1);
     explorer = std::make_unique<Explorer>(CoreOptions{}, vehicle, policy);
-    std::vector<Ray> rays;
-    VoxelMap drawn{MapOptions{}};
-    carve_box(drawn, Vec3(0, 0, 0), Vec3(8, 6, 4), {"x+"});
-    drawn.for_each_known([&](const CellKey& k, Cell c, float) {
-      const Vec3f p = drawn.center_of(k).cast<float>();
-      rays.push_back({p, p + Vec3f(0.001f, 0, 0), c == Cell::occupied});
-    });
+    const std::vector<Ray> rays = box_rays(VoxelMap{MapOptions{}}, Vec3(0, 0, 0), Vec3(8, 6, 4), {"x+"});
     explorer->integrate(rays);
     input.from = input.state.position = Vec3(3, 3, 2);
     input.battery_seconds_left = 600;

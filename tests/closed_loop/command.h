@@ -1,0 +1,69 @@
+// Runs the `karst` command as a user would.
+#pragma once
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace karst {
+
+struct Output {
+  int code = -1;
+  std::string text;  // standard output and standard error together
+  bool says(const std::string& part) const { return text.find(part) != std::string::npos; }
+};
+
+/// `arguments` as typed in a shell behind `karst`.
+inline Output run_karst(const std::string& arguments) {
+  const std::string line = std::string(KARST_BINARY_DIR) + "/bin/karst " + arguments + " 2>&1";
+  Output out;
+  FILE* pipe = popen(line.c_str(), "r");
+  std::array<char, 4096> buffer;
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    out.text.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return out;
+}
+
+/// An empty place for one test's files.
+inline std::filesystem::path fresh_folder(const std::string& name) {
+  const std::filesystem::path dir = std::filesystem::path(KARST_BINARY_DIR) / "test_runs" / name;
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
+  return dir;
+}
+
+inline std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+/// A generated cave, made once for all tests of one program; returns its .info file.
+inline std::string generated_cave(const std::string& preset, int seed) {
+  const std::filesystem::path dir = std::filesystem::path(KARST_BINARY_DIR) / "test_runs" / "caves";
+  const std::string stem = (dir / (preset + std::to_string(seed))).string();
+  if (!std::filesystem::exists(stem + ".info")) {
+    // Several tests may want it at once: each makes its own, and the rename decides.
+    const std::string own = stem + "." + std::to_string(getpid());
+    std::filesystem::create_directories(own);
+    const Output made = run_karst("cave generate --preset " + preset + " --seed " + std::to_string(seed) +
+                                  " --out " + own + "/" + preset + std::to_string(seed));
+    EXPECT_EQ(made.code, 0) << made.text;
+    for (const auto& entry : std::filesystem::directory_iterator(own))
+      if (entry.path().extension() != ".info")
+        std::filesystem::rename(entry.path(), dir / entry.path().filename());
+    std::filesystem::rename(own + "/" + preset + std::to_string(seed) + ".info", stem + ".info");
+    std::filesystem::remove_all(own);
+  }
+  return stem + ".info";
+}
+
+}  // namespace karst

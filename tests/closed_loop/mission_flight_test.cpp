@@ -1,0 +1,101 @@
+// Whole missions in generated caves, with asserted outcomes.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/closed_loop/command.h"
+
+namespace karst {
+namespace {
+
+nlohmann::json metrics_of(const std::filesystem::path& run) {
+  return nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+}
+
+class EveryPolicy : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
+  const auto run = fresh_folder(std::string("flight_") + GetParam()) / "run";
+  const Output out = run_karst("fly --cave " + generated_cave("small", 7) + " --policy " + GetParam() +
+                               " --set simulator.battery_minutes=4min --quiet --out " + run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const nlohmann::json m = metrics_of(run);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_GT(m["min_clearance_m"].get<double>(), 0.0);
+  EXPECT_LT(m["landing_error_m"].get<double>(), 1.0);
+  EXPECT_GT(m["battery_left"].get<double>(), 0.0);
+  EXPECT_GT(m["coverage"].get<double>(), 0.5);
+  for (const char* file : {"mission.info", "events.jsonl", "trajectory.tum", "ground_truth.tum", "map.bt",
+                           "map.ot", "map.ply", "timing.json", "report.html", "telemetry.csv"})
+    EXPECT_GT(std::filesystem::file_size(run / file), 0u) << file;
+}
+INSTANTIATE_TEST_SUITE_P(Policies, EveryPolicy,
+                         ::testing::Values("nearest_frontier", "lateral_frontier", "highest_frontier",
+                                           "unknown_ratio"));
+
+TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
+  const auto run = fresh_folder("flight_camera") / "run";
+  const Output out = run_karst("fly --cave " + generated_cave("small", 7) +
+                               " --policy nearest_frontier --set simulator.vehicle=camera_uav"
+                               " --set simulator.battery_minutes=15min --quiet --out " +
+                               run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const nlohmann::json m = metrics_of(run);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_GE(m["coverage"].get<double>(), 0.9);
+}
+
+TEST(Determinism, SameBytesUnderLoadAndWithAnotherThreadCount) {
+  const auto folder = fresh_folder("flight_twice");
+  const std::string mission = "fly --cave " + generated_cave("small", 7) +
+                              " --policy unknown_ratio --seed 5 --set simulator.battery_minutes=2min"
+                              " --quiet --no-report --out " +
+                              folder.string();
+  ASSERT_EQ(run_karst(mission + "/one --threads 1").code, 0);
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> load;
+  for (int i = 0; i < 3; ++i)
+    load.emplace_back([&stop] {
+      for (volatile unsigned x = 0; !stop;) x = x + 1;
+    });
+  const Output second = run_karst(mission + "/two --threads 4");
+  stop = true;
+  for (std::thread& t : load) t.join();
+  ASSERT_EQ(second.code, 0) << second.text;
+  for (const char* file : {"metrics.json", "events.jsonl", "trajectory.tum", "ground_truth.tum",
+                           "telemetry.csv", "map.bt", "map.ot", "map.ply", "map_growth.bin"}) {
+    const std::string one = bytes_of(folder / "one" / file);
+    EXPECT_FALSE(one.empty()) << file;
+    EXPECT_TRUE(one == bytes_of(folder / "two" / file)) << file << " differs between the runs";
+  }
+}
+
+TEST(Determinism, AnotherSeedIsAnotherFlight) {
+  const auto folder = fresh_folder("flight_seeds");
+  const std::string mission = "fly --cave " + generated_cave("small", 7) +
+                              " --set mission.max_flight_time=70s --quiet --no-report --out " +
+                              folder.string();
+  ASSERT_EQ(run_karst(mission + "/one --seed 1").code, 0);
+  ASSERT_EQ(run_karst(mission + "/two --seed 2").code, 0);
+  EXPECT_FALSE(bytes_of(folder / "one" / "trajectory.tum") == bytes_of(folder / "two" / "trajectory.tum"));
+}
+
+TEST(Interrupt, AMissionCutShortLeavesAWholeRunDirectory) {
+  const auto run = fresh_folder("flight_interrupted") / "run";
+  const std::string karst = std::string(KARST_BINARY_DIR) + "/bin/karst";
+  const std::string line = "timeout -s INT 3 " + karst + " fly --cave " + generated_cave("small", 7) +
+                           " --quiet --out " + run.string() + " > /dev/null 2>&1";
+  const int status = std::system(line.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  const nlohmann::json m = metrics_of(run);
+  ASSERT_TRUE(m.is_object()) << "no metrics after an interrupt";
+  EXPECT_EQ(m["outcome"], "aborted");
+  EXPECT_GT(std::filesystem::file_size(run / "map.bt"), 0u);
+  EXPECT_GT(std::filesystem::file_size(run / "report.html"), 0u);
+}
+
+}  // namespace
+}  // namespace karst
