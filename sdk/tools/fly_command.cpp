@@ -80,7 +80,8 @@ void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool 
   std::printf("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
   std::printf("Look next at:\n");
   if (with_report)
-    std::printf("  %s   the flight in 3D with plots; open it in a browser\n", (run_dir / "report.html").c_str());
+    std::printf("  %s   the flight in 3D with plots; open it in a browser\n",
+                (run_dir / "report.html").c_str());
   std::printf("  %s   all figures\n", (run_dir / "metrics.json").c_str());
 }
 
