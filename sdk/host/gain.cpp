@@ -1,6 +1,7 @@
 #include "sdk/host/gain.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "sdk/host/snapshot.h"
@@ -12,29 +13,51 @@ using core::Cell;
 using core::CellKey;
 using core::Vec3;
 
-/// Marks cells of a cube around a centre.
-class CubeMarks {
+/// A cube of cells around the eye, copied from the map so that a ray reads one byte a cell.
+class Window {
  public:
-  CubeMarks(const CellKey& center, std::int32_t reach)
+  Window(const core::VoxelMap& map, const CellKey& center, std::int32_t reach)
       : corner_{center.x - reach, center.y - reach, center.z - reach},
         edge_(static_cast<std::size_t>(2 * reach + 1)),
-        bits_((edge_ * edge_ * edge_ + 63) / 64) {}
+        cells_(edge_ * edge_ * edge_, Cell::unknown) {
+    const CellKey high{center.x + reach, center.y + reach, center.z + reach};
+    map.for_each_in_box(corner_, high, [&](const CellKey& k, Cell c) { at(k) = c; });
+  }
 
-  /// True if the cell was not marked before.
-  bool mark(const CellKey& k) {
-    const auto at = [](std::int32_t v, std::int32_t low) { return static_cast<std::size_t>(v - low); };
-    const std::size_t i = (at(k.z, corner_.z) * edge_ + at(k.y, corner_.y)) * edge_ + at(k.x, corner_.x);
-    const std::uint64_t bit = std::uint64_t{1} << (i & 63);
-    if ((bits_[i >> 6] & bit) != 0) return false;
-    bits_[i >> 6] |= bit;
-    return true;
+  Cell& at(const CellKey& k) {
+    const auto from = [](std::int32_t v, std::int32_t low) { return static_cast<std::size_t>(v - low); };
+    return cells_[(from(k.z, corner_.z) * edge_ + from(k.y, corner_.y)) * edge_ + from(k.x, corner_.x)];
   }
 
  private:
   CellKey corner_;
   std::size_t edge_;
-  std::vector<std::uint64_t> bits_;
+  std::vector<Cell> cells_;
 };
+
+/// Calls visit(cell) for the cells a ray passes (Amanatides and Woo, 1987) until it returns false. All
+/// lengths in cells; `direction` is unit.
+template <class Visit>
+void walk(const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit) {
+  CellKey k{};
+  std::int32_t* const cell[3] = {&k.x, &k.y, &k.z};
+  std::int32_t step[3];
+  double next[3], period[3];  // length along the ray to the next border of each axis, and between borders
+  for (int a = 0; a < 3; ++a) {
+    const double floor = std::floor(eye[a]);
+    *cell[a] = static_cast<std::int32_t>(floor);
+    step[a] = direction[a] < 0 ? -1 : 1;
+    period[a] = direction[a] == 0 ? std::numeric_limits<double>::infinity() : std::abs(1.0 / direction[a]);
+    next[a] = direction[a] == 0 ? period[a]
+                                : period[a] * (direction[a] < 0 ? eye[a] - floor : floor + 1.0 - eye[a]);
+  }
+  while (visit(k)) {
+    const int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+    if (next[a] > furthest) return;
+    *cell[a] += step[a];
+    next[a] += period[a];
+  }
+}
 
 /// Evenly spread values over [low, high], both included, at most `step` apart.
 std::vector<double> spread(double low, double high, double step) {
@@ -91,19 +114,17 @@ SensorRays::SensorRays(const karst_sensor_t& s, double resolution_m)
 std::uint64_t SensorRays::newly_seen(const core::VoxelMap& map, const karst_viewpoint_t& from) const {
   const core::Pose T_world_sensor =
       core::Pose{to_core(from.position), core::from_heading(from.heading_rad)} * T_body_sensor_;
-  const Vec3 eye = T_world_sensor.position;
-  const double cell = map.resolution_m();
-  CubeMarks seen(map.key_of(eye), static_cast<std::int32_t>(max_range_m_ / cell) + 2);
+  const Vec3 eye = T_world_sensor.position / map.resolution_m();  // in cells, as all below
+  const double nearest = min_range_m_ / map.resolution_m(), furthest = max_range_m_ / map.resolution_m();
+  Window window(map, map.key_of(T_world_sensor.position), static_cast<std::int32_t>(furthest) + 2);
   std::uint64_t count = 0;
   for (const Vec3& direction : directions_) {
-    const Vec3 end = eye + max_range_m_ * (T_world_sensor.orientation * direction);
-    core::traverse(eye, end, cell, [&](const CellKey& k) {
-      const Cell c = map.at(k);
-      if (c == Cell::occupied) return false;
-      if (c == Cell::unknown && seen.mark(k)) {
-        const double away = (map.center_of(k) - eye).norm();
-        if (away >= min_range_m_ && away <= max_range_m_) ++count;
-      }
+    walk(eye, T_world_sensor.orientation * direction, furthest, [&](const CellKey& k) {
+      Cell& c = window.at(k);
+      if (c != Cell::unknown) return c == Cell::free;
+      c = Cell::free;  // counted once; as transparent as before
+      const double away = (Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) - eye).norm();
+      if (away >= nearest && away <= furthest) ++count;
       return true;
     });
   }

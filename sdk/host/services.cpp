@@ -195,6 +195,7 @@ struct Services {
           going_on(s);
           demand(finite(viewpoints[i].position) && std::isfinite(viewpoints[i].heading_rad),
                  "a viewpoint is not finite");
+          demand(to_core(viewpoints[i].position).norm() <= 1e5, "a viewpoint is more than 100 km away");
           out[i * sensor_count + j] = rays.newly_seen(map, viewpoints[i]);
         }
       }
