@@ -36,17 +36,23 @@ Explorer::Explorer(const CoreOptions& options, const VehicleDescription& vehicle
       home_(vehicle.T_world_start.position + Vec3(0, 0, options.mission.takeoff_height_m)) {}
 
 std::vector<CellChange> Explorer::integrate(const std::vector<Ray>& rays) {
-  std::vector<CellChange> changes = map_.insert(rays);
-  frontiers_.update(map_, changes);
-  roadmap_.update(map_, changes);
-  return changes;
+  return take_in(map_.insert(rays));
 }
 
 std::vector<CellChange> Explorer::declare_launch_site(const Vec3& hover_point) {
-  std::vector<CellChange> changes = map_.declare_free(hover_point, options_.mission.launch_clear_radius_m);
+  return take_in(map_.declare_free(hover_point, options_.mission.launch_clear_radius_m));
+}
+
+std::vector<CellChange> Explorer::take_in(std::vector<CellChange> changes) {
   frontiers_.update(map_, changes);
-  roadmap_.update(map_, changes);
+  roadmap_due_.insert(roadmap_due_.end(), changes.begin(), changes.end());
   return changes;
+}
+
+const Roadmap& Explorer::roadmap() {
+  roadmap_.update(map_, roadmap_due_);
+  roadmap_due_.clear();
+  return roadmap_;
 }
 
 bool Explorer::cluster_alive(std::uint32_t id) const {
@@ -118,8 +124,8 @@ std::optional<std::string> Explorer::objection(const RoundInput& input, const Go
   return std::nullopt;
 }
 
-HomeEstimate Explorer::estimate_home(const Vec3& from) const {
-  const HomePlan plan = plan_home(map_, roadmap_, from, home_, options_.planning);
+HomeEstimate Explorer::estimate_home(const Vec3& from) {
+  const HomePlan plan = plan_home(map_, roadmap(), from, home_, options_.planning);
   if (!plan.found) return {};
   return {plan.length_m, home_time_s(plan.length_m, vehicle_.T_world_start.position.z(), home_.z(),
                                      options_.motion, options_.mission.landing_speed_mps)};
@@ -177,6 +183,7 @@ RoundResult Explorer::decide(const RoundInput& input) {
   RoundResult result;
   const auto begin = std::chrono::steady_clock::now();
   learn(input);
+  roadmap();  // up to date from here on: the map does not change within a round
 
   DecisionRequest request;
   request.stamp = input.now;
@@ -229,7 +236,7 @@ RoundResult Explorer::decide(const RoundInput& input) {
 }
 
 Path Explorer::plan_to(const Vec3& from, const Vec3& to) {
-  return plan(map_, roadmap_, from, to, options_.planning);
+  return plan(map_, roadmap(), from, to, options_.planning);
 }
 
 int Explorer::blocked_segment(const std::vector<Vec3>& points) const {

@@ -67,7 +67,7 @@ class Explorer {
   RoundResult decide(const RoundInput& input);
   /// A way from `from` to `to` for going home or around a new obstacle.
   Path plan_to(const Vec3& from, const Vec3& to);
-  HomeEstimate estimate_home(const Vec3& from) const;
+  HomeEstimate estimate_home(const Vec3& from);
   /// Index of the first segment of `points` that the map now forbids, or -1.
   int blocked_segment(const std::vector<Vec3>& points) const;
   /// True if the cluster is still open enough to be worth flying to.
@@ -82,6 +82,8 @@ class Explorer {
     std::vector<CellKey> cells;
     std::optional<Viewpoint> viewpoint;
   };
+  std::vector<CellChange> take_in(std::vector<CellChange> changes);
+  const Roadmap& roadmap();
   void learn(const RoundInput& input);
   std::vector<FrontierOffer> offers(const RoundInput& input);
   Decision ask(const DecisionRequest& request, RoundResult& result);
@@ -99,6 +101,8 @@ class Explorer {
   VoxelMap map_;
   Frontiers frontiers_;
   Roadmap roadmap_;
+  std::vector<CellChange>
+      roadmap_due_;  // changes it has yet to hear of: it is asked far less often than scanned
   GoalLedger ledger_;
   std::map<std::uint32_t, KnownViewpoint> viewpoints_;
   struct Chosen {

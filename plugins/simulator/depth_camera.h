@@ -8,7 +8,7 @@
 namespace karst::sim {
 
 struct CameraOptions {
-  double rate_hz = 10;
+  double rate_hz = 5;
   double noise_at_1m_m = 0.003;  // grows with the square of the range, as a stereo camera's does
 };
 void describe(core::OptionTable& t, CameraOptions& o);
