@@ -15,6 +15,8 @@ constexpr double kLiftSlack_m = 0.02;
 /// The band's points stand this far apart; the finished path's points at most `kFineSpacing_m`.
 constexpr double kBandSpacing_m = 0.4;
 constexpr double kFineSpacing_m = 0.1;
+/// For more clearance a path may become that much longer than the one given (which zigzags: it rarely does).
+constexpr double kMostLonger = 1.05;
 
 /// Points at most `spacing_m` apart along the same polyline, its vertices included.
 std::vector<Vec3> densified(const std::vector<Vec3>& points, double spacing_m) {
@@ -105,7 +107,7 @@ std::vector<Vec3> refine_path(const VoxelMap& map, const std::vector<Vec3>& poin
       const std::vector<Vec3> band = smooth_band(free, clearance, clearance + share * (preferred - clearance),
                                                  densified(string, kBandSpacing_m));
       std::vector<Vec3> fine = fine_curve(free, clearance, band, kFineSpacing_m);
-      if (path_length_m(fine) <= raw_length + 1e-9) {
+      if (path_length_m(fine) <= kMostLonger * raw_length) {
         best = std::move(fine);
         break;
       }

@@ -24,11 +24,11 @@ int eccentricity(int bit) {
   return x * x + y * y + z * z;
 }
 
-std::uint8_t middle_cell(BlockBits cells) {
+int middle_cell(BlockBits cells) {
   int best = std::countr_zero(cells);
   for (BlockBits rest = cells; rest != 0; rest &= rest - 1)
     if (const int bit = std::countr_zero(rest); eccentricity(bit) < eccentricity(best)) best = bit;
-  return static_cast<std::uint8_t>(best);
+  return best;
 }
 
 CellKey cell_in_block(const CellKey& corner, int bit) {
@@ -72,12 +72,14 @@ void RoadmapGraph::rebuild(std::uint32_t tile_index) {
   tile.dirty = false;
   const TileBits rows = free.clear_cells(table.keys()[tile_index], *rule);
   tile.nodes.clear();
+  const CellKey corner = corner_of(table.keys()[tile_index]);
   for (std::uint32_t b = 0; b < kTileBlocks; ++b) {
     tile.first[b] = static_cast<std::uint16_t>(tile.nodes.size());
-    tile.clear[b] = block_bits(rows, b);
-    for (BlockBits rest = tile.clear[b]; rest != 0;) {
+    const auto n = static_cast<std::int32_t>(b);
+    const CellKey block_corner = corner + CellKey{(n & 7) * 4, (n >> 3 & 1) * 4, (n >> 4) * 4};
+    for (BlockBits rest = block_bits(rows, b); rest != 0;) {
       const BlockBits part = first_component(rest);
-      tile.nodes.push_back({part, middle_cell(part)});
+      tile.nodes.push_back({part, cell_in_block(block_corner, middle_cell(part))});
       rest &= ~part;
     }
   }
@@ -90,17 +92,6 @@ bool RoadmapGraph::is_clear_cell(const CellKey& k) const {
   for_each_node_in_block(k,
                          [&](const NodeRef&, const RoadmapNode& n) { clear |= (n.cells >> bit & 1) != 0; });
   return clear;
-}
-
-CellKey RoadmapGraph::block_corner(const NodeRef& n) const {
-  const auto& first = tiles[n.tile].first;
-  const auto b =
-      static_cast<std::int32_t>(std::upper_bound(first.begin(), first.end(), n.local) - first.begin() - 1);
-  return corner_of(table.keys()[n.tile]) + CellKey{(b & 7) * 4, (b >> 3 & 1) * 4, (b >> 4) * 4};
-}
-
-CellKey RoadmapGraph::cell_of(const NodeRef& n) const {
-  return cell_in_block(block_corner(n), tiles[n.tile].nodes[n.local].place);
 }
 
 std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {

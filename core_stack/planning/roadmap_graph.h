@@ -10,11 +10,10 @@ constexpr std::uint32_t kTileBlocks = 32;  // 8 x 2 x 2 blocks; index x | y << 3
 
 struct RoadmapNode {
   BlockBits cells = 0;
-  std::uint8_t place = 0;  // bit of the cell it is placed at
+  CellKey place;  // the cell it is placed at
 };
 
 struct RoadmapTile {
-  std::array<BlockBits, kTileBlocks> clear{};
   std::array<std::uint16_t, kTileBlocks + 1> first{};  // nodes of block b: first[b] to first[b + 1]
   std::vector<RoadmapNode> nodes;
   bool dirty = false;
@@ -44,9 +43,8 @@ struct RoadmapGraph {
 
   void update(const VoxelMap& map, std::span<const CellChange> changes);
   bool is_clear_cell(const CellKey& k) const;
-  CellKey cell_of(const NodeRef& n) const;
+  const CellKey& cell_of(const NodeRef& n) const { return tiles[n.tile].nodes[n.local].place; }
   Vec3 position_of(const NodeRef& n) const { return free.center_of(cell_of(n)); }
-  CellKey block_corner(const NodeRef& n) const;
   /// Nodes of the block that holds cell k: calls visit(NodeRef, const RoadmapNode&).
   template <class Visit>
   void for_each_node_in_block(const CellKey& k, Visit&& visit) const {
@@ -62,13 +60,13 @@ struct RoadmapGraph {
   template <class Visit>
   void for_each_neighbour(const NodeRef& n, Visit&& visit) const {
     const BlockBits cells = tiles[n.tile].nodes[n.local].cells;
-    const CellKey corner = block_corner(n);
+    const CellKey place = cell_of(n);
     for (int i = 0; i < 27; ++i) {
       const int dx = i % 3 - 1, dy = i / 3 % 3 - 1, dz = i / 9 - 1;
       if (i == 13) continue;
       const BlockBits touched = touched_in_neighbour(cells, dx, dy, dz);
       if (touched == 0) continue;
-      for_each_node_in_block(corner + CellKey{4 * dx, 4 * dy, 4 * dz},
+      for_each_node_in_block(place + CellKey{4 * dx, 4 * dy, 4 * dz},
                              [&](const NodeRef& m, const RoadmapNode& node) {
                                if (node.cells & touched) visit(m);
                              });

@@ -63,7 +63,11 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
     }
     v[i] = std::max(v[i], std::min(limits.min_speed_mps, limits.max_speed_mps));
   }
-  v.front() = std::min(std::max(0.0, start_speed_mps), limits.max_speed_mps);
+  // A vehicle that arrives too fast for a bend brakes all it can rather than being told to jump to less.
+  const double v0 = std::clamp(start_speed_mps, 0.0, limits.max_speed_mps);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    v[i] = std::max(v[i], std::sqrt(std::max(0.0, v0 * v0 - 2 * a_max * spacing_m * static_cast<double>(i))));
+  v.front() = v0;
   v.back() = 0;
   for (std::size_t i = v.size() - 1; i-- > 0;)
     v[i] = std::min(v[i], std::sqrt(v[i + 1] * v[i + 1] + 2 * a_max * spacing_m));
