@@ -31,8 +31,8 @@ struct CellKeyHash {
 
 struct MapOptions {
   double resolution_m = 0.2;
-  // OctoMap's defaults are 0.7 and 0.4: two misses outweigh a hit. Rays that graze a spike then clear it, and a
-  // vehicle flies where it pleases close to what was seen; here a hit weighs five misses.
+  // OctoMap's defaults are 0.7 and 0.4: two misses outweigh a hit. Rays that graze a spike then clear it, and
+  // a vehicle flies where it pleases close to what was seen; here a hit weighs five misses.
   double hit_probability = 0.75;
   double miss_probability = 0.45;
   double min_probability = 0.12;

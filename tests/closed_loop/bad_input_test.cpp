@@ -93,6 +93,15 @@ TEST(BadInput, AMissingPolicy) {
                  {"nearest_fronteer", "nearest_frontier"});
 }
 
+TEST(BadInput, APolicyOfAbiMajorTwo) {
+  const fs::path dir = fresh_folder("bad_major");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  const std::string plugin = std::string(KARST_BINARY_DIR) + "/tests/plugins/wrong_major.so";
+  ASSERT_TRUE(fs::exists(plugin));
+  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0' --policy plain --plugin " + plugin),
+                 {"wrong_major.so", "ABI 2.0", "1.0", "rebuild"});
+}
+
 TEST(BadInput, MissingFiles) {
   const fs::path dir = fresh_folder("bad_missing");
   expect_refused(fly(dir, "/nowhere/mission.info"), {"/nowhere/mission.info"});

@@ -1,5 +1,5 @@
 // Whole missions in generated caves, with asserted outcomes.
-#include <algorithm>
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -47,6 +47,23 @@ TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
   EXPECT_EQ(m["outcome"], "landed");
   EXPECT_GE(m["coverage"].get<double>(), 0.9);
 }
+
+/// Whatever the policy does, the core's fallback explores and the vehicle comes home.
+class MisbehavingPolicy : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
+  const std::string plugin = std::string(KARST_BINARY_DIR) + "/tests/plugins/" + GetParam() + ".so";
+  ASSERT_TRUE(std::filesystem::exists(plugin)) << plugin;
+  const auto run = fresh_folder(std::string("flight_bad_") + GetParam()) / "run";
+  const Output out =
+      run_karst("fly --cave " + generated_cave("small", 7) + " --policy plain --plugin " + plugin +
+                " --set mission.max_flight_time=90s --quiet --no-report --out " + run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  EXPECT_EQ(metrics_of(run)["outcome"], "landed") << out.text;
+  EXPECT_GT(metrics_of(run)["path_length_m"].get<double>(), 20.0) << "the fallback did not explore";
+}
+INSTANTIATE_TEST_SUITE_P(Plugins, MisbehavingPolicy,
+                         ::testing::Values("endless_loop", "throwing", "only_nan_goals", "million_goals"));
 
 TEST(Determinism, SameBytesUnderLoadAndWithAnotherThreadCount) {
   const auto folder = fresh_folder("flight_twice");
