@@ -81,7 +81,8 @@ typedef struct karst_request {
   uint64_t teammate_count;
 } karst_request_t;
 
-/* Bits of set_outcome's flags. */
+/* Bits of set_outcome's flags. A tour is a wish: the core flies to the first goal that passes its checks and
+   may ask again before the tour's end, because what it sees on the way changes what is worth visiting. */
 enum { KARST_DECISION_TOUR = 1u }; /* the goals are to be flown in this order, not ranked choices for one */
 
 /* [appendable] Where an answer goes. [decision thread] {deciding} */

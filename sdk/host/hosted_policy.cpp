@@ -147,6 +147,7 @@ core::Decision LoadedPolicy::failed(const std::string& why) {
   core::Decision d;
   d.outcome = core::Outcome::hold;
   d.reason = name_ + " failed: " + why;
+  d.drawings = session_->take_drawings();
   d.log = session_->take_log();
   d.log.push_back("warning: " + d.reason);
   return d;

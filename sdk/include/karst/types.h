@@ -109,7 +109,7 @@ struct Decision {
 
   /// Ranked choices, best first: the core flies to the first that passes its checks.
   static Decision fly(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, false, std::move(goals), ""}; }
-  /// Goals to visit one after the other.
+  /// Goals to visit one after the other. The core may ask again before the last.
   static Decision tour(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, true, std::move(goals), ""}; }
   static Decision hold(std::string reason) { return {KARST_OUTCOME_HOLD, false, {}, std::move(reason)}; }
   static Decision explored(std::string reason) {
