@@ -216,8 +216,14 @@ RoundResult Explorer::decide(const RoundInput& input) {
   result.goals_proposed = decision.goals.size();
   if (decision.outcome == Outcome::goals) {
     choose(input, decision.goals, result);
-    if (!result.goal)
-      result.outcome = Outcome::hold, result.reason = "no goal of the policy could be accepted";
+    if (!result.goal) {
+      // The fallback asks for every frontier in reach: if none of those can be flown to, nothing is left to
+      // do.
+      const bool last_resort = result.policy == fallback_.name();
+      result.outcome = last_resort ? Outcome::explored : Outcome::hold;
+      result.reason =
+          last_resort ? "no frontier left that can be accepted" : "no goal of the policy could be accepted";
+    }
   }
   const bool fruitless = result.outcome == Outcome::hold && !input.appending;
   fruitless_rounds_ = fruitless ? fruitless_rounds_ + 1 : 0;

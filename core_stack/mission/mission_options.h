@@ -18,8 +18,8 @@ struct MissionOptions {
   double decision_budget_s = 0.3;
   double append_before_s = 2.5;
   double goal_timeout_s = 10.0;
-  double home_margin = 0.25;
-  double home_reserve_s = 30.0;
+  double home_margin = 0.15;
+  double home_reserve_s = 20.0;
   double landing_speed_mps = 0.4;
   double max_flight_time_s = 3600.0;
   double mapping_range_m = 30.0;

@@ -96,7 +96,7 @@ TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {
 
 TEST(Explorer, RefusesAGoalTheBatteryDoesNotAllow) {
   Room room;
-  room.input.battery_seconds_left = 31;  // just over the reserve
+  room.input.battery_seconds_left = 21;  // just over the reserve
   const RoundResult r = room.propose(Vec3(6.5, 4, 2));
   ASSERT_EQ(r.rejected.size(), 1u);
   EXPECT_NE(r.rejected[0].reason.find("battery"), std::string::npos);
@@ -138,6 +138,18 @@ TEST(Explorer, APolicyThatOnlyProposesTheImpossibleIsPassedOverForARound) {
   int fallback_rounds = 0;
   for (int i = 0; i < 10; ++i) fallback_rounds += room.propose(Vec3(50, 50, 50)).policy == "fallback";
   EXPECT_EQ(fallback_rounds, 2);
+}
+
+TEST(Explorer, WhenTheBatteryAllowsNoGoalTheFlightIsOver) {
+  // As it was: the policy proposed, the core refused, and the vehicle hovered until the battery called it
+  // home.
+  Room room;
+  room.input.battery_seconds_left = 21;
+  Outcome last = Outcome::hold;
+  int rounds = 0;
+  for (; rounds < 10 && last == Outcome::hold; ++rounds) last = room.propose(Vec3(6.5, 4, 2)).outcome;
+  EXPECT_EQ(last, Outcome::explored);
+  EXPECT_LE(rounds, 5);
 }
 
 TEST(Explorer, AnAbandonedGoalIsNotAcceptedAgainWhileTheMapIsUnchanged) {
