@@ -1,13 +1,13 @@
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <unordered_map>
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
@@ -25,36 +25,67 @@ std::string lower_extension(const std::string& path) {
   return e;
 }
 
-void append_mesh(const std::string& path, const aiMesh& part, const aiMatrix4x4& T, TriangleMesh& out) {
-  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+/// Numbers equal vertices once, in the order they first appear. The importer's own steps for this and for
+/// polygons end the program on some damaged files.
+class JoinedVertices {
+ public:
+  explicit JoinedVertices(std::vector<Vec3f>& vertices) : vertices_(vertices) {}
+  std::uint32_t index(const Vec3f& v) {
+    const Vec3f plain = v.array() + 0.0f;  // no negative zero
+    std::array<std::uint32_t, 3> bits{};
+    std::memcpy(bits.data(), plain.data(), sizeof bits);
+    const auto [entry, is_new] = index_.try_emplace(bits, static_cast<std::uint32_t>(vertices_.size()));
+    if (is_new) vertices_.push_back(plain);
+    return entry->second;
+  }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const std::array<std::uint32_t, 3>& b) const {
+      std::uint64_t h = b[0];
+      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + b[1];
+      h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9ull + b[2];
+      return (h ^ (h >> 30)) * 0x94d049bb133111ebull >> 3;
+    }
+  };
+  std::vector<Vec3f>& vertices_;
+  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> index_;  // looked up, never walked
+};
+
+/// Polygons become fans about their first corner.
+void append_mesh(const std::string& path, const aiMesh& part, const aiMatrix4x4& T, JoinedVertices& joined,
+                 TriangleMesh& out) {
+  std::vector<std::uint32_t> index(part.mNumVertices);
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D v = T * part.mVertices[i];
     // 1e5 m: floats still resolve 8 mm there; a cave further off is in other units or map coordinates.
     if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) ||
         std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e5f)
-      throw InputError(path, "vertex " + std::to_string(first + i),
+      throw InputError(path, "vertex " + std::to_string(i),
                        "coordinates must be finite and within 100 km of the origin");
-    out.vertices.emplace_back(v.x, v.y, v.z);
+    index[i] = joined.index({v.x, v.y, v.z});
   }
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    std::array<std::uint32_t, 3> t{};
-    for (unsigned k = 0; k < 3; ++k) {
+    for (unsigned k = 0; k < face.mNumIndices; ++k)
       if (face.mIndices[k] >= part.mNumVertices)
         throw InputError(path, "face " + std::to_string(f), "names a vertex that does not exist");
-      t[k] = first + face.mIndices[k];
+    for (unsigned k = 2; k < face.mNumIndices; ++k) {
+      const std::array t{index[face.mIndices[0]], index[face.mIndices[k - 1]], index[face.mIndices[k]]};
+      const Vec3f& a = out.vertices[t[0]];
+      if ((out.vertices[t[1]] - a).cross(out.vertices[t[2]] - a).squaredNorm() > 0)
+        out.triangles.push_back(t);
     }
-    const Vec3f& a = out.vertices[t[0]];
-    if ((out.vertices[t[1]] - a).cross(out.vertices[t[2]] - a).squaredNorm() > 0) out.triangles.push_back(t);
   }
 }
 
 void append_node(const std::string& path, const aiScene& scene, const aiNode& node,
-                 const aiMatrix4x4& T_parent, TriangleMesh& out) {
+                 const aiMatrix4x4& T_parent, JoinedVertices& joined, TriangleMesh& out) {
   const aiMatrix4x4 T = T_parent * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(path, *scene.mMeshes[node.mMeshes[i]], T, out);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(path, scene, *node.mChildren[i], T, out);
+  for (unsigned i = 0; i < node.mNumMeshes; ++i)
+    append_mesh(path, *scene.mMeshes[node.mMeshes[i]], T, joined, out);
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    append_node(path, scene, *node.mChildren[i], T, joined, out);
 }
 
 template <class T>
@@ -99,11 +130,7 @@ TriangleMesh load_mesh(const std::string& path) {
   check_declared_size(path);
 
   Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                  aiComponent_TEXCOORDS | aiComponent_MATERIALS | aiComponent_TEXTURES);
-  const unsigned steps = aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_JoinIdenticalVertices;
-  const aiScene* scene = importer.ReadFile(path, steps);
+  const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(path, "", std::string("is no mesh that can be read: ") + importer.GetErrorString());
 
@@ -111,7 +138,8 @@ TriangleMesh load_mesh(const std::string& path) {
   aiMatrix4x4 T_world_file;
   if (extension == ".dae") aiMatrix4x4::RotationX(AI_MATH_HALF_PI_F, T_world_file);
   TriangleMesh mesh;
-  append_node(path, *scene, *scene->mRootNode, T_world_file, mesh);
+  JoinedVertices joined(mesh.vertices);
+  append_node(path, *scene, *scene->mRootNode, T_world_file, joined, mesh);
   if (mesh.triangles.empty()) throw InputError(path, "", "the mesh has no triangle");
   return mesh;
 }
