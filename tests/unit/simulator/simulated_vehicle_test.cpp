@@ -108,7 +108,7 @@ TEST_F(Simulation, MessagesComeAtTheirRates) {
   EXPECT_EQ(listener->poses, 97) << "every 20 ms, and what was measured after 1.95 s is still to come";
   EXPECT_EQ(listener->pose_delay, 50 * kMillisecond);
   EXPECT_EQ(listener->lidar, 19) << "the last sweep is still being cast";
-  EXPECT_EQ(listener->depth, 2 * 20);
+  EXPECT_EQ(listener->depth, 2 * 10) << "two cameras, five images a second";
   EXPECT_EQ(listener->battery, 5);
   EXPECT_EQ(listener->grounds, "G");
 }

@@ -59,7 +59,7 @@ TEST(MissionFile, AWrongUnitNamesWhatWasExpected) {
 
 TEST(MissionFile, AValueOutOfRangeNamesTheRange) {
   const std::string e = error_of("range.info", "map { resolution \"30 m\" }\n");
-  EXPECT_TRUE(holds(e, "map.resolution") && holds(e, "0.05 to 1 m")) << e;
+  EXPECT_TRUE(holds(e, "map.resolution") && holds(e, "0.02 to 2 m")) << e;
 }
 
 TEST(MissionFile, ASyntaxErrorNamesTheLine) {
