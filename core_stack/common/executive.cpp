@@ -64,8 +64,8 @@ Executive::Executive(int threads) {
 
 Executive::~Executive() = default;
 
-void Executive::push(TimeNs time, std::function<void()> step) {
-  queue_.push_back({std::max(time, now_), next_sequence_++, std::move(step)});
+void Executive::push(TimeNs time, std::uint64_t sequence, std::function<void()> step) {
+  queue_.push_back({std::max(time, now_), sequence, std::move(step)});
   std::push_heap(queue_.begin(), queue_.end());
 }
 
@@ -73,13 +73,21 @@ void Executive::timed(const std::string& name, const std::function<void()>& f) {
   costs_[name].milliseconds.push_back(static_cast<float>(run_timed_ms(f)));
 }
 
-void Executive::at(TimeNs time, std::function<void()> step) { push(time, std::move(step)); }
+void Executive::at(TimeNs time, std::function<void()> step) { push(time, next_sequence_++, std::move(step)); }
 
 void Executive::every(std::string name, TimeNs first, TimeNs period, std::function<void()> step) {
-  push(first, [this, name = std::move(name), first, period, step = std::move(step)]() mutable {
-    timed(name, step);
-    every(std::move(name), first + period, period, std::move(step));
-  });
+  repeat(next_sequence_++, std::move(name), first, period, std::move(step));
+}
+
+/// Keeps its sequence number: a new one each time would let a slow step overtake a faster one registered
+/// earlier.
+void Executive::repeat(std::uint64_t sequence, std::string name, TimeNs time, TimeNs period,
+                       std::function<void()> step) {
+  push(time, sequence,
+       [this, sequence, name = std::move(name), time, period, step = std::move(step)]() mutable {
+         timed(name, step);
+         repeat(sequence, std::move(name), time + period, period, std::move(step));
+       });
 }
 
 void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
@@ -95,7 +103,7 @@ void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<vo
   } else {
     task();
   }
-  push(now_ + budget, [this, name = std::move(name), cost, publish = std::move(publish)] {
+  push(now_ + budget, next_sequence_++, [this, name = std::move(name), cost, publish = std::move(publish)] {
     costs_[name].milliseconds.push_back(static_cast<float>(cost->get()));  // waits, rethrows
     publish();
   });

@@ -35,7 +35,8 @@ class Executive {
 
   TimeNs now() const { return now_; }
 
-  /// Runs `step` at `first`, `first + period`, ... Steps due at one time run in the order of registration.
+  /// Runs `step` at `first`, `first + period`, ... Whatever is due at one time runs in the order of
+  /// registration, a periodic step by its first.
   void every(std::string name, TimeNs first, TimeNs period, std::function<void()> step);
   /// Runs `step` once at `time` (not before now).
   void at(TimeNs time, std::function<void()> step);
@@ -54,7 +55,9 @@ class Executive {
  private:
   struct Event;
   struct Worker;
-  void push(TimeNs time, std::function<void()> step);
+  void push(TimeNs time, std::uint64_t sequence, std::function<void()> step);
+  void repeat(std::uint64_t sequence, std::string name, TimeNs time, TimeNs period,
+              std::function<void()> step);
   void timed(const std::string& name, const std::function<void()>& f);
 
   TimeNs now_ = 0;

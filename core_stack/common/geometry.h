@@ -30,7 +30,8 @@ struct Pose {
 inline double wrap_angle(double a) {
   constexpr double two_pi = 2.0 * std::numbers::pi;
   a = std::fmod(a + std::numbers::pi, two_pi);
-  return (a < 0 ? a + two_pi : a) - std::numbers::pi;
+  const double wrapped = (a < 0 ? a + two_pi : a) - std::numbers::pi;
+  return wrapped < std::numbers::pi ? wrapped : -std::numbers::pi;  // a turn more may round to pi itself
 }
 
 /// Heading in radians, counter-clockwise from east: where the body's x axis points, seen from above.

@@ -148,11 +148,26 @@ TEST_F(MeshFiles, VerticesThatAreNotFiniteAreRefused) {
 }
 
 TEST_F(MeshFiles, FacesThatNameNoVertexAreRefused) {
-  std::string ply = written("i.ply");
-  const std::uint32_t beyond = 1'000'000;
-  std::memcpy(ply.data() + ply.size() - 4, &beyond, sizeof beyond);
-  write_bytes(path("i.ply"), ply);
-  EXPECT_NE(error_of([&] { load_mesh(path("i.ply")); }), "");
+  for (const std::uint32_t beyond : {1'000u, 1'000'000u, 0x7fffffffu, 0xffffffffu}) {
+    std::string ply = written("i.ply");
+    std::memcpy(ply.data() + ply.size() - 4, &beyond, sizeof beyond);
+    expect_refused("i.ply", ply, "names a vertex that does not exist");
+  }
+}
+
+TEST_F(MeshFiles, DamagedFilesAreReadOrRefusedButNeverCrash) {
+  core::Random r(11);
+  for (const char* name : {"d.ply", "d.stl"}) {
+    const std::string whole = written(name);
+    for (int i = 0; i < 150; ++i) {
+      std::string bytes = whole;
+      for (std::uint64_t k = 1 + r.bits() % 20; k > 0; --k) {
+        const std::size_t reach = k % 2 == 0 ? bytes.size() : 400;  // headers matter more
+        bytes[r.bits() % reach] = static_cast<char>(r.bits());
+      }
+      error_for(name, bytes);
+    }
+  }
 }
 
 TEST_F(MeshFiles, OtherFilesAreRefused) {

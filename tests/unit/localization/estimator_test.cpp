@@ -1,0 +1,289 @@
+#include "core_stack/localization/estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <deque>
+#include <limits>
+
+#include "core_stack/common/random.h"
+
+namespace karst::core {
+namespace {
+
+constexpr TimeNs kImuPeriod = 5 * kMillisecond;
+const Vec3 kAccelBias(0.1, -0.08, 0.12), kGyroBias(0.01, -0.012, 0.008);
+
+/// A flight in closed form, as a quadrotor makes it: thrust along the body's z axis, heading turning. Stands
+/// still for two seconds, then winds up to 2 m/s.
+struct Flight {
+  static Vec3 position(double t) {
+    const double u = std::max(0.0, t - 2);
+    const double s = u * u / (u + 2);  // phase speed rises smoothly to one
+    return {2.6 * std::sin(0.6 * s), 1.3 * std::sin(1.2 * s), 0.4 * std::sin(0.9 * s)};
+  }
+  static Vec3 velocity(double t) { return (position(t + 1e-5) - position(t - 1e-5)) / 2e-5; }
+  static Vec3 acceleration(double t) {
+    constexpr double h = 1e-3;
+    return (position(t + h) - 2 * position(t) + position(t - h)) / (h * h);
+  }
+  static Quat orientation(double t) {
+    const double heading = 0.4 * std::max(0.0, t - 2);
+    const Vec3 z = (acceleration(t) + Vec3(0, 0, 9.81)).normalized();
+    const Vec3 x = Vec3(-std::sin(heading), std::cos(heading), 0).cross(z).normalized();
+    Eigen::Matrix3d R;
+    R << x, z.cross(x), z;
+    return Quat(R);
+  }
+  static Vec3 body_rate(double t) {
+    const Eigen::AngleAxisd d(orientation(t - 1e-4).conjugate() * orientation(t + 1e-4));
+    return d.angle() * d.axis() / 2e-4;
+  }
+  static Vec3 specific_force(double t) {
+    return orientation(t).conjugate() * (acceleration(t) + Vec3(0, 0, 9.81));
+  }
+};
+
+struct Scenario {
+  double duration_s = 60;
+  TimeNs pose_period = 25 * kMillisecond;
+  TimeNs pose_delay = 50 * kMillisecond;
+  double noise = 1;  // of all sensors, as a share of the usual
+};
+
+struct Errors {
+  double position_rms_m = 0, velocity_rms_mps = 0, attitude_rms_rad = 0, worst_step_m = 0;
+  double delayed_position_rms_m = 0;
+};
+
+/// Runs the flight's sensors through `e`; errors are those after ten seconds.
+Errors run(Estimator& e, const Scenario& setup) {
+  Random r(5);
+  const auto noise = [&](double sigma) {
+    return Vec3(setup.noise * sigma * Vec3(r.normal(), r.normal(), r.normal()));
+  };
+  std::deque<PoseSample> on_the_way;
+  Errors out;
+  int n = 0;
+  Vec3 before = Vec3::Zero();
+  for (TimeNs now = 0; now <= from_seconds(setup.duration_s); now += kImuPeriod) {
+    const double t = seconds(now);
+    while (!on_the_way.empty() && on_the_way.front().stamp + setup.pose_delay <= now) {
+      e.on_pose(on_the_way.front());
+      on_the_way.pop_front();
+    }
+    e.on_imu({now, Flight::specific_force(t) + kAccelBias + noise(0.05),
+              Flight::body_rate(t) + kGyroBias + noise(0.005)});
+    if (now % setup.pose_period == 0) {
+      PoseSample p{now, {Flight::position(t) + noise(0.01), Flight::orientation(t)}};
+      const Vec3 tilt = noise(0.0035);
+      if (tilt.norm() > 0)
+        p.T_world_body.orientation =
+            p.T_world_body.orientation * Quat(Eigen::AngleAxisd(tilt.norm(), tilt.normalized()));
+      on_the_way.push_back(p);
+    }
+    const State& s = e.state();
+    if (now > 10 * kSecond) {
+      out.position_rms_m += (s.position - Flight::position(t)).squaredNorm();
+      out.velocity_rms_mps += (s.velocity_mps - Flight::velocity(t)).squaredNorm();
+      out.attitude_rms_rad += std::pow(s.orientation.angularDistance(Flight::orientation(t)), 2);
+      const Vec3 step = s.position - before - s.velocity_mps * seconds(kImuPeriod);
+      out.worst_step_m = std::max(out.worst_step_m, step.norm());
+      const TimeNs past = now - 200 * kMillisecond;
+      out.delayed_position_rms_m +=
+          (e.history().pose_at(past).position - Flight::position(seconds(past))).squaredNorm();
+      ++n;
+    }
+    before = s.position;
+  }
+  out.position_rms_m = std::sqrt(out.position_rms_m / n);
+  out.velocity_rms_mps = std::sqrt(out.velocity_rms_mps / n);
+  out.attitude_rms_rad = std::sqrt(out.attitude_rms_rad / n);
+  out.delayed_position_rms_m = std::sqrt(out.delayed_position_rms_m / n);
+  return out;
+}
+
+TEST(Estimator, InFlightAtTwoMetresASecondItIsGoodToACentimetre) {
+  Estimator e({}, {});
+  const Errors err = run(e, {});
+  std::printf("rms: position %.4f m, velocity %.4f m/s, attitude %.4f rad; worst jump of position %.4f m\n",
+              err.position_rms_m, err.velocity_rms_mps, err.attitude_rms_rad, err.worst_step_m);
+  EXPECT_LT(err.position_rms_m, 0.012);
+  EXPECT_LT(err.velocity_rms_mps, 0.03);
+  EXPECT_LT(err.attitude_rms_rad, 0.003);
+  EXPECT_LT(err.worst_step_m, 0.008);  // a pose's correction, of 1 cm noise, does not kick the controller
+  EXPECT_LT(err.delayed_position_rms_m, 0.012);
+  EXPECT_EQ(e.health(from_seconds(60)), Health::good);
+}
+
+TEST(Estimator, HoldsAtTwentyPosesASecond) {
+  Estimator e({}, {});
+  Scenario s;
+  s.pose_period = 50 * kMillisecond;
+  const Errors err = run(e, s);
+  EXPECT_LT(err.position_rms_m, 0.02);
+  EXPECT_LT(err.velocity_rms_mps, 0.05);
+}
+
+TEST(Estimator, FindsTheBiases) {
+  Estimator e({}, {});
+  run(e, {});
+  EXPECT_LT((e.accel_bias_mps2() - kAccelBias).norm(), 0.04);
+  EXPECT_LT((e.gyro_bias_radps() - kGyroBias).norm(), 0.002);
+}
+
+TEST(Estimator, WithoutNoiseOnlyLearningTheBiasesCostsMillimetresAndDelayDoesNotMatter) {
+  Scenario s;
+  s.noise = 0;
+  Estimator late({}, {}), prompt({}, {});
+  EXPECT_LT(run(late, s).position_rms_m, 0.004);
+  s.pose_delay = 0;
+  EXPECT_LT(run(prompt, s).position_rms_m, 0.004);
+}
+
+TEST(Estimator, ACorrectionArrivingLateEqualsOneThatArrivedInTime) {
+  // Same poses, one estimator told at once, the other 50 ms later: from then on their states agree.
+  Estimator prompt({}, {}), late({}, {});
+  const auto imu_at = [](TimeNs t) {
+    return ImuSample{t, Flight::specific_force(seconds(t)) + kAccelBias, Flight::body_rate(seconds(t))};
+  };
+  for (TimeNs t = 0; t <= 4 * kSecond; t += kImuPeriod) {
+    prompt.on_imu(imu_at(t));
+    late.on_imu(imu_at(t));
+    const auto pose = [](TimeNs stamp) {
+      const double s = seconds(stamp);
+      return PoseSample{stamp, {Flight::position(s) + Vec3(0.01, 0, 0), Flight::orientation(s)}};
+    };
+    if (t % (100 * kMillisecond) == 0) prompt.on_pose(pose(t));
+    const TimeNs old = t - 50 * kMillisecond;
+    if (old >= 0 && old % (100 * kMillisecond) == 0) {
+      late.on_pose(pose(old));
+      ASSERT_LT((prompt.state().position - late.state().position).norm(), 1e-9);
+      ASSERT_LT((prompt.state().velocity_mps - late.state().velocity_mps).norm(), 1e-9);
+      ASSERT_LT(prompt.state().orientation.angularDistance(late.state().orientation), 1e-7);
+      ASSERT_LT(
+          (prompt.history().states().front().position - late.history().states().front().position).norm(),
+          1e-9);
+    }
+  }
+}
+
+TEST(Estimator, HistoryCoversTwoSecondsAtEveryImuSample) {
+  Estimator e({}, {});
+  Scenario s;
+  s.duration_s = 5;
+  run(e, s);
+  const auto& states = e.history().states();
+  EXPECT_GE(states.back().stamp - states.front().stamp, 2 * kSecond - kImuPeriod);
+  for (std::size_t i = 1; i < states.size(); ++i)
+    ASSERT_EQ(states[i].stamp - states[i - 1].stamp, kImuPeriod);
+  EXPECT_EQ(states.back().position, e.state().position);
+}
+
+TEST(Estimator, HealthFollowsTheSilenceOfPoses) {
+  EstimatorOptions o;
+  o.pose_timeout_s = 0.5;
+  Estimator e(o, {});
+  TimeNs t = 0;
+  for (; t <= kSecond; t += kImuPeriod) {
+    e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
+    if (t % (50 * kMillisecond) == 0) e.on_pose({t, {}});
+  }
+  const TimeNs last_pose = kSecond;
+  EXPECT_EQ(e.health(last_pose + 400 * kMillisecond), Health::good);
+  for (; t <= 4 * kSecond; t += kImuPeriod) {
+    e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
+    const Health expected = t - last_pose > 2 * kSecond          ? Health::lost
+                            : t - last_pose > 500 * kMillisecond ? Health::degraded
+                                                                 : Health::good;
+    ASSERT_EQ(e.health(t), expected) << "at " << seconds(t);
+  }
+  e.on_pose({t - kImuPeriod, {}});
+  EXPECT_EQ(e.health(t), Health::good);
+}
+
+TEST(Estimator, HealthFollowsTheSilenceOfTheImu) {
+  Estimator e({}, {});
+  for (TimeNs t = 0; t <= kSecond; t += kImuPeriod) e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
+  e.on_pose({kSecond, {}});
+  EXPECT_EQ(e.health(kSecond + 600 * kMillisecond), Health::degraded);
+  EXPECT_EQ(e.health(kSecond + 2100 * kMillisecond), Health::lost);
+}
+
+TEST(Estimator, InputsThatAreNotFiniteAreIgnoredAndDegradeHealth) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Estimator e({}, {}), clean({}, {});
+  TimeNs t = 0;
+  const auto feed = [&](Estimator& to, TimeNs at) {
+    to.on_imu({at, Vec3(0, 0, 9.81), Vec3(0.1, 0, 0)});
+    to.on_pose({at, {Vec3(0.001, 0, 0), Quat::Identity()}});
+  };
+  for (; t <= kSecond; t += kImuPeriod) feed(e, t), feed(clean, t);
+  e.on_imu({t, Vec3(nan, 0, 9.81), Vec3::Zero()});
+  e.on_pose({t, {Vec3(0, nan, 0), Quat::Identity()}});
+  e.on_pose({t, {Vec3::Zero(), Quat(0, 0, 0, 0)}});
+  EXPECT_EQ(e.health(t), Health::degraded);
+  feed(e, t), feed(clean, t);
+  EXPECT_EQ(e.state().position, clean.state().position);
+  EXPECT_EQ(e.state().orientation.coeffs(), clean.state().orientation.coeffs());
+  EXPECT_EQ(clean.health(t), Health::good);
+  const TimeNs later = t + 600 * kMillisecond;
+  for (; t <= later; t += kImuPeriod) feed(e, t);
+  EXPECT_EQ(e.health(t), Health::good);
+}
+
+TEST(Estimator, SamplesOutOfOrderChangeNothing) {
+  Estimator e({}, {});
+  for (TimeNs t = 0; t <= kSecond; t += kImuPeriod) e.on_imu({t, Vec3(0.2, 0, 9.81), Vec3::Zero()});
+  e.on_pose({900 * kMillisecond, {}});
+  const State before = e.state();
+  e.on_imu({kSecond, Vec3(5, 5, 5), Vec3(1, 1, 1)});
+  e.on_imu({500 * kMillisecond, Vec3(5, 5, 5), Vec3(1, 1, 1)});
+  e.on_pose({800 * kMillisecond, {Vec3(9, 9, 9), Quat::Identity()}});
+  e.on_magnetometer({kSecond, Vec3(20, 0, -40)});
+  EXPECT_EQ(e.state().position, before.position);
+  EXPECT_EQ(e.state().velocity_mps, before.velocity_mps);
+}
+
+TEST(Estimator, StartsAtTheDeclaredPose) {
+  const Pose start{{3, -1, 2}, from_heading(0.7)};
+  Estimator e({}, start);
+  EXPECT_EQ(e.state().position, start.position);
+  e.on_imu({kSecond, Vec3(0, 0, 9.81), Vec3::Zero()});
+  EXPECT_EQ(e.state().position, start.position);
+  EXPECT_EQ(e.state().stamp, kSecond);
+  EXPECT_NEAR(heading_of(e.state().orientation), 0.7, 1e-12);
+}
+
+TEST(Estimator, ErrorsAgreeWithTheSteadyStateOfTheRiccatiEquation) {
+  // Position, velocity and bias of one axis in discrete time: the covariance's fixed point, found by
+  // iterating the equation written out here, predicts the spread of the position error when tilt is exact.
+  EstimatorOptions o;
+  o.accel_noise_mps2 = 0.05;
+  o.accel_bias_drift_mps2 = 0.001;
+  const double dt = 0.025, q = 0.05 * 0.05 / 200, b = 1e-6, R = 1e-4;
+  Eigen::Matrix3d F, P = Eigen::Matrix3d::Identity();
+  F << 1, dt, -dt * dt / 2, 0, 1, -dt, 0, 0, 1;
+  Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
+  Q.topLeftCorner<2, 2>() << q * dt * dt * dt / 3, q * dt * dt / 2, q * dt * dt / 2, q * dt;
+  Q(2, 2) = b * dt;
+  for (int i = 0; i < 20000; ++i) {
+    P = F * P * F.transpose() + Q;
+    const Vec3 k = P.col(0) / (P(0, 0) + R);
+    P = (Eigen::Matrix3d::Identity() - k * Vec3::UnitX().transpose()) * P;
+  }
+  Estimator e(o, {});
+  Random r(9);
+  double sum = 0;
+  int n = 0;
+  for (TimeNs t = 0; t <= 400 * kSecond; t += kImuPeriod) {
+    e.on_imu({t, Vec3(0, 0, 9.81) + 0.05 * Vec3(r.normal(), r.normal(), r.normal()), Vec3::Zero()});
+    if (t % (25 * kMillisecond) != 0) continue;
+    e.on_pose({t, {0.01 * Vec3(r.normal(), r.normal(), r.normal()), Quat::Identity()}});
+    if (t > 40 * kSecond) sum += e.state().position.squaredNorm() / 3, ++n;
+  }
+  EXPECT_NEAR(std::sqrt(sum / n) / std::sqrt(P(0, 0)), 1.0, 0.15);
+}
+
+}  // namespace
+}  // namespace karst::core
