@@ -19,11 +19,21 @@ bool ends_cover(const Eigen::Vector3i& o, const Eigen::Vector3i& d, double r2) {
   return o2 - along * along / d2 >= r2 || o2 - 2 * along + d2 < r2;
 }
 
-bool in_ball(const Eigen::Vector3i& o, double r2) {
+bool near_moves(const Eigen::Vector3i& o, double r2) {
   if (o.squaredNorm() < r2) return true;
   for (int i = 0; i < 27; ++i)
     if (!ends_cover(o, {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, r2)) return true;
   return false;
+}
+
+/// An obstacle at the radius, up to rounding, is not nearer than it.
+double squared_radius(double radius_cells) { return radius_cells * radius_cells - 1e-6; }
+
+double checked(double clearance_cells) {
+  if (!(clearance_cells <= kMostReach - 2))
+    throw InputError("planning", "clearance",
+                     "is more than 14 cells of the map; make it less or the cells larger");
+  return clearance_cells;
 }
 
 /// Rows of a tile and of `margin` more around it in y and z, as 64 bits with the tile's first cell at bit 16.
@@ -64,40 +74,46 @@ std::uint64_t fitting(const std::vector<WideRows>& eroded, const Ball& ball, int
 
 }  // namespace
 
-Ball::Ball(double radius_cells, int shift) : shift_(shift) {
-  const double r2 = radius_cells * radius_cells - 1e-6;
+template <class Holds>
+void Ball::fill(double radius_cells, Holds&& holds) {
   const int n = static_cast<int>(std::ceil(radius_cells)) + 1;
-  const double sx = 0.5 * (shift & 1), sy = 0.5 * (shift >> 1 & 1), sz = 0.5 * (shift >> 2 & 1);
-  const auto holds = [&](int dx, int dy, int dz) {
-    return shift == 0 ? in_ball({dx, dy, dz}, r2) : (Vec3(dx, dy, dz) - Vec3(sx, sy, sz)).squaredNorm() < r2;
-  };
   for (int dz = -n; dz <= n; ++dz)
     for (int dy = -n; dy <= n; ++dy) {
       int half_width = -1;
       for (int dx = 0; dx <= n; ++dx)
-        if (holds(-dx, dy, dz)) half_width = dx;                 // on the side away from the shift
-      if (half_width < 0 && dy == 0 && dz == 0) half_width = 0;  // the cell itself must be free
+        if (holds(Eigen::Vector3i(-dx, dy, dz))) half_width = dx;  // on the side away from the shift
+      if (half_width < 0 && dy == 0 && dz == 0) half_width = 0;    // the cell itself must be free
       if (half_width < 0) continue;
       rows_.push_back({dy, dz, half_width});
-      reach_ = std::max({reach_, half_width + (shift & 1), std::abs(dy), std::abs(dz)});
+      reach_ = std::max({reach_, half_width + (shift_ & 1), std::abs(dy), std::abs(dz)});
     }
 }
 
-ClearanceRule::ClearanceRule(double clearance_cells) {
-  if (!(clearance_cells <= kMostReach - 2))
-    throw InputError("planning", "clearance",
-                     "is more than 14 cells of the map; make it less or the cells larger");
-  balls_.emplace_back(clearance_cells);
+Ball::Ball(double radius_cells, int shift) : shift_(shift) {
+  const Vec3 center = 0.5 * Vec3(shift & 1, shift >> 1 & 1, shift >> 2 & 1);
+  const double r2 = squared_radius(radius_cells);
+  fill(radius_cells,
+       [&](const Eigen::Vector3i& o) { return (o.cast<double>() - center).squaredNorm() < r2; });
 }
 
-ClearanceRule::ClearanceRule(double clearance_cells, double search_cells) : ClearanceRule(clearance_cells) {
-  balls_.emplace_back(search_cells);
-  for (int shift = 1; shift < 8; ++shift) shifted_.emplace_back(clearance_cells, shift);
+Ball Ball::with_moves(double radius_cells) {
+  Ball out(radius_cells);
+  out.rows_.clear();
+  out.fill(radius_cells,
+           [&](const Eigen::Vector3i& o) { return near_moves(o, squared_radius(radius_cells)); });
+  return out;
+}
+
+ClearanceRule::ClearanceRule(double clearance_cells) : moves_(Ball::with_moves(checked(clearance_cells))) {}
+
+ClearanceRule::ClearanceRule(double clearance_cells, double search_cells)
+    : moves_(Ball::with_moves(checked(search_cells))) {
+  for (int shift = 0; shift < 8; ++shift) points_.emplace_back(checked(clearance_cells), shift);
 }
 
 int ClearanceRule::reach() const {
-  int reach = std::max(balls_.front().reach(), balls_.back().reach());
-  for (const Ball& b : shifted_) reach = std::max(reach, b.reach() + 1);
+  int reach = moves_.reach();
+  for (const Ball& b : points_) reach = std::max(reach, b.reach() + 1);
   return reach;
 }
 
@@ -113,33 +129,38 @@ TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) con
                       std::uint64_t{row(c.x + 16, c.y + y, c.z + z)} << 32;
   const std::vector<WideRows> eroded = eroded_along_x(std::move(free), p);
 
-  TileBits tight{};  // clear by the search's clearance only
-  bool any_tight = false;
-  for (int z = 0; z < 8; ++z)
-    for (int y = 0; y < 8; ++y) {
-      std::uint32_t& result = out[row_of(y, z)];
-      if (result == 0) continue;
-      const std::uint32_t before = result;
-      result = static_cast<std::uint32_t>(fitting(eroded, rule.ball(), y, z) >> 16);
-      if (rule.shifted().empty() || result == before) continue;
-      tight[row_of(y, z)] =
-          static_cast<std::uint32_t>(fitting(eroded, rule.search_ball(), y, z) >> 16) & ~result;
-      any_tight |= tight[row_of(y, z)] != 0;
-    }
-  if (!any_tight) return out;
+  const auto for_each_row = [](const auto& f) {
+    for (int z = 0; z < 8; ++z)
+      for (int y = 0; y < 8; ++y) f(y, z);
+  };
+  for_each_row([&](int y, int z) {
+    std::uint32_t& result = out[row_of(y, z)];
+    if (result != 0) result = static_cast<std::uint32_t>(fitting(eroded, rule.moves(), y, z) >> 16);
+  });
+  if (rule.points().empty()) return out;
+
+  TileBits with_point{};  // cells with a clear point in them
+  bool any_without = false;
+  for_each_row([&](int y, int z) {
+    std::uint32_t& row = with_point[row_of(y, z)];
+    if (out[row_of(y, z)] != 0)
+      row = static_cast<std::uint32_t>(fitting(eroded, rule.points()[0], y, z) >> 16);
+    any_without |= (out[row_of(y, z)] & ~row) != 0;
+  });
+  if (!any_without) return out;
   // The point half a cell up from k is half a cell down from the next cell: each counts for both, in each
   // axis.
-  for (const Ball& ball : rule.shifted())
+  for (const Ball& ball : rule.points())
     for (int z = ball.shift() & 4 ? -1 : 0; z < 8; ++z)
       for (int y = ball.shift() & 2 ? -1 : 0; y < 8; ++y) {
         std::uint64_t fits = fitting(eroded, ball, y, z);
         if (ball.shift() & 1) fits |= fits << 1;
-        const auto cells = static_cast<std::uint32_t>(fits >> 16);
         for (int up_z = 0; up_z <= (ball.shift() >> 2 & 1); ++up_z)
           for (int up_y = 0; up_y <= (ball.shift() >> 1 & 1); ++up_y)
             if (y + up_y >= 0 && y + up_y < 8 && z + up_z >= 0 && z + up_z < 8)
-              out[row_of(y + up_y, z + up_z)] |= tight[row_of(y + up_y, z + up_z)] & cells;
+              with_point[row_of(y + up_y, z + up_z)] |= static_cast<std::uint32_t>(fits >> 16);
       }
+  for_each_row([&](int y, int z) { out[row_of(y, z)] &= with_point[row_of(y, z)]; });
   return out;
 }
 

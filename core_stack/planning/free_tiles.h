@@ -14,14 +14,15 @@ namespace karst::core {
 
 using TileBits = std::array<std::uint32_t, kTileRows>;
 
-/// Cells that must be free around a point: rows (dy, dz) of them, from -half_width to half_width + wide in x.
-/// The point is a cell's centre, or shifted from it by half a cell in each axis marked in `shift` (bits x, y,
-/// z).
+/// Cells that must be free around a point: rows (dy, dz) of them, |dx| <= half_width. The point is a cell's
+/// centre, or shifted from it by half a cell in each axis marked in `shift` (bits x, y, z); with a shift in x
+/// the rows reach one cell farther to that side.
 class Ball {
  public:
-  /// Besides the cells nearer than the radius, a ball around a centre holds those that a move to one of the
-  /// 26 neighbours would come nearer to, so that moves between clear cells are clear.
   explicit Ball(double radius_cells, int shift = 0);
+  /// A ball around a centre that also holds the cells that a move to one of the 26 neighbours would come
+  /// nearer to than the radius: moves between cells that have it free are clear.
+  static Ball with_moves(double radius_cells);
   struct Row {
     int dy, dz, half_width;
   };
@@ -30,6 +31,9 @@ class Ball {
   int reach() const { return reach_; }
 
  private:
+  template <class Holds>
+  void fill(double radius_cells, Holds&& holds);
+
   std::vector<Row> rows_;
   int shift_, reach_ = 0;
 };
@@ -37,18 +41,19 @@ class Ball {
 /// Which cells a search may use.
 class ClearanceRule {
  public:
-  /// Those whose centre is clear. Throws InputError beyond 14 cells.
+  /// Those whose centre is clear, as is every move between them. Throws InputError beyond 14 cells.
   explicit ClearanceRule(double clearance_cells);
-  /// Also those clear by `search_cells` only, if a point at most half a cell from the centre in each axis is
+  /// Those that are so by `search_cells` only, if their centre or a point half a cell from it in some axes is
   /// clear by the whole clearance.
   ClearanceRule(double clearance_cells, double search_cells);
-  const Ball& ball() const { return balls_.front(); }
-  const std::vector<Ball>& shifted() const { return shifted_; }  // none: no half cells
-  const Ball& search_ball() const { return balls_.back(); }
+  const Ball& moves() const { return moves_; }
+  /// Around the centre and around the points half a cell up from it. None: `moves` alone decides.
+  const std::vector<Ball>& points() const { return points_; }
   int reach() const;
 
  private:
-  std::vector<Ball> balls_, shifted_;
+  Ball moves_;
+  std::vector<Ball> points_;
 };
 
 struct NearestObstacle {
