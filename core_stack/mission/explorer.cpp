@@ -20,6 +20,9 @@ constexpr double kClearanceSlack_m = 0.12;
 /// A cluster that has lost this share of its cells has been seen; flying on to it is a waste.
 constexpr double kSeenShare = 0.75;
 
+/// Pauses of places tried in vain that are waived when no other place is left: the first three attempts'.
+constexpr TimeNs kPauseWaived = 40 * kSecond;
+
 double elapsed_ms(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
 }
@@ -67,7 +70,7 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
   std::vector<FrontierOffer> open;
   std::map<std::uint32_t, KnownViewpoint> kept;
   for (const auto& [id, cluster] : frontiers_.clusters()) {
-    if (ledger_.closed(map_, cluster.centroid, input.now)) continue;
+    if (ledger_.closed(map_, cluster.centroid, closed_at_)) continue;
     if (input.appending && input.last_goal && input.last_goal->frontier_id == id) continue;
     const std::uint64_t revision = map_.revision_near(cluster.centroid, 2.0);
     const auto known = viewpoints_.find(id);
@@ -82,7 +85,7 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
     FrontierOffer offer;
     offer.cluster = &cluster;
     offer.path_length_m = std::numeric_limits<double>::infinity();
-    if (entry.viewpoint && !ledger_.closed(map_, entry.viewpoint->position, input.now)) {
+    if (entry.viewpoint && !ledger_.closed(map_, entry.viewpoint->position, closed_at_)) {
       offer.viewpoint = entry.viewpoint->position;
       offer.viewpoint_heading_rad = entry.viewpoint->heading_rad;
       open.push_back(offer);
@@ -113,14 +116,14 @@ Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
   return fallback_.decide(request);
 }
 
-std::optional<std::string> Explorer::objection(const RoundInput& input, const Goal& goal) const {
+std::optional<std::string> Explorer::objection(const Goal& goal) const {
   const Vec3& p = goal.position;
   if (!p.allFinite()) return "its position is not finite";
   if (std::isinf(goal.heading_rad)) return "its heading is not finite";
   if (map_.at(p) != Cell::free)
     return map_.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
   if (!is_clear(map_, p, options_.planning.clearance_m)) return "it is too near to rock or unknown space";
-  if (const auto why = ledger_.closed(map_, p, input.now)) return "it was tried before: " + *why;
+  if (const auto why = ledger_.closed(map_, p, closed_at_)) return "it was tried before: " + *why;
   return std::nullopt;
 }
 
@@ -136,7 +139,7 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
   for (const Goal& goal : goals) {
     if (plans == kMostPlans) break;
     std::string why;
-    if (const auto problem = objection(input, goal)) {
+    if (const auto problem = objection(goal)) {
       why = *problem;
     } else {
       ++plans;
@@ -204,7 +207,12 @@ RoundResult Explorer::decide(const RoundInput& input) {
   request.map = &map_;
   request.roadmap = &roadmap_;
   request.vehicle = &vehicle_;
+  closed_at_ = input.now;
   request.frontiers = offers(input);
+  if (request.frontiers.empty()) {  // nothing else is left: no need to wait with what was tried a few times
+    closed_at_ += kPauseWaived;
+    request.frontiers = offers(input);
+  }
 
   const auto asked = std::chrono::steady_clock::now();
   Decision decision = ask(request, result);

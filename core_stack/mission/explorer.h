@@ -87,7 +87,7 @@ class Explorer {
   void learn(const RoundInput& input);
   std::vector<FrontierOffer> offers(const RoundInput& input);
   Decision ask(const DecisionRequest& request, RoundResult& result);
-  std::optional<std::string> objection(const RoundInput& input, const Goal& goal) const;
+  std::optional<std::string> objection(const Goal& goal) const;
   void choose(const RoundInput& input, const std::vector<Goal>& goals, RoundResult& result);
 
   CoreOptions options_;
@@ -104,6 +104,7 @@ class Explorer {
   std::vector<CellChange>
       roadmap_due_;  // changes it has yet to hear of: it is asked far less often than scanned
   GoalLedger ledger_;
+  TimeNs closed_at_ = 0;  // the time at which places are judged closed in this round
   std::map<std::uint32_t, KnownViewpoint> viewpoints_;
   struct Chosen {
     std::size_t cells;
