@@ -19,7 +19,7 @@ const Vec3 kAccelBias(0.1, -0.08, 0.12), kGyroBias(0.01, -0.012, 0.008);
 struct Flight {
   static Vec3 position(double t) {
     const double u = std::max(0.0, t - 2);
-    const double s = u * u / (u + 2);  // phase speed rises smoothly to one
+    const double s = u * u * u * u / (u * u * u + 8);  // its speed rises to one; no step in jerk at the start
     return {2.6 * std::sin(0.6 * s), 1.3 * std::sin(1.2 * s), 0.4 * std::sin(0.9 * s)};
   }
   static Vec3 velocity(double t) { return (position(t + 1e-5) - position(t - 1e-5)) / 2e-5; }
