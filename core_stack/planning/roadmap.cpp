@@ -88,7 +88,7 @@ class GraphSearch {
   const RoadmapGraph& graph_;
   std::vector<std::uint32_t> base_, parent_;
   std::vector<double> length_;
-  std::vector<bool> done_;
+  std::vector<char> done_;
   std::vector<Entry> heap_;
 };
 

@@ -51,6 +51,17 @@ void RoadmapGraph::update(const VoxelMap& map, std::span<const CellChange> chang
   for (const std::uint32_t i : dirty) rebuild(i);
 }
 
+std::uint32_t RoadmapGraph::add_tile(const TileKey& t) {
+  const std::uint32_t added = table.add(t);
+  tiles.emplace_back();
+  for (std::int32_t i = 0; i < 27; ++i) {
+    const std::uint32_t other = table.find({t.x + i % 3 - 1, t.y + i / 3 % 3 - 1, t.z + i / 9 - 1});
+    tiles[added].around[static_cast<std::size_t>(i)] = other;
+    if (other != TileTable::none) tiles[other].around[static_cast<std::size_t>(26 - i)] = added;
+  }
+  return added;
+}
+
 void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty) {
   const int r = rule->reach();
   const TileKey a = tile_of({k.x - r, k.y - r, k.z - r}), b = tile_of({k.x + r, k.y + r, k.z + r});
@@ -58,10 +69,7 @@ void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirt
     for (std::int32_t y = a.y; y <= b.y; ++y)
       for (std::int32_t x = a.x; x <= b.x; ++x) {
         std::uint32_t i = table.find({x, y, z});
-        if (i == TileTable::none) {
-          i = table.add({x, y, z});
-          tiles.emplace_back();
-        }
+        if (i == TileTable::none) i = add_tile({x, y, z});
         if (!tiles[i].dirty) dirty.push_back(i);
         tiles[i].dirty = true;
       }

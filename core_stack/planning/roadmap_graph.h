@@ -16,6 +16,8 @@ struct RoadmapNode {
 struct RoadmapTile {
   std::array<std::uint16_t, kTileBlocks + 1> first{};  // nodes of block b: first[b] to first[b + 1]
   std::vector<RoadmapNode> nodes;
+  std::array<std::uint32_t, 27>
+      around;  // the tile at (dx, dy, dz), each -1, 0, 1: index dx + 1 + 3 (dy + 1) + 9 (dz + 1)
   bool dirty = false;
 };
 
@@ -48,25 +50,24 @@ struct RoadmapGraph {
   /// Nodes of the block that holds cell k: calls visit(NodeRef, const RoadmapNode&).
   template <class Visit>
   void for_each_node_in_block(const CellKey& k, Visit&& visit) const {
-    const TileKey t = tile_of(k);
-    const std::uint32_t i = table.find(t);
-    if (i == TileTable::none) return;
-    const RoadmapTile& tile = tiles[i];
-    const std::uint32_t b =
-        static_cast<std::uint32_t>((k.x >> 2 & 7) | (k.y >> 2 & 1) << 3 | (k.z >> 2 & 1) << 4);
-    for (std::uint32_t n = tile.first[b]; n < tile.first[b + 1]; ++n) visit(NodeRef{i, n}, tile.nodes[n]);
+    for_each_node_in_block(table.find(tile_of(k)), k, visit);
   }
   /// Nodes joined to n: calls visit(NodeRef).
   template <class Visit>
   void for_each_neighbour(const NodeRef& n, Visit&& visit) const {
-    const BlockBits cells = tiles[n.tile].nodes[n.local].cells;
+    const RoadmapTile& tile = tiles[n.tile];
+    const BlockBits cells = tile.nodes[n.local].cells;
     const CellKey place = cell_of(n);
+    const TileKey home = table.keys()[n.tile];
     for (int i = 0; i < 27; ++i) {
       const int dx = i % 3 - 1, dy = i / 3 % 3 - 1, dz = i / 9 - 1;
       if (i == 13) continue;
       const BlockBits touched = touched_in_neighbour(cells, dx, dy, dz);
       if (touched == 0) continue;
-      for_each_node_in_block(place + CellKey{4 * dx, 4 * dy, 4 * dz},
+      const CellKey there = place + CellKey{4 * dx, 4 * dy, 4 * dz};
+      const TileKey t = tile_of(there);
+      const std::int32_t side = t.x - home.x + 3 * (t.y - home.y) + 9 * (t.z - home.z) + 13;
+      for_each_node_in_block(tile.around[static_cast<std::size_t>(side)], there,
                              [&](const NodeRef& m, const RoadmapNode& node) {
                                if (node.cells & touched) visit(m);
                              });
@@ -78,6 +79,16 @@ struct RoadmapGraph {
   std::vector<CellKey> cells_between(const CellKey& a, const CellKey& b) const;
 
  private:
+  /// The same, with the tile known; TileTable::none has no nodes.
+  template <class Visit>
+  void for_each_node_in_block(std::uint32_t tile_index, const CellKey& k, Visit&& visit) const {
+    if (tile_index == TileTable::none) return;
+    const RoadmapTile& tile = tiles[tile_index];
+    const auto b = static_cast<std::uint32_t>((k.x >> 2 & 7) | (k.y >> 2 & 1) << 3 | (k.z >> 2 & 1) << 4);
+    for (std::uint32_t n = tile.first[b]; n < tile.first[b + 1]; ++n)
+      visit(NodeRef{tile_index, n}, tile.nodes[n]);
+  }
+  std::uint32_t add_tile(const TileKey& t);
   void mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty);
   void rebuild(std::uint32_t tile_index);
 };

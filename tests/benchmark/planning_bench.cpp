@@ -175,12 +175,12 @@ void feasibility() {
 }
 
 void roadmap_updates() {
-  const WindingCave cave = WindingCave::of_length(380, 2, 3.4);
+  const WindingCave cave = WindingCave::of_length(190, 2, 3.4);
   std::vector<CellChange> changes;
   const VoxelMap map = cave.map(&changes);
   // The cave is drawn along its line: equal shares of its changes are what scans at 2 m/s and 10 Hz would
   // bring.
-  const auto scans = static_cast<std::size_t>(380 / 0.2);
+  const auto scans = static_cast<std::size_t>(190 / 0.2);
   const std::size_t share = changes.size() / scans;
   std::printf("\nroadmap, %.0f m^3, %zu changes a scan\n", map.free_volume_m3(), share);
   Roadmap roadmap{PlanningOptions{}};
