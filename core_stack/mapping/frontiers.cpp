@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core_stack/mapping/packed_cell.h"
 #include "core_stack/mapping/voxel_reader.h"
 
 namespace karst::core {
@@ -11,15 +12,28 @@ namespace {
 
 std::int32_t floor_div(std::int32_t a, std::int32_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-void sort_unique(std::vector<CellKey>& keys) {
+template <class Key>
+void sort_unique(std::vector<Key>& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-bool touches_unknown(VoxelReader& reader, const CellKey& k) {
-  return std::any_of(kFaces.begin(), kFaces.end(),
-                     [&](const CellKey& f) { return reader.at(k + f) == Cell::unknown; });
-}
+/// The cells around a cell, each direction with a reader of its own: from cell to cell it stays in its block.
+class FaceReaders {
+ public:
+  explicit FaceReaders(const VoxelMap& map) : readers_(kFaces.size(), VoxelReader(map)) {}
+  bool unknown(const CellKey& k, std::size_t face) {
+    return readers_[face].at(k + kFaces[face]) == Cell::unknown;
+  }
+  bool any_unknown(const CellKey& k) {
+    for (std::size_t face = 0; face < kFaces.size(); ++face)
+      if (unknown(k, face)) return true;
+    return false;
+  }
+
+ private:
+  std::vector<VoxelReader> readers_;
+};
 
 /// Cells in both of two sorted lists.
 std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b) {
@@ -105,22 +119,25 @@ void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes)
 /// of cells that were and are frontier but see less of the unknown than before.
 std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<const CellChange> changes) {
   // Only a cell that leaves the unknown matters to its neighbours.
-  std::vector<CellKey> candidates;
+  std::vector<PackedCell> candidates;
+  candidates.reserve(7 * changes.size());
   for (const CellChange& c : changes) {
-    candidates.push_back(c.key);
+    candidates.push_back(pack(c.key));
     if (c.before != Cell::unknown) continue;
-    for (const CellKey& f : kFaces) candidates.push_back(c.key + f);
+    for (const CellKey& f : kFaces) candidates.push_back(pack(c.key + f));
   }
   sort_unique(candidates);
 
   std::vector<CellKey> dirty;
   VoxelReader reader(map);
-  for (const CellKey& k : candidates) {
-    const bool now = reader.at(k) == Cell::free && touches_unknown(reader, k);
+  FaceReaders faces(map);
+  for (const PackedCell candidate : candidates) {
+    const CellKey k = unpack(candidate);
+    const bool now = reader.at(k) == Cell::free && faces.any_unknown(k);
     const bool before = is_frontier(k);
     if (!now && !before) continue;
     const CellKey t = tile_of(k);
-    dirty.push_back(t);
+    if (dirty.empty() || dirty.back() != t) dirty.push_back(t);
     if (now == before) continue;
     Tile& tile = tiles_[t];
     if (tile.rows.empty()) tile.rows.resize(static_cast<std::size_t>(edge_) * edge_);
@@ -135,26 +152,32 @@ std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<cons
 std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
   const std::vector<std::uint64_t>& rows = tiles_.at(t).rows;
   std::vector<std::uint64_t> left = rows;
-  std::vector<std::uint32_t> part_of(rows.size() * 64);  // by row and z
-  std::vector<CellKey> stack;                            // cells within the tile, from 0 to edge_ - 1
+  const auto index_of = [&](std::size_t row, int z) {
+    return row * static_cast<std::size_t>(edge_) + static_cast<std::size_t>(z);
+  };
+  std::vector<std::uint32_t> part_of(rows.size() * static_cast<std::size_t>(edge_));
+  struct Run {  // cells of one row
+    std::int32_t x, y;
+    std::uint64_t cells;
+  };
+  std::vector<Run> stack;
   std::vector<Part> parts;
   const auto take = [&](std::int32_t x, std::int32_t y, std::uint64_t cells) {
     const auto row = static_cast<std::size_t>(x * edge_ + y);
     cells &= left[row];
+    if (cells == 0) return;
     left[row] &= ~cells;
-    for (; cells != 0; cells &= cells - 1) {
-      const auto z = std::countr_zero(cells);
-      part_of[row * 64 + static_cast<std::size_t>(z)] = static_cast<std::uint32_t>(parts.size() - 1);
-      stack.push_back({x, y, z});
-    }
+    stack.push_back({x, y, cells});
+    for (; cells != 0; cells &= cells - 1)
+      part_of[index_of(row, std::countr_zero(cells))] = static_cast<std::uint32_t>(parts.size() - 1);
   };
   const auto flood = [&] {
     while (!stack.empty()) {
-      const CellKey k = stack.back();
+      const Run run = stack.back();
       stack.pop_back();
-      const std::uint64_t at = std::uint64_t{1} << k.z, around = at | at << 1 | at >> 1;
-      for (std::int32_t x = std::max(k.x - 1, 0); x <= std::min(k.x + 1, edge_ - 1); ++x)
-        for (std::int32_t y = std::max(k.y - 1, 0); y <= std::min(k.y + 1, edge_ - 1); ++y)
+      const std::uint64_t around = run.cells | run.cells << 1 | run.cells >> 1;
+      for (std::int32_t x = std::max(run.x - 1, 0); x <= std::min(run.x + 1, edge_ - 1); ++x)
+        for (std::int32_t y = std::max(run.y - 1, 0); y <= std::min(run.y + 1, edge_ - 1); ++y)
           take(x, y, around);
     }
   };
@@ -169,8 +192,7 @@ std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
           take(x, y, std::uint64_t{1} << z);
           flood();
         }
-        parts[part_of[row * 64 + static_cast<std::size_t>(z)]].cells.push_back(
-            {t.x * edge_ + x, t.y * edge_ + y, t.z * edge_ + z});
+        parts[part_of[index_of(row, z)]].cells.push_back({t.x * edge_ + x, t.y * edge_ + y, t.z * edge_ + z});
       }
     }
   return parts;
@@ -204,21 +226,22 @@ void Frontiers::publish(const VoxelMap& map, const Part& part) {
   FrontierCluster c;
   c.id = part.id;
   c.cells = part.cells;
-  VoxelReader reader(map);
-  Vec3 sum = Vec3::Zero(), into_unknown = Vec3::Zero();
+  FaceReaders faces(map);
+  CellKey sum, into_unknown;
   CellKey low = part.cells.front(), high = low;
   for (const CellKey& k : part.cells) {
-    sum += map.center_of(k);
+    sum = sum + k;
     low = {std::min(low.x, k.x), std::min(low.y, k.y), std::min(low.z, k.z)};
     high = {std::max(high.x, k.x), std::max(high.y, k.y), std::max(high.z, k.z)};
-    for (const CellKey& f : kFaces)
-      if (reader.at(k + f) == Cell::unknown) into_unknown += Vec3(f.x, f.y, f.z);
+    for (std::size_t face = 0; face < kFaces.size(); ++face)
+      if (faces.unknown(k, face)) into_unknown = into_unknown + kFaces[face];
   }
   const Vec3 half = Vec3::Constant(map.resolution_m() / 2);
-  c.centroid = sum / static_cast<double>(part.cells.size());
+  c.centroid = (Vec3(sum.x, sum.y, sum.z) / static_cast<double>(part.cells.size()) + Vec3::Constant(0.5)) *
+               map.resolution_m();
   c.low = map.center_of(low) - half;
   c.high = map.center_of(high) + half;
-  if (into_unknown.norm() > 1e-9) c.normal = into_unknown.normalized();
+  if (into_unknown != CellKey{}) c.normal = Vec3(into_unknown.x, into_unknown.y, into_unknown.z).normalized();
   clusters_[c.id] = std::move(c);
 }
 
@@ -232,14 +255,14 @@ void Frontiers::add_clusters_near(const VoxelMap& map, std::span<const CellChang
   // A cluster's box reaches from its centroid, which lies in its tile, over so many tiles.
   const auto reach =
       static_cast<std::int32_t>(std::ceil(options_.neighbourhood_m / (edge_ * map.resolution_m())));
-  std::vector<CellKey> near;
+  std::vector<PackedCell> near;
   for (const CellKey& t : changed)
     for (std::int32_t dx = -reach; dx <= reach; ++dx)
       for (std::int32_t dy = -reach; dy <= reach; ++dy)
-        for (std::int32_t dz = -reach; dz <= reach; ++dz) near.push_back(t + CellKey{dx, dy, dz});
+        for (std::int32_t dz = -reach; dz <= reach; ++dz) near.push_back(pack(t + CellKey{dx, dy, dz}));
   sort_unique(near);
-  for (const CellKey& t : near) {
-    const auto tile = tiles_.find(t);
+  for (const PackedCell t : near) {
+    const auto tile = tiles_.find(unpack(t));
     if (tile == tiles_.end()) continue;
     for (const Part& p : tile->second.parts) {
       const auto c = clusters_.find(p.id);
