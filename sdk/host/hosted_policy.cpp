@@ -22,7 +22,7 @@ struct Call {
   std::shared_ptr<Session> session;
   karst_error_t error{};
   std::string failure;  // "" if the call succeeded
-  std::string locale_change;
+  std::string process_change;
 };
 
 class LoadedPolicy final : public HostedPolicy {
@@ -36,6 +36,7 @@ class LoadedPolicy final : public HostedPolicy {
         parameters_(*table.descriptor, choice.parameters, choice.source),
         session_(std::make_shared<Session>(choice.seed, name_)) {
     session_->set_decision_thread(thread_.id());
+    if (!plugin.process_change.empty()) warn_of_change(plugin.process_change, "when it was opened");
     try {
       start();
     } catch (...) {
@@ -61,6 +62,7 @@ class LoadedPolicy final : public HostedPolicy {
   void start();
   void end() noexcept;
   core::Decision failed(const std::string& why);
+  void warn_of_change(const std::string& what, const std::string& when);
   void refuse(const core::DecisionRequest& request, const DecisionBox& box);
 
   const karst_policy_t& table_;
@@ -89,7 +91,7 @@ std::string LoadedPolicy::call(const char* slot, Work work) {
         } catch (...) {
           call->failure = "it threw an exception across the border";
         }
-        call->locale_change = state.restore();
+        call->process_change = state.restore();
       },
       choice_.hang_limit_s);
   if (!returned) {
@@ -100,10 +102,12 @@ std::string LoadedPolicy::call(const char* slot, Work work) {
                   choice_.hang_limit_s);
     return text;
   }
-  if (!call->locale_change.empty())
-    session_->note("warning: " + name_ + " changed " + call->locale_change + " in " + slot +
-                   "(); it was put back");
+  if (!call->process_change.empty()) warn_of_change(call->process_change, std::string("in ") + slot + "()");
   return call->failure.empty() ? "" : std::string(slot) + "(): " + call->failure;
+}
+
+void LoadedPolicy::warn_of_change(const std::string& what, const std::string& when) {
+  session_->note("warning: " + name_ + " changed " + what + " " + when + "; it was put back");
 }
 
 void LoadedPolicy::start() {

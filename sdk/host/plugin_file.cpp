@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/process_state.h"
 #include "sdk/host/text.h"
 
 namespace karst::host {
@@ -108,20 +109,8 @@ bool belongs_to(const void* symbol, const std::string& path) {
          std::filesystem::equivalent(info.dli_fname, path, error) && !error;
 }
 
-}  // namespace
-
-std::string handshake_fault(std::uint32_t abi_major, std::uint32_t abi_minor) {
-  const std::string both = "built for policy ABI " + abi_text(abi_major, abi_minor) + ", this karst offers " +
-                           abi_text(KARST_ABI_MAJOR, KARST_ABI_MINOR) + ": ";
-  if (abi_major != KARST_ABI_MAJOR)
-    return both + "rebuild the plugin with this karst's SDK, or use a karst of ABI " +
-           std::to_string(abi_major);
-  if (abi_minor > KARST_ABI_MINOR)
-    return both + "install a newer karst, or rebuild the plugin with this karst's SDK";
-  return "";
-}
-
-PluginFile open_plugin(const std::string& path) {
+/// Runs the plugin's constructors, its entry and its tables' getters.
+PluginFile opened(const std::string& path) {
   const std::string file =
       std::filesystem::absolute(path).string();  // a bare name must not search LD_LIBRARY_PATH
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -146,7 +135,7 @@ PluginFile open_plugin(const std::string& path) {
   if (plugin->policy_count == 0 || plugin->policy_count > kMostPolicies)
     throw InputError(path, "",
                      "offers " + std::to_string(plugin->policy_count) + " policies, 1 to 64 were expected");
-  PluginFile out{path, plugin, {}};
+  PluginFile out{path, plugin, {}, ""};
   for (std::uint32_t i = 0; i < plugin->policy_count; ++i) {
     const karst_policy_t* policy = plugin->policy(i);
     if (const std::string fault = policy_fault(policy); !fault.empty())
@@ -154,6 +143,31 @@ PluginFile open_plugin(const std::string& path) {
     out.policies.push_back(policy);
   }
   return out;
+}
+
+}  // namespace
+
+std::string handshake_fault(std::uint32_t abi_major, std::uint32_t abi_minor) {
+  const std::string both = "built for policy ABI " + abi_text(abi_major, abi_minor) + ", this karst offers " +
+                           abi_text(KARST_ABI_MAJOR, KARST_ABI_MINOR) + ": ";
+  if (abi_major != KARST_ABI_MAJOR)
+    return both + "rebuild the plugin with this karst's SDK, or use a karst of ABI " +
+           std::to_string(abi_major);
+  if (abi_minor > KARST_ABI_MINOR)
+    return both + "install a newer karst, or rebuild the plugin with this karst's SDK";
+  return "";
+}
+
+PluginFile open_plugin(const std::string& path) {
+  const ProcessState before;
+  try {
+    PluginFile out = opened(path);
+    out.process_change = before.restore();
+    return out;
+  } catch (...) {
+    before.restore();
+    throw;
+  }
 }
 
 }  // namespace karst::host

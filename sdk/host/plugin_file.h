@@ -12,6 +12,7 @@ struct PluginFile {
   std::string path;
   const karst_plugin_t* plugin = nullptr;
   std::vector<const karst_policy_t*> policies;  // every table and descriptor sound
+  std::string process_change;  // what opening it changed in the process, and was put back; "" for nothing
 };
 
 /// Throws core::InputError with the file and the reason: not a shared object, no entry, another ABI (with

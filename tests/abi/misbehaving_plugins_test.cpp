@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <chrono>
 #include <clocale>
 #include <cstdlib>
@@ -108,6 +109,18 @@ TEST(MisbehavingPlugin, ChangedLocaleIsPutBackAndTold) {
   EXPECT_EQ(std::setlocale(LC_ALL, nullptr), before);
   EXPECT_EQ(d.goals.size(), 1u);
   EXPECT_THAT(d.log, Contains(AllOf(HasSubstr("locale"), HasSubstr("C.UTF-8"))));
+}
+
+TEST(MisbehavingPlugin, LocaleAndRoundingChangedWhileItIsOpenedArePutBackAndTold) {
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  const int rounding = std::fegetround();
+  const auto policy = load("changes_process_at_load");
+  EXPECT_EQ(std::setlocale(LC_ALL, nullptr), before);
+  EXPECT_EQ(std::fegetround(), rounding);
+  Room room;
+  const core::Decision d = policy->decide(room.request);
+  EXPECT_EQ(d.goals.size(), 1u);
+  EXPECT_THAT(d.log, Contains(AllOf(HasSubstr("locale (to C.UTF-8)"), HasSubstr("when it was opened"))));
 }
 
 TEST(MisbehavingPlugin, WhatItWritesToStdoutDoesNotTouchItsDecision) {
