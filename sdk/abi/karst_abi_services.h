@@ -26,6 +26,9 @@ typedef struct karst_map karst_map_t; /* opaque: a snapshot of the occupancy map
 #define KARST_MAX_PATH_GOALS 4096u
 #define KARST_MAX_RAY_LENGTH_M 1000.0
 #define KARST_MAX_GAIN_RANGE_M 60.0
+#define KARST_MAX_GAIN_RANGE_CELLS 300u /* max_range_m in cells of the map: 60 m at 0.2 m */
+#define KARST_MAX_GAIN_RAYS 2000000u    /* of one sensor, neighbours at most a cell apart at its range */
+#define KARST_MAX_SENSOR_OFFSET_M 10.0  /* from the body's origin */
 
 typedef uint8_t karst_cell_t;
 enum { KARST_CELL_UNKNOWN = 0, KARST_CELL_FREE = 1, KARST_CELL_OCCUPIED = 2 };
@@ -72,7 +75,7 @@ typedef struct karst_map_service {
   /* [any thread] {any state} Each ray visits every cell it passes, both ends' included. */
   int32_t (*cast_rays)(const karst_host_t*, const karst_map_t*, const karst_segment_t* rays, uint64_t count,
                        uint32_t flags, karst_ray_end_t* out, karst_error_t*) KARST_NOEXCEPT;
-  /* [any thread] {any state} */
+  /* [any thread] {any state} A box of 2^63 cells or more is KARST_ERROR_LIMIT. */
   int32_t (*count_in_boxes)(const karst_host_t*, const karst_map_t*, const karst_box_t* boxes, uint64_t count,
                             karst_cell_counts_t* out, karst_error_t*) KARST_NOEXCEPT;
   /* [any thread] {any state} Centres of the occupied cells in the box that have a free face neighbour, in
@@ -102,7 +105,8 @@ typedef struct karst_gain_service {
   /* [any thread] {any state} Unknown cells each sensor would see from each viewpoint: rays end at occupied
      cells and at max_range_m and pass unknown ones. out[v * sensor_count + s] is for viewpoint v, sensor s;
      a cell is counted once for each pair. The cost grows with the cube of max_range_m: pass a shortened
-     sensor to ask only what lies near. Neighbouring rays are at most one cell apart where they end. */
+     sensor to ask only what lies near. Neighbouring rays are at most one cell apart where they end. A range
+     of more cells, or a view of more rays, than the limits above is KARST_ERROR_LIMIT. */
   int32_t (*newly_seen)(const karst_host_t*, const karst_map_t*, const karst_sensor_t* sensors,
                         uint64_t sensor_count, const karst_viewpoint_t* viewpoints, uint64_t count,
                         uint64_t* out, karst_error_t*) KARST_NOEXCEPT;

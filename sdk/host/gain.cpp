@@ -59,9 +59,13 @@ void walk(const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit
   }
 }
 
+int steps_over(double low, double high, double step) {
+  return std::max(1, static_cast<int>(std::ceil((high - low) / step)));
+}
+
 /// Evenly spread values over [low, high], both included, at most `step` apart.
 std::vector<double> spread(double low, double high, double step) {
-  const int n = std::max(1, static_cast<int>(std::ceil((high - low) / step)));
+  const int n = steps_over(low, high, step);
   std::vector<double> out;
   for (int i = 0; i <= n; ++i) out.push_back(low + (high - low) * i / n);
   return out;
@@ -86,7 +90,22 @@ std::string sensor_fault(const karst_sensor_t& s) {
   const karst_quaternion_t& q = s.T_body_sensor.orientation;
   if (!(std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 1e-6))
     return "T_body_sensor is not a unit quaternion";
-  if (!to_core(s.T_body_sensor.position).allFinite()) return "T_body_sensor is not finite";
+  if (!(to_core(s.T_body_sensor.position).norm() <= KARST_MAX_SENSOR_OFFSET_M))  // NaN as well
+    return "T_body_sensor is more than 10 m from the body, or not finite";
+  return "";
+}
+
+std::string sensor_excess(const karst_sensor_t& s, double resolution_m) {
+  constexpr double kRounding = 1e-9;  // 60 m at 0.2 m are 300 cells
+  if (s.max_range_m / resolution_m > KARST_MAX_GAIN_RANGE_CELLS + kRounding)
+    return "max_range_m is more than " + std::to_string(KARST_MAX_GAIN_RANGE_CELLS) + " cells of the map";
+  if (s.kind != KARST_SENSOR_CAMERA) return "";  // all around at the longest range is 1.1 million rays
+  const double step = resolution_m / s.max_range_m, half = std::tan(0.5 * s.horizontal_fov_rad);
+  const double rows = steps_over(std::tan(s.low_elevation_rad), std::tan(s.high_elevation_rad), step) + 1.0;
+  const double columns = steps_over(-half, half, step) + 1.0;
+  if (rows * columns > KARST_MAX_GAIN_RAYS)
+    return "a camera this wide needs more than " + std::to_string(KARST_MAX_GAIN_RAYS) +
+           " rays at this range";
   return "";
 }
 

@@ -10,6 +10,9 @@ namespace karst::host {
 
 /// "" if the model makes sense, otherwise what is wrong with it.
 std::string sensor_fault(const karst_sensor_t& sensor);
+/// "" if a look of a sound sensor into a map of this resolution keeps within the service's limits (memory
+/// grows with the cube of the range in cells), otherwise which one it exceeds.
+std::string sensor_excess(const karst_sensor_t& sensor, double resolution_m);
 
 /// A sensor's rays in its own frame, spread so that at its range neighbours are at most a cell apart.
 class SensorRays {

@@ -1,6 +1,7 @@
 // The functions behind the service tables. Each checks its arguments, then works through the session's gate.
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "sdk/abi/karst_abi.h"
 #include "sdk/host/gain.h"
@@ -119,7 +120,9 @@ struct Services {
       for (std::uint64_t i = 0; i < count; ++i) {
         going_on(s);
         demand_box(boxes[i]);
-        out[i] = count_in_box(map, boxes[i]);
+        const std::optional<karst_cell_counts_t> counts = count_in_box(map, boxes[i]);
+        if (!counts) throw Refusal{KARST_ERROR_LIMIT, "a box holds 2^63 cells or more"};
+        out[i] = *counts;
       }
     });
   }
@@ -190,6 +193,8 @@ struct Services {
       for (std::uint64_t j = 0; j < sensor_count; ++j) {
         if (const std::string fault = sensor_fault(sensors[j]); !fault.empty())
           throw Refusal{KARST_ERROR_ARGUMENT, "sensor " + std::to_string(j) + ": " + fault};
+        if (const std::string excess = sensor_excess(sensors[j], map.resolution_m()); !excess.empty())
+          throw Refusal{KARST_ERROR_LIMIT, "sensor " + std::to_string(j) + ": " + excess};
         const SensorRays rays(sensors[j], map.resolution_m());
         for (std::uint64_t i = 0; i < count; ++i) {
           going_on(s);

@@ -10,20 +10,28 @@ namespace {
 using core::Cell;
 using core::CellKey;
 
+/// The keys of the cells whose centres lie in a box. Whole numbers kept as doubles: a box may reach far
+/// beyond any key.
 struct KeyBox {
-  CellKey low, high;
-  bool empty() const { return low.x > high.x || low.y > high.y || low.z > high.z; }
-  double cells() const { return (high.x - low.x + 1.0) * (high.y - low.y + 1.0) * (high.z - low.z + 1.0); }
-};
+  Eigen::Array3d low, high;
 
-/// Keys of the cells whose centres lie in the box.
-KeyBox keys_in(const karst_box_t& box, double resolution_m) {
-  const auto bound = [](double v) { return static_cast<std::int32_t>(std::clamp(v, -1e9, 1e9)); };
-  const auto low = [&](double v) { return bound(std::ceil(v / resolution_m - 0.5)); };
-  const auto high = [&](double v) { return bound(std::floor(v / resolution_m - 0.5)); };
-  return {{low(box.low.x), low(box.low.y), low(box.low.z)},
-          {high(box.high.x), high(box.high.y), high(box.high.z)}};
-}
+  KeyBox(const karst_box_t& box, double resolution_m)
+      : low((to_core(box.low).array() / resolution_m - 0.5).ceil()),
+        high((to_core(box.high).array() / resolution_m - 0.5).floor()) {}
+
+  bool empty() const { return (low > high).any(); }
+  bool too_large() const { return !((high - low + 1).prod() < 0x1p63); }
+  std::uint64_t cells() const { return (high - low + 1).cast<std::uint64_t>().prod(); }
+  CellKey low_key() const { return key(low); }
+  CellKey high_key() const { return key(high); }
+
+ private:
+  /// Clamped, still far outside of the world.
+  static CellKey key(const Eigen::Array3d& v) {
+    const Eigen::Array3i k = v.max(-1e9).min(1e9).cast<int>();
+    return {k.x(), k.y(), k.z()};
+  }
+};
 
 }  // namespace
 
@@ -46,11 +54,12 @@ karst_map_info_t info_of(const Snapshot& s) {
 karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, bool through_unknown) {
   const core::Vec3 from = to_core(ray.from), to = to_core(ray.to);
   CellKey end = map.key_of(from);
-  Cell stopped_by = Cell::free;
+  // Until traverse() has begun: from too far outside the world it does not, and all is unknown there.
+  Cell stopped_by = through_unknown ? Cell::free : Cell::unknown;
   core::traverse(from, to, map.resolution_m(), [&](const CellKey& k) {
     end = k;
     const Cell c = map.at(k);
-    if (c == Cell::occupied || (c == Cell::unknown && !through_unknown)) stopped_by = c;
+    stopped_by = c == Cell::unknown && through_unknown ? Cell::free : c;
     return stopped_by == Cell::free;
   });
   const core::Vec3 center = map.center_of(end);
@@ -61,24 +70,25 @@ karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, 
   return out;
 }
 
-karst_cell_counts_t count_in_box(const core::VoxelMap& map, const karst_box_t& box) {
+std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const karst_box_t& box) {
   karst_cell_counts_t out{};
-  const KeyBox keys = keys_in(box, map.resolution_m());
+  const KeyBox keys(box, map.resolution_m());
   if (keys.empty()) return out;
-  map.for_each_in_box(keys.low, keys.high, [&](const CellKey&, Cell c) {
+  if (keys.too_large()) return std::nullopt;
+  map.for_each_in_box(keys.low_key(), keys.high_key(), [&](const CellKey&, Cell c) {
     if (c == Cell::free) ++out.free;
     if (c == Cell::occupied) ++out.occupied;
   });
-  out.unknown = static_cast<std::uint64_t>(keys.cells()) - out.free - out.occupied;
+  out.unknown = keys.cells() - out.free - out.occupied;
   return out;
 }
 
 std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box) {
   std::vector<CellKey> surface;
-  const KeyBox keys = keys_in(box, map.resolution_m());
+  const KeyBox keys(box, map.resolution_m());
   if (keys.empty()) return {};
   constexpr CellKey faces[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-  map.for_each_in_box(keys.low, keys.high, [&](const CellKey& k, Cell c) {
+  map.for_each_in_box(keys.low_key(), keys.high_key(), [&](const CellKey& k, Cell c) {
     const auto is_free = [&](const CellKey& face) { return map.at(k + face) == Cell::free; };
     if (c == Cell::occupied && std::any_of(std::begin(faces), std::end(faces), is_free)) surface.push_back(k);
   });

@@ -1,6 +1,7 @@
 // A map as a policy holds it, and what can be asked of it.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core_stack/mapping/voxel_map.h"
@@ -20,7 +21,8 @@ std::unique_ptr<Snapshot> copy_of(const Snapshot& original);
 
 karst_map_info_t info_of(const Snapshot& s);
 karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, bool through_unknown);
-karst_cell_counts_t count_in_box(const core::VoxelMap& map, const karst_box_t& box);
+/// None if the box holds 2^63 cells or more.
+std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const karst_box_t& box);
 std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box);
 
 inline core::Vec3 to_core(const karst_vec3_t& v) { return {v.x, v.y, v.z}; }

@@ -123,6 +123,26 @@ TEST(SensorFault, NamesWhatIsWrong) {
   s = camera(8.0);
   s.horizontal_fov_rad = 3.1;
   EXPECT_NE(host::sensor_fault(s).find("horizontal"), std::string::npos);
+  for (const double far : {10.1, -1e300, std::nan(""), HUGE_VAL}) {
+    s = lidar(8.0);
+    s.T_body_sensor.position.y = far;
+    EXPECT_NE(host::sensor_fault(s).find("T_body_sensor"), std::string::npos) << far;
+  }
+}
+
+TEST(SensorExcess, IsALookThatWouldNeedTooMuchMemory) {
+  karst_sensor_t all_around = lidar(60.0);
+  all_around.low_elevation_rad = -std::numbers::pi / 2, all_around.high_elevation_rad = std::numbers::pi / 2;
+  EXPECT_EQ(host::sensor_excess(all_around, 0.2), "");
+  EXPECT_NE(host::sensor_excess(all_around, 0.05).find("300 cells"), std::string::npos) << "13.9 GB";
+  EXPECT_EQ(host::sensor_excess(lidar(15.0), 0.05), "");
+  karst_sensor_t wide = camera(60.0);
+  EXPECT_EQ(host::sensor_excess(wide, 0.2), "");
+  wide.horizontal_fov_rad = 3.0;
+  wide.low_elevation_rad = -1.49, wide.high_elevation_rad = 1.49;
+  EXPECT_NE(host::sensor_excess(wide, 0.2).find("rays"), std::string::npos) << "60 million rays";
+  wide.max_range_m = 8.0;
+  EXPECT_EQ(host::sensor_excess(wide, 0.2), "");
 }
 
 }  // namespace

@@ -63,6 +63,37 @@ TEST_F(Asked, BoxAsLargeAsTheWorldIsCountedInNoTime) {
   EXPECT_GT(counts.unknown, 1000000u);
 }
 
+TEST_F(Asked, BoxOfMoreCellsThanCanBeCountedIsRefused) {
+  const karst_box_t box{{-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}};
+  karst_cell_counts_t counts{};
+  EXPECT_EQ(h->map->count_in_boxes(h, session.live_map(), &box, 1, &counts, &e), KARST_ERROR_LIMIT);
+  EXPECT_STREQ(e.text, "a box holds 2^63 cells or more");
+  std::uint64_t total = 1;
+  EXPECT_EQ(h->map->surface_cells(h, session.live_map(), box, nullptr, 0, &total, &e), KARST_OK);
+  EXPECT_EQ(total, 0u);
+}
+
+TEST_F(Asked, SensorFarFromTheBodyOrOfTooLongRangeForTheMapIsRefused) {
+  const core::VoxelMap fine{core::MapOptions{.resolution_m = 0.05}};
+  core::DecisionRequest request;
+  request.map = &fine;
+  session.begin_deciding(request);
+  karst_sensor_t s{};
+  s.kind = KARST_SENSOR_LIDAR;
+  s.T_body_sensor.orientation.w = 1;
+  s.max_range_m = 60;
+  s.horizontal_fov_rad = 6;
+  const karst_viewpoint_t from{};
+  std::uint64_t seen = 0;
+  const auto ask = [&] { return h->gain->newly_seen(h, session.live_map(), &s, 1, &from, 1, &seen, &e); };
+  EXPECT_EQ(ask(), KARST_ERROR_LIMIT);
+  EXPECT_STREQ(e.text, "sensor 0: max_range_m is more than 300 cells of the map");
+  s.max_range_m = 2;
+  EXPECT_EQ(ask(), KARST_OK);
+  s.T_body_sensor.position.x = 1e300;
+  EXPECT_EQ(ask(), KARST_ERROR_ARGUMENT);
+}
+
 TEST_F(Asked, MapOfTheRequestEndsWithItAndARetainedOneDoesNot) {
   const karst_map_t* kept = h->map->retain(h, session.live_map(), &e);
   ASSERT_NE(kept, nullptr);

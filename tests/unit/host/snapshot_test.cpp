@@ -38,13 +38,38 @@ TEST(Snapshot, CountsInABoxAreThoseCountedCellByCell) {
     const karst_vec3_t a = *point(), b = *point();
     const karst_box_t box = {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
                              {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
-    const karst_cell_counts_t counts = host::count_in_box(map, box);
+    const karst_cell_counts_t counts = host::count_in_box(map, box).value();
     karst_cell_counts_t expected{};
     drawn().host()->map->count_in_boxes(drawn().host(), drawn().map_handle(), &box, 1, &expected, nullptr);
     RC_ASSERT(counts.free == expected.free);
     RC_ASSERT(counts.occupied == expected.occupied);
     RC_ASSERT(counts.unknown == expected.unknown);
   }));
+}
+
+TEST(Snapshot, CountsInABoxOfAnySizeAreExactOrRefused) {
+  const core::VoxelMap map = to_core_map(drawn().map());  // cells of 0.5 m
+  // One cell in y and z, and in x 2^61 cells' edges with both ends on a border.
+  const double far = 0x1p59;
+  const auto line = host::count_in_box(map, {{-far, 100.1, 100.1}, {far, 100.4, 100.4}});
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->unknown, std::uint64_t{1} << 61);
+  const auto cube = [&](double half_m) {
+    return host::count_in_box(map, {{-half_m, -half_m, -half_m}, {half_m, half_m, half_m}});
+  };
+  const host::Snapshot all{&map, 0, nullptr};
+  const std::uint64_t known = host::info_of(all).free_cells + host::info_of(all).occupied_cells;
+  ASSERT_TRUE(cube(500'000));
+  EXPECT_EQ(cube(500'000)->unknown, std::uint64_t{2'000'000} * 2'000'000 * 2'000'000 - known);
+  EXPECT_FALSE(cube(0x1p20)) << "2^66 cells";
+  EXPECT_FALSE(cube(1e300));
+}
+
+TEST(Snapshot, RayFarOutsideTheWorldIsInTheUnknown) {
+  const core::VoxelMap map = to_core_map(drawn().map());
+  const karst_segment_t ray = {{1e300, 0, 0}, {1e300, 0, 0}};
+  EXPECT_EQ(host::cast_ray(map, ray, false).state, KARST_CELL_UNKNOWN);
+  EXPECT_EQ(host::cast_ray(map, ray, true).state, KARST_CELL_FREE);
 }
 
 TEST(Snapshot, SurfaceIsThatFoundCellByCell) {
