@@ -158,10 +158,8 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
 }
 
 void OptionTable::read(const std::string& source, const pt::ptree& tree) {
-  std::vector<std::pair<std::string, std::string>> leaves;
-  collect_leaves(tree, "", leaves);
   std::vector<std::string> seen;
-  for (const auto& [key, text] : leaves) {
+  for (const auto& [key, text] : leaves_of(tree)) {
     if (std::find(seen.begin(), seen.end(), key) != seen.end()) throw InputError(source, key, "given twice");
     seen.push_back(key);
     set(source, key, text);
@@ -181,6 +179,12 @@ std::string OptionTable::help() const {
         << ")\n";
   }
   return out.str();
+}
+
+std::vector<std::pair<std::string, std::string>> leaves_of(const pt::ptree& tree) {
+  std::vector<std::pair<std::string, std::string>> leaves;
+  collect_leaves(tree, "", leaves);
+  return leaves;
 }
 
 pt::ptree read_info(const std::string& path) {

@@ -10,6 +10,7 @@
 #include <boost/property_tree/ptree_fwd.hpp>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -68,6 +69,10 @@ std::string value_text(const OptionTable::Row& row);
 
 /// The candidate with the least edit distance to `key`, or "" if none is near.
 std::string nearest_name(const std::string& key, const std::vector<std::string>& candidates);
+
+/// Paths and values of a tree's leaves in its order: ("map.resolution", "0.2 m"). A node with a value of its
+/// own counts as a leaf, too.
+std::vector<std::pair<std::string, std::string>> leaves_of(const boost::property_tree::ptree& tree);
 
 /// Reads an INFO file; throws InputError with the line on a syntax error.
 boost::property_tree::ptree read_info(const std::string& path);

@@ -1,6 +1,6 @@
 #include "core_stack/localization/state.h"
 
-#include <algorithm>
+#include "core_stack/common/pose_track.h"
 
 namespace karst::core {
 
@@ -11,16 +11,7 @@ void StateHistory::push(const State& s) {
 }
 
 Pose StateHistory::pose_at(TimeNs t) const {
-  if (states_.empty()) return {};
-  const auto after = std::lower_bound(states_.begin(), states_.end(), t,
-                                      [](const State& s, TimeNs time) { return s.stamp < time; });
-  if (after == states_.begin()) return states_.front().pose();
-  if (after == states_.end()) return states_.back().pose();
-  const State& a = *std::prev(after);
-  const State& b = *after;
-  const double share = static_cast<double>(t - a.stamp) / static_cast<double>(b.stamp - a.stamp);
-  return {a.position + share * (b.position - a.position),
-          a.orientation.slerp(share, b.orientation).normalized()};
+  return states_.empty() ? Pose{} : pose_on_track(states_, t, &State::stamp, &State::pose);
 }
 
 }  // namespace karst::core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core_stack/common/geometry.h"
+#include "core_stack/common/pose_track.h"
 #include "core_stack/common/time.h"
 
 namespace karst::sim {
@@ -16,16 +16,9 @@ struct StampedPose {
 /// Poses in the order of time.
 using PoseTrack = std::vector<StampedPose>;
 
-/// Linear in position, spherical in rotation; held at either end.
+/// See core::pose_on_track; `track` is not empty.
 inline core::Pose pose_at(const PoseTrack& track, core::TimeNs t) {
-  const auto later = std::lower_bound(track.begin(), track.end(), t,
-                                      [](const StampedPose& p, core::TimeNs time) { return p.stamp < time; });
-  if (later == track.begin()) return track.front().pose;
-  if (later == track.end()) return track.back().pose;
-  const StampedPose &a = *(later - 1), &b = *later;
-  const double share = static_cast<double>(t - a.stamp) / static_cast<double>(b.stamp - a.stamp);
-  return {a.pose.position + share * (b.pose.position - a.pose.position),
-          a.pose.orientation.slerp(share, b.pose.orientation)};
+  return core::pose_on_track(track, t, &StampedPose::stamp, &StampedPose::pose);
 }
 
 /// Appends, and forgets all but the one last pose from before `oldest`.

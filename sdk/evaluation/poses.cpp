@@ -1,10 +1,10 @@
 #include "sdk/evaluation/poses.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
+#include "core_stack/common/pose_track.h"
 #include "sdk/evaluation/lines.h"
 
 namespace karst::evaluation {
@@ -57,14 +57,7 @@ std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector
 }
 
 core::Pose pose_at(const std::vector<StampedPose>& poses, double t_s) {
-  const auto after = std::upper_bound(poses.begin(), poses.end(), t_s,
-                                      [](double t, const StampedPose& p) { return t < p.t_s; });
-  if (after == poses.begin()) return poses.front().T_world_body;
-  if (after == poses.end()) return poses.back().T_world_body;
-  const StampedPose& a = *(after - 1);
-  const double s = (t_s - a.t_s) / (after->t_s - a.t_s);
-  return {a.T_world_body.position + s * (after->T_world_body.position - a.T_world_body.position),
-          a.T_world_body.orientation.slerp(s, after->T_world_body.orientation)};
+  return core::pose_on_track(poses, t_s, &StampedPose::t_s, &StampedPose::T_world_body);
 }
 
 double path_length_m(const std::vector<StampedPose>& poses, double from_s, double to_s) {

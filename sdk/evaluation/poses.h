@@ -16,7 +16,7 @@ struct StampedPose {
 /// In the order of time. Lines starting with # are comments; bad lines are left out and reported.
 std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector<std::string>& problems);
 
-/// Linear in position, spherical in rotation; the nearest end outside the range. `poses` must not be empty.
+/// See core::pose_on_track; `poses` must not be empty.
 core::Pose pose_at(const std::vector<StampedPose>& poses, double t_s);
 
 /// Length in metres of the polyline through the poses stamped within [from, to].

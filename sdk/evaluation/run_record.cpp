@@ -15,20 +15,12 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-void collect_settings(const boost::property_tree::ptree& tree, const std::string& prefix,
-                      std::vector<Setting>& out) {
-  for (const auto& [name, child] : tree) {
-    const std::string key = prefix + name;
-    if (child.empty() || !child.data().empty()) out.push_back({key, child.data()});
-    collect_settings(child, key + ".", out);
-  }
-}
-
 std::vector<Setting> read_settings(const fs::path& file, std::vector<std::string>& problems) {
   std::vector<Setting> settings;
   if (!fs::exists(file)) return settings;
   try {
-    collect_settings(core::read_info(file.string()), "", settings);
+    for (auto& [key, value] : core::leaves_of(core::read_info(file.string())))
+      settings.push_back({std::move(key), std::move(value)});
   } catch (const core::InputError& e) {
     problems.push_back(e.what());
   }
