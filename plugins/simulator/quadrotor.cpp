@@ -51,7 +51,6 @@ QuadrotorEvent Quadrotor::step() {
       return event;
     }
     footing_ = Footing::leaving;
-    stood_at_ = state_.T_world_body.position;
     event = QuadrotorEvent::take_off;
   }
   state_ = sim::advance(model_.body, state_, wrench, wind_.velocity_mps(), kStep_s);
@@ -63,10 +62,7 @@ QuadrotorEvent Quadrotor::meet_rock(double lift_n) {
   const std::optional<Touch> touch = contact_.touch(state_.T_world_body.position);
   if (!touch) {
     constexpr double kFree_m = 0.03;
-    if (footing_ == Footing::leaving &&
-        (state_.T_world_body.position - last_touch_.value_or(Touch{}).place).norm() >
-            model_.body.radius_m + kFree_m)
-      footing_ = Footing::airborne;
+    if (footing_ == Footing::leaving && clearance_m() > kFree_m) footing_ = Footing::airborne;
     return QuadrotorEvent::none;
   }
   last_touch_ = touch;

@@ -53,7 +53,6 @@ class Quadrotor {
   Wind wind_;
   ContactWatch contact_;
   std::optional<Touch> last_touch_;
-  core::Vec3 stood_at_ = core::Vec3::Zero();  // before the last take-off
   int steps_done_ = 0;
 };
 

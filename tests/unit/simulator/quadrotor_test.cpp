@@ -152,5 +152,25 @@ TEST(QuadrotorOnASlope, TakesOffFromItsSlopeWithoutLandingAgain) {
   EXPECT_EQ(quad.footing(), Footing::airborne);
 }
 
+TEST(QuadrotorFarFromTheWorldsOrigin, IsLeavingUntilItIsClearOfTheGroundItStoodOn) {
+  const Vec3 far(40, -70, 25);
+  const cave::RayScene scene(box_mesh(far + Vec3(-10, -10, 0), far + Vec3(10, 10, 10)));
+  sim::WindOptions calm;
+  calm.gust_mps = 0;
+  const sim::QuadrotorModel model;
+  Quadrotor quad(model, {far + Vec3(0, 0, 0.3001), core::Quat::Identity()}, scene,
+                 sim::Wind(calm, core::Random(1)));
+  quad.command = {Vec3::Zero(), 1.1 * model.body.weight_n(), true};
+  ASSERT_EQ(quad.advance(1000), QuadrotorEvent::take_off);
+  const auto height = [&] { return quad.state().T_world_body.position.z() - far.z() - 0.3; };
+  while (height() < 0.029) {
+    ASSERT_EQ(quad.advance(1), QuadrotorEvent::none);
+    ASSERT_EQ(quad.footing(), Footing::leaving) << height();
+  }
+  ASSERT_EQ(quad.advance(20), QuadrotorEvent::none);
+  EXPECT_GT(height(), 0.031);
+  EXPECT_EQ(quad.footing(), Footing::airborne);
+}
+
 }  // namespace
 }  // namespace karst::test
