@@ -32,12 +32,12 @@ function axes(plot) {
            axis.ticks = Array.from({ length: Math.floor(data.duration_s / step) + 1 }, (_, i) => ({ value: i * step }));
          } },
     y: { type: plot.log ? "logarithmic" : "linear", min: plot.log ? undefined : 0, max: plot.max, suggestedMax: plot.suggestedMax,
-         grid, ticks: { ...ticks, maxTicksLimit: 6, callback: (v) => plot.log && Math.log10(v) % 1 ? null : axisText(v) } },
+         grid, ticks: { ...ticks, maxTicksLimit: 6, includeBounds: !plot.shareOf, callback: (v) => plot.log && Math.log10(v) % 1 ? null : axisText(v) } },
   };
-  if (plot.percentOf)
-    scales.share = { type: "linear", position: "right", min: 0, grid: { drawOnChartArea: false, borderColor: grid.borderColor },
-      ticks: { ...ticks, maxTicksLimit: 6, callback: (v) => Math.round(v) + " %" },
-      afterDataLimits: (s) => { s.max = 100 * s.chart.scales.y.max * plot.percentOf; } };
+  if (plot.shareOf)
+    scales.share = { type: "linear", position: "right", min: 0, max: 100 * plot.max / plot.shareOf,
+      grid: { drawOnChartArea: false, borderColor: grid.borderColor },
+      ticks: { ...ticks, maxTicksLimit: 6, includeBounds: false, callback: (v) => axisText(v) + " %" } };
   return scales;
 }
 
@@ -80,10 +80,13 @@ function startPlots() {
   const c = data.curves, m = data.metrics;
   Chart.defaults.font.family = "system-ui, 'DejaVu Sans', sans-serif";
   Chart.defaults.font.size = 11;
+  // Coverage over time is in proportion to the explored volume (docs/metrics.md), so one curve has both axes. Where the
+  // coverage would be complete, both end.
   const final = c.volume ? c.volume[c.volume.length - 1][1] : 0;
-  const covered = typeof m.coverage === "number" && final > 0;
-  addPlot({ title: covered ? "Explored volume, m³ (left), coverage (right)" : "Explored volume, m³", unit: "m³",
-            percentOf: covered ? m.coverage / final : 0,
+  const whole = m.coverage > 0 && final > 0 ? final / m.coverage : 0;
+  const peak = whole ? Math.max(...c.volume.map((p) => p[1])) : 0;
+  addPlot({ title: whole ? "Explored volume, m³ (left), coverage (right)" : "Explored volume, m³", unit: "m³",
+            shareOf: whole, max: whole ? Math.min(1.06 * peak, whole) : undefined,
             sets: [{ label: "explored", points: c.volume, colour: colours.blue, fill: "rgba(0,114,178,.18)" }] });
   addPlot({ title: "Speed, m/s", unit: "m/s", sets: [{ label: "speed", points: c.speed, colour: colours.explore }] });
   addPlot({ title: "Clearance to rock, m (truth)", unit: "m", none: "not known: no ground truth",
