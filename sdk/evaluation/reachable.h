@@ -8,8 +8,10 @@ namespace karst::evaluation {
 
 struct ReachableOptions {
   double resolution_m = 0.2;  // the map's: cell k covers [k, k+1) * resolution, as in core::VoxelMap
-  double clearance_m = 0.6;   // least distance from a flyable cell's centre to rock: radius plus margin
-  double sight_m = 20;        // how far free space is seen from a flyable cell
+  // Least distance from a flyable cell's centre to rock. The same for all missions, so that their coverage
+  // can be compared: the default vehicle's radius and as much again.
+  double clearance_m = 0.6;
+  double sight_m = 20;  // how far free space is seen from a flyable cell
 };
 
 /// Exact on the grid:

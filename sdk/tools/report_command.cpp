@@ -33,7 +33,7 @@ double cell_size_m(const fs::path& run_dir) {
 /// What the cave's mesh says. Holds the cave that its functions look into.
 evaluation::Truth truth_of(const std::string& cave_file, const std::string& start, double resolution_m) {
   const auto cave = std::make_shared<cave::Cave>(cave::load_cave(cave_file, start));
-  evaluation::ReachableOptions options;
+  evaluation::ReachableOptions options;  // its clearance is not the mission's: coverage compares missions
   options.resolution_m = resolution_m;
   const auto reachable = std::make_shared<evaluation::Reachable>(
       evaluation::find_reachable(cave->scene.mesh(), cave->description.start.position, options, cave_file));
