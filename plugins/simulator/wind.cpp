@@ -15,7 +15,7 @@ Vec3 deviation(const WindOptions& o) { return o.gust_mps * Vec3(1, 1, 0.5); }
 }  // namespace
 
 void describe(core::OptionTable& t, WindOptions& o) {
-  t.add("gust_mps", o.gust_mps, "m/s", 0, 10, "standard deviation of each horizontal component of the gusts");
+  t.add("gust", o.gust_mps, "m/s", 0, 10, "standard deviation of each horizontal component of the gusts");
   t.add("gust_duration", o.correlation_s, "s", 0.05, 100, "correlation time of the gusts");
   t.add("draught_east", o.draught_east_mps, "m/s", -15, 15, "steady wind towards east");
   t.add("draught_north", o.draught_north_mps, "m/s", -15, 15, "steady wind towards north");

@@ -221,7 +221,7 @@ TEST_F(Simulation, OptionsReadBackAsTheyAreWrittenOut) {
     EXPECT_FALSE(row.help.empty()) << row.key;
     table.set("test", row.key, value_text(row));  // throws if the default is out of its own range
   }
-  table.set("mission.info", "gust_mps", "3 m/s");
+  table.set("mission.info", "gust", "3 m/s");
   table.set("mission.info", "battery_minutes", "300 s");
   table.set("mission.info", "lidar.unit", "os1_64");
   EXPECT_EQ(options.wind.gust_mps, 3);
