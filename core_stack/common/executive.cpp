@@ -64,6 +64,8 @@ Executive::Executive(int threads) {
 
 Executive::~Executive() = default;
 
+int Executive::threads() const { return workers_[0] ? static_cast<int>(workers_.size()) : 1; }
+
 void Executive::push(TimeNs time, std::uint64_t sequence, std::function<void()> step) {
   queue_.push_back({std::max(time, now_), sequence, std::move(step)});
   std::push_heap(queue_.begin(), queue_.end());

@@ -27,13 +27,16 @@ struct Cost {
 
 class Executive {
  public:
-  /// `threads` <= 1 runs jobs on the loop's thread at the moment they are submitted.
+  /// `threads` <= 1 runs jobs on the loop's thread at the moment they are submitted; more give each lane a
+  /// thread, and no more than that.
   explicit Executive(int threads);
   ~Executive();
   Executive(const Executive&) = delete;
   Executive& operator=(const Executive&) = delete;
 
   TimeNs now() const { return now_; }
+  /// Threads that do jobs: one a lane, or 1, the loop's own.
+  int threads() const;
 
   /// Runs `step` at `first`, `first + period`, ... Whatever is due at one time runs in the order of
   /// registration, a periodic step by its first.
@@ -62,8 +65,8 @@ class Executive {
 
   TimeNs now_ = 0;
   std::uint64_t next_sequence_ = 0;
-  std::vector<Event> queue_;  // heap on (time, sequence)
-  std::array<std::unique_ptr<Worker>, 2> workers_;
+  std::vector<Event> queue_;                        // heap on (time, sequence)
+  std::array<std::unique_ptr<Worker>, 2> workers_;  // by lane; all or none
   std::map<std::string, Cost> costs_;
 };
 

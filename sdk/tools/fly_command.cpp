@@ -133,7 +133,7 @@ int fly(const FlyArguments& args) {
   });
   line.end();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  write_timing(run_dir, executive, wall.count(), args.threads);
+  write_timing(run_dir, executive, wall.count());
   const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.no_report);
   if (args.json) {
     std::cout << metrics.dump(2) << std::endl;
@@ -165,7 +165,10 @@ void add_fly_command(CLI::App& app) {
   fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys");
   fly_app->add_option("--seed", args->seed, "seed of every random stream");
   fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED");
-  fly_app->add_option("--threads", args->threads, "worker threads; results do not depend on it")
+  fly_app
+      ->add_option("--threads", args->threads,
+                   "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "
+                   "Results do not depend on it")
       ->check(CLI::Range(1, 256));
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->quiet, "no status line");

@@ -7,8 +7,7 @@
 
 namespace karst::tools {
 
-void write_timing(const std::filesystem::path& run_dir, const core::Executive& executive, double wall_s,
-                  int threads) {
+void write_timing(const std::filesystem::path& run_dir, const core::Executive& executive, double wall_s) {
   nlohmann::ordered_json jobs;
   for (const auto& [name, cost] : executive.costs()) {
     std::vector<float> ms = cost.milliseconds;
@@ -29,7 +28,7 @@ void write_timing(const std::filesystem::path& run_dir, const core::Executive& e
   nlohmann::ordered_json timing{{"simulated_s", simulated_s},
                                 {"wall_s", wall_s},
                                 {"simulated_s_per_wall_s", simulated_s / wall_s},
-                                {"threads", threads},
+                                {"threads", executive.threads()},
                                 {"jobs", jobs}};
   std::ofstream(run_dir / "timing.json") << timing.dump(2) << '\n';
 }

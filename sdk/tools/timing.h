@@ -6,7 +6,6 @@
 
 namespace karst::tools {
 
-void write_timing(const std::filesystem::path& run_dir, const core::Executive& executive, double wall_s,
-                  int threads);
+void write_timing(const std::filesystem::path& run_dir, const core::Executive& executive, double wall_s);
 
 }  // namespace karst::tools

@@ -130,18 +130,24 @@ TEST_P(ExecutiveThreads, AnExceptionInWorkIsRethrownWhenItWouldBePublished) {
 
 TEST_P(ExecutiveThreads, DrainFinishesTheWorkAndPublishesNothing) {
   Executive e(GetParam());
-  int worked = 0, published = 0;
-  for (int i = 0; i < 20; ++i)
+  int sensed = 0, mapped = 0, published = 0;
+  for (int i = 0; i < 20; ++i) {
     e.job(
-        "work", i % 2 == 0 ? Lane::map : Lane::map, 100, [&] { ++worked; }, [&] { ++published; });
+        "sense", Lane::sensing, 100, [&] { ++sensed; }, [&] { ++published; });
+    e.job(
+        "map", Lane::map, 100, [&] { ++mapped; }, [&] { ++published; });
+  }
   e.drain();
-  EXPECT_EQ(worked, 20);
+  EXPECT_EQ(sensed, 20);
+  EXPECT_EQ(mapped, 20);
   EXPECT_EQ(published, 0);
-  int after = 0;
-  e.job(
-      "work", Lane::map, 1, [&] { ++after; }, [] {});
-  e.drain();
-  EXPECT_EQ(after, 1) << "the lanes work again";
+  for (const Lane lane : {Lane::sensing, Lane::map}) {
+    int after = 0;
+    e.job(
+        "work", lane, 1, [&] { ++after; }, [] {});
+    e.drain();
+    EXPECT_EQ(after, 1) << "the lanes work again";
+  }
 }
 
 TEST_P(ExecutiveThreads, PublishedResultsKeepTheirPlaceAmongEventsOfTheSameTime) {
@@ -153,6 +159,11 @@ TEST_P(ExecutiveThreads, PublishedResultsKeepTheirPlaceAmongEventsOfTheSameTime)
   e.at(10, [&] { trace += 'b'; });
   e.run_until(10, kNever);
   EXPECT_EQ(trace, "ajb");
+}
+
+TEST(Executive, HasAThreadForEachLaneOrOnlyTheLoops) {
+  for (const int few : {-1, 0, 1}) EXPECT_EQ(Executive(few).threads(), 1);
+  for (const int more : {2, 3, 200}) EXPECT_EQ(Executive(more).threads(), 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(OneAndTwo, ExecutiveThreads, testing::Values(1, 2));
