@@ -63,7 +63,7 @@ struct MagnetometerSample {
   Vec3 field_ut = Vec3::Zero();  // body frame, microtesla
 };
 
-/// A pose sensor such as motion capture, with noise, delay and drift as its vehicle declares.
+/// A pose sensor such as motion capture, with noise, delay and drift.
 struct PoseSample {
   TimeNs stamp = 0;  // when it was true; it arrives later
   Pose T_world_body;

@@ -17,12 +17,10 @@ struct VehicleDescription {
   double mass_kg = 2.0;
   double max_thrust_n = 45.0;
   double max_body_rate_radps = 6.0;
-  double pose_delay_s = 0.0;                // declared delay of the pose sensor
-  double pose_noise_m = 0.0;                // declared standard deviation
   std::shared_ptr<const LidarModel> lidar;  // null: none
   std::vector<std::shared_ptr<const CameraModel>> cameras;
-  Pose T_world_start;  // the pose it stands at before take-off, in the mission's world frame
-  double hover_power_w = 0.0;
+  Pose T_world_start;          // the pose it stands at before take-off, in the mission's world frame
+  std::string implementation;  // what else its measurements depend on, for the record: "Embree 3, isa=avx2"
 };
 
 /// Where a vehicle delivers its messages. All calls come on the executive's loop thread.
@@ -54,10 +52,10 @@ class Vehicle {
 
 /// What a vehicle plugin is given to set itself up.
 struct VehicleSetup {
-  std::string mission_file;  // for error messages
-  std::string cave;          // cave .info or mesh, "" if the vehicle needs none
-  std::string start;         // "x y z [heading_deg]", "" for the cave's own
-  std::string run_dir;       // it may write its own files here, such as ground truth; "" for none
+  std::string cave;     // cave .info or mesh, "" if the vehicle needs none
+  std::string start;    // "x y z [heading_deg]", "" for the cave's own
+  std::string run_dir;  // it may write its own files here, such as ground truth; "" for none
+  double climb_m = 0;   // by which it will rise from where it stands, before anything is known
   std::uint64_t seed = 1;
 };
 

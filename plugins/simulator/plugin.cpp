@@ -4,7 +4,10 @@ namespace {
 
 class SimulatorPlugin final : public karst::core::VehiclePlugin {
  public:
-  void describe_options(karst::core::OptionTable& table) override { describe(table, options_); }
+  void describe_options(karst::core::OptionTable& table) override {
+    options_ = {};  // nothing of a mission read before
+    describe(table, options_);
+  }
   std::unique_ptr<karst::core::Vehicle> create(const karst::core::VehicleSetup& setup) override {
     return std::make_unique<karst::sim::SimulatedVehicle>(options_, setup);
   }

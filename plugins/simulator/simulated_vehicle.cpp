@@ -63,17 +63,16 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
       pose_sensor_(options.pose, site_.T_world_start, Random::stream(setup.seed, "pose")),
       log_(setup.run_dir) {
+  cave::check_climb(*cave_, site_.T_world_start.position, setup.climb_m, options.body.radius_m);
   description_.name = options.vehicle;
   description_.radius_m = options.body.radius_m;
   description_.mass_kg = options.body.mass_kg;
   description_.max_thrust_n = 4 * max_motor_thrust_n(options.motors, options.body);
   description_.max_body_rate_radps = options.autopilot.max_body_rate_radps;
-  description_.pose_delay_s = options.pose.delay_s;
-  description_.pose_noise_m = options.pose.noise_m;
   if (lidar_) description_.lidar = lidar_->model();
   for (const auto& camera : cameras_) description_.cameras.push_back(camera->model());
   description_.T_world_start = site_.T_world_start;
-  description_.hover_power_w = options.battery.hover_power_w;
+  description_.implementation = std::string("Embree ") + cave::RayScene::device_config();
 }
 
 void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
@@ -84,9 +83,9 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
   append(track_, {now(), quadrotor_.state().T_world_body}, now());
   schedule_sensors();
   executive.at(now(), [this] {
-    log_.event(now(), "start", quadrotor_.state(),
-               std::string(site_.pad ? "on a launch pad" : "on the floor") + "; Embree " +
-                   cave::RayScene::device_config());
+    log_.event(
+        now(), "start", quadrotor_.state(),
+        std::string(site_.pad ? "on a launch pad" : "on the floor") + "; " + description_.implementation);
     log_truth();
     sink_->on_battery(quadrotor_.battery().status(now()));
     sink_->on_ground(now(), true);

@@ -46,17 +46,10 @@ fs::path default_run_dir(const Mission& m) {
   return dir;
 }
 
-void write_mission_info(const fs::path& run_dir, const Mission& m, const host::HostedPolicy& policy) {
-  boost::property_tree::ptree tree = m.resolved;
-  tree.put("cave.file", m.cave.empty() ? "" : fs::absolute(m.cave).lexically_normal().string());
-  tree.put("cave.start", m.start);
-  tree.put("policy.name", m.policy);
-  tree.put("policy.version", policy.version());
-  if (!policy.parameters().empty()) tree.put_child("policy.parameters", policy.parameters());
-  tree.put("karst.version", KARST_VERSION);
+void write_mission_info(const fs::path& run_dir, const boost::property_tree::ptree& mission) {
   const fs::path file = run_dir / "mission.info";
   try {
-    boost::property_tree::write_info(file.string(), tree);
+    boost::property_tree::write_info(file.string(), mission);
   } catch (const boost::property_tree::info_parser_error& e) {
     throw core::InputError(file.string(), "", e.message());
   }
@@ -106,20 +99,25 @@ int fly(const FlyArguments& args) {
   const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(choice);
   const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
   core::VehicleSetup setup;
-  setup.mission_file = mission.file;
   setup.cave = mission.cave;
   setup.start = mission.start;
   setup.run_dir = run_dir.string();
+  setup.climb_m = mission.core.mission.takeoff_height_m;
   setup.seed = static_cast<std::uint64_t>(mission.seed);
+  std::error_code ignored;
+  const bool new_dir = !fs::exists(run_dir, ignored);
   core::Recorder recorder(run_dir);
   std::unique_ptr<core::Vehicle> vehicle;
   try {
     vehicle = mission.vehicle_plugin->create(setup);
   } catch (...) {
-    fs::remove(run_dir / "events.jsonl");  // nothing flew: leave the name free for the next try
+    // Nothing flew: leave the name free for the next try.
+    fs::remove(run_dir / "events.jsonl", ignored);
+    if (new_dir) fs::remove_all(run_dir, ignored);
     throw;
   }
-  write_mission_info(run_dir, mission, *policy);
+  const RecordedFacts facts{policy->version(), vehicle->description().implementation};
+  write_mission_info(run_dir, recorded_mission(mission, policy->parameters(), facts));
 
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
@@ -159,7 +157,8 @@ void add_fly_command(CLI::App& app) {
       "Exit code: 0 landed at the start, 2 flown but not landed there, 1 not flown.");
   fly_app->add_option("mission", args->mission_file, "mission file (.info)");
   fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)");
-  fly_app->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" of the first hover");
+  fly_app->add_option("--start", args->overrides.start,
+                      "\"x y z [heading_deg]\" above the floor to start from");
   fly_app->add_option("--policy", args->overrides.policy, "exploration policy; see karst policy list");
   fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first");
   fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys");

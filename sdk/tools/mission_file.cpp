@@ -14,6 +14,8 @@ using core::InputError;
 using core::OptionTable;
 
 constexpr const char* kParameters = "policy.parameters";
+constexpr const char *kPolicyVersion = "policy.version", *kVehicleImplementation = "vehicle.implementation",
+                     *kKarstVersion = "karst.version";
 
 void describe_mission(OptionTable& t, Mission& m) {
   t.add("seed", m.seed, 0, 9e15, "seed of every random stream of the mission");
@@ -21,7 +23,8 @@ void describe_mission(OptionTable& t, Mission& m) {
   t.under("cave", [&m](OptionTable& c) {
     c.add("file", m.cave, {},
           "cave .info file, or a mesh (STL, PLY, OBJ, DAE); relative to the mission file");
-    c.add("start", m.start, {}, "\"x y z [heading_deg]\" of the first hover; empty: the cave's own");
+    c.add("start", m.start, {},
+          "\"x y z [heading_deg]\" above the floor to start from; empty: the cave's own");
   });
   t.under("policy", [&m](OptionTable& p) {
     p.add("name", m.policy, {}, "the exploration policy; `karst policy list` shows what there is");
@@ -29,14 +32,16 @@ void describe_mission(OptionTable& t, Mission& m) {
   describe(t, m.core);
 }
 
-/// The parameters' subtree leaves `tree`: the policy itself says which keys it knows.
-pt::ptree take_parameters(pt::ptree& tree) {
-  const auto found = tree.get_child_optional(kParameters);
+/// Takes the subtree "section.name" out of `tree`, and with it a section that holds nothing else.
+pt::ptree take(pt::ptree& tree, const std::string& key) {
+  const auto found = tree.get_child_optional(key);
   if (!found) return {};
-  pt::ptree parameters = *found;
-  tree.get_child("policy").erase("parameters");
-  if (tree.get_child("policy").empty()) tree.erase("policy");
-  return parameters;
+  pt::ptree taken = *found;
+  const std::string section = key.substr(0, key.find('.'));
+  pt::ptree& rest = tree.get_child(section);
+  rest.erase(key.substr(section.size() + 1));
+  if (rest.empty() && rest.data().empty()) tree.erase(section);
+  return taken;
 }
 
 std::pair<std::string, std::string> split_setting(const std::string& setting) {
@@ -57,7 +62,8 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   Mission m;
   m.file = file.empty() ? "command line" : file;
   pt::ptree tree = file.empty() ? pt::ptree() : core::read_info(file);
-  m.policy_parameters = take_parameters(tree);
+  m.policy_parameters = take(tree, kParameters);  // the policy itself says which keys it knows
+  for (const char* fact : {kPolicyVersion, kVehicleImplementation, kKarstVersion}) take(tree, fact);
 
   std::vector<std::pair<std::string, std::string>> settings;
   for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
@@ -96,6 +102,18 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   }
   m.resolved = table.resolved();
   return m;
+}
+
+pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters, const RecordedFacts& facts) {
+  pt::ptree tree = m.resolved;
+  tree.put("cave.file", m.cave.empty() ? "" : std::filesystem::absolute(m.cave).lexically_normal().string());
+  tree.put("cave.start", m.start);
+  tree.put("policy.name", m.policy);
+  if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);
+  tree.put(kPolicyVersion, facts.policy_version);
+  tree.put(kVehicleImplementation, facts.vehicle_implementation);
+  tree.put(kKarstVersion, KARST_VERSION);
+  return tree;
 }
 
 std::string mission_help(const std::string& vehicle) {

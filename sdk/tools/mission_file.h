@@ -29,11 +29,23 @@ struct Mission {
   core::CoreOptions core;
   core::VehiclePlugin* vehicle_plugin = nullptr;
   boost::property_tree::ptree policy_parameters;
-  boost::property_tree::ptree resolved;  // every setting but the policy's parameters, as in mission.info
+  boost::property_tree::ptree resolved;  // every setting but the policy's parameters
 };
 
-/// Reads, overrides, checks. `file` may be "" for a mission given on the command line alone. Throws
-/// core::InputError naming file, key, what was expected and the nearest key.
+/// What a run records besides the settings it was flown with: facts, which nobody sets.
+struct RecordedFacts {
+  std::string policy_version, vehicle_implementation;
+};
+
+/// A mission as its run directory keeps it, every setting resolved: `mission.info`. It can be flown again as
+/// it is.
+boost::property_tree::ptree recorded_mission(const Mission& mission,
+                                             const boost::property_tree::ptree& policy_parameters,
+                                             const RecordedFacts& facts);
+
+/// Reads, overrides, checks. `file` may be "" for a mission given on the command line alone. Facts recorded
+/// in the file are passed over. Throws core::InputError naming file, key, what was expected and the nearest
+/// key.
 Mission read_mission(const std::string& file, const MissionOverrides& overrides);
 
 /// Every key with unit, range, default and a line of help, for a vehicle.

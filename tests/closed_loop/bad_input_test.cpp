@@ -135,5 +135,13 @@ TEST(BadInput, UsageErrorsTeach) {
   EXPECT_TRUE(run_karst("fly --help").says("karst fly examples/missions/demo.info"));
 }
 
+TEST(BadInput, AFirstHoverAboveTheCeilingIsRefusedAndLeavesNoRunDirectory) {
+  const fs::path dir = fresh_folder("bad_ceiling");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 -2' --set mission.takeoff_height=8m"),
+                 {"box.stl: start", "can rise by 7.3", "(0.00 0.00 4.00)"});
+  EXPECT_FALSE(fs::exists(dir / "run"));
+}
+
 }  // namespace
 }  // namespace karst

@@ -88,7 +88,7 @@ CaveDescription read_cave_file(const std::string& path, const std::string& start
   std::string own_start, mesh;
   OptionTable table;
   table.add("mesh", mesh, {}, "file of the rock's triangles, relative to this file");
-  table.add("start", own_start, {}, "where to hover first: x y z [heading_deg]");
+  table.add("start", own_start, {}, "place above the floor to start from: x y z [heading_deg]");
   table.add("reflectivity", cave.reflectivity, "", 0, 1, "share of light that bare rock returns");
   table.read(path, plain);
   if (mesh.empty()) throw InputError(path, "mesh", "missing: name the file with the rock's triangles");

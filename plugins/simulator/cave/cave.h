@@ -8,7 +8,8 @@
 
 namespace karst::cave {
 
-/// Where the vehicle would hover to begin; it is set down on the floor below.
+/// A place in the air. The vehicle is set down on the floor below it, and its first hover is the mission's
+/// take-off height above that.
 struct StartPose {
   core::Vec3 position = core::Vec3::Zero();
   double heading_rad = 0;

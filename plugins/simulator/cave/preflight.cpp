@@ -1,5 +1,6 @@
 #include "plugins/simulator/cave/preflight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -60,6 +61,24 @@ void check_start(const Cave& cave, double vehicle_radius_m) {
         "the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about (%.2f %.2f %.2f)",
         100 * s.escape_share, p.x(), p.y(), p.z(), e.x(), e.y(), e.z());
     refuse();
+  }
+}
+
+void check_climb(const Cave& cave, const Vec3& standing, double climb_m, double vehicle_radius_m) {
+  constexpr double kAir_m = 0.1, kStep_m = 0.01;
+  constexpr double kRounding_m = 1e-3;  // where it stands it touches the floor
+  for (double risen_m = 0; climb_m > 0 && risen_m < climb_m + kAir_m; risen_m += kStep_m) {
+    const Vec3 p = standing + Vec3(0, 0, risen_m);
+    const Nearest rock = cave.scene.nearest(p, vehicle_radius_m);
+    if (rock.distance_m > vehicle_radius_m - kRounding_m) continue;
+    char text[240];
+    std::snprintf(
+        text, sizeof text,
+        "from the floor below it, at (%.2f %.2f %.2f), the vehicle can rise by %.2f m only: rock is in "
+        "the way at (%.2f %.2f %.2f). The first hover is %.2f m up: start elsewhere or hover lower",
+        standing.x(), standing.y(), standing.z(), std::max(risen_m - kAir_m, 0.0), rock.point.x(),
+        rock.point.y(), rock.point.z(), climb_m);
+    throw InputError(cave.description.file, "start", text);
   }
 }
 

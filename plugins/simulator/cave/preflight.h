@@ -23,4 +23,8 @@ Surroundings look_around(const RayScene& scene, const core::Vec3& place);
 /// shell with thickness, would be refused.
 void check_start(const Cave& cave, double vehicle_radius_m);
 
+/// Throws InputError if the vehicle's sphere, `standing` with its centre there, cannot rise straight up by
+/// `climb_m` and have 0.1 m of air left above: a ceiling or a block is in the way.
+void check_climb(const Cave& cave, const core::Vec3& standing, double climb_m, double vehicle_radius_m);
+
 }  // namespace karst::cave

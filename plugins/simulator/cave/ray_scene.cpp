@@ -129,17 +129,6 @@ double RayScene::ray_cast(const Vec3& from, const Vec3& direction, double max_ra
   return static_cast<double>(cast(ray, static_cast<float>(max_range_m)).range_m);
 }
 
-bool RayScene::visible(const Vec3& a, const Vec3& b) const {
-  const double length = (b - a).norm();
-  if (length == 0) return true;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  const Ray ray{a.cast<float>(), ((b - a) / length).cast<float>()};
-  RTCRay r = to_embree(ray, 0, static_cast<float>(length)).ray;
-  rtcOccluded1(handles_->scene, &context, &r);
-  return r.tfar >= 0;
-}
-
 int RayScene::crossings(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -51,8 +51,6 @@ class RayScene {
 
   /// Range to rock from `from` along `direction` (of any length), or infinity.
   double ray_cast(const core::Vec3& from, const core::Vec3& direction, double max_range_m) const;
-  /// Nothing lies on the straight line between two points.
-  bool visible(const core::Vec3& a, const core::Vec3& b) const;
   /// How many surfaces the ray passes, surfaces closer together than 0.1 mm counted once.
   int crossings(const Ray& ray) const;
 

@@ -56,6 +56,37 @@ TEST(Preflight, ASingleMissingTriangleIsFound) {
   EXPECT_NE(refusal(mesh, {10, 0, 0}).find("hole"), std::string::npos);
 }
 
+std::string climb_refusal(cave::TriangleMesh mesh, const Vec3& standing, double climb_m) {
+  const cave::Cave c = make_cave(std::move(mesh), standing);
+  return error_of([&] { cave::check_climb(c, standing, climb_m, 0.3); });
+}
+
+TEST(Preflight, ALowCeilingOverTheLaunchSiteIsRefusedWithTheHeightThatIsLeft) {
+  // Standing with its centre at 0.3 m, its hull has 2.4 m up to the ceiling.
+  const auto hall = box_mesh({-5, -5, 0}, {5, 5, 3});
+  EXPECT_EQ(climb_refusal(hall, {0, 0, 0.3}, 2.29), "");
+  const std::string e = climb_refusal(hall, {0, 0, 0.3}, 2.31);
+  EXPECT_NE(e.find("start: from the floor"), std::string::npos) << e;
+  EXPECT_NE(e.find("can rise by 2.3"), std::string::npos) << e;
+  EXPECT_NE(e.find("rock is in the way at (0.00 0.00 3.00)"), std::string::npos) << e;
+}
+
+TEST(Preflight, ABlockThatReachesIntoTheClimbIsRefusedAndOneBesideItIsNot) {
+  for (const double reach : {0.28, 0.32}) {
+    auto mesh = box_mesh({-5, -5, 0}, {5, 5, 5});
+    append(mesh, box_mesh({reach, -1, 1.5}, {2, 1, 2}));
+    EXPECT_EQ(climb_refusal(mesh, {0, 0, 0.3}, 1.5) == "", reach > 0.3) << reach;
+  }
+}
+
+TEST(Preflight, StandingOnASlopeOrBesideAWallIsNotInTheWayOfTheClimb) {
+  auto mesh = box_mesh({-9, -9, -20}, {9, 9, 20});
+  const double rise = std::tan(45 * std::numbers::pi / 180);
+  add_quad(mesh, {-8, -8, -8 * rise}, {8, -8, 8 * rise}, {8, 8, 8 * rise}, {-8, 8, -8 * rise});
+  EXPECT_EQ(climb_refusal(mesh, {0, 0, 0.3 * std::sqrt(2.0)}, 3), "");
+  EXPECT_EQ(climb_refusal(box_mesh({-0.3, -5, 0}, {5, 5, 9}), {0, 0, 0.3}, 3), "");
+}
+
 class PreflightCaves : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 TEST_P(PreflightCaves, StartPoseFromTheDatasPagePasses) {
   SKIP_WITHOUT_CAVES();

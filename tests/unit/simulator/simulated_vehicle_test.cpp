@@ -101,6 +101,13 @@ class Simulation : public testing::Test {
   std::unique_ptr<Listener> listener;
 };
 
+TEST_F(Simulation, AFirstHoverUnderTheCeilingIsRefusedBeforeTheFlight) {
+  setup.climb_m = 5.2;  // the hull of 0.3 m radius stands on the floor of a hall 6 m high
+  EXPECT_EQ(error_of([&] { SimulatedVehicle(options, setup); }), "");
+  setup.climb_m = 5.4;
+  EXPECT_NE(error_of([&] { SimulatedVehicle(options, setup); }).find("can rise by"), std::string::npos);
+}
+
 TEST_F(Simulation, MessagesComeAtTheirRates) {
   fly(2.0, [](double, double) { return 0; });
   EXPECT_EQ(listener->imu, 400);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/property_tree/info_parser.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "core_stack/common/error.h"
 
@@ -95,10 +97,61 @@ TEST(MissionFile, ASettingWithoutEqualsSignIsExplained) {
   EXPECT_TRUE(holds(error_of("set.info", "seed 1\n", o), "expected key=value"));
 }
 
-TEST(MissionFile, WhatIsWrittenAsResolvedReadsBackTheSame) {
-  const Mission m = read_mission(written("a.info", "motion { max_speed \"1.25 m/s\" }\nseed 77\n"), {});
-  EXPECT_EQ(m.resolved.get<std::string>("motion.max_speed"), "1.25 m/s");
-  EXPECT_EQ(m.resolved.get<std::string>("seed"), "77");
+/// As `karst fly` writes it into a run directory.
+std::string recorded(const std::string& name, const Mission& m) {
+  const std::string file = written(name, "");
+  const RecordedFacts facts{"1.2.3", "ray caster; isa=\"avx2\""};
+  boost::property_tree::write_info(file, recorded_mission(m, m.policy_parameters, facts));
+  return file;
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(MissionFile, WhatARunRecordsIsFlownAgainAsItIs) {
+  const char* const settings =
+      "seed 8999999999999999\n"
+      "cave { file \"caves/a cave; \\\"the {deep} one\\\".ply\" start \"1 -2.5 1e-3 90\" }\n"
+      "policy { name highest_frontier parameters { horizon \"25 m\" climb_weight 2 } }\n"
+      "motion { max_speed \"5.4 km/h\" }\n"
+      "map { resolution 0.30000000000000004 }\n"
+      "mission { takeoff_height \"123 cm\" }\n"
+      "simulator { vehicle camera_uav gust \"2.9 m/s\" pose { angle_noise \"0.7 deg\" } }\n";
+  const Mission flown = read_mission(written("flown.info", settings), {});
+  const std::string first = recorded("first_run.info", flown);
+  read_mission("", {});  // another mission in between: the vehicle's plugin keeps nothing of one for the next
+  const Mission again = read_mission(first, {});
+  EXPECT_EQ(again.seed, 8999999999999999);
+  EXPECT_EQ(again.cave, fs::absolute(flown.cave).lexically_normal());
+  EXPECT_EQ(again.start, "1 -2.5 1e-3 90");
+  EXPECT_EQ(again.policy, "highest_frontier");
+  EXPECT_EQ(again.core.motion.max_speed_mps, flown.core.motion.max_speed_mps);
+  EXPECT_EQ(again.core.map.resolution_m, 0.1 + 0.2);
+  EXPECT_EQ(again.resolved.get<std::string>("mission.takeoff_height"), "1.23 m");
+  EXPECT_EQ(again.resolved.get<std::string>("simulator.vehicle"), "camera_uav");
+  EXPECT_EQ(again.resolved.get<std::string>("simulator.gust"), "2.9 m/s");
+  EXPECT_EQ(again.policy_parameters, flown.policy_parameters);
+  EXPECT_EQ(text_of(recorded("second_run.info", again)), text_of(first)) << "every key";
+}
+
+TEST(MissionFile, FactsOfARunAreRecordedAndCannotBeSet) {
+  const std::string file = recorded("facts.info", read_mission(written("plain.info", "seed 3\n"), {}));
+  const boost::property_tree::ptree tree = core::read_info(file);
+  EXPECT_EQ(tree.get<std::string>("policy.version"), "1.2.3");
+  EXPECT_EQ(tree.get<std::string>("vehicle.implementation"), "ray caster; isa=\"avx2\"");
+  EXPECT_EQ(tree.get<std::string>("vehicle"), "simulator");
+  EXPECT_FALSE(tree.get<std::string>("karst.version").empty());
+  MissionOverrides o;
+  o.settings = {"karst.version=9"};
+  EXPECT_TRUE(holds(error_of("set_fact.info", "seed 1\n", o), "no such key"));
+}
+
+TEST(MissionFile, TheHelpsExampleIsAccepted) {
+  MissionOverrides o;
+  o.settings = {"motion.max_speed=1 m/s", "simulator.gust=2 m/s"};
+  EXPECT_EQ(error_of("help.info", "seed 1\n", o), "accepted");
 }
 
 }  // namespace
