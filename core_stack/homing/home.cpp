@@ -12,35 +12,28 @@ constexpr double kCruiseShare = 0.8;
 
 }  // namespace
 
-HomePlan plan_home(const VoxelMap& map, const Roadmap& roadmap, const Vec3& position, const Vec3& home,
-                   const PlanningOptions& options) {
-  HomePlan out;
+std::optional<double> way_home_m(const VoxelMap& map, const Roadmap& roadmap, const Vec3& position,
+                                 const Vec3& home, const PlanningOptions& options) {
   const std::optional<Vec3> place = roadmap.approach(map, home, 2 * options.preferred_clearance_m);
-  if (!place) {
-    out.reason = "no clear place is known near home";
-    return out;
-  }
-  Path path = roadmap.find(map, position, *place);
-  out.found = path.found();
-  out.reason = path.reason;
-  if (!out.found) return out;
-  if ((*place - home).norm() > 1e-9) path.points.push_back(home);
-  out.points = std::move(path.points);
-  out.length_m = path_length_m(out.points);
-  return out;
+  if (!place) return std::nullopt;
+  const Path path = roadmap.find(map, position, *place);
+  if (!path.found()) return std::nullopt;
+  return path_length_m(path.points) + (*place - home).norm();
+}
+
+double flight_time_s(double length_m, const MotionLimits& limits) {
+  const double cruise = kCruiseShare * limits.max_speed_mps, a = limits.max_acceleration_mps2;
+  // A ramp up and a ramp down of cruise / a each; shorter ways never reach the cruise.
+  return length_m >= cruise * cruise / a ? length_m / cruise + cruise / a : 2 * std::sqrt(length_m / a);
 }
 
 double home_time_s(double length_m, double ground_z_m, double home_z_m, const MotionLimits& limits,
                    double landing_speed_mps) {
-  const double cruise = kCruiseShare * limits.max_speed_mps, a = limits.max_acceleration_mps2;
-  // From rest to rest: a ramp up and a ramp down of cruise / a each, shorter ways never reach the cruise.
-  const double fly_s =
-      length_m >= cruise * cruise / a ? length_m / cruise + cruise / a : 2 * std::sqrt(length_m / a);
-  return fly_s + std::max(0.0, home_z_m - ground_z_m) / landing_speed_mps;
+  return flight_time_s(length_m, limits) + std::max(0.0, home_z_m - ground_z_m) / landing_speed_mps;
 }
 
-double home_slack_s(double battery_seconds_left, double home_time, double margin, double reserve_s) {
-  return battery_seconds_left - home_time * (1 + margin) - reserve_s;
+double home_slack_s(double seconds_left, double home_time, double margin, double reserve_s) {
+  return seconds_left - home_time * (1 + margin) - reserve_s;
 }
 
 }  // namespace karst::core

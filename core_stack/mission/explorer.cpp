@@ -13,12 +13,19 @@ namespace {
 
 /// A round tries no more plans than this: the rest of a ranked list waits for the next round.
 constexpr int kMostPlans = 5;
-/// Rounds in which every goal of the policy was refused before the fallback is asked.
-constexpr int kMostFruitlessRounds = 4;
+/// Rounds in which every goal of the policy was refused before the fallback is asked for one round; and how
+/// long a policy may hold a standing vehicle where it is.
+constexpr int kMostRefusedRounds = 4;
+constexpr TimeNs kMostHolding = 10 * kSecond;
 /// A path under way is judged a little milder than a new one, or noise would stop every flight.
 constexpr double kClearanceSlack_m = 0.12;
 /// A cluster that has lost this share of its cells has been seen; flying on to it is a waste.
 constexpr double kSeenShare = 0.75;
+
+/// Viewpoints are looked for as far as this from a cluster, and so far matters what the map holds there.
+constexpr double kViewpointReach_m = 4.6;
+/// Way back: poses nearer than this are joined directly, if the line is clear by this much beyond the radius.
+constexpr double kShortcut_m = 2.0, kShortcutMargin_m = 0.15;
 
 /// Pauses of places tried in vain that are waived when no other place is left: the first three attempts'.
 constexpr TimeNs kPauseWaived = 40 * kSecond;
@@ -72,7 +79,7 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
   for (const auto& [id, cluster] : frontiers_.clusters()) {
     if (ledger_.closed(map_, cluster.centroid, closed_at_)) continue;
     if (input.appending && input.last_goal && input.last_goal->frontier_id == id) continue;
-    const std::uint64_t revision = map_.revision_near(cluster.centroid, 2.0);
+    const std::uint64_t revision = map_.revision_near(cluster.centroid, kViewpointReach_m);
     const auto known = viewpoints_.find(id);
     const bool fresh = known != viewpoints_.end() && known->second.revision == revision &&
                        known->second.cells == cluster.cells;
@@ -102,7 +109,8 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
 }
 
 Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
-  if (!policy_failed_ && fruitless_rounds_ < kMostFruitlessRounds) {
+  const bool holds_too_long = holding_since_ && request.stamp - *holding_since_ >= kMostHolding;
+  if (!policy_failed_ && refused_rounds_ < kMostRefusedRounds && !holds_too_long) {
     try {
       result.policy = policy_->name();
       return policy_->decide(request);
@@ -112,7 +120,8 @@ Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
     }
   }
   result.policy = fallback_.name();
-  fruitless_rounds_ = 0;
+  refused_rounds_ = 0;
+  holding_since_.reset();
   return fallback_.decide(request);
 }
 
@@ -127,11 +136,27 @@ std::optional<std::string> Explorer::objection(const Goal& goal) const {
   return std::nullopt;
 }
 
-HomeEstimate Explorer::estimate_home(const Vec3& from) {
-  const HomePlan plan = plan_home(map_, roadmap(), from, home_, options_.planning);
-  if (!plan.found) return {};
-  return {plan.length_m, home_time_s(plan.length_m, vehicle_.T_world_start.position.z(), home_.z(),
-                                     options_.motion, options_.mission.landing_speed_mps)};
+HomeEstimate Explorer::estimate_home(const Vec3& from, double way_come_m) {
+  const double length_m = way_home_m(map_, roadmap(), from, home_, options_.planning).value_or(way_come_m);
+  return {length_m, home_time_s(length_m, vehicle_.T_world_start.position.z(), home_.z(), options_.motion,
+                                options_.mission.landing_speed_mps)};
+}
+
+std::vector<Vec3> Explorer::way_back(const std::vector<Vec3>& flown) const {
+  std::vector<Vec3> back;
+  const double clearance_m = vehicle_.radius_m + kShortcutMargin_m;
+  for (std::size_t i = flown.size(); i-- > 0;) {
+    back.push_back(flown[i]);
+    // The earliest pose that can be joined shortens the way most. To the one before leads what was flown.
+    for (std::size_t j = 0; j + 1 < i; ++j)
+      if ((flown[j] - flown[i]).norm() < kShortcut_m &&
+          segment_clear(map_, flown[i], flown[j], clearance_m)) {
+        i = j + 1;
+        break;
+      }
+  }
+  back.push_back(home_);
+  return back;
 }
 
 void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, RoundResult& result) {
@@ -145,13 +170,12 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
       ++plans;
       const Path path = plan(map_, roadmap_, input.from, goal.position, options_.planning);
       if (path.found()) {
-        const HomeEstimate home = estimate_home(goal.position);
-        const double there_s = path.length_m / (0.6 * options_.motion.max_speed_mps);
-        const double back_s =
-            home.time_s * (1 + options_.mission.home_margin) + options_.mission.home_reserve_s;
-        if (there_s + back_s < input.battery_seconds_left) {
+        const HomeEstimate home = estimate_home(goal.position, input.way_come_m + path.length_m);
+        const double there_s = flight_time_s(path.length_m, options_.motion);
+        if (home_slack_s(input.seconds_left - there_s, home.time_s, options_.mission.home_margin,
+                         options_.mission.home_reserve_s) > 0) {
           result.goal = goal;
-          result.path = path.points;
+          result.path = path;
           if (goal.frontier_id != 0) {
             const auto cluster = frontiers_.clusters().find(goal.frontier_id);
             if (cluster != frontiers_.clusters().end() &&
@@ -170,22 +194,22 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
   }
 }
 
-void Explorer::learn(const RoundInput& input) {
-  for (const PolicyEvent& event : input.events) {
+void Explorer::tell(const std::vector<PolicyEvent>& events, TimeNs now) {
+  for (const PolicyEvent& event : events) {
     if (!policy_failed_) policy_->notify(event);
     if (event.kind == PolicyEvent::Kind::goal_abandoned)
-      ledger_.close(map_, event.goal.position, input.now, event.reason);
+      ledger_.close(map_, event.goal.position, now, event.reason);
   }
-  // What was looked at and opens again right there is mostly noise at a wall: it may wait.
-  for (const std::uint32_t id : input.looked_at)
-    if (const auto chosen = chosen_.find(id); chosen != chosen_.end())
-      ledger_.close(map_, chosen->second.centroid, input.now, "looked at a short while ago");
 }
 
 RoundResult Explorer::decide(const RoundInput& input) {
   RoundResult result;
   const auto begin = std::chrono::steady_clock::now();
-  learn(input);
+  tell(input.events, input.now);
+  // What was looked at and opens again right there is mostly noise at a wall: it may wait.
+  for (const std::uint32_t id : input.looked_at)
+    if (const auto chosen = chosen_.find(id); chosen != chosen_.end())
+      ledger_.close(map_, chosen->second.centroid, input.now, "looked at a short while ago");
   roadmap();  // up to date from here on: the map does not change within a round
 
   DecisionRequest request;
@@ -195,10 +219,9 @@ RoundResult Explorer::decide(const RoundInput& input) {
   request.state = input.state;
   request.direction_of_flight = input.direction;
   request.T_world_start = vehicle_.T_world_start;
-  const HomeEstimate home = estimate_home(input.from);
-  request.seconds_before_homing = input.battery_seconds_left -
-                                  home.time_s * (1 + options_.mission.home_margin) -
-                                  options_.mission.home_reserve_s;
+  const HomeEstimate home = estimate_home(input.from, input.way_come_m);
+  request.seconds_before_homing = home_slack_s(input.seconds_left, home.time_s, options_.mission.home_margin,
+                                               options_.mission.home_reserve_s);
   request.max_speed_mps = options_.motion.max_speed_mps;
   request.clearance_m = options_.planning.clearance_m;
   request.vehicle_radius_m = vehicle_.radius_m;
@@ -233,15 +256,19 @@ RoundResult Explorer::decide(const RoundInput& input) {
           last_resort ? "no frontier left that can be accepted" : "no goal of the policy could be accepted";
     }
   }
-  const bool fruitless = result.outcome == Outcome::hold && !input.appending;
-  fruitless_rounds_ = fruitless ? fruitless_rounds_ + 1 : 0;
+  const bool standing_without_goal = !result.goal && input.standing;
+  refused_rounds_ = standing_without_goal && !result.rejected.empty() ? refused_rounds_ + 1 : 0;
+  if (standing_without_goal && decision.outcome == Outcome::hold) {
+    if (!holding_since_) holding_since_ = input.now;
+  } else {
+    holding_since_.reset();
+  }
   if (!policy_failed_)
     for (const RejectedGoal& r : result.rejected)
       policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});
 
   for (const FrontierOffer& offer : request.frontiers) {
     FrontierCluster brief = *offer.cluster;
-    brief.unknown_cells = static_cast<std::uint32_t>(brief.cells.size());
     brief.cells.clear();
     result.frontiers.push_back(std::move(brief));
   }

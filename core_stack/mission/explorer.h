@@ -22,12 +22,14 @@ namespace karst::core {
 /// What one round of decision starts from.
 struct RoundInput {
   TimeNs now = 0, deadline = 0;
-  State state;               // predicted at the deadline
+  State state;               // expected at the deadline
   Vec3 from = Vec3::Zero();  // where the new path begins: the end of the stretch already committed to
   Vec3 direction = Vec3::UnitX();
-  double battery_seconds_left = 0;
+  double seconds_left = 0;  // of flight, by the battery and by the mission's time limit
+  double way_come_m = 0;    // length of the way flown so far: the way home where the map shows none
   GoalFate last_fate = GoalFate::none;
   std::optional<Goal> last_goal;
+  bool standing = false;                 // nothing is under way
   bool appending = false;                // the last goal will be reached before the new one is flown to
   std::vector<PolicyEvent> events;       // since the last round
   std::vector<std::uint32_t> looked_at;  // frontiers reached, or seen on the way, since the last round
@@ -42,7 +44,7 @@ struct RoundResult {
   Outcome outcome = Outcome::hold;
   std::string reason, policy;
   std::optional<Goal> goal;  // accepted, with `path` from RoundInput::from to it
-  std::vector<Vec3> path;
+  Path path;
   std::vector<RejectedGoal> rejected;
   std::vector<Drawing> drawings;
   std::vector<std::string> log;
@@ -52,8 +54,7 @@ struct RoundResult {
 };
 
 struct HomeEstimate {
-  std::optional<double> length_m;  // none: no way is known through the map
-  double time_s = 0;
+  double length_m = 0, time_s = 0;
 };
 
 class Explorer {
@@ -67,7 +68,12 @@ class Explorer {
   RoundResult decide(const RoundInput& input);
   /// A way from `from` to `to` for going home or around a new obstacle.
   Path plan_to(const Vec3& from, const Vec3& to);
-  HomeEstimate estimate_home(const Vec3& from);
+  /// Through the map, or if no way is known there, `way_come_m` long.
+  HomeEstimate estimate_home(const Vec3& from, double way_come_m);
+  /// Back along poses flown, from the last to the first, leaving out loops where the map shows a clear line.
+  std::vector<Vec3> way_back(const std::vector<Vec3>& flown) const;
+  /// What happened to its goals, and that it is over.
+  void tell(const std::vector<PolicyEvent>& events, TimeNs now);
   /// Index of the first segment of `points` that the map now forbids, or -1.
   int blocked_segment(const std::vector<Vec3>& points) const;
   /// True if the cluster is still open enough to be worth flying to.
@@ -84,7 +90,6 @@ class Explorer {
   };
   std::vector<CellChange> take_in(std::vector<CellChange> changes);
   const Roadmap& roadmap();
-  void learn(const RoundInput& input);
   std::vector<FrontierOffer> offers(const RoundInput& input);
   Decision ask(const DecisionRequest& request, RoundResult& result);
   std::optional<std::string> objection(const Goal& goal) const;
@@ -95,7 +100,8 @@ class Explorer {
   PolicyPort* policy_;
   FallbackPolicy fallback_;
   bool policy_failed_ = false;
-  int fruitless_rounds_ = 0;
+  int refused_rounds_ = 0;               // in a row, standing still
+  std::optional<TimeNs> holding_since_;  // the policy's own wish
   std::uint32_t sequence_ = 0;
 
   VoxelMap map_;

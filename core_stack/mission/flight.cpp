@@ -1,5 +1,6 @@
 #include "core_stack/mission/flight.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace karst::core {
@@ -40,8 +41,19 @@ AttitudeRateCommand Flight::control(TimeNs now) {
 }
 
 void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-                    const HeadingPlan& heading) {
-  trajectory_ = sample_trajectory(points, start_speed_mps, start, limits_, heading);
+                    const HeadingPlan& heading, double max_speed_mps) {
+  MotionLimits limits = limits_;
+  if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
+  limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  trajectory_ = sample_trajectory(points, start_speed_mps, start, limits, heading);
+}
+
+TimeNs Flight::time_nearest(const Vec3& p) const {
+  const auto& samples = trajectory_.samples;
+  const auto nearest = std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
+    return (a.position - p).squaredNorm() < (b.position - p).squaredNorm();
+  });
+  return trajectory_.start + trajectory_.period * static_cast<TimeNs>(nearest - samples.begin());
 }
 
 void Flight::climb(TimeNs now, double height_m, double speed_mps) {
@@ -86,13 +98,18 @@ void Flight::disarm() {
   trajectory_.samples.resize(1);
 }
 
-double Flight::speed_at(TimeNs t) const {
+Vec3 Flight::velocity_at(TimeNs t) const {
   constexpr TimeNs dt = 50 * kMillisecond;
-  return (trajectory_.at(t + dt).position - trajectory_.at(t).position).norm() / seconds(dt);
+  return (trajectory_.at(t + dt).position - trajectory_.at(t).position) / seconds(dt);
+}
+
+State Flight::expected(TimeNs t) const {
+  const TrajectorySample sample = trajectory_.at(t);
+  return {t, sample.position, velocity_at(t), from_heading(sample.heading_rad), Vec3::Zero()};
 }
 
 Flight::Onward Flight::onward(TimeNs t, double length_m) const {
-  Onward out{{trajectory_.at(t).position}, speed_at(t), trajectory_.at(t).heading_rad};
+  Onward out{{trajectory_.at(t).position}, velocity_at(t).norm(), trajectory_.at(t).heading_rad};
   double length = 0;
   for (std::size_t i = 0; i < trajectory_.samples.size() && length < length_m; ++i) {
     if (trajectory_.start + trajectory_.period * static_cast<TimeNs>(i) <= t) continue;
@@ -106,7 +123,7 @@ Flight::Onward Flight::onward(TimeNs t, double length_m) const {
 }
 
 Flight::Onward Flight::until_stop(TimeNs t) const {
-  const double v = speed_at(t);
+  const double v = velocity_at(t).norm();
   return onward(t, v * v / (2 * kBrakingShare * limits_.max_acceleration_mps2));
 }
 

@@ -22,9 +22,9 @@ class Flight {
   AttitudeRateCommand control(TimeNs now);
 
   /// Flies along `points` from `start` on (not before now); the first point is where the reference will be
-  /// then.
+  /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0.
   void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-              const HeadingPlan& heading);
+              const HeadingPlan& heading, double max_speed_mps = 0);
   /// Straight up or down at `speed_mps` by `height_m` from the present reference.
   void climb(TimeNs now, double height_m, double speed_mps);
   /// Turns once around on the spot: a camera's first look.
@@ -47,6 +47,10 @@ class Flight {
 
   bool airborne() const { return armed_; }
   bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
+  /// The state in which the trajectory will be at `t`, level.
+  State expected(TimeNs t) const;
+  /// When the trajectory comes nearest to `p`.
+  TimeNs time_nearest(const Vec3& p) const;
   double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }
   const State& state() const { return estimator_.state(); }
   const Estimator& estimator() const { return estimator_; }
@@ -54,7 +58,7 @@ class Flight {
 
  private:
   Onward onward(TimeNs t, double length_m) const;
-  double speed_at(TimeNs t) const;
+  Vec3 velocity_at(TimeNs t) const;
 
   MotionLimits limits_;
   Estimator estimator_;

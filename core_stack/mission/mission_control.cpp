@@ -12,6 +12,10 @@ constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 constexpr TimeNs kMappingBudget = 60 * kMillisecond;
 constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
 constexpr double kClimbSpeed_mps = 0.5;
+constexpr double kFlownStep_m = 0.25;
+/// A closed place is flown around if a new path can be found before the vehicle would have to brake for it;
+/// otherwise it brakes at once. Metres kept in hand beyond the braking distance.
+constexpr double kDetourMargin_m = 0.5;
 /// Returns within this margin around the vehicle are the vehicle.
 constexpr double kSelfMargin_m = 0.05;
 
@@ -68,7 +72,12 @@ MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)
     if (!watch(status)) finish("aborted", "stopped by the operator");
   });
   const TimeNs limit = from_seconds(options_.mission.max_flight_time_s + 600);
-  executive_.run_until(limit, [this] { return result_.has_value(); });
+  try {
+    executive_.run_until(limit, [this] { return result_.has_value(); });
+  } catch (const std::exception& e) {
+    executive_.drain();  // jobs still running use what unwinding would take away
+    finish("aborted", std::string("an error of the core: ") + e.what());
+  }
   executive_.drain();
   if (!result_) finish("aborted", "the vehicle did not come back within ten minutes after the time limit");
   vehicle_.finish();
@@ -137,10 +146,14 @@ void MissionControl::record() {
   recorder_.pose(flight_.state());
   recorder_.telemetry({now(), name_of(phase_), flight_.state(), flight_.reference().position,
                        battery_.fraction_left, battery_.seconds_left, explored_m3_, home_distance_m_});
-  if (flown_.empty() || (flown_.back() - flight_.reference().position).norm() > 0.5)
-    flown_.push_back(flight_.reference().position);
+  const Vec3& here = flight_.reference().position;
+  if (flown_.empty()) flown_.push_back(here);
+  if (const double step_m = (flown_.back() - here).norm(); step_m > kFlownStep_m) {
+    flown_m_ += step_m;
+    flown_.push_back(here);
+  }
   if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
-    enter(Phase::home, "the run directory cannot be written any more (disk full?)");
+    begin_homing("the run directory cannot be written any more (disk full?)");
 }
 
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
@@ -162,7 +175,7 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
   struct Result {
     std::vector<CellChange> changes;
     double explored_m3 = 0;
-    int blocked = -1;
+    std::optional<double> blocked_after_m;
     bool goal_alive = true;
   };
   auto result = std::make_shared<Result>();
@@ -174,24 +187,40 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
        ahead = check ? path_ahead() : std::vector<Vec3>{}] {
         result->changes = explorer_.integrate(make_rays());
         result->explored_m3 = explorer_.map().free_volume_m3();
-        if (ahead.size() > 1) result->blocked = explorer_.blocked_segment(ahead);
+        if (ahead.size() > 1)
+          if (const int blocked = explorer_.blocked_segment(ahead); blocked >= 0)
+            result->blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
         if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
       },
       [this, result, frontier] {
         explored_m3_ = result->explored_m3;
         const bool same_goal = goal_ && goal_->frontier_id == frontier;
-        on_map_update(result->changes, result->blocked, result->goal_alive || !same_goal);
+        on_map_update(result->changes, result->blocked_after_m, result->goal_alive || !same_goal);
       });
 }
 
-void MissionControl::on_map_update(const std::vector<CellChange>& changes, int blocked_segment,
-                                   bool goal_alive) {
+void MissionControl::on_map_update(const std::vector<CellChange>& changes,
+                                   std::optional<double> blocked_after_m, bool goal_alive) {
   recorder_.map_changes(now(), changes);
   goal_alive_ = goal_alive;
-  if (blocked_segment < 0 || path_blocked_ || ignore_blocks_ || flight_.at_rest(now())) return;
+  if (!blocked_after_m || path_blocked_ || ignore_blocks_ || flight_.at_rest(now())) return;
+  const std::string reason = "the map now forbids the path ahead";
+  drop_next_goal(PolicyEvent::Kind::goal_unreachable, reason);
+  // What a decision and its plan take in flight, and then the stretch to stop in.
+  const TimeNs decided = now() + kMappingBudget + from_seconds(options_.mission.decision_budget_s);
+  const Flight::Onward until_decided = flight_.until_end(now()), stop = flight_.until_stop(decided);
+  const double needed_m =
+      seconds(decided - now()) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
+  if (*blocked_after_m > needed_m) {
+    if (!detour_due_)
+      recorder_.event(now(), "safety",
+                      {{"action", "replan"}, {"reason", reason}, {"after_m", *blocked_after_m}});
+    detour_due_ = true;
+    return;
+  }
   path_blocked_ = true;
-  next_goal_.reset();
-  recorder_.event(now(), "safety", {{"action", "brake"}, {"reason", "the map now forbids the path ahead"}});
+  detour_due_ = false;
+  recorder_.event(now(), "safety", {{"action", "brake"}, {"reason", reason}, {"after_m", *blocked_after_m}});
   flight_.brake(now());
 }
 
@@ -199,6 +228,10 @@ void MissionControl::on_ground(TimeNs stamp, bool standing) {
   if (!standing || !has_taken_off_ || phase_ == Phase::done) return;
   flight_.disarm();
   vehicle_.command(flight_.control(stamp));
+  if (phase_ != Phase::land) {
+    finish("contact", std::string("touched the ground in phase ") + name_of(phase_));
+    return;
+  }
   const double off_m = (flight_.state().position - description_.T_world_start.position).head<2>().norm();
   if (off_m < 1.0) {
     finish("landed", "at the start");

@@ -57,16 +57,24 @@ class MissionControl final : public VehicleSink {
 
   // Mapping.
   void integrate(std::function<std::vector<Ray>()> make_rays);
-  void on_map_update(const std::vector<CellChange>& changes, int blocked_segment, bool goal_alive);
+  void on_map_update(const std::vector<CellChange>& changes, std::optional<double> blocked_after_m,
+                     bool goal_alive);
 
   // Exploring.
   void explore();
   void begin_round(bool appending);
   void on_round(const RoundInput& input, const Flight::Onward& lead, const RoundResult& result);
   void settle_goal(GoalFate fate, PolicyEvent::Kind kind, const std::string& reason);
+  void drop_next_goal(PolicyEvent::Kind kind, const std::string& reason);
+  bool within_tolerance(const Goal& goal) const;
   void record_round(const RoundInput& input, const RoundResult& result);
 
+  /// Joins a path to the stretch of the trajectory that leads to its beginning.
+  void follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal);
+
   // Going home and landing.
+  double seconds_left() const;
+  void begin_homing(const std::string& reason);
   void watch_battery();
   void go_home();
   void plan_home_path();
@@ -75,7 +83,7 @@ class MissionControl final : public VehicleSink {
   void watch_progress();
 
   TimeNs now() const { return executive_.now(); }
-  std::vector<Vec3> path_ahead() const { return flight_.until_end(now()).points; }
+  std::vector<Vec3> path_ahead() const { return flight_.until_end(std::max(now(), tight_until_)).points; }
 
   CoreOptions options_;
   VehicleDescription description_;
@@ -99,12 +107,16 @@ class MissionControl final : public VehicleSink {
   std::optional<Goal> last_goal_;
   std::vector<PolicyEvent> events_;
   std::vector<std::uint32_t> looked_at_;
-  bool round_running_ = false, append_tried_ = false, path_blocked_ = false, goal_alive_ = true;
+  bool round_running_ = false, append_tried_ = false, goal_alive_ = true;
+  bool path_blocked_ = false;  // it brakes, or stands, before a place that is closed now
+  bool detour_due_ = false;    // the path is closed farther on: a new one is due, there is no need to stop
+  TimeNs tight_until_ = 0;     // until then the path leads out of a place tighter than it should be
   TimeNs last_round_ = 0, last_landmark_time_ = 0;
   Vec3 last_landmark_ = Vec3::Zero();  // for judging progress
 
   // The way home.
-  std::vector<Vec3> flown_;  // every half metre of the way come
+  std::vector<Vec3> flown_;  // the way come, a pose every quarter of a metre
+  double flown_m_ = 0;
   double home_distance_m_ = 0;
   int home_failures_ = 0;
   bool home_planning_ = false, ignore_blocks_ = false;

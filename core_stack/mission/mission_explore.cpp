@@ -11,6 +11,7 @@ namespace {
 constexpr TimeNs kPause = 400 * kMillisecond;
 constexpr double kSameGoal_m = 0.3;
 constexpr double kProgress_m = 0.5;
+constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
 
 nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -62,6 +63,20 @@ void MissionControl::settle_goal(GoalFate fate, PolicyEvent::Kind kind, const st
   goal_.reset();
 }
 
+void MissionControl::drop_next_goal(PolicyEvent::Kind kind, const std::string& reason) {
+  if (!next_goal_) return;
+  recorder_.event(now(), "goal", to_json(*next_goal_, state_of(kind), reason));
+  events_.push_back({kind, now(), *next_goal_, reason});
+  next_goal_.reset();
+}
+
+bool MissionControl::within_tolerance(const Goal& goal) const {
+  const Reference& r = flight_.reference();
+  return (r.position - goal.position).norm() < goal.tolerance_m &&
+         (!std::isfinite(goal.heading_rad) ||
+          std::abs(wrap_angle(r.heading_rad - goal.heading_rad)) < kFacing_rad);
+}
+
 void MissionControl::explore() {
   if (next_goal_ && now() >= goal_passed_at_) {
     settle_goal(GoalFate::reached, PolicyEvent::Kind::goal_reached, "passed on the way to the next");
@@ -70,9 +85,15 @@ void MissionControl::explore() {
     append_tried_ = false;
   }
   watch_progress();
-  if (round_running_ || now() - last_round_ < kPause) return;
+  if (round_running_) return;
+  if (detour_due_ && !flight_.at_rest(now())) {
+    begin_round(false);
+    return;
+  }
+  if (now() - last_round_ < kPause) return;
 
   if (flight_.at_rest(now())) {
+    detour_due_ = false;
     if (goal_ && !path_blocked_) {
       settle_goal(GoalFate::reached, PolicyEvent::Kind::goal_reached, "");
       last_round_ = now();  // let the sensors look before the next goal is chosen
@@ -81,6 +102,9 @@ void MissionControl::explore() {
     begin_round(false);
   } else if (path_blocked_ || next_goal_) {
     return;  // wait for the brake, or for the goal to be passed
+  } else if (goal_ && within_tolerance(*goal_)) {
+    settle_goal(GoalFate::reached, PolicyEvent::Kind::goal_reached, "");
+    last_round_ = now();
   } else if (goal_ && !goal_alive_) {
     begin_round(false);
   } else if (flight_.remaining_s(now()) < options_.mission.append_before_s) {
@@ -100,21 +124,30 @@ void MissionControl::begin_round(bool appending) {
   RoundInput input;
   input.now = now();
   input.deadline = now() + budget;
-  input.state = flight_.state();
-  input.state.position = lead.points.front();
+  input.state = flight_.expected(input.deadline);
   input.from = lead.points.back();
   const Vec3 velocity = flight_.reference().velocity_mps;
   input.direction = velocity.norm() > 0.2 ? velocity.normalized()
                                           : Vec3(std::cos(lead.heading_rad), std::sin(lead.heading_rad), 0);
-  input.battery_seconds_left = battery_.seconds_left;
+  input.seconds_left = seconds_left();
+  input.way_come_m = flown_m_;
   input.last_fate = goal_ ? GoalFate::under_way : last_fate_;
   input.last_goal = goal_ ? goal_ : last_goal_;
+  input.standing = flight_.at_rest(now());
   input.appending = appending;
   input.events = std::exchange(events_, {});
   input.looked_at = std::exchange(looked_at_, {});
   auto result = std::make_shared<RoundResult>();
   executive_.job(
-      "decision", Lane::map, budget, [this, input, result] { *result = explorer_.decide(input); },
+      "decision", Lane::map, budget,
+      [this, input, result] {
+        try {
+          *result = explorer_.decide(input);
+        } catch (const std::exception& e) {  // whatever it is: the way home must not depend on it
+          result->outcome = Outcome::go_home;
+          result->reason = std::string("an error of the core: ") + e.what();
+        }
+      },
       [this, input, lead, result] { on_round(input, lead, *result); });
 }
 
@@ -126,20 +159,8 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
 
   if (result.goal) {
     const bool same = goal_ && (goal_->position - result.goal->position).norm() < kSameGoal_m;
-    if (same && !path_blocked_ && !input.appending) return;  // keep to the path under way
-    std::vector<Vec3> points = lead.points;
-    points.insert(points.end(), result.path.begin() + 1, result.path.end());
-    const double speed = flight_.at_rest(now()) ? 0.0 : lead.speed_mps;
-    HeadingPlan heading;
-    heading.along_path = !description_.lidar;
-    heading.start_heading_rad = lead.heading_rad;
-    if (std::isfinite(result.goal->heading_rad)) heading.goal_heading_rad = result.goal->heading_rad;
+    if (same && !path_blocked_ && !detour_due_ && !input.appending) return;  // keep to the path under way
     recorder_.event(now(), "goal", to_json(*result.goal, "accepted", ""));
-    recorder_.event(now(), "plan",
-                    {{"length", path_length_m(points)},
-                     {"from", list(points.front())},
-                     {"to", list(points.back())},
-                     {"points", list(points)}});
     if (input.appending && goal_) {
       next_goal_ = result.goal;
       goal_passed_at_ = now() + from_seconds(flight_.remaining_s(now()));
@@ -150,21 +171,42 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
       goal_ = result.goal;
       append_tried_ = false;
     }
-    flight_.follow(points, speed, now(), heading);
+    follow(lead, result.path, result.goal);
     goal_alive_ = true;
-    path_blocked_ = false;
-    last_landmark_ = flight_.reference().position;
-    last_landmark_time_ = now();
   } else if (input.appending) {
     return;  // ask again on arrival
   } else if (result.outcome == Outcome::explored && flight_.at_rest(now())) {
-    enter(Phase::home, "explored: " + result.reason);
+    begin_homing("explored: " + result.reason);
   } else if (result.outcome == Outcome::go_home) {
-    enter(Phase::home, "the policy asked for it: " + result.reason);
+    begin_homing("the policy asked for it: " + result.reason);
   } else if (path_blocked_ && flight_.at_rest(now())) {
     settle_goal(GoalFate::unreachable, PolicyEvent::Kind::goal_unreachable, result.reason);
     path_blocked_ = false;
+  } else if (!result.rejected.empty() && !goal_) {
+    last_fate_ = GoalFate::rejected;
+    last_goal_ = result.rejected.front().goal;
   }
+}
+
+void MissionControl::follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal) {
+  std::vector<Vec3> points = lead.points;
+  points.insert(points.end(), path.points.begin() + 1, path.points.end());
+  HeadingPlan heading;
+  heading.along_path = !description_.lidar;
+  heading.start_heading_rad = lead.heading_rad;
+  if (goal && std::isfinite(goal->heading_rad)) heading.goal_heading_rad = goal->heading_rad;
+  recorder_.event(now(), "plan",
+                  {{"length", path_length_m(points)},
+                   {"from", list(points.front())},
+                   {"to", list(points.back())},
+                   {"points", list(points)}});
+  flight_.follow(points, flight_.at_rest(now()) ? 0.0 : lead.speed_mps, now(), heading,
+                 goal ? goal->max_speed_mps : 0.0);
+  tight_until_ =
+      path.escape_points == 0
+          ? 0
+          : flight_.time_nearest(path.points[std::min(path.escape_points, path.points.size() - 1)]);
+  path_blocked_ = detour_due_ = false;
 }
 
 void MissionControl::watch_progress() {
@@ -176,7 +218,7 @@ void MissionControl::watch_progress() {
   }
   if (now() - last_landmark_time_ < from_seconds(options_.mission.goal_timeout_s)) return;
   settle_goal(GoalFate::abandoned, PolicyEvent::Kind::goal_abandoned, "no progress towards it");
-  next_goal_.reset();
+  drop_next_goal(PolicyEvent::Kind::goal_superseded, "the goal before it was abandoned");
   if (!flight_.at_rest(now())) flight_.brake(now());
 }
 

@@ -1,5 +1,7 @@
 #include "core_stack/mission/mission_options.h"
 
+#include "core_stack/common/error.h"
+
 namespace karst::core {
 
 void describe(OptionTable& t, MissionOptions& o) {
@@ -34,6 +36,24 @@ void describe(OptionTable& t, CoreOptions& o) {
   t.section("motion", o.motion);
   t.section("tracker", o.tracker);
   t.section("controller", o.controller);
+}
+
+void check(const CoreOptions& o, const VehicleDescription& vehicle) {
+  const auto refuse = [](const std::string& key, const std::string& reason) {
+    throw InputError("mission", key, reason);
+  };
+  const auto metres = [](double m) { return std::to_string(m).substr(0, 5) + " m"; };
+  // Obstacles are cells, whose surface may lie half an edge nearer than their centre.
+  const double least_m = vehicle.radius_m + o.map.resolution_m / 2;
+  if (o.planning.clearance_m < least_m)
+    refuse("planning.clearance", metres(o.planning.clearance_m) +
+                                     " is less than the vehicle's radius and half a cell, " +
+                                     metres(least_m));
+  constexpr double kMostCells = 14;  // that planning on bits can keep clear
+  if (std::max(o.planning.clearance_m, o.planning.preferred_clearance_m) > kMostCells * o.map.resolution_m)
+    refuse("planning.clearance", "more than " + std::to_string(static_cast<int>(kMostCells)) +
+                                     " cells of map.resolution (" + metres(o.map.resolution_m) +
+                                     "): choose coarser cells or less clearance");
 }
 
 }  // namespace karst::core

@@ -8,6 +8,7 @@
 #include "core_stack/perception/intensity_filter.h"
 #include "core_stack/planning/path.h"
 #include "core_stack/planning/trajectory.h"
+#include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {
 
@@ -39,5 +40,8 @@ struct CoreOptions {
   Se3Options controller;
 };
 void describe(OptionTable& t, CoreOptions& o);
+
+/// Settings that are fine each for itself but do not fit together, or not this vehicle: throws InputError.
+void check(const CoreOptions& o, const VehicleDescription& vehicle);
 
 }  // namespace karst::core

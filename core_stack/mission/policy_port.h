@@ -19,7 +19,7 @@ struct FrontierOffer {
   Vec3 viewpoint =
       Vec3::Zero();  // a clear, reachable place from which the cluster is seen; NaN if none was found
   double viewpoint_heading_rad = 0;
-  double path_length_m = 0;  // from the vehicle to the viewpoint; +inf if no way is known
+  double path_length_m = 0;  // from where a new path would begin to the viewpoint; +inf if no way is known
 };
 
 enum class GoalFate { none, under_way, reached, rejected, unreachable, abandoned, superseded };
@@ -28,7 +28,7 @@ struct DecisionRequest {
   TimeNs stamp = 0;
   TimeNs deadline = 0;                       // the result is used at this time
   std::uint32_t sequence = 0;                // 1, 2, ...
-  State state;                               // predicted at the deadline when flying
+  State state;                               // expected at the deadline
   Vec3 direction_of_flight = Vec3::UnitX();  // unit, world frame; heading when it stands
   Pose T_world_start;
   double seconds_before_homing = 0;
@@ -43,9 +43,9 @@ struct DecisionRequest {
 
 struct Goal {
   Vec3 position = Vec3::Zero();
-  double heading_rad = 0;  // NaN: any
-  double tolerance_m = 0.5;
-  double max_speed_mps = 0;       // 0: the mission's
+  double heading_rad = 0;         // NaN: any
+  double tolerance_m = 0.5;       // reached when nearer than this
+  double max_speed_mps = 0;       // 0: the mission's; a greater one is cut to it
   std::uint32_t frontier_id = 0;  // 0: none
   double score = 0;
   std::string why;  // one line for the report

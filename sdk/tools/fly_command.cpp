@@ -110,6 +110,7 @@ int fly(const FlyArguments& args) {
   std::unique_ptr<core::Vehicle> vehicle;
   try {
     vehicle = mission.vehicle_plugin->create(setup);
+    core::check(mission.core, vehicle->description());
   } catch (...) {
     // Nothing flew: leave the name free for the next try.
     fs::remove(run_dir / "events.jsonl", ignored);

@@ -37,7 +37,8 @@ struct Room {
     const std::vector<Ray> rays = box_rays(VoxelMap{MapOptions{}}, Vec3(0, 0, 0), Vec3(8, 6, 4), {"x+"});
     explorer->integrate(rays);
     input.from = input.state.position = Vec3(3, 3, 2);
-    input.battery_seconds_left = 600;
+    input.seconds_left = 600;
+    input.standing = true;
   }
   RoundResult decide(std::function<Decision(const DecisionRequest&)> script) {
     policy.script = std::move(script);
@@ -71,10 +72,10 @@ TEST(Explorer, PlansAPathInKnownFreeSpaceToAnAcceptedGoal) {
   Room room;
   const RoundResult r = room.propose(Vec3(6.5, 4, 2));
   ASSERT_TRUE(r.goal);
-  ASSERT_GE(r.path.size(), 2u);
-  EXPECT_TRUE(r.path.front().isApprox(room.input.from));
-  EXPECT_LT((r.path.back() - Vec3(6.5, 4, 2)).norm(), 0.2);
-  EXPECT_EQ(room.explorer->blocked_segment(r.path), -1);
+  ASSERT_GE(r.path.points.size(), 2u);
+  EXPECT_TRUE(r.path.points.front().isApprox(room.input.from));
+  EXPECT_LT((r.path.points.back() - Vec3(6.5, 4, 2)).norm(), 0.2);
+  EXPECT_EQ(room.explorer->blocked_segment(r.path.points), -1);
 }
 
 TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {
@@ -96,7 +97,7 @@ TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {
 
 TEST(Explorer, RefusesAGoalTheBatteryDoesNotAllow) {
   Room room;
-  room.input.battery_seconds_left = 21;  // just over the reserve
+  room.input.seconds_left = 21;  // just over the reserve
   const RoundResult r = room.propose(Vec3(6.5, 4, 2));
   ASSERT_EQ(r.rejected.size(), 1u);
   EXPECT_NE(r.rejected[0].reason.find("battery"), std::string::npos);
@@ -140,11 +141,58 @@ TEST(Explorer, APolicyThatOnlyProposesTheImpossibleIsPassedOverForARound) {
   EXPECT_EQ(fallback_rounds, 2);
 }
 
+TEST(Explorer, APolicyMayHoldTheVehicleForTenSecondsAndNoLonger) {
+  // As it was: four rounds of holding, less than two seconds, and the fallback flew off.
+  Room room;
+  const auto hold = [](const DecisionRequest&) { return Decision{}; };
+  for (int second = 0; second < 10; ++second) {
+    room.input.now = second * kSecond;
+    EXPECT_EQ(room.decide(hold).policy, "scripted") << second;
+  }
+  room.input.now = 10 * kSecond;
+  EXPECT_EQ(room.decide(hold).policy, "fallback");
+}
+
+TEST(Explorer, WithoutAKnownWayHomeTheWayComeCounts) {
+  // As it was: no way home took no time at all, and every goal was affordable.
+  Room room;
+  room.explorer = std::make_unique<Explorer>(CoreOptions{}, room.vehicle, room.policy);
+  room.input.way_come_m = 160;
+  room.decide([](const DecisionRequest& r) {
+    EXPECT_LT(r.seconds_before_homing, 600 - 100 * 1.15 - 20);  // 160 m at 1.6 m/s
+    return Decision{};
+  });
+}
+
+TEST(Explorer, TheWayBackLeavesOutLoopsAndCutsNoCorner) {
+  // A U around a wall: its ends are a metre apart, with rock between.
+  Room room;
+  std::vector<Vec3> flown;
+  for (double x = 1; x < 6; x += 0.25) flown.push_back({x, 1.4, 2});
+  for (double y = 1.4; y < 2.4; y += 0.25) flown.push_back({6, y, 2});
+  for (double x = 6; x > 1; x -= 0.25) flown.push_back({x, 2.4, 2});
+  const double free_m = path_length_m(room.explorer->way_back(flown));
+  EXPECT_LT(free_m, 5);  // straight over, then home
+  std::vector<Ray> wall;
+  for (double x = 0.5; x < 5; x += 0.1)
+    for (double z = 0.5; z < 3.5; z += 0.1)
+      for (int i = 0; i < 3; ++i) {
+        const Vec3f origin(static_cast<float>(x), 1.2f, static_cast<float>(z));
+        wall.push_back({origin, origin + Vec3f(0, 0.7f, 0), true});
+      }
+  room.explorer->integrate(wall);
+  const std::vector<Vec3> back = room.explorer->way_back(flown);
+  EXPECT_GT(path_length_m(back), 9);
+  for (std::size_t i = 1; i + 1 < back.size(); ++i)
+    EXPECT_TRUE((back[i] - back[i - 1]).norm() < 0.26 ||
+                !room.explorer->map().first_not_free(back[i - 1], back[i]));
+}
+
 TEST(Explorer, WhenTheBatteryAllowsNoGoalTheFlightIsOver) {
   // As it was: the policy proposed, the core refused, and the vehicle hovered until the battery called it
   // home.
   Room room;
-  room.input.battery_seconds_left = 21;
+  room.input.seconds_left = 21;
   Outcome last = Outcome::hold;
   int rounds = 0;
   for (; rounds < 10 && last == Outcome::hold; ++rounds) last = room.propose(Vec3(6.5, 4, 2)).outcome;
