@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core_stack/homing/home.h"
+#include "core_stack/planning/free_tiles.h"
 #include "core_stack/planning/grid_planner.h"
 #include "core_stack/planning/planner.h"
 
@@ -63,6 +64,15 @@ const Roadmap& Explorer::roadmap() {
   roadmap_.update(map_, roadmap_due_);
   roadmap_due_.clear();
   return roadmap_;
+}
+
+std::optional<double> Explorer::hull_clearance_m(const Vec3& p) const {
+  const double limit_m = vehicle_.radius_m + 0.5;
+  FreeTiles free(map_.resolution_m());
+  free.load_near(map_, p, limit_m);
+  const double distance_m = free.nearest(p, limit_m).distance_m - map_.resolution_m() / 2;
+  if (distance_m >= limit_m - map_.resolution_m()) return std::nullopt;
+  return distance_m - vehicle_.radius_m;
 }
 
 bool Explorer::cluster_alive(std::uint32_t id) const {

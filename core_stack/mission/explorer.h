@@ -76,6 +76,8 @@ class Explorer {
   void tell(const std::vector<PolicyEvent>& events, TimeNs now);
   /// Index of the first segment of `points` that the map now forbids, or -1.
   int blocked_segment(const std::vector<Vec3>& points) const;
+  /// Distance of the vehicle's hull at `p` from the nearest obstacle's cell; nothing if that is far.
+  std::optional<double> hull_clearance_m(const Vec3& p) const;
   /// True if the cluster is still open enough to be worth flying to.
   bool cluster_alive(std::uint32_t id) const;
 

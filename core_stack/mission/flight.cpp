@@ -1,7 +1,6 @@
 #include "core_stack/mission/flight.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace karst::core {
 namespace {
@@ -42,10 +41,23 @@ AttitudeRateCommand Flight::control(TimeNs now) {
 
 void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
                     const HeadingPlan& heading, double max_speed_mps) {
+  heading_ = heading;
+  path_speed_mps_ = max_speed_mps;
   MotionLimits limits = limits_;
+  limits.max_speed_mps = std::min(limits.max_speed_mps, speed_cap_mps_);
   if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
   limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
   trajectory_ = sample_trajectory(points, start_speed_mps, start, limits, heading);
+}
+
+void Flight::cap_speed(TimeNs now, double max_speed_mps) {
+  if (max_speed_mps == speed_cap_mps_) return;
+  speed_cap_mps_ = max_speed_mps;
+  if (at_rest(now)) return;
+  const Onward left = until_end(now);
+  HeadingPlan heading = heading_;
+  heading.start_heading_rad = left.heading_rad;
+  follow(left.points, left.speed_mps, now, heading, path_speed_mps_);
 }
 
 TimeNs Flight::time_nearest(const Vec3& p) const {

@@ -1,5 +1,6 @@
 // The inner loop: state estimate, trajectory, MPC reference, SE(3) command. Mission control hands it paths.
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "core_stack/control/mpc_tracker.h"
@@ -25,6 +26,8 @@ class Flight {
   /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0.
   void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
               const HeadingPlan& heading, double max_speed_mps = 0);
+  /// Flies no faster than this, from now on and along what is left of the present path.
+  void cap_speed(TimeNs now, double max_speed_mps);
   /// Straight up or down at `speed_mps` by `height_m` from the present reference.
   void climb(TimeNs now, double height_m, double speed_mps);
   /// Turns once around on the spot: a camera's first look.
@@ -65,6 +68,9 @@ class Flight {
   MpcTracker tracker_;
   Se3Controller controller_;
   Trajectory trajectory_;
+  HeadingPlan heading_;        // of the path under way, as is its own speed limit
+  double path_speed_mps_ = 0;  // 0: none
+  double speed_cap_mps_ = std::numeric_limits<double>::infinity();
   bool armed_ = false;
 };
 

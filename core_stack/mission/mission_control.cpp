@@ -49,6 +49,7 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       executive_(executive),
       recorder_(recorder),
       flight_(options, description_),
+      safety_(options.safety),
       explorer_(options, description_, policy) {
   battery_.seconds_left = options.mission.max_flight_time_s;
 }
@@ -105,12 +106,7 @@ void MissionControl::control() { vehicle_.command(flight_.control(now())); }
 
 void MissionControl::supervise() {
   record();
-  if (phase_ != Phase::land && phase_ != Phase::done && flight_.airborne() &&
-      flight_.estimator().health(now()) == Health::lost) {
-    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", "the state estimate is lost"}});
-    flight_.brake(now());
-    enter(Phase::land, "the state estimate is lost");
-  }
+  keep_safe();
   switch (phase_) {
     case Phase::standby:
       if (now() - phase_since_ < kSettling) break;
@@ -139,6 +135,38 @@ void MissionControl::supervise() {
       break;
     case Phase::done:
       break;
+  }
+}
+
+void MissionControl::keep_safe() {
+  if (phase_ == Phase::standby || phase_ == Phase::land || phase_ == Phase::done) {
+    last_seen_ = now();
+    return;
+  }
+  SafetyObservation o;
+  o.now = now();
+  o.health = flight_.estimator().health(now());
+  o.tracking_error_m = (flight_.state().position - flight_.reference().position).norm();
+  const bool under_way = phase_ == Phase::explore || phase_ == Phase::home;
+  if (under_way) o.hull_clearance_m = hull_clearance_m_;  // not while it lifts off from the ground
+  o.blind_s = seconds(now() - last_seen_);
+  o.battery_s = battery_.seconds_left;
+  const SafetyVerdict verdict = safety_.judge(o);
+  if (verdict == verdict_) return;
+  verdict_ = verdict;
+  recorder_.event(now(), "safety", {{"action", name_of(verdict.action)}, {"reason", verdict.reason}});
+  const bool slow = verdict.action != SafetyAction::none;
+  if (under_way)
+    flight_.cap_speed(now(), options_.motion.max_speed_mps * (slow ? options_.safety.slow_share : 1.0));
+  if (verdict.action == SafetyAction::land) {
+    flight_.brake(now());
+    enter(Phase::land, verdict.reason);
+  } else if (verdict.action == SafetyAction::home && phase_ == Phase::explore) {
+    begin_homing(verdict.reason);
+  } else if (verdict.action == SafetyAction::brake && under_way && !flight_.at_rest(now())) {
+    drop_next_goal(PolicyEvent::Kind::goal_superseded, verdict.reason);
+    flight_.brake(now());
+    path_blocked_ = true;  // and look for a new way from there
   }
 }
 
@@ -175,7 +203,7 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
   struct Result {
     std::vector<CellChange> changes;
     double explored_m3 = 0;
-    std::optional<double> blocked_after_m;
+    std::optional<double> blocked_after_m, hull_clearance_m;
     bool goal_alive = true;
   };
   auto result = std::make_shared<Result>();
@@ -183,17 +211,20 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
   const bool check = phase_ == Phase::explore || phase_ == Phase::home;
   executive_.job(
       "mapping", Lane::map, kMappingBudget,
-      [this, result, frontier, make_rays = std::move(make_rays),
+      [this, result, frontier, make_rays = std::move(make_rays), here = flight_.state().position,
        ahead = check ? path_ahead() : std::vector<Vec3>{}] {
         result->changes = explorer_.integrate(make_rays());
         result->explored_m3 = explorer_.map().free_volume_m3();
         if (ahead.size() > 1)
           if (const int blocked = explorer_.blocked_segment(ahead); blocked >= 0)
             result->blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
+        result->hull_clearance_m = explorer_.hull_clearance_m(here);
         if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
       },
       [this, result, frontier] {
         explored_m3_ = result->explored_m3;
+        hull_clearance_m_ = result->hull_clearance_m;
+        last_seen_ = now();
         const bool same_goal = goal_ && goal_->frontier_id == frontier;
         on_map_update(result->changes, result->blocked_after_m, result->goal_alive || !same_goal);
       });

@@ -51,6 +51,7 @@ class MissionControl final : public VehicleSink {
  private:
   void control();
   void supervise();
+  void keep_safe();
   void record();
   void enter(Phase phase, const std::string& reason);
   void finish(const std::string& outcome, const std::string& reason);
@@ -91,6 +92,8 @@ class MissionControl final : public VehicleSink {
   Executive& executive_;
   Recorder& recorder_;
   Flight flight_;
+  SafetySupervisor safety_;
+  SafetyVerdict verdict_;
   Explorer explorer_;  // touched by jobs on the map lane only
 
   Phase phase_ = Phase::standby;
@@ -121,6 +124,8 @@ class MissionControl final : public VehicleSink {
   int home_failures_ = 0;
   bool home_planning_ = false, ignore_blocks_ = false;
   double explored_m3_ = 0;
+  std::optional<double> hull_clearance_m_;
+  TimeNs last_seen_ = 0;  // when a scan or an image was last taken in
 };
 
 }  // namespace karst::core

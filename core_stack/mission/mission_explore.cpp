@@ -85,7 +85,7 @@ void MissionControl::explore() {
     append_tried_ = false;
   }
   watch_progress();
-  if (round_running_) return;
+  if (round_running_ || verdict_.action == SafetyAction::brake) return;
   if (detour_due_ && !flight_.at_rest(now())) {
     begin_round(false);
     return;

@@ -14,7 +14,6 @@ constexpr int kMostHomeFailures = 3;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 constexpr TimeNs kPatience = 60 * kSecond;
-constexpr double kLandAnywhere_s = 12.0;  // battery time at which the vehicle lands wherever it is
 
 }  // namespace
 
@@ -57,13 +56,7 @@ void MissionControl::watch_battery() {
 }
 
 void MissionControl::go_home() {
-  if (battery_.seconds_left < kLandAnywhere_s) {
-    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", "the battery ends"}});
-    flight_.brake(now());
-    enter(Phase::land, "the battery ends");
-    return;
-  }
-  if (home_planning_) return;
+  if (home_planning_ || verdict_.action == SafetyAction::brake) return;
   const bool at_home = (flight_.reference().position - explorer_.home()).norm() < kAboveHome_m;
   if (at_home && flight_.at_rest(now() - kSecond)) {
     enter(Phase::land, "");

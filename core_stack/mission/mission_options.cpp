@@ -28,6 +28,7 @@ void describe(OptionTable& t, MissionOptions& o) {
 
 void describe(OptionTable& t, CoreOptions& o) {
   t.section("mission", o.mission);
+  t.section("safety", o.safety);
   t.section("map", o.map);
   t.section("frontiers", o.frontiers);
   t.section("perception", o.perception);

@@ -5,6 +5,7 @@
 #include "core_stack/localization/estimator.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mission/safety.h"
 #include "core_stack/perception/intensity_filter.h"
 #include "core_stack/planning/path.h"
 #include "core_stack/planning/trajectory.h"
@@ -30,6 +31,7 @@ void describe(OptionTable& t, MissionOptions& o);
 
 struct CoreOptions {
   MissionOptions mission;
+  SafetyOptions safety;
   MapOptions map;
   FrontierOptions frontiers;
   IntensityFilterOptions perception;

@@ -75,6 +75,28 @@ TEST(Flight, TheStretchUntilStopBeginsWhereTheReferenceWillBe) {
   EXPECT_GT(lead, ahead.speed_mps * ahead.speed_mps / (2 * MotionLimits{}.max_acceleration_mps2));
 }
 
+TEST(Flight, ACapOnSpeedHoldsUntilItIsLifted) {
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  f.flight.follow({from, from + Vec3(30, 0, 0)}, 0, f.now, heading);
+  f.advance(4);
+  ASSERT_GT(f.flight.reference().velocity_mps.norm(), 1.7);
+  f.flight.cap_speed(f.now, 0.8);
+  f.advance(2);
+  EXPECT_LT(f.flight.reference().velocity_mps.norm(), 0.85);
+  f.advance(2);
+  EXPECT_GT(f.flight.reference().velocity_mps.norm(), 0.7);
+  f.flight.cap_speed(f.now, 2.0);
+  f.advance(3);
+  EXPECT_GT(f.flight.reference().velocity_mps.norm(), 1.7);
+  f.advance(15);
+  EXPECT_NEAR(f.flight.reference().position.x(), 30, 0.02);
+}
+
 TEST(Flight, LooksOnceAround) {
   IdealFlight f;
   f.flight.climb(0, 0.5, 0.5);

@@ -1,0 +1,60 @@
+// The safety supervisor: from what is wrong to what is done about it, ten times a second.
+//
+// Each rule reads one observation; the most severe action of all rules counts. An action is kept for a second
+// after its cause is gone, so that it does not flicker.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "core_stack/common/options.h"
+#include "core_stack/common/time.h"
+#include "core_stack/localization/state.h"
+
+namespace karst::core {
+
+struct SafetyOptions {
+  double slow_share = 0.5;       // of motion.max_speed, while slowed
+  double tracking_slow_m = 0.4;  // distance of the estimate from the reference
+  double tracking_brake_m = 0.8;
+  double hull_clearance_m = 0.1;  // slow below this distance of the hull from obstacles
+  double blind_brake_s = 1.0;     // without a scan or an image
+  double blind_home_s = 10.0;
+  double degraded_home_s = 5.0;  // of a degraded state estimate
+  double battery_land_s = 12.0;  // lands wherever it is
+};
+void describe(OptionTable& t, SafetyOptions& o);
+
+/// In order of severity.
+enum class SafetyAction { none, slow, brake, home, land };
+const char* name_of(SafetyAction action);
+
+struct SafetyObservation {
+  TimeNs now = 0;
+  Health health = Health::good;
+  double tracking_error_m = 0;
+  std::optional<double> hull_clearance_m;  // to the surface of the nearest obstacle in the map, if it is near
+  double blind_s = 0;                      // since the last scan or image was taken into the map
+  double battery_s = 0;                    // left
+};
+
+struct SafetyVerdict {
+  SafetyAction action = SafetyAction::none;
+  std::string reason;
+  bool operator==(const SafetyVerdict&) const = default;
+};
+
+class SafetySupervisor {
+ public:
+  explicit SafetySupervisor(const SafetyOptions& options) : options_(options) {}
+  const SafetyVerdict& judge(const SafetyObservation& o);
+
+ private:
+  SafetyVerdict worst(const SafetyObservation& o) const;
+
+  SafetyOptions options_;
+  SafetyVerdict verdict_;
+  TimeNs cause_seen_ = 0;
+  std::optional<TimeNs> degraded_since_;
+};
+
+}  // namespace karst::core

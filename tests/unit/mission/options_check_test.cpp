@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include "core_stack/common/error.h"
+#include "core_stack/mission/mission_options.h"
+
+namespace karst::core {
+namespace {
+
+std::string refusal(const CoreOptions& o) {
+  VehicleDescription vehicle;
+  vehicle.radius_m = 0.3;
+  try {
+    check(o, vehicle);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(OptionsCheck, TheDefaultsFitTogether) { EXPECT_EQ(refusal({}), ""); }
+
+TEST(OptionsCheck, AClearanceBelowTheVehiclesRadiusIsRefused) {
+  CoreOptions o;
+  o.planning.clearance_m = 0.2;
+  EXPECT_NE(refusal(o).find("planning.clearance: 0.200 m is less than the vehicle's radius"),
+            std::string::npos)
+      << refusal(o);
+}
+
+TEST(OptionsCheck, AClearanceOfTooManyCellsIsRefusedOnTheGround) {
+  // As it was: the first decision threw in flight.
+  CoreOptions o;
+  o.map.resolution_m = 0.04;
+  EXPECT_NE(refusal(o).find("more than 14 cells"), std::string::npos) << refusal(o);
+}
+
+}  // namespace
+}  // namespace karst::core
