@@ -109,7 +109,7 @@ typedef struct karst_frontier_cluster {
   uint32_t unknown_cells;      /* in a box of a few metres around the centroid */
   uint32_t free_cells;         /* in the same box */
   karst_viewpoint_t viewpoint; /* proposed by the core: clear, and sees the cluster; NaN if none was found */
-  double path_length_m;        /* from the vehicle to the viewpoint; +infinity if no way is known */
+  double path_length_m; /* to the viewpoint from where a new path would begin; +infinity if no way is known */
   uint64_t reserved[2];
 } karst_frontier_cluster_t;
 
@@ -156,7 +156,7 @@ typedef struct karst_goal {
 typedef uint32_t karst_outcome_t;
 enum {
   KARST_OUTCOME_GOALS = 1,    /* the goals in the sink */
-  KARST_OUTCOME_HOLD = 2,     /* stay, ask again soon */
+  KARST_OUTCOME_HOLD = 2,     /* keep to what is under way, or stay; ask again soon */
   KARST_OUTCOME_EXPLORED = 3, /* nothing is left to explore: fly home */
   KARST_OUTCOME_GO_HOME = 4   /* fly home for another reason */
 };

@@ -9,6 +9,7 @@ namespace {
 using core::Vec3;
 
 constexpr double kStandingSpeed_mps = 0.2;
+constexpr double kProgress_m = 0.5;
 
 bool within(const RunRecord& run, double t_s, std::initializer_list<const char*> names) {
   for (const Phase& p : run.phases)
@@ -56,6 +57,18 @@ std::optional<double> standing_share(const RunRecord& run) {
   }
   if (exploring <= 0) return std::nullopt;
   return standing / exploring;
+}
+
+std::optional<double> longest_stall_s(const RunRecord& run, const std::vector<StampedPose>& poses) {
+  std::optional<double> longest_s;
+  const StampedPose* landmark = nullptr;
+  for (const StampedPose& p : poses) {
+    if (!within(run, p.t_s, {"explore", "home"})) continue;
+    if (!landmark || (p.T_world_body.position - landmark->T_world_body.position).norm() > kProgress_m)
+      landmark = &p;
+    longest_s = std::max(longest_s.value_or(0), p.t_s - landmark->t_s);
+  }
+  return longest_s;
 }
 
 std::optional<double> min_clearance_m(const RunRecord& run) {
@@ -143,6 +156,7 @@ FlightFigures flight_figures(const RunRecord& run) {
   if (!poses.empty()) f.path_length_m = path_length_m(poses, begin_s, end_s);
   if (f.path_length_m && f.flight_time_s) f.mean_speed_mps = *f.path_length_m / *f.flight_time_s;
   f.standing_share = standing_share(run);
+  f.longest_stall_s = longest_stall_s(run, poses);
   f.min_clearance_m = min_clearance_m(run);
   if (!run.truth.empty())
     f.landing_error_m =

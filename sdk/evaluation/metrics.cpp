@@ -137,6 +137,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["path_length_m"] = value(f.path_length_m);
   m["mean_speed_mps"] = value(f.mean_speed_mps);
   m["standing_share"] = value(f.standing_share);
+  m["longest_stall_s"] = value(f.longest_stall_s);
   m["explored_volume_m3"] = value(volume.explored_m3);
   m["reachable_volume_m3"] = value(truth.reachable_volume_m3);
   m["coverage"] = value(volume.coverage);

@@ -24,6 +24,7 @@ constexpr std::array kColumns = {
     Column{"flight_time_s", "time s", "%.0f", 1},
     Column{"mean_speed_mps", "mean m/s", "%.2f", 1},
     Column{"standing_share", "standing %", "%.1f", 100},
+    Column{"longest_stall_s", "stall s", "%.1f", 1},
     Column{"min_clearance_m", "clearance m", "%.2f", 1},
     Column{"landing_error_m", "landed off m", "%.2f", 1},
     Column{"battery_left", "battery %", "%.0f", 100},

@@ -68,7 +68,8 @@ struct Frontier {
   std::uint32_t unknown_cells = 0, free_cells = 0;  // in a box of a few metres around the centroid
   Vec3 viewpoint;                                   // a clear place that sees it; NaN if none was found
   double viewpoint_heading_rad = 0;
-  double path_length_m = 0;  // from the vehicle to the viewpoint; +infinity if no way is known
+  double path_length_m =
+      0;  // to the viewpoint from where a new path would begin; +infinity if no way is known
 
   bool reachable() const { return is_finite(viewpoint) && std::isfinite(path_length_m); }
 };

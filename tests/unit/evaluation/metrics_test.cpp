@@ -47,6 +47,7 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "path_length_m",
                                        "mean_speed_mps",
                                        "standing_share",
+                                       "longest_stall_s",
                                        "explored_volume_m3",
                                        "reachable_volume_m3",
                                        "coverage",
@@ -146,6 +147,21 @@ TEST(Metrics, StandingFallsBackToTheEstimatedVelocity) {
       "4,explore,0,0,0\n5,home,0,0,0\n");
   // Of the five intervals those end at standing which end at 1, 4 and 5 s; at 2 s it moves at 0.24 m/s.
   EXPECT_EQ(figures(dir)["standing_share"], 0.6);
+}
+
+TEST(Metrics, TheLongestStallIsTheLongestTimeWithinHalfAMetre) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", std::string(kPhases) + kLanded);  // explores from 12 s, goes home at 32 s
+  std::string truth;
+  for (int i = 0; i <= 440; ++i) {
+    const double t = i * 0.1;
+    // 1 m/s, but from 15 s on it circles within 0.2 m for 4 s; stands before exploring as well.
+    const double x = t < 12 ? 0 : t < 15 ? t - 12 : t < 19 ? 3 + 0.1 * std::sin(9 * t) : t - 16;
+    truth += std::to_string(t) + " " + std::to_string(x) + " 0 0 0 0 0 1\n";
+  }
+  dir.write("ground_truth.tum", truth);
+  // The clock began at most half a metre before the place, and runs on until half a metre behind it.
+  EXPECT_NEAR(figures(dir)["longest_stall_s"].get<double>(), 4.5, 0.55);
 }
 
 TEST(Metrics, LeastClearanceIgnoresTakeOffAndLanding) {
