@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "core_stack/homing/home.h"
 #include "core_stack/planning/free_tiles.h"
@@ -23,8 +22,6 @@ constexpr double kClearanceSlack_m = 0.12;
 /// A cluster that has lost this share of its cells has been seen; flying on to it is a waste.
 constexpr double kSeenShare = 0.75;
 
-/// Viewpoints are looked for as far as this from a cluster, and so far matters what the map holds there.
-constexpr double kViewpointReach_m = 4.6;
 /// Way back: poses nearer than this are joined directly, if the line is clear by this much beyond the radius.
 constexpr double kShortcut_m = 2.0, kShortcutMargin_m = 0.15;
 
@@ -81,41 +78,6 @@ bool Explorer::cluster_alive(std::uint32_t id) const {
   const auto chosen = chosen_.find(id);
   return chosen == chosen_.end() || static_cast<double>(it->second.cells.size()) >=
                                         (1 - kSeenShare) * static_cast<double>(chosen->second.cells);
-}
-
-std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
-  std::vector<FrontierOffer> open;
-  std::map<std::uint32_t, KnownViewpoint> kept;
-  for (const auto& [id, cluster] : frontiers_.clusters()) {
-    if (ledger_.closed(map_, cluster.centroid, closed_at_)) continue;
-    if (input.appending && input.last_goal && input.last_goal->frontier_id == id) continue;
-    const std::uint64_t revision = map_.revision_near(cluster.centroid, kViewpointReach_m);
-    const auto known = viewpoints_.find(id);
-    const bool fresh = known != viewpoints_.end() && known->second.revision == revision &&
-                       known->second.cells == cluster.cells;
-    KnownViewpoint entry{revision, cluster.cells, std::nullopt};
-    if (fresh) {
-      entry.viewpoint = known->second.viewpoint;
-    } else if (open_cells(map_, cluster) >= options_.mission.min_open_cells) {
-      entry.viewpoint = find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m);
-    }
-    FrontierOffer offer;
-    offer.cluster = &cluster;
-    offer.path_length_m = std::numeric_limits<double>::infinity();
-    if (entry.viewpoint && !ledger_.closed(map_, entry.viewpoint->position, closed_at_)) {
-      offer.viewpoint = entry.viewpoint->position;
-      offer.viewpoint_heading_rad = entry.viewpoint->heading_rad;
-      open.push_back(offer);
-    }
-    kept.emplace(id, std::move(entry));
-  }
-  viewpoints_ = std::move(kept);
-
-  std::vector<Vec3> places;
-  for (const FrontierOffer& o : open) places.push_back(o.viewpoint);
-  const std::vector<double> lengths = roadmap_.distances(map_, input.from, places, map_.resolution_m());
-  for (std::size_t i = 0; i < open.size(); ++i) open[i].path_length_m = lengths[i];
-  return open;
 }
 
 Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {

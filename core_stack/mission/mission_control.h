@@ -15,6 +15,9 @@
 
 namespace karst::core {
 
+/// A scan counts in the map this long after it came in.
+constexpr TimeNs kMappingBudget = 60 * kMillisecond;
+
 enum class Phase { standby, takeoff, look, explore, home, land, done };
 const char* name_of(Phase phase);
 

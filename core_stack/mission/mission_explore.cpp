@@ -108,7 +108,7 @@ void MissionControl::explore() {
   } else if (goal_ && !goal_alive_) {
     begin_round(false);
   } else if (flight_.remaining_s(now()) < options_.mission.append_before_s) {
-    if (!append_tried_) begin_round(true);
+    if (options_.mission.append && !append_tried_) begin_round(true);
     append_tried_ = true;
   } else if (now() - last_round_ > from_seconds(options_.mission.decision_period_s)) {
     begin_round(false);

@@ -18,6 +18,7 @@ struct MissionOptions {
   double launch_clear_radius_m = 1.0;
   double decision_period_s = 4.0;
   double decision_budget_s = 0.3;
+  bool append = true;
   double append_before_s = 2.5;
   double goal_timeout_s = 10.0;
   double home_margin = 0.15;

@@ -1,0 +1,49 @@
+// The frontiers a policy may choose from, each with a viewpoint and the length of the way there.
+#include <limits>
+
+#include "core_stack/mission/explorer.h"
+
+namespace karst::core {
+namespace {
+
+/// Viewpoints are looked for as far as this from a cluster, and so far matters what the map holds there.
+constexpr double kViewpointReach_m = 4.6;
+
+}  // namespace
+
+std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
+  std::vector<FrontierOffer> open;
+  std::map<std::uint32_t, KnownViewpoint> kept;
+  for (const auto& [id, cluster] : frontiers_.clusters()) {
+    if (ledger_.closed(map_, cluster.centroid, closed_at_)) continue;
+    if (input.appending && input.last_goal && input.last_goal->frontier_id == id) continue;
+    const std::uint64_t revision = map_.revision_near(cluster.centroid, kViewpointReach_m);
+    const auto known = viewpoints_.find(id);
+    const bool fresh = known != viewpoints_.end() && known->second.revision == revision &&
+                       known->second.cells == cluster.cells;
+    KnownViewpoint entry{revision, cluster.cells, std::nullopt};
+    if (fresh) {
+      entry.viewpoint = known->second.viewpoint;
+    } else if (open_cells(map_, cluster) >= options_.mission.min_open_cells) {
+      entry.viewpoint = find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m);
+    }
+    FrontierOffer offer;
+    offer.cluster = &cluster;
+    offer.path_length_m = std::numeric_limits<double>::infinity();
+    if (entry.viewpoint && !ledger_.closed(map_, entry.viewpoint->position, closed_at_)) {
+      offer.viewpoint = entry.viewpoint->position;
+      offer.viewpoint_heading_rad = entry.viewpoint->heading_rad;
+      open.push_back(offer);
+    }
+    kept.emplace(id, std::move(entry));
+  }
+  viewpoints_ = std::move(kept);
+
+  std::vector<Vec3> places;
+  for (const FrontierOffer& o : open) places.push_back(o.viewpoint);
+  const std::vector<double> lengths = roadmap_.distances(map_, input.from, places, map_.resolution_m());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i].path_length_m = lengths[i];
+  return open;
+}
+
+}  // namespace karst::core
