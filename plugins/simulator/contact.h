@@ -18,6 +18,11 @@ struct Touch {
 class ContactWatch {
  public:
   ContactWatch(const cave::RayScene& scene, double radius_m) : scene_(&scene), radius_m_(radius_m) {}
+  /// The rock is another from now on.
+  void watch(const cave::RayScene& scene) {
+    scene_ = &scene;
+    last_distance_m_ = -1;
+  }
   /// The touch at this place of the vehicle's centre, if there is one.
   std::optional<Touch> touch(const core::Vec3& position);
   /// Distance of the sphere's surface to rock, looked for within 50 m.

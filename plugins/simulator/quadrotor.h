@@ -27,6 +27,9 @@ class Quadrotor {
   core::AttitudeRateCommand command;
   core::Vec3 gyroscope_bias_radps = core::Vec3::Zero();  // the autopilot flies by its biased gyroscope
 
+  /// The rock around it is another from now on; `scene` must outlive its use.
+  void put_into(const cave::RayScene& scene) { contact_.watch(scene); }
+
   /// Advances by `steps` of 1 ms; stops early at an event. Nothing moves after a crash.
   QuadrotorEvent advance(int steps);
 

@@ -54,6 +54,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
     : options_(options),
       seed_(setup.seed),
       cave_(open_cave(options, setup)),
+      rocks_(cave_->description.boulders),
       site_(set_down(*cave_, options.body.radius_m)),
       quadrotor_({options.body, options.motors, options.autopilot, options.battery}, site_.T_world_start,
                  cave_->scene, Wind(options.wind, Random::stream(setup.seed, "wind"))),
@@ -112,6 +113,7 @@ void SimulatedVehicle::schedule_sensors() {
     const TimeNs period = cameras_[i]->model()->period;
     every(period, static_cast<TimeNs>(i + 1) * 30 * kMillisecond % period, [this, i] { fire_camera(i); });
   }
+  if (!cave_->description.boulders.empty()) every(20 * kMillisecond, 0, [this] { move_rocks(); });
   every(10 * kMillisecond, 0, [this] { log_truth(); });
 }
 
@@ -201,6 +203,17 @@ void SimulatedVehicle::report_pose() {
   executive_->at(now() + core::from_seconds(options_.pose.delay_s), [this, sample] {
     if (!lost_) sink_->on_pose(sample);
   });
+}
+
+/// Scans and images still being made keep the cave as it was at their stamp.
+void SimulatedVehicle::move_rocks() {
+  const std::size_t before = cave_->scene.boulders().size();
+  if (!rocks_.advance(core::seconds(now() - start_time_), quadrotor_.state().T_world_body.position)) return;
+  cave_ = std::make_shared<cave::Cave>(
+      cave::Cave{cave_->description, cave_->scene.with_boulders(rocks_.present())});
+  quadrotor_.put_into(cave_->scene);
+  if (const std::size_t there = cave_->scene.boulders().size(); there > before)
+    log_.event(now(), "rockfall", quadrotor_.state(), std::to_string(there) + " boulders");
 }
 
 void SimulatedVehicle::log_truth() {

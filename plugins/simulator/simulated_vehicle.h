@@ -8,6 +8,7 @@
 
 #include "core_stack/vehicle/vehicle.h"
 #include "plugins/simulator/launch_site.h"
+#include "plugins/simulator/loose_rocks.h"
 #include "plugins/simulator/quadrotor.h"
 #include "plugins/simulator/simulator_options.h"
 #include "plugins/simulator/truth_log.h"
@@ -38,6 +39,7 @@ class SimulatedVehicle final : public core::Vehicle {
   void fire_lidar();
   void fire_camera(std::size_t index);
   void report_pose();
+  void move_rocks();
   void log_truth();
   core::TimeNs now() const { return executive_->now(); }
   /// A random stream of its own for each measurement, so that it matters not which thread makes it when.
@@ -45,7 +47,8 @@ class SimulatedVehicle final : public core::Vehicle {
 
   SimulatorOptions options_;
   std::uint64_t seed_;
-  std::shared_ptr<cave::Cave> cave_;
+  std::shared_ptr<cave::Cave> cave_;  // replaced as a whole when boulders come or move
+  LooseRocks rocks_;
   LaunchSite site_;
   Quadrotor quadrotor_;
   std::shared_ptr<const Lidar> lidar_;

@@ -72,6 +72,25 @@ OreBody read_ore(const std::string& source, const pt::ptree& tree) {
   return {read_vector(source, "ore.position", position), read_vector(source, "ore.moment", moment)};
 }
 
+LooseRock read_loose_rock(const std::string& source, const pt::ptree& tree) {
+  LooseRock boulder;
+  std::string position, to;
+  OptionTable table;
+  table.add("boulder.position", position, {}, "centre, x y z");
+  table.add("boulder.radius", boulder.radius_m, "m", 0.05, 100, "of the ball");
+  table.add("boulder.after", boulder.after_s, "s", 0, 86400, "time from which it is there");
+  table.add("boulder.within", boulder.within_m, "m", 0, 1000,
+            "if not 0, it is there from when the vehicle first comes so near");
+  table.add("boulder.to", to, {}, "other end of its way, x y z");
+  table.add("boulder.speed", boulder.speed_mps, "m/s", 0, 10, "on its way to and fro");
+  pt::ptree wrapped;
+  wrapped.add_child("boulder", tree);
+  table.read(source, wrapped);
+  boulder.position = read_vector(source, "boulder.position", position);
+  boulder.to = to.empty() ? boulder.position : read_vector(source, "boulder.to", to);
+  return boulder;
+}
+
 CaveDescription read_cave_file(const std::string& path, const std::string& start) {
   CaveDescription cave;
   cave.file = path;
@@ -81,6 +100,8 @@ CaveDescription read_cave_file(const std::string& path, const std::string& start
       cave.patches.push_back(read_patch(path, child));
     } else if (name == "ore" && !child.empty()) {
       cave.ore_bodies.push_back(read_ore(path, child));
+    } else if (name == "boulder" && !child.empty()) {
+      cave.boulders.push_back(read_loose_rock(path, child));
     } else {
       plain.push_back({name, child});
     }

@@ -26,6 +26,14 @@ struct OreBody {
   core::Vec3 position = core::Vec3::Zero(), moment_am2 = core::Vec3::Zero();
 };
 
+/// Rock that comes later or moves: a rockfall that closes a passage, a swinging gate. A ball; it is there
+/// from `after_s` on, and, if `within_m` is not 0, from when the vehicle first came so near to `position`.
+/// With a speed it goes to and fro between `position` and `to`.
+struct LooseRock {
+  core::Vec3 position = core::Vec3::Zero(), to = core::Vec3::Zero();
+  double radius_m = 1, after_s = 0, within_m = 0, speed_mps = 0;
+};
+
 struct CaveDescription {
   std::string file;       // what the user named
   std::string mesh_path;  // the same, or what the .info file names
@@ -33,6 +41,7 @@ struct CaveDescription {
   double reflectivity = 0.5;  // of bare rock, 0..1
   std::vector<Patch> patches;
   std::vector<OreBody> ore_bodies;
+  std::vector<LooseRock> boulders;
 };
 
 /// Reads a cave `.info` file, or describes a bare mesh, which needs `start` ("x y z [heading_deg]"; a
@@ -43,6 +52,7 @@ struct CaveDescription {
 ///   reflectivity 0.5
 ///   patch { position "4 2 1" radius "3 m" reflectivity 0.1 }     ; any number of these
 ///   ore { position "9 0 -2" moment "0 0 4000" }                  ; and of these
+///   boulder { position "20 3 1" radius "2.5 m" after "30 s" within "7 m" to "20 9 1" speed "0.5 m/s" }
 CaveDescription describe_cave(const std::string& path, const std::string& start);
 
 struct Cave {

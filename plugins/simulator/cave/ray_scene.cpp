@@ -42,6 +42,17 @@ Hit to_hit(float range, std::uint32_t triangle, Vec3f normal, const Vec3f& direc
   return {range, triangle, normal};
 }
 
+/// The nearer root of |o + t d - c| = r; from inside, the surface is met where the ray leaves.
+void meet(const Sphere& s, const Ray& ray, float max_range_m, Hit& hit) {
+  const Vec3 o = ray.origin.cast<double>() - s.centre, d = ray.direction.cast<double>();
+  const double b = o.dot(d), c = o.squaredNorm() - s.radius_m * s.radius_m, disc = b * b - c;
+  if (disc < 0) return;
+  const double t = c > 0 ? -b - std::sqrt(disc) : -b + std::sqrt(disc);
+  const auto range = static_cast<float>(t);
+  if (t < 0 || range > max_range_m || range >= hit.range_m) return;
+  hit = to_hit(range, kBoulder, (o + t * d).cast<float>(), ray.direction);
+}
+
 struct NearestSearch {
   const TriangleMesh* mesh;
   Vec3 p;
@@ -69,7 +80,8 @@ const char* RayScene::device_config() {
 }
 
 RayScene::RayScene(TriangleMesh mesh)
-    : mesh_(std::make_unique<const TriangleMesh>(std::move(mesh))), handles_(std::make_unique<Handles>()) {
+    : mesh_(std::make_shared<const TriangleMesh>(std::move(mesh))),
+      handles_(std::make_shared<const Handles>()) {
   RTCGeometry g = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
                                            mesh_->vertices.size());
@@ -84,9 +96,11 @@ RayScene::RayScene(TriangleMesh mesh)
   rtcCommitScene(handles_->scene);
 }
 
-RayScene::~RayScene() = default;
-RayScene::RayScene(RayScene&&) noexcept = default;
-RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene RayScene::with_boulders(std::vector<Sphere> boulders) const {
+  RayScene scene = *this;
+  scene.boulders_ = std::move(boulders);
+  return scene;
+}
 
 void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<Hit> out) const {
   RTCIntersectContext context;
@@ -113,6 +127,7 @@ void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<Hit>
                            ? Hit{}
                            : to_hit(p.ray.tfar[k], p.hit.primID[k],
                                     {p.hit.Ng_x[k], p.hit.Ng_y[k], p.hit.Ng_z[k]}, rays[first + k].direction);
+      for (const Sphere& s : boulders_) meet(s, rays[first + k], max_range_m, out[first + k]);
     }
   }
 }
@@ -151,6 +166,13 @@ Nearest RayScene::nearest(const Vec3& p, double within_m) const {
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(handles_->scene, &query, &context, visit_triangle, &search);
+  for (const Sphere& s : boulders_) {
+    const Vec3 from_centre = p - s.centre;
+    const double d = std::abs(from_centre.norm() - s.radius_m);
+    if (d >= search.best.distance_m) continue;
+    const Vec3 out = from_centre.norm() > 0 ? from_centre.normalized() : Vec3::UnitZ();
+    search.best = {d, s.centre + s.radius_m * out, true};
+  }
   return search.best;
 }
 

@@ -1,9 +1,10 @@
-// Ray casts and closest points on a triangle mesh (Embree 3).
+// Ray casts and closest points on a triangle mesh (Embree 3), and on boulders that come and go.
 #pragma once
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "plugins/simulator/cave/triangle_mesh.h"
 
@@ -15,9 +16,17 @@ struct Ray {
 
 struct Hit {
   float range_m = std::numeric_limits<float>::infinity();  // infinity: nothing within the range asked for
-  std::uint32_t triangle = 0;
-  core::Vec3f normal = core::Vec3f::Zero();  // unit, on the side the ray came from
+  std::uint32_t triangle = 0;                              // kBoulder: none of the mesh
+  core::Vec3f normal = core::Vec3f::Zero();                // unit, on the side the ray came from
   bool any() const { return range_m < std::numeric_limits<float>::infinity(); }
+};
+
+constexpr std::uint32_t kBoulder = ~std::uint32_t{0};
+
+/// A ball of rock. Few, so each is asked in turn, in closed form.
+struct Sphere {
+  core::Vec3 centre = core::Vec3::Zero();
+  double radius_m = 1;
 };
 
 /// Rock nearest to a point. With nothing within the radius asked for, the distance is that radius.
@@ -27,8 +36,8 @@ struct Nearest {
   bool found = false;
 };
 
-/// All queries are const and may run on several threads at once. Results depend on the mesh and the query
-/// only.
+/// A value: copies share the mesh. All queries are const and may run on several threads at once. Results
+/// depend on the rock and the query only.
 class RayScene {
  public:
   /// Embree's configuration. Left alone it takes the machine's widest vectors, and ranges then differ in
@@ -37,11 +46,11 @@ class RayScene {
   static const char* device_config();
 
   explicit RayScene(TriangleMesh mesh);
-  ~RayScene();
-  RayScene(RayScene&&) noexcept;
-  RayScene& operator=(RayScene&&) noexcept;
+  /// The same mesh with these boulders and no others.
+  RayScene with_boulders(std::vector<Sphere> boulders) const;
 
   const TriangleMesh& mesh() const { return *mesh_; }
+  const std::vector<Sphere>& boulders() const { return boulders_; }
 
   /// `out[i]` is the first hit of `rays[i]`. Neighbouring rays should point to neighbouring places: they are
   /// cast in packets of eight. A ray's hit has the same bits in any company, but for one: where it meets the
@@ -51,7 +60,7 @@ class RayScene {
 
   /// Range to rock from `from` along `direction` (of any length), or infinity.
   double ray_cast(const core::Vec3& from, const core::Vec3& direction, double max_range_m) const;
-  /// How many surfaces the ray passes, surfaces closer together than 0.1 mm counted once.
+  /// How many surfaces of the mesh the ray passes, surfaces closer together than 0.1 mm counted once.
   int crossings(const Ray& ray) const;
 
   Nearest nearest(const core::Vec3& p, double within_m) const;
@@ -61,8 +70,9 @@ class RayScene {
 
  private:
   struct Handles;
-  std::unique_ptr<const TriangleMesh> mesh_;
-  std::unique_ptr<Handles> handles_;
+  std::shared_ptr<const TriangleMesh> mesh_;
+  std::shared_ptr<const Handles> handles_;
+  std::vector<Sphere> boulders_;
 };
 
 }  // namespace karst::cave

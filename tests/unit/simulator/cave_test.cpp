@@ -19,6 +19,27 @@ class CaveFiles : public testing::Test {
   std::string folder_ = scratch_folder();
 };
 
+TEST_F(CaveFiles, BouldersAreReadAndTheirMistakesNamed) {
+  const std::string head = "mesh box.ply\nstart \"0 0 2\"\n";
+  const cave::Cave c = cave::load_cave(
+      info(
+          head +
+          R"(boulder { position "3 0 1" radius "150 cm" after "20 s" within "6 m" to "3 4 1" speed "1 m/s" })"
+          "\nboulder { position \"1 1 1\" }\n"),
+      "");
+  ASSERT_EQ(c.description.boulders.size(), 2u);
+  const cave::LooseRock& b = c.description.boulders[0];
+  EXPECT_EQ(b.to, Vec3(3, 4, 1));
+  EXPECT_EQ(b.radius_m, 1.5);
+  EXPECT_EQ(b.after_s, 20);
+  EXPECT_EQ(b.within_m, 6);
+  EXPECT_EQ(b.speed_mps, 1);
+  EXPECT_EQ(c.description.boulders[1].to, Vec3(1, 1, 1));
+  EXPECT_NE(error_for(head + "boulder { radius \"1 m\" }").find("boulder.position"), std::string::npos);
+  EXPECT_NE(error_for(head + "boulder { position \"0 0 0\" radius \"1 s\" }").find("boulder.radius"),
+            std::string::npos);
+}
+
 TEST_F(CaveFiles, InfoFileIsReadWithItsMeshBesideIt) {
   const cave::Cave c = cave::load_cave(info(R"(
 mesh box.ply
