@@ -65,6 +65,38 @@ TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
 INSTANTIATE_TEST_SUITE_P(Plugins, MisbehavingPolicy,
                          ::testing::Values("endless_loop", "throwing", "only_nan_goals", "million_goals"));
 
+/// A rock as large as the passage falls five metres ahead, where the same flight came through at full speed.
+class Rockfall : public ::testing::TestWithParam<int> {};
+
+TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
+  const std::string cave = generated_cave("small", 7), seed = " --seed " + std::to_string(GetParam());
+  const auto folder = fresh_folder("flight_rockfall_" + std::to_string(GetParam()));
+  const std::string mission = seed + " --set mission.max_flight_time=70s --quiet --no-report --out ";
+  const Output scout = run_karst("fly --cave " + cave + mission + (folder / "scout").string());
+  ASSERT_EQ(scout.code, 0) << scout.text;
+  std::istringstream poses(bytes_of(folder / "scout" / "trajectory.tum"));
+  std::string place;
+  for (std::string line; place.empty() && std::getline(poses, line);) {
+    double t = 0, x = 0, y = 0, z = 0;
+    std::istringstream(line) >> t >> x >> y >> z;
+    if (t >= 20 + GetParam()) place = std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z);
+  }
+  ASSERT_FALSE(place.empty());
+  std::string info = bytes_of(cave);
+  const std::string folder_of_mesh = std::filesystem::path(cave).parent_path().string() + "/";
+  info.insert(info.find("mesh \"") + 6, folder_of_mesh);
+  std::ofstream(folder / "cave.info") << info << "\nboulder { position \"" << place
+                                      << "\" radius \"1.5 m\" within \"5 m\" after \"10 s\" }\n";
+  const auto run = folder / "run";
+  const Output out = run_karst("fly --cave " + (folder / "cave.info").string() + mission + run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  EXPECT_EQ(metrics_of(run)["contacts"], 0);
+  EXPECT_NE(bytes_of(run / "truth_events.jsonl").find("rockfall"), std::string::npos);
+  const std::string events = bytes_of(run / "events.jsonl");
+  EXPECT_NE(events.find("the map now forbids the path ahead"), std::string::npos);
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(1, 2));
+
 TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThreadCount) {
   const auto folder = fresh_folder("flight_twice");
   const std::string quiet = " --quiet --no-report --out " + folder.string();
