@@ -173,7 +173,7 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
   };
   auto result = std::make_shared<Result>();
   const std::uint32_t frontier = goal_ ? goal_->frontier_id : 0;
-  const bool check = phase_ == Phase::explore || phase_ == Phase::home;
+  const bool check = phase_ == Phase::takeoff || phase_ == Phase::explore || phase_ == Phase::home;
   executive_.job(
       "mapping", Lane::map, kMappingBudget,
       [this, result, frontier, make_rays = std::move(make_rays), here = flight_.state().position,

@@ -38,6 +38,7 @@ class MissionControl final : public VehicleSink {
  public:
   MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive, PolicyPort& policy,
                  Recorder& recorder);
+  ~MissionControl() override { executive_.drain(); }  // no job may outlive what it works on
 
   /// Flies the mission. `watch` is called every second of flight; it returns false to abort.
   MissionResult run(const std::function<bool(const MissionStatus&)>& watch);
@@ -87,7 +88,7 @@ class MissionControl final : public VehicleSink {
   void watch_progress();
 
   TimeNs now() const { return executive_.now(); }
-  std::vector<Vec3> path_ahead() const { return flight_.until_end(std::max(now(), tight_until_)).points; }
+  std::vector<Vec3> path_ahead() const;
 
   CoreOptions options_;
   VehicleDescription description_;

@@ -53,10 +53,13 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
                                      " is less than the vehicle's radius and half a cell, " +
                                      metres(least_m));
   constexpr double kMostCells = 14;  // that planning on bits can keep clear
-  if (std::max(o.planning.clearance_m, o.planning.preferred_clearance_m) > kMostCells * o.map.resolution_m)
-    refuse("planning.clearance", "more than " + std::to_string(static_cast<int>(kMostCells)) +
-                                     " cells of map.resolution (" + metres(o.map.resolution_m) +
-                                     "): choose coarser cells or less clearance");
+  for (const auto& [key, clearance_m] :
+       {std::pair{"planning.clearance", o.planning.clearance_m},
+        std::pair{"planning.preferred_clearance", o.planning.preferred_clearance_m}})
+    if (clearance_m > kMostCells * o.map.resolution_m)
+      refuse(key, metres(clearance_m) + " is more than " + std::to_string(static_cast<int>(kMostCells)) +
+                      " cells of map.resolution (" + metres(o.map.resolution_m) +
+                      "): choose coarser cells or less clearance");
 }
 
 }  // namespace karst::core

@@ -12,6 +12,17 @@ constexpr double kDetourMargin_m = 0.5;
 
 }  // namespace
 
+/// What is left of the trajectory and has to be clear.
+std::vector<Vec3> MissionControl::path_ahead() const {
+  std::vector<Vec3> ahead = flight_.until_end(std::max(now(), tight_until_)).points;
+  if (phase_ == Phase::takeoff) {  // it leaves the ground, which is near: a low roof is what matters
+    const double above_ground_m =
+        description_.T_world_start.position.z() + options_.planning.clearance_m + options_.map.resolution_m;
+    std::erase_if(ahead, [&](const Vec3& p) { return p.z() < above_ground_m; });
+  }
+  return ahead;
+}
+
 void MissionControl::on_map_update(const std::vector<CellChange>& changes,
                                    std::optional<double> blocked_after_m, bool goal_alive) {
   recorder_.map_changes(now(), changes);
@@ -24,14 +35,14 @@ void MissionControl::on_map_update(const std::vector<CellChange>& changes,
   const Flight::Onward until_decided = flight_.until_end(now()), stop = flight_.until_stop(decided);
   const double needed_m =
       seconds(decided - now()) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
-  if (*blocked_after_m > needed_m) {
+  if (*blocked_after_m > needed_m && phase_ != Phase::takeoff) {
     if (!detour_due_)
       recorder_.event(now(), "safety",
                       {{"action", "replan"}, {"reason", reason}, {"after_m", *blocked_after_m}});
     detour_due_ = true;
     return;
   }
-  path_blocked_ = true;
+  path_blocked_ = phase_ != Phase::takeoff;  // from there, exploring goes on below the roof
   detour_due_ = false;
   recorder_.event(now(), "safety", {{"action", "brake"}, {"reason", reason}, {"after_m", *blocked_after_m}});
   flight_.brake(now());

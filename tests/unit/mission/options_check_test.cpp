@@ -31,7 +31,12 @@ TEST(OptionsCheck, AClearanceOfTooManyCellsIsRefusedOnTheGround) {
   // As it was: the first decision threw in flight.
   CoreOptions o;
   o.map.resolution_m = 0.04;
-  EXPECT_NE(refusal(o).find("more than 14 cells"), std::string::npos) << refusal(o);
+  EXPECT_NE(refusal(o).find("planning.clearance: 0.600 m is more than 14 cells"), std::string::npos)
+      << refusal(o);
+  o = {};
+  o.planning.preferred_clearance_m = 5;
+  EXPECT_NE(refusal(o).find("planning.preferred_clearance: 5.000 m is more than 14 cells"), std::string::npos)
+      << refusal(o);
 }
 
 }  // namespace
