@@ -83,6 +83,8 @@ class Explorer {
 
   const VoxelMap& map() const { return map_; }
   const Vec3& home() const { return home_; }
+  /// Where the vehicle came to hover, if take-off had to stop lower than planned.
+  void set_home(const Vec3& hover_point) { home_ = hover_point; }
 
  private:
   struct KnownViewpoint {

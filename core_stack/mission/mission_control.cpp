@@ -113,6 +113,10 @@ void MissionControl::supervise() {
     case Phase::takeoff:
       if (!flight_.at_rest(now() - kSettling)) break;
       has_taken_off_ = true;
+      home_ = flight_.reference().position;
+      flown_ = {home_};
+      executive_.job(
+          "home", Lane::map, kMappingBudget, [this, home = home_] { explorer_.set_home(home); }, [] {});
       // A vehicle that sees all around already has nothing to look around for.
       if (!description_.lidar) flight_.look_around(now());
       enter(description_.lidar ? Phase::explore : Phase::look, "");
@@ -139,11 +143,12 @@ void MissionControl::record() {
   recorder_.pose(flight_.state());
   recorder_.telemetry({now(), name_of(phase_), flight_.state(), flight_.reference().position,
                        battery_.fraction_left, battery_.seconds_left, explored_m3_, home_distance_m_});
-  const Vec3& here = flight_.reference().position;
-  if (flown_.empty()) flown_.push_back(here);
-  if (const double step_m = (flown_.back() - here).norm(); step_m > kFlownStep_m) {
-    flown_m_ += step_m;
-    flown_.push_back(here);
+  if (has_taken_off_) {
+    const Vec3& here = flight_.reference().position;
+    if (const double step_m = (flown_.back() - here).norm(); step_m > kFlownStep_m) {
+      flown_m_ += step_m;
+      flown_.push_back(here);
+    }
   }
   if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
     begin_homing("the run directory cannot be written any more (disk full?)");

@@ -122,7 +122,8 @@ class MissionControl final : public VehicleSink {
   Vec3 last_landmark_ = Vec3::Zero();  // for judging progress
 
   // The way home.
-  std::vector<Vec3> flown_;  // the way come, a pose every quarter of a metre
+  Vec3 home_ = Vec3::Zero();  // the first hover
+  std::vector<Vec3> flown_;   // the way come, a pose every quarter of a metre
   double flown_m_ = 0;
   double home_distance_m_ = 0;
   int home_failures_ = 0;

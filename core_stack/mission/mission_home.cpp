@@ -57,7 +57,7 @@ void MissionControl::watch_battery() {
 
 void MissionControl::go_home() {
   if (home_planning_ || verdict_.action == SafetyAction::brake) return;
-  const bool at_home = (flight_.reference().position - explorer_.home()).norm() < kAboveHome_m;
+  const bool at_home = (flight_.reference().position - home_).norm() < kAboveHome_m;
   if (at_home && flight_.at_rest(now() - kSecond)) {
     enter(Phase::land, "");
   } else if (path_blocked_ || detour_due_ || (!at_home && flight_.at_rest(now()))) {
@@ -82,7 +82,7 @@ void MissionControl::plan_home_path() {
   auto path = std::make_shared<Path>();
   executive_.job(
       "home plan", Lane::map, kPlanningBudget,
-      [this, path, from = lead.points.back()] { *path = explorer_.plan_to(from, explorer_.home()); },
+      [this, path, from = lead.points.back(), home = home_] { *path = explorer_.plan_to(from, home); },
       [this, path, lead] {
         home_planning_ = false;
         if (phase_ != Phase::home) return;

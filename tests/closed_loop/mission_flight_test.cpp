@@ -65,6 +65,30 @@ TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
 INSTANTIATE_TEST_SUITE_P(Plugins, MisbehavingPolicy,
                          ::testing::Values("endless_loop", "throwing", "only_nan_goals", "million_goals"));
 
+/// The cave with loose rock in it, as a file in `folder`.
+std::string with_boulder(const std::string& cave, const std::filesystem::path& folder,
+                         const std::string& boulder) {
+  std::string info = bytes_of(cave);
+  info.insert(info.find("mesh \"") + 6, std::filesystem::path(cave).parent_path().string() + "/");
+  std::ofstream(folder / "cave.info") << info << "\nboulder { " << boulder << " }\n";
+  return (folder / "cave.info").string();
+}
+
+TEST(TakeOff, ARoofThatCameDownEndsTheClimbBelowItAndHomeIsThere) {
+  // As it was: the climb hit it; and where no path led home, the way back ended in the rock at the planned
+  // hover.
+  const auto folder = fresh_folder("flight_roof");
+  const std::string cave =
+      with_boulder(generated_cave("small", 7), folder, "position \"0 0 3.4\" radius \"1 m\" after \"1 s\"");
+  const Output out = run_karst("fly --cave " + cave +
+                               " --set mission.takeoff_height=2.4m --set mission.max_flight_time=60s"
+                               " --quiet --no-report --out " +
+                               (folder / "run").string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  EXPECT_EQ(metrics_of(folder / "run")["contacts"], 0);
+  EXPECT_GT(metrics_of(folder / "run")["path_length_m"].get<double>(), 20);
+}
+
 /// A rock as large as the passage falls five metres ahead, where the same flight came through at full speed.
 class Rockfall : public ::testing::TestWithParam<int> {};
 
@@ -82,13 +106,10 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
     if (t >= 20 + GetParam()) place = std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z);
   }
   ASSERT_FALSE(place.empty());
-  std::string info = bytes_of(cave);
-  const std::string folder_of_mesh = std::filesystem::path(cave).parent_path().string() + "/";
-  info.insert(info.find("mesh \"") + 6, folder_of_mesh);
-  std::ofstream(folder / "cave.info") << info << "\nboulder { position \"" << place
-                                      << "\" radius \"1.5 m\" within \"5 m\" after \"10 s\" }\n";
+  const std::string rocky =
+      with_boulder(cave, folder, "position \"" + place + "\" radius \"1.5 m\" within \"5 m\" after \"10 s\"");
   const auto run = folder / "run";
-  const Output out = run_karst("fly --cave " + (folder / "cave.info").string() + mission + run.string());
+  const Output out = run_karst("fly --cave " + rocky + mission + run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(metrics_of(run)["contacts"], 0);
   EXPECT_NE(bytes_of(run / "truth_events.jsonl").find("rockfall"), std::string::npos);
