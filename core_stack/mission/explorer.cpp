@@ -13,10 +13,9 @@ namespace {
 
 /// A round tries no more plans than this: the rest of a ranked list waits for the next round.
 constexpr int kMostPlans = 5;
-/// Rounds in which every goal of the policy was refused before the fallback is asked for one round; and how
-/// long a policy may hold a standing vehicle where it is.
-constexpr int kMostRefusedRounds = 4;
-constexpr TimeNs kMostHolding = 10 * kSecond;
+/// A vehicle that stands for so long, because the policy holds it or because none of its goals can be
+/// accepted, gets its next goal from the fallback.
+constexpr TimeNs kMostIdle = 4 * kSecond;
 /// A path under way is judged a little milder than a new one, or noise would stop every flight.
 constexpr double kClearanceSlack_m = 0.12;
 /// A cluster that has lost this share of its cells has been seen; flying on to it is a waste.
@@ -81,8 +80,8 @@ bool Explorer::cluster_alive(std::uint32_t id) const {
 }
 
 Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
-  const bool holds_too_long = holding_since_ && request.stamp - *holding_since_ >= kMostHolding;
-  if (!policy_failed_ && refused_rounds_ < kMostRefusedRounds && !holds_too_long) {
+  const bool idle_too_long = idle_since_ && request.stamp - *idle_since_ >= kMostIdle;
+  if (!policy_failed_ && !idle_too_long) {
     try {
       result.policy = policy_->name();
       return policy_->decide(request);
@@ -92,8 +91,7 @@ Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
     }
   }
   result.policy = fallback_.name();
-  refused_rounds_ = 0;
-  holding_since_.reset();
+  idle_since_.reset();
   return fallback_.decide(request);
 }
 
@@ -228,12 +226,10 @@ RoundResult Explorer::decide(const RoundInput& input) {
           last_resort ? "no frontier left that can be accepted" : "no goal of the policy could be accepted";
     }
   }
-  const bool standing_without_goal = !result.goal && input.standing;
-  refused_rounds_ = standing_without_goal && !result.rejected.empty() ? refused_rounds_ + 1 : 0;
-  if (standing_without_goal && decision.outcome == Outcome::hold) {
-    if (!holding_since_) holding_since_ = input.now;
-  } else {
-    holding_since_.reset();
+  if (result.goal || !input.standing) {
+    idle_since_.reset();
+  } else if (!idle_since_) {
+    idle_since_ = input.now;
   }
   if (!policy_failed_)
     for (const RejectedGoal& r : result.rejected)

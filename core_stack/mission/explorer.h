@@ -104,8 +104,7 @@ class Explorer {
   PolicyPort* policy_;
   FallbackPolicy fallback_;
   bool policy_failed_ = false;
-  int refused_rounds_ = 0;               // in a row, standing still
-  std::optional<TimeNs> holding_since_;  // the policy's own wish
+  std::optional<TimeNs> idle_since_;  // standing, and no goal of the policy could be accepted
   std::uint32_t sequence_ = 0;
 
   VoxelMap map_;

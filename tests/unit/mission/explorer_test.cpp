@@ -137,19 +137,23 @@ TEST(Explorer, AFailedPolicyIsReplacedByTheFallbackForGood) {
 TEST(Explorer, APolicyThatOnlyProposesTheImpossibleIsPassedOverForARound) {
   Room room;
   int fallback_rounds = 0;
-  for (int i = 0; i < 10; ++i) fallback_rounds += room.propose(Vec3(50, 50, 50)).policy == "fallback";
+  for (int i = 0; i < 10; ++i) {
+    room.input.now = i * kSecond;
+    fallback_rounds += room.propose(Vec3(50, 50, 50)).policy == "fallback";
+  }
   EXPECT_EQ(fallback_rounds, 2);
 }
 
-TEST(Explorer, APolicyMayHoldTheVehicleForTenSecondsAndNoLonger) {
-  // As it was: four rounds of holding, less than two seconds, and the fallback flew off.
+TEST(Explorer, APolicyMayHoldAStandingVehicleForFourSecondsAndNoLonger) {
+  // As it was: a policy that now held, now proposed what had to be refused, held the vehicle for 14 s.
   Room room;
   const auto hold = [](const DecisionRequest&) { return Decision{}; };
-  for (int second = 0; second < 10; ++second) {
+  for (int second = 0; second < 4; ++second) {
     room.input.now = second * kSecond;
-    EXPECT_EQ(room.decide(hold).policy, "scripted") << second;
+    EXPECT_EQ((second == 2 ? room.propose(Vec3(50, 50, 50)) : room.decide(hold)).policy, "scripted")
+        << second;
   }
-  room.input.now = 10 * kSecond;
+  room.input.now = 4 * kSecond;
   EXPECT_EQ(room.decide(hold).policy, "fallback");
 }
 
@@ -195,7 +199,10 @@ TEST(Explorer, WhenTheBatteryAllowsNoGoalTheFlightIsOver) {
   room.input.seconds_left = 21;
   Outcome last = Outcome::hold;
   int rounds = 0;
-  for (; rounds < 10 && last == Outcome::hold; ++rounds) last = room.propose(Vec3(6.5, 4, 2)).outcome;
+  for (; rounds < 10 && last == Outcome::hold; ++rounds) {
+    room.input.now = rounds * kSecond;
+    last = room.propose(Vec3(6.5, 4, 2)).outcome;
+  }
   EXPECT_EQ(last, Outcome::explored);
   EXPECT_LE(rounds, 5);
 }
