@@ -44,6 +44,9 @@ Vec3 read_vector(const std::string& source, const std::string& key, const std::s
 
 StartPose read_start(const std::string& source, const std::string& text) {
   const auto n = read_numbers(source, "start", text, 3, 4, "\"x y z [heading_deg]\"");
+  for (std::size_t i = 0; i < 3; ++i)  // as far as a mesh may reach
+    if (std::abs(n[i]) > 1e5)
+      throw InputError(source, "start", "expected a place within 100 km of the origin, got \"" + text + "\"");
   return {{n[0], n[1], n[2]}, n.size() == 4 ? n[3] * std::numbers::pi / 180.0 : 0.0};
 }
 
