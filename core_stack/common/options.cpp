@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_lines.h"
 #include "core_stack/common/units.h"
 
 namespace karst::core {
@@ -188,11 +189,17 @@ std::vector<std::pair<std::string, std::string>> leaves_of(const pt::ptree& tree
 }
 
 pt::ptree read_info(const std::string& path) {
+  const std::vector<InfoLine> lines = info_lines(path);
+  check_depth(lines);
+  std::stringstream text;
+  for (const InfoLine& line : lines) text << line.text << '\n';
   pt::ptree tree;
   try {
-    pt::read_info(path, tree);
+    pt::read_info(text, tree);
   } catch (const pt::info_parser_error& e) {
-    throw InputError(path, e.line() == 0 ? "" : "line " + std::to_string(e.line()), e.message());
+    if (e.line() == 0 || lines.empty()) throw InputError(path, "", e.message());
+    const InfoLine& line = lines[std::min<std::size_t>(e.line(), lines.size()) - 1];
+    throw InputError(line.file, line.place(), e.message());
   }
   return tree;
 }
