@@ -46,6 +46,9 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
     throw InputError("mission", key, reason);
   };
   const auto metres = [](double m) { return std::to_string(m).substr(0, 5) + " m"; };
+  if (o.motion.min_speed_mps > o.motion.max_speed_mps)
+    refuse("motion.min_speed", "is greater than motion.max_speed, " +
+                                   std::to_string(o.motion.max_speed_mps).substr(0, 5) + " m/s");
   // Obstacles are cells, whose surface may lie half an edge nearer than their centre.
   const double least_m = vehicle.radius_m + o.map.resolution_m / 2;
   if (o.planning.clearance_m < least_m)

@@ -5,6 +5,8 @@
 namespace karst::host {
 namespace {
 
+constexpr const char* kPath = "policy.parameters";  // in a mission file
+
 std::string string_of(const karst_text_t& t) { return t.length == 0 ? "" : std::string(t.data, t.length); }
 
 }  // namespace
@@ -22,30 +24,35 @@ std::vector<std::string> split_choices(const std::string& choices) {
 ResolvedParameters::ResolvedParameters(const karst_policy_descriptor_t& descriptor,
                                        const boost::property_tree::ptree& given, const std::string& source) {
   core::OptionTable table;
-  for (std::uint32_t i = 0; i < descriptor.parameter_count; ++i) {
-    const karst_parameter_t& p = descriptor.parameters[i];
-    Field& f = fields_.emplace_back(Field{string_of(p.id), p.type, 0.0});
-    const std::string help = string_of(p.help);
-    switch (p.type) {
-      case KARST_PARAMETER_REAL:
-        f.value = p.default_number;
-        table.add(f.id, std::get<double>(f.value), string_of(p.unit), p.low, p.high, help);
-        break;
-      case KARST_PARAMETER_INTEGER:
-        f.value = static_cast<std::int64_t>(p.default_number);
-        table.add(f.id, std::get<std::int64_t>(f.value), p.low, p.high, help);
-        break;
-      case KARST_PARAMETER_BOOLEAN:
-        f.value = p.default_number != 0.0;
-        table.add(f.id, std::get<bool>(f.value), help);
-        break;
-      default:
-        f.value = string_of(p.default_text);
-        table.add(f.id, std::get<std::string>(f.value), split_choices(string_of(p.choices)), help);
+  const auto declare = [&](core::OptionTable& t) {
+    for (std::uint32_t i = 0; i < descriptor.parameter_count; ++i) {
+      const karst_parameter_t& p = descriptor.parameters[i];
+      Field& f = fields_.emplace_back(Field{string_of(p.id), p.type, 0.0});
+      const std::string help = string_of(p.help);
+      switch (p.type) {
+        case KARST_PARAMETER_REAL:
+          f.value = p.default_number;
+          t.add(f.id, std::get<double>(f.value), string_of(p.unit), p.low, p.high, help);
+          break;
+        case KARST_PARAMETER_INTEGER:
+          f.value = static_cast<std::int64_t>(p.default_number);
+          t.add(f.id, std::get<std::int64_t>(f.value), p.low, p.high, help);
+          break;
+        case KARST_PARAMETER_BOOLEAN:
+          f.value = p.default_number != 0.0;
+          t.add(f.id, std::get<bool>(f.value), help);
+          break;
+        default:
+          f.value = string_of(p.default_text);
+          t.add(f.id, std::get<std::string>(f.value), split_choices(string_of(p.choices)), help);
+      }
     }
-  }
-  table.read(source, given);
-  tree_ = table.resolved();
+  };
+  table.under(kPath, declare);
+  boost::property_tree::ptree mission;
+  mission.put_child(kPath, given);
+  if (!given.empty()) table.read(source, mission);
+  tree_ = table.resolved().get_child(kPath, {});
 }
 
 std::vector<karst_parameter_value_t> ResolvedParameters::values() const {
