@@ -20,7 +20,7 @@ build:
 
 demo: build
 	@mkdir -p runs
-	@test -f runs/demo_cave.info || $(BUILD)/bin/karst cave generate --preset small --seed 7 --out runs/demo_cave
+	@test -f runs/demo_cave.info || $(BUILD)/bin/karst cave generate --force --preset small --seed 7 --out runs/demo_cave
 	@rm -rf $(DEMO_RUN)
 	@$(BUILD)/bin/karst fly examples/missions/demo.info --out $(DEMO_RUN)
 

@@ -12,6 +12,7 @@
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
+#include "sdk/tools/arguments.h"
 #include "sdk/tools/cave_facts.h"
 
 namespace karst::tools {
@@ -25,6 +26,7 @@ struct GenerateArguments {
   std::string preset = "small", out, format = "ply";
   std::vector<std::string> set;
   std::uint64_t seed = 1;
+  bool force = false;
 };
 
 struct InfoArguments {
@@ -99,6 +101,9 @@ void generate(const GenerateArguments& args) {
       stem.has_parent_path() && (fs::create_directories(stem.parent_path(), failed), failed))
     throw InputError(stem.parent_path().string(), "", "cannot be made: " + failed.message());
   const std::string mesh_path = args.out + "." + args.format, info_path = args.out + ".info";
+  for (const std::string& path : {mesh_path, info_path})
+    if (fs::exists(path) && !args.force)
+      throw InputError(path, "", "is there already; choose another --out, or give --force to overwrite it");
 
   Progress progress;
   const cave::GeneratedCave cave =
@@ -230,20 +235,26 @@ void add_cave_command(CLI::App& app) {
   auto g = std::make_shared<GenerateArguments>();
   CLI::App* make = cave->add_subcommand("generate", "Make a cave: writes OUT.ply and OUT.info");
   make->add_option("--preset", g->preset, "The kind of cave to start from")->capture_default_str();
-  make->add_option("--seed", g->seed, "Another seed, another cave of the kind")->capture_default_str();
-  make->add_option("--out,-o", g->out, "Path of the cave without ending, such as caves/demo")->required();
+  make->add_option("--seed", g->seed, "Another seed, another cave of the kind")
+      ->check(whole_64_bits())
+      ->capture_default_str();
+  make->add_option("--out,-o", g->out, "Path of the cave without ending, such as caves/demo")
+      ->required()
+      ->check(not_empty());
   make->add_option("--set", g->set, "A value of the recipe, key=value; any number of these")
       ->allow_extra_args(false);
   make->add_option("--format", g->format, "Of the mesh")
       ->check(CLI::IsMember({"ply", "stl"}))
       ->capture_default_str();
+  make->add_flag("--force", g->force, "Overwrite a cave that is there");
   make->footer(generate_footer);
   make->callback([g] { generate(*g); });
 
   auto i = std::make_shared<InfoArguments>();
   CLI::App* tell = cave->add_subcommand("info", "Size, start, clearance and reachable volume of a cave");
   tell->add_option("file", i->file, "A cave's .info file, or a mesh")->required();
-  tell->add_option("--start", i->start, "\"x y z\", for a mesh or instead of the file's own");
+  tell->add_option("--start", i->start, "\"x y z\", for a mesh or instead of the file's own")
+      ->check(not_empty());
   tell->add_option("--resolution", i->options.resolution_m, "Edge of the map's cells, m")
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();

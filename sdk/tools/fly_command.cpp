@@ -14,8 +14,10 @@
 
 #include "core_stack/common/error.h"
 #include "sdk/host/hosted_policy.h"
+#include "sdk/tools/arguments.h"
 #include "sdk/tools/mission_file.h"
 #include "sdk/tools/report_command.h"
+#include "sdk/tools/run_files.h"
 #include "sdk/tools/status_line.h"
 #include "sdk/tools/timing.h"
 
@@ -28,6 +30,14 @@ constexpr int kNotLanded = 2;  // exit code of a flight that did not end with th
 
 std::atomic<bool> interrupted{false};
 void on_signal(int) { interrupted = true; }
+
+/// A terminal that goes away stops a mission like Ctrl-C; a reader of the status lines that does, stops
+/// nothing.
+void catch_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
+  std::signal(SIGPIPE, SIG_IGN);
+}
 
 struct FlyArguments {
   std::string mission_file, out;
@@ -104,44 +114,44 @@ int fly(const FlyArguments& args) {
   setup.run_dir = run_dir.string();
   setup.climb_m = mission.core.mission.takeoff_height_m;
   setup.seed = static_cast<std::uint64_t>(mission.seed);
-  std::error_code ignored;
-  const bool new_dir = !fs::exists(run_dir, ignored);
+  catch_signals();  // from here on there is something to tidy up
+  RunClaim claim(run_dir);
   core::Recorder recorder(run_dir);
-  std::unique_ptr<core::Vehicle> vehicle;
-  try {
-    vehicle = mission.vehicle_plugin->create(setup);
-    core::check(mission.core, vehicle->description());
-  } catch (...) {
-    // Nothing flew: leave the name free for the next try.
-    fs::remove(run_dir / "events.jsonl", ignored);
-    if (new_dir) fs::remove_all(run_dir, ignored);
-    throw;
-  }
+  const std::unique_ptr<core::Vehicle> vehicle = mission.vehicle_plugin->create(setup);
+  core::check(mission.core, vehicle->description());
   const RecordedFacts facts{policy->version(), vehicle->description().implementation};
   write_mission_info(run_dir, recorded_mission(mission, policy->parameters(), facts));
+  if (interrupted) throw core::InputError("karst fly", "", "stopped by the operator before take-off");
+  claim.keep();
 
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
   core::Executive executive(args.threads);
   core::MissionControl control(mission.core, *vehicle, executive, *policy, recorder);
-  StatusLine line(args.quiet || args.json);
-  const auto begin = std::chrono::steady_clock::now();
-  const core::MissionResult result = control.run([&](const core::MissionStatus& status) {
-    line.show(status);
-    return !interrupted.load();
-  });
-  line.end();
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  write_timing(run_dir, executive, wall.count());
-  const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.no_report);
-  if (args.json) {
-    std::cout << metrics.dump(2) << std::endl;
-  } else {
-    print_summary(metrics, run_dir, !args.no_report);
+  int code = kNotLanded;
+  try {
+    StatusLine line(args.quiet || args.json);
+    const auto begin = std::chrono::steady_clock::now();
+    const core::MissionResult result = control.run([&](const core::MissionStatus& status) {
+      line.show(status);
+      return !interrupted.load();
+    });
+    line.end();
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    write_timing(run_dir, executive, wall.count());
+    const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.no_report);
+    if (args.json) {
+      std::cout << metrics.dump(2) << std::endl;
+    } else {
+      print_summary(metrics, run_dir, !args.no_report);
+    }
+    if (result.outcome == "landed") code = std::fflush(stdout) == 0 ? 0 : 1;
+  } catch (const std::exception& e) {  // a full disk: it flew all the same
+    std::fprintf(stderr, "karst: %s\nkarst: the flight's record is incomplete: %s\n", e.what(),
+                 run_dir.c_str());
   }
-  std::fflush(stdout);
-  const int code = result.outcome == "landed" ? 0 : kNotLanded;
-  if (policy->abandoned()) std::_Exit(code);  // its thread hangs in the plugin: nothing may be torn down
+  if (policy->abandoned()) {  // its thread hangs in the plugin: nothing may be torn down
+    std::fflush(stdout);
+    std::_Exit(code);
+  }
   return code;
 }
 
@@ -155,16 +165,22 @@ void add_fly_command(CLI::App& app) {
       "  karst fly examples/missions/demo.info\n"
       "  karst fly --cave caves/tunnel.stl --start \"1 2 1.5 90\" --policy highest_frontier\n"
       "  karst fly demo.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
-      "Exit code: 0 landed at the start, 2 flown but not landed there, 1 not flown.");
-  fly_app->add_option("mission", args->mission_file, "mission file (.info)");
-  fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)");
-  fly_app->add_option("--start", args->overrides.start,
-                      "\"x y z [heading_deg]\" above the floor to start from");
-  fly_app->add_option("--policy", args->overrides.policy, "exploration policy; see karst policy list");
-  fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first");
-  fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys");
-  fly_app->add_option("--seed", args->seed, "seed of every random stream");
-  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED");
+      "Exit code: 0 landed at the start, 2 flown but not landed there or the record is incomplete, 1 not "
+      "flown or nothing could be printed.");
+  fly_app->add_option("mission", args->mission_file, "mission file (.info)")->check(not_empty());
+  fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
+      ->check(not_empty());
+  fly_app
+      ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
+      ->check(not_empty());
+  fly_app->add_option("--policy", args->overrides.policy, "exploration policy; see karst policy list")
+      ->check(not_empty());
+  fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")->allow_extra_args(false);
+  fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
+  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")->check(not_empty());
   fly_app
       ->add_option("--threads", args->threads,
                    "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "

@@ -2,12 +2,37 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/table_command.h"
+
+namespace {
+
+/// The first word that names no command, where one was expected; "" if the words are fine so far.
+std::string wrong_command(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
+  const std::vector<std::string> rest = at->remaining();
+  if (at->get_require_subcommand_min() == 0 || rest.empty()) return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : at->get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const std::string near = karst::core::nearest_name(rest.front(), names);
+  return "\"" + rest.front() + "\" is no command" + (near.empty() ? "" : "; did you mean " + near + "?");
+}
+
+/// CLI11's own codes above 100 are of no use to a script: a usage error is an error like any other.
+int exit_code(const CLI::App& app, const CLI::ParseError& e) {
+  if (e.get_name() == "RuntimeError") return e.get_exit_code();
+  const std::string wrong = e.get_exit_code() == 0 ? "" : wrong_command(app);
+  if (!wrong.empty()) std::fprintf(stderr, "karst: %s\n", wrong.c_str());
+  return app.exit(e) == 0 ? 0 : 1;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
@@ -23,13 +48,16 @@ int main(int argc, char** argv) {
   karst::tools::add_cave_command(app);
   karst::tools::add_report_command(app);
   karst::tools::add_table_command(app);
+  int code = 0;
   try {
     app.parse(argc, argv);
-    return 0;
   } catch (const CLI::ParseError& e) {
-    return app.exit(e);
+    code = exit_code(app, e);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "karst: %s\n", e.what());
-    return 1;
+    code = 1;
   }
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr, "karst: standard output cannot be written\n");
+  return code == 0 ? 1 : code;
 }

@@ -1,5 +1,6 @@
 #include "sdk/tools/mission_file.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core_stack/common/error.h"
@@ -63,11 +64,25 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   m.file = file.empty() ? "command line" : file;
   pt::ptree tree = file.empty() ? pt::ptree() : core::read_info(file);
   m.policy_parameters = take(tree, kParameters);  // the policy itself says which keys it knows
+  if (!m.policy_parameters.data().empty())
+    throw InputError(m.file, kParameters,
+                     "expected a block { ... }, got \"" + m.policy_parameters.data() + "\"");
   for (const char* fact : {kPolicyVersion, kVehicleImplementation, kKarstVersion}) take(tree, fact);
 
   std::vector<std::pair<std::string, std::string>> settings;
   for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
   settings.insert(settings.end(), overrides.values.begin(), overrides.values.end());
+
+  const auto set_to = [&settings](const char* wanted) {
+    return std::any_of(settings.begin(), settings.end(), [&](const auto& s) { return s.first == wanted; });
+  };
+  const auto refuse_both = [&](const std::string& option, const char* flag, const char* key) {
+    if (!option.empty() && set_to(key))
+      throw InputError("--set", key, std::string("is given by ") + flag + " as well");
+  };
+  refuse_both(overrides.cave, "--cave", "cave.file");
+  refuse_both(overrides.start, "--start", "cave.start");
+  refuse_both(overrides.policy, "--policy", "policy.name");
 
   // The vehicle comes first: its plugin adds its own section to the table.
   m.vehicle = tree.get("vehicle", m.vehicle);
@@ -90,7 +105,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   }
   if (!overrides.cave.empty()) {
     m.cave = overrides.cave;
-    m.start = "";  // another cave, another start
+    if (!set_to("cave.start")) m.start = "";  // another cave, another start
   }
   if (!overrides.start.empty()) m.start = overrides.start;
   if (!overrides.policy.empty() && overrides.policy != m.policy) {

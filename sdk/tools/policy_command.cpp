@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sdk/host/discovery.h"
+#include "sdk/tools/arguments.h"
 
 namespace karst::tools {
 namespace {
@@ -81,7 +82,10 @@ void add_policy_command(CLI::App& app) {
   policy->require_subcommand(1);
   CLI::App* list =
       policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
-  list->add_option("--plugin", args->plugins, "Look at this plugin file first")->type_name("FILE");
+  list->add_option("--plugin", args->plugins, "Look at this plugin file first")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->check(not_empty());
   list->add_flag("--json", args->json, "Write JSON");
   list->add_flag("--verbose,-v", args->verbose, "With parameters and the folders searched");
   list->callback([args] {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <boost/property_tree/ptree.hpp>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -49,20 +50,40 @@ evaluation::Truth truth_of(const std::string& cave_file, const std::string& star
   return truth;
 }
 
+/// What only the cave's mesh can say stays as it was last written, if the cave can no longer be read.
+void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
+  std::ifstream in(run_dir / "metrics.json");
+  if (!in || !fs::is_regular_file(run_dir / "metrics.json")) return;
+  const auto before = nlohmann::ordered_json::parse(in, nullptr, false);
+  if (!before.is_object()) return;
+  std::string kept;
+  for (const char* key : {"reachable_volume_m3", "coverage", "t50_s", "t90_s", "t95_s", "map_error_mean_m",
+                          "map_error_std_m"}) {
+    const auto value = before.find(key);
+    if (value == before.end() || !value->is_number() || !metrics[key].is_null()) continue;
+    metrics[key] = *value;
+    kept += (kept.empty() ? "" : ", ") + std::string(key);
+  }
+  if (!kept.empty()) std::fprintf(stderr, "karst: kept from the metrics.json there was: %s\n", kept.c_str());
+}
+
 }  // namespace
 
 nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, const std::string& start,
                           bool with_report) {
   evaluation::Truth truth;
+  bool lost_cave = false;
   if (!cave.empty()) {
     try {
       truth = truth_of(cave, start, cell_size_m(run_dir));
     } catch (const core::InputError& e) {
+      lost_cave = true;
       std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());
     }
   }
   std::vector<std::string> problems;
-  const nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &problems);
+  nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &problems);
+  if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
   if (with_report) evaluation::write_report(run_dir);

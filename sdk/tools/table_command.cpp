@@ -8,8 +8,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "core_stack/common/error.h"
-
 namespace karst::tools {
 namespace {
 
@@ -31,13 +29,25 @@ constexpr std::array kColumns = {
     Column{"map_error_mean_m", "map error m", "%.3f", 1},
 };
 
-nlohmann::json metrics_of(const std::string& run) {
-  const std::filesystem::path file = std::filesystem::path(run) / "metrics.json";
+/// A run that is under way, or never flew, has no figures yet; for one that is no run or whose figures are
+/// damaged `problem` says so as well.
+nlohmann::json metrics_of(const std::string& run, std::string& problem) {
+  namespace fs = std::filesystem;
+  const auto row = [&run](const char* outcome) {
+    return nlohmann::json{{"cave", run}, {"outcome", outcome}};
+  };
+  if (!fs::is_directory(run)) {
+    problem = run + ": no such run directory";
+    return row("no such run");
+  }
+  const fs::path file = fs::path(run) / "metrics.json";
+  if (!fs::exists(file)) return row("no metrics.json");
   std::ifstream in(file);
-  if (!in) return {{"cave", run}, {"outcome", "no metrics.json"}};  // under way, or never flew
-  const nlohmann::json metrics = nlohmann::json::parse(in, nullptr, false);
-  if (!metrics.is_object()) throw core::InputError(file.string(), "", "is no JSON object");
-  return metrics;
+  nlohmann::json metrics;
+  if (fs::is_regular_file(file)) metrics = nlohmann::json::parse(in, nullptr, false);
+  if (metrics.is_object()) return metrics;
+  problem = file.string() + ": is no JSON object";
+  return row("damaged metrics.json");
 }
 
 std::string text_of(const nlohmann::json& metrics, const char* key) {
@@ -65,13 +75,19 @@ void add_table_command(CLI::App& app) {
     std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
     for (const Column& c : kColumns) head += std::string(" ") + c.title + " |", rule += "---:|";
     std::printf("%s\n%s\n", head.c_str(), rule.c_str());
+    std::vector<std::string> problems;
     for (const std::string& run : *runs) {
-      const nlohmann::json m = metrics_of(run);
+      std::string problem;
+      const nlohmann::json m = metrics_of(run, problem);
+      if (!problem.empty()) problems.push_back(problem);
       std::string line = "|";
       for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
       for (const Column& c : kColumns) line += " " + text_of(m, c) + " |";
       std::printf("%s\n", line.c_str());
     }
+    std::fflush(stdout);
+    for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
+    if (!problems.empty()) throw CLI::RuntimeError(1);
   });
 }
 

@@ -83,7 +83,15 @@ TEST(BadInput, AnUnknownKeyAndAWrongUnit) {
   expect_refused(fly(dir, b), {"b.info", "motion.max_speed", "m/s", "kg"});
   const std::string c = written(
       dir / "c.info", "cave { file box.stl start \"0 0 0\" }\npolicy { parameters { nonsense 1 } }\n");
-  expect_refused(fly(dir, c), {"c.info", "nonsense"});
+  expect_refused(fly(dir, c), {"c.info", "policy.parameters.nonsense"});
+}
+
+TEST(BadInput, SpeedsInTheWrongOrder) {
+  const fs::path dir = fresh_folder("bad_speeds");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  expect_refused(
+      fly(dir, "--cave " + mesh + " --start '0 0 0' --set motion.min_speed=1 --set motion.max_speed=0.5"),
+      {"motion.min_speed", "motion.max_speed"});
 }
 
 TEST(BadInput, AMissingPolicy) {
@@ -125,6 +133,108 @@ TEST(BadInput, ARunIsNeverOverwritten) {
   written(dir / "run" / "events.jsonl", "precious\n");
   expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {"another run"});
   EXPECT_EQ(bytes_of(dir / "run" / "events.jsonl"), "precious\n");
+}
+
+TEST(BadInput, AStartBeyondAHundredKilometres) {
+  const fs::path dir = fresh_folder("bad_far");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  for (const char* start : {"0 0 1e19", "1e37 0 0", "0 -1e300 0", "100001 0 0"})
+    expect_refused(fly(dir, "--cave " + mesh + " --start '" + start + "'"), {"start", "within 100 km"});
+}
+
+TEST(BadInput, AMissionNestedAHundredThousandDeep) {
+  const fs::path dir = fresh_folder("bad_deep");
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += "a {\n";
+  expect_refused(fly(dir, written(dir / "deep.info", deep)), {"deep.info", "line 101", "deep"});
+}
+
+TEST(BadInput, AFileOfTheUsersIsNeverOverwritten) {
+  const fs::path dir = fresh_folder("bad_user_files");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  for (const char* name : {"mission.info", "map.ply", "report.html", "truth.csv"}) {
+    fs::create_directories(dir / "run");
+    written(dir / "run" / name, "precious\n");
+    expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {name, "is there already"});
+    EXPECT_EQ(bytes_of(dir / "run" / name), "precious\n");
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir / "run"), {}), 1);
+    fs::remove_all(dir / "run");
+  }
+}
+
+TEST(BadInput, ARefusedFlightLeavesNothingInADirectoryThatWasThere) {
+  const fs::path dir = fresh_folder("bad_refused");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  fs::create_directories(dir / "run");
+  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 -2' --set mission.takeoff_height=8m"), {"start"});
+  EXPECT_TRUE(fs::is_empty(dir / "run"));
+}
+
+TEST(BadInput, EmptyOptionsAreNoDefaults) {
+  const fs::path dir = fresh_folder("bad_empty");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  for (const char* option : {"--policy", "--seed", "--start", "--out", "--plugin"})
+    expect_refused(run_karst("fly --cave " + mesh + " " + option + " ''"), {option});
+}
+
+TEST(BadInput, ASeedOfACaveThatIsNone) {
+  const fs::path dir = fresh_folder("bad_cave_seed");
+  for (const char* seed : {"-1", "18446744073709551616", "1.5", "''"})
+    expect_refused(run_karst("cave generate --out " + (dir / "c").string() + " --seed " + seed), {"--seed"});
+  EXPECT_TRUE(fs::is_empty(dir));
+}
+
+TEST(BadInput, ACaveIsNotOverwrittenUnlessForced) {
+  const fs::path dir = fresh_folder("bad_cave_there");
+  written(dir / "c.ply", "precious\n");
+  const std::string generate =
+      "cave generate --set volume=500 --set 'grid=0.4 m' --out " + (dir / "c").string();
+  expect_refused(run_karst(generate), {"c.ply", "--force"});
+  EXPECT_EQ(bytes_of(dir / "c.ply"), "precious\n");
+  const Output forced = run_karst(generate + " --force");
+  EXPECT_EQ(forced.code, 0) << forced.text;
+}
+
+TEST(BadInput, AFullStandardOutput) {
+  for (const char* command : {"--help", "policy list", "fly --keys"})
+    expect_refused(run_karst(std::string(command) + " 2>&1 >/dev/full #"), {"standard output"});
+}
+
+TEST(BadInput, ASettingDoesNotSwallowTheMissionFile) {
+  const fs::path dir = fresh_folder("bad_swallow");
+  expect_refused(run_karst("fly --set seed=3 " + (dir / "none.info").string()), {"none.info", "cannot open"});
+}
+
+TEST(BadInput, ATableOfRunsNamesWhatIsNone) {
+  const fs::path dir = fresh_folder("bad_table");
+  fs::create_directories(dir / "cut");
+  fs::create_directories(dir / "good");
+  written(dir / "cut" / "metrics.json", "{\"cave\": \"c");
+  written(dir / "good" / "metrics.json", "{\"cave\": \"lava\", \"outcome\": \"landed\"}");
+  expect_refused(run_karst("table " + (dir / "nope").string()), {"nope: no such run"});
+  expect_refused(run_karst("table " + (dir / "cut").string() + " " + (dir / "good").string()),
+                 {"damaged metrics.json", "| lava |"});
+}
+
+TEST(BadInput, AReportWithoutItsCaveKeepsWhatIsKnown) {
+  const fs::path dir = fresh_folder("bad_moved_cave");
+  written(dir / "mission.info", "cave { file /nowhere/moved.ply start \"0 0 0\" }\n");
+  written(dir / "metrics.json",
+          "{\"coverage\": 0.625, \"reachable_volume_m3\": 512.5, \"drift_percent\": 3}");
+  const Output out = run_karst("report " + dir.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  EXPECT_TRUE(out.says("moved.ply") && out.says("kept") && out.says("coverage")) << out.text;
+  const std::string metrics = bytes_of(dir / "metrics.json");
+  EXPECT_NE(metrics.find("\"coverage\": 0.625"), std::string::npos) << metrics;
+  EXPECT_NE(metrics.find("\"reachable_volume_m3\": 512.5"), std::string::npos) << metrics;
+  EXPECT_NE(metrics.find("\"drift_percent\": null"), std::string::npos) << "the cave does not say this one";
+}
+
+TEST(BadInput, UsageErrorsNameTheWord) {
+  expect_refused(run_karst("reprt x"), {"\"reprt\" is no command", "did you mean report"});
+  expect_refused(run_karst("cave genrate --out x"), {"\"genrate\" is no command", "did you mean generate"});
+  expect_refused(run_karst("fly --polcy x"), {"--polcy"});
+  expect_refused(run_karst("fly --threads many"), {"--threads", "many"});
 }
 
 TEST(BadInput, UsageErrorsTeach) {

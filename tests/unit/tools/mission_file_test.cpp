@@ -91,6 +91,53 @@ TEST(MissionFile, TheCommandLineWins) {
   EXPECT_EQ(m.core.motion.max_speed_mps, 1.0);
 }
 
+TEST(MissionFile, ASettingIsHonouredOrRefusedBesideItsOption) {
+  MissionOverrides o;
+  o.cave = "other.ply";
+  o.settings = {"cave.start=4 5 6"};
+  EXPECT_EQ(read_mission(written("start_set.info", "cave { file a.ply start \"0 0 0\" }\n"), o).start,
+            "4 5 6");
+  o.settings = {"cave.file=a.ply"};
+  EXPECT_TRUE(holds(error_of("file_set.info", "seed 1\n", o), "cave.file: is given by --cave as well"));
+}
+
+TEST(MissionFile, ParametersThatAreNoBlockAreRefused) {
+  const std::string e = error_of("no_block.info", "policy { parameters 7 }\n");
+  EXPECT_TRUE(holds(e, "policy.parameters") && holds(e, "{ ... }")) << e;
+}
+
+TEST(MissionFile, AnIncludedFileLiesBesideTheFileThatIncludesIt) {
+  written("parts/inner.info", "seed 12\n");
+  written("parts/part.info", "#include \"inner.info\"\nmotion { max_speed\n");
+  written("parts/good.info", "#include \"inner.info\"\n");
+  EXPECT_EQ(read_mission(written("includes.info", "; a comment\n#include \"parts/good.info\"\n"), {}).seed,
+            12);
+  const std::string cut = error_of("cut_part.info", "seed 1\n#include \"parts/part.info\"\n");
+  EXPECT_TRUE(holds(cut, "parts/part.info: line 2")) << cut;
+  const std::string absent = error_of("absent_part.info", "seed 1\n#include \"none.info\"\n");
+  EXPECT_TRUE(holds(absent, "absent_part.info: line 2") && holds(absent, "none.info")) << absent;
+  const std::string round = error_of("round.info", "#include \"round.info\"\n");
+  EXPECT_TRUE(holds(round, "include each other")) << round;
+}
+
+TEST(MissionFile, AByteOrderMarkAndADirectoryAreNamed) {
+  EXPECT_TRUE(holds(error_of("bom.info", "\xEF\xBB\xBFseed 1\n"), "byte order mark"));
+  try {
+    read_mission(KARST_BINARY_DIR, {});
+    ADD_FAILURE() << "a directory was read";
+  } catch (const core::InputError& e) {
+    EXPECT_TRUE(holds(e.what(), "is a directory")) << e.what();
+  }
+}
+
+TEST(MissionFile, BracesInWordsQuotesAndCommentsAreNoDepth) {
+  std::string text = "; ";
+  for (int i = 0; i < 300; ++i) text += "{ ";
+  text += "\ncave { file \"";
+  for (int i = 0; i < 300; ++i) text += "{ ";
+  EXPECT_EQ(error_of("braces.info", text + "\\\" {\" }\n"), "accepted");
+}
+
 TEST(MissionFile, ASettingWithoutEqualsSignIsExplained) {
   MissionOverrides o;
   o.settings = {"motion.max_speed"};

@@ -1,0 +1,26 @@
+// What several commands ask of their arguments.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdint>
+#include <string>
+
+namespace karst::tools {
+
+/// `--policy ""` is a slip, such as a shell variable that is not set, and not the default.
+inline CLI::Validator not_empty() {
+  return {[](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); }, ""};
+}
+
+/// A whole number that fits into 64 bits without a sign (strtoull would wrap -1 around).
+inline CLI::Validator whole_64_bits() {
+  return {[](std::string& text) {
+            std::uint64_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool good = error == std::errc() && end == text.data() + text.size();
+            return good ? std::string() : "expected a whole number from 0 to 2^64 - 1, got \"" + text + "\"";
+          },
+          ""};
+}
+
+}  // namespace karst::tools
