@@ -12,12 +12,17 @@ std::vector<std::string> read_lines(const std::filesystem::path& file, std::vect
   std::error_code absent;
   if (!std::filesystem::exists(file, absent)) return lines;
   const std::string name = file.filename().string();
+  if (std::filesystem::is_directory(file, absent)) {
+    problems.push_back(name + ": is a directory, not a file");
+    return lines;
+  }
   std::ifstream in(file, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   if (!in.good() && !in.eof()) {
     problems.push_back(name + ": cannot be read");
     return lines;
   }
+  if (bytes.empty()) problems.push_back(name + ": is empty: its content is lost or was never written");
   std::size_t begin = 0;
   for (std::size_t end; (end = bytes.find('\n', begin)) != std::string::npos; begin = end + 1) {
     const bool carriage_return = end > begin && bytes[end - 1] == '\r';

@@ -30,6 +30,10 @@ std::vector<OccupiedSpan> read_map_growth(const std::filesystem::path& file,
                                           std::vector<std::string>& problems) {
   std::error_code absent;
   if (!std::filesystem::exists(file, absent)) return {};
+  if (std::filesystem::is_directory(file, absent)) {
+    problems.push_back(file.filename().string() + ": is a directory, not a file");
+    return {};
+  }
   std::ifstream in(file, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   if (bytes.size() % kRecordBytes != 0)

@@ -76,7 +76,8 @@ std::optional<double> time_of_coverage(const RunRecord& run, const Volume& volum
   const auto final_m3 = last_finite(explored);
   if (!t_s || !volume.coverage || !final_m3 || *final_m3 <= 0) return std::nullopt;
   for (std::size_t i = 0; i < t_s->size(); ++i)
-    if (*volume.coverage * (*explored)[i] / *final_m3 >= share) return (*t_s)[i] - flight_begin_s(run);
+    if (*volume.coverage * (*explored)[i] / *final_m3 >= share)
+      return std::max(0.0, (*t_s)[i] - flight_begin_s(run));
   return std::nullopt;
 }
 
@@ -163,6 +164,8 @@ ordered_json evaluate_run(const std::filesystem::path& run_dir, const Truth& tru
   RunRecord run = read_run(run_dir);
   std::optional<core::VoxelMap> map;
   try {
+    if (std::filesystem::is_directory(run_dir / "map.bt"))
+      throw core::InputError("map.bt", "", "is a directory, not a file");
     if (std::filesystem::exists(run_dir / "map.bt")) map = core::read_octomap((run_dir / "map.bt").string());
   } catch (const core::InputError& e) {
     run.problems.push_back(e.what());

@@ -47,6 +47,10 @@ std::vector<json> read_events(const fs::path& file, const char* time, const char
 
 json read_json(const fs::path& file, std::vector<std::string>& problems) {
   if (!fs::exists(file)) return nullptr;
+  if (fs::is_directory(file)) {
+    problems.push_back(file.filename().string() + ": is a directory, not a file");
+    return nullptr;
+  }
   std::ifstream in(file);
   json value = json::parse(in, nullptr, false);
   if (!value.is_discarded()) return value;

@@ -290,6 +290,19 @@ TEST(Metrics, TimesOfCoverageAreCountedFromTakeOffAndNullIfNeverReached) {
   EXPECT_TRUE(m["t95_s"].is_null());
 }
 
+TEST(Metrics, ACoverageReachedBeforeTakeOffTookNoTime) {
+  const core::VoxelMap map = ball_map(2.0);
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", std::string(kPhases) + kLanded);  // take-off at 10 s
+  dir.write("telemetry.csv", "t_s,phase,explored_m3\n2,x,80\n12,x,95\n44,x,100\n");
+  Truth truth;
+  truth.is_reachable = [](const Vec3&) { return true; };
+  truth.reachable_volume_m3 = map.free_volume_m3();
+  const ordered_json m = evaluate(read_run(dir.path()), &map, truth);
+  EXPECT_EQ(m["t50_s"], 0.0);
+  EXPECT_EQ(m["t90_s"], 2.0);
+}
+
 TEST(Metrics, MapErrorIsMeanAndDeviationOfTheDistanceToRock) {
   TemporaryDirectory dir;  // rock is the plane z = 0; cells of 0.2 m with centres at 0.1, 0.3, 0.3, 0.9
   dir.write("mission.info", "map\n{\nresolution \"0.2 m\"\n}\n");

@@ -127,6 +127,28 @@ TEST(Report, OfDamagedFilesNamesThem) {
   EXPECT_NO_THROW(write_report(dir.path()));
 }
 
+TEST(Report, OfEmptyFilesOrDirectoriesInTheirPlaceNamesThem) {
+  for (const char* name :
+       {"telemetry.csv", "events.jsonl", "truth.csv", "trajectory.tum", "ground_truth.tum"}) {
+    TemporaryDirectory dir;
+    test::write_fake_run(dir.path());
+    dir.write(name, "");
+    std::vector<std::string> problems;
+    evaluate_run(dir.path(), {}, &problems);
+    EXPECT_TRUE(mentions(problems, std::string(name) + ": is empty")) << name;
+  }
+  for (const char* name :
+       {"telemetry.csv", "events.jsonl", "map_growth.bin", "map.bt", "timing.json", "mission.info"}) {
+    TemporaryDirectory dir;
+    test::write_fake_run(dir.path());
+    fs::remove(dir.path() / name);
+    fs::create_directories(dir.path() / name);
+    std::vector<std::string> problems;
+    evaluate_run(dir.path(), {}, &problems);
+    EXPECT_TRUE(mentions(problems, std::string(name) + ": is a directory")) << name;
+  }
+}
+
 TEST(Report, ToleratesEventsWithWrongFields) {
   TemporaryDirectory dir;
   std::string events;
