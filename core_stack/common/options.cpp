@@ -78,7 +78,7 @@ std::string last_part(const std::string& key) { return key.substr(key.rfind('.')
 
 std::string nearest_name(const std::string& key, const std::vector<std::string>& candidates) {
   std::string best;
-  std::size_t best_distance = 1 + key.size() / 2;
+  std::size_t best_distance = 1 + last_part(key).size() / 2;  // a long section brings nothing nearer
   for (const std::string& c : candidates) {
     // A right name in the wrong section is the commonest slip: compare the last parts as well.
     const std::size_t d = std::min(edit_distance(key, c), edit_distance(last_part(key), last_part(c)) + 1);

@@ -101,7 +101,8 @@ TEST(Parameters, UnknownKeyNamesTheNearest) {
     load("plain", c);
     FAIL();
   } catch (const core::InputError& e) {
-    EXPECT_THAT(e.what(), AllOf(HasSubstr("test.info"), HasSubstr("setp"), HasSubstr("did you mean step")));
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("test.info"), HasSubstr("policy.parameters.setp"),
+                                HasSubstr("did you mean policy.parameters.step?")));
   }
 }
 

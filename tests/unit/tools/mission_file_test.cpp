@@ -54,6 +54,11 @@ TEST(MissionFile, AnUnknownKeyNamesFileKeyAndTheNearestOne) {
       << e;
 }
 
+TEST(MissionFile, ALongSectionBringsNoKeyNearer) {
+  const std::string e = error_of("far_key.info", "simulator { magnetometer { hysteresis 1 } }\n");
+  EXPECT_TRUE(holds(e, "no such key") && !holds(e, "did you mean")) << e;
+}
+
 TEST(MissionFile, AWrongUnitNamesWhatWasExpected) {
   const std::string e = error_of("wrong_unit.info", "motion { max_speed \"1 kg\" }\n");
   EXPECT_TRUE(holds(e, "motion.max_speed") && holds(e, "m/s") && holds(e, "\"kg\"")) << e;
