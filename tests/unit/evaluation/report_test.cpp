@@ -128,25 +128,24 @@ TEST(Report, OfDamagedFilesNamesThem) {
 }
 
 TEST(Report, OfEmptyFilesOrDirectoriesInTheirPlaceNamesThem) {
-  for (const char* name :
-       {"telemetry.csv", "events.jsonl", "truth.csv", "trajectory.tum", "ground_truth.tum"}) {
-    TemporaryDirectory dir;
-    test::write_fake_run(dir.path());
-    dir.write(name, "");
-    std::vector<std::string> problems;
-    evaluate_run(dir.path(), {}, &problems);
-    EXPECT_TRUE(mentions(problems, std::string(name) + ": is empty")) << name;
-  }
-  for (const char* name :
-       {"telemetry.csv", "events.jsonl", "map_growth.bin", "map.bt", "timing.json", "mission.info"}) {
-    TemporaryDirectory dir;
-    test::write_fake_run(dir.path());
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  const auto problems = [&dir] {
+    std::vector<std::string> all;
+    evaluate_run(dir.path(), {}, &all);
+    return all;
+  };
+  const auto text = {"telemetry.csv", "events.jsonl", "truth.csv", "trajectory.tum", "ground_truth.tum"};
+  for (const char* name : text) dir.write(name, "");
+  for (const char* name : text) EXPECT_TRUE(mentions(problems(), std::string(name) + ": is empty")) << name;
+  const auto all = {"telemetry.csv", "events.jsonl", "map_growth.bin",
+                    "map.bt",        "timing.json",  "mission.info"};
+  for (const char* name : all) {
     fs::remove(dir.path() / name);
     fs::create_directories(dir.path() / name);
-    std::vector<std::string> problems;
-    evaluate_run(dir.path(), {}, &problems);
-    EXPECT_TRUE(mentions(problems, std::string(name) + ": is a directory")) << name;
   }
+  for (const char* name : all)
+    EXPECT_TRUE(mentions(problems(), std::string(name) + ": is a directory")) << name;
 }
 
 TEST(Report, ToleratesEventsWithWrongFields) {
