@@ -199,9 +199,13 @@ void MissionControl::follow(const Flight::Onward& lead, const Path& path, const 
                   {{"length", path_length_m(points)},
                    {"from", list(points.front())},
                    {"to", list(points.back())},
+                   {"narrow", path.narrow},
                    {"points", list(points)}});
-  flight_.follow(points, flight_.at_rest(now()) ? 0.0 : lead.speed_mps, now(), heading,
-                 goal ? goal->max_speed_mps : 0.0);
+  double max_speed_mps =
+      goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
+  if (path.narrow)
+    max_speed_mps = std::min(max_speed_mps, options_.safety.slow_share * options_.motion.max_speed_mps);
+  flight_.follow(points, flight_.at_rest(now()) ? 0.0 : lead.speed_mps, now(), heading, max_speed_mps);
   tight_until_ =
       path.escape_points == 0
           ? 0

@@ -32,6 +32,7 @@ struct Path {
   std::size_t escape_points = 0;  // this many leading points lie nearer to obstacles than the clearance: the
                                   // way out of a place that turned out to be tight
   double length_m = 0;
+  bool narrow = false;  // somewhere clear by search_clearance_m only: to be flown slowly
   bool found() const { return status == PlanStatus::found; }
 };
 

@@ -102,8 +102,16 @@ Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const 
   if (!raw.found()) return raw;
   Path path = finished(map, raw, options);
   if (path.found()) return path;
-  const Path strict = plan_on_grid(map, start, goal, options);
-  return strict.found() ? finished(map, strict, options) : path;
+  if (const Path strict = plan_on_grid(map, start, goal, options); strict.found()) {
+    Path around = finished(map, strict, options);
+    if (around.found()) return around;
+  }
+  // A narrow passage and no way around it: keep the clearance that the search found.
+  PlanningOptions tight = options;
+  tight.clearance_m = search_clearance_m(options, map.resolution_m());
+  Path narrow = finished(map, raw, tight);
+  narrow.narrow = true;
+  return narrow.found() ? narrow : path;
 }
 
 }  // namespace karst::core

@@ -10,6 +10,9 @@ namespace karst::core {
 /// refined and flyable as it stands: every segment is clear at options.clearance_m, but for the leading
 /// `escape_points`.
 ///
+/// A passage too narrow for the whole clearance, without a way around it, is flown through with the search's
+/// (search_clearance_m); Path::narrow says so.
+///
 /// The searches may squeeze (plan_on_grid_squeezing), refining lifts the path to the full clearance, and
 /// where that fails the grid is searched without squeezing.
 Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
