@@ -65,6 +65,23 @@ TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
 INSTANTIATE_TEST_SUITE_P(Plugins, MisbehavingPolicy,
                          ::testing::Values("endless_loop", "throwing", "only_nan_goals", "million_goals"));
 
+TEST(NarrowPassage, ASqueezeDoesNotEndTheExploration) {
+  // As it was: after 77 s the vehicle stood where the whole clearance could not be had, every goal was
+  // refused, and it went home with 42.7 % of the cave explored.
+  const std::filesystem::path cave =
+      std::filesystem::path(KARST_SOURCE_DIR) / "../shared/data/caves/develop/rough_tunnel.stl";
+  if (!std::filesystem::exists(cave)) GTEST_SKIP() << "skipped: no ../shared";
+  const auto run = fresh_folder("flight_squeeze") / "run";
+  const Output out =
+      run_karst("fly --cave " + cave.string() +
+                " --start '11.1 -0.5 2.1' --policy nearest_frontier --seed 2 --quiet --no-report"
+                " --set mission.max_flight_time=200s --out " +
+                run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  EXPECT_EQ(bytes_of(run / "events.jsonl").find("\"explored: "), std::string::npos);
+  EXPECT_GT(metrics_of(run)["coverage"].get<double>(), 0.43);
+}
+
 /// The cave with loose rock in it, as a file in `folder`.
 std::string with_boulder(const std::string& cave, const std::filesystem::path& folder,
                          const std::string& boulder) {

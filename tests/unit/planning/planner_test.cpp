@@ -81,6 +81,32 @@ TEST(Planner, FarPathsAreClearAndBarelyLongerThanTheShortest) {
   }
 }
 
+TEST(Planner, WhatTheRoadmapConnectsCanBeFlown) {
+  const PlanningOptions options;
+  int connected = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const VoxelMap map = testing::random_map(seed, {30, 30, 18}, 0.008);
+    Roadmap roadmap{options};
+    roadmap.update(map, all_cells(map));
+    const Obstacles obstacles(map);
+    Random random(seed);
+    for (int i = 0; i < 12; ++i) {
+      const auto inside = [&](double size_m) { return random.uniform(0.6, size_m - 0.6); };
+      const Vec3 a(inside(6), inside(6), inside(3.6)), b(inside(6), inside(6), inside(3.6));
+      if (!is_clear(map, a, search_clearance_m(options, 0.2)) || !is_clear(map, b, options.clearance_m) ||
+          !roadmap.find(map, a, b).found())
+        continue;
+      ++connected;
+      const Path path = plan(map, roadmap, a, b, options);
+      ASSERT_TRUE(path.found()) << seed << ": " << path.reason;
+      const double least_m = path.narrow ? search_clearance_m(options, 0.2) : options.clearance_m;
+      for (std::size_t k = path.escape_points + 1; k < path.points.size(); ++k)
+        EXPECT_GE(obstacles.distance(path.points[k - 1], path.points[k]), least_m - 1e-6) << seed;
+    }
+  }
+  EXPECT_GT(connected, 20);
+}
+
 TEST(Planner, SameInputsGiveTheSameBytes) {
   const WindingCave cave = WindingCave::of_length(30, 5, 1.5);
   const VoxelMap map = cave.map();
