@@ -7,7 +7,8 @@ namespace karst::core {
 namespace {
 
 /// Mean speed on the roadmap's way over the greatest speed. The way zigzags some per cent longer than what is
-/// flown, and bends and turning cost time. Flights home of 35 to 250 m took 0.88 to 0.98 of the greatest speed.
+/// flown, and bends and turning cost time. Flights home of 35 to 250 m took 0.88 to 0.98 of the greatest
+/// speed.
 constexpr double kCruiseShare = 0.8;
 
 }  // namespace
