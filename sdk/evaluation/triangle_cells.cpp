@@ -10,14 +10,19 @@ namespace {
 
 using core::Vec3;
 
+/// Rounding must not lose a face that lies on the border of cells: what is nearer than this touches.
+constexpr double kRounding_m = 1e-9;
+
 struct KeyBox {
   CellKey low, high;
 };
 
 /// Cells that share a point with a closed box; a face on a cell's border belongs to the cells of both sides.
 KeyBox cells_touching(const Vec3& low, const Vec3& high, double edge_m) {
-  const auto down = [&](double v) { return static_cast<std::int32_t>(std::ceil(v / edge_m)) - 1; };
-  const auto up = [&](double v) { return static_cast<std::int32_t>(std::floor(v / edge_m)); };
+  const auto down = [&](double v) {
+    return static_cast<std::int32_t>(std::ceil((v - kRounding_m) / edge_m)) - 1;
+  };
+  const auto up = [&](double v) { return static_cast<std::int32_t>(std::floor((v + kRounding_m) / edge_m)); };
   return {{down(low.x()), down(low.y()), down(low.z())}, {up(high.x()), up(high.y()), up(high.z())}};
 }
 
@@ -71,7 +76,8 @@ bool overlaps_box(const Triangle& t, const Vec3& center, const Vec3& half) {
 void insert_touched(CellSet& cells, const Triangle& t, double resolution_m) {
   const KeyBox box = cells_touching(low_of(t), high_of(t), resolution_m);
   const double block_m = CellSet::kEdge * resolution_m;
-  const Vec3 half_cell = Vec3::Constant(0.5 * resolution_m), half_block = Vec3::Constant(0.5 * block_m);
+  const Vec3 half_cell = Vec3::Constant(0.5 * resolution_m + kRounding_m),
+             half_block = Vec3::Constant(0.5 * block_m + kRounding_m);
   const KeyBox places{cells.block_of(box.low), cells.block_of(box.high)};
   const bool one_block = places.low == places.high;
   for_each_key(places, [&](const CellKey& place) {

@@ -224,6 +224,18 @@ TEST(Reachable, StandingVehicleStartsFromTheAirAboveIt) {
   EXPECT_EQ(keys(standing.reachable), keys(hovering.reachable));
 }
 
+TEST(Reachable, RockOnTheBorderOfCellsHasNoHoles) {
+  // As it was: a roof at z = 37 lay between two layers of cells, touched neither by rounding, and "led
+  // outside".
+  Lattice cells;
+  fill(cells, {0, 0, 0}, {3, 3, 3});
+  for (int k = 0; k < 250; ++k) {
+    const double z = 0.2 * k;
+    EXPECT_NO_THROW(find_reachable(lattice_mesh(cells, 1.0, Vec3(0, 0, z)), {1.5, 1.5, z + 1.5}, {}, "room"))
+        << z;
+  }
+}
+
 TEST(Reachable, RealCaveHasTheVolumesOfItsDescription) {
   const std::filesystem::path file =
       std::filesystem::path(KARST_SOURCE_DIR) / "../shared/data/caves/develop/indian_tunnel.stl";
