@@ -36,7 +36,12 @@ class RootMeanSquare {
   std::size_t count_ = 0;
 };
 
-std::optional<double> standing_share(const RunRecord& run) {
+/// How the exploring time was spent.
+struct Exploring {
+  std::optional<double> standing_share, mean_speed_mps;
+};
+
+Exploring exploring(const RunRecord& run) {
   std::vector<double> t_s, speed;
   if (run.truth_table.times() && run.truth_table.column("speed_mps")) {
     t_s = *run.truth_table.times();
@@ -49,14 +54,15 @@ std::optional<double> standing_share(const RunRecord& run) {
                            (*run.telemetry.column("vz"))[i])
                           .norm());
   }
-  double exploring = 0, standing = 0;
+  double exploring = 0, standing = 0, length_m = 0;
   for (std::size_t i = 1; i < t_s.size(); ++i) {
     if (!within(run, t_s[i - 1], {"explore"}) || !within(run, t_s[i], {"explore"})) continue;
     exploring += t_s[i] - t_s[i - 1];
+    length_m += speed[i] * (t_s[i] - t_s[i - 1]);
     if (speed[i] < kStandingSpeed_mps) standing += t_s[i] - t_s[i - 1];
   }
-  if (exploring <= 0) return std::nullopt;
-  return standing / exploring;
+  if (exploring <= 0) return {};
+  return {standing / exploring, length_m / exploring};
 }
 
 std::optional<double> longest_stall_s(const RunRecord& run, const std::vector<StampedPose>& poses) {
@@ -155,7 +161,9 @@ FlightFigures flight_figures(const RunRecord& run) {
   const auto& poses = run.truth.empty() ? run.estimate : run.truth;
   if (!poses.empty()) f.path_length_m = path_length_m(poses, begin_s, end_s);
   if (f.path_length_m && f.flight_time_s) f.mean_speed_mps = *f.path_length_m / *f.flight_time_s;
-  f.standing_share = standing_share(run);
+  const Exploring spent = exploring(run);
+  f.standing_share = spent.standing_share;
+  f.exploring_speed_mps = spent.mean_speed_mps;
   f.longest_stall_s = longest_stall_s(run, poses);
   f.min_clearance_m = min_clearance_m(run);
   if (!run.truth.empty())

@@ -10,7 +10,7 @@ namespace karst::evaluation {
 struct FlightFigures {
   std::optional<std::int64_t> contacts;
   std::optional<double> flight_time_s, exploration_time_s, path_length_m, mean_speed_mps;
-  std::optional<double> standing_share, longest_stall_s;
+  std::optional<double> exploring_speed_mps, standing_share, longest_stall_s;
   std::optional<double> min_clearance_m, landing_error_m, battery_left;
   std::optional<double> drift_percent, heading_error_rad, tracking_rms_m;
 };

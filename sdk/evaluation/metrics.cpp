@@ -137,6 +137,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["exploration_time_s"] = value(f.exploration_time_s);
   m["path_length_m"] = value(f.path_length_m);
   m["mean_speed_mps"] = value(f.mean_speed_mps);
+  m["exploring_speed_mps"] = value(f.exploring_speed_mps);
   m["standing_share"] = value(f.standing_share);
   m["longest_stall_s"] = value(f.longest_stall_s);
   m["explored_volume_m3"] = value(volume.explored_m3);

@@ -1,12 +1,16 @@
 #include "sdk/tools/table_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace karst::tools {
 namespace {
@@ -21,9 +25,11 @@ constexpr std::array kColumns = {
     Column{"path_length_m", "path m", "%.0f", 1},
     Column{"flight_time_s", "time s", "%.0f", 1},
     Column{"mean_speed_mps", "mean m/s", "%.2f", 1},
+    Column{"exploring_speed_mps", "exploring m/s", "%.2f", 1},
     Column{"standing_share", "standing %", "%.1f", 100},
     Column{"longest_stall_s", "stall s", "%.1f", 1},
     Column{"min_clearance_m", "clearance m", "%.2f", 1},
+    Column{"tracking_rms_m", "tracking m", "%.3f", 1},
     Column{"landing_error_m", "landed off m", "%.2f", 1},
     Column{"battery_left", "battery %", "%.0f", 100},
     Column{"map_error_mean_m", "map error m", "%.3f", 1},
@@ -56,19 +62,57 @@ std::string text_of(const nlohmann::json& metrics, const char* key) {
   return value->is_string() ? value->get<std::string>() : value->dump();
 }
 
-std::string text_of(const nlohmann::json& metrics, const Column& column) {
+std::optional<double> number_of(const nlohmann::json& metrics, const Column& column) {
   const auto value = metrics.find(column.key);
-  if (value == metrics.end() || !value->is_number()) return "-";
+  if (value == metrics.end() || !value->is_number()) return std::nullopt;
+  return column.factor * value->get<double>();
+}
+
+std::string text_of(const std::optional<double>& number, const Column& column) {
+  if (!number) return "-";
   std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), column.format, column.factor * value->get<double>());
+  std::snprintf(text.data(), text.size(), column.format, *number);
   return text.data();
+}
+
+/// The value that a share of the sorted values does not exceed (nearest rank); the least for 0.
+std::optional<double> quantile(const std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return std::nullopt;
+  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+/// How the figures of all runs spread, in five lines of the same table.
+void print_spread(const std::vector<nlohmann::json>& runs) {
+  std::map<std::string, int> outcomes;
+  for (const nlohmann::json& m : runs) ++outcomes[text_of(m, "outcome")];
+  std::string counted;
+  for (const auto& [outcome, count] : outcomes)
+    counted += (counted.empty() ? "" : ", ") + std::to_string(count) + " " + outcome;
+  std::vector<std::vector<double>> sorted;
+  for (const Column& c : kColumns) {
+    std::vector<double>& values = sorted.emplace_back();
+    for (const nlohmann::json& m : runs)
+      if (const auto v = number_of(m, c)) values.push_back(*v);
+    std::sort(values.begin(), values.end());
+  }
+  for (const auto& [title, share] :
+       {std::pair{"least", 0.0}, std::pair{"5 %", 0.05}, std::pair{"median", 0.5}, std::pair{"95 %", 0.95},
+        std::pair{"greatest", 1.0}}) {
+    std::string line = std::string("| **") + title + "** | of " + std::to_string(runs.size()) + " | | " +
+                       (share == 0 ? counted : "") + " |";
+    for (std::size_t i = 0; i < kColumns.size(); ++i)
+      line += " " + text_of(quantile(sorted[i], share), kColumns[i]) + " |";
+    std::printf("%s\n", line.c_str());
+  }
 }
 
 }  // namespace
 
 void add_table_command(CLI::App& app) {
-  CLI::App* table = app.add_subcommand(
-      "table", "Print the figures of finished runs as a Markdown table.\n\n  karst table runs/*/");
+  CLI::App* table = app.add_subcommand("table",
+                                       "Print the figures of finished runs, and how they spread, as a "
+                                       "Markdown table.\n\n  karst table runs/*/");
   auto runs = std::make_shared<std::vector<std::string>>();
   table->add_option("runs", *runs, "run directories")->required();
   table->callback([runs] {
@@ -76,15 +120,18 @@ void add_table_command(CLI::App& app) {
     for (const Column& c : kColumns) head += std::string(" ") + c.title + " |", rule += "---:|";
     std::printf("%s\n%s\n", head.c_str(), rule.c_str());
     std::vector<std::string> problems;
+    std::vector<nlohmann::json> all;
     for (const std::string& run : *runs) {
       std::string problem;
       const nlohmann::json m = metrics_of(run, problem);
       if (!problem.empty()) problems.push_back(problem);
       std::string line = "|";
       for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
-      for (const Column& c : kColumns) line += " " + text_of(m, c) + " |";
+      for (const Column& c : kColumns) line += " " + text_of(number_of(m, c), c) + " |";
       std::printf("%s\n", line.c_str());
+      all.push_back(m);
     }
+    if (all.size() > 1) print_spread(all);
     std::fflush(stdout);
     for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
     if (!problems.empty()) throw CLI::RuntimeError(1);

@@ -46,6 +46,7 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "exploration_time_s",
                                        "path_length_m",
                                        "mean_speed_mps",
+                                       "exploring_speed_mps",
                                        "standing_share",
                                        "longest_stall_s",
                                        "explored_volume_m3",
@@ -137,6 +138,7 @@ TEST(Metrics, StandingIsTheShareOfExploringTimeBelowTwentyCentimetresASecond) {
   }
   dir.write("truth.csv", truth);
   EXPECT_NEAR(figures(dir)["standing_share"].get<double>(), 5.0 / 20.0, 0.006);  // one row is 0.005
+  EXPECT_NEAR(figures(dir)["exploring_speed_mps"].get<double>(), (5 * 0.19 + 15 * 0.21) / 20, 0.001);
 }
 
 TEST(Metrics, StandingFallsBackToTheEstimatedVelocity) {
