@@ -28,6 +28,21 @@ int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const Vehicl
   return seen;
 }
 
+/// `p`, or the point nearest to it, up to a cell away in each axis, that is clear. In a narrow passage clear
+/// points lie along a thread, which candidates that keep their distance to the cluster mostly miss.
+std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double clearance_m) {
+  constexpr int kReach = 4;
+  const double step_m = map.resolution_m() / kReach;
+  std::optional<Vec3> best;
+  int least = 3 * kReach * kReach + 1;
+  for (int x = -kReach; x <= kReach; ++x)
+    for (int y = -kReach; y <= kReach; ++y)
+      for (int z = -kReach; z <= kReach; ++z)
+        if (const int d = x * x + y * y + z * z; d < least)
+          if (const Vec3 q = p + step_m * Vec3(x, y, z); is_clear(map, q, clearance_m)) best = q, least = d;
+  return best;
+}
+
 }  // namespace
 
 bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target,
@@ -73,23 +88,35 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
   }
   std::optional<Viewpoint> best;
   double best_value = 0;
-  for (const double radius : kShells) {
-    for (const double elevation : kElevations) {
-      const int azimuths = std::abs(elevation) > 1.2 ? 4 : kAzimuths;
-      for (int i = 0; i < azimuths; ++i) {
-        const double azimuth = 2 * std::numbers::pi * i / azimuths;
-        const Vec3 away(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                        std::sin(elevation));
-        const Viewpoint v{target + radius * away, std::atan2(-away.y(), -away.x())};
-        if (map.at(v.position) != Cell::free || map.first_not_free(v.position, target)) continue;
-        if (!in_view(vehicle, v, target, kLidarViewRange_m) || !is_clear(map, v.position, clearance_m))
-          continue;
-        // Facing the opening squarely counts as one more cell seen.
-        const double value = cells_seen(map, cluster, vehicle, v) - away.dot(cluster.normal) - 0.2 * radius;
-        if (!best || value > best_value) best = v, best_value = value;
+  const auto consider = [&](const Vec3& position, double azimuth) {
+    const Viewpoint v{position, azimuth};
+    if (!in_view(vehicle, v, target, kLidarViewRange_m) || map.first_not_free(position, target)) return;
+    // Facing the opening squarely counts as one more cell seen.
+    const Vec3 away = position - target;
+    const double value =
+        cells_seen(map, cluster, vehicle, v) - away.normalized().dot(cluster.normal) - 0.2 * away.norm();
+    if (!best || value > best_value) best = v, best_value = value;
+  };
+  for (const bool narrow : {false, true}) {
+    for (const double radius : kShells) {
+      for (const double elevation : kElevations) {
+        const int azimuths = std::abs(elevation) > 1.2 ? 4 : kAzimuths;
+        for (int i = 0; i < azimuths; ++i) {
+          const double azimuth = 2 * std::numbers::pi * i / azimuths;
+          const Vec3 away(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                          std::sin(elevation));
+          const Vec3 position = target + radius * away;
+          const double heading_rad = std::atan2(-away.y(), -away.x());
+          if (map.at(position) != Cell::free) continue;
+          if (!narrow) {
+            if (is_clear(map, position, clearance_m)) consider(position, heading_rad);
+          } else if (const auto clear = clear_near(map, position, clearance_m)) {
+            consider(*clear, heading_rad);
+          }
+        }
       }
+      if (best) return best;
     }
-    if (best) return best;
   }
   return best;
 }
