@@ -33,8 +33,9 @@ TimeNs period_of(double rate_hz) {
 }
 
 std::vector<std::shared_ptr<const DepthCamera>> mount_cameras(const SimulatorOptions& o) {
-  const auto facing =
-      o.vehicle == "camera_uav" ? std::vector{Facing::forward} : std::vector{Facing::up, Facing::down};
+  std::vector<Facing> facing;
+  if (o.vehicle == "camera_uav") facing = {Facing::forward};
+  if (o.vehicle == "lidar_uav") facing = {Facing::up, Facing::down};
   std::vector<std::shared_ptr<const DepthCamera>> cameras;
   for (const Facing f : facing)
     cameras.push_back(std::make_shared<const DepthCamera>(o.camera, camera_model(o.camera, f)));
@@ -58,7 +59,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       site_(set_down(*cave_, options.body.radius_m)),
       quadrotor_({options.body, options.motors, options.autopilot, options.battery}, site_.T_world_start,
                  cave_->scene, Wind(options.wind, Random::stream(setup.seed, "wind"))),
-      lidar_(options.vehicle == "lidar_uav" ? std::make_shared<const Lidar>(options.lidar) : nullptr),
+      lidar_(options.vehicle == "camera_uav" ? nullptr : std::make_shared<const Lidar>(options.lidar)),
       cameras_(mount_cameras(options)),
       imu_(options.imu, Random::stream(setup.seed, "imu")),
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),

@@ -3,8 +3,10 @@
 namespace karst::sim {
 
 void describe(core::OptionTable& t, SimulatorOptions& o) {
-  t.add("vehicle", o.vehicle, {"lidar_uav", "camera_uav"},
-        "lidar_uav: LiDAR, depth cameras up and down; camera_uav: one depth camera forward");
+  t.add(
+      "vehicle", o.vehicle, {"lidar_uav", "lidar_only_uav", "camera_uav"},
+      "lidar_uav: LiDAR, depth cameras up and down; lidar_only_uav: no cameras; camera_uav: one depth camera "
+      "forward");
   describe(t, o.battery);
   describe(t, o.wind);
   t.section("lidar", o.lidar);

@@ -134,6 +134,9 @@ TEST_F(Simulation, DescriptionSaysWhatWasMounted) {
   EXPECT_LT((lidar_uav.T_world_start.position - Vec3(1, 2, 0.3)).norm(), 1e-3);
   EXPECT_NEAR(heading_of(lidar_uav.T_world_start.orientation), std::numbers::pi / 2, 1e-9);
   EXPECT_NEAR(lidar_uav.max_thrust_n, 2.2 * 2 * 9.81, 1e-9);
+  options.vehicle = "lidar_only_uav";
+  EXPECT_TRUE(SimulatedVehicle(options, setup).description().lidar);
+  EXPECT_TRUE(SimulatedVehicle(options, setup).description().cameras.empty());
   options.vehicle = "camera_uav";
   const VehicleDescription camera_uav = SimulatedVehicle(options, setup).description();
   EXPECT_FALSE(camera_uav.lidar);
