@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "core_stack/homing/home.h"
 #include "core_stack/planning/free_tiles.h"
@@ -36,6 +37,7 @@ double elapsed_ms(std::chrono::steady_clock::time_point since) {
 Explorer::Explorer(const CoreOptions& options, const VehicleDescription& vehicle, PolicyPort& policy)
     : options_(options),
       vehicle_(vehicle),
+      view_(steepest_view(vehicle)),
       policy_(&policy),
       map_(options.map),
       frontiers_(options.frontiers),
@@ -139,7 +141,11 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
     } else {
       ++plans;
       const Path path = plan(map_, roadmap_, input.from, goal.position, options_.planning);
-      if (path.found()) {
+      const auto blind = path.found() ? blind_climb(view_, input.way_come, path.points) : std::nullopt;
+      if (blind) {
+        why = *blind;
+        ledger_.close(map_, goal.position, input.now, why);
+      } else if (path.found()) {
         const HomeEstimate home = estimate_home(goal.position, input.way_come_m + path.length_m);
         const double there_s = flight_time_s(path.length_m, options_.motion);
         if (home_slack_s(input.seconds_left - there_s, home.time_s, options_.mission.home_margin,
@@ -235,6 +241,7 @@ RoundResult Explorer::decide(const RoundInput& input) {
     for (const RejectedGoal& r : result.rejected)
       policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});
 
+  result.unseen = std::exchange(unseen_, {});
   for (const FrontierOffer& offer : request.frontiers) {
     FrontierCluster brief = *offer.cluster;
     brief.cells.clear();

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "core_stack/mission/mission_options.h"
 #include "core_stack/mission/policy_port.h"
 #include "core_stack/mission/viewpoints.h"
+#include "core_stack/mission/visibility.h"
 #include "core_stack/planning/roadmap.h"
 
 namespace karst::core {
@@ -25,8 +27,9 @@ struct RoundInput {
   State state;               // expected at the deadline
   Vec3 from = Vec3::Zero();  // where the new path begins: the end of the stretch already committed to
   Vec3 direction = Vec3::UnitX();
-  double seconds_left = 0;  // of flight, by the battery and by the mission's time limit
-  double way_come_m = 0;    // length of the way flown so far: the way home where the map shows none
+  double seconds_left = 0;     // of flight, by the battery and by the mission's time limit
+  double way_come_m = 0;       // length of the way flown so far: the way home where the map shows none
+  std::vector<Vec3> way_come;  // its last stretch, up to `from`
   GoalFate last_fate = GoalFate::none;
   std::optional<Goal> last_goal;
   bool standing = false;                 // nothing is under way
@@ -40,12 +43,20 @@ struct RejectedGoal {
   std::string reason;
 };
 
+/// A frontier that no sensor of the vehicle could see from where it could fly to.
+struct UnseenFrontier {
+  std::uint32_t id = 0;
+  Vec3 position = Vec3::Zero();
+  std::string reason;
+};
+
 struct RoundResult {
   Outcome outcome = Outcome::hold;
   std::string reason, policy;
   std::optional<Goal> goal;  // accepted, with `path` from RoundInput::from to it
   Path path;
   std::vector<RejectedGoal> rejected;
+  std::vector<UnseenFrontier> unseen;  // for the first time in this round
   std::vector<Drawing> drawings;
   std::vector<std::string> log;
   std::size_t goals_proposed = 0;
@@ -95,12 +106,14 @@ class Explorer {
   std::vector<CellChange> take_in(std::vector<CellChange> changes);
   const Roadmap& roadmap();
   std::vector<FrontierOffer> offers(const RoundInput& input);
+  void explain_unseen(const FrontierCluster& cluster);
   Decision ask(const DecisionRequest& request, RoundResult& result);
   std::optional<std::string> objection(const Goal& goal) const;
   void choose(const RoundInput& input, const std::vector<Goal>& goals, RoundResult& result);
 
   CoreOptions options_;
   VehicleDescription vehicle_;
+  SteepestView view_;
   PolicyPort* policy_;
   FallbackPolicy fallback_;
   bool policy_failed_ = false;
@@ -115,6 +128,8 @@ class Explorer {
   GoalLedger ledger_;
   TimeNs closed_at_ = 0;  // the time at which places are judged closed in this round
   std::map<std::uint32_t, KnownViewpoint> viewpoints_;
+  std::set<std::uint32_t> judged_unseen_;  // clusters without a viewpoint, once explained
+  std::vector<UnseenFrontier> unseen_;     // yet to be told
   struct Chosen {
     std::size_t cells;
     Vec3 centroid;

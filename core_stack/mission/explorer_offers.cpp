@@ -1,5 +1,7 @@
 // The frontiers a policy may choose from, each with a viewpoint and the length of the way there.
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include "core_stack/mission/explorer.h"
 
@@ -10,6 +12,21 @@ namespace {
 constexpr double kViewpointReach_m = 4.6;
 
 }  // namespace
+
+/// A vehicle that saw in all directions might look into it: then it is the sensors that forbid it.
+void Explorer::explain_unseen(const FrontierCluster& cluster) {
+  auto sphere = std::make_shared<LidarModel>();
+  sphere->elevation_rad = {std::numbers::pi_v<float> / 2, -std::numbers::pi_v<float> / 2};
+  VehicleDescription all_seeing = vehicle_;
+  all_seeing.lidar = sphere;
+  const auto from = find_viewpoint(map_, cluster, all_seeing, options_.planning.clearance_m);
+  if (!from) return;
+  const double rise_m = cluster.centroid.z() - from->position.z();
+  const std::string where = rise_m > 0 ? "above" : "below";
+  unseen_.push_back(
+      {cluster.id, cluster.centroid,
+       "no sensor of the vehicle sees what lies " + where + " it there, and it flies into nothing unseen"});
+}
 
 std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
   std::vector<FrontierOffer> open;
@@ -26,6 +43,7 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
       entry.viewpoint = known->second.viewpoint;
     } else if (open_cells(map_, cluster) >= options_.mission.min_open_cells) {
       entry.viewpoint = find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m);
+      if (!entry.viewpoint && judged_unseen_.insert(id).second) explain_unseen(cluster);
     }
     FrontierOffer offer;
     offer.cluster = &cluster;

@@ -68,6 +68,7 @@ class MissionControl final : public VehicleSink {
   // Exploring.
   void explore();
   void begin_round(bool appending);
+  std::vector<Vec3> way_to(const Flight::Onward& lead) const;
   void on_round(const RoundInput& input, const Flight::Onward& lead, const RoundResult& result);
   void settle_goal(GoalFate fate, PolicyEvent::Kind kind, const std::string& reason);
   void drop_next_goal(PolicyEvent::Kind kind, const std::string& reason);
@@ -109,7 +110,6 @@ class MissionControl final : public VehicleSink {
   // The goal under way, and what the policy has yet to be told.
   std::optional<Goal> goal_;
   std::optional<Goal> next_goal_;  // appended behind goal_
-  TimeNs goal_passed_at_ = 0;      // when goal_ will be passed, if next_goal_ is set
   GoalFate last_fate_ = GoalFate::none;
   std::optional<Goal> last_goal_;
   std::vector<PolicyEvent> events_;

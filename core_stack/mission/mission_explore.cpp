@@ -1,4 +1,5 @@
 // Exploring: when the policy is asked, and how its goal joins the trajectory in flight.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -78,7 +79,7 @@ bool MissionControl::within_tolerance(const Goal& goal) const {
 }
 
 void MissionControl::explore() {
-  if (next_goal_ && now() >= goal_passed_at_) {
+  if (next_goal_ && goal_ && now() >= flight_.time_nearest(goal_->position)) {
     settle_goal(GoalFate::reached, PolicyEvent::Kind::goal_reached, "passed on the way to the next");
     goal_ = next_goal_;
     next_goal_.reset();
@@ -115,6 +116,19 @@ void MissionControl::explore() {
   }
 }
 
+/// The end of the way flown, and what is left of it until the lead's end.
+std::vector<Vec3> MissionControl::way_to(const Flight::Onward& lead) const {
+  std::vector<Vec3> way;
+  double length_m = 0;
+  for (std::size_t i = flown_.size(); i-- > 0 && length_m < kClimbWindow_m;) {
+    if (!way.empty()) length_m += (way.back() - flown_[i]).norm();
+    way.push_back(flown_[i]);
+  }
+  std::reverse(way.begin(), way.end());
+  way.insert(way.end(), lead.points.begin(), lead.points.end());
+  return way;
+}
+
 void MissionControl::begin_round(bool appending) {
   round_running_ = true;
   last_round_ = now();
@@ -131,6 +145,7 @@ void MissionControl::begin_round(bool appending) {
                                           : Vec3(std::cos(lead.heading_rad), std::sin(lead.heading_rad), 0);
   input.seconds_left = seconds_left();
   input.way_come_m = flown_m_;
+  input.way_come = way_to(lead);
   input.last_fate = goal_ ? GoalFate::under_way : last_fate_;
   input.last_goal = goal_ ? goal_ : last_goal_;
   input.standing = flight_.at_rest(now());
@@ -163,7 +178,6 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
     recorder_.event(now(), "goal", to_json(*result.goal, "accepted", ""));
     if (input.appending && goal_) {
       next_goal_ = result.goal;
-      goal_passed_at_ = now() + from_seconds(flight_.remaining_s(now()));
     } else {
       if (!same)
         settle_goal(GoalFate::superseded, PolicyEvent::Kind::goal_superseded,
@@ -240,6 +254,10 @@ void MissionControl::record_round(const RoundInput& input, const RoundResult& re
   for (const FrontierCluster& c : result.frontiers)
     clusters.push_back({c.id, c.centroid.x(), c.centroid.y(), c.centroid.z(), c.unknown_cells});
   recorder_.event(now(), "frontiers", {{"clusters", clusters}});
+  for (const UnseenFrontier& u : result.unseen)
+    recorder_.event(
+        now(), "frontier",
+        {{"id", u.id}, {"position", list(u.position)}, {"state", "refused"}, {"reason", u.reason}});
   for (const RejectedGoal& r : result.rejected)
     recorder_.event(now(), "goal", to_json(r.goal, "rejected", r.reason));
   static constexpr const char* kShapes[] = {"points", "lines", "text"};

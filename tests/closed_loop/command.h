@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -29,6 +31,12 @@ inline Output run_karst(const std::string& arguments) {
   const int status = pclose(pipe);
   out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return out;
+}
+
+/// How many seeds the tests that take some fly: two, or what KARST_SEEDS says.
+inline int seeds() {
+  const char* asked = std::getenv("KARST_SEEDS");
+  return asked ? std::max(1, std::atoi(asked)) : 2;
 }
 
 /// An empty place for one test's files.

@@ -1,0 +1,92 @@
+// Narrow corridors and shafts, drawn to the centimetre and flown.
+#include <nlohmann/json.hpp>
+
+#include "tests/closed_loop/command.h"
+#include "tests/closed_loop/drawn_cave.h"
+
+namespace karst {
+namespace {
+
+constexpr double kVehicleWidth_m = 0.6;
+
+class Corridor : public ::testing::TestWithParam<int> {};
+
+/// Two rooms, and between them a corridor only half a metre wider than the vehicle, with a bend of 90 degrees
+/// and a step of 0.4 m in floor and ceiling. Every seed turns the cave against the map's grid.
+TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
+  const auto folder = fresh_folder("corridor_" + std::to_string(GetParam()));
+  const double w = kVehicleWidth_m + 0.5;
+  const std::vector<Box> boxes = {{{-3, -3, 0}, {3, 3, 3}},
+                                  {{3, -w / 2, 0}, {9, w / 2, 1.6}},
+                                  {{9 - w, -w / 2, 0}, {9, 3, 1.6}},
+                                  {{9 - w, 3, 0.4}, {9, 6, 2.0}},
+                                  {{9 - w - 3, 6, 0.4}, {12, 12, 3.4}}};
+  const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.37 * GetParam());
+  const auto run = folder / "run";
+  const Output out = run_karst("fly --cave " + cave + " --seed " + std::to_string(GetParam()) +
+                               " --policy nearest_frontier --set planning.clearance=0.42m"
+                               " --set simulator.battery_minutes=5min --quiet --no-report --out " +
+                               run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_GT(m["min_clearance_m"].get<double>(), 0.0);
+  EXPECT_GT(m["explored_volume_m3"].get<double>(), 180) << "the room behind the corridor is half of the cave";
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, Corridor, ::testing::Range(1, 1 + seeds()));
+
+/// Two rooms, one 30 m above the other.
+const std::vector<Box> kShaft = {
+    {{-4, -4, 0}, {4, 4, 3.5}}, {{-2, -2, 3}, {2, 2, 34}}, {{-2, -4, 33.5}, {6, 4, 37}}};
+
+struct ShaftFlight {
+  const char *name, *vehicle;
+  double start[3];
+};
+void PrintTo(const ShaftFlight& f, std::ostream* out) { *out << f.name; }
+
+class Shaft : public ::testing::TestWithParam<ShaftFlight> {};
+
+TEST_P(Shaft, IsFlownWithVerticalCamerasOnly) {
+  const ShaftFlight& flight = GetParam();
+  const auto folder = fresh_folder(std::string("shaft_") + flight.name);
+  const std::string cave = draw_cave(folder, kShaft, flight.start, 0.3);
+  const auto run = folder / "run";
+  const Output out = run_karst("fly --cave " + cave + " --set simulator.vehicle=" + flight.vehicle +
+                               " --policy nearest_frontier --set simulator.battery_minutes=8min --quiet"
+                               " --no-report --out " +
+                               run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  std::istringstream poses(bytes_of(run / "ground_truth.tum"));
+  double lowest = 1e9, highest = -1e9;
+  for (std::string line; std::getline(poses, line);) {
+    double t = 0, x = 0, y = 0, z = 0;
+    std::istringstream(line) >> t >> x >> y >> z;
+    lowest = std::min(lowest, z), highest = std::max(highest, z);
+  }
+  const bool refused = bytes_of(run / "events.jsonl").find("no sensor of the vehicle") != std::string::npos;
+  if (std::string(flight.vehicle) == "lidar_uav") {
+    EXPECT_GT(highest - lowest, 30.0);
+    EXPECT_GT(m["coverage"].get<double>(), 0.9);
+  } else {
+    EXPECT_LT(highest - lowest, 6.0) << "it flew into what it could not see";
+    EXPECT_TRUE(refused) << "no reason given";
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    Vehicles, Shaft,
+    ::testing::Values(ShaftFlight{"up", "lidar_uav", {0, 0, 1}},
+                      ShaftFlight{"down", "lidar_uav", {4, 0, 34.5}},
+                      ShaftFlight{"up_blind", "lidar_only_uav --set simulator.lidar.unit=vlp16", {0, 0, 1}},
+                      ShaftFlight{
+                          "down_blind", "lidar_only_uav --set simulator.lidar.unit=vlp16", {4, 0, 34.5}}),
+    [](const auto& p) { return std::string(p.param.name); });
+
+}  // namespace
+}  // namespace karst
