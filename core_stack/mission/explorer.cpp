@@ -1,5 +1,6 @@
 #include "core_stack/mission/explorer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -24,6 +25,8 @@ constexpr double kSeenShare = 0.75;
 
 /// Way back: poses nearer than this are joined directly, if the line is clear by this much beyond the radius.
 constexpr double kShortcut_m = 2.0, kShortcutMargin_m = 0.15;
+
+const std::string kTooFar = "the battery does not last for going there and home";
 
 /// Pauses of places tried in vain that are waived when no other place is left: the first three attempts'.
 constexpr TimeNs kPauseWaived = 40 * kSecond;
@@ -89,7 +92,7 @@ Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
       return policy_->decide(request);
     } catch (const PolicyFailure& failure) {
       policy_failed_ = true;
-      result.log.push_back("policy failed, the fallback takes over: " + std::string(failure.what()));
+      result.policy_failure = failure.what();
     }
   }
   result.policy = fallback_.name();
@@ -160,7 +163,7 @@ void Explorer::choose(const RoundInput& input, const std::vector<Goal>& goals, R
           }
           return;
         }
-        why = "the battery does not last for going there and home";
+        why = kTooFar;
       } else {
         why = "no path: " + path.reason;
         ledger_.close(map_, goal.position, input.now, why);
@@ -223,6 +226,14 @@ RoundResult Explorer::decide(const RoundInput& input) {
   result.goals_proposed = decision.goals.size();
   if (decision.outcome == Outcome::goals) {
     choose(input, decision.goals, result);
+    // Waiting brings no battery back: goals that are all too far are no reason to stand and ask again.
+    const bool all_too_far = !result.rejected.empty() &&
+                             std::all_of(result.rejected.begin(), result.rejected.end(),
+                                         [](const RejectedGoal& r) { return r.reason == kTooFar; });
+    if (!result.goal && all_too_far && result.policy != fallback_.name()) {
+      result.policy = fallback_.name();
+      choose(input, fallback_.decide(request).goals, result);
+    }
     if (!result.goal) {
       // The fallback asks for every frontier in reach: if none of those can be flown to, nothing is left to
       // do.

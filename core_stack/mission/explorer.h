@@ -59,6 +59,7 @@ struct RoundResult {
   std::vector<UnseenFrontier> unseen;  // for the first time in this round
   std::vector<Drawing> drawings;
   std::vector<std::string> log;
+  std::string policy_failure;  // if it failed in this round: the fallback takes over
   std::size_t goals_proposed = 0;
   std::vector<FrontierCluster> frontiers;  // as offered, without their cells: for the report
   double decide_ms = 0, plan_ms = 0;       // wall clock, for timing.json only

@@ -254,6 +254,9 @@ void MissionControl::record_round(const RoundInput& input, const RoundResult& re
   for (const FrontierCluster& c : result.frontiers)
     clusters.push_back({c.id, c.centroid.x(), c.centroid.y(), c.centroid.z(), c.unknown_cells});
   recorder_.event(now(), "frontiers", {{"clusters", clusters}});
+  if (!result.policy_failure.empty())
+    recorder_.event(now(), "safety",
+                    {{"action", "fallback"}, {"reason", "the policy failed: " + result.policy_failure}});
   for (const UnseenFrontier& u : result.unseen)
     recorder_.event(
         now(), "frontier",

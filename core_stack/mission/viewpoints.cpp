@@ -28,18 +28,19 @@ int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const Vehicl
   return seen;
 }
 
-/// `p`, or the point nearest to it, up to a cell away in each axis, that is clear. In a narrow passage clear
-/// points lie along a thread, which candidates that keep their distance to the cluster mostly miss.
+/// `p`, or the nearest point half a cell from it in some axes, that is clear. In a narrow passage clear points
+/// lie along a thread, which candidates that keep their distance to the cluster mostly miss.
 std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double clearance_m) {
-  constexpr int kReach = 4;
-  const double step_m = map.resolution_m() / kReach;
+  const double step_m = map.resolution_m() / 2;
+  // Clearance changes no faster than the place: from here no point that near could be clear.
+  if (!is_clear(map, p, clearance_m - std::sqrt(3.0) * step_m - 1e-6)) return std::nullopt;
   std::optional<Vec3> best;
-  int least = 3 * kReach * kReach + 1;
-  for (int x = -kReach; x <= kReach; ++x)
-    for (int y = -kReach; y <= kReach; ++y)
-      for (int z = -kReach; z <= kReach; ++z)
-        if (const int d = x * x + y * y + z * z; d < least)
-          if (const Vec3 q = p + step_m * Vec3(x, y, z); is_clear(map, q, clearance_m)) best = q, least = d;
+  int least = 4;
+  for (int i = 0; i < 27; ++i) {
+    const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1, d = x * x + y * y + z * z;
+    if (d >= least) continue;
+    if (const Vec3 q = p + step_m * Vec3(x, y, z); is_clear(map, q, clearance_m)) best = q, least = d;
+  }
   return best;
 }
 

@@ -16,6 +16,7 @@ function eventText(e) {
     case "decision": return `${e.outcome}, ${e.goals ?? 0} goals, ${e.frontiers ?? "–"} frontiers${because(e.reason)}`;
     case "plan": return `path of ${numberText(e.length)} m`;
     case "homing": return `flies home${because(e.reason)} (${numberText(e.distance)} m, ${numberText(e.seconds_left)} s left)`;
+    case "frontier": return `${e.state} ${place(e.position)}${because(e.reason)}`;
     case "safety": return `${e.action}${because(e.reason)}`;
     case "outcome": return `${e.outcome}${because(e.reason)}`;
     case "log": case "truth": return e.text || "";
