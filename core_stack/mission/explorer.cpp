@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostPlans = 5;
 /// A vehicle that stands for so long, because the policy holds it or because none of its goals can be
 /// accepted, gets its next goal from the fallback.
-constexpr TimeNs kMostIdle = 4 * kSecond;
+constexpr TimeNs kMostIdle = 2 * kSecond;
 /// A path under way is judged a little milder than a new one, or noise would stop every flight.
 constexpr double kClearanceSlack_m = 0.12;
 /// A cluster that has lost this share of its cells has been seen; flying on to it is a waste.
@@ -224,12 +224,14 @@ RoundResult Explorer::decide(const RoundInput& input) {
   result.drawings = std::move(decision.drawings);
   result.log.insert(result.log.end(), decision.log.begin(), decision.log.end());
   result.goals_proposed = decision.goals.size();
+  std::size_t own_rejections = 0;
   if (decision.outcome == Outcome::goals) {
     choose(input, decision.goals, result);
     // Waiting brings no battery back: goals that are all too far are no reason to stand and ask again.
     const bool all_too_far = !result.rejected.empty() &&
                              std::all_of(result.rejected.begin(), result.rejected.end(),
                                          [](const RejectedGoal& r) { return r.reason == kTooFar; });
+    own_rejections = result.rejected.size();
     if (!result.goal && all_too_far && result.policy != fallback_.name()) {
       result.policy = fallback_.name();
       choose(input, fallback_.decide(request).goals, result);
@@ -249,8 +251,9 @@ RoundResult Explorer::decide(const RoundInput& input) {
     idle_since_ = input.now;
   }
   if (!policy_failed_)
-    for (const RejectedGoal& r : result.rejected)
-      policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});
+    for (std::size_t i = 0; i < own_rejections; ++i)
+      policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, result.rejected[i].goal,
+                       result.rejected[i].reason});
 
   result.unseen = std::exchange(unseen_, {});
   for (const FrontierOffer& offer : request.frontiers) {
