@@ -99,10 +99,11 @@ void Flight::look_around(TimeNs now) {
 
 void Flight::brake(TimeNs now) {
   const Onward stop = until_stop(now);
-  HeadingPlan keep;
-  keep.along_path = false;
-  keep.start_heading_rad = stop.heading_rad;
-  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, limits_, keep);
+  heading_ = HeadingPlan{};  // the heading that the path was to end with is of no interest any more
+  heading_.along_path = false;
+  heading_.start_heading_rad = stop.heading_rad;
+  path_speed_mps_ = 0;
+  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, limits_, heading_);
 }
 
 void Flight::disarm() {

@@ -97,6 +97,25 @@ TEST(Flight, ACapOnSpeedHoldsUntilItIsLifted) {
   EXPECT_NEAR(f.flight.reference().position.x(), 30, 0.02);
 }
 
+TEST(Flight, ABrakeForgetsTheHeadingThatThePathWasToEndWith) {
+  // As it was: slowed down while braking, it turned to the goal's heading on the spot before it was at rest.
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  heading.goal_heading_rad = 3.0;
+  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.advance(4);
+  f.flight.brake(f.now);
+  f.advance(0.2);
+  f.flight.cap_speed(f.now, 1.0);
+  EXPECT_LT(f.flight.remaining_s(f.now), 1.5);
+  f.advance(2);
+  EXPECT_NEAR(f.flight.reference().heading_rad, 0, 0.01);
+}
+
 TEST(Flight, LooksOnceAround) {
   IdealFlight f;
   f.flight.climb(0, 0.5, 0.5);
