@@ -228,9 +228,9 @@ RoundResult Explorer::decide(const RoundInput& input) {
   if (decision.outcome == Outcome::goals) {
     choose(input, decision.goals, result);
     // Waiting brings no battery back: goals that are all too far are no reason to stand and ask again.
-    const bool all_too_far = !result.rejected.empty() &&
-                             std::all_of(result.rejected.begin(), result.rejected.end(),
-                                         [](const RejectedGoal& r) { return r.reason == kTooFar; });
+    const bool all_too_far =
+        !result.rejected.empty() && std::all_of(result.rejected.begin(), result.rejected.end(),
+                                                [](const RejectedGoal& r) { return r.reason == kTooFar; });
     own_rejections = result.rejected.size();
     if (!result.goal && all_too_far && result.policy != fallback_.name()) {
       result.policy = fallback_.name();
@@ -252,8 +252,8 @@ RoundResult Explorer::decide(const RoundInput& input) {
   }
   if (!policy_failed_)
     for (std::size_t i = 0; i < own_rejections; ++i)
-      policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, result.rejected[i].goal,
-                       result.rejected[i].reason});
+      policy_->notify(
+          {PolicyEvent::Kind::goal_rejected, input.now, result.rejected[i].goal, result.rejected[i].reason});
 
   result.unseen = std::exchange(unseen_, {});
   for (const FrontierOffer& offer : request.frontiers) {

@@ -28,8 +28,8 @@ int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const Vehicl
   return seen;
 }
 
-/// `p`, or the nearest point half a cell from it in some axes, that is clear. In a narrow passage clear points
-/// lie along a thread, which candidates that keep their distance to the cluster mostly miss.
+/// `p`, or the nearest point half a cell from it in some axes, that is clear. In a narrow passage clear
+/// points lie along a thread, which candidates that keep their distance to the cluster mostly miss.
 std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double clearance_m) {
   const double step_m = map.resolution_m() / 2;
   // Clearance changes no faster than the place: from here no point that near could be clear.
