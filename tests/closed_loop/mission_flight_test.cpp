@@ -133,7 +133,7 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
   const std::string events = bytes_of(run / "events.jsonl");
   EXPECT_NE(events.find("the map now forbids the path ahead"), std::string::npos);
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Range(1, 1 + seeds()));
+INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(1, 2));
 
 TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThreadCount) {
   const auto folder = fresh_folder("flight_twice");

@@ -37,6 +37,57 @@ TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, Corridor, ::testing::Range(1, 1 + seeds()));
 
+class FallingRock : public ::testing::TestWithParam<int> {};
+
+/// A straight passage, flown at full speed; a rock that fills it falls down with its surface 3 m before the vehicle.
+TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
+  const int seed = GetParam();
+  const auto folder = fresh_folder("falling_rock_" + std::to_string(seed));
+  const std::vector<Box> boxes = {{{-4, -4, 0}, {4, 4, 3}},
+                                  {{4, -1.8, 0}, {30, 1.8, 3}},
+                                  {{30, -4, 0}, {38, 4, 3}},
+                                  {{-12, -1.5, 0}, {-4, 1.5, 2.8}},
+                                  {{-12, -1.5, 0}, {-9, 8, 2.8}}};
+  const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.29 * seed);
+  const double x = 11 + 0.25 * seed, turn = 0.29 * seed;
+  std::ofstream(cave, std::ios::app) << "boulder { position \"" << x * std::cos(turn) << ' ' << x * std::sin(turn)
+                                     << " 1.5\" radius \"2.35 m\" within \"5.3 m\" }\n";
+  const auto run = folder / "run";
+  const Output out =
+      run_karst("fly --cave " + cave + " --seed " + std::to_string(seed) +
+                " --policy nearest_frontier --set motion.max_speed=2.3m/s"
+                " --set simulator.battery_minutes=5min --quiet --no-report --out " +
+                run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_GT(m["min_clearance_m"].get<double>(), 0.1);
+  double speed_mps = 0, fell_s = -1;
+  std::istringstream truth(bytes_of(run / "truth_events.jsonl"));
+  for (std::string line; std::getline(truth, line);)
+    if (line.find("rockfall") != std::string::npos) {
+      const auto event = nlohmann::json::parse(line);
+      speed_mps = event["speed_mps"], fell_s = event["time_s"];
+    }
+  EXPECT_GT(speed_mps, 1.85) << "it was to be at full speed";
+  double noticed_s = 1e9;
+  int new_goals = 0;
+  std::istringstream events(bytes_of(run / "events.jsonl"));
+  for (std::string line; std::getline(events, line);) {
+    const auto event = nlohmann::json::parse(line);
+    const double t_s = event["t"];
+    if (t_s < fell_s) continue;
+    if (event["kind"] == "safety" && event["reason"] == "the map now forbids the path ahead")
+      noticed_s = std::min(noticed_s, t_s);
+    new_goals += t_s > noticed_s && event["kind"] == "goal" && event["state"] == "accepted";
+  }
+  EXPECT_LT(noticed_s, fell_s + 0.5);
+  EXPECT_GT(new_goals, 0) << "the passage behind the start is still to be explored";
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, FallingRock, ::testing::Range(1, 1 + seeds()));
+
 /// Two rooms, one 30 m above the other.
 const std::vector<Box> kShaft = {
     {{-4, -4, 0}, {4, 4, 3.5}}, {{-2, -2, 3}, {2, 2, 34}}, {{-2, -4, 33.5}, {6, 4, 37}}};
