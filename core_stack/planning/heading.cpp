@@ -2,8 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace karst::core {
+namespace {
+
+constexpr double kLookahead_m = 0.8;
+/// A vehicle that (nearly) stands turns on the spot first when it would start this far off its heading.
+constexpr double kTurnFirst_rad = 0.7, kStanding_mps = 0.2;
+constexpr double kHeadingReached_rad = 1e-3;
+
+}  // namespace
 
 double HeadingCourse::step(double wanted_rad) {
   const double error = wrap_angle(wanted_rad - heading_rad_);
@@ -17,6 +26,12 @@ double HeadingCourse::step(double wanted_rad) {
   rate_radps_ = std::clamp(rate, rate_radps_ - alpha * period_s_, rate_radps_ + alpha * period_s_);
   heading_rad_ = wrap_angle(heading_rad_ + rate_radps_ * period_s_);
   return heading_rad_;
+}
+
+bool HeadingCourse::settled_at(double wanted_rad) const {
+  const double slow = limits_.max_heading_acceleration_radps2 * period_s_;
+  return std::abs(wrap_angle(wanted_rad - heading_rad_)) < kHeadingReached_rad &&
+         std::abs(rate_radps_) <= slow;
 }
 
 std::vector<double> headings_along(const std::vector<Vec3>& points, double lookahead_m,
@@ -35,6 +50,36 @@ std::vector<double> headings_along(const std::vector<Vec3>& points, double looka
     out.push_back(heading);
   }
   return out;
+}
+
+std::vector<double> wanted_headings(const std::vector<Vec3>& points, const HeadingPlan& plan) {
+  if (plan.along_path) return headings_along(points, kLookahead_m, plan.start_heading_rad);
+  return std::vector<double>(points.size(), plan.goal_heading_rad.value_or(plan.start_heading_rad));
+}
+
+bool turns_first(const HeadingPlan& plan, double wanted_rad, double speed_mps) {
+  return plan.along_path && speed_mps < kStanding_mps &&
+         std::abs(wrap_angle(wanted_rad - plan.start_heading_rad)) > kTurnFirst_rad;
+}
+
+void turn_on_the_spot(HeadingCourse& course, double wanted_rad, std::vector<TrajectorySample>& samples) {
+  const Vec3 here = samples.back().position;
+  // A half turn at the least rate takes far fewer steps than this; the bound guards against absurd limits.
+  for (int i = 0; i < 100000 && !course.settled_at(wanted_rad); ++i)
+    samples.push_back({here, course.step(wanted_rad)});
+}
+
+double turn_from_s(const HeadingPlan& plan, double last_wanted_rad, double arrival_s,
+                   const MotionLimits& limits) {
+  if (!plan.goal_heading_rad) return std::numeric_limits<double>::infinity();
+  return arrival_s -
+         std::abs(wrap_angle(*plan.goal_heading_rad - last_wanted_rad)) / limits.max_heading_rate_radps -
+         limits.max_heading_rate_radps / limits.max_heading_acceleration_radps2;
+}
+
+void end_facing(HeadingCourse& course, double goal_heading_rad, std::vector<TrajectorySample>& samples) {
+  turn_on_the_spot(course, goal_heading_rad, samples);
+  samples.back().heading_rad = wrap_angle(goal_heading_rad);
 }
 
 }  // namespace karst::core

@@ -11,10 +11,6 @@ namespace {
 constexpr TimeNs kPeriod = 100 * kMillisecond;
 /// Spacing of the path's nodes; with the period it bounds how much a bend is rounded (by a quarter of it).
 constexpr double kMostSpacing_m = 0.1;
-constexpr double kLookahead_m = 0.8;
-/// A vehicle that (nearly) stands turns on the spot first when it would start this far off its heading.
-constexpr double kTurnFirst_rad = 0.7, kStanding_mps = 0.2;
-constexpr double kHeadingReached_rad = 1e-3;
 
 /// Points at equal distances along the polyline; the ends stay.
 std::vector<Vec3> evenly_spaced(const std::vector<Vec3>& points, double most_spacing_m) {
@@ -99,18 +95,6 @@ std::vector<double> times(const std::vector<double>& v, double spacing_m) {
   return t;
 }
 
-void turn_on_the_spot(HeadingCourse& course, double wanted_rad, double period_s, const MotionLimits& limits,
-                      std::vector<TrajectorySample>& samples) {
-  const Vec3 here = samples.back().position;
-  const double slow = limits.max_heading_acceleration_radps2 * period_s;
-  // A half turn at the least rate takes far fewer steps than this; the bound guards against absurd limits.
-  for (int i = 0; i < 100000; ++i) {
-    const double off = std::abs(wrap_angle(wanted_rad - course.heading_rad()));
-    if (off < kHeadingReached_rad && std::abs(course.rate_radps()) <= slow) break;
-    samples.push_back({here, course.step(wanted_rad)});
-  }
-}
-
 }  // namespace
 
 void describe(OptionTable& t, MotionLimits& o) {
@@ -153,24 +137,14 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
   if (length > 1e-6) {
     const std::vector<Vec3> nodes = evenly_spaced(points, kMostSpacing_m);
     const double spacing = length / static_cast<double>(nodes.size() - 1);
-    const double first = heading.along_path ? heading.start_heading_rad
-                                            : heading.goal_heading_rad.value_or(heading.start_heading_rad);
-    const std::vector<double> wanted = heading.along_path ? headings_along(nodes, kLookahead_m, first)
-                                                          : std::vector<double>(nodes.size(), first);
-    if (heading.along_path && start_speed_mps < kStanding_mps &&
-        std::abs(wrap_angle(wanted.front() - heading.start_heading_rad)) > kTurnFirst_rad) {
-      turn_on_the_spot(course, wanted.front(), dt, limits, out.samples);
+    const std::vector<double> wanted = wanted_headings(nodes, heading);
+    if (turns_first(heading, wanted.front(), start_speed_mps)) {
+      turn_on_the_spot(course, wanted.front(), out.samples);
       start_speed_mps = 0;
     }
     const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted);
     const std::vector<double> t = times(v, spacing);
-    // The goal's heading is turned to as late as the rate allows, so as to look ahead until then.
-    double turn_from = t.back() + 1;
-    if (heading.goal_heading_rad)
-      turn_from =
-          t.back() -
-          std::abs(wrap_angle(*heading.goal_heading_rad - wanted.back())) / limits.max_heading_rate_radps -
-          limits.max_heading_rate_radps / limits.max_heading_acceleration_radps2;
+    const double turn_from = turn_from_s(heading, wanted.back(), t.back(), limits);
     std::size_t i = 0;
     const auto steps = static_cast<std::size_t>(std::ceil(t.back() / dt - 1e-9));
     for (std::size_t k = 1; k <= steps; ++k) {
@@ -178,15 +152,11 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
       while (i + 2 < t.size() && t[i + 1] <= now) ++i;
       const double since = now - t[i], a = (v[i + 1] - v[i]) / (t[i + 1] - t[i]);
       const double u = static_cast<double>(i) + (v[i] * since + 0.5 * a * since * since) / spacing;
-      const double look =
-          heading.goal_heading_rad && now >= turn_from ? *heading.goal_heading_rad : wanted[i];
+      const double look = now >= turn_from ? *heading.goal_heading_rad : wanted[i];
       out.samples.push_back({k == steps ? points.back() : point_at(nodes, u), course.step(look)});
     }
   }
-  if (heading.goal_heading_rad) {
-    turn_on_the_spot(course, *heading.goal_heading_rad, dt, limits, out.samples);
-    out.samples.back().heading_rad = wrap_angle(*heading.goal_heading_rad);
-  }
+  if (heading.goal_heading_rad) end_facing(course, *heading.goal_heading_rad, out.samples);
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "core_stack/planning/free_tiles.h"
 #include "core_stack/planning/grid_planner.h"
 #include "core_stack/planning/planner.h"
+#include "core_stack/planning/polynomial_trajectory.h"
 #include "core_stack/planning/refine.h"
 #include "core_stack/planning/trajectory.h"
 #include "tests/unit/planning/test_maps.h"
@@ -77,9 +78,9 @@ double plain_a_star(const VoxelMap& map, const Vec3& start, const Vec3& goal, Cl
 
 void paths(double length_m, int caves, int plans_a_cave, bool compare) {
   std::printf("\npaths of %.0f m\n", length_m);
-  Times whole, find, refine, grid, grid_optimal, brute, kd_tree, trajectory;
-  double whole_m = 0, optimal_m = 0, plain_m = 0, speed = 0;
-  int failed = 0;
+  Times whole, find, refine, grid, grid_optimal, brute, kd_tree, trajectory, polynomial;
+  double whole_m = 0, optimal_m = 0, plain_m = 0, speed = 0, polynomial_speed = 0;
+  int failed = 0, fell_back = 0, rounds = 0;
   const PlanningOptions options;
   PlanningOptions optimal = options;
   optimal.heuristic_weight = 1.0;
@@ -105,6 +106,15 @@ void paths(double length_m, int caves, int plans_a_cave, bool compare) {
         speed += path.length_m /
                  seconds(sample_trajectory(path.points, 0, 0, MotionLimits{}, HeadingPlan{}).end());
       }));
+      polynomial.ms.push_back(cpu_ms([&] {
+        const PolynomialTrajectory t = polynomial_trajectory(
+            path.points, {}, 0, MotionLimits{}, HeadingPlan{}, [&](const Vec3& from, const Vec3& to) {
+              return segment_clear(map, from, to, options.clearance_m);
+            });
+        polynomial_speed += path.length_m / seconds(t.trajectory.end());
+        rounds += t.rounds;
+        if (!t.fell_back.empty()) ++fell_back;
+      }));
       grid.ms.push_back(cpu_ms([&] { plan_on_grid(map, a, b, options); }));
       if (!compare || i > 0) continue;
       Path best;
@@ -126,12 +136,17 @@ void paths(double length_m, int caves, int plans_a_cave, bool compare) {
   find.print("  of which search on the roadmap");
   refine.print("  of which refining");
   trajectory.print("sample_trajectory");
+  polynomial.print("polynomial_trajectory");
   grid.print("plan_on_grid, weight 1.2, tiles of bits");
   grid_optimal.print("plan_on_grid, weight 1");
   brute.print("plain A*, clearance from 100 look-ups a cell");
   kd_tree.print("plain A*, clearance from the KD-tree");
   std::printf("  not found: %d; mean speed along the trajectories %.2f m/s\n", failed,
               speed / static_cast<double>(std::max<std::size_t>(1, trajectory.ms.size())));
+  std::printf("  polynomials: %.2f m/s, %.1f rounds, %d of %zu fell back to sampling\n",
+              polynomial_speed / static_cast<double>(std::max<std::size_t>(1, polynomial.ms.size())),
+              rounds / static_cast<double>(std::max<std::size_t>(1, polynomial.ms.size())), fell_back,
+              polynomial.ms.size());
   if (compare && optimal_m > 0)
     std::printf(
         "  plan() is %.3f as long as the shortest way on the grid; plain A* (KD-tree) takes %.1f times as "
