@@ -40,14 +40,19 @@ AttitudeRateCommand Flight::control(TimeNs now) {
 }
 
 void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-                    const HeadingPlan& heading, double max_speed_mps) {
+                    const HeadingPlan& heading, double max_speed_mps, const Trajectory* ready) {
   heading_ = heading;
   path_speed_mps_ = max_speed_mps;
+  trajectory_ =
+      ready ? *ready : sample_trajectory(points, start_speed_mps, start, limits(max_speed_mps), heading);
+}
+
+MotionLimits Flight::limits(double max_speed_mps) const {
   MotionLimits limits = limits_;
   limits.max_speed_mps = std::min(limits.max_speed_mps, speed_cap_mps_);
   if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
   limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
-  trajectory_ = sample_trajectory(points, start_speed_mps, start, limits, heading);
+  return limits;
 }
 
 void Flight::cap_speed(TimeNs now, double max_speed_mps) {
@@ -116,13 +121,22 @@ Vec3 Flight::velocity_at(TimeNs t) const {
   return (trajectory_.at(t + dt).position - trajectory_.at(t).position) / seconds(dt);
 }
 
+Departure Flight::departure_at(TimeNs t) const {
+  const TimeNs period = trajectory_.period;
+  const Vec3 before = trajectory_.at(t - period).position, here = trajectory_.at(t).position,
+             after = trajectory_.at(t + period).position;
+  const double dt = seconds(period);
+  return {(after - before) / (2 * dt), (after - 2 * here + before) / (dt * dt)};
+}
+
 State Flight::expected(TimeNs t) const {
   const TrajectorySample sample = trajectory_.at(t);
   return {t, sample.position, velocity_at(t), from_heading(sample.heading_rad), Vec3::Zero()};
 }
 
 Flight::Onward Flight::onward(TimeNs t, double length_m) const {
-  Onward out{{trajectory_.at(t).position}, velocity_at(t).norm(), trajectory_.at(t).heading_rad};
+  Onward out{
+      {trajectory_.at(t).position}, velocity_at(t).norm(), trajectory_.at(t).heading_rad, departure_at(t)};
   double length = 0;
   for (std::size_t i = 0; i < trajectory_.samples.size() && length < length_m; ++i) {
     if (trajectory_.start + trajectory_.period * static_cast<TimeNs>(i) <= t) continue;

@@ -7,6 +7,7 @@
 #include "core_stack/control/se3_controller.h"
 #include "core_stack/localization/estimator.h"
 #include "core_stack/mission/mission_options.h"
+#include "core_stack/planning/minimum_snap.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {
@@ -23,9 +24,12 @@ class Flight {
   AttitudeRateCommand control(TimeNs now);
 
   /// Flies along `points` from `start` on (not before now); the first point is where the reference will be
-  /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0.
+  /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0. `ready` is the
+  /// trajectory if it was made beforehand, where the map is.
   void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-              const HeadingPlan& heading, double max_speed_mps = 0);
+              const HeadingPlan& heading, double max_speed_mps = 0, const Trajectory* ready = nullptr);
+  /// The limits `follow` keeps.
+  MotionLimits limits(double max_speed_mps) const;
   /// Flies no faster than this, from now on and along what is left of the present path.
   void cap_speed(TimeNs now, double max_speed_mps);
   /// Straight up or down at `speed_mps` by `height_m` from the present reference.
@@ -42,6 +46,7 @@ class Flight {
     std::vector<Vec3> points;  // from the position at t to where it may turn off; at least one point
     double speed_mps = 0;      // at t
     double heading_rad = 0;    // at t
+    Departure departure;       // at t: the velocity and acceleration, for polynomials
   };
   /// Up to where the vehicle could have stopped.
   Onward until_stop(TimeNs t) const;
@@ -62,6 +67,7 @@ class Flight {
  private:
   Onward onward(TimeNs t, double length_m) const;
   Vec3 velocity_at(TimeNs t) const;
+  Departure departure_at(TimeNs t) const;
 
   MotionLimits limits_;
   Estimator estimator_;

@@ -76,7 +76,20 @@ class MissionControl final : public VehicleSink {
   void record_round(const RoundInput& input, const RoundResult& result);
 
   /// Joins a path to the stretch of the trajectory that leads to its beginning.
-  void follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal);
+  void follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal,
+              const std::optional<PolynomialTrajectory>& polynomial = {});
+  /// What `follow` asks of the flight.
+  struct Leg {
+    std::vector<Vec3> points;
+    HeadingPlan heading;
+    double max_speed_mps = 0;
+  };
+  Leg leg(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal) const;
+  /// On the map lane: the polynomial along a path that will be followed from `start` on. Nothing if the
+  /// mission flies sampled trajectories, or the path begins where it is not clear.
+  std::optional<PolynomialTrajectory> polynomial(const Flight::Onward& lead, const Path& path,
+                                                 const std::optional<Goal>& goal, TimeNs start,
+                                                 MotionLimits limits) const;
 
   // Going home and landing.
   double seconds_left() const;

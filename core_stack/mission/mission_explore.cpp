@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core_stack/mission/mission_control.h"
+#include "core_stack/planning/grid_planner.h"
 
 namespace karst::core {
 namespace {
@@ -155,9 +156,11 @@ void MissionControl::begin_round(bool appending) {
   auto result = std::make_shared<RoundResult>();
   executive_.job(
       "decision", Lane::map, budget,
-      [this, input, result] {
+      [this, input, lead, limits = flight_.limits(0), result] {
         try {
           *result = explorer_.decide(input);
+          if (result->goal)
+            result->polynomial = polynomial(lead, result->path, result->goal, input.deadline, limits);
         } catch (const std::exception& e) {  // whatever it is: the way home must not depend on it
           result->outcome = Outcome::go_home;
           result->reason = std::string("an error of the core: ") + e.what();
@@ -185,7 +188,7 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
       goal_ = result.goal;
       append_tried_ = false;
     }
-    follow(lead, result.path, result.goal);
+    follow(lead, result.path, result.goal, result.polynomial);
     goal_alive_ = true;
   } else if (input.appending) {
     return;  // ask again on arrival
@@ -202,24 +205,55 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
   }
 }
 
-void MissionControl::follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal) {
-  std::vector<Vec3> points = lead.points;
-  points.insert(points.end(), path.points.begin() + 1, path.points.end());
-  HeadingPlan heading;
+MissionControl::Leg MissionControl::leg(const Flight::Onward& lead, const Path& path,
+                                        const std::optional<Goal>& goal) const {
+  Leg out{lead.points, {}, 0};
+  out.points.insert(out.points.end(), path.points.begin() + 1, path.points.end());
+  HeadingPlan& heading = out.heading;
   heading.along_path = !description_.lidar;
   heading.start_heading_rad = lead.heading_rad;
   if (goal && std::isfinite(goal->heading_rad)) heading.goal_heading_rad = goal->heading_rad;
-  recorder_.event(now(), "plan",
-                  {{"length", path_length_m(points)},
-                   {"from", list(points.front())},
-                   {"to", list(points.back())},
-                   {"narrow", path.narrow},
-                   {"points", list(points)}});
-  double max_speed_mps =
-      goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
+  double& max_speed_mps = out.max_speed_mps;
+  max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
   if (path.narrow)
     max_speed_mps = std::min(max_speed_mps, options_.safety.slow_share * options_.motion.max_speed_mps);
-  flight_.follow(points, flight_.at_rest(now()) ? 0.0 : lead.speed_mps, now(), heading, max_speed_mps);
+  return out;
+}
+
+std::optional<PolynomialTrajectory> MissionControl::polynomial(const Flight::Onward& lead, const Path& path,
+                                                               const std::optional<Goal>& goal, TimeNs start,
+                                                               MotionLimits limits) const {
+  if (options_.motion.trajectory != "polynomial" || !path.found() || path.escape_points > 0) return {};
+  const Leg way = leg(lead, path, goal);
+  const double clearance_m = path.narrow ? search_clearance_m(options_.planning, options_.map.resolution_m)
+                                         : options_.planning.clearance_m;
+  limits.max_speed_mps = std::min(limits.max_speed_mps, way.max_speed_mps);
+  return polynomial_trajectory(way.points, lead.departure, start, limits, way.heading,
+                               [this, clearance_m](const Vec3& a, const Vec3& b) {
+                                 return segment_clear(explorer_.map(), a, b, clearance_m);
+                               });
+}
+
+void MissionControl::follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal,
+                            const std::optional<PolynomialTrajectory>& polynomial) {
+  const auto [points, heading, max_speed_mps] = leg(lead, path, goal);
+  // Made for the state it was expected to be in now, and the speed allowed then: either may have changed.
+  const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now() &&
+                    (flight_.expected(now()).position - points.front()).norm() < 0.01 &&
+                    flight_.limits(0).max_speed_mps >= polynomial->speed_limit_mps;
+  nlohmann::json plan{{"length", path_length_m(points)},
+                      {"from", list(points.front())},
+                      {"to", list(points.back())},
+                      {"narrow", path.narrow},
+                      {"points", list(points)}};
+  if (options_.motion.trajectory == "polynomial") {
+    plan["trajectory"] = fits ? "polynomial" : "sampled";
+    plan["rounds"] = polynomial ? polynomial->rounds : 0;
+    plan["fell_back"] = polynomial ? polynomial->fell_back : "";
+  }
+  recorder_.event(now(), "plan", plan);
+  flight_.follow(points, flight_.at_rest(now()) ? 0.0 : lead.speed_mps, now(), heading, max_speed_mps,
+                 fits ? &polynomial->trajectory : nullptr);
   tight_until_ =
       path.escape_points == 0
           ? 0

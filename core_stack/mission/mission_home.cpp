@@ -80,10 +80,14 @@ void MissionControl::plan_home_path() {
   home_planning_ = true;
   const Flight::Onward lead = flight_.until_stop(now() + kPlanningBudget);
   auto path = std::make_shared<Path>();
+  auto smooth = std::make_shared<std::optional<PolynomialTrajectory>>();
   executive_.job(
       "home plan", Lane::map, kPlanningBudget,
-      [this, path, from = lead.points.back(), home = home_] { *path = explorer_.plan_to(from, home); },
-      [this, path, lead] {
+      [this, path, smooth, lead, home = home_, start = now() + kPlanningBudget, limits = flight_.limits(0)] {
+        *path = explorer_.plan_to(lead.points.back(), home);
+        *smooth = polynomial(lead, *path, std::nullopt, start, limits);
+      },
+      [this, path, smooth, lead] {
         home_planning_ = false;
         if (phase_ != Phase::home) return;
         if (!path->found()) {
@@ -94,7 +98,7 @@ void MissionControl::plan_home_path() {
           if (!flight_.at_rest(now())) flight_.brake(now());
           return;
         }
-        follow(lead, *path, std::nullopt);
+        follow(lead, *path, std::nullopt, *smooth);
       });
 }
 

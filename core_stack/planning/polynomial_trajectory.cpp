@@ -143,6 +143,7 @@ PolynomialTrajectory polynomial_trajectory(const std::vector<Vec3>& points, cons
                                            TimeNs start, const MotionLimits& limits,
                                            const HeadingPlan& heading, const SegmentClear& clear) {
   PolynomialTrajectory out;
+  out.speed_limit_mps = limits.max_speed_mps;
   const auto fall_back = [&](const char* why) {
     out.trajectory = sample_trajectory(points, departure.velocity_mps.norm(), start, limits, heading);
     out.fell_back = why;

@@ -14,6 +14,7 @@ using SegmentClear = std::function<bool(const Vec3&, const Vec3&)>;
 
 struct PolynomialTrajectory {
   Trajectory trajectory;
+  double speed_limit_mps = 0;  // it was made for
   std::size_t waypoints = 0;
   int rounds = 0;         // of optimization; more than one if waypoints had to be added for rock
   std::string fell_back;  // why it was sampled after all; empty: it is a polynomial

@@ -2,6 +2,7 @@
 // (section III-C of the paper; the unit slip in its a_k is resolved in docs/planning.md).
 #pragma once
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core_stack/common/geometry.h"
@@ -17,6 +18,7 @@ struct MotionLimits {
   double max_jerk_mps3 = 12.0;
   double max_heading_rate_radps = 1.0;
   double max_heading_acceleration_radps2 = 2.0;
+  std::string trajectory = "sampled";  // or "polynomial": see polynomial_trajectory.h
 };
 void describe(OptionTable& t, MotionLimits& o);
 
