@@ -17,7 +17,6 @@
 #include "core_stack/mission/policy_port.h"
 #include "core_stack/mission/viewpoints.h"
 #include "core_stack/mission/visibility.h"
-#include "core_stack/planning/polynomial_trajectory.h"
 #include "core_stack/planning/roadmap.h"
 
 namespace karst::core {
@@ -56,7 +55,6 @@ struct RoundResult {
   std::string reason, policy;
   std::optional<Goal> goal;  // accepted, with `path` from RoundInput::from to it
   Path path;
-  std::optional<PolynomialTrajectory> polynomial;  // along the path, if the mission flies those
   std::vector<RejectedGoal> rejected;
   std::vector<UnseenFrontier> unseen;  // for the first time in this round
   std::vector<Drawing> drawings;

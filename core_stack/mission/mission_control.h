@@ -12,6 +12,7 @@
 #include "core_stack/mission/explorer.h"
 #include "core_stack/mission/flight.h"
 #include "core_stack/mission/recorder.h"
+#include "core_stack/planning/polynomial_trajectory.h"
 
 namespace karst::core {
 
@@ -65,31 +66,29 @@ class MissionControl final : public VehicleSink {
   void on_map_update(const std::vector<CellChange>& changes, std::optional<double> blocked_after_m,
                      bool goal_alive);
 
+  /// A path as it is flown.
+  struct Route {
+    Path path;
+    std::vector<Vec3> points;  // the stretch of the trajectory that leads to the path, and the path
+    HeadingPlan heading;
+    double start_speed_mps = 0, max_speed_mps = 0;
+    std::optional<PolynomialTrajectory> polynomial;  // along the points, if the mission flies those
+  };
+
   // Exploring.
   void explore();
   void begin_round(bool appending);
   std::vector<Vec3> way_to(const Flight::Onward& lead) const;
-  void on_round(const RoundInput& input, const Flight::Onward& lead, const RoundResult& result);
+  void on_round(const RoundInput& input, const RoundResult& result, const Route& way);
   void settle_goal(GoalFate fate, PolicyEvent::Kind kind, const std::string& reason);
   void drop_next_goal(PolicyEvent::Kind kind, const std::string& reason);
   bool within_tolerance(const Goal& goal) const;
   void record_round(const RoundInput& input, const RoundResult& result);
 
-  /// Joins a path to the stretch of the trajectory that leads to its beginning.
-  void follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal,
-              const std::optional<PolynomialTrajectory>& polynomial = {});
-  /// What `follow` asks of the flight.
-  struct Leg {
-    std::vector<Vec3> points;
-    HeadingPlan heading;
-    double max_speed_mps = 0;
-  };
-  Leg leg(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal) const;
-  /// On the map lane: the polynomial along a path that will be followed from `start` on. Nothing if the
-  /// mission flies sampled trajectories, or the path begins where it is not clear.
-  std::optional<PolynomialTrajectory> polynomial(const Flight::Onward& lead, const Path& path,
-                                                 const std::optional<Goal>& goal, TimeNs start,
-                                                 MotionLimits limits) const;
+  /// On the map lane: joins a path to its lead. It will be followed from `start` on, within `limits`.
+  Route route(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal, TimeNs start,
+              MotionLimits limits) const;
+  void follow(const Route& way);
 
   // Going home and landing.
   double seconds_left() const;

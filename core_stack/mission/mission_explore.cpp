@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core_stack/mission/mission_control.h"
-#include "core_stack/planning/grid_planner.h"
 
 namespace karst::core {
 namespace {
@@ -154,23 +153,22 @@ void MissionControl::begin_round(bool appending) {
   input.events = std::exchange(events_, {});
   input.looked_at = std::exchange(looked_at_, {});
   auto result = std::make_shared<RoundResult>();
+  auto way = std::make_shared<Route>();
   executive_.job(
       "decision", Lane::map, budget,
-      [this, input, lead, limits = flight_.limits(0), result] {
+      [this, input, lead, limits = flight_.limits(0), result, way] {
         try {
           *result = explorer_.decide(input);
-          if (result->goal)
-            result->polynomial = polynomial(lead, result->path, result->goal, input.deadline, limits);
+          if (result->goal) *way = route(lead, result->path, result->goal, input.deadline, limits);
         } catch (const std::exception& e) {  // whatever it is: the way home must not depend on it
           result->outcome = Outcome::go_home;
           result->reason = std::string("an error of the core: ") + e.what();
         }
       },
-      [this, input, lead, result] { on_round(input, lead, *result); });
+      [this, input, result, way] { on_round(input, *result, *way); });
 }
 
-void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lead,
-                              const RoundResult& result) {
+void MissionControl::on_round(const RoundInput& input, const RoundResult& result, const Route& way) {
   round_running_ = false;
   record_round(input, result);
   if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
@@ -188,7 +186,7 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
       goal_ = result.goal;
       append_tried_ = false;
     }
-    follow(lead, result.path, result.goal, result.polynomial);
+    follow(way);
     goal_alive_ = true;
   } else if (input.appending) {
     return;  // ask again on arrival
@@ -203,62 +201,6 @@ void MissionControl::on_round(const RoundInput& input, const Flight::Onward& lea
     last_fate_ = GoalFate::rejected;
     last_goal_ = result.rejected.front().goal;
   }
-}
-
-MissionControl::Leg MissionControl::leg(const Flight::Onward& lead, const Path& path,
-                                        const std::optional<Goal>& goal) const {
-  Leg out{lead.points, {}, 0};
-  out.points.insert(out.points.end(), path.points.begin() + 1, path.points.end());
-  HeadingPlan& heading = out.heading;
-  heading.along_path = !description_.lidar;
-  heading.start_heading_rad = lead.heading_rad;
-  if (goal && std::isfinite(goal->heading_rad)) heading.goal_heading_rad = goal->heading_rad;
-  double& max_speed_mps = out.max_speed_mps;
-  max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
-  if (path.narrow)
-    max_speed_mps = std::min(max_speed_mps, options_.safety.slow_share * options_.motion.max_speed_mps);
-  return out;
-}
-
-std::optional<PolynomialTrajectory> MissionControl::polynomial(const Flight::Onward& lead, const Path& path,
-                                                               const std::optional<Goal>& goal, TimeNs start,
-                                                               MotionLimits limits) const {
-  if (options_.motion.trajectory != "polynomial" || !path.found() || path.escape_points > 0) return {};
-  const Leg way = leg(lead, path, goal);
-  const double clearance_m = path.narrow ? search_clearance_m(options_.planning, options_.map.resolution_m)
-                                         : options_.planning.clearance_m;
-  limits.max_speed_mps = std::min(limits.max_speed_mps, way.max_speed_mps);
-  return polynomial_trajectory(way.points, lead.departure, start, limits, way.heading,
-                               [this, clearance_m](const Vec3& a, const Vec3& b) {
-                                 return segment_clear(explorer_.map(), a, b, clearance_m);
-                               });
-}
-
-void MissionControl::follow(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal,
-                            const std::optional<PolynomialTrajectory>& polynomial) {
-  const auto [points, heading, max_speed_mps] = leg(lead, path, goal);
-  // Made for the state it was expected to be in now, and the speed allowed then: either may have changed.
-  const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now() &&
-                    (flight_.expected(now()).position - points.front()).norm() < 0.01 &&
-                    flight_.limits(0).max_speed_mps >= polynomial->speed_limit_mps;
-  nlohmann::json plan{{"length", path_length_m(points)},
-                      {"from", list(points.front())},
-                      {"to", list(points.back())},
-                      {"narrow", path.narrow},
-                      {"points", list(points)}};
-  if (options_.motion.trajectory == "polynomial") {
-    plan["trajectory"] = fits ? "polynomial" : "sampled";
-    plan["rounds"] = polynomial ? polynomial->rounds : 0;
-    plan["fell_back"] = polynomial ? polynomial->fell_back : "";
-  }
-  recorder_.event(now(), "plan", plan);
-  flight_.follow(points, flight_.at_rest(now()) ? 0.0 : lead.speed_mps, now(), heading, max_speed_mps,
-                 fits ? &polynomial->trajectory : nullptr);
-  tight_until_ =
-      path.escape_points == 0
-          ? 0
-          : flight_.time_nearest(path.points[std::min(path.escape_points, path.points.size() - 1)]);
-  path_blocked_ = detour_due_ = false;
 }
 
 void MissionControl::watch_progress() {

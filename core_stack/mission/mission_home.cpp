@@ -78,45 +78,50 @@ void MissionControl::go_home() {
 
 void MissionControl::plan_home_path() {
   home_planning_ = true;
-  const Flight::Onward lead = flight_.until_stop(now() + kPlanningBudget);
-  auto path = std::make_shared<Path>();
-  auto smooth = std::make_shared<std::optional<PolynomialTrajectory>>();
+  const TimeNs start = now() + kPlanningBudget;
+  const Flight::Onward lead = flight_.until_stop(start);
+  auto way = std::make_shared<Route>();
   executive_.job(
       "home plan", Lane::map, kPlanningBudget,
-      [this, path, smooth, lead, home = home_, start = now() + kPlanningBudget, limits = flight_.limits(0)] {
-        *path = explorer_.plan_to(lead.points.back(), home);
-        *smooth = polynomial(lead, *path, std::nullopt, start, limits);
+      [this, way, lead, start, home = home_, limits = flight_.limits(0)] {
+        const Path path = explorer_.plan_to(lead.points.back(), home);
+        way->path = path;
+        if (path.found()) *way = route(lead, path, std::nullopt, start, limits);
       },
-      [this, path, smooth, lead] {
+      [this, way] {
         home_planning_ = false;
         if (phase_ != Phase::home) return;
-        if (!path->found()) {
+        if (!way->path.found()) {
           ++home_failures_;
           path_blocked_ = true;
           detour_due_ = false;
-          recorder_.event(now(), "log", {{"text", "no path home: " + path->reason}});
+          recorder_.event(now(), "log", {{"text", "no path home: " + way->path.reason}});
           if (!flight_.at_rest(now())) flight_.brake(now());
           return;
         }
-        follow(lead, *path, std::nullopt, *smooth);
+        follow(*way);
       });
 }
 
 /// The way come was flown without touching anything.
 void MissionControl::fly_back_as_come() {
   home_planning_ = true;
-  auto back = std::make_shared<Path>();
+  auto way = std::make_shared<Route>();
   std::vector<Vec3> flown = flown_;
   flown.push_back(flight_.reference().position);
   executive_.job(
       "way back", Lane::map, kPlanningBudget,
-      [this, back, flown = std::move(flown)] { back->points = explorer_.way_back(flown); },
-      [this, back] {
+      [this, way, flown = std::move(flown), lead = flight_.until_stop(now()), limits = flight_.limits(0)] {
+        Path back;
+        back.points = explorer_.way_back(flown);
+        *way = route(lead, back, std::nullopt, 0, limits);
+      },
+      [this, way] {
         home_planning_ = false;
         if (phase_ != Phase::home) return;
         recorder_.event(now(), "safety",
                         {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
-        follow(flight_.until_stop(now()), *back, std::nullopt);
+        follow(*way);
         ignore_blocks_ = true;
         home_failures_ = 0;
       });

@@ -1,0 +1,65 @@
+// From a path to what is flown: joined to the trajectory under way, and timed.
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mission/mission_control.h"
+#include "core_stack/planning/grid_planner.h"
+#include "core_stack/planning/join.h"
+
+namespace karst::core {
+
+MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
+                                            const std::optional<Goal>& goal, TimeNs start,
+                                            MotionLimits limits) const {
+  Route out;
+  out.path = path;
+  const double clearance_m = path.narrow ? search_clearance_m(options_.planning, options_.map.resolution_m)
+                                         : options_.planning.clearance_m;
+  const auto clear = [this, clearance_m](const Vec3& a, const Vec3& b) {
+    return segment_clear(explorer_.map(), a, b, clearance_m);
+  };
+  out.points = join_paths(lead.points, path.points, clear);
+  out.heading.along_path = !description_.lidar;
+  out.heading.start_heading_rad = lead.heading_rad;
+  if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
+  out.start_speed_mps = lead.speed_mps;
+  out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
+  if (path.narrow)
+    out.max_speed_mps =
+        std::min(out.max_speed_mps, options_.safety.slow_share * options_.motion.max_speed_mps);
+  if (options_.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0) {
+    limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
+    out.polynomial = polynomial_trajectory(out.points, lead.departure, start, limits, out.heading, clear);
+  }
+  return out;
+}
+
+void MissionControl::follow(const Route& way) {
+  // Made for the state it was expected to be in now, and the speed allowed then: either may have changed.
+  const auto& polynomial = way.polynomial;
+  const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now() &&
+                    (flight_.expected(now()).position - way.points.front()).norm() < 0.01 &&
+                    flight_.limits(0).max_speed_mps >= polynomial->speed_limit_mps;
+  nlohmann::json points = nlohmann::json::array();
+  for (const Vec3& p : way.points) points.push_back({p.x(), p.y(), p.z()});
+  nlohmann::json plan{{"length", path_length_m(way.points)},
+                      {"from", points.front()},
+                      {"to", points.back()},
+                      {"narrow", way.path.narrow},
+                      {"points", points}};
+  if (options_.motion.trajectory == "polynomial") {
+    plan["trajectory"] = fits ? "polynomial" : "sampled";
+    plan["rounds"] = polynomial ? polynomial->rounds : 0;
+    plan["fell_back"] = polynomial ? polynomial->fell_back : "";
+  }
+  recorder_.event(now(), "plan", plan);
+  flight_.follow(way.points, flight_.at_rest(now()) ? 0.0 : way.start_speed_mps, now(), way.heading,
+                 way.max_speed_mps, fits ? &polynomial->trajectory : nullptr);
+  const Path& path = way.path;
+  tight_until_ =
+      path.escape_points == 0
+          ? 0
+          : flight_.time_nearest(path.points[std::min(path.escape_points, path.points.size() - 1)]);
+  path_blocked_ = detour_due_ = false;
+}
+
+}  // namespace karst::core
