@@ -9,6 +9,8 @@ constexpr double kControlPeriod_s = 0.01;
 
 /// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
 constexpr double kBrakingShare = 0.8;
+/// A brake is not followed by anything that could be missed for a delay: it may use nearly all there is.
+constexpr double kEmergencyShare = 0.95;
 
 /// Trajectories keep below the tracker's limits. Were they sampled at the limits themselves, the virtual
 /// vehicle could never make up for a delay: it would fall ever further behind, and cut the corners.
@@ -23,9 +25,11 @@ MotionLimits with_room_to_catch_up(MotionLimits limits) {
 
 Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
     : limits_(with_room_to_catch_up(options.motion)),
+      emergency_(limits_),
       estimator_(options.localization, vehicle.T_world_start),
       tracker_(options.tracker, options.motion),
       controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps) {
+  emergency_.max_acceleration_mps2 = kEmergencyShare * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   trajectory_.samples = {{start.position, heading_of(start.orientation)}};
   tracker_.reset(0, start.position, heading_of(start.orientation));
@@ -103,12 +107,13 @@ void Flight::look_around(TimeNs now) {
 }
 
 void Flight::brake(TimeNs now) {
-  const Onward stop = until_stop(now);
+  const double v = velocity_at(now).norm();
+  const Onward stop = onward(now, v * v / (2 * emergency_.max_acceleration_mps2));
   heading_ = HeadingPlan{};  // the heading that the path was to end with is of no interest any more
   heading_.along_path = false;
   heading_.start_heading_rad = stop.heading_rad;
   path_speed_mps_ = 0;
-  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, limits_, heading_);
+  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, emergency_, heading_);
 }
 
 void Flight::disarm() {

@@ -36,7 +36,7 @@ class Flight {
   void climb(TimeNs now, double height_m, double speed_mps);
   /// Turns once around on the spot: a camera's first look.
   void look_around(TimeNs now);
-  /// Stops within the shortest stretch of the present trajectory, which is known to be free.
+  /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
   void brake(TimeNs now);
   /// Motors off: on the ground.
   void disarm();
@@ -69,7 +69,7 @@ class Flight {
   Vec3 velocity_at(TimeNs t) const;
   Departure departure_at(TimeNs t) const;
 
-  MotionLimits limits_;
+  MotionLimits limits_, emergency_;  // of paths, and of the brake
   Estimator estimator_;
   MpcTracker tracker_;
   Se3Controller controller_;
