@@ -7,11 +7,20 @@
 namespace karst::core {
 namespace {
 
-constexpr double kSoftness = 4e-6;       // m/s, m/s^2 or m/s^3 of violation for one unit of multiplier
-constexpr double kFinalMu = 1e-3;        // mean slack * multiplier at which a solution is good
+// Softness: m/s, m/s^2 or m/s^3 of violation for one unit of multiplier. Multipliers of problems that can be
+// solved stay below 1e5; the soft one is for starts from which the limits cannot be kept.
+constexpr double kHard = 1e-11, kSoft = 4e-6;
+// Mean slack * multiplier at which a solution is good. Their sum bounds how far its cost is from the best
+// one.
+constexpr double kFinalMu = 1e-4, kFinalMuOfCost = 5e-6;
 constexpr double kResidual = 1e-5;       // of slacks against their limits
+constexpr double kViolation = 4e-7;      // of a limit, as a share of it, beyond what softness buys
 constexpr double kJerkTolerance = 3e-3;  // last Newton step, as a share of the jerk limit
-constexpr int kMaxIterations = 30;
+// With multipliers of 1e4 and slacks of 1e-5 rounding moves single jerks about; then the cost has settled
+// long before.
+constexpr double kSettledJerk = 0.1, kSettledCost = 1e-5;  // of the limit and of the cost, after a whole step
+constexpr int kMaxIterations = 40;
+constexpr double kCreeping = 0.05;  // share of a Newton step; so short four times in a row, a start was bad
 constexpr double kGoodExcess = 0.005;  // over a limit, as a share of it, that a plan given up early may have
 constexpr double kToBoundary = 0.99;
 // A shifted plan touches its limits; the iteration starts a little inside, with products near a small mu.
@@ -81,8 +90,11 @@ void JerkMpc::roll_out(const Motion& start) {
   }
 }
 
-void JerkMpc::start_multipliers(bool warm, double cost) {
-  const double cold_mu = std::max(0.1, cost / (3.0 * static_cast<double>(stages_.size())));
+void JerkMpc::start_multipliers(bool warm, std::span<const MotionTarget> targets) {
+  cost_ = 0;
+  for (std::size_t i = 0; i < stages_.size(); ++i)
+    cost_ += setup_.position_weight / 2 * (plan_.motion[i].position - targets[i].position).squaredNorm();
+  const double cold_mu = std::max(0.1, cost_ / (3.0 * static_cast<double>(stages_.size())));
   const auto begin = [&](Ball& ball, const Vec3& y, double limit) {
     const double mu = warm ? std::max(kFinalMu, kWarmShare * cold_mu) : cold_mu;
     const double value = ball_value(y, limit);
@@ -116,19 +128,21 @@ double JerkMpc::excess() const {
 /// Slack and multiplier are eliminated, which leaves a linear-quadratic problem in the steps of state and
 /// jerk: each limit adds (multiplier / limit) I + w n n' to its block, with n = y / limit.
 double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
-  const auto add_limit = [mu](Ball& ball, const Vec3& y, double limit, auto&& hessian, auto&& gradient) {
-    const double value = ball_value(y, limit) + ball.multiplier * kSoftness;
+  const auto add_limit = [this, mu](Ball& ball, const Vec3& y, double limit, auto&& hessian,
+                                    auto&& gradient) {
+    const double value = ball_value(y, limit) + ball.multiplier * softness_;
     ball.inside = ball.inside || value >= ball.slack;
     if (ball.inside) ball.slack = value;
     ball.residual = value - ball.slack;
     ball.centering = mu - ball.slack * ball.multiplier;
-    const double stiffness = 1 / (ball.slack + ball.multiplier * kSoftness);
+    const double stiffness = 1 / (ball.slack + ball.multiplier * softness_);
     const Vec3 n = y / limit;
     hessian.diagonal().array() += ball.multiplier / limit;
     hessian += (ball.multiplier * stiffness) * n * n.transpose();
     gradient += (ball.multiplier + (ball.centering - ball.multiplier * ball.residual) * stiffness) * n;
   };
   const double d = setup_.step_s, d2 = d * d / 2, d3 = d * d * d / 6;
+  cost_ = 0;
   Mat9 P = Mat9::Zero();  // value function's curvature and slope after stage k
   Vec9 p = Vec9::Zero();
   for (std::size_t i = stages_.size(); i-- > 0;) {
@@ -137,12 +151,17 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
     const Vec3 e_p = m.position - targets[i].position;
     const Vec3 e_v = m.velocity_mps - targets[i].velocity_mps;
     const Vec3& e_a = m.acceleration_mps2;
+    cost_ += setup_.jerk_weight * plan_.jerk_mps3[i].squaredNorm() / 2;
     if (i + 1 == stages_.size()) {
       for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) P.block<3, 3>(3 * r, 3 * c).diagonal().setConstant(terminal_(r, c));
         p.segment<3>(3 * r) = terminal_(r, 0) * e_p + terminal_(r, 1) * e_v + terminal_(r, 2) * e_a;
+        for (int c = 0; c < 3; ++c) P.block<3, 3>(3 * r, 3 * c).diagonal().setConstant(terminal_(r, c));
       }
+      cost_ += (e_p.dot(p.segment<3>(0)) + e_v.dot(p.segment<3>(3)) + e_a.dot(p.segment<3>(6))) / 2;
     } else {
+      cost_ += (setup_.position_weight * e_p.squaredNorm() + setup_.velocity_weight * e_v.squaredNorm() +
+                setup_.acceleration_weight * e_a.squaredNorm()) /
+               2;
       P.diagonal().segment<3>(0).array() += setup_.position_weight;
       P.diagonal().segment<3>(3).array() += setup_.velocity_weight;
       P.diagonal().segment<3>(6).array() += setup_.acceleration_weight;
@@ -178,11 +197,11 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
   }
 
   double length = 1;
-  const auto step_limit = [&length](Ball& ball, const Vec3& y, const Vec3& y_step, double limit) {
+  const auto step_limit = [this, &length](Ball& ball, const Vec3& y, const Vec3& y_step, double limit) {
     const double c_step = -y.dot(y_step) / limit;
     ball.multiplier_step = (ball.centering - ball.multiplier * (ball.residual + c_step)) /
-                           (ball.slack + ball.multiplier * kSoftness);
-    ball.slack_step = c_step + ball.multiplier_step * kSoftness + ball.residual;
+                           (ball.slack + ball.multiplier * softness_);
+    ball.slack_step = c_step + ball.multiplier_step * softness_ + ball.residual;
     // Where the limit holds, the slack follows its curve; elsewhere it goes straight.
     const double curvature = ball.inside ? y_step.squaredNorm() / (2 * limit) : 0;
     length = std::min({length, step_to_zero(ball.slack, ball.slack_step, curvature),
@@ -204,55 +223,86 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
   return length;
 }
 
-const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget> targets, double elapsed_s) {
-  const bool warm = elapsed_s >= 0;
-  const bool known_multipliers = warm && plan_.converged;
-  if (warm)
-    shift(elapsed_s, start);
-  else
-    std::fill(plan_.jerk_mps3.begin(), plan_.jerk_mps3.end(), Vec3::Zero());
-  roll_out(start);
-  double cost = 0;
-  for (std::size_t i = 0; i < stages_.size(); ++i)
-    cost += setup_.position_weight / 2 * (plan_.motion[i].position - targets[i].position).squaredNorm();
-  start_multipliers(known_multipliers, cost);
-  const std::vector<Vec3> shifted = plan_.jerk_mps3;
-  const double shifted_excess = excess();
-
+/// Iterates from the present plan and multipliers; false if it gave up.
+bool JerkMpc::iterate(const Motion& start, std::span<const MotionTarget> targets, bool patient) {
   const auto for_each_ball = [this](auto&& f) {
     for (Stage& s : stages_) f(s.speed), f(s.acceleration), f(s.jerk);
   };
-  plan_.converged = false;
   double shrink = 0.2;
-  for (plan_.iterations = 1; plan_.iterations <= kMaxIterations; ++plan_.iterations) {
+  int creeping = 0;
+  bool whole_step = false;
+  for (int i = 0; i < kMaxIterations && (patient || creeping < 4); ++i) {
+    ++plan_.iterations;
     double mu = 0;
     for_each_ball([&](const Ball& b) { mu += b.slack * b.multiplier; });
     mu /= 3.0 * static_cast<double>(stages_.size());
-    const double length = newton_step(targets, std::max(shrink * mu, kFinalMu));
+    const double gap = i < kMaxIterations / 2 ? kFinalMuOfCost : 2 * kFinalMuOfCost;  // it may be too narrow
+    const double good_mu = std::max(kFinalMu, gap * cost_), last_cost = cost_;
+    const double length = newton_step(targets, std::max(shrink * mu, good_mu));
 
-    double residual = 0, jerk_step = 0;
+    double residual = 0, jerk_step = 0, bought = 0;
     for_each_ball([&](Ball& b) {
       residual = std::max(residual, std::abs(b.residual));
       b.slack += length * b.slack_step;
       b.multiplier += length * b.multiplier_step;
+      bought = std::max(bought, b.multiplier * softness_);
     });
-    for (std::size_t i = 0; i < stages_.size(); ++i) {
-      const Stage& s = stages_[i];
+    for (std::size_t k = 0; k < stages_.size(); ++k) {
+      const Stage& s = stages_[k];
       jerk_step = std::max(jerk_step, s.jerk_step.norm());
-      plan_.jerk_mps3[i] += length * s.jerk_step;
-      plan_.motion[i].position += length * s.state_step.segment<3>(0);
-      plan_.motion[i].velocity_mps += length * s.state_step.segment<3>(3);
-      plan_.motion[i].acceleration_mps2 += length * s.state_step.segment<3>(6);
+      plan_.jerk_mps3[k] += length * s.jerk_step;
+      plan_.motion[k].position += length * s.state_step.segment<3>(0);
+      plan_.motion[k].velocity_mps += length * s.state_step.segment<3>(3);
+      plan_.motion[k].acceleration_mps2 += length * s.state_step.segment<3>(6);
     }
     // Short steps mean products far apart: go back towards the central path before going on.
     shrink = length > 0.9 ? 0.1 : length > 0.4 ? 0.3 : length > 0.1 ? 1.0 : 10.0;
-    if (mu < 2 * kFinalMu && residual < kResidual && jerk_step < kJerkTolerance * setup_.max_jerk_mps3) {
-      plan_.converged = true;
-      break;
+    creeping = length < kCreeping ? creeping + 1 : 0;
+    const bool settled = whole_step && std::abs(cost_ - last_cost) < kSettledCost * cost_;
+    const double tolerance = (settled ? kSettledJerk : kJerkTolerance) * setup_.max_jerk_mps3;
+    whole_step = length > 0.9;
+    if (whole_step && mu < 2 * good_mu && residual < kResidual && jerk_step < tolerance &&
+        excess() < kViolation + (softness_ == kSoft ? bought : 0)) {
+      roll_out(start);  // sheds the rounding of the summed steps
+      return true;
     }
   }
-  roll_out(start);  // sheds the rounding of the summed steps
-  if (warm && !plan_.converged && excess() > std::max(shifted_excess, kGoodExcess)) {
+  return false;
+}
+
+const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget> targets, double elapsed_s) {
+  const auto start_cold = [&] {
+    std::fill(plan_.jerk_mps3.begin(), plan_.jerk_mps3.end(), Vec3::Zero());
+    roll_out(start);
+    start_multipliers(false, targets);
+  };
+  plan_.iterations = 0;
+  softness_ = kHard;
+  const bool warm = elapsed_s >= 0;
+  std::vector<Vec3> shifted;
+  double shifted_excess = 0;
+  bool solved = false;
+  if (warm) {
+    shift(elapsed_s, start);
+    roll_out(start);
+    shifted = plan_.jerk_mps3;
+    shifted_excess = excess();
+    start_multipliers(plan_.converged, targets);
+    solved = iterate(start, targets, false);
+  }
+  if (!solved) {
+    start_cold();
+    solved = iterate(start, targets, true);
+  }
+  if (!solved) {
+    softness_ = kSoft;
+    start_cold();
+    solved = iterate(start, targets, true);
+  }
+  plan_.converged = solved;
+  if (solved) return plan_;
+  roll_out(start);
+  if (warm && excess() > std::max(shifted_excess, kGoodExcess)) {
     plan_.jerk_mps3 = shifted;  // going on as planned keeps the limits; the next solution may do better
     roll_out(start);
   }

@@ -79,14 +79,20 @@ class JerkMpc {
   void shift(double elapsed_s, const Motion& start);
   void roll_out(const Motion& start);
   double excess() const;  // of the plan over its limits, as a share of them; negative within
-  /// `cost` of the plan to start from scales the first mu.
-  void start_multipliers(bool warm, double cost);
+  /// What the plan to start from costs scales the first mu.
+  void start_multipliers(bool warm, std::span<const MotionTarget> targets);
   /// Fills in all steps; returns the share of them that keeps slacks and multipliers positive.
+  /// Also notes what the present plan costs.
   double newton_step(std::span<const MotionTarget> targets, double mu);
+  /// From the present plan and multipliers to the optimum; false if it gave up. An impatient one gives up
+  /// soon where the start was bad.
+  bool iterate(const Motion& start, std::span<const MotionTarget> targets, bool patient);
 
   JerkMpcSetup setup_;
   Eigen::Matrix3d terminal_;
   std::vector<Stage> stages_;
+  double cost_ = 0;      // of the plan at the last Newton step
+  double softness_ = 0;  // of all limits
   JerkPlan plan_;
 };
 

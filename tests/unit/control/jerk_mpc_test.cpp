@@ -2,15 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core_stack/common/random.h"
+#include "tests/unit/control/mpc_problems.h"
 #include "tests/unit/control/slsqp_oracle.h"
 
 namespace karst::core::test {
 namespace {
-
-Vec3 random_vector(Random& r, double size) {
-  return {r.uniform(-size, size), r.uniform(-size, size), r.uniform(-size, size)};
-}
 
 Eigen::VectorXd stacked(const JerkPlan& plan) {
   const auto n = static_cast<Eigen::Index>(plan.jerk_mps3.size());
@@ -61,37 +57,52 @@ TEST(JerkMpc, FarFromAllLimitsItIsTheLeastSquaresSolution) {
   EXPECT_LT((stacked(mpc.solve(start, targets, -1)) - best).cwiseAbs().maxCoeff(), 2e-3);
 }
 
-TEST(JerkMpc, AgreesWithSlsqpAtTheLimits) {
+TEST(JerkMpc, CostsWhatSlsqpFindsAndKeepsTheLimitsInAThousandRandomProblems) {
   Random r(11);
   JerkMpcSetup s;
   s.steps = 12;
   s.step_s = 0.1;
-  int at_limits = 0;
-  for (int trial = 0; trial < 12; ++trial) {
-    const Motion start{random_vector(r, 1.5), random_vector(r, 0.9), random_vector(r, 0.7)};
-    const auto targets = straight_targets(s, Vec3::Zero(), random_vector(r, 1.0));
-    const DenseProblem dense(s, start, targets);
-    const SlsqpResult oracle = solve_with_slsqp(dense, 1e-12, 2000);
-    ASSERT_GT(oracle.status, 0);
+  int at_limits = 0, stuck = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    Motion start = random_start(r, s);
+    auto targets = random_targets(r, s, start);
     JerkMpc mpc(s);
-    const JerkPlan& plan = mpc.solve(start, targets, -1);
-    EXPECT_TRUE(plan.converged);
+    mpc.solve(start, targets, -1);
+    if (trial % 2 == 1) {  // 10 ms later, warm; now and then towards something else
+      start = advanced(start, mpc.plan().jerk_mps3[0], 0.01);
+      if (trial % 10 == 1) targets = random_targets(r, s, start);
+      mpc.solve(start, targets, 0.01);
+    }
+    const JerkPlan& plan = mpc.plan();
+    ASSERT_TRUE(plan.converged) << trial;
+    const DenseProblem dense(s, start, targets);
+    const SlsqpResult oracle = SlsqpProblem(dense).solve(1e-9, 500);
+    ASSERT_TRUE(oracle.converged) << trial;
     const double cost = dense.cost(stacked(plan), nullptr);
-    // The solver stops with slack * multiplier at 1e-3 for each of 36 limits, and buys violations of 1e-5.
-    EXPECT_LT(cost, oracle.cost * 1.0005 + 0.08);
-    EXPECT_GT(cost, oracle.cost * 0.9995 - 0.08);
-    EXPECT_LT((stacked(plan) - oracle.jerk).cwiseAbs().maxCoeff(), 0.25) << "trial " << trial;
-    for (const Vec3& j : plan.jerk_mps3) {
-      EXPECT_LT(j.norm(), s.max_jerk_mps3 * 1.002);
-      at_limits += j.norm() > 0.98 * s.max_jerk_mps3;
-    }
-    for (const Motion& m : plan.motion) {
-      EXPECT_LT(m.velocity_mps.norm(), s.max_speed_mps * 1.002);
-      EXPECT_LT(m.acceleration_mps2.norm(), s.max_acceleration_mps2 * 1.002);
-      at_limits += m.acceleration_mps2.norm() > 0.98 * s.max_acceleration_mps2;
-    }
+    ASSERT_LE(cost, 1.001 * oracle.cost) << trial;
+    // Cheaper within the limits: it is SLSQP that was stuck.
+    stuck += cost < 0.999 * oracle.cost;
+    const double excess = violation(s, start, plan.jerk_mps3);
+    ASSERT_LE(excess, 1e-6) << trial;
+    at_limits += excess > -1e-3;
   }
-  EXPECT_GT(at_limits, 30) << "the trials must reach the limits";
+  EXPECT_LE(stuck, 3);
+  EXPECT_GT(at_limits, 700) << "the problems must reach the limits";
+}
+
+TEST(JerkMpc, KeepsTheLimitsOverTheWholeHorizonToo) {
+  Random r(12);
+  const JerkMpcSetup s;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Motion start = random_start(r, s);
+    const auto targets = random_targets(r, s, start);
+    JerkMpc mpc(s);
+    ASSERT_TRUE(mpc.solve(start, targets, -1).converged) << trial;
+    ASSERT_LE(violation(s, start, mpc.plan().jerk_mps3), 1e-6) << trial;
+    const Motion next = advanced(start, mpc.plan().jerk_mps3[0], s.step_s);
+    ASSERT_TRUE(mpc.solve(next, targets, s.step_s).converged) << trial;
+    ASSERT_LE(violation(s, next, mpc.plan().jerk_mps3), 1e-6) << trial;
+  }
 }
 
 TEST(JerkMpc, WarmStartsReachTheSamePlanAsColdOnes) {
