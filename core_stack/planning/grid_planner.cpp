@@ -79,7 +79,8 @@ Path search_path(const VoxelMap& map, const Vec3& start, const Vec3& goal, const
     if (const Vec3 p = map.center_of(k); (p - path.points.back()).norm() > 1e-9) path.points.push_back(p);
   if (path.points.size() < 2 || (goal - path.points.back()).norm() > 1e-9) path.points.push_back(goal);
   path.status = PlanStatus::found;
-  path.length_m = path_length_m(path.points);
+  // The promise does not cover the way out of a tight place.
+  measure(path, path.escape_points == 0 ? options.heuristic_weight : std::numeric_limits<double>::infinity());
   return path;
 }
 

@@ -1,5 +1,7 @@
 #include "core_stack/planning/path.h"
 
+#include <algorithm>
+
 namespace karst::core {
 
 void describe(OptionTable& t, PlanningOptions& o) {
@@ -10,12 +12,23 @@ void describe(OptionTable& t, PlanningOptions& o) {
   t.add("heuristic_weight", o.heuristic_weight, "", 1.0, 5.0,
         "the grid search's path is at most this times longer than the shortest on the grid");
   t.add("max_expansions", o.max_expansions, 1000, 1e8, "the grid search gives up after so many cells");
+  t.add("planner", o.planner, {"grid", "rrt_connect", "rrt_star", "bit_star"},
+        "what searches for paths: ours on the grid and the roadmap, or one of OMPL's planners");
+  t.add("planner_iterations", o.planner_iterations, 100, 1e8,
+        "OMPL's planners stop after so many iterations; RRT-Connect at its first path");
 }
 
 double path_length_m(const std::vector<Vec3>& points) {
   double length = 0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   return length;
+}
+
+void measure(Path& path, double promised_bound) {
+  path.length_m = path_length_m(path.points);
+  path.length_bound = promised_bound;
+  const double straight_m = (path.points.back() - path.points.front()).norm();
+  if (straight_m > 0) path.length_bound = std::min(promised_bound, path.length_m / straight_m);
 }
 
 }  // namespace karst::core

@@ -1,5 +1,6 @@
 // A path and what came of looking for it.
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct PlanningOptions {
   double preferred_clearance_m = 1.0;  // post-processing pushes the path out to this where there is room
   double heuristic_weight = 1.2;       // bounded sub-optimality of the grid search; 1: optimal
   std::int64_t max_expansions = 400000;
+  std::string planner = "grid";  // grid, rrt_connect, rrt_star, bit_star
+  std::int64_t planner_iterations = 5000;
 };
 void describe(OptionTable& t, PlanningOptions& o);
 
@@ -32,10 +35,17 @@ struct Path {
   std::size_t escape_points = 0;  // this many leading points lie nearer to obstacles than the clearance: the
                                   // way out of a place that turned out to be tight
   double length_m = 0;
+  /// length_m is at most this times the shortest way on the grid: the grid search's promise
+  /// (heuristic_weight, times what refining changed), or length_m over the straight distance if that is less.
+  /// The straight distance is all that holds for the roadmap's and OMPL's paths.
+  double length_bound = std::numeric_limits<double>::infinity();
   bool narrow = false;  // somewhere clear by search_clearance_m only: to be flown slowly
   bool found() const { return status == PlanStatus::found; }
 };
 
 double path_length_m(const std::vector<Vec3>& points);
+
+/// Sets length_m, and length_bound from what the planner promises and from the straight distance.
+void measure(Path& path, double promised_bound);
 
 }  // namespace karst::core

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core_stack/planning/grid_planner.h"
+#include "core_stack/planning/ompl_search.h"
 #include "core_stack/planning/refine.h"
 
 namespace karst::core {
@@ -24,7 +25,7 @@ constexpr int kMostDetours = 6;
 Path refined(const VoxelMap& map, const Path& raw, const PlanningOptions& options) {
   Path path = raw;
   path.points = refine_path(map, raw.points, options);
-  path.length_m = path_length_m(path.points);
+  if (raw.length_m > 0) measure(path, raw.length_bound * path_length_m(path.points) / raw.length_m);
   return path;
 }
 
@@ -63,6 +64,7 @@ bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOpt
   points.insert(points.end(), way.points.begin(), way.points.end());
   points.insert(points.end(), path.points.begin() + static_cast<std::ptrdiff_t>(to) + 1, path.points.end());
   path.points = std::move(points);
+  measure(path, std::numeric_limits<double>::infinity());
   return true;
 }
 
@@ -88,22 +90,36 @@ Path finished(const VoxelMap& map, const Path& raw, const PlanningOptions& optio
   }
 }
 
-}  // namespace
-
-Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
-          const PlanningOptions& options) {
-  if (!is_clear(map, goal, options.clearance_m)) return plan_on_grid(map, start, goal, options);  // says why
+/// The search that may squeeze: cells are used where a point beside their centre is clear.
+Path searched(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
+              const PlanningOptions& options) {
+  if (options.planner != "grid")
+    return search_with_ompl(map, roadmap, start, goal, options,
+                            search_clearance_m(options, map.resolution_m()));
   PlanningOptions near = options;
   near.max_expansions = std::min(options.max_expansions, kNearExpansions);
   Path raw;
   raw.status = PlanStatus::gave_up;
   if ((goal - start).norm() <= kNear_m) raw = plan_on_grid_squeezing(map, start, goal, near);
-  if (raw.status == PlanStatus::gave_up) raw = roadmap.find(map, start, goal);
-  if (!raw.found()) return raw;
+  return raw.status == PlanStatus::gave_up ? roadmap.find(map, start, goal) : raw;
+}
+
+/// The search that keeps the whole clearance.
+Path searched_wide(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
+                   const PlanningOptions& options) {
+  if (options.planner == "grid") return plan_on_grid(map, start, goal, options);
+  return search_with_ompl(map, roadmap, start, goal, options, options.clearance_m);
+}
+
+}  // namespace
+
+Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw,
+                const PlanningOptions& options) {
   Path path = finished(map, raw, options);
   if (path.found()) return path;
-  if (const Path strict = plan_on_grid(map, start, goal, options); strict.found()) {
-    Path around = finished(map, strict, options);
+  const Path wide = searched_wide(map, roadmap, raw.points.front(), raw.points.back(), options);
+  if (wide.found()) {
+    Path around = finished(map, wide, options);
     if (around.found()) return around;
   }
   // A narrow passage and no way around it: keep the clearance that the search found.
@@ -112,6 +128,13 @@ Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const 
   Path narrow = finished(map, raw, tight);
   narrow.narrow = true;
   return narrow.found() ? narrow : path;
+}
+
+Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
+          const PlanningOptions& options) {
+  if (!is_clear(map, goal, options.clearance_m)) return plan_on_grid(map, start, goal, options);  // says why
+  const Path raw = searched(map, roadmap, start, goal, options);
+  return raw.found() ? plan_along(map, roadmap, raw, options) : raw;
 }
 
 }  // namespace karst::core

@@ -6,7 +6,8 @@
 
 namespace karst::core {
 
-/// Near goals by grid search, far ones (or where the grid search gives up) by the roadmap. The path is
+/// By the planner that options.planner names. `grid`: near goals by grid search, far ones (or where the grid
+/// search gives up) by the roadmap; others: search_with_ompl. Whatever found it, the path is
 /// refined and flyable as it stands: every segment is clear at options.clearance_m, but for the leading
 /// `escape_points`.
 ///
@@ -17,5 +18,8 @@ namespace karst::core {
 /// where that fails the grid is searched without squeezing.
 Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
           const PlanningOptions& options);
+
+/// The same from a path found already: raw, of the search's clearance, such as the way home.
+Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options);
 
 }  // namespace karst::core

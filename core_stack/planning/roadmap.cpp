@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core_stack/planning/escape.h"
 #include "core_stack/planning/roadmap_graph.h"
+#include "core_stack/planning/roadmap_way.h"
 
 namespace karst::core {
 namespace {
@@ -91,24 +91,6 @@ class GraphSearch {
   std::vector<char> done_;
   std::vector<Entry> heap_;
 };
-
-/// From `p` to a clear point: p itself, or the way out of a tight place. Empty if there is none.
-std::vector<Vec3> way_to_clear(const VoxelMap& map, const RoadmapGraph& graph, const Vec3& p) {
-  if (graph.free.is_clear(p, graph.clearance_m)) return {p};
-  FreeTiles free(map.resolution_m());
-  return escape_path(map, free, p, graph.clearance_m).value_or(std::vector<Vec3>{});
-}
-
-/// Appends the way to `to` (not itself the last point yet), straight where that is clear.
-void append_way(const RoadmapGraph& graph, const CellKey& from, const CellKey& to,
-                std::vector<Vec3>& points) {
-  if (graph.free.segment_clear(points.back(), graph.free.center_of(to), graph.clearance_m)) {
-    points.push_back(graph.free.center_of(to));
-    return;
-  }
-  const std::vector<CellKey> cells = graph.cells_between(from, to);
-  for (std::size_t i = 1; i < cells.size(); ++i) points.push_back(graph.free.center_of(cells[i]));
-}
 
 }  // namespace
 
@@ -219,22 +201,10 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
     nodes.push_back(search.node_at(i));
   std::reverse(nodes.begin(), nodes.end());
   for (const Join& j : outs)
-    if (search.index_of(j.node) == search.index_of(nodes.front()) && j.via) {
-      path.points.push_back(g.free.center_of(*j.via));
-      append_way(g, *j.via, g.cell_of(nodes.front()), path.points);
-    } else if (search.index_of(j.node) == search.index_of(nodes.front())) {
-      path.points.push_back(g.position_of(nodes.front()));
-    }
-  for (std::size_t i = 1; i < nodes.size(); ++i)
-    append_way(g, g.cell_of(nodes[i - 1]), g.cell_of(nodes[i]), path.points);
-  if (in->via) append_way(g, g.cell_of(nodes.back()), *in->via, path.points);
-  path.points.push_back(goal);
-  path.points.erase(std::unique(path.points.begin(), path.points.end(),
-                                [](const Vec3& a, const Vec3& b) { return (a - b).norm() < 1e-9; }),
-                    path.points.end());
-  if (path.points.size() < 2) path.points.push_back(goal);
+    if (search.index_of(j.node) == search.index_of(nodes.front()))
+      append_way(g, j, nodes, *in, goal, path.points);
   path.status = PlanStatus::found;
-  path.length_m = path_length_m(path.points);
+  measure(path, kInf);
   return path;
 }
 

@@ -42,6 +42,7 @@ class Roadmap {
   std::optional<Vec3> approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const;
 
   std::size_t node_count() const;
+  const RoadmapGraph& graph() const { return *graph_; }
 
  private:
   std::unique_ptr<RoadmapGraph> graph_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace karst::core {
 namespace {
@@ -43,6 +44,7 @@ void RoadmapGraph::update(const VoxelMap& map, std::span<const CellChange> chang
     clearance_m = search_clearance_m(options, map.resolution_m());
     rule.emplace(options.clearance_m / map.resolution_m(), clearance_m / map.resolution_m());
   }
+  ++updates;
   std::vector<std::uint32_t> dirty;
   for (const CellChange& c : changes) {
     free.refresh(map, c.key);
@@ -79,7 +81,7 @@ void RoadmapGraph::rebuild(std::uint32_t tile_index) {
   RoadmapTile& tile = tiles[tile_index];
   tile.dirty = false;
   const TileBits rows = free.clear_cells(table.keys()[tile_index], *rule);
-  tile.nodes.clear();
+  const std::vector<RoadmapNode> before = std::exchange(tile.nodes, {});
   const CellKey corner = corner_of(table.keys()[tile_index]);
   for (std::uint32_t b = 0; b < kTileBlocks; ++b) {
     tile.first[b] = static_cast<std::uint16_t>(tile.nodes.size());
@@ -92,6 +94,7 @@ void RoadmapGraph::rebuild(std::uint32_t tile_index) {
     }
   }
   tile.first[kTileBlocks] = static_cast<std::uint16_t>(tile.nodes.size());
+  if (tile.nodes != before) tile.changed = updates;
 }
 
 bool RoadmapGraph::is_clear_cell(const CellKey& k) const {

@@ -11,6 +11,7 @@ constexpr std::uint32_t kTileBlocks = 32;  // 8 x 2 x 2 blocks; index x | y << 3
 struct RoadmapNode {
   BlockBits cells = 0;
   CellKey place;  // the cell it is placed at
+  bool operator==(const RoadmapNode&) const = default;
 };
 
 struct RoadmapTile {
@@ -19,6 +20,7 @@ struct RoadmapTile {
   std::array<std::uint32_t, 27>
       around;  // the tile at (dx, dy, dz), each -1, 0, 1: index dx + 1 + 3 (dy + 1) + 9 (dz + 1)
   bool dirty = false;
+  std::uint64_t changed = 0;  // the update, counted from 1, that last changed its nodes
 };
 
 /// A node's name: its tile and its place in the tile's list.
@@ -42,6 +44,7 @@ struct RoadmapGraph {
   std::optional<ClearanceRule> rule;
   TileTable table;
   std::vector<RoadmapTile> tiles;
+  std::uint64_t updates = 0;
 
   void update(const VoxelMap& map, std::span<const CellChange> changes);
   bool is_clear_cell(const CellKey& k) const;
@@ -55,21 +58,24 @@ struct RoadmapGraph {
   /// Nodes joined to n: calls visit(NodeRef).
   template <class Visit>
   void for_each_neighbour(const NodeRef& n, Visit&& visit) const {
-    const RoadmapTile& tile = tiles[n.tile];
-    const BlockBits cells = tile.nodes[n.local].cells;
-    const CellKey place = cell_of(n);
-    const TileKey home = table.keys()[n.tile];
+    for_each_touching(n.tile, tiles[n.tile].nodes[n.local], visit);
+  }
+  /// Nodes that a node of tile `tile_index`, present or past, is joined to.
+  template <class Visit>
+  void for_each_touching(std::uint32_t tile_index, const RoadmapNode& node, Visit&& visit) const {
+    const RoadmapTile& tile = tiles[tile_index];
+    const TileKey home = table.keys()[tile_index];
     for (int i = 0; i < 27; ++i) {
       const int dx = i % 3 - 1, dy = i / 3 % 3 - 1, dz = i / 9 - 1;
       if (i == 13) continue;
-      const BlockBits touched = touched_in_neighbour(cells, dx, dy, dz);
+      const BlockBits touched = touched_in_neighbour(node.cells, dx, dy, dz);
       if (touched == 0) continue;
-      const CellKey there = place + CellKey{4 * dx, 4 * dy, 4 * dz};
+      const CellKey there = node.place + CellKey{4 * dx, 4 * dy, 4 * dz};
       const TileKey t = tile_of(there);
       const std::int32_t side = t.x - home.x + 3 * (t.y - home.y) + 9 * (t.z - home.z) + 13;
       for_each_node_in_block(tile.around[static_cast<std::size_t>(side)], there,
-                             [&](const NodeRef& m, const RoadmapNode& node) {
-                               if (node.cells & touched) visit(m);
+                             [&](const NodeRef& m, const RoadmapNode& other) {
+                               if (other.cells & touched) visit(m);
                              });
     }
   }
