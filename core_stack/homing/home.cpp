@@ -13,13 +13,27 @@ constexpr double kCruiseShare = 0.8;
 
 }  // namespace
 
-std::optional<double> way_home_m(const VoxelMap& map, const Roadmap& roadmap, const Vec3& position,
-                                 const Vec3& home, const PlanningOptions& options) {
+void WayHome::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& home,
+                     const PlanningOptions& options) {
   const std::optional<Vec3> place = roadmap.approach(map, home, 2 * options.preferred_clearance_m);
-  if (!place) return std::nullopt;
-  const Path path = roadmap.find(map, position, *place);
-  if (!path.found()) return std::nullopt;
-  return path_length_m(path.points) + (*place - home).norm();
+  known_ = place.has_value();
+  if (!known_) return;
+  rest_m_ = (*place - home).norm();
+  tree_.update(roadmap, *place);
+}
+
+std::optional<double> WayHome::length_m(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const {
+  if (!known_) return std::nullopt;
+  const std::optional<double> length_m = tree_.length_m(map, roadmap, from);
+  if (!length_m) return std::nullopt;
+  return *length_m + rest_m_;
+}
+
+Path WayHome::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const {
+  if (known_) return tree_.find(map, roadmap, from);
+  Path none;
+  none.reason = "home cannot be approached";
+  return none;
 }
 
 double flight_time_s(double length_m, const MotionLimits& limits) {

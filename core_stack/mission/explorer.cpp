@@ -64,6 +64,7 @@ std::vector<CellChange> Explorer::take_in(std::vector<CellChange> changes) {
 const Roadmap& Explorer::roadmap() {
   roadmap_.update(map_, roadmap_due_);
   roadmap_due_.clear();
+  way_home_.update(map_, roadmap_, home_, options_.planning);
   return roadmap_;
 }
 
@@ -112,7 +113,7 @@ std::optional<std::string> Explorer::objection(const Goal& goal) const {
 }
 
 HomeEstimate Explorer::estimate_home(const Vec3& from, double way_come_m) {
-  const double length_m = way_home_m(map_, roadmap(), from, home_, options_.planning).value_or(way_come_m);
+  const double length_m = way_home_.length_m(map_, roadmap(), from).value_or(way_come_m);
   return {length_m, home_time_s(length_m, vehicle_.T_world_start.position.z(), home_.z(), options_.motion,
                                 options_.mission.landing_speed_mps)};
 }
@@ -266,7 +267,11 @@ RoundResult Explorer::decide(const RoundInput& input) {
 }
 
 Path Explorer::plan_to(const Vec3& from, const Vec3& to) {
-  return plan(map_, roadmap(), from, to, options_.planning);
+  const Roadmap& known = roadmap();
+  if (to == home_ && is_clear(map_, home_, options_.planning.clearance_m))
+    if (const Path way = way_home_.find(map_, known, from); way.found())
+      return plan_along(map_, known, way, options_.planning);
+  return plan(map_, known, from, to, options_.planning);
 }
 
 int Explorer::blocked_segment(const std::vector<Vec3>& points) const {

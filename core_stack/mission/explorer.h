@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/homing/home.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mission/fallback_policy.h"
 #include "core_stack/mission/goal_ledger.h"
@@ -124,6 +125,7 @@ class Explorer {
   VoxelMap map_;
   Frontiers frontiers_;
   Roadmap roadmap_;
+  WayHome way_home_;
   std::vector<CellChange>
       roadmap_due_;  // changes it has yet to hear of: it is asked far less often than scanned
   GoalLedger ledger_;

@@ -45,6 +45,7 @@ void MissionControl::follow(const Route& way) {
                       {"from", points.front()},
                       {"to", points.back()},
                       {"narrow", way.path.narrow},
+                      {"length_bound", way.path.length_bound},
                       {"points", points}};
   if (options_.motion.trajectory == "polynomial") {
     plan["trajectory"] = fits ? "polynomial" : "sampled";

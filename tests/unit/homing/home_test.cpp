@@ -16,10 +16,17 @@ TEST(Home, TheWayIsAsLongAsTheCaveAndNotMuchLonger) {
   Roadmap roadmap{PlanningOptions{}};
   roadmap.update(map, all_cells(map));
   const Vec3 home = cave.line[4], here = cave.line[52];
-  const std::optional<double> length_m = way_home_m(map, roadmap, here, home, {});
+  WayHome way;
+  way.update(map, roadmap, home, {});
+  const std::optional<double> length_m = way.length_m(map, roadmap, here);
   ASSERT_TRUE(length_m);
   EXPECT_GT(*length_m, (here - home).norm());
   EXPECT_LT(*length_m, 1.25 * 24.0);  // the centre line between them
+  const Path path = way.find(map, roadmap, here);
+  ASSERT_TRUE(path.found());
+  EXPECT_EQ(path.points.front(), here);
+  EXPECT_EQ(path.points.back(), home);
+  EXPECT_NEAR(path.length_m, *length_m, 0.05 * *length_m);  // cell by cell where straight lines are not clear
 }
 
 TEST(Home, WithoutAWayThereIsNoLength) {
@@ -27,7 +34,10 @@ TEST(Home, WithoutAWayThereIsNoLength) {
   const VoxelMap map = cave.map();
   Roadmap roadmap{PlanningOptions{}};
   roadmap.update(map, all_cells(map));
-  EXPECT_FALSE(way_home_m(map, roadmap, cave.line[4], {0, 0, 40}, {}));
+  WayHome way;
+  way.update(map, roadmap, {0, 0, 40}, {});
+  EXPECT_FALSE(way.length_m(map, roadmap, cave.line[4]));
+  EXPECT_FALSE(way.find(map, roadmap, cave.line[4]).reason.empty());
 }
 
 TEST(Home, TimeFromRestToRestAndTheDescent) {
