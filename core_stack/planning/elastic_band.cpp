@@ -18,6 +18,34 @@ bool surely_clear(const FreeTiles& free, const Vec3& a, double da, const Vec3& b
   return da + db - (b - a).norm() >= 2 * clearance_m || free.segment_clear(a, b, clearance_m);
 }
 
+/// Nearest obstacles of points that move in small steps. A look a little farther than is asked for shows how
+/// far a point may move before it must look again; answers are the same as of FreeTiles::nearest.
+class NearestAlong {
+ public:
+  NearestAlong(const FreeTiles& free, double limit_m, std::size_t points)
+      : free_(free), limit_m_(limit_m), seen_(points) {}
+
+  NearestObstacle at(std::size_t i, const Vec3& p) {
+    Seen& s = seen_[i];
+    if (s.distance_m - (p - s.from).norm() >= limit_m_ + 1e-9) return {limit_m_, p};
+    if (s.near && (p - s.from).norm() < 0.5 * kAhead_m) return free_.nearest(p, limit_m_);
+    const NearestObstacle o = free_.nearest(p, limit_m_ + kAhead_m);
+    s = {o.distance_m, p, o.distance_m < limit_m_ + kLeastAhead_m};
+    return o.distance_m < limit_m_ ? o : NearestObstacle{limit_m_, p};
+  }
+
+ private:
+  static constexpr double kAhead_m = 0.6, kLeastAhead_m = 0.1;
+  struct Seen {
+    double distance_m = 0;  // to the nearest obstacle, or as far as was looked
+    Vec3 from = Vec3::Zero();
+    bool near = false;  // too near to an obstacle for looking ahead to pay
+  };
+  const FreeTiles& free_;
+  double limit_m_;
+  std::vector<Seen> seen_;
+};
+
 }  // namespace
 
 std::vector<Vec3> smooth_band(const FreeTiles& free, double clearance_m, double preferred_m,
@@ -25,7 +53,8 @@ std::vector<Vec3> smooth_band(const FreeTiles& free, double clearance_m, double 
   if (points.size() < 3) return points;
   const std::size_t last = points.size() - 1;
   std::vector<NearestObstacle> obstacle;
-  for (const Vec3& p : points) obstacle.push_back(free.nearest(p, preferred_m));
+  NearestAlong nearest(free, preferred_m, points.size());
+  for (std::size_t i = 0; i <= last; ++i) obstacle.push_back(nearest.at(i, points[i]));
   const auto clear_between = [&](const Vec3& a, const NearestObstacle& oa, const Vec3& b,
                                  const NearestObstacle& ob) {
     return surely_clear(free, a, oa.distance_m, b, ob.distance_m, clearance_m);
@@ -51,7 +80,7 @@ std::vector<Vec3> smooth_band(const FreeTiles& free, double clearance_m, double 
       if (step.norm() < 1e-4) continue;
       for (int half = 0; half < 2; ++half, step *= 0.4) {
         const Vec3 q = p + step;
-        const NearestObstacle oq = free.nearest(q, preferred_m);
+        const NearestObstacle oq = nearest.at(i, q);
         if (oq.distance_m < std::min(clearance_m, o.distance_m) || !free.at(free.key_of(q))) continue;
         if ((!clear_between(before, obstacle[i - 1], q, oq) &&
              clear_between(before, obstacle[i - 1], p, o)) ||

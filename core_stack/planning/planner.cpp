@@ -6,6 +6,7 @@
 #include "core_stack/planning/grid_planner.h"
 #include "core_stack/planning/ompl_search.h"
 #include "core_stack/planning/refine.h"
+#include "core_stack/planning/roadmap_graph.h"
 
 namespace karst::core {
 namespace {
@@ -21,10 +22,12 @@ constexpr double kSlackLeft_m = 1.0;
 constexpr double kDetourReach_m = 2.0;
 constexpr int kMostDetours = 6;
 
-/// Refines `raw`, which begins with an escape of so many points.
-Path refined(const VoxelMap& map, const Path& raw, const PlanningOptions& options) {
+/// Refines `raw` on the roadmap's free cells, which are the map's: nothing needs to be read anew.
+Path refined(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options) {
   Path path = raw;
-  path.points = refine_path(map, raw.points, options);
+  const RoadmapGraph& graph = roadmap.graph();
+  path.points =
+      graph.rule ? refine_path(graph.free, raw.points, options) : refine_path(map, raw.points, options);
   if (raw.length_m > 0) measure(path, raw.length_bound * path_length_m(path.points) / raw.length_m);
   return path;
 }
@@ -69,15 +72,15 @@ bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOpt
 }
 
 /// Refines `raw` until every segment is clear, planning anew where the passage turns out too narrow.
-Path finished(const VoxelMap& map, const Path& raw, const PlanningOptions& options) {
-  Path path = refined(map, raw, options);
+Path finished(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options) {
+  Path path = refined(map, roadmap, raw, options);
   for (int round = 0;; ++round) {
     const int flaw = first_flaw(map, path, options);
     if (flaw < 0) return path;
     const Vec3 p = path.points[static_cast<std::size_t>(flaw)];
     path.escape_points = raw.escape_points;
     if (round < kMostDetours && detour(map, path, static_cast<std::size_t>(flaw), options)) {
-      path = refined(map, path, options);
+      path = refined(map, roadmap, path, options);
       continue;
     }
     char text[160];
@@ -115,17 +118,17 @@ Path searched_wide(const VoxelMap& map, const Roadmap& roadmap, const Vec3& star
 
 Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw,
                 const PlanningOptions& options) {
-  Path path = finished(map, raw, options);
+  Path path = finished(map, roadmap, raw, options);
   if (path.found()) return path;
   const Path wide = searched_wide(map, roadmap, raw.points.front(), raw.points.back(), options);
   if (wide.found()) {
-    Path around = finished(map, wide, options);
+    Path around = finished(map, roadmap, wide, options);
     if (around.found()) return around;
   }
   // A narrow passage and no way around it: keep the clearance that the search found.
   PlanningOptions tight = options;
   tight.clearance_m = search_clearance_m(options, map.resolution_m());
-  Path narrow = finished(map, raw, tight);
+  Path narrow = finished(map, roadmap, raw, tight);
   narrow.narrow = true;
   return narrow.found() ? narrow : path;
 }

@@ -82,19 +82,26 @@ std::vector<Vec3> shortened(const FreeTiles& free, double clearance_m, std::vect
 std::vector<Vec3> refine_path(const VoxelMap& map, const std::vector<Vec3>& points,
                               const PlanningOptions& options) {
   if (points.size() < 2) return points;
+  const double preferred = std::max(options.clearance_m, options.preferred_clearance_m);
+  FreeTiles free(map.resolution_m());
+  // The band never moves farther from the string than it was pushed, so this covers all it looks at.
+  for (const Vec3& p : densified(points, map.resolution_m()))
+    free.load_near(map, p, 2 * preferred + 2 * map.resolution_m());
+  return refine_path(free, points, options);
+}
+
+std::vector<Vec3> refine_path(const FreeTiles& free, const std::vector<Vec3>& points,
+                              const PlanningOptions& options) {
+  if (points.size() < 2) return points;
   const double clearance = options.clearance_m,
                preferred = std::max(clearance, options.preferred_clearance_m);
-  FreeTiles free(map.resolution_m());
-  std::vector<Vec3> raw = densified(points, map.resolution_m());
-  // The band never moves farther from the string than it was pushed, so this covers all it looks at.
-  for (const Vec3& p : raw) free.load_near(map, p, 2 * preferred + 2 * map.resolution_m());
 
   // A way out of a tight place at the beginning stays as it is.
   std::size_t kept = 0;
-  const double escape_m = search_clearance_m(options, map.resolution_m()) - 1e-6;
+  const double escape_m = search_clearance_m(options, free.resolution_m()) - 1e-6;
   while (kept + 1 < points.size() && !free.is_clear(points[kept], escape_m)) ++kept;
   std::vector<Vec3> rest =
-      densified({points.begin() + static_cast<std::ptrdiff_t>(kept), points.end()}, map.resolution_m());
+      densified({points.begin() + static_cast<std::ptrdiff_t>(kept), points.end()}, free.resolution_m());
   const double raw_length = path_length_m(rest);
   std::vector<Vec3> best;
   if (rest.size() >= 2) {

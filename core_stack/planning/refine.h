@@ -2,11 +2,15 @@
 // clearance. Never enters unknown space, never falls below the clearance of the path it was given.
 #pragma once
 #include "core_stack/mapping/voxel_map.h"
+#include "core_stack/planning/free_tiles.h"
 #include "core_stack/planning/path.h"
 
 namespace karst::core {
 
 std::vector<Vec3> refine_path(const VoxelMap& map, const std::vector<Vec3>& points,
+                              const PlanningOptions& options);
+/// The same on free cells read already: all that are known within two preferred clearances of the path.
+std::vector<Vec3> refine_path(const FreeTiles& free, const std::vector<Vec3>& points,
                               const PlanningOptions& options);
 
 }  // namespace karst::core
