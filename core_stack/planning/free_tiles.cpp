@@ -88,11 +88,21 @@ std::uint32_t FreeTiles::row(std::int32_t x, std::int32_t y, std::int32_t z) con
   return first >> shift | bits({t.x + 1, t.y, t.z})[r] << (32 - shift);
 }
 
-bool FreeTiles::row_free(std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) const {
-  for (; x_low <= x_high; x_low += 32) {
-    const int n = std::min(32, x_high - x_low + 1);
+/// Tiles found before: neighbouring rows mostly lie in the same.
+struct FreeTiles::LastTile {
+  TileKey key;
+  const TileBits* tile = nullptr;
+};
+
+bool FreeTiles::row_free(std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z,
+                         LastTile& last) const {
+  while (x_low <= x_high) {
+    const TileKey t = tile_of({x_low, y, z});
+    if (last.tile == nullptr || !(last.key == t)) last = {t, &bits(t)};
+    const int shift = x_low & 31, n = std::min(32 - shift, x_high - x_low + 1);
     const std::uint32_t mask = n == 32 ? ~0u : (1u << n) - 1;
-    if ((row(x_low, y, z) & mask) != mask) return false;
+    if (((*last.tile)[row_of(y, z)] >> shift & mask) != mask) return false;
+    x_low += n;
   }
   return true;
 }
@@ -101,8 +111,9 @@ bool FreeTiles::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) 
   if (!(a.cwiseAbs().maxCoeff() < 1e6 && b.cwiseAbs().maxCoeff() < 1e6) || a.hasNaN() || b.hasNaN())
     return false;
   const Vec3 half = Vec3::Constant(0.5), from = a / resolution_m_ - half, to = b / resolution_m_ - half;
-  const auto free = [this](std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) {
-    return row_free(x_low, x_high, y, z);
+  LastTile last;
+  const auto free = [&](std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) {
+    return row_free(x_low, x_high, y, z, last);
   };
   if (!all_rows_near_segment(from, to, clearance_m / resolution_m_, free)) return false;
   // Within half a cell's diagonal of any point lies its own cell's centre.
@@ -118,12 +129,26 @@ NearestObstacle FreeTiles::nearest(const Vec3& p, double limit_m) const {
   const Vec3 q = p / resolution_m_ - Vec3::Constant(0.5);
   double best = std::min(limit_m / resolution_m_, static_cast<double>(kNearestReach)), best2 = best * best;
   NearestObstacle out{std::min(limit_m, kNearestReach * resolution_m_), p};
+  // The window's rows lie in at most five by five pairs of tiles along x, each looked up when first needed.
+  struct Pair {
+    const TileBits *low = nullptr, *high = nullptr;
+  };
+  std::array<Pair, 25> pairs{};
+  const TileKey first = tile_of({c.x - 16, c.y - kNearestReach, c.z - kNearestReach});
+  const int shift = (c.x - 16) & 31;
+  const auto window_row = [&](std::int32_t y, std::int32_t z) {
+    const TileKey t{first.x, y >> 3, z >> 3};
+    Pair& pair = pairs[static_cast<std::size_t>((t.z - first.z) * 5 + t.y - first.y)];
+    if (pair.low == nullptr) pair = {&bits(t), shift == 0 ? &kUnknownTile : &bits({t.x + 1, t.y, t.z})};
+    const std::uint32_t r = row_of(y, z), low = (*pair.low)[r];
+    return shift == 0 ? low : low >> shift | (*pair.high)[r] << (32 - shift);
+  };
   for (const Offset& o : rows) {
     if (o.distance - 0.71 >= best) break;
     const double ry = c.y + o.dy - q.y(), rz = c.z + o.dz - q.z(), row2 = ry * ry + rz * rz;
     if (row2 >= best2) continue;
-    const std::uint32_t blocked = ~row(c.x - 16, c.y + o.dy, c.z + o.dz);  // bit 16 is c.x
-    const std::uint32_t right = blocked >> 16, left = blocked << 16;       // from c.x up; from c.x - 1 down
+    const std::uint32_t blocked = ~window_row(c.y + o.dy, c.z + o.dz);  // bit 16 is c.x
+    const std::uint32_t right = blocked >> 16, left = blocked << 16;    // from c.x up; from c.x - 1 down
     const auto consider = [&](int dx) {
       const double rx = c.x + dx - q.x(), d2 = row2 + rx * rx;
       if (d2 >= best2) return;

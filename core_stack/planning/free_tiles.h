@@ -89,7 +89,9 @@ class FreeTiles {
   Vec3 center_of(const CellKey& k) const;
 
  private:
-  bool row_free(std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) const;
+  struct LastTile;
+  bool row_free(std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z,
+                LastTile& last) const;
   const TileBits& bits(const TileKey& t) const;
 
   double resolution_m_;

@@ -17,37 +17,52 @@ struct Interval {
   void cover(double a, double b) { low = std::min(low, a), high = std::max(high, b); }
 };
 
-/// x of the points (x, y, z) within r of the segment from a to b.
-inline Interval row_near_segment(const Vec3& a, const Vec3& b, double r, double y, double z) {
-  Interval out;
-  for (const Vec3& end : {a, b}) {
-    const double h2 = r * r - (y - end.y()) * (y - end.y()) - (z - end.z()) * (z - end.z());
-    if (h2 >= 0) out.cover(end.x() - std::sqrt(h2), end.x() + std::sqrt(h2));
+/// Rows near one segment; what all its rows share is worked out once.
+class RowsNearSegment {
+ public:
+  RowsNearSegment(const Vec3& a, const Vec3& b, double r)
+      : a_(a), b_(b), d_(b - a), l2_(d_.squaredNorm()), r2_(r * r), A_(1 - d_.x() * d_.x() / l2_) {}
+
+  /// x of the points (x, y, z) within r of the segment.
+  Interval at(double y, double z) const {
+    Interval out;
+    const double wy = y - a_.y(), wz = z - a_.z(), vy = y - b_.y(), vz = z - b_.z();
+    cover_ball(a_.x(), r2_ - wy * wy - wz * wz, out);
+    cover_ball(b_.x(), r2_ - vy * vy - vz * vz, out);
+    if (l2_ < 1e-12) return out;
+    // Between the ends: w = (X, wy, wz) from a, t = w.d in [0, |d|^2], |w|^2 - t^2 / |d|^2 <= r^2.
+    const double k = wy * d_.y() + wz * d_.z();
+    const double half_b = -d_.x() * k / l2_, C = wy * wy + wz * wz - k * k / l2_ - r2_;
+    Interval across;  // where the distance to the line is at most r
+    if (A_ > 1e-12) {
+      const double disc = half_b * half_b - A_ * C;
+      if (disc < 0) return out;
+      const double root = std::sqrt(disc);
+      across.cover((-half_b - root) / A_, (-half_b + root) / A_);
+    } else if (C <= 0) {
+      across.cover(-1e9, 1e9);
+    }
+    Interval along;  // where 0 <= t <= |d|^2
+    if (std::abs(d_.x()) > 1e-9) {
+      along.cover(-k / d_.x(), -k / d_.x()), along.cover((l2_ - k) / d_.x(), (l2_ - k) / d_.x());
+    } else if (k >= 0 && k <= l2_) {
+      along.cover(-1e9, 1e9);
+    }
+    const double low = std::max(along.low, across.low), high = std::min(along.high, across.high);
+    if (low <= high) out.cover(a_.x() + low, a_.x() + high);
+    return out;
   }
-  // Between the ends: w = (X, wy, wz) from a, t = w.d in [0, |d|^2], |w|^2 - t^2 / |d|^2 <= r^2.
-  const Vec3 d = b - a;
-  const double l2 = d.squaredNorm();
-  if (l2 < 1e-12) return out;
-  const double wy = y - a.y(), wz = z - a.z(), k = wy * d.y() + wz * d.z();
-  Interval along;  // where 0 <= t <= |d|^2
-  if (std::abs(d.x()) > 1e-9) {
-    along.cover(-k / d.x(), -k / d.x()), along.cover((l2 - k) / d.x(), (l2 - k) / d.x());
-  } else if (k >= 0 && k <= l2) {
-    along.cover(-1e9, 1e9);
+
+ private:
+  static void cover_ball(double x, double h2, Interval& out) {
+    if (h2 < 0) return;
+    const double h = std::sqrt(h2);
+    out.cover(x - h, x + h);
   }
-  const double A = 1 - d.x() * d.x() / l2, half_b = -d.x() * k / l2,
-               C = wy * wy + wz * wz - k * k / l2 - r * r;
-  Interval across;  // where the distance to the line is at most r
-  if (A > 1e-12) {
-    const double disc = half_b * half_b - A * C;
-    if (disc >= 0) across.cover((-half_b - std::sqrt(disc)) / A, (-half_b + std::sqrt(disc)) / A);
-  } else if (C <= 0) {
-    across.cover(-1e9, 1e9);
-  }
-  const double low = std::max(along.low, across.low), high = std::min(along.high, across.high);
-  if (low <= high) out.cover(a.x() + low, a.x() + high);
-  return out;
-}
+
+  Vec3 a_, b_, d_;
+  double l2_, r2_, A_;
+};
 
 /// Calls visit(x_low, x_high, y, z) for each row with cells nearer than r to the segment, until it returns
 /// false; returns whether all did. A centre at r, up to rounding, is not nearer than r.
@@ -59,10 +74,11 @@ bool all_rows_near_segment(const Vec3& a, const Vec3& b, double r, Visit&& visit
   if (r < 0) return true;
   for (int i = 0; i < pieces; ++i) {
     const Vec3 p = a + (b - a) * i / pieces, q = a + (b - a) * (i + 1) / pieces;
+    const RowsNearSegment rows(p, q, r);
     const Vec3 low = p.cwiseMin(q).array() - r, high = p.cwiseMax(q).array() + r;
     for (auto z = static_cast<std::int32_t>(std::ceil(low.z())); z <= high.z(); ++z)
       for (auto y = static_cast<std::int32_t>(std::ceil(low.y())); y <= high.y(); ++y) {
-        const Interval row = row_near_segment(p, q, r, y, z);
+        const Interval row = rows.at(y, z);
         if (row.low > row.high) continue;
         const auto x_low = static_cast<std::int32_t>(std::ceil(row.low));
         const auto x_high = static_cast<std::int32_t>(std::floor(row.high));
