@@ -47,6 +47,7 @@ struct DistanceTree::Tree {
   double& length(const NodeRef& n) { return tiles[n.tile].length_m[n.local]; }
   double length(const NodeRef& n) const { return tiles[n.tile].length_m[n.local]; }
   CellKey& next(const NodeRef& n) { return tiles[n.tile].next[n.local]; }
+  const CellKey& next(const NodeRef& n) const { return tiles[n.tile].next[n.local]; }
 
   void update(const RoadmapGraph& g);
   void take_over(const RoadmapGraph& g, std::uint32_t tile, std::vector<PastNode>& gone,
@@ -119,6 +120,8 @@ void DistanceTree::Tree::forget_ways_through(const RoadmapGraph& g, std::vector<
 void DistanceTree::Tree::settle(const RoadmapGraph& g, const std::vector<NodeRef>& lost) {
   std::vector<Entry> heap;
   const auto offer = [&](const NodeRef& n, double length_m, const CellKey& by) {
+    // Of equally long ways the one by the least place is kept: it does not depend on the map's history.
+    if (length_m == length(n) && by < next(n)) next(n) = by;
     if (length_m >= length(n)) return;
     length(n) = length_m, next(n) = by;
     heap.push_back({length_m, n});
@@ -131,11 +134,12 @@ void DistanceTree::Tree::settle(const RoadmapGraph& g, const std::vector<NodeRef
   for (std::size_t i = 0; i < lost.size(); ++i) {
     const Vec3 p = g.position_of(lost[i]);
     g.for_each_neighbour(lost[i], [&](const NodeRef& m) {
-      if (const double l = length(m) + (g.position_of(m) - p).norm(); l < offers[i].first)
-        offers[i] = {l, g.cell_of(m)};
+      if (length(m) == kInf) return;
+      offers[i] = std::min(offers[i], {length(m) + (g.position_of(m) - p).norm(), g.cell_of(m)});
     });
   }
-  for (std::size_t i = 0; i < lost.size(); ++i) offer(lost[i], offers[i].first, offers[i].second);
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    if (offers[i].first < kInf) offer(lost[i], offers[i].first, offers[i].second);
 
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end());
@@ -213,27 +217,20 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
   const std::optional<Join> out = tree_->best_join(g, path.points.back(), length_m);
   if (!out) return fail(PlanStatus::no_path, "no way through known free space leads home");
 
-  // Which of several equally long ways a node was last offered depends on the map's history: the least place
-  // does not.
   std::vector<NodeRef> nodes{out->node};
-  for (;;) {
-    const NodeRef at = nodes.back();
-    const double rest_m = tree_->length(at);
-    for (const Join& j : tree_->joins)
-      if (g.cell_of(j.node) == g.cell_of(at) && j.length_m == rest_m) {
-        append_way(g, *out, nodes, j, *tree_->root, path.points);
-        path.status = PlanStatus::found;
-        measure(path, kInf);
-        return path;
-      }
-    std::optional<NodeRef> next;
-    g.for_each_neighbour(at, [&](const NodeRef& m) {
-      if (tree_->length(m) + (g.position_of(m) - g.position_of(at)).norm() != rest_m) return;
-      if (!next || g.cell_of(m) < g.cell_of(*next)) next = m;
+  for (CellKey next = tree_->next(out->node); next != kRoot; next = tree_->next(nodes.back())) {
+    const std::size_t before = nodes.size();
+    g.for_each_node_in_block(next, [&](const NodeRef& n, const RoadmapNode& node) {
+      if (node.place == next) nodes.push_back(n);
     });
-    if (!next) return fail(PlanStatus::no_path, "the way home is out of date");
-    nodes.push_back(*next);
+    if (nodes.size() == before) return fail(PlanStatus::no_path, "the way home is out of date");
   }
+  for (std::size_t i = 0; i < tree_->joins.size(); ++i)
+    if (tree_->joined[i] == g.cell_of(nodes.back()))
+      append_way(g, *out, nodes, tree_->joins[i], *tree_->root, path.points);
+  path.status = PlanStatus::found;
+  measure(path, kInf);
+  return path;
 }
 
 }  // namespace karst::core

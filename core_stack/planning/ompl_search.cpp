@@ -55,6 +55,8 @@ namespace {
 constexpr double kAround_m = 10.0;
 /// Longest edge of the trees: about as far as one sees in a cave.
 constexpr double kRange_m = 5.0;
+/// An iteration of BIT* is one edge and takes about a tenth of the time that one of RRT* does.
+constexpr std::int64_t kEdgesPerIteration = 10;
 
 /// OMPL keeps one generator of seeds and one way of logging for the whole process.
 std::mutex& ompl_lock() {
@@ -156,7 +158,9 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
     ompl::RNG::setSeed(seed_of(from, goal));
     const OmplProblem problem =
         make_problem(graph.free, cells_between(graph, low, high), low, high, from, goal, clearance_m);
-    found = solved(problem, make_planner(problem.space, map, at_clearance), options.planner_iterations);
+    const std::int64_t steps =
+        options.planner_iterations * (options.planner == "bit_star" ? kEdgesPerIteration : 1);
+    found = solved(problem, make_planner(problem.space, map, at_clearance), steps);
   }
   if (found.size() < 2)
     return fail(PlanStatus::gave_up, options.planner + " found no way in " +

@@ -14,8 +14,9 @@ void describe(OptionTable& t, PlanningOptions& o) {
   t.add("max_expansions", o.max_expansions, 1000, 1e8, "the grid search gives up after so many cells");
   t.add("planner", o.planner, {"grid", "rrt_connect", "rrt_star", "bit_star"},
         "what searches for paths: ours on the grid and the roadmap, or one of OMPL's planners");
-  t.add("planner_iterations", o.planner_iterations, 100, 1e8,
-        "OMPL's planners stop after so many iterations; RRT-Connect at its first path");
+  t.add(
+      "planner_iterations", o.planner_iterations, 100, 1e8,
+      "OMPL's planners stop after so many iterations (BIT*: ten edges each); RRT-Connect at its first path");
 }
 
 double path_length_m(const std::vector<Vec3>& points) {

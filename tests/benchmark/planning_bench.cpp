@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <queue>
 #include <unordered_map>
 
@@ -14,34 +13,15 @@
 #include "core_stack/planning/polynomial_trajectory.h"
 #include "core_stack/planning/refine.h"
 #include "core_stack/planning/trajectory.h"
+#include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
 
 namespace karst::core {
 namespace {
 
+using bench::cpu_ms;
+using bench::Times;
 using testing::WindingCave;
-
-template <class F>
-double cpu_ms(F&& f) {
-  const std::clock_t begin = std::clock();
-  f();
-  return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
-
-struct Times {
-  std::vector<double> ms;
-  double at(double share) {
-    std::sort(ms.begin(), ms.end());
-    return ms[std::min(ms.size() - 1, static_cast<std::size_t>(share * static_cast<double>(ms.size())))];
-  }
-  void print(const char* what) {
-    if (ms.empty()) return;
-    double sum = 0;
-    for (const double v : ms) sum += v;
-    std::printf("  %-44s p50 %8.2f  p99 %8.2f  max %8.2f  mean %8.3f ms  (%zu)\n", what, at(0.5), at(0.99),
-                at(1.0), sum / static_cast<double>(ms.size()), ms.size());
-  }
-};
 
 /// A* as a textbook has it: hash maps, and each cell's clearance asked of `clear`, once.
 template <class Clear>
