@@ -22,6 +22,7 @@ class Se3Controller {
   Se3Controller(const Se3Options& options, double mass_kg, double max_thrust_n, double max_body_rate_radps);
   /// Forgets the disturbances: on the ground errors say nothing about the air.
   void reset();
+  void set_mass_kg(double mass_kg) { mass_kg_ = mass_kg; }
   AttitudeRateCommand update(const State& state, const Reference& reference, double dt_s);
   Vec3 disturbance_mps2() const { return disturbance_mps2_; }  // world frame, as estimated
 

@@ -6,6 +6,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kControlPeriod_s = 0.01;
+constexpr double kOffGround_m = 0.15;
 
 /// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
 constexpr double kBrakingShare = 0.8;
@@ -28,7 +29,8 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       emergency_(limits_),
       estimator_(options.localization, vehicle.T_world_start),
       tracker_(options.tracker, options.motion),
-      controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps) {
+      controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps),
+      mass_(vehicle.mass_kg) {
   emergency_.max_acceleration_mps2 = kEmergencyShare * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   trajectory_.samples = {{start.position, heading_of(start.orientation)}};
@@ -37,10 +39,11 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
 
 AttitudeRateCommand Flight::control(TimeNs now) {
   if (!armed_) return {};
-  const Reference& reference = tracker_.step(trajectory_, now);
-  AttitudeRateCommand command = controller_.update(state(), reference, kControlPeriod_s);
-  command.armed = true;
-  return command;
+  mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
+  controller_.set_mass_kg(mass_.mass_kg());
+  command_ = controller_.update(state(), tracker_.step(trajectory_, now), kControlPeriod_s);
+  command_.armed = true;
+  return command_;
 }
 
 void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
@@ -82,6 +85,8 @@ void Flight::climb(TimeNs now, double height_m, double speed_mps) {
     // The estimate has settled while standing: begin from it, not from the pose that was declared.
     tracker_.reset(now, state().position, heading_of(state().orientation));
     controller_.reset();
+    mass_.reset();
+    ground_m_ = state().position.z();
     armed_ = true;
   }
   const Vec3 from = reference().position;

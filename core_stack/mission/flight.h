@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "core_stack/control/mass_estimate.h"
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
 #include "core_stack/localization/estimator.h"
@@ -16,7 +17,10 @@ class Flight {
  public:
   Flight(const CoreOptions& options, const VehicleDescription& vehicle);
 
-  void on_imu(const ImuSample& s) { estimator_.on_imu(s); }
+  void on_imu(const ImuSample& s) {
+    estimator_.on_imu(s);
+    mass_.on_specific_force(s.specific_force_mps2.z());
+  }
   void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
   void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
 
@@ -63,6 +67,7 @@ class Flight {
   const State& state() const { return estimator_.state(); }
   const Estimator& estimator() const { return estimator_; }
   const Reference& reference() const { return tracker_.reference(); }
+  double mass_kg() const { return mass_.mass_kg(); }
 
  private:
   Onward onward(TimeNs t, double length_m) const;
@@ -73,6 +78,9 @@ class Flight {
   Estimator estimator_;
   MpcTracker tracker_;
   Se3Controller controller_;
+  MassEstimate mass_;
+  AttitudeRateCommand command_;
+  double ground_m_ = 0;  // height of the vehicle's centre before take-off
   Trajectory trajectory_;
   HeadingPlan heading_;        // of the path under way, as is its own speed limit
   double path_speed_mps_ = 0;  // 0: none

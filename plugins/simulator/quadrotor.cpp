@@ -46,7 +46,7 @@ QuadrotorEvent Quadrotor::step() {
 
   QuadrotorEvent event = QuadrotorEvent::none;
   if (footing_ == Footing::standing) {
-    if (lift_n <= kLiftOff * model_.body.weight_n()) {
+    if (lift_n <= kLiftOff * model_.body.total_weight_n()) {
       settle();
       return event;
     }
@@ -71,7 +71,7 @@ QuadrotorEvent Quadrotor::meet_rock(double lift_n) {
     if (approach_mps <= 0) return QuadrotorEvent::none;  // already parting
     return QuadrotorEvent::crashed;
   }
-  if (footing_ == Footing::leaving && lift_n > model_.body.weight_n()) {
+  if (footing_ == Footing::leaving && lift_n > model_.body.total_weight_n()) {
     // Still carried: it may slide along the ground but not into it.
     if (approach_mps > 0) state_.velocity_mps -= approach_mps * touch->direction;
     state_.T_world_body.position -= touch->depth_m * touch->direction;

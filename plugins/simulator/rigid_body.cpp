@@ -7,6 +7,7 @@ using core::Vec3;
 
 void describe(core::OptionTable& t, BodyModel& m) {
   t.add("mass", m.mass_kg, "kg", 0.2, 20, "take-off mass");
+  t.add("payload", m.payload_kg, "kg", 0, 20, "carried besides, and not told to the core stack");
   t.add("radius", m.radius_m, "m", 0.05, 2, "of the sphere that holds the vehicle with its propellers");
   t.add("roll_inertia", m.roll_inertia_kgm2, "kg m^2", 1e-4, 5, "moment of inertia about the forward axis");
   t.add("pitch_inertia", m.pitch_inertia_kgm2, "kg m^2", 1e-4, 5, "moment of inertia about the left axis");
@@ -19,7 +20,7 @@ BodyState advance(const BodyModel& model, const BodyState& s, const Wrench& wren
                   double dt_s) {
   const Quat& R = s.T_world_body.orientation;
   const Vec3 force_n = R * Vec3(0, 0, wrench.thrust_n) - model.drag_kgps * (s.velocity_mps - wind_mps);
-  const Vec3 acceleration = force_n / model.mass_kg - Vec3(0, 0, kGravity_mps2);
+  const Vec3 acceleration = force_n / model.total_mass_kg() - Vec3(0, 0, kGravity_mps2);
 
   const Vec3 J = model.inertia_kgm2();
   const Vec3& w = s.body_rate_radps;

@@ -9,13 +9,16 @@ constexpr double kGravity_mps2 = 9.81;
 
 struct BodyModel {
   double mass_kg = 2.0;
+  double payload_kg = 0;  // carried besides, and not told to the core stack
   double radius_m = 0.3;  // of the sphere that holds the vehicle
   double roll_inertia_kgm2 = 0.02, pitch_inertia_kgm2 = 0.02, yaw_inertia_kgm2 = 0.036;
   double drag_kgps = 0.3;        // force = -drag * airspeed
   double spin_drag_nms = 0.004;  // torque = -spin_drag * body rate
 
   core::Vec3 inertia_kgm2() const { return {roll_inertia_kgm2, pitch_inertia_kgm2, yaw_inertia_kgm2}; }
-  double weight_n() const { return mass_kg * kGravity_mps2; }
+  double weight_n() const { return mass_kg * kGravity_mps2; }  // as described
+  double total_mass_kg() const { return mass_kg + payload_kg; }
+  double total_weight_n() const { return total_mass_kg() * kGravity_mps2; }
 };
 void describe(core::OptionTable& t, BodyModel& m);
 

@@ -135,6 +135,18 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(1, 2));
 
+TEST(Payload, OfThirtyPercentIsCarriedWithoutBeingTold) {
+  const auto run = fresh_folder("flight_payload") / "run";
+  const Output out = run_karst("fly --cave " + generated_cave("small", 7) +
+                               " --set simulator.body.payload=0.6kg --set simulator.gust=1m/s"
+                               " --set mission.max_flight_time=60s --quiet --no-report --out " +
+                               run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  EXPECT_EQ(metrics_of(run)["outcome"], "landed");
+  EXPECT_EQ(metrics_of(run)["contacts"], 0);
+  EXPECT_LT(metrics_of(run)["tracking_rms_m"].get<double>(), 0.1);
+}
+
 TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThreadCount) {
   const auto folder = fresh_folder("flight_twice");
   const std::string quiet = " --quiet --no-report --out " + folder.string();
