@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core_stack/planning/search_heap.h"
+
 namespace karst::core {
 namespace {
 
@@ -34,19 +36,9 @@ struct SearchTile {
   TileBits clear;
   CellKey corner;
   std::array<float, kTileCells> cost;
+  std::array<std::uint32_t, kTileCells> place;  // in the heap
   std::array<std::uint8_t, kTileCells>
       parent;  // index of the move that led here, or kRoot; kClosed when final
-};
-
-struct Entry {
-  float estimate, cost;
-  std::uint32_t node;  // tile index * kTileCells + index in tile; kGoal
-  /// Heap order: least estimate first, then the one farther on its way, then the older node.
-  bool operator<(const Entry& o) const {
-    if (estimate != o.estimate) return estimate > o.estimate;
-    if (cost != o.cost) return cost < o.cost;
-    return node > o.node;
-  }
 };
 
 class Search {
@@ -60,18 +52,14 @@ class Search {
       reach(tile_at(tile_of(k)), k, static_cast<float>(octile_cells(Vec3(k.x, k.y, k.z) - from)), kRoot);
     GridSearchResult result;
     while (!heap_.empty()) {
-      std::pop_heap(heap_.begin(), heap_.end());
-      const Entry top = heap_.back();
-      heap_.pop_back();
+      const OpenNode top = heap_.pop();
       if (top.node == kGoal) {
         result.end = GridSearchResult::End::found;
         result.cells = trace();
         return result;
       }
       SearchTile& tile = *tiles_[top.node / kTileCells];
-      std::uint8_t& parent = tile.parent[top.node % kTileCells];
-      if (parent & kClosed) continue;
-      parent |= kClosed;
+      tile.parent[top.node % kTileCells] |= kClosed;
       if (++result.expansions > max_expansions) {
         result.end = GridSearchResult::End::gave_up;
         return result;
@@ -96,6 +84,7 @@ class Search {
     tile.clear = free_.clear_cells(t, rule_);
     tile.cost.fill(std::numeric_limits<float>::infinity());
     tile.parent.fill(0);
+    tile.place.fill(0);
     return i;
   }
 
@@ -107,15 +96,10 @@ class Search {
     if (!(tile.clear[i >> 5] >> (i & 31) & 1) || tile.parent[i] & kClosed || cost >= tile.cost[i]) return;
     tile.cost[i] = cost;
     tile.parent[i] = by;
-    push({cost + weight_ * to_go(k), cost, tile_index * kTileCells + i});
+    heap_.push_or_lower({cost + weight_ * to_go(k), cost, tile_index * kTileCells + i});
   }
 
-  void push(const Entry& e) {
-    heap_.push_back(e);
-    std::push_heap(heap_.begin(), heap_.end());
-  }
-
-  void expand(const Entry& at) {
+  void expand(const OpenNode& at) {
     static const std::array<Move, 26> moves = all_moves();
     const std::uint32_t here = at.node / kTileCells;
     const TileKey home = table_.keys()[here];
@@ -124,7 +108,7 @@ class Search {
     if (std::find(goals_.begin(), goals_.end(), k) != goals_.end() && cost + to_go(k) < goal_cost_) {
       goal_cost_ = cost + to_go(k);
       goal_cell_ = k;
-      push({goal_cost_, goal_cost_, kGoal});
+      heap_.push_or_lower({goal_cost_, goal_cost_, kGoal});
     }
     for (std::uint8_t m = 0; m < moves.size(); ++m) {
       const CellKey n = k + CellKey{moves[m].dx, moves[m].dy, moves[m].dz};
@@ -154,7 +138,15 @@ class Search {
   float weight_;
   TileTable table_;
   std::vector<std::unique_ptr<SearchTile>> tiles_;
-  std::vector<Entry> heap_;  // with stale entries: a cell found again by a cheaper way is pushed again
+  struct PlaceOf {  // node: tile index * kTileCells + index in tile, or kGoal
+    Search* search;
+    std::uint32_t& operator()(std::uint32_t node) const {
+      return node == kGoal ? search->goal_place_
+                           : search->tiles_[node / kTileCells]->place[node % kTileCells];
+    }
+  };
+  SearchHeap<PlaceOf> heap_{PlaceOf{this}};
+  std::uint32_t goal_place_ = 0;
   float goal_cost_ = std::numeric_limits<float>::infinity();
   CellKey goal_cell_;
 };

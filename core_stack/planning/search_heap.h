@@ -1,0 +1,70 @@
+// The open list of a grid search: a binary heap in which every node stands once and is moved up when a
+// cheaper way to it is found. Each node knows its place in the heap, so nothing is ever looked for.
+#pragma once
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace karst::core {
+
+struct OpenNode {
+  float estimate, cost;  // of the whole way through the node, and of the way to it
+  std::uint32_t node;
+  /// Least estimate first, then the one farther on its way, then the older node.
+  bool before(const OpenNode& o) const {
+    if (estimate != o.estimate) return estimate < o.estimate;
+    if (cost != o.cost) return cost > o.cost;
+    return node < o.node;
+  }
+};
+
+/// `PlaceOf(node)` gives a reference to the node's own std::uint32_t, 0 to begin with, which the heap keeps.
+template <class PlaceOf>
+class SearchHeap {
+ public:
+  explicit SearchHeap(PlaceOf place_of) : place_of_(std::move(place_of)) {}
+
+  bool empty() const { return heap_.empty(); }
+  /// Adds a node, or moves it up if it is in the heap already and `n` comes before what is known of it.
+  void push_or_lower(const OpenNode& n) {
+    const std::uint32_t place = place_of_(n.node);
+    if (place == 0) {
+      heap_.push_back(n);
+      rise(heap_.size() - 1, n);
+    } else if (n.before(heap_[place - 1])) {
+      rise(place - 1, n);
+    }
+  }
+  OpenNode pop() {
+    const OpenNode top = heap_.front(), last = heap_.back();
+    heap_.pop_back();
+    place_of_(top.node) = 0;
+    if (!heap_.empty()) sink(last);
+    return top;
+  }
+
+ private:
+  void put(std::size_t i, const OpenNode& n) {
+    heap_[i] = n;
+    place_of_(n.node) = static_cast<std::uint32_t>(i + 1);
+  }
+  void rise(std::size_t i, const OpenNode& n) {
+    for (; i > 0 && n.before(heap_[(i - 1) / 2]); i = (i - 1) / 2) put(i, heap_[(i - 1) / 2]);
+    put(i, n);
+  }
+  /// From the top.
+  void sink(const OpenNode& n) {
+    std::size_t i = 0;
+    for (std::size_t child; (child = 2 * i + 1) < heap_.size(); i = child) {
+      if (child + 1 < heap_.size() && heap_[child + 1].before(heap_[child])) ++child;
+      if (!heap_[child].before(n)) break;
+      put(i, heap_[child]);
+    }
+    put(i, n);
+  }
+
+  PlaceOf place_of_;
+  std::vector<OpenNode> heap_;
+};
+
+}  // namespace karst::core
