@@ -45,7 +45,6 @@ struct MpcTracker::Solver {
       : mpc(setup_of(options, limits)),
         step(from_seconds(options.step_s)),
         targets(static_cast<std::size_t>(options.steps)),
-        prediction(static_cast<std::size_t>(options.steps), Vec3::Zero()),
         max_speed_mps(limits.max_speed_mps),
         heading_limits{limits.max_heading_rate_radps, limits.max_heading_acceleration_radps2} {}
 
@@ -69,7 +68,6 @@ struct MpcTracker::Solver {
   JerkMpc mpc;
   TimeNs step;
   std::vector<MotionTarget> targets;
-  std::vector<Vec3> prediction;
   double max_speed_mps;
   HeadingLimits heading_limits;
   HeadingState heading;
@@ -89,7 +87,6 @@ void MpcTracker::reset(TimeNs now, const Vec3& position, double heading_rad) {
   s.heading = {wrap_angle(heading_rad), 0};
   s.held = {position, heading_rad};
   s.reference = {now, position, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), s.heading.heading_rad, 0};
-  std::fill(s.prediction.begin(), s.prediction.end(), position);
   s.warm = false;
 }
 
@@ -121,7 +118,6 @@ const Reference& MpcTracker::step(const Trajectory& trajectory, TimeNs now) {
   }
   const JerkPlan& plan = s.mpc.solve(s.motion, s.targets, s.warm ? dt : -1.0);
   s.warm = true;
-  for (std::size_t k = 0; k < s.prediction.size(); ++k) s.prediction[k] = plan.motion[k].position;
   s.reference = {now,
                  s.motion.position,
                  s.motion.velocity_mps,
@@ -133,6 +129,5 @@ const Reference& MpcTracker::step(const Trajectory& trajectory, TimeNs now) {
 }
 
 const Reference& MpcTracker::reference() const { return solver_->reference; }
-const std::vector<Vec3>& MpcTracker::prediction() const { return solver_->prediction; }
 
 }  // namespace karst::core

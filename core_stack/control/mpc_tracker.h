@@ -41,8 +41,6 @@ class MpcTracker {
   /// the last position asked for is held.
   const Reference& step(const Trajectory& trajectory, TimeNs now);
   const Reference& reference() const;
-  /// Positions predicted over the horizon, step_s apart, the first at now + step_s.
-  const std::vector<Vec3>& prediction() const;
 
  private:
   struct Solver;

@@ -129,23 +129,6 @@ TEST(MpcTracker, FollowsASmoothTrajectoryClosely) {
   EXPECT_LT(std::sqrt(sum / n), 0.03);
 }
 
-TEST(MpcTracker, PredictionIsWhereItWillBe) {
-  MpcTracker tracker({}, {});
-  tracker.reset(0, Vec3::Zero(), 0);
-  const Trajectory t = hover({0.5, 0.2, 0});
-  for (TimeNs now = kTick; now <= 300 * kMillisecond; now += kTick) tracker.step(t, now);
-  const std::vector<Vec3> promised = tracker.prediction();
-  ASSERT_EQ(promised.size(), 40u);
-  for (TimeNs now = 310 * kMillisecond; now <= 2300 * kMillisecond; now += kTick) {
-    const Reference& ref = tracker.step(t, now);
-    const TimeNs ahead = now - 300 * kMillisecond;
-    if (ahead % (50 * kMillisecond) == 0) {
-      EXPECT_LT((ref.position - promised[static_cast<std::size_t>(ahead / (50 * kMillisecond)) - 1]).norm(),
-                0.01);
-    }
-  }
-}
-
 TEST(MpcTracker, WithoutSamplesItStaysWhereItWasAsked) {
   MpcTracker tracker({}, {});
   tracker.reset(5 * kSecond, {1, 2, 3}, 0.7);
