@@ -26,7 +26,7 @@ constexpr double kSeenShare = 0.75;
 /// Way back: poses nearer than this are joined directly, if the line is clear by this much beyond the radius.
 constexpr double kShortcut_m = 2.0, kShortcutMargin_m = 0.15;
 
-const std::string kTooFar = "the battery does not last for going there and home";
+constexpr const char* kTooFar = "the battery, or the time allowed, does not last for going there and home";
 
 /// Pauses of places tried in vain that are waived when no other place is left: the first three attempts'.
 constexpr TimeNs kPauseWaived = 40 * kSecond;
@@ -242,8 +242,10 @@ RoundResult Explorer::decide(const RoundInput& input) {
       // do.
       const bool last_resort = result.policy == fallback_.name();
       result.outcome = last_resort ? Outcome::explored : Outcome::hold;
-      result.reason =
-          last_resort ? "no frontier left that can be accepted" : "no goal of the policy could be accepted";
+      result.out_of_time = last_resort && all_too_far;
+      result.reason = result.out_of_time ? "what is left is too far for the battery, or for the time allowed"
+                      : last_resort      ? "no frontier left that can be accepted"
+                                         : "no goal of the policy could be accepted";
     }
   }
   if (result.goal || !input.standing) {

@@ -53,6 +53,7 @@ struct UnseenFrontier {
 
 struct RoundResult {
   Outcome outcome = Outcome::hold;
+  bool out_of_time = false;  // that is why nothing is left to explore
   std::string reason, policy;
   std::optional<Goal> goal;  // accepted, with `path` from RoundInput::from to it
   Path path;
@@ -131,8 +132,8 @@ class Explorer {
   GoalLedger ledger_;
   TimeNs closed_at_ = 0;  // the time at which places are judged closed in this round
   std::map<std::uint32_t, KnownViewpoint> viewpoints_;
-  std::set<std::uint32_t> judged_unseen_;  // clusters without a viewpoint, once explained
-  std::vector<UnseenFrontier> unseen_;     // yet to be told
+  std::set<std::uint32_t> explained_unseen_;
+  std::vector<UnseenFrontier> unseen_;  // yet to be told
   struct Chosen {
     std::size_t cells;
     Vec3 centroid;

@@ -1,4 +1,5 @@
 // The frontiers a policy may choose from, each with a viewpoint and the length of the way there.
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -21,8 +22,11 @@ void Explorer::explain_unseen(const FrontierCluster& cluster) {
   all_seeing.lidar = sphere;
   const auto from = find_viewpoint(map_, cluster, all_seeing, options_.planning.clearance_m);
   if (!from) return;
+  explained_unseen_.insert(cluster.id);
   const double rise_m = cluster.centroid.z() - from->position.z();
-  const std::string where = rise_m > 0 ? "above" : "below";
+  const std::string where = std::abs(rise_m) < map_.resolution_m() ? "beside"
+                            : rise_m > 0                           ? "above"
+                                                                   : "below";
   unseen_.push_back(
       {cluster.id, cluster.centroid,
        "no sensor of the vehicle sees what lies " + where + " it there, and it flies into nothing unseen"});
@@ -43,7 +47,7 @@ std::vector<FrontierOffer> Explorer::offers(const RoundInput& input) {
       entry.viewpoint = known->second.viewpoint;
     } else if (open_cells(map_, cluster) >= options_.mission.min_open_cells) {
       entry.viewpoint = find_viewpoint(map_, cluster, vehicle_, options_.planning.clearance_m);
-      if (!entry.viewpoint && judged_unseen_.insert(id).second) explain_unseen(cluster);
+      if (!entry.viewpoint && !explained_unseen_.contains(id)) explain_unseen(cluster);
     }
     FrontierOffer offer;
     offer.cluster = &cluster;

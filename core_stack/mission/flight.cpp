@@ -50,6 +50,7 @@ void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, Tim
                     const HeadingPlan& heading, double max_speed_mps, const Trajectory* ready) {
   heading_ = heading;
   path_speed_mps_ = max_speed_mps;
+  braking_ = false;
   trajectory_ =
       ready ? *ready : sample_trajectory(points, start_speed_mps, start, limits(max_speed_mps), heading);
 }
@@ -65,7 +66,7 @@ MotionLimits Flight::limits(double max_speed_mps) const {
 void Flight::cap_speed(TimeNs now, double max_speed_mps) {
   if (max_speed_mps == speed_cap_mps_) return;
   speed_cap_mps_ = max_speed_mps;
-  if (at_rest(now)) return;
+  if (at_rest(now) || braking_) return;
   const Onward left = until_end(now);
   HeadingPlan heading = heading_;
   heading.start_heading_rad = left.heading_rad;
@@ -114,11 +115,11 @@ void Flight::look_around(TimeNs now) {
 void Flight::brake(TimeNs now) {
   const double v = velocity_at(now).norm();
   const Onward stop = onward(now, v * v / (2 * emergency_.max_acceleration_mps2));
-  heading_ = HeadingPlan{};  // the heading that the path was to end with is of no interest any more
-  heading_.along_path = false;
-  heading_.start_heading_rad = stop.heading_rad;
-  path_speed_mps_ = 0;
-  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, emergency_, heading_);
+  HeadingPlan keep;
+  keep.along_path = false;
+  keep.start_heading_rad = stop.heading_rad;
+  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, emergency_, keep);
+  braking_ = true;
 }
 
 void Flight::disarm() {

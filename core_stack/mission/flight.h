@@ -86,6 +86,7 @@ class Flight {
   double path_speed_mps_ = 0;  // 0: none
   double speed_cap_mps_ = std::numeric_limits<double>::infinity();
   bool armed_ = false;
+  bool braking_ = false;  // a brake is not slowed down any further
 };
 
 }  // namespace karst::core

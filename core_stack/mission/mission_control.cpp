@@ -86,7 +86,8 @@ MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)
 void MissionControl::finish(const std::string& outcome, const std::string& reason) {
   if (result_) return;
   enter(Phase::done, reason);
-  recorder_.event(now(), "outcome", {{"outcome", outcome}, {"reason", reason}});
+  recorder_.event(now(), "outcome",
+                  {{"outcome", outcome}, {"reason", reason}, {"mass_kg", flight_.mass_kg()}});
   recorder_.flush();
   result_ = MissionResult{outcome, reason};
 }
@@ -112,6 +113,11 @@ void MissionControl::supervise() {
       break;
     case Phase::takeoff:
       if (!flight_.at_rest(now() - kSettling)) break;
+      if (standing_) {
+        flight_.disarm();
+        finish("stuck", "it does not lift off: too heavy for its motors?");
+        break;
+      }
       has_taken_off_ = true;
       home_ = flight_.reference().position;
       flown_ = {home_};
@@ -201,6 +207,7 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
 }
 
 void MissionControl::on_ground(TimeNs stamp, bool standing) {
+  standing_ = standing;
   if (!standing || !has_taken_off_ || phase_ == Phase::done) return;
   flight_.disarm();
   vehicle_.command(flight_.control(stamp));

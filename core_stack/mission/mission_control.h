@@ -19,6 +19,9 @@ namespace karst::core {
 /// A scan counts in the map this long after it came in.
 constexpr TimeNs kMappingBudget = 60 * kMillisecond;
 
+/// A new path is joined to the one under way by a curve that leaves out the corner by no more than this.
+constexpr double kMostCut_m = 0.3;
+
 enum class Phase { standby, takeoff, look, explore, home, land, done };
 const char* name_of(Phase phase);
 
@@ -57,6 +60,8 @@ class MissionControl final : public VehicleSink {
   void control();
   void supervise();
   void keep_safe();
+  void brake();
+  bool braked_since(TimeNs t) const;
   void record();
   void enter(Phase phase, const std::string& reason);
   void finish(const std::string& outcome, const std::string& reason);
@@ -85,9 +90,10 @@ class MissionControl final : public VehicleSink {
   bool within_tolerance(const Goal& goal) const;
   void record_round(const RoundInput& input, const RoundResult& result);
 
-  /// On the map lane: joins a path to its lead. It will be followed from `start` on, within `limits`.
+  /// On the map lane: joins a path to its lead, whose end it passes by no more than `most_cut_m`. It will be
+  /// followed from `start` on, within `limits`.
   Route route(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal, TimeNs start,
-              MotionLimits limits) const;
+              double most_cut_m, MotionLimits limits) const;
   void follow(const Route& way);
 
   // Going home and landing.
@@ -117,7 +123,7 @@ class MissionControl final : public VehicleSink {
   TimeNs phase_since_ = 0;
   std::optional<MissionResult> result_;
   BatteryStatus battery_;
-  bool has_taken_off_ = false;
+  bool has_taken_off_ = false, standing_ = true;
 
   // The goal under way, and what the policy has yet to be told.
   std::optional<Goal> goal_;
@@ -127,6 +133,8 @@ class MissionControl final : public VehicleSink {
   std::vector<PolicyEvent> events_;
   std::vector<std::uint32_t> looked_at_;
   bool round_running_ = false, append_tried_ = false, goal_alive_ = true;
+  bool path_limited_ = false;  // the path under way has a speed limit of its own
+  std::optional<TimeNs> braked_at_;
   bool path_blocked_ = false;  // it brakes, or stands, before a place that is closed now
   bool detour_due_ = false;    // the path is closed farther on: a new one is due, there is no need to stop
   TimeNs tight_until_ = 0;     // until then the path leads out of a place tighter than it should be

@@ -109,7 +109,8 @@ void MissionControl::explore() {
   } else if (goal_ && !goal_alive_) {
     begin_round(false);
   } else if (flight_.remaining_s(now()) < options_.mission.append_before_s) {
-    if (options_.mission.append && !append_tried_) begin_round(true);
+    // What is appended is flown at its own speed limit, from here on: not where the present path has one.
+    if (options_.mission.append && !append_tried_ && !path_limited_) begin_round(true);
     append_tried_ = true;
   } else if (now() - last_round_ > from_seconds(options_.mission.decision_period_s)) {
     begin_round(false);
@@ -154,13 +155,16 @@ void MissionControl::begin_round(bool appending) {
   input.looked_at = std::exchange(looked_at_, {});
   auto result = std::make_shared<RoundResult>();
   auto way = std::make_shared<Route>();
+  // The lead of an appended path ends at a goal.
+  const double cut_m = appending && goal_ ? std::min(kMostCut_m, goal_->tolerance_m) : kMostCut_m;
   executive_.job(
       "decision", Lane::map, budget,
-      [this, input, lead, limits = flight_.limits(0), result, way] {
+      [this, input, lead, cut_m, limits = flight_.limits(0), result, way] {
         try {
           *result = explorer_.decide(input);
-          if (result->goal) *way = route(lead, result->path, result->goal, input.deadline, limits);
+          if (result->goal) *way = route(lead, result->path, result->goal, input.deadline, cut_m, limits);
         } catch (const std::exception& e) {  // whatever it is: the way home must not depend on it
+          result->goal.reset();
           result->outcome = Outcome::go_home;
           result->reason = std::string("an error of the core: ") + e.what();
         }
@@ -172,6 +176,7 @@ void MissionControl::on_round(const RoundInput& input, const RoundResult& result
   round_running_ = false;
   record_round(input, result);
   if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
+  if (braked_since(input.now)) return;  // the path begins where the vehicle will not come any more
 
   if (result.goal) {
     const bool same = goal_ && (goal_->position - result.goal->position).norm() < kSameGoal_m;
@@ -191,7 +196,7 @@ void MissionControl::on_round(const RoundInput& input, const RoundResult& result
   } else if (input.appending) {
     return;  // ask again on arrival
   } else if (result.outcome == Outcome::explored && flight_.at_rest(now())) {
-    begin_homing("explored: " + result.reason);
+    begin_homing((result.out_of_time ? "" : "explored: ") + result.reason);
   } else if (result.outcome == Outcome::go_home) {
     begin_homing("the policy asked for it: " + result.reason);
   } else if (path_blocked_ && flight_.at_rest(now())) {
@@ -213,7 +218,7 @@ void MissionControl::watch_progress() {
   if (now() - last_landmark_time_ < from_seconds(options_.mission.goal_timeout_s)) return;
   settle_goal(GoalFate::abandoned, PolicyEvent::Kind::goal_abandoned, "no progress towards it");
   drop_next_goal(PolicyEvent::Kind::goal_superseded, "the goal before it was abandoned");
-  if (!flight_.at_rest(now())) flight_.brake(now());
+  if (!flight_.at_rest(now())) brake();
 }
 
 void MissionControl::record_round(const RoundInput& input, const RoundResult& result) {

@@ -86,17 +86,17 @@ void MissionControl::plan_home_path() {
       [this, way, lead, start, home = home_, limits = flight_.limits(0)] {
         const Path path = explorer_.plan_to(lead.points.back(), home);
         way->path = path;
-        if (path.found()) *way = route(lead, path, std::nullopt, start, limits);
+        if (path.found()) *way = route(lead, path, std::nullopt, start, kMostCut_m, limits);
       },
-      [this, way] {
+      [this, way, begun = now()] {
         home_planning_ = false;
-        if (phase_ != Phase::home) return;
+        if (phase_ != Phase::home || braked_since(begun)) return;
         if (!way->path.found()) {
           ++home_failures_;
           path_blocked_ = true;
           detour_due_ = false;
           recorder_.event(now(), "log", {{"text", "no path home: " + way->path.reason}});
-          if (!flight_.at_rest(now())) flight_.brake(now());
+          if (!flight_.at_rest(now())) brake();
           return;
         }
         follow(*way);
@@ -114,11 +114,11 @@ void MissionControl::fly_back_as_come() {
       [this, way, flown = std::move(flown), lead = flight_.until_stop(now()), limits = flight_.limits(0)] {
         Path back;
         back.points = explorer_.way_back(flown);
-        *way = route(lead, back, std::nullopt, 0, limits);
+        *way = route(lead, back, std::nullopt, 0, kMostCut_m, limits);
       },
-      [this, way] {
+      [this, way, begun = now()] {
         home_planning_ = false;
-        if (phase_ != Phase::home) return;
+        if (phase_ != Phase::home || braked_since(begun)) return;
         recorder_.event(now(), "safety",
                         {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
         follow(*way);

@@ -8,7 +8,7 @@
 namespace karst::core {
 
 MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
-                                            const std::optional<Goal>& goal, TimeNs start,
+                                            const std::optional<Goal>& goal, TimeNs start, double most_cut_m,
                                             MotionLimits limits) const {
   Route out;
   out.path = path;
@@ -17,7 +17,7 @@ MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Pa
   const auto clear = [this, clearance_m](const Vec3& a, const Vec3& b) {
     return segment_clear(explorer_.map(), a, b, clearance_m);
   };
-  out.points = join_paths(lead.points, path.points, clear);
+  out.points = join_paths(lead.points, path.points, most_cut_m, clear);
   out.heading.along_path = !description_.lidar;
   out.heading.start_heading_rad = lead.heading_rad;
   if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
@@ -50,11 +50,15 @@ void MissionControl::follow(const Route& way) {
   if (options_.motion.trajectory == "polynomial") {
     plan["trajectory"] = fits ? "polynomial" : "sampled";
     plan["rounds"] = polynomial ? polynomial->rounds : 0;
-    plan["fell_back"] = polynomial ? polynomial->fell_back : "";
+    plan["fell_back"] = fits                             ? ""
+                        : !polynomial                    ? "a way back as come, or out of a tight place"
+                        : !polynomial->fell_back.empty() ? polynomial->fell_back
+                                                         : "the motion has changed since it was made";
   }
   recorder_.event(now(), "plan", plan);
   flight_.follow(way.points, flight_.at_rest(now()) ? 0.0 : way.start_speed_mps, now(), way.heading,
                  way.max_speed_mps, fits ? &polynomial->trajectory : nullptr);
+  path_limited_ = way.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = way.path;
   tight_until_ =
       path.escape_points == 0

@@ -23,6 +23,16 @@ std::vector<Vec3> MissionControl::path_ahead() const {
   return ahead;
 }
 
+void MissionControl::brake() {
+  flight_.brake(now());
+  braked_at_ = now();
+}
+
+/// Whether what was planned from `t` on may not be followed any more.
+bool MissionControl::braked_since(TimeNs t) const {
+  return (braked_at_ && *braked_at_ >= t) || verdict_.action == SafetyAction::brake;
+}
+
 void MissionControl::on_map_update(const std::vector<CellChange>& changes,
                                    std::optional<double> blocked_after_m, bool goal_alive) {
   recorder_.map_changes(now(), changes);
@@ -45,7 +55,7 @@ void MissionControl::on_map_update(const std::vector<CellChange>& changes,
   path_blocked_ = phase_ != Phase::takeoff;  // from there, exploring goes on below the roof
   detour_due_ = false;
   recorder_.event(now(), "safety", {{"action", "brake"}, {"reason", reason}, {"after_m", *blocked_after_m}});
-  flight_.brake(now());
+  brake();
 }
 
 void MissionControl::keep_safe() {
@@ -69,13 +79,13 @@ void MissionControl::keep_safe() {
   if (under_way)
     flight_.cap_speed(now(), options_.motion.max_speed_mps * (slow ? options_.safety.slow_share : 1.0));
   if (verdict.action == SafetyAction::land) {
-    flight_.brake(now());
+    brake();
     enter(Phase::land, verdict.reason);
   } else if (verdict.action == SafetyAction::home && phase_ == Phase::explore) {
     begin_homing(verdict.reason);
   } else if (verdict.action == SafetyAction::brake && under_way && !flight_.at_rest(now())) {
     drop_next_goal(PolicyEvent::Kind::goal_superseded, verdict.reason);
-    flight_.brake(now());
+    brake();
     path_blocked_ = true;  // and look for a new way from there
   }
 }

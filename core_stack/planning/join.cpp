@@ -10,8 +10,6 @@ namespace {
 
 /// How far from the corner the parabola begins and ends.
 constexpr std::array kReaches_m = {2.4, 1.6, 1.0, 0.6, 0.3};
-/// The corner may be a goal: the way still passes it as near as this.
-constexpr double kMostCut_m = 0.3;
 constexpr double kSpacing_m = 0.1;
 constexpr double kStraight_rad = 0.03;
 
@@ -34,7 +32,7 @@ std::optional<Place> after(const std::vector<Vec3>& points, double reach_m) {
 
 }  // namespace
 
-std::vector<Vec3> join_paths(const std::vector<Vec3>& lead, const std::vector<Vec3>& path,
+std::vector<Vec3> join_paths(const std::vector<Vec3>& lead, const std::vector<Vec3>& path, double most_cut_m,
                              const std::function<bool(const Vec3&, const Vec3&)>& clear) {
   std::vector<Vec3> plain = lead;
   plain.insert(plain.end(), path.begin() + 1, path.end());
@@ -46,7 +44,7 @@ std::vector<Vec3> join_paths(const std::vector<Vec3>& lead, const std::vector<Ve
   for (const double reach_m : kReaches_m) {
     const auto begin = after(backwards, reach_m), end = after(path, reach_m);
     if (!begin || !end) continue;
-    if (0.25 * (begin->point + end->point - 2 * corner).norm() > kMostCut_m) continue;
+    if (0.25 * (begin->point + end->point - 2 * corner).norm() > most_cut_m) continue;
     std::vector<Vec3> curve;
     const int n = static_cast<int>(std::ceil(2 * reach_m / kSpacing_m));
     for (int i = 0; i <= n; ++i) {

@@ -15,7 +15,7 @@ void describe(OptionTable& t, PlanningOptions& o) {
   t.add("planner", o.planner, {"grid", "rrt_connect", "rrt_star", "bit_star"},
         "what searches for paths: ours on the grid and the roadmap, or one of OMPL's planners");
   t.add(
-      "planner_iterations", o.planner_iterations, 100, 1e8,
+      "planner_iterations", o.planner_iterations, 100, 1e6,
       "OMPL's planners stop after so many iterations (BIT*: ten edges each); RRT-Connect at its first path");
 }
 

@@ -40,7 +40,7 @@ constexpr std::array kColumns = {
 nlohmann::json metrics_of(const std::string& run, std::string& problem) {
   namespace fs = std::filesystem;
   const auto row = [&run](const char* outcome) {
-    return nlohmann::json{{"cave", run}, {"outcome", outcome}};
+    return nlohmann::json{{"cave", run}, {"outcome", outcome}, {"no_figures", true}};
   };
   if (!fs::is_directory(run)) {
     problem = run + ": no such run directory";
@@ -51,7 +51,10 @@ nlohmann::json metrics_of(const std::string& run, std::string& problem) {
   std::ifstream in(file);
   nlohmann::json metrics;
   if (fs::is_regular_file(file)) metrics = nlohmann::json::parse(in, nullptr, false);
-  if (metrics.is_object()) return metrics;
+  if (metrics.is_object()) {
+    if (!metrics.contains("cave")) metrics["cave"] = run;
+    return metrics;
+  }
   problem = file.string() + ": is no JSON object";
   return row("damaged metrics.json");
 }
@@ -82,7 +85,7 @@ std::optional<double> quantile(const std::vector<double>& sorted, double share) 
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
-/// How the figures of all runs spread, in five lines of the same table.
+/// How the figures of all runs that have some spread, in five lines of the same table.
 void print_spread(const std::vector<nlohmann::json>& runs) {
   std::map<std::string, int> outcomes;
   for (const nlohmann::json& m : runs) ++outcomes[text_of(m, "outcome")];
@@ -129,7 +132,7 @@ void add_table_command(CLI::App& app) {
       for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
       for (const Column& c : kColumns) line += " " + text_of(number_of(m, c), c) + " |";
       std::printf("%s\n", line.c_str());
-      all.push_back(m);
+      if (!m.contains("no_figures")) all.push_back(m);
     }
     if (all.size() > 1) print_spread(all);
     std::fflush(stdout);

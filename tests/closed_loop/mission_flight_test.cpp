@@ -35,6 +35,29 @@ INSTANTIATE_TEST_SUITE_P(Policies, EveryPolicy,
                          ::testing::Values("nearest_frontier", "lateral_frontier", "highest_frontier",
                                            "unknown_ratio"));
 
+/// What is there to compare with flies as safely, if not as well.
+class Alternative : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Alternative, FliesAndLandsWithoutTouchingAnything) {
+  const std::string setting = GetParam();
+  const auto run = fresh_folder("flight_" + setting.substr(setting.find('.') + 1)) / "run";
+  const Output out =
+      run_karst("fly --cave " + generated_cave("small", 7) + " --set " + setting +
+                " --set mission.max_flight_time=70s --quiet --no-report --out " + run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const nlohmann::json m = metrics_of(run);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_GT(m["path_length_m"].get<double>(), 30);
+  if (setting == "motion.trajectory=polynomial") {
+    EXPECT_NE(bytes_of(run / "events.jsonl").find("\"trajectory\":\"polynomial\""), std::string::npos);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Settings, Alternative,
+                         ::testing::Values("planning.planner=rrt_connect", "planning.planner=bit_star",
+                                           "motion.trajectory=polynomial", "mission.append=false"));
+
 TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
   const auto run = fresh_folder("flight_camera") / "run";
   const Output out = run_karst("fly --cave " + generated_cave("small", 7) +

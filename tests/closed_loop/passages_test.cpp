@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Corridor, ::testing::Range(1, 1 + seeds()));
 
 class FallingRock : public ::testing::TestWithParam<int> {};
 
-/// A straight passage, flown at full speed; a rock that fills it falls down with its surface 3 m before the vehicle.
+/// A straight passage, flown at full speed; a rock that fills it falls down with its surface 3 m before the
+/// vehicle.
 TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
   const int seed = GetParam();
   const auto folder = fresh_folder("falling_rock_" + std::to_string(seed));
@@ -50,14 +51,13 @@ TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
                                   {{-12, -1.5, 0}, {-9, 8, 2.8}}};
   const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.29 * seed);
   const double x = 11 + 0.25 * seed, turn = 0.29 * seed;
-  std::ofstream(cave, std::ios::app) << "boulder { position \"" << x * std::cos(turn) << ' ' << x * std::sin(turn)
-                                     << " 1.5\" radius \"2.35 m\" within \"5.3 m\" }\n";
+  std::ofstream(cave, std::ios::app) << "boulder { position \"" << x * std::cos(turn) << ' '
+                                     << x * std::sin(turn) << " 1.5\" radius \"2.35 m\" within \"5.3 m\" }\n";
   const auto run = folder / "run";
-  const Output out =
-      run_karst("fly --cave " + cave + " --seed " + std::to_string(seed) +
-                " --policy nearest_frontier --set motion.max_speed=2.3m/s"
-                " --set simulator.battery_minutes=5min --quiet --no-report --out " +
-                run.string());
+  const Output out = run_karst("fly --cave " + cave + " --seed " + std::to_string(seed) +
+                               " --policy nearest_frontier --set motion.max_speed=2.3m/s"
+                               " --set simulator.battery_minutes=5min --quiet --no-report --out " +
+                               run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
   ASSERT_TRUE(m.is_object());
