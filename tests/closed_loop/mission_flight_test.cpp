@@ -170,6 +170,16 @@ TEST(Payload, OfThirtyPercentIsCarriedWithoutBeingTold) {
   EXPECT_LT(metrics_of(run)["tracking_rms_m"].get<double>(), 0.1);
 }
 
+TEST(Payload, TooHeavyToLiftOffEndsTheMissionOnTheGround) {
+  // As it was: the mission went on without the vehicle, down to 49 m below the ground and for ten minutes.
+  const auto run = fresh_folder("flight_too_heavy") / "run";
+  const Output out = run_karst("fly --cave " + generated_cave("small", 7) +
+                               " --set simulator.body.payload=5kg --quiet --no-report --out " + run.string());
+  EXPECT_EQ(out.code, 2) << out.text;
+  EXPECT_EQ(metrics_of(run)["outcome"], "stuck");
+  EXPECT_TRUE(out.says("does not lift off")) << out.text;
+}
+
 TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThreadCount) {
   const auto folder = fresh_folder("flight_twice");
   const std::string quiet = " --quiet --no-report --out " + folder.string();
