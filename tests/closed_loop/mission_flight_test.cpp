@@ -40,7 +40,7 @@ class Alternative : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Alternative, FliesAndLandsWithoutTouchingAnything) {
   const std::string setting = GetParam();
-  const auto run = fresh_folder("flight_" + setting.substr(setting.find('.') + 1)) / "run";
+  const auto run = fresh_folder("flight_" + setting.substr(0, setting.find(' '))) / "run";
   const Output out =
       run_karst("fly --cave " + generated_cave("small", 7) + " --set " + setting +
                 " --set mission.max_flight_time=70s --quiet --no-report --out " + run.string());
@@ -55,7 +55,8 @@ TEST_P(Alternative, FliesAndLandsWithoutTouchingAnything) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Settings, Alternative,
-                         ::testing::Values("planning.planner=rrt_connect", "planning.planner=bit_star",
+                         ::testing::Values("planning.planner=rrt_connect",
+                                           "planning.planner=bit_star --set planning.planner_iterations=300",
                                            "motion.trajectory=polynomial", "mission.append=false"));
 
 TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
