@@ -47,12 +47,15 @@ AttitudeRateCommand Flight::control(TimeNs now) {
 }
 
 void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-                    const HeadingPlan& heading, double max_speed_mps, const Trajectory* ready) {
+                    const HeadingPlan& heading, double max_speed_mps, const SlowPlaces& slow,
+                    const Trajectory* ready) {
   heading_ = heading;
   path_speed_mps_ = max_speed_mps;
+  slow_ = slow;
   braking_ = false;
-  trajectory_ =
-      ready ? *ready : sample_trajectory(points, start_speed_mps, start, limits(max_speed_mps), heading);
+  trajectory_ = ready
+                    ? *ready
+                    : sample_trajectory(points, start_speed_mps, start, limits(max_speed_mps), heading, slow);
 }
 
 MotionLimits Flight::limits(double max_speed_mps) const {
@@ -70,7 +73,7 @@ void Flight::cap_speed(TimeNs now, double max_speed_mps) {
   const Onward left = until_end(now);
   HeadingPlan heading = heading_;
   heading.start_heading_rad = left.heading_rad;
-  follow(left.points, left.speed_mps, now, heading, path_speed_mps_);
+  follow(left.points, left.speed_mps, now, heading, path_speed_mps_, slow_);
 }
 
 TimeNs Flight::time_nearest(const Vec3& p) const {

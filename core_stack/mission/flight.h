@@ -31,7 +31,8 @@ class Flight {
   /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0. `ready` is the
   /// trajectory if it was made beforehand, where the map is.
   void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-              const HeadingPlan& heading, double max_speed_mps = 0, const Trajectory* ready = nullptr);
+              const HeadingPlan& heading, double max_speed_mps = 0, const SlowPlaces& slow = {},
+              const Trajectory* ready = nullptr);
   /// The limits `follow` keeps.
   MotionLimits limits(double max_speed_mps) const;
   /// Flies no faster than this, from now on and along what is left of the present path.
@@ -82,7 +83,8 @@ class Flight {
   AttitudeRateCommand command_;
   double ground_m_ = 0;  // height of the vehicle's centre before take-off
   Trajectory trajectory_;
-  HeadingPlan heading_;        // of the path under way, as is its own speed limit
+  HeadingPlan heading_;  // of the path under way, as are its own speed limit and its slow places
+  SlowPlaces slow_;
   double path_speed_mps_ = 0;  // 0: none
   double speed_cap_mps_ = std::numeric_limits<double>::infinity();
   bool armed_ = false;

@@ -77,6 +77,7 @@ class MissionControl final : public VehicleSink {
     std::vector<Vec3> points;  // the stretch of the trajectory that leads to the path, and the path
     HeadingPlan heading;
     double start_speed_mps = 0, max_speed_mps = 0;
+    SlowPlaces slow;
     std::optional<PolynomialTrajectory> polynomial;  // along the points, if the mission flies those
   };
 
@@ -91,9 +92,9 @@ class MissionControl final : public VehicleSink {
   void record_round(const RoundInput& input, const RoundResult& result);
 
   /// On the map lane: joins a path to its lead, whose end it passes by no more than `most_cut_m`. It will be
-  /// followed from `start` on, within `limits`.
+  /// followed from `start` on, within `limits`; `narrow_before` are the narrow places the lead may pass.
   Route route(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal, TimeNs start,
-              double most_cut_m, MotionLimits limits) const;
+              double most_cut_m, MotionLimits limits, const std::vector<Vec3>& narrow_before) const;
   void follow(const Route& way);
 
   // Going home and landing.
@@ -133,7 +134,8 @@ class MissionControl final : public VehicleSink {
   std::vector<PolicyEvent> events_;
   std::vector<std::uint32_t> looked_at_;
   bool round_running_ = false, append_tried_ = false, goal_alive_ = true;
-  bool path_limited_ = false;  // the path under way has a speed limit of its own
+  std::vector<Vec3> narrow_places_;  // of the path under way
+  bool path_limited_ = false;        // the path under way has a speed limit of its own
   std::optional<TimeNs> braked_at_;
   bool path_blocked_ = false;  // it brakes, or stands, before a place that is closed now
   bool detour_due_ = false;    // the path is closed farther on: a new one is due, there is no need to stop

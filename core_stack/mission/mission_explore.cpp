@@ -159,10 +159,11 @@ void MissionControl::begin_round(bool appending) {
   const double cut_m = appending && goal_ ? std::min(kMostCut_m, goal_->tolerance_m) : kMostCut_m;
   executive_.job(
       "decision", Lane::map, budget,
-      [this, input, lead, cut_m, limits = flight_.limits(0), result, way] {
+      [this, input, lead, cut_m, limits = flight_.limits(0), narrow = narrow_places_, result, way] {
         try {
           *result = explorer_.decide(input);
-          if (result->goal) *way = route(lead, result->path, result->goal, input.deadline, cut_m, limits);
+          if (result->goal)
+            *way = route(lead, result->path, result->goal, input.deadline, cut_m, limits, narrow);
         } catch (const std::exception& e) {  // whatever it is: the way home must not depend on it
           result->goal.reset();
           result->outcome = Outcome::go_home;

@@ -83,10 +83,10 @@ void MissionControl::plan_home_path() {
   auto way = std::make_shared<Route>();
   executive_.job(
       "home plan", Lane::map, kPlanningBudget,
-      [this, way, lead, start, home = home_, limits = flight_.limits(0)] {
+      [this, way, lead, start, home = home_, limits = flight_.limits(0), narrow = narrow_places_] {
         const Path path = explorer_.plan_to(lead.points.back(), home);
         way->path = path;
-        if (path.found()) *way = route(lead, path, std::nullopt, start, kMostCut_m, limits);
+        if (path.found()) *way = route(lead, path, std::nullopt, start, kMostCut_m, limits, narrow);
       },
       [this, way, begun = now()] {
         home_planning_ = false;
@@ -111,10 +111,11 @@ void MissionControl::fly_back_as_come() {
   flown.push_back(flight_.reference().position);
   executive_.job(
       "way back", Lane::map, kPlanningBudget,
-      [this, way, flown = std::move(flown), lead = flight_.until_stop(now()), limits = flight_.limits(0)] {
+      [this, way, flown = std::move(flown), lead = flight_.until_stop(now()), limits = flight_.limits(0),
+       narrow = narrow_places_] {
         Path back;
         back.points = explorer_.way_back(flown);
-        *way = route(lead, back, std::nullopt, 0, kMostCut_m, limits);
+        *way = route(lead, back, std::nullopt, 0, kMostCut_m, limits, narrow);
       },
       [this, way, begun = now()] {
         home_planning_ = false;

@@ -6,14 +6,20 @@
 #include "core_stack/planning/join.h"
 
 namespace karst::core {
+namespace {
+
+constexpr double kNarrowReach_m = 1.0;  // around a narrow place it is flown slowly
+
+}  // namespace
 
 MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
                                             const std::optional<Goal>& goal, TimeNs start, double most_cut_m,
-                                            MotionLimits limits) const {
+                                            MotionLimits limits,
+                                            const std::vector<Vec3>& narrow_before) const {
   Route out;
   out.path = path;
-  const double clearance_m = path.narrow ? search_clearance_m(options_.planning, options_.map.resolution_m)
-                                         : options_.planning.clearance_m;
+  const double clearance_m = path.narrow() ? search_clearance_m(options_.planning, options_.map.resolution_m)
+                                           : options_.planning.clearance_m;
   const auto clear = [this, clearance_m](const Vec3& a, const Vec3& b) {
     return segment_clear(explorer_.map(), a, b, clearance_m);
   };
@@ -23,10 +29,11 @@ MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Pa
   if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
   out.start_speed_mps = lead.speed_mps;
   out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
-  if (path.narrow)
-    out.max_speed_mps =
-        std::min(out.max_speed_mps, options_.safety.slow_share * options_.motion.max_speed_mps);
-  if (options_.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0) {
+  // The lead may still lead through the narrow places of the path before.
+  out.slow = {path.narrow_places, kNarrowReach_m, options_.safety.slow_share * options_.motion.max_speed_mps};
+  out.slow.places.insert(out.slow.places.end(), narrow_before.begin(), narrow_before.end());
+  if (options_.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0 &&
+      out.slow.places.empty()) {
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
     out.polynomial = polynomial_trajectory(out.points, lead.departure, start, limits, out.heading, clear);
   }
@@ -44,20 +51,21 @@ void MissionControl::follow(const Route& way) {
   nlohmann::json plan{{"length", path_length_m(way.points)},
                       {"from", points.front()},
                       {"to", points.back()},
-                      {"narrow", way.path.narrow},
+                      {"narrow", way.path.narrow()},
                       {"length_bound", way.path.length_bound},
                       {"points", points}};
   if (options_.motion.trajectory == "polynomial") {
     plan["trajectory"] = fits ? "polynomial" : "sampled";
     plan["rounds"] = polynomial ? polynomial->rounds : 0;
     plan["fell_back"] = fits                             ? ""
-                        : !polynomial                    ? "a way back as come, or out of a tight place"
+                        : !polynomial                    ? "a way back as come, or through a tight place"
                         : !polynomial->fell_back.empty() ? polynomial->fell_back
                                                          : "the motion has changed since it was made";
   }
   recorder_.event(now(), "plan", plan);
   flight_.follow(way.points, flight_.at_rest(now()) ? 0.0 : way.start_speed_mps, now(), way.heading,
-                 way.max_speed_mps, fits ? &polynomial->trajectory : nullptr);
+                 way.max_speed_mps, way.slow, fits ? &polynomial->trajectory : nullptr);
+  narrow_places_ = way.path.narrow_places;
   path_limited_ = way.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = way.path;
   tight_until_ =

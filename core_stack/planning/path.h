@@ -39,7 +39,9 @@ struct Path {
   /// (heuristic_weight, times what refining changed), or length_m over the straight distance if that is less.
   /// The straight distance is all that holds for the roadmap's and OMPL's paths.
   double length_bound = std::numeric_limits<double>::infinity();
-  bool narrow = false;  // somewhere clear by search_clearance_m only: to be flown slowly
+  std::vector<Vec3>
+      narrow_places;  // about half a metre apart, clear by search_clearance_m only: to be flown slowly
+  bool narrow() const { return !narrow_places.empty(); }
   bool found() const { return status == PlanStatus::found; }
 };
 

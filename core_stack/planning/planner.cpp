@@ -129,8 +129,16 @@ Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw,
   PlanningOptions tight = options;
   tight.clearance_m = search_clearance_m(options, map.resolution_m());
   Path narrow = finished(map, roadmap, raw, tight);
-  narrow.narrow = true;
-  return narrow.found() ? narrow : path;
+  if (!narrow.found()) return path;
+  const double spacing_m = 0.5;
+  for (std::size_t i = narrow.escape_points; i + 1 < narrow.points.size(); ++i) {
+    const Vec3 &a = narrow.points[i], &b = narrow.points[i + 1];
+    std::vector<Vec3>& places = narrow.narrow_places;
+    if (!segment_clear(map, a, b, options.clearance_m) &&
+        (places.empty() || (places.back() - a).norm() >= spacing_m))
+      places.push_back(a);
+  }
+  return narrow;
 }
 
 Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,

@@ -12,7 +12,7 @@ namespace karst::core {
 /// `escape_points`.
 ///
 /// A passage too narrow for the whole clearance, without a way around it, is flown through with the search's
-/// (search_clearance_m); Path::narrow says so.
+/// (search_clearance_m); Path::narrow_places says where.
 ///
 /// The searches may squeeze (plan_on_grid_squeezing), refining lifts the path to the full clearance, and
 /// where that fails the grid is searched without squeezing.

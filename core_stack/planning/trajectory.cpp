@@ -44,7 +44,8 @@ std::vector<double> turns(const std::vector<Vec3>& nodes) {
 /// Speed at each node: limited in bends, and by what can be gained or lost between nodes. `headings` limit it
 /// further where they turn with the path.
 std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, double start_speed_mps,
-                           const MotionLimits& limits, const std::vector<double>& headings) {
+                           const MotionLimits& limits, const std::vector<double>& headings,
+                           const SlowPlaces& slow) {
   const double a_max = limits.max_acceleration_mps2;
   const std::vector<double> turn = turns(nodes);
   std::vector<double> v(nodes.size(), limits.max_speed_mps);
@@ -57,6 +58,11 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
       if (heading_turn > 1e-9)
         v[i] = std::min(v[i], limits.max_heading_rate_radps * spacing_m / heading_turn);
     }
+    const auto is_near = [&](const Vec3& p) {
+      return (p - nodes[i]).squaredNorm() < slow.radius_m * slow.radius_m;
+    };
+    if (v[i] > slow.speed_mps && std::any_of(slow.places.begin(), slow.places.end(), is_near))
+      v[i] = slow.speed_mps;
     v[i] = std::max(v[i], std::min(limits.min_speed_mps, limits.max_speed_mps));
   }
   // A vehicle that arrives too fast for a bend brakes all it can rather than being told to jump to less.
@@ -122,7 +128,7 @@ TrajectorySample Trajectory::at(TimeNs t) const {
 }
 
 Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-                             const MotionLimits& limits, const HeadingPlan& heading) {
+                             const MotionLimits& limits, const HeadingPlan& heading, const SlowPlaces& slow) {
   Trajectory out;
   out.start = start;
   out.period = kPeriod;
@@ -144,7 +150,7 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
       turn_on_the_spot(course, wanted.front(), out.samples);
       start_speed_mps = 0;
     }
-    const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted);
+    const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted, slow);
     const std::vector<double> t = times(v, spacing);
     const double turn_from = turn_from_s(heading, wanted.back(), t.back(), limits);
     std::size_t i = 0;

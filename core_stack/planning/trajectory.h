@@ -22,6 +22,13 @@ struct MotionLimits {
 };
 void describe(OptionTable& t, MotionLimits& o);
 
+/// Where a path is flown slower: within `radius_m` of the places.
+struct SlowPlaces {
+  std::vector<Vec3> places;
+  double radius_m = 1.0;
+  double speed_mps = 1.0;
+};
+
 struct TrajectorySample {
   Vec3 position = Vec3::Zero();
   double heading_rad = 0;
@@ -49,6 +56,7 @@ struct HeadingPlan {
 /// the path stay within the limits (up to the sampling); turning on the spot comes first where heading must
 /// lead and the path turns by more than the rate allows.
 Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-                             const MotionLimits& limits, const HeadingPlan& heading);
+                             const MotionLimits& limits, const HeadingPlan& heading,
+                             const SlowPlaces& slow = {});
 
 }  // namespace karst::core

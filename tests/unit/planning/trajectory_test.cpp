@@ -185,5 +185,28 @@ TEST(Trajectory, AtInterpolatesAndHoldsTheEnds) {
   EXPECT_EQ(Trajectory{}.at(0).position, Vec3::Zero());
 }
 
+TEST(SampleTrajectory, IsSlowNearSlowPlacesAndNowhereElse) {
+  // As it was: a way home of 127 m with one narrow place was flown slowly from end to end, and the battery
+  // ended.
+  const MotionLimits limits;
+  const std::vector<Vec3> points{{0, 0, 0}, {60, 0, 0}};
+  HeadingPlan straight;
+  straight.along_path = false;
+  const SlowPlaces slow{{{30, 0.1, 0}, {30.5, 0.1, 0}}, 1.0, 0.8};
+  const Trajectory with = sample_trajectory(points, 0, 0, limits, straight, slow),
+                   without = sample_trajectory(points, 0, 0, limits, straight);
+  for (std::size_t i = 1; i < with.samples.size(); ++i) {
+    const double x = with.samples[i].position.x();
+    const double speed = (x - with.samples[i - 1].position.x()) / seconds(with.period);
+    if (x > 29.2 && x < 31.3) {
+      EXPECT_LT(speed, 0.85) << x;
+    }
+    if ((x > 3 && x < 27) || (x > 34 && x < 57)) {
+      EXPECT_GT(speed, 1.9) << x;
+    }
+  }
+  EXPECT_LT(seconds(with.end() - without.end()), 4);
+}
+
 }  // namespace
 }  // namespace karst::core
