@@ -1,5 +1,6 @@
 // Whole missions in generated caves, with asserted outcomes.
 #include <atomic>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -140,11 +141,18 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
   const Output scout = run_karst("fly --cave " + cave + mission + (folder / "scout").string());
   ASSERT_EQ(scout.code, 0) << scout.text;
   std::istringstream poses(bytes_of(folder / "scout" / "trajectory.tum"));
+  // A place it came to straight and fast, so that the way led there when the rock will fall.
   std::string place;
+  std::vector<std::array<double, 4>> flown;
   for (std::string line; place.empty() && std::getline(poses, line);) {
     double t = 0, x = 0, y = 0, z = 0;
     std::istringstream(line) >> t >> x >> y >> z;
-    if (t >= 20 + GetParam()) place = std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z);
+    flown.push_back({t, x, y, z});
+    if (t < 12 + 4 * GetParam()) continue;
+    const auto before =
+        std::find_if(flown.begin(), flown.end(), [t](const auto& p) { return p[0] >= t - 3.5; });
+    if (std::hypot(x - (*before)[1], y - (*before)[2], z - (*before)[3]) > 5.5)
+      place = std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z);
   }
   ASSERT_FALSE(place.empty());
   const std::string rocky =
