@@ -24,7 +24,7 @@ TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
   const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.37 * GetParam());
   const auto run = folder / "run";
   const Output out = run_karst("fly --cave " + cave + " --seed " + std::to_string(GetParam()) +
-                               " --policy nearest_frontier --set planning.clearance=0.42m"
+                               " --policy nearest_frontier --set planning.clearance=0.41m"
                                " --set simulator.battery_minutes=5min --quiet --no-report --out " +
                                run.string());
   EXPECT_EQ(out.code, 0) << out.text;
