@@ -9,6 +9,20 @@ namespace {
 
 constexpr double kVehicleWidth_m = 0.6;
 
+/// Flies nearest_frontier through `cave` into folder/run; what must hold of every flight is asserted here.
+/// Returns its metrics, null if there are none.
+nlohmann::json landed_flight(const std::string& cave, const std::filesystem::path& folder,
+                             const std::string& settings) {
+  const Output out = run_karst("fly --cave " + cave + " --policy nearest_frontier" + settings +
+                               " --quiet --no-report --out " + (folder / "run").string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  const auto m = nlohmann::json::parse(bytes_of(folder / "run" / "metrics.json"), nullptr, false);
+  if (!m.is_object()) return nullptr;
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  return m;
+}
+
 class Corridor : public ::testing::TestWithParam<int> {};
 
 /// Two rooms, and between them a corridor only half a metre wider than the vehicle, with a bend of 90 degrees
@@ -22,16 +36,11 @@ TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
                                   {{9 - w, 3, 0.4}, {9, 6, 2.0}},
                                   {{9 - w - 3, 6, 0.4}, {12, 12, 3.4}}};
   const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.37 * GetParam());
-  const auto run = folder / "run";
-  const Output out = run_karst("fly --cave " + cave + " --seed " + std::to_string(GetParam()) +
-                               " --policy nearest_frontier --set planning.clearance=0.41m"
-                               " --set simulator.battery_minutes=5min --quiet --no-report --out " +
-                               run.string());
-  EXPECT_EQ(out.code, 0) << out.text;
-  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  const nlohmann::json m =
+      landed_flight(cave, folder,
+                    " --seed " + std::to_string(GetParam()) +
+                        " --set planning.clearance=0.41m --set simulator.battery_minutes=5min");
   ASSERT_TRUE(m.is_object());
-  EXPECT_EQ(m["outcome"], "landed");
-  EXPECT_EQ(m["contacts"], 0);
   EXPECT_GT(m["min_clearance_m"].get<double>(), 0.0);
   EXPECT_GT(m["explored_volume_m3"].get<double>(), 180) << "the room behind the corridor is half of the cave";
 }
@@ -53,19 +62,14 @@ TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
   const double x = 11 + 0.25 * seed, turn = 0.29 * seed;
   std::ofstream(cave, std::ios::app) << "boulder { position \"" << x * std::cos(turn) << ' '
                                      << x * std::sin(turn) << " 1.5\" radius \"2.35 m\" within \"5.3 m\" }\n";
-  const auto run = folder / "run";
-  const Output out = run_karst("fly --cave " + cave + " --seed " + std::to_string(seed) +
-                               " --policy nearest_frontier --set motion.max_speed=2.3m/s"
-                               " --set simulator.battery_minutes=5min --quiet --no-report --out " +
-                               run.string());
-  EXPECT_EQ(out.code, 0) << out.text;
-  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  const nlohmann::json m =
+      landed_flight(cave, folder,
+                    " --seed " + std::to_string(seed) +
+                        " --set motion.max_speed=2.3m/s --set simulator.battery_minutes=5min");
   ASSERT_TRUE(m.is_object());
-  EXPECT_EQ(m["outcome"], "landed");
-  EXPECT_EQ(m["contacts"], 0);
   EXPECT_GT(m["min_clearance_m"].get<double>(), 0.1);
   double speed_mps = 0, fell_s = -1;
-  std::istringstream truth(bytes_of(run / "truth_events.jsonl"));
+  std::istringstream truth(bytes_of(folder / "run" / "truth_events.jsonl"));
   for (std::string line; std::getline(truth, line);)
     if (line.find("rockfall") != std::string::npos) {
       const auto event = nlohmann::json::parse(line);
@@ -74,7 +78,7 @@ TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
   EXPECT_GT(speed_mps, 1.85) << "it was to be at full speed";
   double noticed_s = 1e9;
   int new_goals = 0;
-  std::istringstream events(bytes_of(run / "events.jsonl"));
+  std::istringstream events(bytes_of(folder / "run" / "events.jsonl"));
   for (std::string line; std::getline(events, line);) {
     const auto event = nlohmann::json::parse(line);
     const double t_s = event["t"];
@@ -104,24 +108,19 @@ TEST_P(Shaft, IsFlownWithVerticalCamerasOnly) {
   const ShaftFlight& flight = GetParam();
   const auto folder = fresh_folder(std::string("shaft_") + flight.name);
   const std::string cave = draw_cave(folder, kShaft, flight.start, 0.3);
-  const auto run = folder / "run";
-  const Output out = run_karst("fly --cave " + cave + " --set simulator.vehicle=" + flight.vehicle +
-                               " --policy nearest_frontier --set simulator.battery_minutes=8min --quiet"
-                               " --no-report --out " +
-                               run.string());
-  EXPECT_EQ(out.code, 0) << out.text;
-  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  const nlohmann::json m = landed_flight(
+      cave, folder,
+      std::string(" --set simulator.battery_minutes=8min --set simulator.vehicle=") + flight.vehicle);
   ASSERT_TRUE(m.is_object());
-  EXPECT_EQ(m["outcome"], "landed");
-  EXPECT_EQ(m["contacts"], 0);
-  std::istringstream poses(bytes_of(run / "ground_truth.tum"));
+  std::istringstream poses(bytes_of(folder / "run" / "ground_truth.tum"));
   double lowest = 1e9, highest = -1e9;
   for (std::string line; std::getline(poses, line);) {
     double t = 0, x = 0, y = 0, z = 0;
     std::istringstream(line) >> t >> x >> y >> z;
     lowest = std::min(lowest, z), highest = std::max(highest, z);
   }
-  const bool refused = bytes_of(run / "events.jsonl").find("no sensor of the vehicle") != std::string::npos;
+  const bool refused =
+      bytes_of(folder / "run" / "events.jsonl").find("no sensor of the vehicle") != std::string::npos;
   if (std::string(flight.vehicle) == "lidar_uav") {
     EXPECT_GT(highest - lowest, 30.0);
     EXPECT_GT(m["coverage"].get<double>(), 0.9);

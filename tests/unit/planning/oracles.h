@@ -80,4 +80,21 @@ inline std::optional<double> dijkstra_m(const VoxelMap& map, const Obstacles& ob
   return std::nullopt;
 }
 
+// Polylines.
+inline double length_of(const std::vector<Vec3>& points) {
+  double sum = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
+  return sum;
+}
+
+inline double distance_to_path(const std::vector<Vec3>& path, const Vec3& p) {
+  double least = 1e9;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vec3 d = path[i] - path[i - 1];
+    const double l2 = d.squaredNorm(), t = l2 > 0 ? std::clamp((p - path[i - 1]).dot(d) / l2, 0.0, 1.0) : 0;
+    least = std::min(least, (p - path[i - 1] - t * d).norm());
+  }
+  return least;
+}
+
 }  // namespace karst::core::testing

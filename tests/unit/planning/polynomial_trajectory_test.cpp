@@ -7,9 +7,12 @@
 
 #include "core_stack/common/random.h"
 #include "core_stack/planning/polynomial_times.h"
+#include "tests/unit/planning/oracles.h"
 
 namespace karst::core {
 namespace {
+
+using testing::distance_to_path, testing::length_of;
 
 bool open_space(const Vec3&, const Vec3&) { return true; }
 
@@ -30,22 +33,6 @@ HeadingPlan keep_heading() {
   HeadingPlan plan;
   plan.along_path = false;
   return plan;
-}
-
-double length_of(const std::vector<Vec3>& points) {
-  double sum = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
-  return sum;
-}
-
-double distance_to_path(const std::vector<Vec3>& path, const Vec3& p) {
-  double least = 1e9;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Vec3 d = path[i] - path[i - 1];
-    const double l2 = d.squaredNorm(), t = l2 > 0 ? std::clamp((p - path[i - 1]).dot(d) / l2, 0.0, 1.0) : 0;
-    least = std::min(least, (p - path[i - 1] - t * d).norm());
-  }
-  return least;
 }
 
 /// A quarter turn from +x to +y around the corner (10, 0), rounded as refined paths are.

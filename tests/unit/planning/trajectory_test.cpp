@@ -4,9 +4,12 @@
 #include <rapidcheck.h>
 
 #include "core_stack/common/random.h"
+#include "tests/unit/planning/oracles.h"
 
 namespace karst::core {
 namespace {
+
+using testing::distance_to_path, testing::length_of;
 
 /// A smooth random path: headings and climbs that wander within the given curvature.
 std::vector<Vec3> smooth_path(Random& random, double length_m, double curvature) {
@@ -20,22 +23,6 @@ std::vector<Vec3> smooth_path(Random& random, double length_m, double curvature)
                                           std::sin(heading) * std::cos(climb), std::sin(climb)));
   }
   return out;
-}
-
-double length_of(const std::vector<Vec3>& points) {
-  double sum = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
-  return sum;
-}
-
-double distance_to_path(const std::vector<Vec3>& path, const Vec3& p) {
-  double least = 1e9;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Vec3 d = path[i] - path[i - 1];
-    const double l2 = d.squaredNorm(), t = l2 > 0 ? std::clamp((p - path[i - 1]).dot(d) / l2, 0.0, 1.0) : 0;
-    least = std::min(least, (p - path[i - 1] - t * d).norm());
-  }
-  return least;
 }
 
 TEST(Trajectory, SpeedAndAccelerationStayWithinTheLimitsAndItEndsAtRestAtTheGoal) {
