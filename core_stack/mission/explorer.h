@@ -10,15 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/homing/home.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mission/fallback_policy.h"
 #include "core_stack/mission/goal_ledger.h"
 #include "core_stack/mission/mission_options.h"
 #include "core_stack/mission/policy_port.h"
-#include "core_stack/mission/viewpoints.h"
+#include "core_stack/mission/reach.h"
 #include "core_stack/mission/visibility.h"
-#include "core_stack/planning/roadmap.h"
 
 namespace karst::core {
 
@@ -88,8 +86,9 @@ class Explorer {
   std::vector<Vec3> way_back(const std::vector<Vec3>& flown) const;
   /// What happened to its goals, and that it is over.
   void tell(const std::vector<PolicyEvent>& events, TimeNs now);
-  /// Index of the first segment of `points` that the map now forbids, or -1.
-  int blocked_segment(const std::vector<Vec3>& points) const;
+  /// Index of the first segment of `points` that the map now forbids, or -1. Near the `narrow_places` of the
+  /// path it allows for less clearance.
+  int blocked_segment(const std::vector<Vec3>& points, const std::vector<Vec3>& narrow_places) const;
   /// Distance of the vehicle's hull at `p` from the nearest obstacle's cell; nothing if that is far.
   std::optional<double> hull_clearance_m(const Vec3& p) const;
   /// True if the cluster is still open enough to be worth flying to.
@@ -101,18 +100,22 @@ class Explorer {
   void set_home(const Vec3& hover_point) { home_ = hover_point; }
 
  private:
-  struct KnownViewpoint {
-    std::uint64_t revision;
-    std::vector<CellKey> cells;
-    std::optional<Viewpoint> viewpoint;
-  };
   std::vector<CellChange> take_in(std::vector<CellChange> changes);
-  const Roadmap& roadmap();
-  std::vector<FrontierOffer> offers(const RoundInput& input);
-  void explain_unseen(const FrontierCluster& cluster);
+  Reach& wide();
+  Reach* narrow();
+  Reach& reach_at(const Vec3& from);
+  Path plan_in(const Reach& reach, const Vec3& from, const Vec3& to) const;
+  double narrow_length_m(const Path& way) const;
+  std::vector<FrontierOffer> offers(Reach& reach, const RoundInput& input);
+  std::vector<FrontierOffer> offers_now(Reach& reach, const RoundInput& input);
+  void explain_unseen(const Reach& reach, const FrontierCluster& cluster);
+  DecisionRequest request(const Reach& reach, const RoundInput& input);
+  void settle(const Reach& reach, const RoundInput& input, const DecisionRequest& request,
+              RoundResult& result);
   Decision ask(const DecisionRequest& request, RoundResult& result);
-  std::optional<std::string> objection(const Goal& goal) const;
-  void choose(const RoundInput& input, const std::vector<Goal>& goals, RoundResult& result);
+  std::optional<std::string> objection(const Reach& reach, const Goal& goal) const;
+  void choose(const Reach& reach, const RoundInput& input, const std::vector<Goal>& goals,
+              RoundResult& result);
 
   CoreOptions options_;
   VehicleDescription vehicle_;
@@ -125,13 +128,12 @@ class Explorer {
 
   VoxelMap map_;
   Frontiers frontiers_;
-  Roadmap roadmap_;
-  WayHome way_home_;
-  std::vector<CellChange>
-      roadmap_due_;  // changes it has yet to hear of: it is asked far less often than scanned
+  Reach wide_;
+  std::optional<double> narrow_clearance_m_;  // if narrow passages may be flown
+  std::optional<Reach> narrow_;               // made when it is first needed
   GoalLedger ledger_;
-  TimeNs closed_at_ = 0;  // the time at which places are judged closed in this round
-  std::map<std::uint32_t, KnownViewpoint> viewpoints_;
+  TimeNs closed_at_ = 0;         // the time at which places are judged closed in this round
+  bool by_pause_alone_ = false;  // and how
   std::set<std::uint32_t> explained_unseen_;
   std::vector<UnseenFrontier> unseen_;  // yet to be told
   struct Chosen {

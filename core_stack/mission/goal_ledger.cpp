@@ -23,10 +23,12 @@ void GoalLedger::close(const VoxelMap& map, const Vec3& place, TimeNs now, const
   entry->why = why;
 }
 
-std::optional<std::string> GoalLedger::closed(const VoxelMap& map, const Vec3& place, TimeNs now) const {
+std::optional<std::string> GoalLedger::closed(const VoxelMap& map, const Vec3& place, TimeNs now,
+                                              bool by_pause_alone) const {
   for (const Entry& e : entries_) {
     if ((e.place - place).norm() >= kSamePlace_m) continue;
-    if (now < e.closed_until || map.revision_near(e.place, kMapRadius_m) == e.revision) return e.why;
+    const bool unchanged = !by_pause_alone && map.revision_near(e.place, kMapRadius_m) == e.revision;
+    if (now < e.closed_until || unchanged) return e.why;
   }
   return std::nullopt;
 }

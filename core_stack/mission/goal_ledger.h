@@ -13,8 +13,10 @@ class GoalLedger {
  public:
   /// Notes that `place` was tried at `now` and why it is closed.
   void close(const VoxelMap& map, const Vec3& place, TimeNs now, const std::string& why);
-  /// Why the place is closed, or nothing if it is open.
-  std::optional<std::string> closed(const VoxelMap& map, const Vec3& place, TimeNs now) const;
+  /// Why the place is closed, or nothing if it is open. The pause alone may decide, whether or not the map
+  /// has changed.
+  std::optional<std::string> closed(const VoxelMap& map, const Vec3& place, TimeNs now,
+                                    bool by_pause_alone = false) const;
 
  private:
   struct Entry {

@@ -6,11 +6,6 @@
 #include "core_stack/planning/join.h"
 
 namespace karst::core {
-namespace {
-
-constexpr double kNarrowReach_m = 1.0;  // around a narrow place it is flown slowly
-
-}  // namespace
 
 MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
                                             const std::optional<Goal>& goal, TimeNs start, double most_cut_m,
@@ -18,10 +13,10 @@ MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Pa
                                             const std::vector<Vec3>& narrow_before) const {
   Route out;
   out.path = path;
-  const double clearance_m = path.narrow() ? search_clearance_m(options_.planning, options_.map.resolution_m)
-                                           : options_.planning.clearance_m;
-  const auto clear = [this, clearance_m](const Vec3& a, const Vec3& b) {
-    return segment_clear(explorer_.map(), a, b, clearance_m);
+  const auto clear = [&, usual_m = options_.planning.clearance_m](const Vec3& a, const Vec3& b) {
+    return segment_clear(explorer_.map(), a, b, usual_m) ||
+           (near_narrow_place(path.narrow_places, a, b) &&
+            segment_clear(explorer_.map(), a, b, path.clear_by_m));
   };
   out.points = join_paths(lead.points, path.points, most_cut_m, clear);
   out.heading.along_path = !description_.lidar;

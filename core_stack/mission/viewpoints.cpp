@@ -79,7 +79,8 @@ int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
 }
 
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
-                                        const VehicleDescription& vehicle, double clearance_m) {
+                                        const VehicleDescription& vehicle, double clearance_m,
+                                        const Roadmap* roadmap) {
   // The frontier cell nearest the centroid stands for the cluster: the centroid itself may lie in rock.
   Vec3 target = cluster.centroid;
   double least = 1e9;
@@ -119,6 +120,10 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
       if (best) return best;
     }
   }
+  if (roadmap == nullptr) return best;
+  for (const Vec3& place : roadmap->places_near(target, kShells[3]))
+    if (const auto clear = clear_near(map, place, clearance_m))
+      consider(*clear, std::atan2(target.y() - clear->y(), target.x() - clear->x()));
   return best;
 }
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core_stack/mapping/frontiers.h"
-#include "core_stack/planning/path.h"
+#include "core_stack/planning/roadmap.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {
@@ -22,8 +22,10 @@ bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec
 int open_cells(const VoxelMap& map, const FrontierCluster& cluster);
 
 /// The best of a fixed set of candidates on shells around the cluster: clear, with a free line of sight, the
-/// cluster in a sensor's view. None if there is no such place.
+/// cluster in a sensor's view. If none of them will do, the places of `roadmap` near it, if given: in narrow
+/// passages the shells mostly miss the few that are clear. None if there is no such place.
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
-                                        const VehicleDescription& vehicle, double clearance_m);
+                                        const VehicleDescription& vehicle, double clearance_m,
+                                        const Roadmap* roadmap = nullptr);
 
 }  // namespace karst::core

@@ -13,7 +13,9 @@ struct PlanningOptions {
   double clearance_m = 0.6;            // least distance of the path from the centre of any occupied or
                                        // unknown-boundary cell; must exceed the vehicle's radius
   double preferred_clearance_m = 1.0;  // post-processing pushes the path out to this where there is room
-  double heuristic_weight = 1.2;       // bounded sub-optimality of the grid search; 1: optimal
+  double narrow_margin_m = 0;          // beyond the vehicle's radius, in narrow passages; 0: not flown
+  double search_slack_cells = 0.25;  // not an option: the searches on cells' centres work with that much less
+  double heuristic_weight = 1.2;     // bounded sub-optimality of the grid search; 1: optimal
   std::int64_t max_expansions = 400000;
   std::string planner = "grid";  // grid, rrt_connect, rrt_star, bit_star
   std::int64_t planner_iterations = 5000;
@@ -23,6 +25,10 @@ void describe(OptionTable& t, PlanningOptions& o);
 /// Clearance the searches on cells' centres work with; refining makes up for the difference. Centres sample
 /// space at the resolution only, and the middle of a narrow passage may lie between two of them.
 inline double search_clearance_m(const PlanningOptions& o, double resolution_m) {
+  return o.clearance_m - o.search_slack_cells * resolution_m;
+}
+/// The least clearance of what is flown, where refining cannot make up for all of it.
+inline double least_clearance_m(const PlanningOptions& o, double resolution_m) {
   return o.clearance_m - 0.25 * resolution_m;
 }
 
@@ -39,13 +45,17 @@ struct Path {
   /// (heuristic_weight, times what refining changed), or length_m over the straight distance if that is less.
   /// The straight distance is all that holds for the roadmap's and OMPL's paths.
   double length_bound = std::numeric_limits<double>::infinity();
-  std::vector<Vec3>
-      narrow_places;  // about half a metre apart, clear by search_clearance_m only: to be flown slowly
+  double clear_by_m = 0;            // every segment behind the escape is clear by this; 0: not looked at
+  std::vector<Vec3> narrow_places;  // about half a metre apart, less clear than usual: to be flown slowly
   bool narrow() const { return !narrow_places.empty(); }
   bool found() const { return status == PlanStatus::found; }
 };
 
 double path_length_m(const std::vector<Vec3>& points);
+
+/// Around a narrow place it is flown slowly, and less clearance will do.
+constexpr double kNarrowReach_m = 1.0;
+bool near_narrow_place(const std::vector<Vec3>& places, const Vec3& a, const Vec3& b);
 
 /// Sets length_m, and length_bound from what the planner promises and from the straight distance.
 void measure(Path& path, double promised_bound);

@@ -1,6 +1,7 @@
 #include "core_stack/planning/planner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "core_stack/planning/grid_planner.h"
@@ -76,7 +77,10 @@ Path finished(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, cons
   Path path = refined(map, roadmap, raw, options);
   for (int round = 0;; ++round) {
     const int flaw = first_flaw(map, path, options);
-    if (flaw < 0) return path;
+    if (flaw < 0) {
+      path.clear_by_m = options.clearance_m;
+      return path;
+    }
     const Vec3 p = path.points[static_cast<std::size_t>(flaw)];
     path.escape_points = raw.escape_points;
     if (round < kMostDetours && detour(map, path, static_cast<std::size_t>(flaw), options)) {
@@ -127,18 +131,27 @@ Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw,
   }
   // A narrow passage and no way around it: keep the clearance that the search found.
   PlanningOptions tight = options;
-  tight.clearance_m = search_clearance_m(options, map.resolution_m());
+  tight.clearance_m = least_clearance_m(options, map.resolution_m());
   Path narrow = finished(map, roadmap, raw, tight);
   if (!narrow.found()) return path;
-  const double spacing_m = 0.5;
-  for (std::size_t i = narrow.escape_points; i + 1 < narrow.points.size(); ++i) {
-    const Vec3 &a = narrow.points[i], &b = narrow.points[i + 1];
-    std::vector<Vec3>& places = narrow.narrow_places;
-    if (!segment_clear(map, a, b, options.clearance_m) &&
-        (places.empty() || (places.back() - a).norm() >= spacing_m))
-      places.push_back(a);
-  }
+  mark_narrow_places(map, options.clearance_m, narrow);
   return narrow;
+}
+
+void mark_narrow_places(const VoxelMap& map, double clearance_m, Path& path) {
+  constexpr double kSpacing_m = 0.5;
+  std::vector<Vec3>& places = path.narrow_places;
+  places.clear();
+  for (std::size_t i = path.escape_points; i + 1 < path.points.size(); ++i) {
+    const Vec3 from = path.points[i], along = path.points[i + 1] - from;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / kSpacing_m)));
+    for (int k = 0; k < pieces; ++k) {
+      const Vec3 a = from + along * k / pieces, b = from + along * (k + 1) / pieces;
+      if (!segment_clear(map, a, b, clearance_m) &&
+          (places.empty() || (places.back() - a).norm() >= kSpacing_m))
+        places.push_back(a);
+    }
+  }
 }
 
 Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,

@@ -22,4 +22,7 @@ Path plan(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const 
 /// The same from a path found already: raw, of the search's clearance, such as the way home.
 Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options);
 
+/// Notes the places of a path, behind its escape, that are not clear by `clearance_m`.
+void mark_narrow_places(const VoxelMap& map, double clearance_m, Path& path);
+
 }  // namespace karst::core

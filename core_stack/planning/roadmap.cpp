@@ -109,23 +109,29 @@ std::size_t Roadmap::node_count() const {
   return n;
 }
 
-std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const {
+std::vector<Vec3> Roadmap::places_near(const Vec3& p, double reach_m) const {
   const RoadmapGraph& g = *graph_;
-  if (!g.rule) return std::nullopt;
-  if (g.free.is_clear(goal, g.clearance_m)) return goal;
-  if (!(goal.cwiseAbs().maxCoeff() < 1e6) || !(tolerance_m > 0)) return std::nullopt;
-  const Vec3 reach = Vec3::Constant(tolerance_m);
-  const CellKey low = g.free.key_of(goal - reach), high = g.free.key_of(goal + reach);
-  std::optional<Vec3> best;
-  double least = tolerance_m + 1e-9;
+  std::vector<Vec3> out;
+  if (!g.rule || !(p.cwiseAbs().maxCoeff() < 1e6) || !(reach_m > 0)) return out;
+  const Vec3 reach = Vec3::Constant(reach_m);
+  const CellKey low = g.free.key_of(p - reach), high = g.free.key_of(p + reach);
   for (std::int32_t z = low.z & ~3; z <= high.z; z += 4)
     for (std::int32_t y = low.y & ~3; y <= high.y; y += 4)
       for (std::int32_t x = low.x & ~3; x <= high.x; x += 4)
         g.for_each_node_in_block({x, y, z}, [&](const NodeRef& n, const RoadmapNode&) {
-          const Vec3 p = g.position_of(n);
-          const double d = (p - goal).norm();
-          if (d < least && !map.first_not_free(p, goal)) best = p, least = d;
+          if ((g.position_of(n) - p).norm() <= reach_m) out.push_back(g.position_of(n));
         });
+  return out;
+}
+
+std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const {
+  const RoadmapGraph& g = *graph_;
+  if (!g.rule) return std::nullopt;
+  if (g.free.is_clear(goal, g.clearance_m)) return goal;
+  std::optional<Vec3> best;
+  double least = tolerance_m + 1e-9;
+  for (const Vec3& p : places_near(goal, tolerance_m))
+    if (const double d = (p - goal).norm(); d < least && !map.first_not_free(p, goal)) best = p, least = d;
   return best;
 }
 

@@ -41,6 +41,10 @@ class Roadmap {
   /// `goal` if it is clear, else the nearest node within `tolerance_m` that sees it through free cells.
   std::optional<Vec3> approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const;
 
+  /// The graph's nodes within `reach_m` of p: clear by the search's clearance, and less than a cell from a
+  /// point that is so by the whole.
+  std::vector<Vec3> places_near(const Vec3& p, double reach_m) const;
+
   std::size_t node_count() const;
   const RoadmapGraph& graph() const { return *graph_; }
 

@@ -97,14 +97,6 @@ void RoadmapGraph::rebuild(std::uint32_t tile_index) {
   if (tile.nodes != before) tile.changed = updates;
 }
 
-bool RoadmapGraph::is_clear_cell(const CellKey& k) const {
-  bool clear = false;
-  const int bit = (k.x & 3) | (k.y & 3) << 2 | (k.z & 3) << 4;
-  for_each_node_in_block(k,
-                         [&](const NodeRef&, const RoadmapNode& n) { clear |= (n.cells >> bit & 1) != 0; });
-  return clear;
-}
-
 std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {
   std::vector<Join> out;
   const auto add = [&out](const NodeRef& n, double length_m, std::optional<CellKey> via) {
@@ -136,25 +128,47 @@ std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {
 std::vector<CellKey> RoadmapGraph::cells_between(const CellKey& a, const CellKey& b) const {
   const CellKey low{std::min(a.x, b.x) & ~3, std::min(a.y, b.y) & ~3, std::min(a.z, b.z) & ~3};
   const CellKey high{std::max(a.x, b.x) | 3, std::max(a.y, b.y) | 3, std::max(a.z, b.z) | 3};
-  const int nx = high.x - low.x + 1, ny = high.y - low.y + 1, nz = high.z - low.z + 1;
-  const auto index = [&](const CellKey& k) { return ((k.z - low.z) * ny + k.y - low.y) * nx + k.x - low.x; };
+  constexpr int kEdge = 8, kCells = kEdge * kEdge * kEdge;  // neighbouring blocks: two in each axis at most
+  const auto index = [&](const CellKey& k) {
+    return ((k.z - low.z) * kEdge + k.y - low.y) * kEdge + k.x - low.x;
+  };
+  const auto cell = [&](int i) {
+    return CellKey{low.x + i % kEdge, low.y + i / kEdge % kEdge, low.z + i / (kEdge * kEdge)};
+  };
+  std::array<BlockBits, 8> clear{};
+  for (int i = 0; i < 8; ++i)
+    if (const CellKey k = low + CellKey{4 * (i & 1), 4 * (i >> 1 & 1), 4 * (i >> 2)};
+        k.x <= high.x && k.y <= high.y && k.z <= high.z)
+      for_each_node_in_block(
+          k, [&](const NodeRef&, const RoadmapNode& n) { clear[static_cast<std::size_t>(i)] |= n.cells; });
+  const auto is_clear = [&](int i) {
+    const int x = i % kEdge, y = i / kEdge % kEdge, z = i / (kEdge * kEdge);
+    return (clear[static_cast<std::size_t>(x >> 2 | (y >> 2) << 1 | (z >> 2) << 2)] >>
+                ((x & 3) | (y & 3) << 2 | (z & 3) << 4) &
+            1) != 0;
+  };
   // Breadth first from b, so that following the parents from a leads to b.
-  std::vector<int> parent(static_cast<std::size_t>(nx * ny * nz), -1);
-  std::vector<CellKey> queue{b};
-  parent[static_cast<std::size_t>(index(b))] = index(b);
-  for (std::size_t i = 0; i < queue.size() && parent[static_cast<std::size_t>(index(a))] < 0; ++i)
+  std::array<std::int16_t, kCells> parent, queue;
+  parent.fill(-1);
+  int queued = 0;
+  const auto reach = [&](int i, int by) {
+    parent[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(by);
+    queue[static_cast<std::size_t>(queued++)] = static_cast<std::int16_t>(i);
+  };
+  reach(index(b), index(b));
+  for (int i = 0; i < queued && parent[static_cast<std::size_t>(index(a))] < 0; ++i) {
+    const int at = queue[static_cast<std::size_t>(i)];
     for (int m = 0; m < 27; ++m) {
-      const CellKey n = queue[i] + CellKey{m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1};
+      const CellKey n = cell(at) + CellKey{m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1};
       if (n.x < low.x || n.y < low.y || n.z < low.z || n.x > high.x || n.y > high.y || n.z > high.z) continue;
-      if (parent[static_cast<std::size_t>(index(n))] >= 0 || !is_clear_cell(n)) continue;
-      parent[static_cast<std::size_t>(index(n))] = index(queue[i]);
-      queue.push_back(n);
+      if (const int j = index(n); parent[static_cast<std::size_t>(j)] < 0 && is_clear(j)) reach(j, at);
     }
+  }
   std::vector<CellKey> out{a};
   while (!(out.back() == b)) {
     const int at = parent[static_cast<std::size_t>(index(out.back()))];
     if (at < 0) break;
-    out.push_back({low.x + at % nx, low.y + at / nx % ny, low.z + at / nx / ny});
+    out.push_back(cell(at));
   }
   return out;
 }

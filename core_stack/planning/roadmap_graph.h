@@ -47,7 +47,6 @@ struct RoadmapGraph {
   std::uint64_t updates = 0;
 
   void update(const VoxelMap& map, std::span<const CellChange> changes);
-  bool is_clear_cell(const CellKey& k) const;
   const CellKey& cell_of(const NodeRef& n) const { return tiles[n.tile].nodes[n.local].place; }
   Vec3 position_of(const NodeRef& n) const { return free.center_of(cell_of(n)); }
   /// Nodes of the block that holds cell k: calls visit(NodeRef, const RoadmapNode&).

@@ -27,22 +27,32 @@ class Corridor : public ::testing::TestWithParam<int> {};
 
 /// Two rooms, and between them a corridor only half a metre wider than the vehicle, with a bend of 90 degrees
 /// and a step of 0.4 m in floor and ceiling. Every seed turns the cave against the map's grid.
-TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
-  const auto folder = fresh_folder("corridor_" + std::to_string(GetParam()));
+nlohmann::json corridor_flight(const std::string& name, int seed, const std::string& narrow_margin) {
+  const auto folder = fresh_folder(name + "_" + std::to_string(seed));
   const double w = kVehicleWidth_m + 0.5;
   const std::vector<Box> boxes = {{{-3, -3, 0}, {3, 3, 3}},
                                   {{3, -w / 2, 0}, {9, w / 2, 1.6}},
                                   {{9 - w, -w / 2, 0}, {9, 3, 1.6}},
                                   {{9 - w, 3, 0.4}, {9, 6, 2.0}},
                                   {{9 - w - 3, 6, 0.4}, {12, 12, 3.4}}};
-  const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.37 * GetParam());
-  const nlohmann::json m =
-      landed_flight(cave, folder,
-                    " --seed " + std::to_string(GetParam()) +
-                        " --set planning.clearance=0.41m --set simulator.battery_minutes=5min");
+  const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.37 * seed);
+  return landed_flight(cave, folder,
+                       " --seed " + std::to_string(seed) + " --set planning.narrow_margin=" + narrow_margin +
+                           " --set simulator.battery_minutes=5min");
+}
+
+TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
+  const nlohmann::json m = corridor_flight("corridor", GetParam(), "0.08m");
   ASSERT_TRUE(m.is_object());
   EXPECT_GT(m["min_clearance_m"].get<double>(), 0.0);
   EXPECT_GT(m["explored_volume_m3"].get<double>(), 180) << "the room behind the corridor is half of the cave";
+}
+
+TEST(CorridorUnasked, IsLeftAloneWhereTheMissionDoesNotAllowForIt) {
+  const nlohmann::json m = corridor_flight("corridor_closed", 1, "0m");
+  ASSERT_TRUE(m.is_object());
+  EXPECT_GT(m["min_clearance_m"].get<double>(), 0.1);
+  EXPECT_LT(m["explored_volume_m3"].get<double>(), 140);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, Corridor, ::testing::Range(1, 1 + seeds()));
 

@@ -75,7 +75,7 @@ TEST(Explorer, PlansAPathInKnownFreeSpaceToAnAcceptedGoal) {
   ASSERT_GE(r.path.points.size(), 2u);
   EXPECT_TRUE(r.path.points.front().isApprox(room.input.from));
   EXPECT_LT((r.path.points.back() - Vec3(6.5, 4, 2)).norm(), 0.2);
-  EXPECT_EQ(room.explorer->blocked_segment(r.path.points), -1);
+  EXPECT_EQ(room.explorer->blocked_segment(r.path.points, {}), -1);
 }
 
 TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {

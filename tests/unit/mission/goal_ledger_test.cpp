@@ -22,6 +22,8 @@ TEST(GoalLedger, StaysClosedForeverWhileTheMapThereIsUnchanged) {
   GoalLedger ledger;
   ledger.close(map, Vec3::Zero(), 0, "tried");
   EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), 100000 * kSecond));
+  EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), 9 * kSecond, true));
+  EXPECT_FALSE(ledger.closed(map, Vec3::Zero(), 11 * kSecond, true)) << "judged by its pause alone";
   carve_box(map, Vec3(20, 20, 20), Vec3(22, 22, 22));  // far away
   EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), 100000 * kSecond));
 }
