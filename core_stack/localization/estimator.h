@@ -1,65 +1,76 @@
-// State estimation behind its final interface. In this version the correction is the vehicle's pose sensor.
+// State estimation: a small bank of filters on the IMU, corrected by poses from the LiDAR, which arrive late.
 //
-// The state is propagated with every IMU sample (strap-down) and corrected by poses that arrive late: the
-// correction is made at the pose's stamp in a buffer of past states, and the IMU samples since are
-// replayed. Gains are a Kalman filter's: two small error models, position-velocity-accelerometer bias and
-// attitude-gyroscope bias, whose covariances depend only on the times of the poses. At a steady pose rate
-// they settle to constant gains (derivation and figures: docs/control.md).
+//   lidar      IMU and poses. The one to believe, as a rule: ore does not bend it.
+//   magnetic   the same and the compass. Believed while the poses leave the heading open, as in a round shaft, and
+//              the compass is not disturbed.
+//   newcomer   begun at a pose that the others refuse. If further poses agree with it for a second while the
+//              others still refuse them, the bank starts over from it.
+//
+// A pose that is far from what a filter expects does not enter it; until one is accepted again, the IMU alone
+// carries it, and its covariance grows. Health is judged by that. Switching has hysteresis.
 #pragma once
-#include <deque>
 #include <limits>
+#include <optional>
 
-#include "core_stack/localization/state.h"
-#include "core_stack/vehicle/messages.h"
+#include "core_stack/localization/compass.h"
+#include "core_stack/localization/inertial_filter.h"
 
 namespace karst::core {
 
 struct EstimatorOptions {
-  // Standard deviations. IMU noise is that of one sample at 200 Hz; the accelerometer's includes what a small
-  // error of tilt and the vehicle's vibration add.
-  double accel_noise_mps2 = 0.15;
-  double gyro_noise_radps = 0.008;
-  double accel_bias_drift_mps2 = 0.01;  // how far the bias wanders in one second
-  double gyro_bias_drift_radps = 0.0005;
-  double pose_position_noise_m = 0.01;
+  InertialNoise imu;
+  double pose_position_noise_m = 0.01;  // of the pose sensor; of LiDAR poses, what comes on top of theirs
   double pose_attitude_noise_rad = 0.0035;
-  double pose_timeout_s = 0.5;  // health degrades without a pose for so long; lost at four times that
+  double compass_noise_rad = 0.2;  // of one sample; their errors last
+  double gate = 6;                 // poses off by so many standard deviations are refused
+  double pose_timeout_s = 0.5;     // health degrades without a pose for so long; lost at four times that
 };
 void describe(OptionTable& t, EstimatorOptions& o);
+
+struct Diagnosis {
+  Health health = Health::good;
+  const char* reason = "";
+};
 
 class Estimator {
  public:
   Estimator(const EstimatorOptions& options, const Pose& T_world_start);
   /// Samples that are not finite or not newer than the last are ignored.
   void on_imu(const ImuSample& imu);
-  /// Poses that are not finite, not newer than the last, or older than the history are ignored.
+  /// What the IMU would have measured, where it is silent: by the last command and the mass.
+  void bridge(const ImuSample& expected);
+  /// Poses that are not finite, not newer than the last, or older than a second are ignored.
   void on_pose(const PoseSample& pose);
-  /// Accepted and unused: the pose sensor gives heading without the bends that ore puts into the field.
+  /// The same of a LiDAR pose, with its covariance.
+  void on_lidar_pose(const PoseMeasurement& pose);
   void on_magnetometer(const MagnetometerSample& mag);
 
-  const State& state() const { return state_; }  // at the last IMU sample
-  const StateHistory& history() const {
-    return history_;
-  }  // of the states as corrected: 2 s, every IMU sample
-  /// Degraded: no pose or no IMU sample for the timeout, or an input that was not finite within it.
-  Health health(TimeNs now) const;
-  Vec3 accel_bias_mps2() const { return accel_bias_mps2_; }
-  Vec3 gyro_bias_radps() const { return gyro_bias_radps_; }
+  const State& state() const { return active().state(); }  // at the last IMU sample
+  /// The states as corrected: 2 s, every IMU sample.
+  const StateHistory& history() const { return active().history(); }
+  /// Degraded: no pose accepted or no IMU sample for the timeout, an input within it that was not finite, or a
+  /// position or heading known too badly to fly fast.
+  Diagnosis diagnose(TimeNs now) const;
+  Health health(TimeNs now) const { return diagnose(now).health; }
+  /// The hypothesis believed: lidar or magnetic.
+  const char* believed() const { return magnetic_believed_ ? "magnetic" : "lidar"; }
+  int restarts() const { return restarts_; }
+  TimeNs last_imu() const { return last_imu_; }
+  const InertialFilter& active() const { return magnetic_believed_ ? magnetic_ : lidar_; }
 
  private:
-  State propagate(const State& s, const ImuSample& before, const ImuSample& after) const;
-  void predict_covariance(double dt_s);
+  void take_in(const PoseMeasurement& pose);
+  void doubt(const PoseMeasurement& pose);
+  void choose();
 
   EstimatorOptions options_;
-  State state_;
-  StateHistory history_;
-  std::deque<ImuSample> imu_;               // imu_[i] led to history_.states()[i]
-  Vec3 accel_bias_mps2_ = Vec3::Zero();     // body frame
-  Vec3 gyro_bias_radps_ = Vec3::Zero();     // body frame
-  Eigen::Matrix3d translation_covariance_;  // of one axis: position, velocity, accelerometer bias
-  Eigen::Matrix2d rotation_covariance_;     // of one axis: angle, gyroscope bias
-  TimeNs covariance_stamp_ = 0;
-  TimeNs last_pose_ = 0;
+  InertialFilter lidar_, magnetic_;
+  std::optional<InertialFilter> newcomer_;
+  Compass compass_;
+  bool magnetic_believed_ = false;
+  int refused_ = 0, agreed_ = 0, magnetic_refused_ = 0, restarts_ = 0;
+  TimeNs last_imu_ = 0, last_pose_ = 0;
+  TimeNs newest_pose_ = std::numeric_limits<TimeNs>::min();  // accepted or not
   TimeNs last_bad_input_ = std::numeric_limits<TimeNs>::min();
 };
 

@@ -8,6 +8,8 @@
 
 namespace karst::core {
 
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
 struct State {
   TimeNs stamp = 0;
   Vec3 position = Vec3::Zero();         // world frame

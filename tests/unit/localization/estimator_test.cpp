@@ -128,8 +128,8 @@ TEST(Estimator, HoldsAtTwentyPosesASecond) {
 TEST(Estimator, FindsTheBiases) {
   Estimator e({}, {});
   run(e, {});
-  EXPECT_LT((e.accel_bias_mps2() - kAccelBias).norm(), 0.04);
-  EXPECT_LT((e.gyro_bias_radps() - kGyroBias).norm(), 0.002);
+  EXPECT_LT((e.active().accel_bias_mps2() - kAccelBias).norm(), 0.04);
+  EXPECT_LT((e.active().gyro_bias_radps() - kGyroBias).norm(), 0.002);
 }
 
 TEST(Estimator, WithoutNoiseOnlyLearningTheBiasesCostsMillimetresAndDelayDoesNotMatter) {
@@ -259,8 +259,8 @@ TEST(Estimator, ErrorsAgreeWithTheSteadyStateOfTheRiccatiEquation) {
   // Position, velocity and bias of one axis in discrete time: the covariance's fixed point, found by
   // iterating the equation written out here, predicts the spread of the position error when tilt is exact.
   EstimatorOptions o;
-  o.accel_noise_mps2 = 0.05;
-  o.accel_bias_drift_mps2 = 0.001;
+  o.imu.accel_noise_mps2 = 0.05;
+  o.imu.accel_bias_drift_mps2 = 0.001;
   const double dt = 0.025, q = 0.05 * 0.05 / 200, b = 1e-6, R = 1e-4;
   Eigen::Matrix3d F, P = Eigen::Matrix3d::Identity();
   F << 1, dt, -dt * dt / 2, 0, 1, -dt, 0, 0, 1;

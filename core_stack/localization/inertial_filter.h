@@ -1,0 +1,92 @@
+// One hypothesis about the vehicle's state: an error-state Kalman filter on the IMU (Sola, arXiv:1711.02508),
+// corrected by poses that arrive late.
+//
+// The nominal state is propagated with every IMU sample (strap-down, trapezoid rule). The error state is
+// (position, velocity: world; attitude: rotation vector in the body; accelerometer and gyroscope bias). A pose is
+// taken in at its stamp, in a buffer of the past second; what came since, samples and headings, is replayed.
+#pragma once
+#include <deque>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core_stack/common/options.h"
+#include "core_stack/localization/state.h"
+#include "core_stack/vehicle/messages.h"
+
+namespace karst::core {
+
+using Vector15 = Eigen::Matrix<double, 15, 1>;
+using Matrix15 = Eigen::Matrix<double, 15, 15>;
+
+struct InertialNoise {
+  // Standard deviations. That of IMU samples is for one sample at 200 Hz; the accelerometer's includes what
+  // a small error of tilt and the vehicle's vibration add.
+  double accel_noise_mps2 = 0.15;
+  double gyro_noise_radps = 0.008;
+  double accel_bias_drift_mps2 = 0.01;  // how far the bias wanders in one second
+  double gyro_bias_drift_radps = 0.0005;
+};
+
+/// A pose as measured, with the covariance of (translation in the world, rotation in the body).
+struct PoseMeasurement {
+  TimeNs stamp = 0;
+  Pose T_world_body;
+  Matrix6 covariance = Matrix6::Identity();
+};
+
+class InertialFilter {
+ public:
+  InertialFilter(const InertialNoise& noise, const Pose& T_world_start);
+
+  /// Not newer than the last: ignored. `share` scales the noise: of a sample that was made up.
+  void on_imu(const ImuSample& imu, double noise_scale = 1);
+
+  enum class Verdict { accepted, gated, ignored };
+  /// Gated: `gate` standard deviations or more from what is expected. Ignored: not newer than the last pose taken
+  /// in, or not within the buffer.
+  Verdict on_pose(const PoseMeasurement& pose, double gate);
+  /// The heading now is `heading_rad`, give or take `sigma_rad`.
+  void on_heading(double heading_rad, double sigma_rad);
+
+  /// Starts anew at a pose in the buffer's time, with the velocity and biases known.
+  void restart_at(const PoseMeasurement& pose);
+
+  bool started() const { return !steps_.empty(); }
+  const State& state() const { return state_; }  // at the last IMU sample
+  /// The states as corrected: 2 s, every IMU sample.
+  const StateHistory& history() const { return history_; }
+  const Matrix15& covariance() const { return covariance_; }
+  /// Greatest standard deviation of the position in any direction, and that of the heading.
+  double position_sigma_m() const;
+  double heading_sigma_rad() const;
+  Vec3 accel_bias_mps2() const { return accel_bias_mps2_; }
+  Vec3 gyro_bias_radps() const { return gyro_bias_radps_; }
+
+ private:
+  struct Step {
+    ImuSample imu;  // led to what follows
+    double noise_scale;
+    State state;
+    Vec3 accel_bias_mps2, gyro_bias_radps;
+    Matrix15 covariance;
+    std::optional<std::pair<double, double>> heading;  // taken in since, with its sigma
+  };
+  void propagate(const ImuSample& before, const ImuSample& after, double noise_scale);
+  void correct_heading(double heading_rad, double sigma_rad);
+  void inject(const Vector15& error);
+  std::optional<std::size_t> step_at(TimeNs stamp) const;
+  void go_back_to(std::size_t step);
+  void replay_after(std::size_t step);
+  void note(const ImuSample& imu, double noise_scale);
+
+  InertialNoise noise_;
+  State state_;
+  Vec3 accel_bias_mps2_ = Vec3::Zero(), gyro_bias_radps_ = Vec3::Zero();  // body frame
+  Matrix15 covariance_;
+  std::deque<Step> steps_;
+  StateHistory history_;
+  TimeNs last_pose_ = std::numeric_limits<TimeNs>::min();
+};
+
+}  // namespace karst::core
