@@ -11,7 +11,7 @@ constexpr int kDoubt = 3, kSettled = 10;
 /// So many that the magnetic filter alone refuses show that the compass misleads it.
 constexpr int kMisled = 3;
 /// Heading spread of the LiDAR's filter beyond which the compass is believed, and below which no more.
-constexpr double kHeadingOpen_rad = 0.06, kHeadingKnown_rad = 0.03;
+constexpr double kHeadingOpen_rad = 0.02, kHeadingKnown_rad = 0.01;
 constexpr double kCompassTrusted_s = 2;
 /// A made-up sample is that much noisier.
 constexpr double kBridgeNoise = 5;
@@ -78,27 +78,28 @@ void Estimator::on_pose(const PoseSample& pose) {
   on_lidar_pose({pose.stamp, pose.T_world_body, Matrix6::Zero()});
 }
 
-void Estimator::on_lidar_pose(const PoseMeasurement& pose) {
+bool Estimator::on_lidar_pose(const PoseMeasurement& pose) {
   if (!is_finite(pose.T_world_body) || !pose.covariance.allFinite()) {
     last_bad_input_ = pose.stamp;
-    return;
+    return false;
   }
-  if (pose.stamp <= newest_pose_) return;
+  if (pose.stamp <= newest_pose_) return false;
   PoseMeasurement whole = pose;
   for (int i = 0; i < 3; ++i) {
     whole.covariance(i, i) += options_.pose_position_noise_m * options_.pose_position_noise_m;
     whole.covariance(i + 3, i + 3) += options_.pose_attitude_noise_rad * options_.pose_attitude_noise_rad;
   }
-  take_in(whole);
+  const bool accepted = take_in(whole);
   choose();
+  return accepted;
 }
 
-void Estimator::take_in(const PoseMeasurement& pose) {
+bool Estimator::take_in(const PoseMeasurement& pose) {
   using Verdict = InertialFilter::Verdict;
   const Verdict by_lidar = lidar_.on_pose(pose, options_.gate);
   const Verdict by_magnetic = magnetic_.on_pose(pose, options_.gate);
   const Verdict verdict = magnetic_believed_ ? by_magnetic : by_lidar;
-  if (verdict == Verdict::ignored) return;
+  if (verdict == Verdict::ignored) return false;
   newest_pose_ = pose.stamp;
   if (verdict == Verdict::accepted) {
     last_pose_ = pose.stamp;
@@ -108,10 +109,12 @@ void Estimator::take_in(const PoseMeasurement& pose) {
     doubt(pose);
   }
   magnetic_refused_ = by_lidar == Verdict::accepted && by_magnetic == Verdict::gated ? magnetic_refused_ + 1 : 0;
-  if (magnetic_refused_ < kMisled) return;
-  magnetic_ = lidar_;
-  compass_.forget();
-  magnetic_refused_ = 0;
+  if (magnetic_refused_ >= kMisled) {
+    magnetic_ = lidar_;
+    compass_.forget();
+    magnetic_refused_ = 0;
+  }
+  return verdict == Verdict::accepted;
 }
 
 /// A pose was refused by the filter that is believed: either it is wrong, or the filter.

@@ -41,8 +41,8 @@ class Estimator {
   void bridge(const ImuSample& expected);
   /// Poses that are not finite, not newer than the last, or older than a second are ignored.
   void on_pose(const PoseSample& pose);
-  /// The same of a LiDAR pose, with its covariance.
-  void on_lidar_pose(const PoseMeasurement& pose);
+  /// The same of a LiDAR pose, with its covariance. True if it was accepted.
+  bool on_lidar_pose(const PoseMeasurement& pose);
   void on_magnetometer(const MagnetometerSample& mag);
 
   const State& state() const { return active().state(); }  // at the last IMU sample
@@ -59,7 +59,7 @@ class Estimator {
   const InertialFilter& active() const { return magnetic_believed_ ? magnetic_ : lidar_; }
 
  private:
-  void take_in(const PoseMeasurement& pose);
+  bool take_in(const PoseMeasurement& pose);
   void doubt(const PoseMeasurement& pose);
   void choose();
 

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kControlPeriod_s = 0.01;
 constexpr double kOffGround_m = 0.15;
+constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: it has failed, at least for now
 
 /// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
 constexpr double kBrakingShare = 0.8;
@@ -27,7 +28,7 @@ MotionLimits with_room_to_catch_up(MotionLimits limits) {
 Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
     : limits_(with_room_to_catch_up(options.motion)),
       emergency_(limits_),
-      estimator_(options.localization, vehicle.T_world_start),
+      estimator_(options.localization.estimator, vehicle.T_world_start),
       tracker_(options.tracker, options.motion),
       controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps),
       mass_(vehicle.mass_kg) {
@@ -39,11 +40,17 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
 
 AttitudeRateCommand Flight::control(TimeNs now) {
   if (!armed_) return {};
+  if (now - estimator_.last_imu() > kImuMissed) estimator_.bridge(expected_imu(now));
   mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
   controller_.set_mass_kg(mass_.mass_kg());
   command_ = controller_.update(state(), tracker_.step(trajectory_, now), kControlPeriod_s);
   command_.armed = true;
   return command_;
+}
+
+/// What the IMU should measure while the vehicle does as it was told.
+ImuSample Flight::expected_imu(TimeNs now) const {
+  return {now, Vec3(0, 0, command_.thrust_n / mass_.mass_kg()), command_.body_rate_radps};
 }
 
 void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,

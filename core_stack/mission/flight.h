@@ -22,6 +22,8 @@ class Flight {
     mass_.on_specific_force(s.specific_force_mps2.z());
   }
   void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
+  /// False if the estimate refuses it.
+  bool on_lidar_pose(const PoseMeasurement& p) { return estimator_.on_lidar_pose(p); }
   void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
 
   /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.
@@ -73,6 +75,7 @@ class Flight {
  private:
   Onward onward(TimeNs t, double length_m) const;
   Vec3 velocity_at(TimeNs t) const;
+  ImuSample expected_imu(TimeNs now) const;
   Departure departure_at(TimeNs t) const;
 
   MotionLimits limits_, emergency_;  // of paths, and of the brake

@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mapping/rays.h"
-
 namespace karst::core {
 namespace {
 
@@ -13,8 +11,6 @@ constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
 constexpr double kClimbSpeed_mps = 0.5;
 constexpr double kFlownStep_m = 0.25;
-/// Returns within this margin around the vehicle are the vehicle.
-constexpr double kSelfMargin_m = 0.05;
 
 }  // namespace
 
@@ -48,6 +44,8 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       flight_(options, description_),
       safety_(options.safety),
       explorer_(options, description_, policy) {
+  if (description_.lidar && options.localization.source == "lidar")
+    loam_.emplace(options.localization.loam, description_.T_world_start);
   battery_.seconds_left = options.mission.max_flight_time_s;
 }
 
@@ -158,52 +156,6 @@ void MissionControl::record() {
   }
   if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
     begin_homing("the run directory cannot be written any more (disk full?)");
-}
-
-void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
-  integrate(
-      [scan, history = flight_.estimator().history(), options = options_, radius = description_.radius_m] {
-        LidarScan filtered = *scan;
-        filter_low_intensity(filtered, options.perception);
-        return to_rays(filtered, history, radius + kSelfMargin_m, options.mission.mapping_range_m);
-      });
-}
-
-void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
-  integrate([image, history = flight_.estimator().history(), radius = description_.radius_m] {
-    return to_rays(*image, history, radius + kSelfMargin_m);
-  });
-}
-
-void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
-  struct Result {
-    std::vector<CellChange> changes;
-    double explored_m3 = 0;
-    std::optional<double> blocked_after_m, hull_clearance_m;
-    bool goal_alive = true;
-  };
-  auto result = std::make_shared<Result>();
-  const std::uint32_t frontier = goal_ ? goal_->frontier_id : 0;
-  const bool check = phase_ == Phase::takeoff || phase_ == Phase::explore || phase_ == Phase::home;
-  executive_.job(
-      "mapping", Lane::map, kMappingBudget,
-      [this, result, frontier, make_rays = std::move(make_rays), here = flight_.state().position,
-       ahead = check ? path_ahead() : std::vector<Vec3>{}, narrow = narrow_places_] {
-        result->changes = explorer_.integrate(make_rays());
-        result->explored_m3 = explorer_.map().free_volume_m3();
-        if (ahead.size() > 1)
-          if (const int blocked = explorer_.blocked_segment(ahead, narrow); blocked >= 0)
-            result->blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
-        result->hull_clearance_m = explorer_.hull_clearance_m(here);
-        if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
-      },
-      [this, result, frontier] {
-        explored_m3_ = result->explored_m3;
-        hull_clearance_m_ = result->hull_clearance_m;
-        last_seen_ = now();
-        const bool same_goal = goal_ && goal_->frontier_id == frontier;
-        on_map_update(result->changes, result->blocked_after_m, result->goal_alive || !same_goal);
-      });
 }
 
 void MissionControl::on_ground(TimeNs stamp, bool standing) {

@@ -51,7 +51,9 @@ class MissionControl final : public VehicleSink {
   void on_depth(std::shared_ptr<const DepthImage> image) override;
   void on_imu(const ImuSample& s) override { flight_.on_imu(s); }
   void on_magnetometer(const MagnetometerSample& s) override { flight_.on_magnetometer(s); }
-  void on_pose(const PoseSample& s) override { flight_.on_pose(s); }
+  void on_pose(const PoseSample& s) override {
+    if (!loam_) flight_.on_pose(s);
+  }
   void on_battery(const BatteryStatus& s) override { battery_ = s; }
   void on_ground(TimeNs stamp, bool standing) override;
   void on_lost(TimeNs stamp, const std::string& outcome, const std::string& reason) override;
@@ -66,7 +68,9 @@ class MissionControl final : public VehicleSink {
   void enter(Phase phase, const std::string& reason);
   void finish(const std::string& outcome, const std::string& reason);
 
-  // Mapping.
+  // Localization and mapping.
+  void note_localization(const LoamPose& pose, bool accepted);
+  void map_scan(std::shared_ptr<const LidarScan> scan, const std::string& filter_rule);
   void integrate(std::function<std::vector<Ray>()> make_rays);
   void on_map_update(const std::vector<CellChange>& changes, std::optional<double> blocked_after_m,
                      bool goal_alive);
@@ -118,7 +122,8 @@ class MissionControl final : public VehicleSink {
   Flight flight_;
   SafetySupervisor safety_;
   SafetyVerdict verdict_;
-  Explorer explorer_;  // touched by jobs on the map lane only
+  std::optional<Loam> loam_;  // on vehicles with a LiDAR; touched by jobs on the localization lane only
+  Explorer explorer_;         // touched by jobs on the map lane only
 
   Phase phase_ = Phase::standby;
   TimeNs phase_since_ = 0;
@@ -153,6 +158,7 @@ class MissionControl final : public VehicleSink {
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;
   TimeNs last_seen_ = 0;  // when a scan or an image was last taken in
+  std::string localization_state_, believed_ = "lidar";  // as last noted in the events
 };
 
 }  // namespace karst::core

@@ -2,7 +2,7 @@
 #pragma once
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
-#include "core_stack/localization/estimator.h"
+#include "core_stack/localization/localization_options.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mapping/voxel_map.h"
 #include "core_stack/mission/safety.h"
@@ -36,7 +36,7 @@ struct CoreOptions {
   MapOptions map;
   FrontierOptions frontiers;
   IntensityFilterOptions perception;
-  EstimatorOptions localization;
+  LocalizationOptions localization;
   PlanningOptions planning;
   MotionLimits motion;
   MpcOptions tracker;

@@ -65,7 +65,7 @@ void MissionControl::keep_safe() {
   }
   SafetyObservation o;
   o.now = now();
-  o.health = flight_.estimator().health(now());
+  o.estimate = flight_.estimator().diagnose(now());
   o.tracking_error_m = (flight_.state().position - flight_.reference().position).norm();
   const bool under_way = phase_ == Phase::explore || phase_ == Phase::home;
   if (under_way) o.hull_clearance_m = hull_clearance_m_;  // not while it lifts off from the ground

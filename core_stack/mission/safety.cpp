@@ -26,7 +26,8 @@ void describe(OptionTable& t, SafetyOptions& o) {
 }
 
 SafetyVerdict SafetySupervisor::worst(const SafetyObservation& o) const {
-  if (o.health == Health::lost) return {SafetyAction::land, "the state estimate is lost"};
+  const std::string why = o.estimate.reason;
+  if (o.estimate.health == Health::lost) return {SafetyAction::land, "the state estimate is lost: " + why};
   if (o.battery_s < options_.battery_land_s) return {SafetyAction::land, "the battery ends"};
   if (degraded_since_ && seconds(o.now - *degraded_since_) > options_.degraded_home_s)
     return {SafetyAction::home, "the state estimate stays degraded"};
@@ -34,15 +35,16 @@ SafetyVerdict SafetySupervisor::worst(const SafetyObservation& o) const {
   if (o.blind_s > options_.blind_brake_s) return {SafetyAction::brake, "no sensor sees the cave"};
   if (o.tracking_error_m > options_.tracking_brake_m) return {SafetyAction::brake, "far from the reference"};
   if (o.tracking_error_m > options_.tracking_slow_m) return {SafetyAction::slow, "off the reference"};
-  if (o.health == Health::degraded) return {SafetyAction::slow, "the state estimate is degraded"};
+  if (o.estimate.health == Health::degraded)
+    return {SafetyAction::slow, "the state estimate is degraded: " + why};
   if (o.hull_clearance_m && *o.hull_clearance_m < options_.hull_clearance_m)
     return {SafetyAction::slow, "close to rock"};
   return {};
 }
 
 const SafetyVerdict& SafetySupervisor::judge(const SafetyObservation& o) {
-  if (o.health == Health::good) degraded_since_.reset();
-  if (o.health != Health::good && !degraded_since_) degraded_since_ = o.now;
+  if (o.estimate.health == Health::good) degraded_since_.reset();
+  if (o.estimate.health != Health::good && !degraded_since_) degraded_since_ = o.now;
   const SafetyVerdict now = worst(o);
   if (now.action >= verdict_.action) {
     verdict_ = now;

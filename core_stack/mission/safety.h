@@ -8,7 +8,7 @@
 
 #include "core_stack/common/options.h"
 #include "core_stack/common/time.h"
-#include "core_stack/localization/state.h"
+#include "core_stack/localization/estimator.h"
 
 namespace karst::core {
 
@@ -30,7 +30,7 @@ const char* name_of(SafetyAction action);
 
 struct SafetyObservation {
   TimeNs now = 0;
-  Health health = Health::good;
+  Diagnosis estimate;
   double tracking_error_m = 0;
   std::optional<double> hull_clearance_m;  // to the surface of the nearest obstacle in the map, if it is near
   double blind_s = 0;                      // since the last scan or image was taken into the map

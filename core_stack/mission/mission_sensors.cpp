@@ -1,0 +1,110 @@
+// What the sensors say: scans are located, then they and depth images go into the map.
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mapping/rays.h"
+#include "core_stack/mission/mission_control.h"
+#include "core_stack/perception/intensity_filter.h"
+
+namespace karst::core {
+namespace {
+
+/// A scan's pose counts this long after the scan came in: with the sensor's own delay of 20 ms the estimate rests
+/// on a scan that ended 80 ms ago when the pose arrives.
+constexpr TimeNs kLocalizationBudget = 60 * kMillisecond;
+/// Returns within this margin around the vehicle are the vehicle.
+constexpr double kSelfMargin_m = 0.05;
+
+}  // namespace
+
+void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
+  if (!loam_) return map_scan(std::move(scan), options_.perception.rule);
+  struct Located {
+    std::shared_ptr<LidarScan> scan;
+    LoamPose pose;
+  };
+  auto located = std::make_shared<Located>();
+  executive_.job(
+      "localization", Lane::localization, kLocalizationBudget,
+      [this, scan, located, history = flight_.estimator().history(),
+       self_m = description_.radius_m + kSelfMargin_m] {
+        located->scan = std::make_shared<LidarScan>(*scan);
+        filter_low_intensity(*located->scan, options_.perception);
+        located->pose = loam_->process(to_sweep(*located->scan, self_m), history);
+      },
+      [this, located] {
+        const LoamPose& pose = located->pose;
+        const bool accepted =
+            pose.valid && flight_.on_lidar_pose({pose.stamp, pose.T_world_body, pose.covariance});
+        note_localization(pose, accepted);
+        // What is not known where it was seen would spoil the map.
+        if (accepted) map_scan(located->scan, "none");
+      });
+}
+
+/// Into the events, whenever it changes.
+void MissionControl::note_localization(const LoamPose& pose, bool accepted) {
+  const std::string state = !pose.valid                  ? pose.problem
+                            : !accepted                  ? "the pose contradicts the IMU"
+                            : pose.free_directions > 0 ? std::to_string(pose.free_directions) +
+                                                             " directions held from the prediction"
+                                                       : "";
+  const std::string believed = flight_.estimator().believed();
+  if (state == localization_state_ && believed == believed_) return;
+  localization_state_ = state, believed_ = believed;
+  recorder_.event(now(), "localization",
+                  {{"valid", pose.valid},
+                   {"accepted", accepted},
+                   {"free_directions", pose.free_directions},
+                   {"believed", believed},
+                   {"reason", state}});
+}
+
+void MissionControl::map_scan(std::shared_ptr<const LidarScan> scan, const std::string& rule) {
+  integrate([scan, history = flight_.estimator().history(), options = options_, rule,
+             radius = description_.radius_m] {
+    LidarScan filtered = *scan;
+    IntensityFilterOptions filter = options.perception;
+    filter.rule = rule;
+    filter_low_intensity(filtered, filter);
+    return to_rays(filtered, history, radius + kSelfMargin_m, options.mission.mapping_range_m);
+  });
+}
+
+void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
+  integrate([image, history = flight_.estimator().history(), radius = description_.radius_m] {
+    return to_rays(*image, history, radius + kSelfMargin_m);
+  });
+}
+
+void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
+  struct Result {
+    std::vector<CellChange> changes;
+    double explored_m3 = 0;
+    std::optional<double> blocked_after_m, hull_clearance_m;
+    bool goal_alive = true;
+  };
+  auto result = std::make_shared<Result>();
+  const std::uint32_t frontier = goal_ ? goal_->frontier_id : 0;
+  const bool check = phase_ == Phase::takeoff || phase_ == Phase::explore || phase_ == Phase::home;
+  executive_.job(
+      "mapping", Lane::map, kMappingBudget,
+      [this, result, frontier, make_rays = std::move(make_rays), here = flight_.state().position,
+       ahead = check ? path_ahead() : std::vector<Vec3>{}, narrow = narrow_places_] {
+        result->changes = explorer_.integrate(make_rays());
+        result->explored_m3 = explorer_.map().free_volume_m3();
+        if (ahead.size() > 1)
+          if (const int blocked = explorer_.blocked_segment(ahead, narrow); blocked >= 0)
+            result->blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
+        result->hull_clearance_m = explorer_.hull_clearance_m(here);
+        if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
+      },
+      [this, result, frontier] {
+        explored_m3_ = result->explored_m3;
+        hull_clearance_m_ = result->hull_clearance_m;
+        last_seen_ = now();
+        const bool same_goal = goal_ && goal_->frontier_id == frontier;
+        on_map_update(result->changes, result->blocked_after_m, result->goal_alive || !same_goal);
+      });
+}
+
+}  // namespace karst::core
