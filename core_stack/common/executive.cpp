@@ -57,8 +57,15 @@ double run_timed_ms(const std::function<void()>& f) {
 
 }  // namespace
 
-Executive::Executive(int threads) {
-  if (threads <= 1) return;
+struct Executive::Job {
+  std::string name;
+  std::future<double> cost;
+  std::function<void()> publish;
+  bool ready() const { return cost.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+};
+
+Executive::Executive(int threads, Clock clock) : clock_(clock) {
+  if (threads <= 1 && clock == Clock::lockstep) return;
   for (auto& w : workers_) w = std::make_unique<Worker>();
 }
 
@@ -87,6 +94,7 @@ void Executive::repeat(std::uint64_t sequence, std::string name, TimeNs time, Ti
                        std::function<void()> step) {
   push(time, sequence,
        [this, sequence, name = std::move(name), time, period, step = std::move(step)]() mutable {
+         if (clock_ == Clock::real_time && wall() - time >= period) ++costs_[name].overruns;
          timed(name, step);
          repeat(sequence, std::move(name), time + period, period, std::move(step));
        });
@@ -95,7 +103,7 @@ void Executive::repeat(std::uint64_t sequence, std::string name, TimeNs time, Ti
 void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
                     std::function<void()> publish) {
   std::packaged_task<double()> task([work = std::move(work)] { return run_timed_ms(work); });
-  auto cost = std::make_shared<std::future<double>>(task.get_future());
+  auto job = std::make_shared<Job>(Job{std::move(name), task.get_future(), std::move(publish)});
   if (const auto& worker = workers_[static_cast<std::size_t>(lane)]) {
     {
       const std::lock_guard lock(worker->mutex);
@@ -105,18 +113,66 @@ void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<vo
   } else {
     task();
   }
-  push(now_ + budget, next_sequence_++, [this, name = std::move(name), cost, publish = std::move(publish)] {
-    costs_[name].milliseconds.push_back(static_cast<float>(cost->get()));  // waits, rethrows
-    publish();
+  push(now_ + budget, next_sequence_++, [this, job] {
+    if (clock_ == Clock::real_time && !job->ready()) {
+      ++costs_[job->name].overruns;
+      late_.push_back(job);
+    } else {
+      finish(job);
+    }
   });
 }
 
+void Executive::finish(const std::shared_ptr<Job>& job) {
+  costs_[job->name].milliseconds.push_back(static_cast<float>(job->cost.get()));  // waits, rethrows
+  job->publish();
+}
+
+/// Publishes the first late job that is ready now, if any.
+bool Executive::finish_late_job() {
+  const auto ready = std::find_if(late_.begin(), late_.end(), [](const auto& job) { return job->ready(); });
+  if (ready == late_.end()) return false;
+  const std::shared_ptr<Job> job = *ready;
+  late_.erase(ready);
+  now_ = std::max(now_, wall());
+  finish(job);
+  return true;
+}
+
+int Executive::overruns() const {
+  int n = 0;
+  for (const auto& [name, cost] : costs_) n += cost.overruns;
+  return n;
+}
+
+TimeNs Executive::wall() const {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin_)
+      .count();
+}
+
+/// Not longer than a moment while a job is late: it may be ready any time.
+void Executive::wait_until(TimeNs time) const {
+  constexpr TimeNs kMoment = kMillisecond / 2;
+  const TimeNs until = late_.empty() ? time : std::min(time, wall() + kMoment);
+  std::this_thread::sleep_until(begin_ + std::chrono::nanoseconds(until));
+}
+
 void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
+  const bool real_time = clock_ == Clock::real_time;
+  if (real_time) begin_ = std::chrono::steady_clock::now() - std::chrono::nanoseconds(now_);
   while (!queue_.empty() && queue_.front().time <= limit) {
+    if (real_time && finish_late_job()) {
+      if (done()) return;
+      continue;
+    }
+    if (real_time && wall() < queue_.front().time) {
+      wait_until(queue_.front().time);
+      continue;
+    }
     std::pop_heap(queue_.begin(), queue_.end());
     Event event = std::move(queue_.back());
     queue_.pop_back();
-    now_ = event.time;
+    now_ = std::max(now_, event.time);
     event.step();
     if (done()) return;
   }
@@ -129,6 +185,7 @@ void Executive::drain() {
     w.reset();
     w = std::make_unique<Worker>();
   }
+  late_.clear();
 }
 
 }  // namespace karst::core

@@ -3,10 +3,13 @@
 // Periodic steps run on the loop's thread at exact times. Longer work is a *job*: it starts at time t on
 // a worker lane and its result is published on the loop's thread at t + budget. In lockstep the clock
 // waits for a job that is late, so every result appears at the same simulated time whatever the
-// machine's load or number of threads. Jobs of one lane run one after another in the order submitted,
-// so whatever a lane owns (the map, the sensor models) needs no lock.
+// machine's load or number of threads. In real time the clock is the machine's: what is due runs when it is
+// due or as soon after as it can, a late job's result appears when it is ready, and the delay is counted.
+// Jobs of one lane run one after another in the order submitted, so whatever a lane owns (the map, the sensor
+// models) needs no lock.
 #pragma once
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -23,13 +26,17 @@ enum class Lane { sensing, localization, map };
 /// Wall-clock cost of one named step or job, for timing.json only: nothing decides by it.
 struct Cost {
   std::vector<float> milliseconds;
+  int overruns = 0;  // in real time: jobs not ready within their budget, steps a whole period late
 };
+
+enum class Clock { lockstep, real_time };
 
 class Executive {
  public:
   /// `threads` <= 1 runs jobs on the loop's thread at the moment they are submitted; more give each lane a
   /// thread, and no more than that.
-  explicit Executive(int threads);
+  /// In real time there is always a thread a lane.
+  explicit Executive(int threads, Clock clock = Clock::lockstep);
   ~Executive();
   Executive(const Executive&) = delete;
   Executive& operator=(const Executive&) = delete;
@@ -53,16 +60,26 @@ class Executive {
   /// Waits for jobs still running; their results are not published.
   void drain();
 
+  /// In all; 0 in lockstep.
+  int overruns() const;
   const std::map<std::string, Cost>& costs() const { return costs_; }
 
  private:
   struct Event;
   struct Worker;
+  struct Job;
   void push(TimeNs time, std::uint64_t sequence, std::function<void()> step);
   void repeat(std::uint64_t sequence, std::string name, TimeNs time, TimeNs period,
               std::function<void()> step);
   void timed(const std::string& name, const std::function<void()>& f);
+  void finish(const std::shared_ptr<Job>& job);
+  bool finish_late_job();
+  TimeNs wall() const;
+  void wait_until(TimeNs time) const;
 
+  Clock clock_;
+  std::chrono::steady_clock::time_point begin_;  // of the first run, in real time
+  std::vector<std::shared_ptr<Job>> late_;       // in real time: beyond their budget
   TimeNs now_ = 0;
   std::uint64_t next_sequence_ = 0;
   std::vector<Event> queue_;                        // heap on (time, sequence)

@@ -31,8 +31,7 @@ Compass::Reading Compass::read(const MagnetometerSample& sample, const Quat& ori
   if (out.valid != trusted_) trusted_since_ = sample.stamp;
   trusted_ = out.valid;
   if (out.valid)
-    out.heading_rad =
-        wrap_angle(heading_of(orientation) + bearing(field_world_ut_) - bearing(field_world));
+    out.heading_rad = wrap_angle(heading_of(orientation) + bearing(field_world_ut_) - bearing(field_world));
   return out;
 }
 

@@ -1,8 +1,8 @@
 // Heading from the magnetometer, and whether to believe it: near ore the field bends.
 //
-// The field of the world is learnt where the heading is known. A reading is disturbed if its strength or its dip
-// differ from that field's; a field that is only turned about the vertical looks undisturbed, and it is for the
-// LiDAR to contradict it.
+// The field of the world is learnt where the heading is known. A reading is disturbed if its strength or its
+// dip differ from that field's; a field that is only turned about the vertical looks undisturbed, and it is
+// for the LiDAR to contradict it.
 #pragma once
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/time.h"

@@ -6,7 +6,8 @@
 namespace karst::core {
 namespace {
 
-/// So many poses refused in a row raise a doubt; so many that agree with the newcomer settle it: 1 s at 10 Hz.
+/// So many poses refused in a row raise a doubt; so many that agree with the newcomer settle it: 1 s at 10
+/// Hz.
 constexpr int kDoubt = 3, kSettled = 10;
 /// So many that the magnetic filter alone refuses show that the compass misleads it.
 constexpr int kMisled = 3;
@@ -108,7 +109,8 @@ bool Estimator::take_in(const PoseMeasurement& pose) {
   } else {
     doubt(pose);
   }
-  magnetic_refused_ = by_lidar == Verdict::accepted && by_magnetic == Verdict::gated ? magnetic_refused_ + 1 : 0;
+  magnetic_refused_ =
+      by_lidar == Verdict::accepted && by_magnetic == Verdict::gated ? magnetic_refused_ + 1 : 0;
   if (magnetic_refused_ >= kMisled) {
     magnetic_ = lidar_;
     compass_.forget();

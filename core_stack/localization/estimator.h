@@ -1,7 +1,8 @@
 // State estimation: a small bank of filters on the IMU, corrected by poses from the LiDAR, which arrive late.
 //
 //   lidar      IMU and poses. The one to believe, as a rule: ore does not bend it.
-//   magnetic   the same and the compass. Believed while the poses leave the heading open, as in a round shaft, and
+//   magnetic   the same and the compass. Believed while the poses leave the heading open, as in a round
+//   shaft, and
 //              the compass is not disturbed.
 //   newcomer   begun at a pose that the others refuse. If further poses agree with it for a second while the
 //              others still refuse them, the bank starts over from it.
@@ -48,8 +49,8 @@ class Estimator {
   const State& state() const { return active().state(); }  // at the last IMU sample
   /// The states as corrected: 2 s, every IMU sample.
   const StateHistory& history() const { return active().history(); }
-  /// Degraded: no pose accepted or no IMU sample for the timeout, an input within it that was not finite, or a
-  /// position or heading known too badly to fly fast.
+  /// Degraded: no pose accepted or no IMU sample for the timeout, an input within it that was not finite, or
+  /// a position or heading known too badly to fly fast.
   Diagnosis diagnose(TimeNs now) const;
   Health health(TimeNs now) const { return diagnose(now).health; }
   /// The hypothesis believed: lidar or magnetic.

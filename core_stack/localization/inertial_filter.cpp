@@ -168,8 +168,7 @@ void InertialFilter::correct_heading(double heading_rad, double sigma_rad) {
   const Vector15 K = covariance_ * H.transpose() / S;
   inject(K * innovation);
   const Matrix15 rest = Matrix15::Identity() - K * H;
-  covariance_ =
-      (rest * covariance_ * rest.transpose() + K * squared(sigma_rad) * K.transpose()).eval();
+  covariance_ = (rest * covariance_ * rest.transpose() + K * squared(sigma_rad) * K.transpose()).eval();
 }
 
 void InertialFilter::on_heading(double heading_rad, double sigma_rad) {

@@ -2,8 +2,9 @@
 // corrected by poses that arrive late.
 //
 // The nominal state is propagated with every IMU sample (strap-down, trapezoid rule). The error state is
-// (position, velocity: world; attitude: rotation vector in the body; accelerometer and gyroscope bias). A pose is
-// taken in at its stamp, in a buffer of the past second; what came since, samples and headings, is replayed.
+// (position, velocity: world; attitude: rotation vector in the body; accelerometer and gyroscope bias). A
+// pose is taken in at its stamp, in a buffer of the past second; what came since, samples and headings, is
+// replayed.
 #pragma once
 #include <deque>
 #include <limits>
@@ -43,8 +44,8 @@ class InertialFilter {
   void on_imu(const ImuSample& imu, double noise_scale = 1);
 
   enum class Verdict { accepted, gated, ignored };
-  /// Gated: `gate` standard deviations or more from what is expected. Ignored: not newer than the last pose taken
-  /// in, or not within the buffer.
+  /// Gated: `gate` standard deviations or more from what is expected. Ignored: not newer than the last pose
+  /// taken in, or not within the buffer.
   Verdict on_pose(const PoseMeasurement& pose, double gate);
   /// The heading now is `heading_rad`, give or take `sigma_rad`.
   void on_heading(double heading_rad, double sigma_rad);

@@ -6,7 +6,8 @@
 namespace karst::core {
 
 struct LocalizationOptions {
-  std::string source = "lidar";  // LOAM, on vehicles that have a LiDAR; or pose_sensor: the vehicle's own, if fitted
+  std::string source =
+      "lidar";  // LOAM, on vehicles that have a LiDAR; or pose_sensor: the vehicle's own, if fitted
   EstimatorOptions estimator;
   LoamOptions loam;
 };

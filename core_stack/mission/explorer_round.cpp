@@ -54,7 +54,8 @@ std::optional<std::string> Explorer::objection(const Reach& reach, const Goal& g
   if (map_.at(p) != Cell::free)
     return map_.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
   if (!is_clear(map_, p, reach.planning.clearance_m)) return "it is too near to rock or unknown space";
-  if (const auto why = ledger_.closed(map_, p, closed_at_, by_pause_alone_)) return "it was tried before: " + *why;
+  if (const auto why = ledger_.closed(map_, p, closed_at_, by_pause_alone_))
+    return "it was tried before: " + *why;
   return std::nullopt;
 }
 

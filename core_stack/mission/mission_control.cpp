@@ -65,6 +65,10 @@ MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)
                                explored_m3_,
                                flight_.state().velocity_mps.norm(),
                                goal_ ? goal_->why : ""};
+    if (const int overruns = executive_.overruns(); overruns > overruns_) {
+      recorder_.event(now(), "overrun", {{"count", overruns - overruns_}});
+      overruns_ = overruns;
+    }
     if (!watch(status)) finish("aborted", "stopped by the operator");
   });
   const TimeNs limit = from_seconds(options_.mission.max_flight_time_s + 600);

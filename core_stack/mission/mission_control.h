@@ -157,7 +157,8 @@ class MissionControl final : public VehicleSink {
   bool home_planning_ = false, ignore_blocks_ = false;
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;
-  TimeNs last_seen_ = 0;  // when a scan or an image was last taken in
+  int overruns_ = 0;                                     // of the executive, as last noted
+  TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
   std::string localization_state_, believed_ = "lidar";  // as last noted in the events
 };
 

@@ -8,8 +8,8 @@
 namespace karst::core {
 namespace {
 
-/// A scan's pose counts this long after the scan came in: with the sensor's own delay of 20 ms the estimate rests
-/// on a scan that ended 80 ms ago when the pose arrives.
+/// A scan's pose counts this long after the scan came in: with the sensor's own delay of 20 ms the estimate
+/// rests on a scan that ended 80 ms ago when the pose arrives.
 constexpr TimeNs kLocalizationBudget = 60 * kMillisecond;
 /// Returns within this margin around the vehicle are the vehicle.
 constexpr double kSelfMargin_m = 0.05;
@@ -18,11 +18,11 @@ constexpr double kSelfMargin_m = 0.05;
 
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
   if (!loam_) return map_scan(std::move(scan), options_.perception.rule);
-  struct Located {
+  struct Sighting {
     std::shared_ptr<LidarScan> scan;
     LoamPose pose;
   };
-  auto located = std::make_shared<Located>();
+  auto located = std::make_shared<Sighting>();
   executive_.job(
       "localization", Lane::localization, kLocalizationBudget,
       [this, scan, located, history = flight_.estimator().history(),
@@ -43,12 +43,15 @@ void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
 
 /// Into the events, whenever it changes.
 void MissionControl::note_localization(const LoamPose& pose, bool accepted) {
-  const std::string state = !pose.valid                  ? pose.problem
-                            : !accepted                  ? "the pose contradicts the IMU"
+  const std::string state = !pose.valid                ? pose.problem
+                            : !accepted                ? "the pose contradicts the IMU"
                             : pose.free_directions > 0 ? std::to_string(pose.free_directions) +
                                                              " directions held from the prediction"
                                                        : "";
-  const std::string believed = flight_.estimator().believed();
+  const Estimator& e = flight_.estimator();
+  const std::string believed = e.believed();
+  recorder_.located(
+      {now(), pose, accepted, e.active().position_sigma_m(), e.active().heading_sigma_rad(), believed});
   if (state == localization_state_ && believed == believed_) return;
   localization_state_ = state, believed_ = believed;
   recorder_.event(now(), "localization",

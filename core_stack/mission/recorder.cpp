@@ -34,10 +34,14 @@ Recorder::Recorder(const std::filesystem::path& run_dir) : directory_(run_dir) {
   events_ = open(run_dir / "events.jsonl");
   trajectory_ = open(run_dir / "trajectory.tum");
   telemetry_ = open(run_dir / "telemetry.csv");
+  localization_ = open(run_dir / "localization.csv");
   growth_ = open(run_dir / "map_growth.bin");
   decisions_ = open(run_dir / "decisions.csv");
   telemetry_ << "t_s,phase,x,y,z,vx,vy,vz,heading_rad,ref_x,ref_y,ref_z,battery_fraction,seconds_left,"
                 "explored_m3,home_distance_m\n";
+  localization_
+      << "stamp_s,used_s,accepted,free_directions,edges,planes,residual_m,position_sigma_m,heading_sigma_rad,"
+         "believed,problem\n";
   decisions_ << "t_s,decide_ms,plan_ms\n";
 }
 
@@ -61,6 +65,14 @@ void Recorder::telemetry(const Telemetry& r) {
                           r.battery_fraction, r.battery_seconds_left, r.explored_m3, r.home_distance_m);
 }
 
+void Recorder::located(const Located& r) {
+  const LoamPose& p = r.pose;
+  localization_ << formatted("%.3f,%.3f,%d,%d,%d,%d,%.4f,%.4f,%.5f,%s,", seconds(p.stamp), seconds(r.used_at),
+                             r.accepted, p.free_directions, p.edges, p.planes, p.rms_residual_m,
+                             r.position_sigma_m, r.heading_sigma_rad, r.believed.c_str())
+                << p.problem << '\n';
+}
+
 void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
   const auto ms = static_cast<std::int32_t>(t / kMillisecond);
   for (const CellChange& c : changes) {
@@ -81,7 +93,7 @@ void Recorder::final_map(const VoxelMap& map) {
 
 bool Recorder::flush() {
   bool good = true;
-  for (std::ofstream* f : {&events_, &trajectory_, &telemetry_, &growth_, &decisions_}) {
+  for (std::ofstream* f : {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_}) {
     f->flush();
     good = good && f->good();
   }

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "core_stack/localization/state.h"
+#include "core_stack/localization/loam.h"
 #include "core_stack/mapping/voxel_map.h"
 
 namespace karst::core {
@@ -23,6 +23,15 @@ struct Telemetry {
   double home_distance_m = 0;  // by path; NaN while unknown
 };
 
+/// One line of localization.csv: a scan, and what the estimate made of its pose.
+struct Located {
+  TimeNs used_at = 0;
+  LoamPose pose;
+  bool accepted = false;
+  double position_sigma_m = 0, heading_sigma_rad = 0;  // of the estimate, after it
+  std::string believed;
+};
+
 class Recorder {
  public:
   /// Creates the directory; throws InputError if it cannot be written or holds another run's files.
@@ -32,6 +41,7 @@ class Recorder {
   void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
   void pose(const State& state);
   void telemetry(const Telemetry& row);
+  void located(const Located& row);
   void map_changes(TimeNs t, std::span<const CellChange> changes);
   /// Wall-clock costs of a decision, apart from what must replay byte for byte.
   void decision_cost(TimeNs t, double decide_ms, double plan_ms);
@@ -44,7 +54,7 @@ class Recorder {
 
  private:
   std::filesystem::path directory_;
-  std::ofstream events_, trajectory_, telemetry_, growth_, decisions_;
+  std::ofstream events_, trajectory_, telemetry_, localization_, growth_, decisions_;
 };
 
 }  // namespace karst::core

@@ -45,7 +45,7 @@ struct FlyArguments {
   std::vector<std::string> plugins;
   std::optional<std::int64_t> seed;
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool json = false, quiet = false, keys = false, no_report = false;
+  bool json = false, quiet = false, keys = false, no_report = false, real_time = false;
 };
 
 /// runs/POLICY-CAVE-SEED, with a number behind it if that is taken.
@@ -124,7 +124,7 @@ int fly(const FlyArguments& args) {
   if (interrupted) throw core::InputError("karst fly", "", "stopped by the operator before take-off");
   claim.keep();
 
-  core::Executive executive(args.threads);
+  core::Executive executive(args.threads, args.real_time ? core::Clock::real_time : core::Clock::lockstep);
   core::MissionControl control(mission.core, *vehicle, executive, *policy, recorder);
   int code = kNotLanded;
   try {
@@ -186,6 +186,10 @@ void add_fly_command(CLI::App& app) {
                    "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "
                    "Results do not depend on it")
       ->check(CLI::Range(1, 256));
+  fly_app->add_flag(
+      "--real-time", args->real_time,
+      "a second of flight takes a second, as on a vehicle: what is not ready in time counts as an "
+      "overrun (timing.json), and no two flights are the same");
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->quiet, "no status line");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");

@@ -22,7 +22,8 @@ void write_timing(const std::filesystem::path& run_dir, const core::Executive& e
                   {"mean_ms", sum / static_cast<double>(ms.size())},
                   {"p50_ms", quantile(0.5)},
                   {"p99_ms", quantile(0.99)},
-                  {"max_ms", ms.back()}};
+                  {"max_ms", ms.back()},
+                  {"overruns", cost.overruns}};
   }
   const double simulated_s = core::seconds(executive.now());
   nlohmann::ordered_json timing{{"simulated_s", simulated_s},

@@ -35,7 +35,8 @@ struct Bench {
 
   explicit Bench(const EstimatorOptions& o = {}) : e(o, {}) {}
 
-  void run_until(double end_s, const std::function<void(double)>& look = [](double) {}) {
+  void run_until(
+      double end_s, const std::function<void(double)>& look = [](double) {}) {
     for (; now <= from_seconds(end_s); now += kImuPeriod) {
       const double t = flight_time(now);
       const ImuSample truth{now, Flight::specific_force(t), Flight::body_rate(t)};
@@ -49,7 +50,8 @@ struct Bench {
         e.bridge({now, Vec3(0, 0, truth.specific_force_mps2.z() * 1.02), truth.body_rate_radps});
       }
       if (now % (20 * kMillisecond) == 0)
-        e.on_magnetometer({now, Flight::orientation(t).conjugate() * field(seconds(now)) + gaussian(random, 0.3)});
+        e.on_magnetometer(
+            {now, Flight::orientation(t).conjugate() * field(seconds(now)) + gaussian(random, 0.3)});
       const TimeNs old = now - 80 * kMillisecond;
       if (old >= 0 && old % kPosePeriod == 0) {
         const double s = flight_time(old);
