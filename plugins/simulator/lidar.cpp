@@ -21,18 +21,26 @@ struct Unit {
   float max_range_m;
 };
 // From the data sheets of Velodyne's VLP-16 and Ouster's OS0 and OS1; ranges for dark rock.
-constexpr Unit kUnits[] = {
-    {"vlp16", 16, 15, 100}, {"os0_32", 32, 45, 50}, {"os1_64", 64, 22.5, 120}, {"os0_128", 128, 45, 50}};
+constexpr Unit kUnits[] = {{"vlp16", 16, 15, 100},
+                           {"os0_32", 32, 45, 50},
+                           {"os0_64", 64, 45, 50},
+                           {"os1_64", 64, 22.5, 120},
+                           {"os0_128", 128, 45, 50}};
+
+constexpr double kPulse_m = 0.75;  // c t / 2 of a pulse of 5 ns: what is nearer together is one echo
 
 }  // namespace
 
 void describe(core::OptionTable& t, LidarOptions& o) {
-  t.add("unit", o.unit, {"vlp16", "os0_32", "os1_64", "os0_128"},
-        "16 channels in 30 deg; 32 in 90; 64 in 45; 128 in 90");
+  t.add("unit", o.unit, {"vlp16", "os0_32", "os0_64", "os1_64", "os0_128"},
+        "16 channels in 30 deg; 32 in 90; 64 in 90; 64 in 45; 128 in 90");
   t.add("columns", o.columns, 64, 4096, "beams a channel and revolution");
   t.add("noise", o.noise_m, "m", 0, 1, "standard deviation of a range");
-  t.add("dust", o.dust_share, "", 0, 0.9, "share of beams that dust or droplets near the vehicle send back");
+  t.add(
+      "dust", o.dust_share, "", 0, 0.9,
+      "share of beams sent back from anywhere near, whatever is there: for tests; physical dust is in air.*");
   t.add("mast", o.mast_m, "m", -1, 1, "height of the sensor above the vehicle's centre");
+  t.add("echo", o.echo, {"strongest", "first"}, "which one is reported where a cloud gives several");
 }
 
 std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o) {
@@ -50,6 +58,8 @@ std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o) {
   return model;
 }
 
+float least_intensity(const core::LidarModel& model) { return return_intensity(0.1, 1, model.max_range_m); }
+
 float return_intensity(double reflectivity, float cos_incidence, float range_m) {
   const float fall_off = 1 + (range_m / 25) * (range_m / 25);
   return std::clamp(static_cast<float>(reflectivity) * cos_incidence / fall_off, 0.0f, 1.0f);
@@ -60,8 +70,28 @@ Lidar::Lidar(const LidarOptions& o) : options_(o), model_(lidar_model(o)) {
     for (int j = 0; j < model_->columns; ++j) beams_.push_back(model_->direction(c, j));
 }
 
+Lidar::Return Lidar::through(const CloudyWay& way, const Return& clear, core::Random& random) const {
+  const double reach_m = std::min(clear.range_m, model_->max_range_m);
+  if (way.depth(reach_m) == 0) return clear;
+  const float least = least_intensity(*model_);
+  Return best{clear.range_m, clear.intensity * static_cast<float>(way.two_way(reach_m))};
+  if (best.intensity < least) best = {std::numeric_limits<float>::quiet_NaN(), 0};
+  bool from_cloud = false;
+  way.for_each_stretch(model_->min_range_m, reach_m, kPulse_m, [&](const CloudyWay::Stretch& s) {
+    // Both drawn for every stretch, so that a choice changes no later draw.
+    const double echo = s.echo(random);
+    const auto range_m = static_cast<float>(s.place_m(random));
+    const float intensity = return_intensity(echo, 1, range_m);
+    if (intensity < least) return;
+    if (options_.echo == "first" ? from_cloud : intensity < best.intensity) return;
+    best = {range_m, std::min(intensity, 1.0f)};
+    from_cloud = true;
+  });
+  return best;
+}
+
 core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_body, TimeNs stamp,
-                             core::Random random) const {
+                             core::Random random, Air air) const {
   const auto columns = static_cast<std::size_t>(model_->columns);
   std::vector<Eigen::Matrix3f> rotations(columns);
   std::vector<Vec3f> origins(columns);
@@ -78,6 +108,7 @@ core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_bo
   const bool patched = !cave.description.patches.empty();
   std::vector<cave::Ray> rays(columns);
   std::vector<cave::Hit> hits(columns);
+  CloudyWay way;
   for (std::size_t first = 0; first < beams_.size(); first += columns) {  // a channel at a time: neighbours
     for (std::size_t j = 0; j < columns; ++j) rays[j] = {origins[j], rotations[j] * beams_[first + j]};
     cave.scene.cast(rays, model_->max_range_m, hits);
@@ -94,6 +125,13 @@ core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_bo
       if (options_.dust_share > 0 && random.uniform() < options_.dust_share) {
         const auto dust = static_cast<float>(random.uniform(0.4, 3.0));
         if (dust < range) range = dust, intensity = static_cast<float>(random.uniform(0, 0.02));
+      }
+      if (!air.clouds.empty()) {
+        way.trace(air.clouds, rays[j]);
+        if (!way.clear()) {
+          const Return r = through(way, {range, intensity}, air.random);
+          range = r.range_m, intensity = r.intensity;
+        }
       }
       if (range < model_->min_range_m) range = std::numeric_limits<float>::quiet_NaN(), intensity = 0;
       scan.range_m[first + j] = range;

@@ -3,7 +3,7 @@
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/messages.h"
-#include "plugins/simulator/cave/cave.h"
+#include "plugins/simulator/clouds.h"
 #include "plugins/simulator/pose_track.h"
 
 namespace karst::sim {
@@ -11,13 +11,14 @@ namespace karst::sim {
 struct LidarOptions {
   std::string unit = "os0_32";
   std::int64_t columns = 512;
-  double noise_m = 0.02;  // standard deviation of a range
-  double dust_share = 0;  // of beams that dust or droplets near the vehicle send back
-  double mast_m = 0.1;    // height above the vehicle's centre
+  double noise_m = 0.02;           // standard deviation of a range
+  double dust_share = 0;           // of beams that dust or droplets near the vehicle send back
+  double mast_m = 0.1;             // height above the vehicle's centre
+  std::string echo = "strongest";  // of several, the one that is reported
 };
 void describe(core::OptionTable& t, LidarOptions& o);
 
-/// vlp16, os0_32, os1_64 and os0_128: channels, vertical field of view and reach of well-known units.
+/// vlp16, os0_32, os0_64, os1_64 and os0_128: channels, vertical field of view and reach of well-known units.
 std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o);
 
 class Lidar {
@@ -26,15 +27,25 @@ class Lidar {
   const std::shared_ptr<const core::LidarModel>& model() const { return model_; }
 
   /// The sweep that ends at `stamp`, each column cast from where the sensor was when it fired. Const: sweeps
-  /// may be computed on any thread.
+  /// may be computed on any thread. What clouds leave of an echo may be too weak to be noticed, or a cloud's
+  /// own echo may be reported in its place; if there is neither, that is no measurement (NaN).
   core::LidarScan sweep(const cave::Cave& cave, const PoseTrack& T_world_body, core::TimeNs stamp,
-                        core::Random random) const;
+                        core::Random random, Air air = {}) const;
 
  private:
+  struct Return {
+    float range_m, intensity;
+  };
+  /// What becomes of a beam's return in clear air.
+  Return through(const CloudyWay& way, const Return& clear, core::Random& random) const;
+
   LidarOptions options_;
   std::shared_ptr<const core::LidarModel> model_;
   std::vector<core::Vec3f> beams_;  // unit vectors in the lidar frame, channel-major
 };
+
+/// The weakest return that a unit notices: rock of 10 % at its greatest range, as data sheets state it.
+float least_intensity(const core::LidarModel& model);
 
 /// Returned share of light: reflectivity * cos(incidence) / (1 + (range / 25 m)^2).
 float return_intensity(double reflectivity, float cos_incidence, float range_m);

@@ -14,6 +14,7 @@ using core::Lane;
 using core::Random;
 using core::TimeNs;
 using core::Vec3;
+using Sensor = cave::Fault::Sensor;
 
 namespace {
 
@@ -56,12 +57,14 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       seed_(setup.seed),
       cave_(open_cave(options, setup)),
       rocks_(cave_->description.boulders),
+      air_(options.air, cave_->description.clouds, options.body.radius_m),
+      faults_(cave_->description.faults),
       site_(set_down(*cave_, options.body.radius_m)),
       quadrotor_({options.body, options.motors, options.autopilot, options.battery}, site_.T_world_start,
                  cave_->scene, Wind(options.wind, Random::stream(setup.seed, "wind"))),
       lidar_(options.vehicle == "camera_uav" ? nullptr : std::make_shared<const Lidar>(options.lidar)),
       cameras_(mount_cameras(options)),
-      imu_(options.imu, Random::stream(setup.seed, "imu")),
+      imu_(options.imu, Random::stream(setup.seed, "imu"), Random::stream(setup.seed, "vibration")),
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
       pose_sensor_(options.pose, site_.T_world_start, Random::stream(setup.seed, "pose")),
       log_(setup.run_dir) {
@@ -102,10 +105,12 @@ void SimulatedVehicle::schedule_sensors() {
   const auto every = [this](TimeNs period, TimeNs phase, std::function<void()> read) {
     schedule_.push_back({period, phase, std::move(read)});
   };
-  every(period_of(options_.pose.rate_hz), 0, [this] { report_pose(); });
+  if (options_.pose.enabled) every(period_of(options_.pose.rate_hz), 0, [this] { report_pose(); });
   every(20 * kMillisecond, 0, [this] {
-    sink_->on_magnetometer(measure_field(options_.magnetometer, cave_->description.ore_bodies,
-                                         quadrotor_.state().T_world_body, now(), magnetometer_random_));
+    const core::MagnetometerSample field =
+        measure_field(options_.magnetometer, cave_->description.ore_bodies, quadrotor_.state().T_world_body,
+                      now(), magnetometer_random_);
+    if (!faults_of(Sensor::magnetometer).lost()) sink_->on_magnetometer(field);
   });
   every(kSecond / 2, 0, [this] { sink_->on_battery(quadrotor_.battery().status(now())); });
   if (lidar_) every(lidar_->model()->period, 0, [this] { fire_lidar(); });
@@ -115,6 +120,7 @@ void SimulatedVehicle::schedule_sensors() {
     every(period, static_cast<TimeNs>(i + 1) * 30 * kMillisecond % period, [this, i] { fire_camera(i); });
   }
   if (!cave_->description.boulders.empty()) every(20 * kMillisecond, 0, [this] { move_rocks(); });
+  every(core::from_seconds(CaveAir::kPuffPeriod_s), 0, [this] { stir_air(); });
   every(10 * kMillisecond, 0, [this] { log_truth(); });
 }
 
@@ -135,7 +141,9 @@ void SimulatedVehicle::tick() {
   last_orientation_ = s.T_world_body.orientation;
   const TimeNs sweep = lidar_ ? lidar_->model()->period : 0;
   append(track_, {now(), s.T_world_body}, now() - sweep);
-  sink_->on_imu(imu_.sample(now(), specific_force, rate, dt_s));
+  const core::ImuSample sample =
+      imu_.sample(now(), specific_force, rate, dt_s, quadrotor_.footing() != Footing::standing);
+  if (!faults_of(Sensor::imu).lost()) sink_->on_imu(sample);
   for (const Reading& r : schedule_)
     if (!lost_ && (now() - start_time_) % r.period == r.phase) r.read();
 }
@@ -174,26 +182,45 @@ Random SimulatedVehicle::measurement_random(const std::string& sensor) {
   return Random::stream(seed_, sensor + " at " + std::to_string(now()));
 }
 
+SensorFaults::Strike SimulatedVehicle::faults_of(Sensor sensor) {
+  SensorFaults::Strike strike = faults_.strike(sensor, core::seconds(now() - start_time_));
+  for (const std::string& what : strike.begun) log_.event(now(), "fault", quadrotor_.state(), what);
+  return strike;
+}
+
+Air SimulatedVehicle::air_for(const std::string& beams) {
+  const bool airborne = quadrotor_.footing() != Footing::standing;
+  return {
+      air_.present(core::seconds(now() - start_time_), quadrotor_.state().T_world_body.position, airborne),
+      measurement_random(beams + " in air")};
+}
+
 void SimulatedVehicle::fire_lidar() {
+  const SensorFaults::Strike strike = faults_of(Sensor::lidar);
+  if (strike.lost()) return;
   auto scan = std::make_shared<core::LidarScan>();
   executive_->job(
       "lidar", Lane::sensing, kLidarBudget,
       [scan, lidar = lidar_, cave = cave_, track = track_, stamp = now(),
-       random = measurement_random("lidar")] { *scan = lidar->sweep(*cave, track, stamp, random); },
+       random = measurement_random("lidar"), air = air_for("lidar"), kinds = strike.kinds] {
+        *scan = lidar->sweep(*cave, track, stamp, random, air);
+        for (const cave::Fault::Kind kind : kinds) spoil(*scan, kind);
+      },
       [this, scan] {
         if (!lost_) sink_->on_lidar(scan);
       });
 }
 
 void SimulatedVehicle::fire_camera(std::size_t index) {
+  if (faults_of(Sensor::camera).lost()) return;
   auto image = std::make_shared<core::DepthImage>();
   const auto& camera = cameras_[index];
+  const std::string& name = camera->model()->name;
   executive_->job(
       "depth camera", Lane::sensing, kCameraBudget,
       [image, camera, cave = cave_, T = quadrotor_.state().T_world_body, stamp = now(),
-       random = measurement_random(camera->model()->name)] {
-        *image = camera->image(*cave, T, stamp, random);
-      },
+       random = measurement_random(name),
+       air = air_for(name)] { *image = camera->image(*cave, T, stamp, random, air); },
       [this, image] {
         if (!lost_) sink_->on_depth(image);
       });
@@ -201,9 +228,15 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
 
 void SimulatedVehicle::report_pose() {
   const core::PoseSample sample = pose_sensor_.sample(now(), quadrotor_.state().T_world_body);
+  if (faults_of(Sensor::pose).lost()) return;
   executive_->at(now() + core::from_seconds(options_.pose.delay_s), [this, sample] {
     if (!lost_) sink_->on_pose(sample);
   });
+}
+
+void SimulatedVehicle::stir_air() {
+  if (quadrotor_.footing() == Footing::standing) return;
+  air_.stir(core::seconds(now() - start_time_), quadrotor_.state().T_world_body, cave_->scene);
 }
 
 /// Scans and images still being made keep the cave as it was at their stamp.

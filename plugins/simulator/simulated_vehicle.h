@@ -10,6 +10,7 @@
 #include "plugins/simulator/launch_site.h"
 #include "plugins/simulator/loose_rocks.h"
 #include "plugins/simulator/quadrotor.h"
+#include "plugins/simulator/sensor_faults.h"
 #include "plugins/simulator/simulator_options.h"
 #include "plugins/simulator/truth_log.h"
 
@@ -40,6 +41,10 @@ class SimulatedVehicle final : public core::Vehicle {
   void fire_camera(std::size_t index);
   void report_pose();
   void move_rocks();
+  void stir_air();
+  /// What the sensor's air is like now; `beams` names the random stream of its echoes.
+  Air air_for(const std::string& beams);
+  SensorFaults::Strike faults_of(cave::Fault::Sensor sensor);
   void log_truth();
   core::TimeNs now() const { return executive_->now(); }
   /// A random stream of its own for each measurement, so that it matters not which thread makes it when.
@@ -49,6 +54,8 @@ class SimulatedVehicle final : public core::Vehicle {
   std::uint64_t seed_;
   std::shared_ptr<cave::Cave> cave_;  // replaced as a whole when boulders come or move
   LooseRocks rocks_;
+  CaveAir air_;
+  SensorFaults faults_;
   LaunchSite site_;
   Quadrotor quadrotor_;
   std::shared_ptr<const Lidar> lidar_;

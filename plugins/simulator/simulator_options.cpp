@@ -9,6 +9,7 @@ void describe(core::OptionTable& t, SimulatorOptions& o) {
       "forward");
   describe(t, o.battery);
   describe(t, o.wind);
+  t.section("air", o.air);
   t.section("lidar", o.lidar);
   t.section("camera", o.camera);
   t.section("imu", o.imu);

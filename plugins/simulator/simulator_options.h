@@ -2,6 +2,7 @@
 #pragma once
 #include "plugins/simulator/autopilot.h"
 #include "plugins/simulator/battery.h"
+#include "plugins/simulator/cave_air.h"
 #include "plugins/simulator/depth_camera.h"
 #include "plugins/simulator/imu.h"
 #include "plugins/simulator/lidar.h"
@@ -16,6 +17,7 @@ struct SimulatorOptions {
   std::string vehicle = "lidar_uav";
   BatteryOptions battery;
   WindOptions wind;
+  AirOptions air;
   LidarOptions lidar;
   CameraOptions camera;
   ImuOptions imu;

@@ -22,7 +22,7 @@ class TruthLog {
   explicit TruthLog(const std::string& run_dir);
   void pose(core::TimeNs stamp, const core::Pose& T_world_body);
   void row(core::TimeNs stamp, const TruthRow& row);
-  /// `what` is one of start, take-off, landed, contact, battery, rockfall.
+  /// `what` is one of start, take-off, landed, contact, battery, rockfall, fault.
   void event(core::TimeNs stamp, const std::string& what, const BodyState& s, const std::string& detail);
   /// Hands everything to the operating system, so that a run cut short is complete to the last second.
   void flush();

@@ -34,6 +34,36 @@ struct LooseRock {
   double radius_m = 1, after_s = 0, within_m = 0, speed_mps = 0;
 };
 
+/// Dust or droplets that hang in the air, equally dense throughout a ball or a box along the axes.
+struct Cloud {
+  core::Vec3 position = core::Vec3::Zero();          // its centre
+  core::Vec3 half_size_m = core::Vec3::Constant(1);  // of a ball: its radius, three times
+  bool box = false;
+  double extinction_1pm = 0.3;  // share of light lost per metre: I = I0 exp(-extinction * way)
+  double lidar_ratio_sr = kDust_sr;
+  double after_s = 0;  // it is there from then on
+
+  /// Extinction over backscatter. Dust of deserts 55 +- 5 sr (Mueller et al., J. Geophys. Res. 112, 2007, of
+  /// Saharan dust), droplets 18.8 +- 0.8 sr at the 905 nm of a LiDAR (O'Connor, Illingworth, Hogan, J. Atmos.
+  /// Oceanic Technol. 21, 2004).
+  static constexpr double kDust_sr = 55, kDroplets_sr = 18.8;
+};
+
+/// Something goes wrong with a sensor. It strikes every message measured in [after, after + lasts), and at
+/// least the first from `after` on.
+struct Fault {
+  enum class Sensor { lidar, imu, magnetometer, camera, pose };
+  enum class Kind {
+    lost,          // no message
+    nan,           // every second range and every third intensity is NaN; LiDAR only, as the rest
+    three_points,  // three returns are left
+    stamp_back     // stamped 250 ms early: before scans that came earlier
+  };
+  Sensor sensor = Sensor::lidar;
+  Kind kind = Kind::lost;
+  double after_s = 0, lasts_s = 0;
+};
+
 struct CaveDescription {
   std::string file;       // what the user named
   std::string mesh_path;  // the same, or what the .info file names
@@ -42,6 +72,8 @@ struct CaveDescription {
   std::vector<Patch> patches;
   std::vector<OreBody> ore_bodies;
   std::vector<LooseRock> boulders;
+  std::vector<Cloud> clouds;
+  std::vector<Fault> faults;
 };
 
 /// Reads a cave `.info` file, or describes a bare mesh, which needs `start` ("x y z [heading_deg]"; a
@@ -53,6 +85,9 @@ struct CaveDescription {
 ///   patch { position "4 2 1" radius "3 m" reflectivity 0.1 }     ; any number of these
 ///   ore { position "9 0 -2" moment "0 0 4000" }                  ; and of these
 ///   boulder { position "20 3 1" radius "2.5 m" after "30 s" within "7 m" to "20 9 1" speed "0.5 m/s" }
+///   cloud { position "12 2 1" radius "2 m" extinction "0.4 1/m" of droplets after "30 s" }
+///   cloud { position "12 2 1" size "8 4 3" extinction "0.1 1/m" of dust }
+///   fault { sensor lidar kind lost after "40 s" for "1 s" }
 CaveDescription describe_cave(const std::string& path, const std::string& start);
 
 struct Cave {

@@ -1,0 +1,17 @@
+// The blocks of a cave's .info file, and the numbers in them. All throw InputError naming the file and key.
+#pragma once
+#include <boost/property_tree/ptree_fwd.hpp>
+
+#include "plugins/simulator/cave/cave.h"
+
+namespace karst::cave {
+
+/// "x y z [heading_deg]"
+StartPose read_start(const std::string& source, const std::string& text);
+Patch read_patch(const std::string& source, const boost::property_tree::ptree& tree);
+OreBody read_ore(const std::string& source, const boost::property_tree::ptree& tree);
+LooseRock read_loose_rock(const std::string& source, const boost::property_tree::ptree& tree);
+Cloud read_cloud(const std::string& source, const boost::property_tree::ptree& tree);
+Fault read_fault(const std::string& source, const boost::property_tree::ptree& tree);
+
+}  // namespace karst::cave

@@ -1,0 +1,32 @@
+// Which faults of the cave strike a sensor's message, and what they make of a scan.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core_stack/vehicle/messages.h"
+#include "plugins/simulator/cave/cave.h"
+
+namespace karst::sim {
+
+class SensorFaults {
+ public:
+  explicit SensorFaults(std::vector<cave::Fault> faults)
+      : faults_(std::move(faults)), begun_(faults_.size()) {}
+
+  struct Strike {
+    std::vector<cave::Fault::Kind> kinds;
+    std::vector<std::string> begun;  // in words, those that strike for the first time
+    bool lost() const;
+  };
+  /// What strikes a message measured now; times never go back.
+  Strike strike(cave::Fault::Sensor sensor, double t_s);
+
+ private:
+  std::vector<cave::Fault> faults_;
+  std::vector<bool> begun_;
+};
+
+/// Does to a scan what the fault does; kinds other than those of scans do nothing.
+void spoil(core::LidarScan& scan, cave::Fault::Kind kind);
+
+}  // namespace karst::sim
