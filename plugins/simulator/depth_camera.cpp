@@ -100,9 +100,9 @@ float DepthCamera::through(const CloudyWay& way, const PixelLight& rock, float r
                            core::Random& random) const {
   if (way.depth(rock.range_m) == 0) return range_m;
   const bool tof = options_.kind == "tof";
-  // The lamp of a time-of-flight camera sits at its lens, the lamps that stereo sees by beside it: they light
-  // what it looks at from half a metre on.
-  const double lit_from_m = tof ? 0.1 : 0.5;
+  // The lamp of a time-of-flight camera sits beside its lens, the lamps that stereo sees by farther off: from
+  // there on they light what it looks at. Nearer droplets are dark, and out of focus.
+  const double lit_from_m = tof ? 0.3 : 0.5;
   const PixelLight left{rock.range_m, rock.strength * way.two_way(rock.range_m)};
   std::vector<PixelLight> veil;
   way.for_each_stretch(lit_from_m, rock.range_m, kCameraStretch_m, [&](const CloudyWay::Stretch& s) {

@@ -40,7 +40,6 @@ void describe(core::OptionTable& t, LidarOptions& o) {
       "dust", o.dust_share, "", 0, 0.9,
       "share of beams sent back from anywhere near, whatever is there: for tests; physical dust is in air.*");
   t.add("mast", o.mast_m, "m", -1, 1, "height of the sensor above the vehicle's centre");
-  t.add("echo", o.echo, {"strongest", "first"}, "which one is reported where a cloud gives several");
 }
 
 std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o) {
@@ -58,11 +57,15 @@ std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o) {
   return model;
 }
 
-float least_intensity(const core::LidarModel& model) { return return_intensity(0.1, 1, model.max_range_m); }
-
 float return_intensity(double reflectivity, float cos_incidence, float range_m) {
   const float fall_off = 1 + (range_m / 25) * (range_m / 25);
   return std::clamp(static_cast<float>(reflectivity) * cos_incidence / fall_off, 0.0f, 1.0f);
+}
+
+double received_light(double reflectivity, double range_m) {
+  constexpr double kFullOverlap_m = 2;
+  const double r = std::max(range_m, kFullOverlap_m);
+  return reflectivity / (r * r);
 }
 
 Lidar::Lidar(const LidarOptions& o) : options_(o), model_(lidar_model(o)) {
@@ -71,22 +74,27 @@ Lidar::Lidar(const LidarOptions& o) : options_(o), model_(lidar_model(o)) {
 }
 
 Lidar::Return Lidar::through(const CloudyWay& way, const Return& clear, core::Random& random) const {
-  const double reach_m = std::min(clear.range_m, model_->max_range_m);
+  const double max_range_m = static_cast<double>(model_->max_range_m);
+  const double reach_m = std::min(static_cast<double>(clear.range_m), max_range_m);
   if (way.depth(reach_m) == 0) return clear;
-  const float least = least_intensity(*model_);
-  Return best{clear.range_m, clear.intensity * static_cast<float>(way.two_way(reach_m))};
-  if (best.intensity < least) best = {std::numeric_limits<float>::quiet_NaN(), 0};
-  bool from_cloud = false;
-  way.for_each_stretch(model_->min_range_m, reach_m, kPulse_m, [&](const CloudyWay::Stretch& s) {
-    // Both drawn for every stretch, so that a choice changes no later draw.
-    const double echo = s.echo(random);
-    const auto range_m = static_cast<float>(s.place_m(random));
-    const float intensity = return_intensity(echo, 1, range_m);
-    if (intensity < least) return;
-    if (options_.echo == "first" ? from_cloud : intensity < best.intensity) return;
-    best = {range_m, std::min(intensity, 1.0f)};
-    from_cloud = true;
-  });
+  const double left = way.two_way(reach_m);
+  const double reflectivity = static_cast<double>(clear.intensity / return_intensity(1, 1, clear.range_m));
+  // The weakest echo it notices: that of rock of 10 % at its greatest range, as data sheets state it.
+  double strongest = received_light(0.1, max_range_m);
+  Return best{std::numeric_limits<float>::quiet_NaN(), 0};
+  if (const double light = received_light(reflectivity * left, reach_m); light >= strongest) {
+    strongest = light;
+    best = {clear.range_m, clear.intensity * static_cast<float>(left)};
+  }
+  way.for_each_stretch(static_cast<double>(model_->min_range_m), reach_m, kPulse_m,
+                       [&](const CloudyWay::Stretch& s) {
+                         const double echo = s.echo(random), range_m = s.place_m(random);
+                         const double light = received_light(echo, range_m);
+                         if (light < strongest) return;
+                         strongest = light;
+                         const auto range = static_cast<float>(range_m);
+                         best = {range, return_intensity(echo, 1, range)};
+                       });
   return best;
 }
 

@@ -11,10 +11,9 @@ namespace karst::sim {
 struct LidarOptions {
   std::string unit = "os0_32";
   std::int64_t columns = 512;
-  double noise_m = 0.02;           // standard deviation of a range
-  double dust_share = 0;           // of beams that dust or droplets near the vehicle send back
-  double mast_m = 0.1;             // height above the vehicle's centre
-  std::string echo = "strongest";  // of several, the one that is reported
+  double noise_m = 0.02;  // standard deviation of a range
+  double dust_share = 0;  // of beams that dust or droplets near the vehicle send back
+  double mast_m = 0.1;    // height above the vehicle's centre
 };
 void describe(core::OptionTable& t, LidarOptions& o);
 
@@ -36,7 +35,7 @@ class Lidar {
   struct Return {
     float range_m, intensity;
   };
-  /// What becomes of a beam's return in clear air.
+  /// What becomes of a beam's return in clear air: of all echoes the strongest is reported.
   Return through(const CloudyWay& way, const Return& clear, core::Random& random) const;
 
   LidarOptions options_;
@@ -44,10 +43,12 @@ class Lidar {
   std::vector<core::Vec3f> beams_;  // unit vectors in the lidar frame, channel-major
 };
 
-/// The weakest return that a unit notices: rock of 10 % at its greatest range, as data sheets state it.
-float least_intensity(const core::LidarModel& model);
-
 /// Returned share of light: reflectivity * cos(incidence) / (1 + (range / 25 m)^2).
 float return_intensity(double reflectivity, float cos_incidence, float range_m);
+
+/// Light that the receiver gathers, up to a factor of the unit: reflectivity / range^2. Nearer than 2 m its
+/// view and the beam overlap in part only, and no more comes in than from there (the crossover function of
+/// Hahner et al.; units differ, their makers do not say).
+double received_light(double reflectivity, double range_m);
 
 }  // namespace karst::sim

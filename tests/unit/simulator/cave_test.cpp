@@ -40,6 +40,35 @@ TEST_F(CaveFiles, BouldersAreReadAndTheirMistakesNamed) {
             std::string::npos);
 }
 
+TEST_F(CaveFiles, CloudsAndFaultsAreRead) {
+  const cave::CaveDescription c =
+      cave::load_cave(info("mesh box.ply\nstart \"0 0 2\"\n"
+                           "cloud { position \"3 0 1\" radius \"150 cm\" extinction \"0.4 1/m\" of droplets "
+                           "after \"20 s\" }\n"
+                           "cloud { position \"1 1 1\" size \"4 2 1\" extinction \"50 1/km\" }\n"
+                           "fault { sensor lidar after \"40 s\" for \"1500 ms\" }\n"
+                           "fault { sensor lidar kind stamp_back after 50 }\n"
+                           "fault { sensor camera kind lost after 60 for 2 }\n"),
+                      "")
+          .description;
+  ASSERT_EQ(c.clouds.size(), 2u);
+  EXPECT_FALSE(c.clouds[0].box);
+  EXPECT_EQ(c.clouds[0].half_size_m, Vec3(1.5, 1.5, 1.5));
+  EXPECT_EQ(c.clouds[0].extinction_1pm, 0.4);
+  EXPECT_EQ(c.clouds[0].lidar_ratio_sr, cave::Cloud::kDroplets_sr);
+  EXPECT_EQ(c.clouds[0].after_s, 20);
+  EXPECT_TRUE(c.clouds[1].box);
+  EXPECT_EQ(c.clouds[1].half_size_m, Vec3(2, 1, 0.5));
+  EXPECT_NEAR(c.clouds[1].extinction_1pm, 0.05, 1e-12);
+  EXPECT_EQ(c.clouds[1].lidar_ratio_sr, cave::Cloud::kDust_sr);
+  ASSERT_EQ(c.faults.size(), 3u);
+  EXPECT_EQ(c.faults[0].kind, cave::Fault::Kind::lost);
+  EXPECT_EQ(c.faults[0].lasts_s, 1.5);
+  EXPECT_EQ(c.faults[1].kind, cave::Fault::Kind::stamp_back);
+  EXPECT_EQ(c.faults[1].lasts_s, 0);
+  EXPECT_EQ(c.faults[2].sensor, cave::Fault::Sensor::camera);
+}
+
 TEST_F(CaveFiles, InfoFileIsReadWithItsMeshBesideIt) {
   const cave::Cave c = cave::load_cave(info(R"(
 mesh box.ply
@@ -86,6 +115,26 @@ TEST_F(CaveFiles, ErrorsNameTheKeyAndWhatWasExpected) {
   expect("mesh box.ply\nstart \"0 0 1\"\nreflectivity 2", "0 to 1");
   expect("mesh box.ply\nstart \"0 0 1\"\npatch { position \"0 0 0\" radus 3 }", "did you mean patch.radius?");
   expect("mesh box.ply\nstart \"0 0 1\"\nore { position \"0 0 0\" }", "ore.moment");
+  const std::string head = "mesh box.ply\nstart \"0 0 1\"\n";
+  expect(head + "cloud { radius \"1 m\" }", "cloud.position");
+  expect(head + "cloud { position \"0 0 0\" }", "cloud.radius: expected either a radius");
+  expect(head + "cloud { position \"0 0 0\" radius 1 size \"1 1 1\" }",
+         "cloud.radius: expected either a radius");
+  expect(head + "cloud { position \"0 0 0\" size \"1 1\" }", "cloud.size");
+  expect(head + "cloud { position \"0 0 0\" size \"1 0 1\" }", "cloud.size: expected three edges above 0 m");
+  expect(head + "cloud { position \"0 0 0\" radius \"1 s\" }", "cloud.radius");
+  expect(head + "cloud { position \"0 0 0\" radius 1 extinction 0 }",
+         "cloud.extinction: expected a number in");
+  expect(head + "cloud { position \"0 0 0\" radius 1 extinction \"1 m\" }", "cloud.extinction");
+  expect(head + "cloud { position \"0 0 0\" radius 1 of smoke }", "one of dust droplets");
+  expect(head + "cloud { position \"0 0 0\" radius 1 after -1 }", "cloud.after");
+  expect(head + "cloud { position \"0 0 0\" radus 1 }", "did you mean cloud.radius?");
+  expect(head + "fault { after 3 }", "fault.sensor: missing");
+  expect(head + "fault { sensor sonar }", "fault.sensor: expected one of lidar imu");
+  expect(head + "fault { sensor lidar kind gone }", "fault.kind: expected one of lost nan");
+  expect(head + "fault { sensor imu kind nan }", "fault.kind: expected lost");
+  expect(head + "fault { sensor imu after \"1 m\" }", "fault.after");
+  expect(head + "fault { sensor imu for -2 }", "fault.for");
   expect("mesh box.ply\nstart \"0 0 1", "line");
   EXPECT_NE(error_for("mesh other.ply\nstart \"0 0 1\"").find("other.ply"), std::string::npos);
 }

@@ -50,5 +50,26 @@ TEST(Imu, BiasWalksWithTheSquareRootOfTime) {
   EXPECT_NEAR(std::sqrt(square), 0.001 * 2, 0.0002);
 }
 
+TEST(Imu, VibrationHasItsDeviationInFlightAndTouchesNoOtherNoise) {
+  ImuOptions o;
+  o.vibration_mps2 = 3;
+  o.gyroscope_vibration_radps = 0.02;
+  Imu still(o, core::Random(3), core::Random(4)), flying(o, core::Random(3), core::Random(4));
+  constexpr int kSamples = 20000;
+  Vec3 force = Vec3::Zero(), rate = Vec3::Zero(), force_mean = Vec3::Zero();
+  for (int i = 0; i < kSamples; ++i) {
+    const core::TimeNs t = i * 5 * core::kMillisecond;
+    const auto a = still.sample(t, {0, 0, 9.81}, Vec3::Zero(), 0.005),
+               b = flying.sample(t, {0, 0, 9.81}, Vec3::Zero(), 0.005, true);
+    const Vec3 f = b.specific_force_mps2 - a.specific_force_mps2, w = b.body_rate_radps - a.body_rate_radps;
+    force += f.cwiseAbs2() / kSamples, rate += w.cwiseAbs2() / kSamples, force_mean += f / kSamples;
+  }
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(std::sqrt(force[k]), 3, 0.1);
+    EXPECT_NEAR(std::sqrt(rate[k]), 0.02, 0.001);
+  }
+  EXPECT_LT(force_mean.norm(), 0.02) << "it shakes, it does not push";
+}
+
 }  // namespace
 }  // namespace karst::test

@@ -48,7 +48,7 @@ TEST_P(LidarUnits, RangesInABoxAreTheClosedForm) {
       ASSERT_NEAR(scan.range_m[static_cast<std::size_t>(c * 256 + j)], expected, 1e-4) << c << " " << j;
     }
 }
-INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os1_64", "os0_128"));
+INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os0_64", "os1_64", "os0_128"));
 
 TEST(Lidar, UnitsHaveTheirChannelsAndFieldOfView) {
   const auto check = [](const char* unit, int channels, double half_fov_deg) {
@@ -59,8 +59,19 @@ TEST(Lidar, UnitsHaveTheirChannelsAndFieldOfView) {
   };
   check("vlp16", 16, 15);
   check("os0_32", 32, 45);
+  check("os0_64", 64, 45);
   check("os1_64", 64, 22.5);
   check("os0_128", 128, 45);
+}
+
+TEST(Lidar, A64ChannelUnitOf1024ColumnsGivesItsPoints) {
+  const cave::Cave box = make_cave(box_mesh(kLow, kHigh));
+  for (const char* unit : {"os0_64", "os1_64"}) {
+    const LidarScan scan = Lidar(exact(unit, 1024)).sweep(box, {{0, {}}}, kEnd, core::Random(1));
+    EXPECT_EQ(scan.range_m.size(), 65536u);
+    EXPECT_EQ(scan.model->columns, 1024);
+    for (const float r : scan.range_m) ASSERT_TRUE(std::isfinite(r));
+  }
 }
 
 TEST(Lidar, ASweepFromAMovingVehicleIsDistortedColumnByColumn) {

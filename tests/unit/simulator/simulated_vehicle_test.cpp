@@ -120,6 +120,86 @@ TEST_F(Simulation, MessagesComeAtTheirRates) {
   EXPECT_EQ(listener->grounds, "G");
 }
 
+TEST_F(Simulation, WithoutThePoseSensorThereIsNotOneMessageOfItAndAllElseIsTheSame) {
+  const std::string with = fly(2.0, [](double, double) { return 0; });
+  options.pose.enabled = false;
+  const std::string without = fly(2.0, [](double, double) { return 0; });
+  EXPECT_EQ(listener->poses, 0);
+  const auto but_poses = [](const std::string& log) {
+    std::istringstream in(log);
+    std::string kept;
+    for (std::string line; std::getline(in, line);)
+      if (!line.starts_with("pose ")) kept += line + '\n';
+    return kept;
+  };
+  EXPECT_EQ(without.find("pose "), std::string::npos);
+  EXPECT_TRUE(but_poses(with) == without);
+}
+
+TEST_F(Simulation, FaultsOfTheCaveStrikeAndAreWrittenDown) {
+  write_bytes(folder + "/cave.info", R"(mesh hall.ply
+start "1 2 1.5 90"
+fault { sensor lidar kind lost after 0.45 for 1 }
+fault { sensor lidar kind nan after 1.55 }
+fault { sensor lidar kind three_points after 1.65 }
+fault { sensor lidar kind stamp_back after 1.75 }
+fault { sensor imu after 0.2 for 0.5 }
+fault { sensor magnetometer after 0.2 for 0.5 }
+fault { sensor camera after 0.5 for 1 }
+fault { sensor pose after 0.5 for 1 }
+)");
+  setup.cave = folder + "/cave.info";
+  const std::string log = fly(2.0, [](double, double) { return 0; });
+  EXPECT_EQ(listener->lidar, 19 - 10);
+  EXPECT_EQ(listener->imu, 400 - 100);
+  EXPECT_EQ(listener->magnetometer, 100 - 25);
+  EXPECT_EQ(listener->depth, 20 - 10);
+  EXPECT_EQ(listener->poses, 97 - 50);
+  std::vector<double> stamps;
+  std::vector<int> finite;
+  std::istringstream in(log);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("lidar ")) {
+      std::istringstream words(line);
+      std::string word;
+      TimeNs stamp = 0;
+      words >> word >> stamp >> word >> word;
+      stamps.push_back(seconds(stamp));
+      int n = 0;
+      while (words >> word) n += word != "nan" && word != "inf";
+      finite.push_back(n);
+    }
+  const auto count_at = [&](double t) {
+    return finite.at(static_cast<std::size_t>(std::find(stamps.begin(), stamps.end(), t) - stamps.begin()));
+  };
+  EXPECT_EQ(count_at(0.1), 32 * 128);
+  EXPECT_EQ(count_at(1.6), 32 * 128 / 2);
+  EXPECT_EQ(count_at(1.7), 3);
+  EXPECT_EQ(count_at(1.55), 32 * 128) << "1.8 s, stamped 250 ms early";
+  const std::string events = read_bytes(folder + "/truth_events.jsonl");
+  for (const char* what : {"lidar lost for 1.000 s", "lidar nan", "lidar three_points", "lidar stamp_back",
+                           "imu lost for 0.500 s", "magnetometer lost", "camera lost", "pose lost"})
+    EXPECT_NE(events.find(what), std::string::npos) << what;
+  EXPECT_NE(events.find("\"time_s\": 0.500, \"event\": \"fault\""), std::string::npos) << events;
+}
+
+TEST_F(Simulation, DustStirredUpOverTheFloorReachesTheLidarAndRepeatsItself) {
+  const std::string clear = fly(3, hop);
+  const std::vector<float> rock = listener->last_scan->range_m;
+  options.air.stirred_1pm = 2;
+  const std::string one = fly(3, hop, 1);
+  int nearer = 0, lost = 0;
+  for (std::size_t i = 0; i < rock.size(); ++i) {
+    nearer += listener->last_scan->range_m[i] < rock[i] - 0.1f;
+    lost += std::isnan(listener->last_scan->range_m[i]);
+  }
+  EXPECT_GT(nearer, 40) << "of 4096";
+  EXPECT_LT(nearer + lost, 3000) << "it lies on the floor";
+  EXPECT_TRUE(one == fly(3, hop, 4)) << "with any number of threads";
+  const auto imu_of = [](const std::string& log) { return log.substr(log.rfind("imu "), 60); };
+  EXPECT_EQ(imu_of(one), imu_of(clear)) << "dust changes no other sensor's noise";
+}
+
 TEST_F(Simulation, AtRestTheImuReadsGravity) {
   options.wind.gust_mps = 3;
   fly(1.0, [](double, double) { return 0; });
