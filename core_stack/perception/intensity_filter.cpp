@@ -7,13 +7,22 @@
 namespace karst::core {
 
 void describe(OptionTable& t, IntensityFilterOptions& o) {
+  t.add("rule", o.rule, {"lonely", "percentile", "both", "none"},
+        "which returns are taken for dust: those no surface passes through, or the weakest near the sensor");
   t.add("percentile", o.percentile, "%", 0, 100,
-        "weakest share of a scan's returns that is suspected; 0: filter off");
-  t.add("radius", o.radius_m, "m", 0, 100, "only returns nearer to the sensor than this are judged");
+        "weakest share of a scan's returns that the rule percentile suspects; 0: none");
+  t.add("radius", o.radius_m, "m", 0, 100, "that rule judges only returns nearer to the sensor than this");
+  t.section("lonely", o.lonely);
 }
 
 void filter_low_intensity(LidarScan& scan, const IntensityFilterOptions& options) {
-  if (options.percentile <= 0 || scan.intensity.size() != scan.range_m.size()) return;
+  if (options.rule == "percentile" || options.rule == "both")
+    drop_weakest_returns(scan, options.percentile, options.radius_m);
+  if (options.rule == "lonely" || options.rule == "both") drop_lonely_returns(scan, options.lonely);
+}
+
+void drop_weakest_returns(LidarScan& scan, double percentile, double radius_m) {
+  if (percentile <= 0 || scan.intensity.size() != scan.range_m.size()) return;
   std::vector<float> returned;
   returned.reserve(scan.range_m.size());
   for (std::size_t i = 0; i < scan.range_m.size(); ++i)
@@ -22,13 +31,12 @@ void filter_low_intensity(LidarScan& scan, const IntensityFilterOptions& options
   if (returned.empty()) return;
 
   // The percentile is the intensity that this share of the returns lies below.
-  const auto rank =
-      static_cast<std::size_t>(options.percentile / 100.0 * static_cast<double>(returned.size()));
+  const auto rank = static_cast<std::size_t>(percentile / 100.0 * static_cast<double>(returned.size()));
   const auto at = returned.begin() + static_cast<std::ptrdiff_t>(std::min(rank, returned.size() - 1));
   std::nth_element(returned.begin(), at, returned.end());
   const float threshold = *at;
   for (std::size_t i = 0; i < scan.range_m.size(); ++i)
-    if (scan.range_m[i] < static_cast<float>(options.radius_m) && scan.intensity[i] < threshold)
+    if (scan.range_m[i] < static_cast<float>(radius_m) && scan.intensity[i] < threshold)
       scan.range_m[i] = std::numeric_limits<float>::quiet_NaN();
 }
 

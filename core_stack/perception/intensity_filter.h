@@ -1,19 +1,26 @@
-// Dust and droplets return little light: near the sensor, the weakest returns of a scan are dropped.
-// Section III-A of the paper.
+// Dust and droplets return little light, and from anywhere: near the sensor, what looks like them is dropped.
+//
+// Two rules. `percentile` is the paper's (section III-A): within a local neighbourhood of the sensor, the
+// returns below the 10th percentile of the scan's intensities. `lonely` asks each return's neighbours as well
+// (lonely_returns.h). docs/perception.md compares them.
 #pragma once
-#include "core_stack/common/options.h"
-#include "core_stack/vehicle/messages.h"
+#include "core_stack/perception/lonely_returns.h"
 
 namespace karst::core {
 
 struct IntensityFilterOptions {
-  double percentile = 10.0;  // of the scan's intensities; 0 switches the filter off
-  double radius_m = 1.5;     // only returns nearer than this are judged
+  double percentile = 10.0;     // of the scan's intensities; 0 switches that rule off
+  double radius_m = 1.5;        // that rule judges only returns nearer than this
+  std::string rule = "lonely";  // or "percentile", "both", "none"
+  LonelyReturnOptions lonely;
 };
 void describe(OptionTable& t, IntensityFilterOptions& o);
 
 /// Returns nearer than the radius whose intensity lies below the percentile of all the scan's returns become
 /// NaN.
+void drop_weakest_returns(LidarScan& scan, double percentile, double radius_m);
+
+/// By the rule chosen.
 void filter_low_intensity(LidarScan& scan, const IntensityFilterOptions& options);
 
 }  // namespace karst::core
