@@ -35,16 +35,17 @@ inline std::vector<core::Pose> poses_of(const std::string& run_dir, double perio
 }
 
 /// One kind of bad air.
+/// Defaults: clear air, bare rock.
 struct BadAir {
   std::string name;
   sim::AirOptions air;
-  double cloud_1pm = 0;   // balls of droplets of 1.5 m radius, 3 m ahead, beside and behind
+  double cloud_1pm = 0;       // balls of droplets of 1.5 m radius, 3 m ahead, beside and behind
   double reflectivity = 0.5;  // of the rock
 };
 
 /// Measures from each pose, in clear and in bad air with the same noise.
-inline std::vector<LabelledScan> scans_in(const BadAir& bad, const cave::Cave& clear_cave, const sim::Lidar& lidar,
-                                          const std::vector<core::Pose>& poses) {
+inline std::vector<LabelledScan> scans_in(const BadAir& bad, const cave::Cave& clear_cave,
+                                          const sim::Lidar& lidar, const std::vector<core::Pose>& poses) {
   std::vector<LabelledScan> scans;
   cave::Cave cave = clear_cave;
   cave.description.reflectivity = bad.reflectivity;
@@ -79,10 +80,10 @@ inline std::vector<LabelledScan> scans_in(const BadAir& bad, const cave::Cave& c
 }
 
 struct FilterFigures {
-  double dust_share = 0;      // of all returns
-  double removed = 0;         // share of the dust's returns, removed
-  double rock_lost = 0;       // share of the rock's returns, removed
-  double dust_left = 0;       // false returns a scan left
+  double dust_share = 0;  // of all returns
+  double removed = 0;     // share of the dust's returns, removed
+  double rock_lost = 0;   // share of the rock's returns, removed
+  double dust_left = 0;   // false returns a scan left
 };
 
 /// `filter` takes a LidarScan& and makes NaN of what it drops.
