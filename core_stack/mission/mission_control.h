@@ -70,7 +70,7 @@ class MissionControl final : public VehicleSink {
 
   // Localization and mapping.
   void note_localization(const LoamPose& pose, bool accepted);
-  void map_scan(std::shared_ptr<const LidarScan> scan, const std::string& filter_rule);
+  void map_scan(std::shared_ptr<const LidarScan> scan, bool filtered);
   void integrate(std::function<std::vector<Ray>()> make_rays);
   void on_map_update(const std::vector<CellChange>& changes, std::optional<double> blocked_after_m,
                      bool goal_alive);

@@ -17,7 +17,7 @@ constexpr double kSelfMargin_m = 0.05;
 }  // namespace
 
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
-  if (!loam_) return map_scan(std::move(scan), options_.perception.rule);
+  if (!loam_) return map_scan(std::move(scan), false);
   struct Sighting {
     std::shared_ptr<LidarScan> scan;
     LoamPose pose;
@@ -37,7 +37,7 @@ void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
             pose.valid && flight_.on_lidar_pose({pose.stamp, pose.T_world_body, pose.covariance});
         note_localization(pose, accepted);
         // What is not known where it was seen would spoil the map.
-        if (accepted) map_scan(located->scan, "none");
+        if (accepted) map_scan(located->scan, true);
       });
 }
 
@@ -62,14 +62,12 @@ void MissionControl::note_localization(const LoamPose& pose, bool accepted) {
                    {"reason", state}});
 }
 
-void MissionControl::map_scan(std::shared_ptr<const LidarScan> scan, const std::string& rule) {
-  integrate([scan, history = flight_.estimator().history(), options = options_, rule,
-             radius = description_.radius_m] {
-    LidarScan filtered = *scan;
-    IntensityFilterOptions filter = options.perception;
-    filter.rule = rule;
-    filter_low_intensity(filtered, filter);
-    return to_rays(filtered, history, radius + kSelfMargin_m, options.mission.mapping_range_m);
+void MissionControl::map_scan(std::shared_ptr<const LidarScan> scan, bool filtered) {
+  integrate([scan, filtered, history = flight_.estimator().history(), options = options_,
+             self_m = description_.radius_m + kSelfMargin_m] {
+    LidarScan clean = *scan;
+    if (!filtered) filter_low_intensity(clean, options.perception);
+    return to_rays(clean, history, self_m, options.mission.mapping_range_m);
   });
 }
 

@@ -77,18 +77,17 @@ std::vector<Offset> window(const LidarModel& model) {
   return offsets;
 }
 
-/// For one row of beams, how many neighbours there are, and how many agree.
+/// Of one row of beams: how many neighbours each has, and how many agree with it.
 struct Votes {
-  std::vector<float> there, agree;
+  float *there, *agree;
 };
 
-void count_votes(const Ranges& ranges, std::size_t row, const std::vector<Offset>& offsets, float tolerance_m,
-                 Votes& votes) {
-  const auto columns = static_cast<std::ptrdiff_t>(votes.there.size());
-  std::fill(votes.there.begin(), votes.there.end(), 0.0f);
-  std::fill(votes.agree.begin(), votes.agree.end(), 0.0f);
+void count_votes(const Ranges& ranges, std::size_t row, std::ptrdiff_t columns,
+                 const std::vector<Offset>& offsets, float tolerance_m, const Votes& votes) {
+  std::fill(votes.there, votes.there + columns, 0.0f);
+  std::fill(votes.agree, votes.agree + columns, 0.0f);
   const float* here = ranges.row(row, 0);
-  float *there = votes.there.data(), *agree = votes.agree.data();
+  float *there = votes.there, *agree = votes.agree;
   for (const Offset& o : offsets) {
     const float *one = ranges.row(row, o.row) + o.column, *other = ranges.row(row, -o.row) - o.column;
     const float twice_cosine = 2 * std::cos(o.angle_rad), slope = kSlope * o.angle_rad;
@@ -111,20 +110,25 @@ void drop_lonely_returns(LidarScan& scan, const LonelyReturnOptions& options) {
   if (!scan.model || scan.model->columns < 3 || scan.intensity.size() != scan.range_m.size()) return;
   const auto columns = static_cast<std::size_t>(scan.model->columns), rows = scan.model->elevation_rad.size();
   if (columns * rows != scan.range_m.size()) return;
-  const Ranges ranges(scan);
   const std::vector<Offset> offsets = window(*scan.model);
   const auto radius_m = static_cast<float>(options.radius_m), share = static_cast<float>(options.agreement),
              bright = static_cast<float>(options.bright),
              tolerance_m = static_cast<float>(options.tolerance_m);
-  Votes votes{std::vector<float>(columns), std::vector<float>(columns)};
-  for (std::size_t row = 0; row < rows; ++row) {
-    count_votes(ranges, row, offsets, tolerance_m, votes);
-    for (std::size_t j = 0; j < columns; ++j) {
-      float& range_m = scan.range_m[row * columns + j];
-      const float x = range_m / kIntensityRange_m;
-      const float reflectivity = scan.intensity[row * columns + j] * (1 + x * x);
-      if (!(range_m < radius_m) || reflectivity >= bright) continue;
-      if (votes.there[j] < kLeastNeighbours || votes.agree[j] < share * votes.there[j]) range_m = kNan;
+  std::vector<float> there(columns), first_there(scan.range_m.size()), agree(columns);
+  // What the first round drops agrees with nobody in the second, but is still there: clumps of dust dissolve.
+  for (const int round : {0, 1}) {
+    const Ranges ranges(scan);
+    for (std::size_t row = 0; row < rows; ++row) {
+      float* neighbours = first_there.data() + row * columns;
+      count_votes(ranges, row, static_cast<std::ptrdiff_t>(columns), offsets, tolerance_m,
+                  {round == 0 ? neighbours : there.data(), agree.data()});
+      for (std::size_t j = 0; j < columns; ++j) {
+        float& range_m = scan.range_m[row * columns + j];
+        const float x = range_m / kIntensityRange_m;
+        const float reflectivity = scan.intensity[row * columns + j] * (1 + x * x);
+        if (!(range_m < radius_m) || reflectivity >= bright) continue;
+        if (neighbours[j] < kLeastNeighbours || agree[j] < share * neighbours[j]) range_m = kNan;
+      }
     }
   }
 }

@@ -13,7 +13,7 @@
 namespace karst::core {
 
 struct LonelyReturnOptions {
-  double agreement = 0.4;     // least share of the neighbours that lie on a surface with it
+  double agreement = 0.35;    // least share of the neighbours that lie on a surface with it
   double bright = 0.3;        // reflectivity, intensity corrected for range, of what is kept in any case
   double radius_m = 15;       // only returns nearer than this are judged
   double tolerance_m = 0.06;  // off the surface, at the sensor; grows by 6 mm a metre

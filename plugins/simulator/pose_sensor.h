@@ -7,7 +7,7 @@
 namespace karst::sim {
 
 struct PoseSensorOptions {
-  bool enabled = true;
+  std::string fitted = "without_lidar";  // or always, never
   double rate_hz = 50;
   double delay_s = 0.05;
   double noise_m = 0.01;  // standard deviation of each component

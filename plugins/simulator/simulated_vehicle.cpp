@@ -76,6 +76,8 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
   description_.max_body_rate_radps = options.autopilot.max_body_rate_radps;
   if (lidar_) description_.lidar = lidar_->model();
   for (const auto& camera : cameras_) description_.cameras.push_back(camera->model());
+  description_.pose_sensor =
+      options.pose.fitted == "always" || (options.pose.fitted == "without_lidar" && !lidar_);
   description_.T_world_start = site_.T_world_start;
   description_.implementation = std::string("Embree ") + cave::RayScene::device_config();
 }
@@ -105,7 +107,7 @@ void SimulatedVehicle::schedule_sensors() {
   const auto every = [this](TimeNs period, TimeNs phase, std::function<void()> read) {
     schedule_.push_back({period, phase, std::move(read)});
   };
-  if (options_.pose.enabled) every(period_of(options_.pose.rate_hz), 0, [this] { report_pose(); });
+  if (description_.pose_sensor) every(period_of(options_.pose.rate_hz), 0, [this] { report_pose(); });
   every(20 * kMillisecond, 0, [this] {
     const core::MagnetometerSample field =
         measure_field(options_.magnetometer, cave_->description.ore_bodies, quadrotor_.state().T_world_body,

@@ -6,9 +6,10 @@
 namespace karst::core {
 namespace {
 
-std::string refusal(const CoreOptions& o) {
+std::string refusal(const CoreOptions& o, bool pose_sensor = true) {
   VehicleDescription vehicle;
   vehicle.radius_m = 0.3;
+  vehicle.pose_sensor = pose_sensor;
   try {
     check(o, vehicle);
   } catch (const InputError& e) {
@@ -18,6 +19,10 @@ std::string refusal(const CoreOptions& o) {
 }
 
 TEST(OptionsCheck, TheDefaultsFitTogether) { EXPECT_EQ(refusal({}), ""); }
+
+TEST(OptionsCheck, AVehicleThatCannotLocateItselfIsRefused) {
+  EXPECT_NE(refusal({}, false).find("no pose sensor, nor a LiDAR"), std::string::npos) << refusal({}, false);
+}
 
 TEST(OptionsCheck, AClearanceBelowTheVehiclesRadiusIsRefused) {
   CoreOptions o;

@@ -26,7 +26,7 @@ TEST(IntensityFilter, DropsTheWeakestReturnsNearTheSensorOnly) {
     intensity.push_back(static_cast<float>(i) / 100);
   }
   LidarScan scan = scan_of(range_m, intensity);
-  filter_low_intensity(scan, {});  // 10th percentile, 1.5 m
+  drop_weakest_returns(scan, 10, 1.5);
   for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(std::isnan(scan.range_m[i]), i < 10 && i % 2 == 0) << i;
   EXPECT_EQ(scan.intensity, intensity);
 }
@@ -44,7 +44,7 @@ TEST(IntensityFilter, ThePercentileIsThatOfAllReturns) {
       scan.intensity.push_back(static_cast<float>(std::floor(random.uniform(0, 50)) / 50));  // many ties
     }
     const LidarScan before = scan;
-    filter_low_intensity(scan, {percentile, 1.5});
+    drop_weakest_returns(scan, percentile, 1.5);
     std::vector<float> returns;
     for (std::size_t i = 0; i < 200; ++i)
       if (std::isfinite(before.range_m[i])) returns.push_back(before.intensity[i]);
@@ -63,19 +63,36 @@ TEST(IntensityFilter, ThePercentileIsThatOfAllReturns) {
 TEST(IntensityFilter, LeavesScansAloneThatItCannotJudge) {
   const std::vector<float> ranges{1, 1, 1, kNan};
   LidarScan no_intensity = scan_of({1, 1, 1}, {});
-  filter_low_intensity(no_intensity, {});
+  drop_weakest_returns(no_intensity, 10, 1.5);
   EXPECT_EQ(no_intensity.range_m, (std::vector<float>{1, 1, 1}));
   LidarScan empty;
-  filter_low_intensity(empty, {});
+  drop_weakest_returns(empty, 10, 1.5);
   LidarScan nothing_seen = scan_of({kNan, kInf}, {0.5f, 0.1f});
-  filter_low_intensity(nothing_seen, {50, 2});
+  drop_weakest_returns(nothing_seen, 50, 2);
   EXPECT_EQ(nothing_seen.range_m[1], kInf);
   LidarScan uniform = scan_of({1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, kNan});
-  filter_low_intensity(uniform, {50, 2});
+  drop_weakest_returns(uniform, 50, 2);
   EXPECT_EQ(uniform.range_m, (std::vector<float>{1, 1, 1, 1})) << "none is weaker than the others";
   LidarScan off = scan_of({1, 1}, {0.0f, 1.0f});
-  filter_low_intensity(off, {0, 2});
+  drop_weakest_returns(off, 0, 2);
   EXPECT_EQ(off.range_m, (std::vector<float>{1, 1}));
+}
+
+TEST(IntensityFilter, TheRuleThatIsChosenIsTheOneThatIsUsed) {
+  const auto left = [](const char* rule) {
+    auto model = std::make_shared<LidarModel>();
+    model->columns = 64;
+    model->elevation_rad = {0.1f, 0.0f, -0.1f};
+    LidarScan scan{0, model, std::vector<float>(192, 1.0f), std::vector<float>(192, 0.2f)};
+    scan.intensity[70] = 0.01f;                            // weak, on the surface
+    scan.range_m[100] = 0.5f, scan.intensity[100] = 0.2f;  // off the surface, not weak
+    filter_low_intensity(scan, {10, 1.5, rule, {}});
+    return std::pair(!std::isnan(scan.range_m[70]), !std::isnan(scan.range_m[100]));
+  };
+  EXPECT_EQ(left("none"), std::pair(true, true));
+  EXPECT_EQ(left("lonely"), std::pair(true, false));
+  EXPECT_EQ(left("both"), std::pair(false, false));
+  EXPECT_EQ(left("percentile"), std::pair(false, true));
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ class Simulation : public testing::Test {
   Simulation() {
     cave::write_mesh(folder + "/hall.ply", box_mesh({-8, -8, 0}, {8, 8, 6}));
     options.lidar.columns = 128;
+    options.pose.fitted = "always";
     setup.cave = folder + "/hall.ply";
     setup.start = "1 2 1.5 90";
     setup.run_dir = folder;
@@ -122,7 +123,7 @@ TEST_F(Simulation, MessagesComeAtTheirRates) {
 
 TEST_F(Simulation, WithoutThePoseSensorThereIsNotOneMessageOfItAndAllElseIsTheSame) {
   const std::string with = fly(2.0, [](double, double) { return 0; });
-  options.pose.enabled = false;
+  options.pose.fitted = "never";
   const std::string without = fly(2.0, [](double, double) { return 0; });
   EXPECT_EQ(listener->poses, 0);
   const auto but_poses = [](const std::string& log) {
