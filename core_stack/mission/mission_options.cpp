@@ -55,6 +55,12 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
     refuse("planning.clearance", metres(o.planning.clearance_m) +
                                      " is less than the vehicle's radius and half a cell, " +
                                      metres(least_m));
+  // Not silently off: whoever asks for a margin wants narrower passages flown than the clearance allows.
+  if (const double narrow_m = vehicle.radius_m + o.planning.narrow_margin_m;
+      o.planning.narrow_margin_m > 0 && narrow_m >= o.planning.clearance_m)
+    refuse("planning.narrow_margin", "with the vehicle's radius it makes " + metres(narrow_m) +
+                                         ", which is no less than planning.clearance, " +
+                                         metres(o.planning.clearance_m));
   constexpr double kMostCells = 14;  // that planning on bits can keep clear
   for (const auto& [key, clearance_m] :
        {std::pair{"planning.clearance", o.planning.clearance_m},
