@@ -19,8 +19,9 @@ Reach narrow_reach(const VoxelMap& map, const PlanningOptions& options, double c
   narrow.clearance_m = clearance_m;
   narrow.search_slack_cells = 0.5;  // the middle of a passage askew to the grid lies off the cells' centres
   Reach reach(narrow);
-  map.for_each_known(
-      [&](const CellKey& k, Cell cell, float) { reach.due.push_back({k, Cell::unknown, cell}); });
+  map.for_each_known([&](const CellKey& k, Cell cell, float) {
+    reach.due.push_back({k, Cell::unknown, cell});
+  });
   return reach;
 }
 

@@ -1,4 +1,5 @@
-// What the vehicle gets to with a given clearance: the roadmap, the ways home, and the viewpoints known there.
+// What the vehicle gets to with a given clearance: the roadmap, the ways home, and the viewpoints known
+// there.
 //
 // There is one for the mission's clearance, and where the mission allows narrow passages one for those: it is
 // asked only when nothing else is left, or from a place that lies in a narrow passage itself.
