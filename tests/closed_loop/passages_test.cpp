@@ -23,7 +23,7 @@ nlohmann::json landed_flight(const std::string& cave, const std::filesystem::pat
   return m;
 }
 
-/// Brakes within a few scans behind a path that was appended in flight.
+/// Brakes with the first scan behind a path that was appended in flight.
 int brakes_after_appending(const std::filesystem::path& run) {
   int brakes = 0;
   double appended_s = -1;
@@ -33,7 +33,7 @@ int brakes_after_appending(const std::filesystem::path& run) {
     const double t_s = event["t"];
     if (event["kind"] == "decision") appended_s = event["appending"] == true ? t_s : -1;
     brakes +=
-        event["kind"] == "safety" && event["action"] == "brake" && appended_s >= 0 && t_s < appended_s + 0.35;
+        event["kind"] == "safety" && event["action"] == "brake" && appended_s >= 0 && t_s < appended_s + 0.15;
   }
   return brakes;
 }
