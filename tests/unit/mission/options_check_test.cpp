@@ -38,6 +38,14 @@ TEST(OptionsCheck, ANarrowMarginThatIsNoLessThanTheClearanceIsRefused) {
       << refusal(o);
 }
 
+TEST(OptionsCheck, ANarrowMarginBelowAQuarterOfACellIsRefused) {
+  CoreOptions o;
+  o.planning.narrow_margin_m = 0.04;
+  EXPECT_NE(refusal(o).find("planning.narrow_margin: 0.040 m is less than a quarter of a cell"),
+            std::string::npos)
+      << refusal(o);
+}
+
 TEST(OptionsCheck, AClearanceOfTooManyCellsIsRefusedOnTheGround) {
   // As it was: the first decision threw in flight.
   CoreOptions o;
