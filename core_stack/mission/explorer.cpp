@@ -58,13 +58,16 @@ Reach* Explorer::narrow() {
   return &*narrow_;
 }
 
-/// Inside a narrow passage the way on leads through it.
+/// Inside a narrow passage the way on leads through it. Brings both up to date: changes that the narrow one
+/// has yet to hear of would pile up while there is no need for it.
 Reach& Explorer::reach_at(const Vec3& from) {
   Reach& usual = wide();
-  const double resolution_m = map_.resolution_m();
-  const bool tight = narrow_ && !is_clear(map_, from, search_clearance_m(usual.planning, resolution_m)) &&
-                     is_clear(map_, from, search_clearance_m(narrow_->planning, resolution_m));
-  return tight ? *narrow() : usual;
+  if (!narrow_) return usual;
+  Reach& tight = *narrow();
+  const auto clear = [&](const Reach& reach) {
+    return is_clear(map_, from, search_clearance_m(reach.planning, map_.resolution_m()));
+  };
+  return !clear(usual) && clear(tight) ? tight : usual;
 }
 
 std::optional<double> Explorer::hull_clearance_m(const Vec3& p) const {

@@ -110,9 +110,9 @@ class Explorer {
   std::vector<FrontierOffer> offers_now(Reach& reach, const RoundInput& input);
   void explain_unseen(const Reach& reach, const FrontierCluster& cluster);
   DecisionRequest request(const Reach& reach, const RoundInput& input);
-  void settle(const Reach& reach, const RoundInput& input, const DecisionRequest& request,
+  void settle(const Reach& reach, const RoundInput& input, const DecisionRequest& request, bool passed_over,
               RoundResult& result);
-  Decision ask(const DecisionRequest& request, RoundResult& result);
+  Decision ask(const DecisionRequest& request, bool passed_over, RoundResult& result);
   std::optional<std::string> objection(const Reach& reach, const Goal& goal) const;
   void choose(const Reach& reach, const RoundInput& input, const std::vector<Goal>& goals,
               RoundResult& result);

@@ -31,9 +31,8 @@ bool any_in_reach(const std::vector<FrontierOffer>& offers) {
 
 }  // namespace
 
-Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
-  const bool idle_too_long = idle_since_ && request.stamp - *idle_since_ >= kMostIdle;
-  if (!policy_failed_ && !idle_too_long) {
+Decision Explorer::ask(const DecisionRequest& request, bool passed_over, RoundResult& result) {
+  if (!policy_failed_ && !passed_over) {
     try {
       result.policy = policy_->name();
       return policy_->decide(request);
@@ -43,7 +42,6 @@ Decision Explorer::ask(const DecisionRequest& request, RoundResult& result) {
     }
   }
   result.policy = fallback_.name();
-  idle_since_.reset();
   return fallback_.decide(request);
 }
 
@@ -129,11 +127,11 @@ DecisionRequest Explorer::request(const Reach& reach, const RoundInput& input) {
   return request;
 }
 
-/// Asks for a goal among `request.frontiers` and plans to it.
+/// Asks for a goal among `request.frontiers` and plans to it. Of two askings in a round the last one counts.
 void Explorer::settle(const Reach& reach, const RoundInput& input, const DecisionRequest& request,
-                      RoundResult& result) {
+                      bool passed_over, RoundResult& result) {
   const auto begin = std::chrono::steady_clock::now();
-  Decision decision = ask(request, result);
+  Decision decision = ask(request, passed_over, result);
   const double asked_ms = elapsed_ms(begin);
   result.decide_ms += asked_ms;
   result.outcome = decision.outcome;
@@ -169,6 +167,7 @@ void Explorer::settle(const Reach& reach, const RoundInput& input, const Decisio
         policy_->notify({PolicyEvent::Kind::goal_rejected, input.now, result.rejected[i].goal,
                          result.rejected[i].reason});
   }
+  result.frontiers.clear();
   for (const FrontierOffer& offer : request.frontiers) {
     FrontierCluster brief = *offer.cluster;
     brief.cells.clear();
@@ -188,18 +187,20 @@ RoundResult Explorer::decide(const RoundInput& input) {
   // Narrow passages come last: when nothing else is in reach, and when nothing else could be flown to. What
   // the goal under way will show may still be more.
   Reach& first = reach_at(input.from);  // up to date from here on: the map does not change within a round
+  const bool passed_over = idle_since_ && input.now - *idle_since_ >= kMostIdle;  // all the round long
   DecisionRequest asked = request(first, input);
   asked.frontiers = offers_now(first, input);
   const bool may_be_narrow = &first == &wide_ && narrow_clearance_m_ && !input.appending;
-  if (!may_be_narrow || any_in_reach(asked.frontiers)) settle(first, input, asked, result);
+  if (!may_be_narrow || any_in_reach(asked.frontiers)) settle(first, input, asked, passed_over, result);
   const bool nothing_left = result.outcome == Outcome::explored && !result.out_of_time;
   if (may_be_narrow && (!any_in_reach(asked.frontiers) || nothing_left)) {
-    const Reach& tight = *narrow();
+    Reach& tight = *narrow();
     asked = request(tight, input);
-    asked.frontiers = offers_now(*narrow_, input);
-    settle(tight, input, asked, result);
+    asked.frontiers = offers_now(tight, input);
+    settle(tight, input, asked, passed_over, result);
   }
 
+  if (passed_over) idle_since_.reset();
   if (result.goal || !input.standing) {
     idle_since_.reset();
   } else if (!idle_since_) {

@@ -139,7 +139,7 @@ class MissionControl final : public VehicleSink {
   std::vector<PolicyEvent> events_;
   std::vector<std::uint32_t> looked_at_;
   bool round_running_ = false, append_tried_ = false, goal_alive_ = true;
-  std::vector<Vec3> narrow_places_;  // of the path under way
+  std::vector<Vec3> narrow_places_;  // of the path under way, and of what it was joined to
   bool path_limited_ = false;        // the path under way has a speed limit of its own
   std::optional<TimeNs> braked_at_;
   bool path_blocked_ = false;  // it brakes, or stands, before a place that is closed now

@@ -58,6 +58,18 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
     refuse("planning.clearance", metres(o.planning.clearance_m) +
                                      " is less than the vehicle's radius and half a cell, " +
                                      metres(least_m));
+  // Not silently off: whoever asks for a margin wants narrower passages flown than the clearance allows.
+  // Where refining cannot lift a narrow path to its clearance, a quarter of a cell less must do.
+  if (const double least = o.map.resolution_m / 4;
+      o.planning.narrow_margin_m > 0 && o.planning.narrow_margin_m < least)
+    refuse("planning.narrow_margin", metres(o.planning.narrow_margin_m) +
+                                         " is less than a quarter of a cell, " + metres(least) +
+                                         "; 0 switches it off");
+  if (const double narrow_m = vehicle.radius_m + o.planning.narrow_margin_m;
+      o.planning.narrow_margin_m > 0 && narrow_m >= o.planning.clearance_m)
+    refuse("planning.narrow_margin", "with the vehicle's radius it makes " + metres(narrow_m) +
+                                         ", which is no less than planning.clearance, " +
+                                         metres(o.planning.clearance_m));
   constexpr double kMostCells = 14;  // that planning on bits can keep clear
   for (const auto& [key, clearance_m] :
        {std::pair{"planning.clearance", o.planning.clearance_m},

@@ -6,6 +6,15 @@
 #include "core_stack/planning/join.h"
 
 namespace karst::core {
+namespace {
+
+bool near_line(const std::vector<Vec3>& line, const Vec3& place) {
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if (near_narrow_place({place}, line[i], line[std::min(i + 1, line.size() - 1)])) return true;
+  return false;
+}
+
+}  // namespace
 
 MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
                                             const std::optional<Goal>& goal, TimeNs start, double most_cut_m,
@@ -26,7 +35,8 @@ MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Pa
   out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
   // The lead may still lead through the narrow places of the path before.
   out.slow = {path.narrow_places, kNarrowReach_m, options_.safety.slow_share * options_.motion.max_speed_mps};
-  out.slow.places.insert(out.slow.places.end(), narrow_before.begin(), narrow_before.end());
+  for (const Vec3& place : narrow_before)
+    if (near_line(lead.points, place)) out.slow.places.push_back(place);
   if (options_.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0 &&
       out.slow.places.empty()) {
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
@@ -60,7 +70,7 @@ void MissionControl::follow(const Route& way) {
   recorder_.event(now(), "plan", plan);
   flight_.follow(way.points, flight_.at_rest(now()) ? 0.0 : way.start_speed_mps, now(), way.heading,
                  way.max_speed_mps, way.slow, fits ? &polynomial->trajectory : nullptr);
-  narrow_places_ = way.path.narrow_places;
+  narrow_places_ = way.slow.places;
   path_limited_ = way.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = way.path;
   tight_until_ =

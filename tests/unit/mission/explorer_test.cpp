@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include "core_stack/planning/grid_planner.h"
 #include "tests/unit/mission/drawn_map.h"
@@ -27,14 +29,15 @@ struct Room {
   std::unique_ptr<Explorer> explorer;
   RoundInput input;
 
-  Room() {
+  explicit Room(const CoreOptions& options = {}, const Vec3& size = Vec3(8, 6, 4),
+                const std::string& open = "x+") {
     auto lidar = std::make_shared<LidarModel>();
     lidar->columns = 8;
     lidar->elevation_rad = {0.5f, -0.5f};
     vehicle.lidar = lidar;
     vehicle.T_world_start.position = Vec3(3, 3, 1);
-    explorer = std::make_unique<Explorer>(CoreOptions{}, vehicle, policy);
-    const std::vector<Ray> rays = box_rays(VoxelMap{MapOptions{}}, Vec3(0, 0, 0), Vec3(8, 6, 4), {"x+"});
+    explorer = std::make_unique<Explorer>(options, vehicle, policy);
+    const std::vector<Ray> rays = box_rays(VoxelMap{MapOptions{}}, Vec3(0, 0, 0), size, {open});
     explorer->integrate(rays);
     input.from = input.state.position = Vec3(3, 3, 2);
     input.seconds_left = 600;
@@ -156,6 +159,48 @@ TEST(Explorer, APolicyMayHoldAStandingVehicleForTwoSecondsAndNoLonger) {
   }
   room.input.now = 2 * kSecond;
   EXPECT_EQ(room.decide(hold).policy, "fallback");
+}
+
+CoreOptions narrow_allowed() {
+  CoreOptions options;
+  options.planning.narrow_margin_m = 0.08;
+  return options;
+}
+
+TEST(Explorer, AskedTwiceInARoundItReportsEachFrontierOnce) {
+  // As it was: those of the round's second asking, for narrow passages, came on top of the first one's.
+  Room room(narrow_allowed());
+  int asked = 0;
+  const RoundResult r = room.decide([&](const DecisionRequest&) {
+    ++asked;
+    Decision d;
+    d.outcome = Outcome::explored;
+    return d;
+  });
+  EXPECT_EQ(asked, 2);
+  std::set<std::uint32_t> ids;
+  for (const FrontierCluster& c : r.frontiers) EXPECT_TRUE(ids.insert(c.id).second) << c.id;
+  EXPECT_FALSE(ids.empty());
+}
+
+TEST(Explorer, APolicyThatIsPassedOverIsSoForNarrowPassagesToo) {
+  // As it was: passed over for wide passages, it was asked for narrow ones in the same round, and its hold
+  // counted. A chimney: its end is in sight, but no climb leads there that the sensors could look along.
+  Room room(narrow_allowed(), Vec3(8, 6, 20), "z+");
+  int asked = 0;
+  const auto hold = [&](const DecisionRequest& r) {
+    ++asked;
+    EXPECT_TRUE(std::any_of(r.frontiers.begin(), r.frontiers.end(),
+                            [](const FrontierOffer& o) { return std::isfinite(o.path_length_m); }));
+    return Decision{};
+  };
+  EXPECT_EQ(room.decide(hold).policy, "scripted");
+  room.input.now = 2 * kSecond;
+  const RoundResult r = room.decide(hold);
+  EXPECT_EQ(r.policy, "fallback");
+  EXPECT_EQ(r.outcome, Outcome::explored) << r.reason;
+  EXPECT_FALSE(r.rejected.empty()) << "wide passages came first";
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(Explorer, WithoutAKnownWayHomeTheWayComeCounts) {

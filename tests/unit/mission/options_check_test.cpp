@@ -32,6 +32,25 @@ TEST(OptionsCheck, AClearanceBelowTheVehiclesRadiusIsRefused) {
       << refusal(o);
 }
 
+TEST(OptionsCheck, ANarrowMarginThatIsNoLessThanTheClearanceIsRefused) {
+  // As it was: it was taken without a word, and no narrow passage was flown.
+  CoreOptions o;
+  o.planning.narrow_margin_m = 0.29;
+  EXPECT_EQ(refusal(o), "");
+  o.planning.narrow_margin_m = 0.5;
+  EXPECT_NE(refusal(o).find("planning.narrow_margin: with the vehicle's radius it makes 0.800 m"),
+            std::string::npos)
+      << refusal(o);
+}
+
+TEST(OptionsCheck, ANarrowMarginBelowAQuarterOfACellIsRefused) {
+  CoreOptions o;
+  o.planning.narrow_margin_m = 0.04;
+  EXPECT_NE(refusal(o).find("planning.narrow_margin: 0.040 m is less than a quarter of a cell"),
+            std::string::npos)
+      << refusal(o);
+}
+
 TEST(OptionsCheck, AClearanceOfTooManyCellsIsRefusedOnTheGround) {
   // As it was: the first decision threw in flight.
   CoreOptions o;
