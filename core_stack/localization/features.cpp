@@ -65,11 +65,10 @@ struct Choice {
 
 struct RingFeatures {
   std::vector<Feature> edges, planes;
-  std::vector<std::uint32_t> surface;
+  std::vector<Feature> surface;
 };
 
-RingFeatures features_of_ring(const Ring& ring, std::uint32_t first_index, float step,
-                              const FeatureOptions& o) {
+RingFeatures features_of_ring(const Ring& ring, float step, const FeatureOptions& o) {
   RingFeatures out;
   const int n = static_cast<int>(ring.points.size());
   std::vector<float> sharpness(static_cast<std::size_t>(n), kNone);
@@ -92,7 +91,7 @@ RingFeatures features_of_ring(const Ring& ring, std::uint32_t first_index, float
     // The point itself, less noisy, as the mean of it and its neighbours.
     const Vec3f centre = ((ring.sum[at + 2] - ring.sum[at - 1]) / 3).cast<float>();
     sharpness[at] = 2 * (mean[at] - centre).norm() / length;
-    out.surface.push_back(first_index + static_cast<std::uint32_t>(i));
+    out.surface.push_back({p, ring.points[at].time_s});
   }
 
   const auto pick = [&](std::int64_t sectors, auto better, auto&& keep) {
@@ -110,7 +109,7 @@ RingFeatures features_of_ring(const Ring& ring, std::uint32_t first_index, float
       [&](const Choice& c) {
         const auto i = static_cast<std::size_t>(c.index);
         if (c.sharpness <= static_cast<float>(o.max_flatness))
-          out.planes.push_back({mean[i], ring.points[i].time_s});
+          out.planes.push_back({ring.points[i].position, ring.points[i].time_s});
       });
   pick(
       o.edge_sectors, [](float a, float b) { return a > b; },
@@ -152,7 +151,7 @@ Features find_features(const std::vector<SweepPoint>& points, const FeatureOptio
   for_each_chunk(rings, 4, threads, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t r = first; r < end; ++r) {
       const Ring ring({points.data() + begins[r], begins[r + 1] - begins[r]}, step, options);
-      found[r] = features_of_ring(ring, static_cast<std::uint32_t>(begins[r]), step, options);
+      found[r] = features_of_ring(ring, step, options);
     }
   });
   for (const RingFeatures& f : found) {

@@ -37,7 +37,7 @@ struct Feature {
 
 struct Features {
   std::vector<Feature> edges, planes;
-  std::vector<std::uint32_t> surface;  // indices of all points whose window has a sharpness, in their order
+  std::vector<Feature> surface;  // all points whose window has a sharpness
 };
 
 /// Points must be finite. `threads` changes the time it takes, not the result.

@@ -6,148 +6,163 @@
 #include "core_stack/common/so3.h"
 
 namespace karst::core {
+namespace {
+
+constexpr float kNearest = 0.01f, kFarthest = 1000;  // m: points outside are no measurements
+constexpr float kLongest = 1;                        // s: no sweep takes longer
+constexpr double kHeld = 1;                          // s: a velocity is not held for longer
+constexpr double kSameTwist = 0.05;                  // m/s: a sweep compensated with so little error is left
+constexpr std::size_t kFromCoarsest = 99;            // more than there are levels
+
+bool is_measurement(const SweepPoint& p) {
+  const float range2 = p.position.squaredNorm();  // false comparisons: NaN
+  return range2 > kNearest * kNearest && range2 < kFarthest * kFarthest && p.time_s <= 0 &&
+         p.time_s > -kLongest;
+}
+
+double length_of(const Sweep& sweep) {
+  float longest = 0;
+  if (!sweep.compensated)
+    for (const SweepPoint& p : sweep.points) longest = std::max(longest, -p.time_s);
+  return static_cast<double>(longest);
+}
+
+Cloud compensated(const Features& features, const SweepMotion& motion) {
+  const auto moved = [&](const std::vector<Feature>& from) {
+    std::vector<Vec3f> to(from.size());
+    std::transform(from.begin(), from.end(), to.begin(),
+                   [&](const Feature& f) { return motion.to_body_at_end(f.position, f.time_s); });
+    return to;
+  };
+  return {moved(features.edges), moved(features.planes), moved(features.surface)};
+}
+
+std::string counted(std::size_t n, const char* what) { return std::to_string(n) + " " + what; }
+
+}  // namespace
 
 void describe(OptionTable& t, LoamOptions& o) {
   t.section("features", o.features);
   t.section("map", o.map);
   t.section("registration", o.registration);
   t.add("scan_to_scan", o.scan_to_scan, {"auto", "always", "never"},
-        "align each sweep with the one before first; auto: where the prediction does not cover it");
-  t.add("keyframe_distance", o.keyframe_distance_m, "m", 0.05, 20,
-        "a sweep joins the map if it was taken so far from all that did");
-  t.add("keyframe_matched_share", o.keyframe_matched_share, "", 0, 1,
-        "or if a smaller share of its features lies on surfaces of the map");
-  t.add("threads", o.threads, 1, 64, "results do not depend on it");
+        "fit each sweep to the one before first; auto: where the prediction does not cover it");
+  t.add("max_correction", o.max_correction_m, "m", 0.05, 20, "a fit farther from its guess is not believed");
+  t.add("max_correction_angle", o.max_correction_rad, "rad", 0.01, 3.1, "nor one turned by more");
+  t.add("restart", o.restart_s, "s", 0.5, 1000,
+        "without a valid pose for so long the local map begins anew where the vehicle is predicted to be");
+  t.add("threads", o.threads, 1, 64, "that share the work; results do not depend on it");
 }
 
 Loam::Loam(const LoamOptions& options, const Pose& T_world_start)
-    : options_(options),
-      edge_level_(options.map.voxel_m, options.map.max_points),
-      fine_level_(options.map.voxel_m, options.map.max_points),
-      coarse_level_(options.map.coarse_voxel_m, options.map.max_points),
-      T_world_last_(T_world_start) {}
+    : options_(options), map_(options.map), last_sweep_(options.map), T_world_last_(T_world_start) {}
 
-Loam::Guess Loam::guess_for(const Sweep& sweep, const StateHistory& predicted, double length_s) const {
-  Guess g;
-  const auto end = predicted_pose(predicted, sweep.stamp);
-  const auto begin = predicted_pose(predicted, sweep.stamp - from_seconds(length_s));
-  if (end && begin) {
-    g.T_world_body = *end;
-    g.covered = true;
-    return g;
+Loam::Prediction Loam::predict(const Sweep& sweep, double length_s, const StateHistory& states) const {
+  const std::optional<Pose> end = predicted_pose(states, sweep.stamp);
+  if (end && predicted_pose(states, sweep.stamp - from_seconds(length_s))) return {true, *end, {}};
+  const double since_s = last_valid_ ? seconds(sweep.stamp - *last_valid_) : 0;
+  return {false, T_world_last_ * pose_after(twist_, std::min(since_s, kHeld)), twist_};
+}
+
+LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
+  if (last_stamp_ && sweep.stamp <= *last_stamp_) {
+    LoamPose refused{sweep.stamp, T_world_last_};
+    refused.problem = "the sweep is not newer than the last one";
+    return refused;
   }
-  g.twist = twist_;
-  const double dt_s = last_valid_stamp_ ? seconds(sweep.stamp - *last_valid_stamp_) : 0;
-  g.T_world_body = T_world_last_ * pose_after(twist_, std::min(dt_s, 1.0));
-  return g;
+  last_stamp_ = sweep.stamp;
+  if (!last_valid_) last_valid_ = sweep.stamp;
+  if (std::all_of(sweep.points.begin(), sweep.points.end(), is_measurement)) return locate(sweep, predicted);
+  Sweep clean = sweep;
+  std::erase_if(clean.points, [](const SweepPoint& p) { return !is_measurement(p); });
+  return locate(clean, predicted);
 }
 
-SweepMotion Loam::motion_of(const Sweep& sweep, const StateHistory& predicted, const Guess& g,
-                            double length_s) const {
-  if (sweep.compensated) return {0, sweep.T_body_lidar, [](double) { return Pose{}; }};
-  const Pose T_end_world = g.T_world_body.inverse();
-  return {length_s, sweep.T_body_lidar, [&](double time_s) {
-            return g.covered ? T_end_world * *predicted_pose(predicted, sweep.stamp + from_seconds(time_s))
-                             : pose_after(g.twist, time_s);
-          }};
-}
-
-LoamPose Loam::process(const Sweep& input, const StateHistory& predicted) {
-  LoamPose out;
-  out.stamp = input.stamp;
-  out.T_world_body = T_world_last_;
-  const auto refuse = [&](const std::string& why) {
+LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
+  const int threads = static_cast<int>(options_.threads);
+  const double length_s = length_of(sweep);
+  Prediction prediction = predict(sweep, length_s, states);
+  LoamPose out{sweep.stamp, prediction.T_world_body};
+  const auto refused = [&](const std::string& why) {
+    out.T_world_body = prediction.T_world_body;
     out.problem = why;
     return out;
   };
-  if (last_stamp_ && input.stamp <= *last_stamp_) return refuse("the sweep is not newer than the last");
 
-  Sweep sweep = input;
-  std::erase_if(sweep.points, [](const SweepPoint& p) {
-    return !p.position.allFinite() || !std::isfinite(p.time_s) || p.position.squaredNorm() < 1e-4f ||
-           p.time_s < -1 || p.time_s > 0;
-  });
-  double length_s = 0;
-  for (const SweepPoint& p : sweep.points) length_s = std::max(length_s, static_cast<double>(-p.time_s));
-  last_stamp_ = sweep.stamp;
-  const Guess guess = guess_for(sweep, predicted, length_s);
-  out.T_world_body = guess.T_world_body;
-
-  const int threads = static_cast<int>(options_.threads);
   const Features features = find_features(sweep.points, options_.features, threads);
-  if (static_cast<std::int64_t>(features.planes.size() + features.edges.size()) <
-      options_.registration.min_matches)
-    return refuse("too few features: " + std::to_string(features.planes.size()) + " planes and " +
-                  std::to_string(features.edges.size()) + " edges in " + std::to_string(sweep.points.size()) +
-                  " points");
-  const SweepMotion motion = motion_of(sweep, predicted, guess, length_s);
+  const std::size_t count = features.edges.size() + features.planes.size();
+  if (count < static_cast<std::size_t>(options_.registration.min_matches))
+    return refused("too few features: " + counted(count, "in ") + counted(sweep.points.size(), "points"));
 
-  if (fine_level_.blocks() == 0) {
+  const auto cloud_with = [&](const Prediction& p) {
+    return compensated(features, SweepMotion(length_s, sweep.T_body_lidar, [&](double time_s) {
+                         if (!p.covered) return pose_after(p.twist, time_s);
+                         const TimeNs t = sweep.stamp + from_seconds(time_s);
+                         return p.T_world_body.inverse() * predicted_pose(states, t).value_or(p.T_world_body);
+                       }));
+  };
+  Cloud cloud = cloud_with(prediction);
+  const double since_s = seconds(sweep.stamp - *last_valid_);
+  const bool lost = since_s > options_.restart_s;
+  if (map_.empty() || lost) {
+    map_.clear(), last_sweep_.clear();
+    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position, threads);
     out.valid = true;
-    last_valid_stamp_ = sweep.stamp;
-    T_world_last_ = out.T_world_body;
-    insert(sweep, features, motion, out.T_world_body);
+    if (lost) out.problem = "the local map began anew where the vehicle was predicted to be";
+    accept(out);
     return out;
   }
-  Cloud cloud;
-  for (const Feature& f : features.edges) cloud.edges.push_back(motion.to_body_at_end(f.position, f.time_s));
-  for (const Feature& f : features.planes)
-    cloud.planes.push_back(motion.to_body_at_end(f.position, f.time_s));
-  const Fit fit = fit_to_map(cloud, {&edge_level_, &fine_level_, &coarse_level_}, guess.T_world_body,
-                             options_.registration, options_.registration.max_distance_m, threads);
-  out.edges = fit.edges, out.planes = fit.planes;
-  out.rms_residual_m = fit.rms_residual_m;
-  out.covariance = fit.covariance;
-  out.free_directions = fit.free_directions;
-  if (!fit.converged) return refuse("too few features lie on surfaces of the local map");
-  if (fit.matched_share < options_.registration.min_matched_share)
-    return refuse("the sweep does not overlap with the local map");
 
+  const std::size_t coarsest = map_.surfaces().size() - 1;
+  const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
+    return fit_to_map(cloud, map, guess, std::min(first_level, coarsest), options_.registration, threads,
+                      scratch_);
+  };
+  const bool weak = !prediction.covered || since_s > 0.5;
+  Pose guess = prediction.T_world_body;
+  const bool scan_to_scan = options_.scan_to_scan == "always" || (options_.scan_to_scan == "auto" && weak);
+  if (scan_to_scan && !last_sweep_.empty()) {
+    const Fit with_last = fit(last_sweep_, guess, kFromCoarsest);
+    if (with_last.good) guess = with_last.T_world_body;
+  }
+  Fit found = fit(map_, guess, weak ? kFromCoarsest : 0);
+  if (found.good && !prediction.covered && since_s > 0) {
+    // The velocity that compensated the sweep was the last one; now the sweep's own is known.
+    const Twist twist = twist_between(T_world_last_, found.T_world_body, since_s);
+    if ((twist.velocity_mps - prediction.twist.velocity_mps).norm() > kSameTwist) {
+      cloud = cloud_with({false, found.T_world_body, twist});
+      found = fit(map_, found.T_world_body, 0);
+    }
+  }
+
+  out.edges = found.edges, out.planes = found.planes;
+  out.rms_residual_m = found.rms_residual_m;
+  out.covariance = found.covariance, out.free_directions = found.free_directions;
+  if (!found.good)
+    return refused("the sweep does not lie on the local map: " +
+                   counted(static_cast<std::size_t>(found.edges + found.planes), "of ") +
+                   counted(count, "features match"));
+  const Pose correction = prediction.T_world_body.inverse() * found.T_world_body;
+  if (correction.position.norm() > options_.max_correction_m ||
+      log_so3(correction.orientation).norm() > options_.max_correction_rad)
+    return refused("the fit lies too far from the prediction");
+
+  out.T_world_body = found.T_world_body;
   out.valid = true;
-  out.T_world_body = fit.T_world_body;
-  if (last_valid_stamp_)
-    twist_ = twist_between(T_world_last_, fit.T_world_body, seconds(sweep.stamp - *last_valid_stamp_));
-  last_valid_stamp_ = sweep.stamp;
-  T_world_last_ = fit.T_world_body;
-  if (is_keyframe(fit.T_world_body.position, fit.matched_share))
-    insert(sweep, features, motion, fit.T_world_body);
+  accept(out);
+  if (map_.is_new_place(out.T_world_body.position))
+    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position, threads);
+  last_sweep_.clear();
+  if (scan_to_scan)
+    last_sweep_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position, threads);
   return out;
 }
 
-bool Loam::is_keyframe(const Vec3& position, double matched_share) const {
-  if (matched_share < options_.keyframe_matched_share) return true;
-  return std::none_of(keyframes_.begin(), keyframes_.end(),
-                      [&](const Vec3& k) { return (k - position).norm() < options_.keyframe_distance_m; });
-}
-
-void Loam::insert(const Sweep& sweep, const Features& features, const SweepMotion& motion,
-                  const Pose& T_world_body) {
-  const Eigen::Matrix3f R = T_world_body.orientation.toRotationMatrix().cast<float>();
-  const Vec3f t = T_world_body.position.cast<float>();
-  const auto to_world = [&](const Vec3f& p, float time_s) -> Vec3f {
-    return R * motion.to_body_at_end(p, time_s) + t;
-  };
-  std::vector<Vec3f> edges, surface;
-  for (const Feature& f : features.edges) edges.push_back(to_world(f.position, f.time_s));
-  for (const std::uint32_t i : features.surface)
-    surface.push_back(to_world(sweep.points[i].position, sweep.points[i].time_s));
-  edge_level_.insert(edges);
-  fine_level_.insert(surface);
-  coarse_level_.insert(surface);
-  const auto max_blocks = static_cast<std::size_t>(options_.map.max_blocks);
-  for (VoxelLevel* level : {&edge_level_, &fine_level_, &coarse_level_})
-    level->roll(T_world_body.position, options_.map.radius_m, max_blocks);
-  std::erase_if(keyframes_, [&](const Vec3& k) {
-    return (k - T_world_body.position).cwiseAbs().maxCoeff() > options_.map.radius_m;
-  });
-  keyframes_.push_back(T_world_body.position);
-}
-
-std::size_t Loam::map_bytes() const {
-  return edge_level_.bytes() + fine_level_.bytes() + coarse_level_.bytes();
-}
-std::size_t Loam::map_voxels() const {
-  return edge_level_.voxels() + fine_level_.voxels() + coarse_level_.voxels();
+void Loam::accept(const LoamPose& pose) {
+  const double dt_s = seconds(pose.stamp - *last_valid_);
+  twist_ = dt_s > 0 && dt_s < kHeld ? twist_between(T_world_last_, pose.T_world_body, dt_s) : Twist{};
+  last_valid_ = pose.stamp;
+  T_world_last_ = pose.T_world_body;
 }
 
 }  // namespace karst::core

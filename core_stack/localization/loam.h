@@ -1,8 +1,9 @@
-// LOAM: where the vehicle is, by matching each LiDAR sweep with a map of the rock around it (Zhang and Singh,
-// RSS 2014).
+// LOAM: where the vehicle is, by matching each LiDAR sweep with a map of the rock around it (after Zhang and
+// Singh, RSS 2014; docs/localization.md).
 //
-//   sweep --find_features--> edges, planes --motion of the sweep--> as seen at its stamp
-//         --scan to scan, where the prediction is weak--> guess --fit_to_map--> pose --keyframe?--> local map
+//   sweep --find_features--> edges, planes --motion during the sweep--> a cloud as seen at its stamp
+//         --fit to the last sweep, where the prediction is weak--> guess
+//         --fit to the local map--> pose --new place?--> local map
 #pragma once
 #include <optional>
 #include <string>
@@ -17,9 +18,10 @@ struct LoamOptions {
   FeatureOptions features;
   LocalMapOptions map;
   RegistrationOptions registration;
-  std::string scan_to_scan = "auto";    // auto: where the prediction does not cover the sweep
-  double keyframe_distance_m = 0.5;     // from all keyframes around: then the sweep joins the map
-  double keyframe_matched_share = 0.7;  // or where fewer of its features lie on surfaces of the map
+  std::string scan_to_scan = "auto";  // auto: where the prediction does not cover the sweep
+  double max_correction_m = 1.5;      // of the guess by a fit; a larger one is not believed
+  double max_correction_rad = 0.35;
+  double restart_s = 5;  // without a valid pose: the local map begins anew at the prediction
   std::int64_t threads = 1;
 };
 void describe(OptionTable& t, LoamOptions& o);
@@ -28,9 +30,9 @@ struct LoamPose {
   TimeNs stamp = 0;
   Pose T_world_body;
   Matrix6 covariance = Matrix6::Zero();  // translation (world, m), rotation (body, rad); (100 m)^2 where free
-  int free_directions = 0;               // in which the sweep says nothing, held from the prediction
+  int free_directions = 0;               // along which the sweep says nothing: held from the prediction
   bool valid = false;
-  std::string problem;  // why it is not valid
+  std::string problem;  // why it is not
   double rms_residual_m = 0;
   int edges = 0, planes = 0;  // matched
 };
@@ -39,34 +41,30 @@ class Loam {
  public:
   Loam(const LoamOptions& options, const Pose& T_world_start);
 
-  /// The pose at the sweep's stamp. `predicted`: states propagated with the IMU; if they do not reach from
+  /// The pose at the sweep's stamp. `predicted`: states propagated with the IMU; where they do not reach from
   /// the sweep's first point to its stamp, the last poses' velocity is held instead. A pose that is not valid
-  /// is the prediction, and the map stays as it was.
+  /// is the prediction, and the local map is as before. The first sweep is taken to be where it is predicted.
   LoamPose process(const Sweep& sweep, const StateHistory& predicted);
 
-  std::size_t map_bytes() const;
-  std::size_t map_voxels() const;
-  std::size_t keyframes() const { return keyframes_.size(); }
+  const LocalMap& map() const { return map_; }
 
  private:
-  struct Guess {
-    Pose T_world_body;
-    Twist twist;
-    bool covered = false;  // by the prediction
+  struct Prediction {
+    bool covered = false;  // by the states handed in
+    Pose T_world_body;     // at the stamp
+    Twist twist;           // if not covered
   };
-  Guess guess_for(const Sweep& sweep, const StateHistory& predicted, double length_s) const;
-  SweepMotion motion_of(const Sweep& sweep, const StateHistory& predicted, const Guess& g,
-                        double length_s) const;
-  bool is_keyframe(const Vec3& position, double matched_share) const;
-  void insert(const Sweep& sweep, const Features& features, const SweepMotion& motion,
-              const Pose& T_world_body);
+  Prediction predict(const Sweep& sweep, double length_s, const StateHistory& states) const;
+  LoamPose locate(const Sweep& sweep, const StateHistory& states);
+  void accept(const LoamPose& pose);
 
   LoamOptions options_;
-  VoxelLevel edge_level_, fine_level_, coarse_level_;
-  std::vector<Vec3> keyframes_;
-  Pose T_world_last_;
-  std::optional<TimeNs> last_stamp_, last_valid_stamp_;
-  Twist twist_;  // between the last two valid poses
+  LocalMap map_;
+  LocalMap last_sweep_;  // in the world; empty unless scan to scan is in use
+  SweepGrids scratch_;
+  Pose T_world_last_;  // of the last valid pose, the start before that
+  Twist twist_;        // at the last valid pose
+  std::optional<TimeNs> last_stamp_, last_valid_;
 };
 
 }  // namespace karst::core

@@ -1,142 +1,95 @@
 #include "core_stack/localization/local_map.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
+
+#include "core_stack/localization/parallel.h"
 
 namespace karst::core {
+
+namespace {
+constexpr double kCleaningStep = 0.1;  // of the radius: what is too far is dropped that often
+}
+
 void describe(OptionTable& t, LocalMapOptions& o) {
-  t.add("voxel", o.voxel_m, "m", 0.05, 5, "edge of a voxel; surfaces are fitted to windows of three");
-  t.add("coarse_voxel", o.coarse_voxel_m, "m", 0.1, 20, "edge of a voxel of the level for sparse points");
+  t.add("voxel", o.voxel_m, "m", 0.03, 5,
+        "edge of the finest voxels; surfaces are fitted to windows of 3x3x3");
+  t.add("levels", o.levels, 1, 6, "grids of surfaces, each twice as coarse as the one before");
+  t.add("edge_voxel", o.edge_voxel_m, "m", 0.03, 5, "edge of the voxels of edges");
   t.add("radius", o.radius_m, "m", 5, 500, "rock farther away along any axis is forgotten");
-  t.add("max_blocks", o.max_blocks, 100, 10'000'000, "blocks of 4x4x4 voxels kept at most, a level");
-  t.add("max_points", o.max_points, 10, 100'000, "points added to a voxel at most");
+  t.add("max_voxels", o.max_voxels, 1000, 50'000'000,
+        "voxels of a grid at most, the farthest forgotten first");
+  t.add("max_points", o.max_points, 10, 100'000, "points of a voxel at most; the oldest have drifted least");
+  t.add("keyframe_distance", o.keyframe_distance_m, "m", 0.05, 20,
+        "a sweep joins the map if it was taken so far from all that did");
 }
 
-VoxelLevel::VoxelLevel(double voxel_m, std::int64_t max_points)
-    : voxel_m_(voxel_m), max_points_(static_cast<float>(max_points)) {}
-
-std::uint64_t VoxelLevel::key_of(const Eigen::Vector3i& block) {
-  const auto bits = [](int v) { return static_cast<std::uint64_t>(v + (1 << 20)) & 0x1fffff; };
-  return bits(block.x()) << 42 | bits(block.y()) << 21 | bits(block.z());
-}
-
-const VoxelLevel::Block* VoxelLevel::find(const Eigen::Vector3i& block) const {
-  const auto at = index_.find(key_of(block));
-  return at == index_.end() ? nullptr : &blocks_[at->second];
-}
-
-void VoxelLevel::insert(std::span<const Vec3f> points_world) {
-  std::uint64_t last_key = ~std::uint64_t{0};
-  std::uint32_t last_block = 0;
-  const auto edge = static_cast<float>(voxel_m_);
-  for (const Vec3f& p : points_world) {
-    const Eigen::Vector3i voxel = (p / edge).array().floor().cast<int>();
-    const Eigen::Vector3i block = voxel.unaryExpr([](int v) { return v >> 2; });
-    const std::uint64_t key = key_of(block);
-    if (key != last_key) {
-      const auto [at, made] = index_.try_emplace(key, static_cast<std::uint32_t>(blocks_.size()));
-      if (made) blocks_.push_back({block * kEdge, {}});
-      last_key = key, last_block = at->second;
-    }
-    const Eigen::Vector3i in = voxel - blocks_[last_block].corner;
-    VoxelSums& v =
-        blocks_[last_block].voxels[static_cast<std::size_t>(in.x() + kEdge * (in.y() + kEdge * in.z()))];
-    if (v.points >= max_points_) continue;
-    const Vec3f d = p - edge * (voxel.cast<float>().array() + 0.5f).matrix();
-    v.points += 1;
-    v.sum += d;
-    v.products[0] += d.x() * d.x(), v.products[1] += d.x() * d.y(), v.products[2] += d.x() * d.z();
-    v.products[3] += d.y() * d.y(), v.products[4] += d.y() * d.z(), v.products[5] += d.z() * d.z();
-  }
-}
-
-Surface VoxelLevel::surface_near(const Vec3& p, double least) const {
-  const Eigen::Vector3i centre = voxel_of(p);
-  const Eigen::Vector3i low = centre.array() - 1, high = centre.array() + 1;
-  // Sums over the window, about the middle of the centre voxel.
-  double n = 0;
-  Vec3 sum = Vec3::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  const auto add = [&](const VoxelSums& v, const Eigen::Vector3i& voxel) {
-    if (v.points == 0) return;
-    const Vec3 shift = voxel_m_ * (voxel - centre).cast<double>();
-    const Vec3 s = v.sum.cast<double>();
-    const double m = v.points;
-    n += m;
-    sum += s + m * shift;
-    Eigen::Matrix3d q;
-    q << v.products[0], v.products[1], v.products[2], v.products[1], v.products[3], v.products[4],
-        v.products[2], v.products[4], v.products[5];
-    products += q + s * shift.transpose() + shift * s.transpose() + m * shift * shift.transpose();
+Cloud transformed(const Pose& T, const Cloud& cloud) {
+  const Eigen::Matrix3f R = T.orientation.toRotationMatrix().cast<float>();
+  const Vec3f t = T.position.cast<float>();
+  const auto moved = [&](const std::vector<Vec3f>& points) {
+    std::vector<Vec3f> out(points.size());
+    std::transform(points.begin(), points.end(), out.begin(),
+                   [&](const Vec3f& p) -> Vec3f { return R * p + t; });
+    return out;
   };
-  Eigen::Vector3i b;
-  for (b.z() = low.z() >> 2; b.z() <= high.z() >> 2; ++b.z())
-    for (b.y() = low.y() >> 2; b.y() <= high.y() >> 2; ++b.y())
-      for (b.x() = low.x() >> 2; b.x() <= high.x() >> 2; ++b.x()) {
-        const Block* block = find(b);
-        if (!block) continue;
-        const Eigen::Vector3i from = low.cwiseMax(block->corner);
-        const Eigen::Vector3i to = high.cwiseMin((block->corner.array() + kEdge - 1).matrix());
-        Eigen::Vector3i v;
-        for (v.z() = from.z(); v.z() <= to.z(); ++v.z())
-          for (v.y() = from.y(); v.y() <= to.y(); ++v.y())
-            for (v.x() = from.x(); v.x() <= to.x(); ++v.x()) {
-              const Eigen::Vector3i in = v - block->corner;
-              add(block->voxels[static_cast<std::size_t>(in.x() + kEdge * (in.y() + kEdge * in.z()))], v);
-            }
-      }
-  Surface s;
-  s.points = n;
-  if (n < least) return s;
-  const Vec3 mean = sum / n;
-  const Eigen::Matrix3d scatter = products / n - mean * mean.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(scatter);
-  s.mean = mean + voxel_m_ * (centre.cast<double>().array() + 0.5).matrix();
-  s.axes = solver.eigenvectors();
-  s.deviation_m = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
-  return s;
+  return {moved(cloud.edges), moved(cloud.planes), moved(cloud.surface)};
 }
 
-void VoxelLevel::drop(std::size_t i) {
-  index_.erase(key_of(blocks_[i].corner / kEdge));
-  if (i + 1 < blocks_.size()) {
-    blocks_[i] = blocks_.back();
-    index_[key_of(blocks_[i].corner / kEdge)] = static_cast<std::uint32_t>(i);
-  }
-  blocks_.pop_back();
+LocalMap::LocalMap(const LocalMapOptions& options)
+    : options_(options), edges_(options.edge_voxel_m, options.max_points) {
+  double voxel_m = options.voxel_m;
+  for (std::int64_t i = 0; i < options.levels; ++i, voxel_m *= 2)
+    surfaces_.emplace_back(voxel_m, options.max_points);
 }
 
-void VoxelLevel::roll(const Vec3& centre, double radius_m, std::size_t max_blocks) {
-  const auto distance = [&](const Block& b) {
-    const Vec3 middle = voxel_m_ * (b.corner.cast<double>().array() + kEdge / 2.0).matrix();
-    return (middle - centre).cwiseAbs().maxCoeff();
+bool LocalMap::is_new_place(const Vec3& position) const {
+  return std::none_of(keyframes_.begin(), keyframes_.end(),
+                      [&](const Vec3& k) { return (k - position).norm() < options_.keyframe_distance_m; });
+}
+
+void LocalMap::insert(const Cloud& cloud_world, const Vec3& position, int threads) {
+  if (empty()) last_cleaned_ = position;
+  edges_.insert(cloud_world.edges);
+  for_each_chunk(surfaces_.size(), 1, threads, [&](std::size_t, std::size_t level, std::size_t) {
+    surfaces_[level].insert(cloud_world.surface);
+  });
+  keyframes_.push_back(position);
+  const bool full = std::any_of(surfaces_.begin(), surfaces_.end(), [&](const VoxelGrid& g) {
+    return g.voxels().size() > static_cast<std::size_t>(options_.max_voxels);
+  });
+  if (full || (position - last_cleaned_).cwiseAbs().maxCoeff() > kCleaningStep * options_.radius_m)
+    forget_far(position);
+}
+
+void LocalMap::forget_far(const Vec3& position) {
+  const auto most = static_cast<std::size_t>(options_.max_voxels);
+  // A tenth less than the most, or a full grid would be cleaned again with every keyframe.
+  const auto clean = [&](VoxelGrid& g) {
+    g.keep_near(position, options_.radius_m, g.voxels().size() > most ? most - most / 10 : most);
   };
-  if (blocks_.size() > max_blocks) {
-    std::vector<double> distances;
-    for (const Block& b : blocks_) distances.push_back(distance(b));
-    const auto last_kept = distances.begin() + static_cast<std::ptrdiff_t>(max_blocks);
-    std::nth_element(distances.begin(), last_kept, distances.end());
-    radius_m = std::min(radius_m, std::nextafter(*last_kept, 0.0));  // of those as far as that none is kept
-  }
-  for (std::size_t i = 0; i < blocks_.size();)
-    if (distance(blocks_[i]) > radius_m)
-      drop(i);
-    else
-      ++i;
+  clean(edges_);
+  for (VoxelGrid& g : surfaces_) clean(g);
+  std::erase_if(keyframes_,
+                [&](const Vec3& k) { return (k - position).cwiseAbs().maxCoeff() > options_.radius_m; });
+  last_cleaned_ = position;
 }
 
-std::size_t VoxelLevel::voxels() const {
-  std::size_t n = 0;
-  for (const Block& b : blocks_)
-    n += static_cast<std::size_t>(
-        std::count_if(b.voxels.begin(), b.voxels.end(), [](const VoxelSums& v) { return v.points > 0; }));
+void LocalMap::clear() {
+  edges_.clear();
+  for (VoxelGrid& g : surfaces_) g.clear();
+  keyframes_.clear();
+}
+
+std::size_t LocalMap::voxels() const {
+  std::size_t n = edges_.voxels().size();
+  for (const VoxelGrid& g : surfaces_) n += g.voxels().size();
   return n;
 }
 
-std::size_t VoxelLevel::bytes() const {
-  return blocks_.capacity() * sizeof(Block) + index_.size() * 32 + index_.bucket_count() * sizeof(void*);
+std::size_t LocalMap::bytes() const {
+  std::size_t n = edges_.bytes() + keyframes_.capacity() * sizeof(Vec3);
+  for (const VoxelGrid& g : surfaces_) n += g.bytes();
+  return n;
 }
 
 }  // namespace karst::core

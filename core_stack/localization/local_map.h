@@ -1,80 +1,61 @@
-// The rock around the vehicle as statistics of points, in bounded memory.
+// The rock around the vehicle, as its LiDAR saw it, in bounded memory.
 //
-// Space is cut into cubic voxels; each holds the number, the sum and the outer products of the points in it.
-// The surface near a place is read from the 3x3x3 voxels around it taken together: their mean, and the
-// principal axes of their scatter. So a plane or a line is fitted to a window three voxels wide that is never
-// off centre by more than half a voxel, however many points were inserted, and neither noise nor number of
-// points has to be traded against memory. Where points are sparse, far away from the sensor, a second level
-// with larger voxels answers.
-//
-// Voxels live in blocks of 4x4x4 and a table of blocks. Blocks beyond the radius around the vehicle are
-// dropped, the farthest first if there are still more than `max_blocks`.
+// Surfaces are kept in a few grids, each twice as coarse as the one before: near the sensor, where points are
+// dense, a small window follows the rock closely; far away only a large one holds enough points. Edges have a
+// grid of their own. A sweep joins the map when it was taken at a new place (a keyframe): a vehicle that
+// hovers, or comes back, adds nothing, so what it knows of a place keeps the error it had at first.
 #pragma once
-#include <array>
-#include <span>
-#include <unordered_map>
 #include <vector>
 
-#include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
+#include "core_stack/localization/voxel_grid.h"
 
 namespace karst::core {
 
 struct LocalMapOptions {
-  double voxel_m = 0.25;
-  double coarse_voxel_m = 0.75;  // of the second level
-  double radius_m = 60;
-  std::int64_t max_blocks = 60000;
-  std::int64_t max_points = 200;  // a voxel; later ones are not added: the oldest have drifted least
+  double voxel_m = 0.15;              // of the finest grid of surfaces
+  std::int64_t levels = 3;            // grids of surfaces
+  double edge_voxel_m = 0.25;         // of the grid of edges
+  double radius_m = 60;               // what is farther away along any axis is forgotten
+  std::int64_t max_voxels = 400'000;  // of each grid, the farthest forgotten first
+  std::int64_t max_points = 1000;     // of each voxel
+  double keyframe_distance_m = 0.5;
 };
 void describe(OptionTable& t, LocalMapOptions& o);
 
-/// Mean and principal axes of the points around a place; `deviation_m` along the axes, ascending.
-struct Surface {
-  double points = 0;
-  Vec3 mean = Vec3::Zero();
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // columns
-  Vec3 deviation_m = Vec3::Zero();
+/// A sweep's points, all as seen at one time; in the body frame or in the world.
+struct Cloud {
+  std::vector<Vec3f> edges;    // features
+  std::vector<Vec3f> planes;   // features
+  std::vector<Vec3f> surface;  // every point that is not on the border of what is seen
 };
+Cloud transformed(const Pose& T, const Cloud& cloud);
 
-/// Sums of points relative to the voxel's centre.
-struct VoxelSums {
-  float points = 0;
-  Vec3f sum = Vec3f::Zero();
-  std::array<float, 6> products{};  // xx xy xz yy yz zz
-};
-
-/// One level.
-class VoxelLevel {
+class LocalMap {
  public:
-  VoxelLevel(double voxel_m, std::int64_t max_points);
-  void insert(std::span<const Vec3f> points_world);
-  /// Of the window around `p`; with fewer than `least` points in it only their number is set.
-  Surface surface_near(const Vec3& p, double least) const;
-  /// Drops blocks whose centres are farther than `radius_m` in any axis, then the farthest above
-  /// `max_blocks`.
-  void roll(const Vec3& centre, double radius_m, std::size_t max_blocks);
+  explicit LocalMap(const LocalMapOptions& options);
 
-  std::size_t blocks() const { return blocks_.size(); }
+  bool empty() const { return keyframes_.empty(); }
+  /// No keyframe lies within the keyframe distance.
+  bool is_new_place(const Vec3& position) const;
+  /// Adds a sweep taken at `position` and forgets what is too far from there.
+  void insert(const Cloud& cloud_world, const Vec3& position, int threads);
+  void clear();
+
+  const VoxelGrid& edges() const { return edges_; }
+  const std::vector<VoxelGrid>& surfaces() const { return surfaces_; }  // finest first
+  std::size_t keyframes() const { return keyframes_.size(); }
   std::size_t voxels() const;
   std::size_t bytes() const;
-  double voxel_m() const { return voxel_m_; }
-  Eigen::Vector3i voxel_of(const Vec3& p) const { return (p / voxel_m_).array().floor().cast<int>(); }
 
  private:
-  static constexpr int kEdge = 4;
-  struct Block {
-    Eigen::Vector3i corner;  // its first voxel
-    std::array<VoxelSums, kEdge * kEdge * kEdge> voxels;
-  };
-  static std::uint64_t key_of(const Eigen::Vector3i& block);
-  const Block* find(const Eigen::Vector3i& block) const;
-  void drop(std::size_t i);
+  void forget_far(const Vec3& position);
 
-  double voxel_m_;
-  float max_points_;
-  std::vector<Block> blocks_;  // in the order of their making
-  std::unordered_map<std::uint64_t, std::uint32_t> index_;
+  LocalMapOptions options_;
+  VoxelGrid edges_;
+  std::vector<VoxelGrid> surfaces_;
+  std::vector<Vec3> keyframes_;
+  Vec3 last_cleaned_ = Vec3::Zero();
 };
 
 }  // namespace karst::core

@@ -1,25 +1,20 @@
-// Where a sweep lies in the local map: Gauss-Newton on distances of its features to the map's surfaces.
+// Where a sweep lies in the local map: Gauss-Newton on the distances of its matches.
 //
-// With T = (R, t) the body in the world, p a feature in the body frame, and a surface of the map near T p
-// with mean q, the residuals are
+// With T = (R, t) the body in the world, and p a point of the sweep in the body frame that belongs on the
+// plane through q with unit normal n, the residual and its change with t + dt, R exp(dw) are
 //
-//   plane with normal n:      r  = n' (R p + t - q)
-//   line with direction u:    r1 = a' (R p + t - q),  r2 = b' (R p + t - q),   a, b, u orthonormal
+//   r = n' (R p + t - q),    dr/ddt = n',    dr/ddw = (p x R' n)'
 //
-// A change (dt in the world, dw in the body: t + dt, R exp(dw)) gives, with c = R' n,
+// A line is the two planes that meet in it. A match of variance s^2 weighs 1 / s^2, times the robust weight
+// (1 + (r/k)^2)^-2 of Geman and McClure, whose width k narrows as the fit gets better.
 //
-//   dr/ddt = n',   dr/ddw = (p x c)'
-//
-// Each residual is weighted by 1 / s^2, s the deviation of the map's points across the surface together with
-// the sensor's noise, and by Geman and McClure's w = 1 / (1 + (r/k)^2)^2, whose width k narrows as the fit
-// gets better.
-//
-// Degeneracy, after Zhang, Kaess and Singh (ICRA 2016): rotations are measured as the way they move a feature
-// at the mean distance L, so that all six numbers are metres; the information matrix over the sum of weights
-// is then the mean squared cosine between a direction and the surfaces' normals. Directions (eigenvectors)
-// with less than a threshold are not moved along: there the guess is kept, and the covariance says so.
+// Degeneracy, after Zhang, Kaess and Singh (ICRA 2016): with rotations measured by how far they move a point
+// at the matches' mean distance L, all six numbers are metres, and the information matrix over the sum of the
+// weights holds mean squared cosines between directions of motion and normals. Along an eigenvector with
+// less than a threshold the sweep says nothing: there the pose stays as it was guessed, and the covariance is
+// huge.
 #pragma once
-#include "core_stack/localization/local_map.h"
+#include "core_stack/localization/matching.h"
 
 namespace karst::core {
 
@@ -27,45 +22,45 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct RegistrationOptions {
-  std::int64_t max_iterations = 10;
-  double range_noise_m = 0.02;
-  double max_distance_m = 0.5;  // width of the weight at first, when the guess is good
-  double degenerate_share = 0.01;
-  double min_matched_share = 0.3;
-  std::int64_t min_matches = 100;
+  std::int64_t max_passes = 4;
+  std::int64_t max_steps = 6;
+  double degenerate_share = 0.002;
+  std::int64_t min_matches = 60;
+  double min_matched_share = 0.25;
 };
 void describe(OptionTable& t, RegistrationOptions& o);
 
-/// In the body frame.
-struct Cloud {
-  std::vector<Vec3f> edges, planes;
-};
-
-struct MapLevels {
-  const VoxelLevel* edges;
-  const VoxelLevel* fine;
-  const VoxelLevel* coarse;
-};
-
 struct Fit {
   Pose T_world_body;
+  Matrix6 covariance = Matrix6::Zero();  // translation (world), rotation (body)
+  int free_directions = 0;
+  bool good = false;
+  int edges = 0, planes = 0;
+  double matched_share = 0;   // of the places that were looked for
+  double rms_residual_m = 0;  // with robust weights
+};
+
+/// Starts from `guess` with surfaces of `first_level` and goes on to the finest.
+Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, std::size_t first_level,
+               const RegistrationOptions& options, int threads, SweepGrids& scratch);
+
+/// Weighted sums over all matches at a pose.
+struct NormalEquations {
+  Matrix6 information = Matrix6::Zero();         // sum w j j'
+  Vector6 gradient = Vector6::Zero();            // sum w j r
+  double weight = 0;                             // sum w
+  double squared_distance = 0;                   // sum w |p|^2
+  double robust = 0, absolute = 0, squared = 0;  // sums of the robust weight u, u |r|, u r^2
+};
+NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world_body, double width_m,
+                          int threads);
+
+/// The step that solves them where they say something, and the covariance.
+struct Step {
+  Vector6 change = Vector6::Zero();  // dt, dw
   Matrix6 covariance = Matrix6::Zero();
   int free_directions = 0;
-  bool converged = false;
-  int iterations = 0;
-  int edges = 0, planes = 0;  // matched
-  double matched_share = 0;   // of the features
-  double rms_residual_m = 0;  // weighted
 };
-
-Fit fit_to_map(const Cloud& cloud, const MapLevels& map, const Pose& guess,
-               const RegistrationOptions& options, double first_width_m, int threads);
-
-/// r and dr/d(dt, dw) of a feature p (body) against the plane through q with normal n (world).
-struct Row {
-  double residual;
-  Vector6 jacobian;
-};
-Row distance_row(const Pose& T_world_body, const Vec3& p, const Vec3& q, const Vec3& n);
+Step solve(const NormalEquations& equations, double degenerate_share);
 
 }  // namespace karst::core

@@ -28,8 +28,8 @@ TEST(Safety, EachCauseHasItsAction) {
     EXPECT_FALSE(v.reason.empty());
     return v.action;
   };
-  EXPECT_EQ(action([](auto& o) { o.health = Health::lost; }), A::land);
-  EXPECT_EQ(action([](auto& o) { o.health = Health::degraded; }), A::slow);
+  EXPECT_EQ(action([](auto& o) { o.estimate.health = Health::lost; }), A::land);
+  EXPECT_EQ(action([](auto& o) { o.estimate.health = Health::degraded; }), A::slow);
   EXPECT_EQ(action([](auto& o) { o.battery_s = 11; }), A::land);
   EXPECT_EQ(action([](auto& o) { o.blind_s = 1.1; }), A::brake);
   EXPECT_EQ(action([](auto& o) { o.blind_s = 10.1; }), A::home);
@@ -43,7 +43,7 @@ TEST(Safety, AnEstimateThatStaysDegradedEndsTheExploration) {
   SafetyAction last = SafetyAction::none;
   for (double t = 0; t < 5.25; t += 0.1) {
     SafetyObservation o = well(t);
-    o.health = Health::degraded;
+    o.estimate.health = Health::degraded;
     last = s.judge(o).action;
     EXPECT_EQ(last, t > 5.0001 ? SafetyAction::home : SafetyAction::slow) << t;
   }
