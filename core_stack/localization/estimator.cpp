@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace karst::core {
 namespace {
+
+using Scalar = InertialFilter::Scalar;
 
 /// So many poses refused in a row raise a doubt; so many that agree with the newcomer settle it: 1 s at 10
 /// Hz.
@@ -14,6 +17,8 @@ constexpr int kMisled = 3;
 /// Heading spread of the LiDAR's filter beyond which the compass is believed, and below which no more.
 constexpr double kHeadingOpen_rad = 0.02, kHeadingKnown_rad = 0.01;
 constexpr double kCompassTrusted_s = 2;
+/// Spread of the height below which the barometer is set by it.
+constexpr double kHeightKnown_m = 0.03;
 /// A made-up sample is that much noisier.
 constexpr double kBridgeNoise = 5;
 
@@ -44,6 +49,8 @@ void describe(OptionTable& t, EstimatorOptions& o) {
         "standard deviation of a pose's attitude, each axis; of the LiDAR's on top of its own covariance");
   t.add("compass_noise", o.compass_noise_rad, "rad", 0.01, 3.0,
         "standard deviation of the heading by one magnetometer sample");
+  t.add("height_noise", o.height_noise_m, "m", 0.01, 100,
+        "standard deviation of the height by one barometer sample");
   t.add("gate", o.gate, "", 3, 100, "poses off by so many standard deviations are refused");
   t.add("pose_timeout", o.pose_timeout_s, "s", 0.05, 10.0,
         "without a pose accepted for so long health is degraded, for four times that it is lost");
@@ -154,9 +161,23 @@ void Estimator::on_magnetometer(const MagnetometerSample& mag) {
   }
   if (!lidar_.started()) return;
   const Compass::Reading reading = compass_.read(mag, magnetic_.state().orientation);
-  if (reading.valid) magnetic_.on_heading(reading.heading_rad, options_.compass_noise_rad);
+  if (reading.valid) magnetic_.on_scalar({Scalar::Kind::heading_rad, reading.heading_rad, options_.compass_noise_rad});
   if (!magnetic_believed_ && lidar_.heading_sigma_rad() < kHeadingKnown_rad)
     compass_.learn(mag, lidar_.state().orientation);
+}
+
+void Estimator::on_barometer(const BarometerSample& barometer) {
+  if (!std::isfinite(barometer.height_m)) {
+    last_bad_input_ = barometer.stamp;
+    return;
+  }
+  if (!lidar_.started()) return;
+  if (active().height_sigma_m() < kHeightKnown_m) height_offset_.learn(barometer, state().position.z());
+  if (!height_offset_.known()) return;
+  const Scalar measured{Scalar::Kind::height_m, height_offset_.height_m(barometer), options_.height_noise_m};
+  lidar_.on_scalar(measured);
+  magnetic_.on_scalar(measured);
+  if (newcomer_) newcomer_->on_scalar(measured);
 }
 
 Diagnosis Estimator::diagnose(TimeNs now) const {

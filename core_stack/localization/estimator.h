@@ -7,6 +7,8 @@
 //   newcomer   begun at a pose that the others refuse. If further poses agree with it for a second while the
 //              others still refuse them, the bank starts over from it.
 //
+// The barometer holds the height of all where the LiDAR leaves it open, as in a smooth shaft.
+//
 // A pose that is far from what a filter expects does not enter it; until one is accepted again, the IMU alone
 // carries it, and its covariance grows. Health is judged by that. Switching has hysteresis.
 #pragma once
@@ -14,6 +16,7 @@
 #include <optional>
 
 #include "core_stack/localization/compass.h"
+#include "core_stack/localization/height_offset.h"
 #include "core_stack/localization/inertial_filter.h"
 
 namespace karst::core {
@@ -23,6 +26,7 @@ struct EstimatorOptions {
   double pose_position_noise_m = 0.01;  // of the pose sensor; of LiDAR poses, what comes on top of theirs
   double pose_attitude_noise_rad = 0.0035;
   double compass_noise_rad = 0.2;  // of one sample; their errors last
+  double height_noise_m = 0.6;     // of one barometer sample, likewise
   double gate = 6;                 // poses off by so many standard deviations are refused
   double pose_timeout_s = 0.5;     // health degrades without a pose for so long; lost at four times that
 };
@@ -45,6 +49,7 @@ class Estimator {
   /// The same of a LiDAR pose, with its covariance. True if it was accepted.
   bool on_lidar_pose(const PoseMeasurement& pose);
   void on_magnetometer(const MagnetometerSample& mag);
+  void on_barometer(const BarometerSample& barometer);
 
   const State& state() const { return active().state(); }  // at the last IMU sample
   /// The states as corrected: 2 s, every IMU sample.
@@ -68,6 +73,7 @@ class Estimator {
   InertialFilter lidar_, magnetic_;
   std::optional<InertialFilter> newcomer_;
   Compass compass_;
+  HeightOffset height_offset_;
   bool magnetic_believed_ = false;
   int refused_ = 0, agreed_ = 0, magnetic_refused_ = 0, restarts_ = 0;
   TimeNs last_imu_ = 0, last_pose_ = 0;

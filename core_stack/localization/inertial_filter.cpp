@@ -117,7 +117,7 @@ void InertialFilter::replay_after(std::size_t step) {
   steps_.resize(step);
   note(later.front().imu, later.front().noise_scale);
   for (std::size_t i = 0;; ++i) {
-    if (later[i].heading) on_heading(later[i].heading->first, later[i].heading->second);
+    for (const Scalar& measured : later[i].scalars) on_scalar(measured);
     if (i + 1 == later.size()) return;
     propagate(later[i].imu, later[i + 1].imu, later[i + 1].noise_scale);
     note(later[i + 1].imu, later[i + 1].noise_scale);
@@ -159,27 +159,28 @@ InertialFilter::Verdict InertialFilter::on_pose(const PoseMeasurement& pose, dou
   return Verdict::accepted;
 }
 
-/// Only the rotation about the world's z axis is corrected: dh = z . R da.
-void InertialFilter::correct_heading(double heading_rad, double sigma_rad) {
-  const double innovation = wrap_angle(heading_rad - heading_of(state_.orientation));
+/// Of the heading only the rotation about the world's z axis is corrected: dh = z . R da.
+void InertialFilter::correct(const Scalar& m) {
+  const bool heading = m.kind == Scalar::Kind::heading_rad;
+  const double innovation =
+      heading ? wrap_angle(m.value - heading_of(state_.orientation)) : m.value - state_.position.z();
   Eigen::Matrix<double, 1, 15> H = Eigen::Matrix<double, 1, 15>::Zero();
-  H.segment<3>(kA) = state_.orientation.toRotationMatrix().row(2);
-  const double S = (H * covariance_ * H.transpose())(0) + squared(sigma_rad);
+  if (heading)
+    H.segment<3>(kA) = state_.orientation.toRotationMatrix().row(2);
+  else
+    H[kP + 2] = 1;
+  const double S = (H * covariance_ * H.transpose())(0) + squared(m.sigma);
   const Vector15 K = covariance_ * H.transpose() / S;
   inject(K * innovation);
   const Matrix15 rest = Matrix15::Identity() - K * H;
-  covariance_ = (rest * covariance_ * rest.transpose() + K * squared(sigma_rad) * K.transpose()).eval();
+  covariance_ = (rest * covariance_ * rest.transpose() + K * squared(m.sigma) * K.transpose()).eval();
 }
 
-void InertialFilter::on_heading(double heading_rad, double sigma_rad) {
+void InertialFilter::on_scalar(const Scalar& measured) {
   if (steps_.empty()) return;
-  correct_heading(heading_rad, sigma_rad);
-  const Step last = steps_.back();
-  steps_.pop_back();
-  note(last.imu, last.noise_scale);
-  // Replayed from the state before it was taken in, not after.
-  steps_.back() = last;
-  steps_.back().heading = {heading_rad, sigma_rad};
+  correct(measured);
+  steps_.back().scalars.push_back(measured);  // its state stays as it was before: there a replay begins
+  history_.push(state_);
 }
 
 void InertialFilter::restart_at(const PoseMeasurement& pose) {

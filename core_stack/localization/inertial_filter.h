@@ -6,10 +6,11 @@
 // pose is taken in at its stamp, in a buffer of the past second; what came since, samples and headings, is
 // replayed.
 #pragma once
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include "core_stack/common/options.h"
 #include "core_stack/localization/state.h"
@@ -47,8 +48,12 @@ class InertialFilter {
   /// Gated: `gate` standard deviations or more from what is expected. Ignored: not newer than the last pose
   /// taken in, or not within the buffer.
   Verdict on_pose(const PoseMeasurement& pose, double gate);
-  /// The heading now is `heading_rad`, give or take `sigma_rad`.
-  void on_heading(double heading_rad, double sigma_rad);
+  /// The heading, or the height above the world's origin, is `value` now, give or take `sigma`.
+  struct Scalar {
+    enum class Kind { heading_rad, height_m } kind;
+    double value, sigma;
+  };
+  void on_scalar(const Scalar& measured);
 
   /// Starts anew at a pose in the buffer's time, with the velocity and biases known.
   void restart_at(const PoseMeasurement& pose);
@@ -61,6 +66,7 @@ class InertialFilter {
   /// Greatest standard deviation of the position in any direction, and that of the heading.
   double position_sigma_m() const;
   double heading_sigma_rad() const;
+  double height_sigma_m() const { return std::sqrt(covariance_(2, 2)); }
   Vec3 accel_bias_mps2() const { return accel_bias_mps2_; }
   Vec3 gyro_bias_radps() const { return gyro_bias_radps_; }
 
@@ -71,10 +77,10 @@ class InertialFilter {
     State state;
     Vec3 accel_bias_mps2, gyro_bias_radps;
     Matrix15 covariance;
-    std::optional<std::pair<double, double>> heading;  // taken in since, with its sigma
+    std::vector<Scalar> scalars;  // taken in since
   };
   void propagate(const ImuSample& before, const ImuSample& after, double noise_scale);
-  void correct_heading(double heading_rad, double sigma_rad);
+  void correct(const Scalar& measured);
   void inject(const Vector15& error);
   std::optional<std::size_t> step_at(TimeNs stamp) const;
   void go_back_to(std::size_t step);

@@ -24,6 +24,7 @@ class Flight {
   void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
   /// False if the estimate refuses it.
   bool on_lidar_pose(const PoseMeasurement& p) { return estimator_.on_lidar_pose(p); }
+  void on_barometer(const BarometerSample& s) { estimator_.on_barometer(s); }
   void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
 
   /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.

@@ -51,6 +51,7 @@ class MissionControl final : public VehicleSink {
   void on_depth(std::shared_ptr<const DepthImage> image) override;
   void on_imu(const ImuSample& s) override { flight_.on_imu(s); }
   void on_magnetometer(const MagnetometerSample& s) override { flight_.on_magnetometer(s); }
+  void on_barometer(const BarometerSample& s) override { flight_.on_barometer(s); }
   void on_pose(const PoseSample& s) override {
     if (!loam_) flight_.on_pose(s);
   }

@@ -63,6 +63,12 @@ struct MagnetometerSample {
   Vec3 field_ut = Vec3::Zero();  // body frame, microtesla
 };
 
+/// Height by air pressure, above where it was switched on; it drifts by decimetres.
+struct BarometerSample {
+  TimeNs stamp = 0;
+  double height_m = 0;
+};
+
 /// A pose sensor such as motion capture, with noise, delay and drift.
 struct PoseSample {
   TimeNs stamp = 0;  // when it was true; it arrives later

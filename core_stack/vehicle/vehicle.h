@@ -32,6 +32,7 @@ class VehicleSink {
   virtual void on_depth(std::shared_ptr<const DepthImage>) = 0;
   virtual void on_imu(const ImuSample&) = 0;
   virtual void on_magnetometer(const MagnetometerSample&) = 0;
+  virtual void on_barometer(const BarometerSample&) {}
   virtual void on_pose(const PoseSample&) = 0;
   virtual void on_battery(const BatteryStatus&) = 0;
   /// The vehicle stands on the ground, or has left it.

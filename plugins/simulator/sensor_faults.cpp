@@ -12,7 +12,7 @@ using Kind = cave::Fault::Kind;
 namespace {
 
 std::string in_words(const cave::Fault& fault) {
-  constexpr const char* kSensors[] = {"lidar", "imu", "magnetometer", "camera", "pose"};
+  constexpr const char* kSensors[] = {"lidar", "imu", "magnetometer", "barometer", "camera", "pose"};
   constexpr const char* kKinds[] = {"lost", "nan", "three_points", "stamp_back"};
   char text[80];
   std::snprintf(text, sizeof text, "%s %s for %.3f s", kSensors[static_cast<int>(fault.sensor)],

@@ -20,6 +20,7 @@ namespace {
 
 constexpr TimeNs kTick = 5 * kMillisecond;  // also the period of the IMU
 constexpr int kStepsPerTick = 5;
+constexpr TimeNs kBarometerPeriod = 40 * kMillisecond;
 constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond;
 
 std::shared_ptr<cave::Cave> open_cave(const SimulatorOptions& o, const core::VehicleSetup& setup) {
@@ -66,6 +67,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       cameras_(mount_cameras(options)),
       imu_(options.imu, Random::stream(setup.seed, "imu"), Random::stream(setup.seed, "vibration")),
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
+      barometer_(options.barometer, Random::stream(setup.seed, "barometer")),
       pose_sensor_(options.pose, site_.T_world_start, Random::stream(setup.seed, "pose")),
       log_(setup.run_dir) {
   cave::check_climb(*cave_, site_.T_world_start.position, setup.climb_m, options.body.radius_m);
@@ -113,6 +115,11 @@ void SimulatedVehicle::schedule_sensors() {
         measure_field(options_.magnetometer, cave_->description.ore_bodies, quadrotor_.state().T_world_body,
                       now(), magnetometer_random_);
     if (!faults_of(Sensor::magnetometer).lost()) sink_->on_magnetometer(field);
+  });
+  every(kBarometerPeriod, 0, [this] {
+    const double height_m = quadrotor_.state().T_world_body.position.z() - site_.T_world_start.position.z();
+    const core::BarometerSample sample = barometer_.sample(now(), height_m, core::seconds(kBarometerPeriod));
+    if (!faults_of(Sensor::barometer).lost()) sink_->on_barometer(sample);
   });
   every(kSecond / 2, 0, [this] { sink_->on_battery(quadrotor_.battery().status(now())); });
   if (lidar_) every(lidar_->model()->period, 0, [this] { fire_lidar(); });

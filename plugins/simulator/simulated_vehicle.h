@@ -62,6 +62,7 @@ class SimulatedVehicle final : public core::Vehicle {
   std::vector<std::shared_ptr<const DepthCamera>> cameras_;
   Imu imu_;
   core::Random magnetometer_random_;
+  Barometer barometer_;
   PoseSensor pose_sensor_;
   TruthLog log_;
   core::VehicleDescription description_;

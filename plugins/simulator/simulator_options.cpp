@@ -14,6 +14,7 @@ void describe(core::OptionTable& t, SimulatorOptions& o) {
   t.section("camera", o.camera);
   t.section("imu", o.imu);
   t.section("magnetometer", o.magnetometer);
+  t.section("barometer", o.barometer);
   t.section("pose", o.pose);
   t.section("body", o.body);
   t.section("motors", o.motors);

@@ -1,6 +1,7 @@
 // Everything that can be set in the mission file's section `simulator`.
 #pragma once
 #include "plugins/simulator/autopilot.h"
+#include "plugins/simulator/barometer.h"
 #include "plugins/simulator/battery.h"
 #include "plugins/simulator/cave_air.h"
 #include "plugins/simulator/depth_camera.h"
@@ -22,6 +23,7 @@ struct SimulatorOptions {
   CameraOptions camera;
   ImuOptions imu;
   MagnetometerOptions magnetometer;
+  BarometerOptions barometer;
   PoseSensorOptions pose;
   BodyModel body;
   MotorModel motors;

@@ -1,6 +1,7 @@
 #include "sdk/evaluation/flight_figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace karst::evaluation {
@@ -100,20 +101,19 @@ std::optional<std::int64_t> contacts(const RunRecord& run) {
   return std::max<std::int64_t>(count, ended_so ? 1 : 0);
 }
 
-/// Where the vehicle truly was against where the controller wanted it, over the flight.
+/// Where the vehicle believed to be against where the controller wanted it, over the flight: what the estimate is
+/// wrong by is drift, and no controller can do anything about it.
 std::optional<double> tracking_rms_m(const RunRecord& run) {
   const auto* t_s = run.telemetry.times();
-  const auto* x = run.telemetry.column("ref_x");
-  const auto* y = run.telemetry.column("ref_y");
-  const auto* z = run.telemetry.column("ref_z");
-  if (!t_s || !x || !y || !z || run.truth.empty()) return std::nullopt;
+  std::array<const std::vector<double>*, 6> c{};
+  for (std::size_t i = 0; i < c.size(); ++i)
+    c[i] = run.telemetry.column(std::array{"x", "y", "z", "ref_x", "ref_y", "ref_z"}[i]);
+  if (!t_s || std::find(c.begin(), c.end(), nullptr) != c.end()) return std::nullopt;
   RootMeanSquare rms;
   for (std::size_t i = 0; i < t_s->size(); ++i) {
-    const Vec3 reference((*x)[i], (*y)[i], (*z)[i]);
-    if ((*t_s)[i] < run.truth.front().t_s || (*t_s)[i] > run.truth.back().t_s) continue;
-    if (!reference.allFinite() || !within(run, (*t_s)[i], {"takeoff", "look", "explore", "home", "land"}))
-      continue;
-    rms.add((pose_at(run.truth, (*t_s)[i]).position - reference).norm());
+    const Vec3 off((*c[0])[i] - (*c[3])[i], (*c[1])[i] - (*c[4])[i], (*c[2])[i] - (*c[5])[i]);
+    if (off.allFinite() && within(run, (*t_s)[i], {"takeoff", "look", "explore", "home", "land"}))
+      rms.add(off.norm());
   }
   return rms.value();
 }

@@ -52,7 +52,7 @@ struct Cloud {
 /// Something goes wrong with a sensor. It strikes every message measured in [after, after + lasts), and at
 /// least the first from `after` on.
 struct Fault {
-  enum class Sensor { lidar, imu, magnetometer, camera, pose };
+  enum class Sensor { lidar, imu, magnetometer, barometer, camera, pose };
   enum class Kind {
     lost,          // no message
     nan,           // every second range and every third intensity is NaN; LiDAR only, as the rest

@@ -216,13 +216,12 @@ TEST(Metrics, DriftIsTheLastErrorPerPathAndHeadingErrorItsRootMeanSquare) {
   EXPECT_NEAR(m["heading_error_rad"].get<double>(), 0.1 * std::sqrt(17.0 / 35.0), 1e-4);
 }
 
-TEST(Metrics, TrackingIsTruthAgainstReferenceInFlight) {
+TEST(Metrics, TrackingIsTheEstimateAgainstReferenceInFlight) {
   TemporaryDirectory dir;
   dir.write("events.jsonl", std::string(kPhases) + kLanded);
-  dir.write("ground_truth.tum", "0 0 0 0 0 0 0 1\n100 100 0 0 0 0 0 1\n");
   dir.write("telemetry.csv",
-            "t_s,phase,ref_x,ref_y,ref_z\n5,standby,0,0,99\n12,explore,12,0,3\n20.5,explore,20.5,4,0\n60,"
-            "done,0,0,9\n");
+            "t_s,phase,x,y,z,ref_x,ref_y,ref_z\n5,standby,0,0,0,0,0,99\n12,explore,12,0,0,12,0,3\n"
+            "20.5,explore,20.5,0,1,20.5,4,1\n60,done,0,0,0,0,0,9\n");
   EXPECT_NEAR(figures(dir)["tracking_rms_m"].get<double>(), std::sqrt((9.0 + 16.0) / 2), 1e-6);
 }
 
