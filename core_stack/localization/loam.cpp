@@ -66,7 +66,8 @@ Loam::Prediction Loam::predict(const Sweep& sweep, double length_s, const StateH
 
 LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
   if (last_stamp_ && sweep.stamp <= *last_stamp_) {
-    LoamPose refused{sweep.stamp, T_world_last_};
+    LoamPose refused;
+    refused.stamp = sweep.stamp, refused.T_world_body = T_world_last_;
     refused.problem = "the sweep is not newer than the last one";
     return refused;
   }
@@ -82,7 +83,8 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   const int threads = static_cast<int>(options_.threads);
   const double length_s = length_of(sweep);
   Prediction prediction = predict(sweep, length_s, states);
-  LoamPose out{sweep.stamp, prediction.T_world_body};
+  LoamPose out;
+  out.stamp = sweep.stamp, out.T_world_body = prediction.T_world_body;
   const auto refused = [&](const std::string& why) {
     out.T_world_body = prediction.T_world_body;
     out.problem = why;
@@ -106,7 +108,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   const bool lost = since_s > options_.restart_s;
   if (map_.empty() || lost) {
     map_.clear(), last_sweep_.clear();
-    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position, threads);
+    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
     out.valid = true;
     if (lost) out.problem = "the local map began anew where the vehicle was predicted to be";
     accept(out);
@@ -151,10 +153,9 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   out.valid = true;
   accept(out);
   if (map_.is_new_place(out.T_world_body.position))
-    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position, threads);
+    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
   last_sweep_.clear();
-  if (scan_to_scan)
-    last_sweep_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position, threads);
+  if (scan_to_scan) last_sweep_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
   return out;
 }
 

@@ -61,7 +61,7 @@ class Loam {
   LoamOptions options_;
   LocalMap map_;
   LocalMap last_sweep_;  // in the world; empty unless scan to scan is in use
-  SweepGrids scratch_;
+  Grids scratch_;
   Pose T_world_last_;  // of the last valid pose, the start before that
   Twist twist_;        // at the last valid pose
   std::optional<TimeNs> last_stamp_, last_valid_;

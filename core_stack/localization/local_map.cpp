@@ -1,8 +1,7 @@
 #include "core_stack/localization/local_map.h"
 
 #include <algorithm>
-
-#include "core_stack/localization/parallel.h"
+#include <limits>
 
 namespace karst::core {
 
@@ -35,6 +34,14 @@ Cloud transformed(const Pose& T, const Cloud& cloud) {
   return {moved(cloud.edges), moved(cloud.planes), moved(cloud.surface)};
 }
 
+void fill_grids(const std::vector<Vec3f>& points, const Grids& like, std::size_t first, Grids& grids) {
+  while (grids.size() < like.size())
+    grids.emplace_back(like[grids.size()].voxel_m(), std::numeric_limits<std::int64_t>::max());
+  for (std::size_t i = first; i < grids.size(); ++i) grids[i].clear();
+  grids[first].insert(points);
+  for (std::size_t i = first + 1; i < grids.size(); ++i) grids[i].merge(grids[i - 1]);
+}
+
 LocalMap::LocalMap(const LocalMapOptions& options)
     : options_(options), edges_(options.edge_voxel_m, options.max_points) {
   double voxel_m = options.voxel_m;
@@ -47,12 +54,11 @@ bool LocalMap::is_new_place(const Vec3& position) const {
                       [&](const Vec3& k) { return (k - position).norm() < options_.keyframe_distance_m; });
 }
 
-void LocalMap::insert(const Cloud& cloud_world, const Vec3& position, int threads) {
+void LocalMap::insert(const Cloud& cloud_world, const Vec3& position) {
   if (empty()) last_cleaned_ = position;
   edges_.insert(cloud_world.edges);
-  for_each_chunk(surfaces_.size(), 1, threads, [&](std::size_t, std::size_t level, std::size_t) {
-    surfaces_[level].insert(cloud_world.surface);
-  });
+  fill_grids(cloud_world.surface, surfaces_, 0, scratch_);
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) surfaces_[i].merge(scratch_[i]);
   keyframes_.push_back(position);
   const bool full = std::any_of(surfaces_.begin(), surfaces_.end(), [&](const VoxelGrid& g) {
     return g.voxels().size() > static_cast<std::size_t>(options_.max_voxels);

@@ -31,6 +31,11 @@ struct Cloud {
 };
 Cloud transformed(const Pose& T, const Cloud& cloud);
 
+/// Grids of surfaces, each twice as coarse as the one before.
+using Grids = std::vector<VoxelGrid>;
+/// Makes `grids[first]` and coarser ones, as large as those of `like`, hold these points and no others.
+void fill_grids(const std::vector<Vec3f>& points, const Grids& like, std::size_t first, Grids& grids);
+
 class LocalMap {
  public:
   explicit LocalMap(const LocalMapOptions& options);
@@ -39,11 +44,11 @@ class LocalMap {
   /// No keyframe lies within the keyframe distance.
   bool is_new_place(const Vec3& position) const;
   /// Adds a sweep taken at `position` and forgets what is too far from there.
-  void insert(const Cloud& cloud_world, const Vec3& position, int threads);
+  void insert(const Cloud& cloud_world, const Vec3& position);
   void clear();
 
   const VoxelGrid& edges() const { return edges_; }
-  const std::vector<VoxelGrid>& surfaces() const { return surfaces_; }  // finest first
+  const Grids& surfaces() const { return surfaces_; }  // finest first
   std::size_t keyframes() const { return keyframes_.size(); }
   std::size_t voxels() const;
   std::size_t bytes() const;
@@ -53,7 +58,7 @@ class LocalMap {
 
   LocalMapOptions options_;
   VoxelGrid edges_;
-  std::vector<VoxelGrid> surfaces_;
+  Grids surfaces_, scratch_;
   std::vector<Vec3> keyframes_;
   Vec3 last_cleaned_ = Vec3::Zero();
 };

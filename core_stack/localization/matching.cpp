@@ -1,6 +1,6 @@
 #include "core_stack/localization/matching.h"
 
-#include <limits>
+#include <utility>
 
 #include "core_stack/localization/parallel.h"
 
@@ -16,7 +16,6 @@ constexpr double kLinePoints = 8, kLineSpread = 0.5 /* voxels */, kLineThickness
 // What a distance's deviation is, next to the noise of the means: a share of the rock's roughness in the
 // window, and what no model knows.
 constexpr double kRoughShare = 0.2, kLeastDeviation = 0.003;
-constexpr std::size_t kPointLimit = 1'000'000'000;
 
 /// A plane match and the sweep's voxel it was made in.
 struct PlaneMatch {
@@ -68,15 +67,10 @@ std::vector<Vec3f> one_a_voxel(const std::vector<Vec3f>& places, const VoxelGrid
 }  // namespace
 
 Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T_world_body,
-                     std::size_t first_level, int threads, SweepGrids& scratch) {
+                     std::size_t first_level, int threads, Grids& scratch) {
   const Cloud world = transformed(T_world_body, cloud_body);
   const std::vector<VoxelGrid>& levels = map.surfaces();
-  while (scratch.size() < levels.size())
-    scratch.emplace_back(levels[scratch.size()].voxel_m(), std::numeric_limits<std::int64_t>::max());
-  for_each_chunk(levels.size() - first_level, 1, threads, [&](std::size_t i, std::size_t, std::size_t) {
-    scratch[first_level + i].clear();
-    scratch[first_level + i].insert(world.surface);
-  });
+  fill_grids(world.surface, levels, first_level, scratch);
 
   const std::vector<Vec3f> places = one_a_voxel(world.planes, scratch[first_level]);
   std::vector<Match> lines(world.edges.size());

@@ -29,11 +29,9 @@ struct Matches {
   int places = 0;  // that were looked for: edges and voxels with a planar feature
 };
 
-/// Grids of a sweep, kept between calls for their memory.
-using SweepGrids = std::vector<VoxelGrid>;
-
-/// Matches of a sweep seen from about `T_world_body`, in surfaces of `first_level` and coarser.
+/// Matches of a sweep seen from about `T_world_body`, in surfaces of `first_level` and coarser. `scratch`
+/// holds the sweep's grids; it is handed in to keep its memory.
 Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T_world_body,
-                     std::size_t first_level, int threads, SweepGrids& scratch);
+                     std::size_t first_level, int threads, Grids& scratch);
 
 }  // namespace karst::core

@@ -96,7 +96,7 @@ Step solve(const NormalEquations& equations, double degenerate_share) {
 }
 
 Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, std::size_t first_level,
-               const RegistrationOptions& options, int threads, SweepGrids& scratch) {
+               const RegistrationOptions& options, int threads, Grids& scratch) {
   Fit fit;
   fit.T_world_body = guess;
   for (std::int64_t pass = 0; pass < options.max_passes; ++pass) {

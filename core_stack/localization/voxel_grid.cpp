@@ -55,47 +55,69 @@ Vec3 VoxelGrid::centre_of(Key key) const {
 }
 
 std::size_t VoxelGrid::slot_of(Key key) const {
-  std::size_t slot = (key * 0x9e3779b97f4a7c15ull) >> shift_;
-  while (table_[slot] != 0 && voxels_[table_[slot] - 1].key != key) slot = (slot + 1) & (table_.size() - 1);
+  const std::size_t mask = table_.size() - 1;
+  const std::uint64_t hash = (key >> 2) * 0x9e3779b97f4a7c15ull;
+  std::size_t slot = ((hash >> 32 << 2) | (key & 3)) & mask;
+  while (table_[slot].voxel != 0 && table_[slot].key != key) slot = (slot + 1) & mask;
   return slot;
 }
 
 void VoxelGrid::rebuild(std::size_t slots) {
-  table_.assign(slots, 0);
-  shift_ = 64 - std::countr_zero(slots);
+  table_.assign(slots, {0, 0});
   for (std::size_t i = 0; i < voxels_.size(); ++i)
-    table_[slot_of(voxels_[i].key)] = static_cast<std::uint32_t>(i + 1);
+    table_[slot_of(voxels_[i].key)] = {voxels_[i].key, static_cast<std::uint32_t>(i + 1)};
+}
+
+VoxelSums& VoxelGrid::made(Key key) {
+  std::size_t slot = slot_of(key);
+  if (table_[slot].voxel == 0) {
+    if (2 * (voxels_.size() + 1) > table_.size()) rebuild(2 * table_.size()), slot = slot_of(key);
+    voxels_.push_back({key, {}});
+    table_[slot] = {key, static_cast<std::uint32_t>(voxels_.size())};
+  }
+  return voxels_[table_[slot].voxel - 1].sums;
 }
 
 void VoxelGrid::insert(std::span<const Vec3f> points) {
   Key last_key = ~Key{0};
-  std::size_t last = 0;
+  VoxelSums* v = nullptr;
   Vec3f centre = Vec3f::Zero();
   for (const Vec3f& p : points) {
     const Key key = key_of(p);
     if (key != last_key) {  // neighbours in a ring mostly share a voxel
-      std::size_t slot = slot_of(key);
-      if (table_[slot] == 0) {
-        if (2 * (voxels_.size() + 1) > table_.size()) rebuild(2 * table_.size()), slot = slot_of(key);
-        voxels_.push_back({key, {}});
-        table_[slot] = static_cast<std::uint32_t>(voxels_.size());
-      }
-      last_key = key, last = table_[slot] - 1;
+      v = &made(key), last_key = key;
       centre = centre_of(key).cast<float>();
     }
-    VoxelSums& v = voxels_[last].sums;
-    if (v.points >= max_points_) continue;
+    if (v->points >= max_points_) continue;
     const Vec3f d = p - centre;
-    v.points += 1;
-    v.sum += d;
-    v.products[0] += d.x() * d.x(), v.products[1] += d.x() * d.y(), v.products[2] += d.x() * d.z();
-    v.products[3] += d.y() * d.y(), v.products[4] += d.y() * d.z(), v.products[5] += d.z() * d.z();
+    v->points += 1;
+    v->sum += d;
+    v->products[0] += d.x() * d.x(), v->products[1] += d.x() * d.y(), v->products[2] += d.x() * d.z();
+    v->products[3] += d.y() * d.y(), v->products[4] += d.y() * d.z(), v->products[5] += d.z() * d.z();
+  }
+}
+
+void VoxelGrid::merge(const VoxelGrid& other) {
+  for (const Voxel& from : other.voxels_) {
+    const Vec3 centre = other.centre_of(from.key);
+    const Key key = key_of(centre.cast<float>());
+    VoxelSums& to = made(key);
+    if (to.points >= max_points_) continue;
+    // Points d about their voxel's centre lie at d + o about this one's; see surface_of.
+    const Vec3f o = (centre - centre_of(key)).cast<float>();
+    const VoxelSums& v = from.sums;
+    const Vec3f shifted = v.sum + v.points * o;
+    to.points += v.points;
+    to.sum += shifted;
+    std::size_t i = 0;
+    for (int r = 0; r < 3; ++r)
+      for (int c = r; c < 3; ++c, ++i) to.products[i] += v.products[i] + v.sum[r] * o[c] + o[r] * shifted[c];
   }
 }
 
 void VoxelGrid::clear() {
   voxels_.clear();
-  std::fill(table_.begin(), table_.end(), 0);
+  std::fill(table_.begin(), table_.end(), Slot{0, 0});
 }
 
 void VoxelGrid::keep_near(const Vec3& centre, double radius_m, std::size_t max_voxels) {
@@ -112,7 +134,7 @@ void VoxelGrid::keep_near(const Vec3& centre, double radius_m, std::size_t max_v
 }
 
 const VoxelGrid::Voxel* VoxelGrid::find(Key key) const {
-  const std::uint32_t i = table_[slot_of(key)];
+  const std::uint32_t i = table_[slot_of(key)].voxel;
   return i == 0 ? nullptr : &voxels_[i - 1];
 }
 
@@ -126,7 +148,7 @@ VoxelGrid::Window VoxelGrid::window_around(Key key) const {
 }
 
 std::size_t VoxelGrid::bytes() const {
-  return voxels_.capacity() * sizeof(Voxel) + table_.capacity() * sizeof(std::uint32_t);
+  return voxels_.capacity() * sizeof(Voxel) + table_.capacity() * sizeof(Slot);
 }
 
 Surface surface_of(const VoxelGrid& grid, VoxelGrid::Key centre, const VoxelGrid::Window& window,

@@ -4,7 +4,8 @@
 // voxels around it, taken together. The window is three voxels wide and never off centre by more than half a
 // voxel.
 //
-// Voxels lie in one array in the order of their making; a table of indices with linear probing finds them.
+// Voxels lie in one array in the order of their making. A table with linear probing finds them: it holds the
+// keys next to the indices, and four voxels above one another start in one cache line.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -45,6 +46,8 @@ class VoxelGrid {
   Key key_of(const Vec3f& p) const;
   /// Adds points with coordinates of less than a million voxels.
   void insert(std::span<const Vec3f> points);
+  /// Adds what is in a grid of voxels as large, or of half the size.
+  void merge(const VoxelGrid& other);
   void clear();
   /// Drops voxels whose centres are farther than `radius_m` from `centre` along any axis, then those farthest
   /// away until at most `max_voxels` are left (fewer where several are equally far).
@@ -62,14 +65,18 @@ class VoxelGrid {
   std::size_t bytes() const;
 
  private:
+  struct Slot {
+    Key key;
+    std::uint32_t voxel;  // index + 1, 0: free
+  };
   std::size_t slot_of(Key key) const;  // where it is, or where it would be
+  VoxelSums& made(Key key);            // empty if it is new
   void rebuild(std::size_t slots);
 
   double voxel_m_;
   float per_m_, max_points_;
   std::vector<Voxel> voxels_;
-  std::vector<std::uint32_t> table_;  // index + 1 into voxels_, 0: free; as long as a power of two
-  int shift_ = 0;                     // 64 - log2 of that
+  std::vector<Slot> table_;  // as long as a power of two
 };
 
 /// With fewer points than `least` only their number is set.
