@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdk/evaluation/trajectory_error.h"
+
 namespace karst::evaluation {
 namespace {
 
@@ -119,20 +121,11 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
 }
 
 void estimate_errors(const RunRecord& run, double begin_s, double end_s, FlightFigures& f) {
-  if (run.truth.empty()) return;
-  RootMeanSquare heading;
-  std::optional<double> last_error_m;
-  for (const StampedPose& e : run.estimate) {
-    if (e.t_s < std::max(begin_s, run.truth.front().t_s) || e.t_s > std::min(end_s, run.truth.back().t_s))
-      continue;
-    const core::Pose truth = pose_at(run.truth, e.t_s);
-    heading.add(
-        core::wrap_angle(core::heading_of(e.T_world_body.orientation) - core::heading_of(truth.orientation)));
-    last_error_m = (e.T_world_body.position - truth.position).norm();
-  }
-  f.heading_error_rad = heading.value();
-  if (last_error_m && f.path_length_m && *f.path_length_m > 0)
-    f.drift_percent = 100.0 * *last_error_m / *f.path_length_m;
+  const std::vector<PosePair> pairs = paired_with_truth(run.truth, run.estimate, begin_s, end_s);
+  f.heading_error_rad = heading_rms_rad(pairs);
+  const std::optional<double> error_m = end_error_m(pairs);
+  if (error_m && f.path_length_m && *f.path_length_m > 0)
+    f.drift_percent = 100.0 * *error_m / *f.path_length_m;
 }
 
 }  // namespace
