@@ -1,0 +1,32 @@
+// Work split into chunks of a fixed size. Which thread does a chunk is chance; what is in it is not, so that
+// results joined in the order of the chunks have the same bytes for any number of threads.
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+namespace karst::core {
+
+/// Calls work(chunk, first, end) for each `chunk_size` of `count` items, on up to `threads` threads; returns
+/// when all is done. `work` must not throw.
+template <class Work>
+void for_each_chunk(std::size_t count, std::size_t chunk_size, int threads, const Work& work) {
+  const std::size_t chunks = (count + chunk_size - 1) / chunk_size;
+  std::atomic<std::size_t> next{0};
+  const auto take_chunks = [&] {
+    for (std::size_t c = next++; c < chunks; c = next++)
+      work(c, c * chunk_size, std::min(count, (c + 1) * chunk_size));
+  };
+  const std::size_t helpers = std::min(static_cast<std::size_t>(std::max(threads, 1)), chunks);
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < helpers; ++i) others.emplace_back(take_chunks);
+  take_chunks();
+}
+
+inline std::size_t chunk_count(std::size_t count, std::size_t chunk_size) {
+  return (count + chunk_size - 1) / chunk_size;
+}
+
+}  // namespace karst::core

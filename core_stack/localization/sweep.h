@@ -1,0 +1,31 @@
+// One revolution of a LiDAR as points, whatever recorded it: the simulator, a vehicle, or a file.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+#include "core_stack/common/time.h"
+#include "core_stack/vehicle/messages.h"
+
+namespace karst::core {
+
+struct SweepPoint {
+  Vec3f position;          // lidar frame at the time it was measured
+  float time_s = 0;        // relative to the sweep's stamp, <= 0
+  std::uint16_t ring = 0;  // channel
+  float intensity = 0;
+};
+
+struct Sweep {
+  TimeNs stamp = 0;                // of the last point
+  std::vector<SweepPoint> points;  // by ring, in the order of firing within a ring
+  Pose T_body_lidar;
+  bool compensated = false;  // all points are already as seen at `stamp`
+};
+
+/// The returns of a scan. NaN, inf, and returns nearer than `self_radius_m` to the body's origin, which come
+/// from the vehicle itself, are dropped. A scan without a model or whose arrays do not fit it gives no
+/// points.
+Sweep to_sweep(const LidarScan& scan, double self_radius_m);
+
+}  // namespace karst::core

@@ -1,0 +1,49 @@
+// How the vehicle moved while a sweep was measured, to see all its points from where it was at the end.
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core_stack/localization/state.h"
+#include "core_stack/localization/sweep.h"
+
+namespace karst::core {
+
+/// Velocity (body frame) and body rate, both held.
+struct Twist {
+  Vec3 velocity_mps = Vec3::Zero();
+  Vec3 rate_radps = Vec3::Zero();
+};
+
+/// The twist at the end of a motion that took `dt_s` > 0.
+Twist twist_between(const Pose& T_world_from, const Pose& T_world_to, double dt_s);
+/// T_now_then: the body `dt_s` after now, or before it if negative.
+Pose pose_after(const Twist& twist, double dt_s);
+
+/// The pose at `t` by states around it, or that end at most 30 ms away from it.
+std::optional<Pose> predicted_pose(const StateHistory& states, TimeNs t);
+
+/// T_end_lidar at any time of the sweep, from a table fine enough to take the nearest entry.
+class SweepMotion {
+ public:
+  /// `T_end_body(time_s)` is asked for times from -length_s to 0.
+  SweepMotion(double length_s, const Pose& T_body_lidar, const std::function<Pose(double)>& T_end_body);
+
+  /// A point of the lidar frame at `time_s`, in the body frame at the end.
+  Vec3f to_body_at_end(const Vec3f& p, float time_s) const {
+    const auto i = static_cast<std::size_t>(std::max(-time_s, 0.0f) * steps_per_s_ + 0.5f);
+    const Step& s = steps_[std::min(i, steps_.size() - 1)];
+    return s.rotation * p + s.translation;
+  }
+
+ private:
+  struct Step {
+    Eigen::Matrix3f rotation;
+    Vec3f translation;
+  };
+  std::vector<Step> steps_;  // going back in time from the end
+  float steps_per_s_ = 0;
+};
+
+}  // namespace karst::core
