@@ -1,9 +1,12 @@
 #include "plugins/replay/recording.h"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 #include "core_stack/common/error.h"
 #include "plugins/replay/decimal_time.h"
+#include "plugins/replay/rings.h"
 #include "plugins/replay/text_numbers.h"
 
 namespace karst::replay {
@@ -234,8 +237,13 @@ core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
     const double range = p.position.norm();
     return range < r.info.min_range_m || range > r.info.max_range_m || range == 0;
   });
-  if (r.info.rings_by == "elevation" || (r.info.rings_by == "auto" && !scan.has_ring))
+  if (r.info.rings_by == "elevation" || (r.info.rings_by == "auto" && !scan.has_ring)) {
+    if (r.info.rings == 0)
+      throw InputError(f.path.string(), "",
+                       "has no field with rings: say in recording.info how many rings the sensor has "
+                       "(rings.count, rings.lowest, rings.highest), or that they follow each other (rings.by order)");
     rings_by_elevation(scan, r.info);
+  }
   if (notes) {
     notes->dropped = declared - scan.points.size();
     notes->without_times = !scan.has_time && !r.info.compensated;

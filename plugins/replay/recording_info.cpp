@@ -98,7 +98,7 @@ void describe(core::OptionTable& t, RecordingInfo& o) {
   t.under("rings", [&o](core::OptionTable& r) {
     r.add("by", o.rings_by, {"auto", "field", "elevation", "order"},
           "how a point's ring is known; auto: by the field if there is one, else by elevation");
-    r.add("count", o.rings, 1, 4096, "rings of the sensor, for elevation");
+    r.add("count", o.rings, 0, 4096, "rings of the sensor, for elevation; 0: not said");
     r.add("lowest", o.lowest_rad, "rad", -1.6, 1.6, "elevation of the lowest ring");
     r.add("highest", o.highest_rad, "rad", -1.6, 1.6, "elevation of the highest ring");
   });
@@ -117,8 +117,10 @@ RecordingInfo read_recording_info(const std::string& file) {
   describe(table, info);
   table.read(file, core::read_info(file));
   layout_of(info, file);  // whatever is wrong shows now
-  if (info.lowest_rad >= info.highest_rad)
+  if (info.rings > 1 && info.lowest_rad >= info.highest_rad)
     throw InputError(file, "rings.lowest", "must lie below rings.highest");
+  if (info.rings_by == "elevation" && info.rings == 0)
+    throw InputError(file, "rings.count", "expected the number of rings, which rings.by elevation needs");
   if (info.stamp_from == "file" && info.stamp_file.empty())
     throw InputError(file, "stamp.file", "expected the file that stamp.from asks for");
   return info;

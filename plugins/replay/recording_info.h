@@ -24,8 +24,8 @@ struct RecordingInfo {
   std::string lidar_position = "0 0 0", lidar_rotation = "0 0 0";
   double min_range_m = 0.5, max_range_m = 120;
   std::string rings_by = "auto";
-  std::int64_t rings = 64;
-  double lowest_rad = -0.436, highest_rad = 0.035;
+  std::int64_t rings = 0;  // not said
+  double lowest_rad = 0, highest_rad = 0;
 
   std::string imu_file, imu_columns = "t ax ay az wx wy wz", imu_unit = "s", imu_rotation = "0 0 0";
 };

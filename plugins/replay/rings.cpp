@@ -1,5 +1,6 @@
 #include "plugins/replay/rings.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace karst::replay {

@@ -95,7 +95,8 @@ std::optional<double> min_clearance_m(const RunRecord& run) {
 /// Touches the simulator saw, or, without its record, the one that ended the flight, if one did.
 std::optional<std::int64_t> contacts(const RunRecord& run) {
   const nlohmann::json* outcome = run.last_event("outcome");
-  if (run.truth_events.empty() && !outcome) return std::nullopt;
+  const bool nobody_watched = !outcome || event_text(*outcome, "outcome") == "replayed";
+  if (run.truth_events.empty() && nobody_watched) return std::nullopt;
   std::int64_t count = 0;
   for (const auto& e : run.truth_events) count += event_text(e, "event") == "contact";
   const bool ended_so = outcome && event_text(*outcome, "outcome") == "contact";

@@ -6,6 +6,7 @@
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/policy_command.h"
+#include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/table_command.h"
 
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
   karst::tools::add_cave_command(app);
   karst::tools::add_report_command(app);
   karst::tools::add_table_command(app);
+  karst::tools::add_replay_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);
