@@ -4,6 +4,7 @@
 
 #include "core_stack/common/options.h"
 #include "sdk/tools/cave_command.h"
+#include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/replay_command.h"
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
   karst::tools::add_report_command(app);
   karst::tools::add_table_command(app);
   karst::tools::add_replay_command(app);
+  karst::tools::add_evaluate_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);
