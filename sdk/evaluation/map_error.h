@@ -3,7 +3,6 @@
 // for a reference without gaps between its points.
 #pragma once
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "core_stack/mapping/voxel_map.h"
@@ -17,20 +16,5 @@ std::vector<core::Vec3> occupied_centres(const core::VoxelMap& map);
 /// A distance for each point, metres; those that are not finite are left out.
 std::vector<double> map_errors(const std::vector<core::Vec3>& points,
                                const std::function<double(const core::Vec3&)>& distance_m);
-
-/// Distance to the nearest of many points (KD-tree).
-class NearestPoint {
- public:
-  explicit NearestPoint(std::vector<core::Vec3f> points);
-  ~NearestPoint();
-  NearestPoint(NearestPoint&&) noexcept;
-  std::size_t size() const;
-  /// Infinite if there are no points.
-  double distance_m(const core::Vec3& p) const;
-
- private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
-};
 
 }  // namespace karst::evaluation

@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/point_tree.h"
 #include "plugins/replay/scan_file.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/map_error.h"
@@ -79,8 +81,11 @@ MapReference open_reference(const std::string& file, double points_per_m2, const
   }
   if (samples.empty()) throw InputError(file, "", "holds no point near the map");
   reference.points = samples.size();
-  const auto nearest = std::make_shared<NearestPoint>(std::move(samples));
-  reference.distance_m = [nearest](const Vec3& p) { return nearest->distance_m(p); };
+  const auto tree = std::make_shared<core::PointTree>(std::move(samples));
+  reference.distance_m = [tree](const Vec3& p) {
+    const auto nearest = tree->nearest(p);
+    return nearest ? nearest->distance_m : std::numeric_limits<double>::infinity();
+  };
   return reference;
 }
 
