@@ -151,6 +151,7 @@ ordered_json trajectory_evaluation(const std::vector<StampedPose>& truth, const 
   e["heading_error_rad"] = json_of(heading_rms_rad(raw));
 
   const double begin_s = estimate.front().t_s;
+  e["begin_s"] = begin_s - options.time_origin_s;
   e["plots"] = {{"poses", drawn(pairs, begin_s)},
                 {"translation_m", curve(pairs, absolute.translation_m, begin_s, 1)},
                 {"rotation_deg", curve(pairs, absolute.rotation_rad, begin_s, 180 / std::numbers::pi)}};

@@ -17,6 +17,7 @@ struct EvaluateOptions {
   /// The truth may be in a frame of its own: for drift and heading, which have no best fit, the first poses
   /// are laid on each other.
   bool own_frame = false;
+  double time_origin_s = 0;  // stamp of the run's moment 0
 };
 
 /// Trajectory errors: numbers below "ape", "rpe", "drift", "heading_error_rad", curves below "plots".

@@ -158,6 +158,7 @@ RunRecord read_run(const fs::path& run_dir) {
   run.decisions = read_table(run_dir / "decisions.csv", {}, problems);
   run.growth = read_map_growth(run_dir / "map_growth.bin", problems);
   run.timing = read_json(run_dir / "timing.json", problems);
+  run.evaluation = read_json(run_dir / "evaluation.json", problems);
   run.phases = find_phases(run);
   return run;
 }

@@ -27,10 +27,14 @@ struct EvaluateArguments {
   bool no_align = false, json = false;
 };
 
+boost::property_tree::ptree settings_of(const fs::path& run) {
+  if (!fs::is_regular_file(run / "mission.info")) return {};
+  return core::read_info((run / "mission.info").string());
+}
+
 /// The cave a run was flown in, if its mission names one that is still there.
 std::string cave_of(const fs::path& run) {
-  if (!fs::is_regular_file(run / "mission.info")) return "";
-  const std::string cave = core::read_info((run / "mission.info").string()).get("cave.file", "");
+  const std::string cave = settings_of(run).get("cave.file", "");
   return fs::is_regular_file(cave) ? cave : "";
 }
 
@@ -110,6 +114,7 @@ void evaluate(const EvaluateArguments& args) {
     const auto estimate = evaluation::read_poses(estimate_file, {}, problems);
     const auto truth = evaluation::read_poses(truth_file, estimate, problems);
     options.own_frame = !args.truth.empty();
+    if (is_run) options.time_origin_s = settings_of(run).get("replay.time_origin", 0.0);
     result["trajectory"] = evaluation::trajectory_evaluation(truth, estimate, options, truth_file);
   }
 
