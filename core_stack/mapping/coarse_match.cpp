@@ -8,10 +8,10 @@
 namespace karst::core {
 namespace {
 
-constexpr double kThin_m = 0.4;         // of what descriptors are made of
-constexpr double kRough_m = 0.4;        // cells of the quick look: rock counts as thickened to 1.2 m
-constexpr std::size_t kScored = 1500;   // source points of the quick look
-constexpr int kLeastPoints = 60;        // a place with less rock around looks like nothing in particular
+constexpr double kThin_m = 0.4;        // of what descriptors are made of
+constexpr double kRough_m = 0.4;       // cells of the quick look: rock counts as thickened to 1.2 m
+constexpr std::size_t kScored = 1500;  // source points of the quick look
+constexpr int kLeastPoints = 60;       // a place with less rock around looks like nothing in particular
 
 struct Places {
   std::vector<PlaceFrame> frames;
@@ -21,8 +21,10 @@ struct Places {
 /// Any turn that brings the z axis to `axis`.
 Quat axis_frame(const Vec3& axis) { return Quat::FromTwoVectors(Vec3::UnitZ(), axis).normalized(); }
 
-/// Rock points about `spacing_m` apart with their axes; with `both_sides` each twice, with the axis turned over.
-std::vector<PlaceFrame> frames_of(const MapPiece& piece, double spacing_m, bool gravity_known, bool both_sides) {
+/// Rock points about `spacing_m` apart with their axes; with `both_sides` each twice, with the axis turned
+/// over.
+std::vector<PlaceFrame> frames_of(const MapPiece& piece, double spacing_m, bool gravity_known,
+                                  bool both_sides) {
   std::vector<PlaceFrame> frames;
   for (const Vec3f& p : thinned_out(piece.surface, spacing_m)) {
     const std::uint32_t i = piece.tree->nearest(p.cast<double>())->index;
@@ -41,7 +43,8 @@ std::vector<PlaceFrame> frames_of(const MapPiece& piece, double spacing_m, bool 
 Places places_of(const MapPiece& piece, double cell_m, double spacing_m, std::size_t most, bool gravity_known,
                  bool both_sides) {
   std::vector<PlaceFrame> frames = frames_of(piece, spacing_m, gravity_known, both_sides);
-  for (; frames.size() > 4 * most; frames = frames_of(piece, spacing_m, gravity_known, both_sides)) spacing_m *= 1.5;
+  for (; frames.size() > 4 * most; frames = frames_of(piece, spacing_m, gravity_known, both_sides))
+    spacing_m *= 1.5;
   const PointTree thin(thinned_out(piece.surface, kThin_m));
   Places places;
   const double stride = std::max(1.0, static_cast<double>(frames.size()) / static_cast<double>(most));
@@ -82,7 +85,8 @@ std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, 
                                 const CoarseOptions& options) {
   // Where free space is not known a normal's sign is not, either; one side of the pair tries both.
   const bool both_sides = !(target.knows_free_space() && source.knows_free_space());
-  const Places to = places_of(target, cell_m, options.spacing_m, options.most_target_places, options.gravity_known, false);
+  const Places to =
+      places_of(target, cell_m, options.spacing_m, options.most_target_places, options.gravity_known, false);
   const Places from = places_of(source, cell_m, 1.5 * options.spacing_m, options.most_source_places,
                                 options.gravity_known, both_sides);
   if (to.frames.empty() || from.frames.empty()) return {};
@@ -92,8 +96,8 @@ std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, 
     const Eigen::VectorXf likeness = to_all.transpose() * from.descriptors[s].invariants();
     for (const std::size_t t : largest(likeness, options.candidates)) {
       const double turn = to.descriptors[t].turn_of(from.descriptors[s]).angle_rad;
-      const Quat R =
-          (to.frames[t].orientation * from_heading(turn) * from.frames[s].orientation.conjugate()).normalized();
+      const Quat R = (to.frames[t].orientation * from_heading(turn) * from.frames[s].orientation.conjugate())
+                         .normalized();
       poses.push_back({to.frames[t].position - R * from.frames[s].position, R});
     }
   }
@@ -106,21 +110,25 @@ bool alike(const Pose& a, const Pose& b, const Vec3& middle, double metres, doub
   return (a * middle - b * middle).norm() < metres && a.orientation.angularDistance(b.orientation) < radians;
 }
 
-std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& source, const CoarseOptions& options) {
+std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& source,
+                                     const CoarseOptions& options) {
   const RoughTarget rough(target, std::max(kRough_m, 2 * target.resolution_m));
   std::vector<Vec3> sample;
   const std::size_t stride = source.surface.size() / kScored + 1;
-  for (std::size_t i = 0; i < source.surface.size(); i += stride) sample.push_back(source.surface[i].cast<double>());
+  for (std::size_t i = 0; i < source.surface.size(); i += stride)
+    sample.push_back(source.surface[i].cast<double>());
 
   std::vector<CoarsePose> poses;
   for (const double cell_m : options.cells_m)
-    for (const Pose& T : matched_poses(target, source, cell_m, options)) poses.push_back({T, rough.score(sample, T)});
-  std::stable_sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+    for (const Pose& T : matched_poses(target, source, cell_m, options))
+      poses.push_back({T, rough.score(sample, T)});
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
 
   const Vec3 middle =
       std::accumulate(sample.begin(), sample.end(), Vec3(Vec3::Zero())) / static_cast<double>(sample.size());
-  // Poses that say the same are one, with as many votes as there are. Rock of a small overlap scores less than
-  // walls laid on any walls, but its places agree with each other.
+  // Poses that say the same are one, with as many votes as there are. Rock of a small overlap scores less
+  // than walls laid on any walls, but its places agree with each other.
   std::vector<CoarsePose> distinct;
   for (const CoarsePose& p : poses) {
     const auto known = std::find_if(distinct.begin(), distinct.end(), [&](const CoarsePose& k) {

@@ -45,7 +45,8 @@ Icp::Icp(const MapPiece& target) : storage_(std::make_unique<Storage>()) {
 }
 Icp::~Icp() = default;
 
-Pose Icp::refine(const MapPiece& source, const Pose& T_target_source, const std::vector<IcpRound>& rounds) const {
+Pose Icp::refine(const MapPiece& source, const Pose& T_target_source,
+                 const std::vector<IcpRound>& rounds) const {
   const Pose to_middle{-storage_->middle, Quat::Identity()};
   Pose T = to_middle * T_target_source;
   for (const IcpRound& round : rounds) {

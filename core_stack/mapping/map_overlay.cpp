@@ -8,8 +8,8 @@
 namespace karst::core {
 namespace {
 
-// Rock in space that is known to be free weighs more than rock that fits: walls fit walls of any passage, while
-// two maps of one place contradict each other hardly anywhere.
+// Rock in space that is known to be free weighs more than rock that fits: walls fit walls of any passage,
+// while two maps of one place contradict each other hardly anywhere.
 constexpr double kContradiction = 3, kRoughContradiction = 2;
 
 OverlayCounts count(const MapPiece& into, const MapPiece& from, const Pose& T_into_from,

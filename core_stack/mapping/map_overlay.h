@@ -27,8 +27,8 @@ struct Overlay {
 };
 
 struct OverlayOptions {
-  double near_cells = 1.75;  // of the coarser map: rock so near to rock is the same
-  double free_cells = 3.0;   // rock in a free cell, and so far from rock, contradicts
+  double near_cells = 1.75;         // of the coarser map: rock so near to rock is the same
+  double free_cells = 3.0;          // rock in a free cell, and so far from rock, contradicts
   std::size_t most_points = 20000;  // of each map, evenly picked
 };
 

@@ -13,7 +13,9 @@ struct Candidate {
   Overlay overlay;
 };
 
-double tilt_of(const Pose& T) { return std::acos(std::clamp((T.orientation * Vec3::UnitZ()).z(), -1.0, 1.0)); }
+double tilt_of(const Pose& T) {
+  return std::acos(std::clamp((T.orientation * Vec3::UnitZ()).z(), -1.0, 1.0));
+}
 
 Vec3 middle_of(const MapPiece& piece) {
   Vec3 sum = Vec3::Zero();
@@ -26,9 +28,11 @@ bool same_pose(const Candidate& a, const Candidate& b, const Vec3& middle, doubl
 }
 
 /// The best by score, best first, of each pose one.
-std::vector<Candidate> distinct_best(std::vector<Candidate> all, std::size_t most, const Vec3& middle, double cell_m) {
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.overlay.score() > b.overlay.score(); });
+std::vector<Candidate> distinct_best(std::vector<Candidate> all, std::size_t most, const Vec3& middle,
+                                     double cell_m) {
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    return a.overlay.score() > b.overlay.score();
+  });
   std::vector<Candidate> kept;
   for (const Candidate& c : all) {
     const bool known = std::any_of(kept.begin(), kept.end(),
@@ -46,7 +50,8 @@ std::string text(const char* format, auto... values) {
 }
 
 /// Empty if nothing speaks against it.
-std::string objection(const MapRegistration& r, double cell_m, bool free_known, const MapRegistrationOptions& options) {
+std::string objection(const MapRegistration& r, double cell_m, bool free_known,
+                      const MapRegistrationOptions& options) {
   const RegistrationLimits& limits = options.limits;
   const double min_overlap = free_known ? limits.min_overlap : limits.min_overlap_blind;
   if (r.overlay.overlap() < min_overlap)
@@ -58,13 +63,15 @@ std::string objection(const MapRegistration& r, double cell_m, bool free_known, 
     return text("%.0f %% of the rock stands in space the other map knows to be free; at most %.0f %% may",
                 100 * (1 - r.overlay.agreement()), 100 * (1 - limits.min_agreement));
   if (r.overlay.residual_m() > limits.max_residual_cells * cell_m)
-    return text("the residual is %.2f m; at most %.2f m may remain", r.overlay.residual_m(), limits.max_residual_cells * cell_m);
+    return text("the residual is %.2f m; at most %.2f m may remain", r.overlay.residual_m(),
+                limits.max_residual_cells * cell_m);
   if (options.coarse.gravity_known && tilt_of(r.T_target_source) > limits.max_tilt_rad)
     return text("the maps would be tilted against each other by %.1f deg, though both know where up is",
                 tilt_of(r.T_target_source) * 180 / std::numbers::pi);
   if (r.hold < limits.min_hold)
-    return text("the rock that coincides leaves a direction free, as a smooth tube does (hold %.3f; at least %.3f)",
-                r.hold, limits.min_hold);
+    return text(
+        "the rock that coincides leaves a direction free, as a smooth tube does (hold %.3f; at least %.3f)",
+        r.hold, limits.min_hold);
   if (r.rival > limits.max_rival)
     return text("another pose fits nearly as well (%.0f %% as good; at most %.0f %% may be)", 100 * r.rival,
                 100 * limits.max_rival);
@@ -74,17 +81,23 @@ std::string objection(const MapRegistration& r, double cell_m, bool free_known, 
 }  // namespace
 
 void describe(OptionTable& t, RegistrationLimits& o) {
-  t.add("min_overlap", o.min_overlap, "", 0, 1, "share of one map's rock that must coincide with the other's");
-  t.add("min_overlap_blind", o.min_overlap_blind, "", 0, 1, "the same where the maps are clouds, without free space");
+  t.add("min_overlap", o.min_overlap, "", 0, 1,
+        "share of one map's rock that must coincide with the other's");
+  t.add("min_overlap_blind", o.min_overlap_blind, "", 0, 1,
+        "the same where the maps are clouds, without free space");
   t.add("min_shared_area", o.min_shared_m2, "", 0, 1e6, "square metres of rock that must coincide");
-  t.add("min_agreement", o.min_agreement, "", 0, 1, "of the rock that the other map has seen, the share that must be rock there, too");
-  t.add("max_residual", o.max_residual_cells, "", 0, 10, "root mean square distance of coinciding rock, in cells of the coarser map");
-  t.add("min_hold", o.min_hold, "", 0, 1, "least mean squared cosine between a direction and the coinciding rock's normals");
+  t.add("min_agreement", o.min_agreement, "", 0, 1,
+        "of the rock that the other map has seen, the share that must be rock there, too");
+  t.add("max_residual", o.max_residual_cells, "", 0, 10,
+        "root mean square distance of coinciding rock, in cells of the coarser map");
+  t.add("min_hold", o.min_hold, "", 0, 1,
+        "least mean squared cosine between a direction and the coinciding rock's normals");
   t.add("max_rival", o.max_rival, "", 0, 1, "score of the next best pose, in parts of the best's");
   t.add("max_tilt", o.max_tilt_rad, "rad", 0, 3.2, "between the maps' vertical axes, if both are known");
 }
 
-double hold_of(const MapPiece& target, const MapPiece& source, const Pose& T_target_source, double near_m, bool gravity_known) {
+double hold_of(const MapPiece& target, const MapPiece& source, const Pose& T_target_source, double near_m,
+               bool gravity_known) {
   struct Contact {
     Vec3 p, n;
   };
@@ -110,13 +123,15 @@ double hold_of(const MapPiece& target, const MapPiece& source, const Pose& T_tar
     j << c.n, (c.p - middle).cross(c.n) / arm_m;
     held += j * j.transpose() / n;
   }
-  if (!gravity_known) return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(held).eigenvalues()[0];
+  if (!gravity_known)
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(held).eigenvalues()[0];
   Eigen::Matrix4d upright;
   upright << held.topLeftCorner<3, 3>(), held.block<3, 1>(0, 5), held.block<1, 3>(5, 0), held(5, 5);
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(upright).eigenvalues()[0];
 }
 
-MapRegistration register_maps(const MapPiece& target, const MapPiece& source, const MapRegistrationOptions& options) {
+MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
+                              const MapRegistrationOptions& options) {
   const double cell_m = std::max(target.resolution_m, source.resolution_m);
   const bool free_known = target.knows_free_space() || source.knows_free_space();
   MapRegistration result;
@@ -146,12 +161,11 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source, co
   result.overlay = best->overlay;
   const double near_m = options.overlay.near_cells * cell_m;
   result.hold = hold_of(target, source, best->T_target_source, near_m, options.coarse.gravity_known);
-  result.shared_m2 = best->overlay.source_overlap() * static_cast<double>(source.surface.size()) * source.resolution_m *
-                     source.resolution_m;
+  result.shared_m2 = best->overlay.source_overlap() * static_cast<double>(source.surface.size()) *
+                     source.resolution_m * source.resolution_m;
   double rival = 0;
   for (const Candidate& c : candidates)
-    if (!same_pose(c, *best, middle, cell_m))
-      rival = std::max(rival, c.overlay.score());
+    if (!same_pose(c, *best, middle, cell_m)) rival = std::max(rival, c.overlay.score());
   result.rival = best->overlay.score() > 0 ? rival / best->overlay.score() : 1;
   result.reason = objection(result, cell_m, free_known, options);
   result.trusted = result.reason.empty();

@@ -1,6 +1,7 @@
 // Where one flight's map lies in another's, or a reason why that cannot be trusted. docs/map_merge.md
 //
-//   places that look alike --> 150 poses --few steps of ICP--> 8 --ICP--> the best and its rivals --> a verdict
+//   places that look alike --> 150 poses --few steps of ICP--> 8 --ICP--> the best and its rivals --> a
+//   verdict
 //
 // ICP ends somewhere from everywhere. What makes an end believable is asked of the maps: enough rock lies on
 // rock, little stands in space the other flight flew through or saw through, the rock that coincides holds
@@ -19,9 +20,9 @@ struct RegistrationLimits {
   double min_overlap = 0.12;        // of the rock of the map that shares more
   double min_overlap_blind = 0.35;  // where no free space is known
   double min_shared_m2 = 25;        // rock that coincides
-  double min_agreement = 0.85;      // of the rock the other map can judge
-  double max_residual_cells = 1.0;  // in cells of the coarser map
-  double min_hold = 0.03;           // of the least held direction
+  double min_agreement = 0.95;      // of the rock the other map can judge
+  double max_residual_cells = 0.75; // in cells of the coarser map
+  double min_hold = 0.015;          // of the least held direction
   double max_rival = 0.75;          // score of the next best pose over the best's
   double max_tilt_rad = 0.052;      // with gravity known
 };
@@ -39,14 +40,15 @@ struct MapRegistrationOptions {
 struct MapRegistration {
   Pose T_target_source;
   Overlay overlay;
-  double hold = 0;     // mean squared cosine of the least held direction to the coinciding rock's normals
-  double rival = 0;    // score of the best pose that is another, over this one's
+  double hold = 0;   // mean squared cosine of the least held direction to the coinciding rock's normals
+  double rival = 0;  // score of the best pose that is another, over this one's
   double shared_m2 = 0;
   bool trusted = false;
   std::string reason;  // why not
 };
 
-MapRegistration register_maps(const MapPiece& target, const MapPiece& source, const MapRegistrationOptions& options);
+MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
+                              const MapRegistrationOptions& options);
 
 /// How well the rock that coincides holds the pose: over the near points with normal n and arm p from their
 /// middle, the least eigenvalue of the mean of j j', j = (n, p x n / L), L the arms' root mean square; with

@@ -6,7 +6,8 @@
 
 namespace karst::core {
 
-void add_map(VoxelMap& target, const VoxelMap& source, const Pose& T_target_source, const MapOptions& options) {
+void add_map(VoxelMap& target, const VoxelMap& source, const Pose& T_target_source,
+             const MapOptions& options) {
   if (std::abs(target.resolution_m() / source.resolution_m() - 1) > 0.01)
     throw std::invalid_argument("maps whose cells differ in size cannot be added");
   const auto logit = [](double p) { return static_cast<float>(std::log(p / (1 - p))); };

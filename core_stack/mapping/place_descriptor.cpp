@@ -30,7 +30,8 @@ PlaceDescriptor::PlaceDescriptor(const PointTree& points, const PlaceFrame& fram
   // Two sectors' mean, so that a point near a border does not jump.
   const auto once = cells_.eval();
   for (int s = 0; s < kSectors; ++s)
-    cells_.col(s) = once.col(s) + 0.5f * (once.col((s + 1) % kSectors) + once.col((s + kSectors - 1) % kSectors));
+    cells_.col(s) =
+        once.col(s) + 0.5f * (once.col((s + 1) % kSectors) + once.col((s + kSectors - 1) % kSectors));
   if (cells_.norm() > 0) cells_ /= cells_.norm();
 
   for (int row = 0; row < cells_.rows(); ++row)
@@ -47,8 +48,10 @@ PlaceDescriptor::Turn PlaceDescriptor::turn_of(const PlaceDescriptor& other) con
   std::array<float, kSectors> agreement{};
   for (int shift = 0; shift < kSectors; ++shift)
     for (int s = 0; s < kSectors; ++s)
-      agreement[static_cast<std::size_t>(shift)] += cells_.col((s + shift) % kSectors).dot(other.cells_.col(s));
-  const auto best = static_cast<int>(std::max_element(agreement.begin(), agreement.end()) - agreement.begin());
+      agreement[static_cast<std::size_t>(shift)] +=
+          cells_.col((s + shift) % kSectors).dot(other.cells_.col(s));
+  const auto best =
+      static_cast<int>(std::max_element(agreement.begin(), agreement.end()) - agreement.begin());
   const auto at = [&](int i) {
     return static_cast<double>(agreement[static_cast<std::size_t>((i + kSectors) % kSectors)]);
   };

@@ -37,16 +37,26 @@ double value_at(const char* at, ValueType type, bool swap_bytes) {
   std::memcpy(raw.data(), at, n);
   if (swap_bytes) std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(n));
   switch (type) {
-    case ValueType::int8: return value_as<std::int8_t>(raw.data());
-    case ValueType::uint8: return value_as<std::uint8_t>(raw.data());
-    case ValueType::int16: return value_as<std::int16_t>(raw.data());
-    case ValueType::uint16: return value_as<std::uint16_t>(raw.data());
-    case ValueType::int32: return value_as<std::int32_t>(raw.data());
-    case ValueType::uint32: return value_as<std::uint32_t>(raw.data());
-    case ValueType::int64: return value_as<std::int64_t>(raw.data());
-    case ValueType::uint64: return value_as<std::uint64_t>(raw.data());
-    case ValueType::float32: return value_as<float>(raw.data());
-    case ValueType::float64: return value_as<double>(raw.data());
+    case ValueType::int8:
+      return value_as<std::int8_t>(raw.data());
+    case ValueType::uint8:
+      return value_as<std::uint8_t>(raw.data());
+    case ValueType::int16:
+      return value_as<std::int16_t>(raw.data());
+    case ValueType::uint16:
+      return value_as<std::uint16_t>(raw.data());
+    case ValueType::int32:
+      return value_as<std::int32_t>(raw.data());
+    case ValueType::uint32:
+      return value_as<std::uint32_t>(raw.data());
+    case ValueType::int64:
+      return value_as<std::int64_t>(raw.data());
+    case ValueType::uint64:
+      return value_as<std::uint64_t>(raw.data());
+    case ValueType::float32:
+      return value_as<float>(raw.data());
+    case ValueType::float64:
+      return value_as<double>(raw.data());
   }
   return 0;
 }
@@ -107,16 +117,27 @@ ScanBuilder::ScanBuilder(std::span<const Field> fields) {
 
 void ScanBuilder::set(Role role, double value) {
   switch (role) {
-    case Role::x: point_.position.x() = static_cast<float>(value); break;
-    case Role::y: point_.position.y() = static_cast<float>(value); break;
-    case Role::z: point_.position.z() = static_cast<float>(value); break;
-    case Role::intensity: point_.intensity = std::isfinite(value) ? static_cast<float>(value) : 0.0f; break;
-    case Role::time: point_.time = value, finite_ = finite_ && std::isfinite(value); break;
+    case Role::x:
+      point_.position.x() = static_cast<float>(value);
+      break;
+    case Role::y:
+      point_.position.y() = static_cast<float>(value);
+      break;
+    case Role::z:
+      point_.position.z() = static_cast<float>(value);
+      break;
+    case Role::intensity:
+      point_.intensity = std::isfinite(value) ? static_cast<float>(value) : 0.0f;
+      break;
+    case Role::time:
+      point_.time = value, finite_ = finite_ && std::isfinite(value);
+      break;
     case Role::ring:
       finite_ = finite_ && value >= 0 && value <= 65535;
       point_.ring = static_cast<std::uint16_t>(finite_ ? value : 0);
       break;
-    case Role::none: break;
+    case Role::none:
+      break;
   }
 }
 

@@ -57,6 +57,7 @@ class ScanBuilder {
 double value_at(const char* at, ValueType type, bool swap_bytes);
 
 /// Decodes `count` records; the caller has made sure that all of them lie within `bytes`.
-Scan decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields, bool swap_bytes);
+Scan decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields,
+            bool swap_bytes);
 
 }  // namespace karst::replay

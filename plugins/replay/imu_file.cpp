@@ -32,7 +32,8 @@ std::optional<core::ImuSample> ImuFile::next() {
     std::string_view rest = text;
     std::vector<std::string_view> words;
     for (auto w = next_word(rest); !w.empty(); w = next_word(rest)) words.push_back(w);
-    if (words.empty() || words[0][0] == '#' || std::isalpha(static_cast<unsigned char>(words[0][0]))) continue;
+    if (words.empty() || words[0][0] == '#' || std::isalpha(static_cast<unsigned char>(words[0][0])))
+      continue;
     const std::string place = "line " + std::to_string(line_);
     if (words.size() < columns_) throw InputError(path_, place, "has fewer columns than imu.columns");
     const auto stamp = parse_time(words[at_[0]], unit_ns_);

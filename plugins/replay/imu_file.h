@@ -12,7 +12,8 @@ namespace karst::replay {
 class ImuFile {
  public:
   /// `columns` as in RecordingInfo. Throws InputError if the file cannot be opened or a column is missing.
-  ImuFile(const std::string& path, const std::string& columns, core::TimeNs unit_ns, const core::Quat& R_body_imu);
+  ImuFile(const std::string& path, const std::string& columns, core::TimeNs unit_ns,
+          const core::Quat& R_body_imu);
 
   /// The next sample, body frame, with the recording's own stamp; none at the end. Lines that begin with # or
   /// with a letter (a heading) are passed over. Throws InputError with the line on anything else that is no

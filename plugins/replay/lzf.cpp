@@ -5,7 +5,9 @@ namespace karst::replay {
 std::optional<std::string> lzf_decompress(std::span<const char> in, std::size_t size) {
   std::string out;
   out.reserve(size);
-  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(in[i])); };
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::size_t>(static_cast<unsigned char>(in[i]));
+  };
   for (std::size_t at = 0; at < in.size();) {
     const std::size_t c = byte(at++);
     if (c < 32) {

@@ -59,7 +59,9 @@ PcdHeader read_header(const std::string& path, std::string_view bytes, const Fie
     if (words.empty() || words[0].starts_with('#')) continue;
     const std::string key = words[0];
     words.erase(words.begin());
-    const auto number = [&](std::size_t i) { return whole(path, place, key, i < words.size() ? words[i] : ""); };
+    const auto number = [&](std::size_t i) {
+      return whole(path, place, key, i < words.size() ? words[i] : "");
+    };
     if (key == "FIELDS" || key == "COLUMNS") fields = words;
     if (key == "TYPE") kinds = words;
     if (key == "SIZE")
@@ -82,7 +84,8 @@ PcdHeader read_header(const std::string& path, std::string_view bytes, const Fie
     throw InputError(path, "header", "FIELDS, SIZE, TYPE and COUNT must have as many entries each");
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
   if (!has_points) {
-    if (height != 0 && width > kMost / height) throw InputError(path, "header", "WIDTH x HEIGHT is too large");
+    if (height != 0 && width > kMost / height)
+      throw InputError(path, "header", "WIDTH x HEIGHT is too large");
     header.points = width * height;
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -125,7 +128,8 @@ Scan read_binary(const std::string& path, const PcdHeader& h, std::string_view d
 Scan read_compressed(const std::string& path, const PcdHeader& h, std::string_view data) {
   const std::string place = "byte " + std::to_string(h.data_at);
   std::uint32_t packed = 0, unpacked = 0;
-  if (data.size() < 8) throw InputError(path, place, "the file is truncated: the sizes of its data are missing");
+  if (data.size() < 8)
+    throw InputError(path, place, "the file is truncated: the sizes of its data are missing");
   std::memcpy(&packed, data.data(), 4);
   std::memcpy(&unpacked, data.data() + 4, 4);
   if (packed > data.size() - 8)

@@ -33,7 +33,8 @@ PlyHeader read_header(const std::string& path, std::string_view bytes) {
   PlyHeader header;
   TextReader reader(bytes);
   std::string_view text;
-  if (!reader.line(text) || text != "ply") throw InputError(path, "line 1", "is no PLY file: expected \"ply\"");
+  if (!reader.line(text) || text != "ply")
+    throw InputError(path, "line 1", "is no PLY file: expected \"ply\"");
   while (reader.number() < 1000 && reader.line(text)) {
     const std::string place = "line " + std::to_string(reader.number());
     const std::string key(next_word(text));

@@ -62,7 +62,8 @@ std::vector<RecordedFile> find_files(const Recording& r) {
   if (found.empty())
     throw InputError(r.folder.string(), "",
                      "holds no scan: no .pcd, .ply or .bin file fits scans \"" + r.info.scans + "\"");
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return before(a.first, b.first); });
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return before(a.first, b.first); });
   std::vector<RecordedFile> files;
   for (const auto& [name, part] : found) {
     RecordedFile f{r.folder / name, {}, 0};
@@ -104,16 +105,17 @@ void stamp_from_file(Recording& r) {
     ++count;
   }
   if (count != r.files.size())
-    throw InputError(file.string(), "",
-                     "holds " + std::to_string(count) + " stamps for " + std::to_string(r.files.size()) +
-                         " scans");
+    throw InputError(
+        file.string(), "",
+        "holds " + std::to_string(count) + " stamps for " + std::to_string(r.files.size()) + " scans");
 }
 
 void stamp(Recording& r) {
   if (r.info.stamp_from == "file") stamp_from_file(r);
   for (std::size_t i = 0; i < r.files.size(); ++i) {
     RecordedFile& f = r.files[i];
-    if (r.info.stamp_from == "rate") f.stamp = core::from_seconds(static_cast<double>(i) / r.info.stamp_rate_hz);
+    if (r.info.stamp_from == "rate")
+      f.stamp = core::from_seconds(static_cast<double>(i) / r.info.stamp_rate_hz);
     if (r.info.stamp_from == "names") {
       const auto t = parse_time(number_in(f.path), nanoseconds_of(r.info.stamp_unit));
       if (!t) throw InputError(f.path.string(), "", "its name ends with no number that is a stamp");
@@ -121,7 +123,8 @@ void stamp(Recording& r) {
     }
     if (i > 0 && f.stamp <= r.files[i - 1].stamp)
       throw InputError(f.path.string(), "",
-                       "its stamp " + decimal_seconds(f.stamp) + " s is not after that of the scan before it, " +
+                       "its stamp " + decimal_seconds(f.stamp) +
+                           " s is not after that of the scan before it, " +
                            decimal_seconds(r.files[i - 1].stamp) + " s");
   }
 }
@@ -160,17 +163,18 @@ TimeNs settle_times(const Recording& r, const RecordedFile& f, bool by_azimuth, 
     for (ScanPoint& p : scan.points) p.time = 0;
     return f.stamp;
   }
-  const std::string unit = by_azimuth                     ? "s"
-                           : r.info.time_unit != "auto"   ? r.info.time_unit
-                           : scan.time_is_whole           ? "ns"
-                                                          : "s";
+  const std::string unit = by_azimuth                   ? "s"
+                           : r.info.time_unit != "auto" ? r.info.time_unit
+                           : scan.time_is_whole         ? "ns"
+                                                        : "s";
   const double unit_s = static_cast<double>(nanoseconds_of(unit)) * 1e-9;
   const auto [least, greatest] = std::minmax_element(
       scan.points.begin(), scan.points.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   const double last = greatest->time, length_s = (last - least->time) * unit_s;
   if (length_s > 10)
-    throw InputError(f.path.string(), "", "its points' times spread over " + std::to_string(length_s) +
-                                              " s: time.unit or the field is wrong");
+    throw InputError(
+        f.path.string(), "",
+        "its points' times spread over " + std::to_string(length_s) + " s: time.unit or the field is wrong");
   const std::string of = by_azimuth ? "start" : r.info.time_of;
   TimeNs end = f.stamp;
   if (of == "absolute") {
@@ -184,7 +188,8 @@ TimeNs settle_times(const Recording& r, const RecordedFile& f, bool by_azimuth, 
 }
 
 void order_points(Scan& scan) {
-  const bool by_time = std::any_of(scan.points.begin(), scan.points.end(), [](const auto& p) { return p.time != 0; });
+  const bool by_time =
+      std::any_of(scan.points.begin(), scan.points.end(), [](const auto& p) { return p.time != 0; });
   struct Key {
     std::uint16_t ring;
     double within;
@@ -239,9 +244,10 @@ core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
   });
   if (r.info.rings_by == "elevation" || (r.info.rings_by == "auto" && !scan.has_ring)) {
     if (r.info.rings == 0)
-      throw InputError(f.path.string(), "",
-                       "has no field with rings: say in recording.info how many rings the sensor has "
-                       "(rings.count, rings.lowest, rings.highest), or that they follow each other (rings.by order)");
+      throw InputError(
+          f.path.string(), "",
+          "has no field with rings: say in recording.info how many rings the sensor has "
+          "(rings.count, rings.lowest, rings.highest), or that they follow each other (rings.by order)");
     rings_by_elevation(scan, r.info);
   }
   if (notes) {

@@ -29,7 +29,7 @@ Recording open_recording(const std::filesystem::path& folder, const std::string&
 
 /// What a file gave besides the sweep.
 struct ReadNotes {
-  std::size_t dropped = 0;  // points that are not finite or out of range
+  std::size_t dropped = 0;     // points that are not finite or out of range
   bool without_times = false;  // not compensated, yet nothing tells when each point was measured
 };
 

@@ -24,16 +24,16 @@ Vec3 three_numbers(const std::string& file, const std::string& key, std::string_
 /// Roll, pitch and yaw in degrees, about the fixed axes x, y, z in this order.
 core::Quat rotation_of(const std::string& file, const std::string& key, const std::string& text) {
   const Vec3 angle = three_numbers(file, key, text) * (std::numbers::pi / 180);
-  return core::Quat(Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vec3::UnitY()) *
-                    Eigen::AngleAxisd(angle.x(), Vec3::UnitX()))
+  return core::Quat(Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) *
+                    Eigen::AngleAxisd(angle.y(), Vec3::UnitY()) * Eigen::AngleAxisd(angle.x(), Vec3::UnitX()))
       .normalized();
 }
 
 ValueType type_of(const std::string& file, const std::string& key, const std::string& name) {
   const auto type = type_named(name);
   if (!type)
-    throw InputError(file, key,
-                     "expected a type such as float32, float64, uint8, uint16 or uint32, got \"" + name + "\"");
+    throw InputError(
+        file, key, "expected a type such as float32, float64, uint8, uint16 or uint32, got \"" + name + "\"");
   return *type;
 }
 

@@ -25,15 +25,18 @@ constexpr int kBins = 60;
 double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
 
 ordered_json json_of(const ErrorStatistics& s) {
-  return {{"count", s.count},        {"rmse", rounded(s.rmse)}, {"mean", rounded(s.mean)},
-          {"median", rounded(s.median)}, {"std", rounded(s.std)},   {"min", rounded(s.min)},
+  return {{"count", s.count},        {"rmse", rounded(s.rmse)},
+          {"mean", rounded(s.mean)}, {"median", rounded(s.median)},
+          {"std", rounded(s.std)},   {"min", rounded(s.min)},
           {"max", rounded(s.max)}};
 }
 ordered_json json_of(const PoseErrors& e) {
   return {{"translation_m", json_of(statistics_of(e.translation_m))},
           {"rotation_rad", json_of(statistics_of(e.rotation_rad))}};
 }
-ordered_json json_of(const std::optional<double>& v) { return v ? ordered_json(rounded(*v)) : ordered_json(nullptr); }
+ordered_json json_of(const std::optional<double>& v) {
+  return v ? ordered_json(rounded(*v)) : ordered_json(nullptr);
+}
 
 /// Brings the estimates to the truth's frame as the options ask; says how.
 ordered_json align(std::vector<PosePair>& pairs, const EvaluateOptions& options) {
@@ -53,7 +56,8 @@ ordered_json align(std::vector<PosePair>& pairs, const EvaluateOptions& options)
 
 /// The truth at every estimate, and the first poses on each other if the frames differ.
 std::vector<PosePair> pairs_for_drift(const std::vector<StampedPose>& truth,
-                                      const std::vector<StampedPose>& estimate, const EvaluateOptions& options) {
+                                      const std::vector<StampedPose>& estimate,
+                                      const EvaluateOptions& options) {
   constexpr double kAlways = std::numeric_limits<double>::infinity();
   std::vector<PosePair> pairs = paired_with_truth(truth, estimate, -kAlways, kAlways);
   if (!options.own_frame || !options.align || pairs.empty()) return pairs;
@@ -69,13 +73,14 @@ ordered_json drawn(const std::vector<PosePair>& pairs, double begin_s) {
   const auto mm = [](double v) { return std::round(v * 1000) / 1000 + 0.0; };
   for (std::size_t i = 0; i < pairs.size(); i += stride) {
     const Vec3 &a = pairs[i].truth.position, &b = pairs[i].estimate.position;
-    rows.push_back({mm(pairs[i].t_s - begin_s), mm(a.x()), mm(a.y()), mm(a.z()), mm(b.x()), mm(b.y()), mm(b.z()),
-                    rounded((a - b).norm())});
+    rows.push_back({mm(pairs[i].t_s - begin_s), mm(a.x()), mm(a.y()), mm(a.z()), mm(b.x()), mm(b.y()),
+                    mm(b.z()), rounded((a - b).norm())});
   }
   return rows;
 }
 
-ordered_json curve(const std::vector<PosePair>& pairs, const std::vector<double>& y, double begin_s, double factor) {
+ordered_json curve(const std::vector<PosePair>& pairs, const std::vector<double>& y, double begin_s,
+                   double factor) {
   std::vector<double> t;
   for (const PosePair& p : pairs) t.push_back(p.t_s - begin_s);
   const Curve c = decimate(t, y, kMostPlotted);
@@ -109,15 +114,17 @@ std::vector<StampedPose> read_kitti(const std::string& file, const std::vector<S
                       core::Quat(Eigen::Matrix3d(body_camera * R * body_camera.transpose())).normalized()}});
   }
   if (poses.size() != stamps.size())
-    throw InputError(file, "", "holds " + std::to_string(poses.size()) +
-                                   " poses without stamps; the trajectory has " + std::to_string(stamps.size()));
+    throw InputError(file, "",
+                     "holds " + std::to_string(poses.size()) + " poses without stamps; the trajectory has " +
+                         std::to_string(stamps.size()));
   return poses;
 }
 
 }  // namespace
 
-ordered_json trajectory_evaluation(const std::vector<StampedPose>& truth, const std::vector<StampedPose>& estimate,
-                                   const EvaluateOptions& options, const std::string& truth_file) {
+ordered_json trajectory_evaluation(const std::vector<StampedPose>& truth,
+                                   const std::vector<StampedPose>& estimate, const EvaluateOptions& options,
+                                   const std::string& truth_file) {
   std::vector<PosePair> pairs = associate(truth, estimate, options.max_difference_s);
   if (pairs.empty())
     throw InputError(truth_file, "",
@@ -142,12 +149,15 @@ ordered_json trajectory_evaluation(const std::vector<StampedPose>& truth, const 
   const SegmentDrift segments = segment_drift(raw);
   e["path_length_m"] = rounded(path_m);
   e["drift"] = {{"end_error_m", json_of(end_m)},
-                {"end_percent", path_m > 0 && end_m ? ordered_json(rounded(100 * *end_m / path_m)) : ordered_json(nullptr)},
+                {"end_percent",
+                 path_m > 0 && end_m ? ordered_json(rounded(100 * *end_m / path_m)) : ordered_json(nullptr)},
                 {"segments", segments.segments},
                 {"segment_unit_m", segments.unit_m}};
   const bool any = segments.segments > 0;
-  e["drift"]["segment_percent"] = any ? ordered_json(rounded(segments.translation_percent)) : ordered_json(nullptr);
-  e["drift"]["segment_rotation_radpm"] = any ? ordered_json(rounded(segments.rotation_radpm)) : ordered_json(nullptr);
+  e["drift"]["segment_percent"] =
+      any ? ordered_json(rounded(segments.translation_percent)) : ordered_json(nullptr);
+  e["drift"]["segment_rotation_radpm"] =
+      any ? ordered_json(rounded(segments.rotation_radpm)) : ordered_json(nullptr);
   e["heading_error_rad"] = json_of(heading_rms_rad(raw));
 
   const double begin_s = estimate.front().t_s;
@@ -161,7 +171,8 @@ ordered_json trajectory_evaluation(const std::vector<StampedPose>& truth, const 
 ordered_json map_evaluation(const std::vector<Vec3>& points, const MapReference& reference) {
   const std::vector<double> errors = map_errors(points, reference.distance_m);
   const ErrorStatistics s = statistics_of(errors);
-  ordered_json e{{"reference", reference.file}, {"kind", reference.kind}, {"reference_points", reference.points}};
+  ordered_json e{
+      {"reference", reference.file}, {"kind", reference.kind}, {"reference_points", reference.points}};
   e["density_per_m2"] = json_of(reference.density_per_m2);
   e["points"] = points.size();
   e["error_m"] = json_of(s);

@@ -29,9 +29,9 @@ nlohmann::ordered_json trajectory_evaluation(const std::vector<StampedPose>& tru
 /// The reference of a map and how a point's distance to it is found.
 struct MapReference {
   std::string file;
-  std::string kind;                               // "mesh" or "cloud"
+  std::string kind;  // "mesh" or "cloud"
   std::size_t points = 0;
-  std::optional<double> density_per_m2;           // of the points on a mesh
+  std::optional<double> density_per_m2;  // of the points on a mesh
   std::function<double(const core::Vec3&)> distance_m;
 };
 nlohmann::ordered_json map_evaluation(const std::vector<core::Vec3>& points, const MapReference& reference);

@@ -70,11 +70,11 @@ MapReference open_reference(const std::string& file, double points_per_m2, const
   if (is_mesh(file)) {
     reference.kind = "mesh";
     reference.density_per_m2 = points_per_m2;
-    const std::string mesh_file =
-        ending_of(file) == ".info" ? cave::describe_cave(file, "").mesh_path : file;
+    const std::string mesh_file = ending_of(file) == ".info" ? cave::describe_cave(file, "").mesh_path : file;
     Eigen::AlignedBox3d box;
     for (const Vec3& p : points) box.extend(p);
-    if (!points.empty()) samples = sample_surface(cave::load_mesh(mesh_file), points_per_m2, box, kMargin_m, file);
+    if (!points.empty())
+      samples = sample_surface(cave::load_mesh(mesh_file), points_per_m2, box, kMargin_m, file);
   } else {
     reference.kind = "cloud";
     for (const replay::ScanPoint& p : replay::read_scan(file).points) samples.push_back(p.position);
@@ -95,7 +95,8 @@ std::vector<Vec3> read_map_points(const std::string& file) {
   if (e == ".bt" || e == ".ot") {
     points = occupied_centres(core::read_octomap(file));
   } else {
-    for (const replay::ScanPoint& p : replay::read_scan(file).points) points.push_back(p.position.cast<double>());
+    for (const replay::ScanPoint& p : replay::read_scan(file).points)
+      points.push_back(p.position.cast<double>());
   }
   if (points.empty()) throw InputError(file, "", "the map holds no occupied cell or point");
   return points;

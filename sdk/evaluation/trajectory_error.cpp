@@ -27,8 +27,8 @@ const StampedPose* nearest(const std::vector<StampedPose>& poses, double t_s, do
 void add_error(const Pose& error, PoseErrors& errors) {
   errors.translation_m.push_back(error.position.norm());
   // 2 atan2(|v|, |w|): the acos of a trace loses half its digits near no rotation.
-  errors.rotation_rad.push_back(2 * std::atan2(error.orientation.vec().norm(),
-                                               std::abs(error.orientation.w())));
+  errors.rotation_rad.push_back(2 *
+                                std::atan2(error.orientation.vec().norm(), std::abs(error.orientation.w())));
 }
 
 Pose relative_error(const PosePair& i, const PosePair& j) {
@@ -135,8 +135,8 @@ std::optional<double> heading_rms_rad(const std::vector<PosePair>& pairs) {
   if (pairs.empty()) return std::nullopt;
   double squares = 0;
   for (const PosePair& p : pairs) {
-    const double error = core::wrap_angle(core::heading_of(p.estimate.orientation) -
-                                          core::heading_of(p.truth.orientation));
+    const double error =
+        core::wrap_angle(core::heading_of(p.estimate.orientation) - core::heading_of(p.truth.orientation));
     squares += error * error;
   }
   return std::sqrt(squares / static_cast<double>(pairs.size()));

@@ -46,10 +46,10 @@ PoseErrors relative_errors(const std::vector<PosePair>& pairs, const std::vector
 /// Drift over stretches of the true path, averaged over all of them (Geiger et al., CVPR 2012): from every
 /// tenth pose on, stretches of 1 to 8 times `unit_m`.
 struct SegmentDrift {
-  double unit_m = 0;             // 100, as KITTI has it, where the path is 800 m long; else 10 or 1
-  std::size_t segments = 0;      // none: the path is shorter than 1 m, or holds too few poses
+  double unit_m = 0;         // 100, as KITTI has it, where the path is 800 m long; else 10 or 1
+  std::size_t segments = 0;  // none: the path is shorter than 1 m, or holds too few poses
   double translation_percent = 0;
-  double rotation_radpm = 0;     // radians a metre
+  double rotation_radpm = 0;  // radians a metre
 };
 SegmentDrift segment_drift(const std::vector<PosePair>& pairs);
 

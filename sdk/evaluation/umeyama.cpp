@@ -15,8 +15,8 @@ std::optional<Similarity> umeyama(const std::vector<Vec3>& from, const std::vect
   for (const Vec3& p : to) to_mean += p / n;
 
   // Equations 34 to 43: with the singular values D of the covariance U D V^T of the centred points,
-  // R = U S V^T, scale = tr(D S) / variance(from), t = mean(to) - scale R mean(from), where S = diag(1, 1, +-1)
-  // keeps R from being a reflection.
+  // R = U S V^T, scale = tr(D S) / variance(from), t = mean(to) - scale R mean(from), where S = diag(1, 1,
+  // +-1) keeps R from being a reflection.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double variance = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {

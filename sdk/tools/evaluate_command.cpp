@@ -59,12 +59,14 @@ void print_row(const char* name, const ordered_json& s, const char* unit, double
 void print_trajectory(const ordered_json& e) {
   constexpr double kDegrees = 57.29577951308232;
   std::printf("Trajectory against %s: %zu pairs of %zu poses, alignment %s, path %s\n",
-              e["truth"].get<std::string>().c_str(), e["pairs"].get<std::size_t>(), e["poses"].get<std::size_t>(),
-              e["alignment"]["kind"].get<std::string>().c_str(), text(e["path_length_m"], "%.2f m").c_str());
+              e["truth"].get<std::string>().c_str(), e["pairs"].get<std::size_t>(),
+              e["poses"].get<std::size_t>(), e["alignment"]["kind"].get<std::string>().c_str(),
+              text(e["path_length_m"], "%.2f m").c_str());
   std::printf("  %-28s %9s %9s %9s %9s %9s %9s\n", "", "rmse", "mean", "median", "std", "min", "max");
   print_row("absolute, translation", e["ape"]["translation_m"], "m", 1);
   print_row("absolute, rotation", e["ape"]["rotation_rad"], "deg", kDegrees);
-  for (const auto& [key, unit, delta] : {std::tuple{"by_distance", "m", "delta_m"}, {"by_frames", "frames", "delta_frames"}}) {
+  for (const auto& [key, unit, delta] :
+       {std::tuple{"by_distance", "m", "delta_m"}, {"by_frames", "frames", "delta_frames"}}) {
     const std::string stretch = "relative, " + text(e["rpe"][key][delta], "%g ") + unit;
     print_row((stretch + ", transl.").c_str(), e["rpe"][key]["translation_m"], "m", 1);
     print_row((stretch + ", rot.").c_str(), e["rpe"][key]["rotation_rad"], "deg", kDegrees);
@@ -75,15 +77,17 @@ void print_trajectory(const ordered_json& e) {
   if (d["segments"] != 0)
     std::printf("  drift over segments         %s, %s a metre (%zu segments of 1 to 8 times %s)\n",
                 text(d["segment_percent"], "%.3f %%").c_str(),
-                text(d["segment_rotation_radpm"], "%.4f deg", kDegrees).c_str(), d["segments"].get<std::size_t>(),
-                text(d["segment_unit_m"], "%g m").c_str());
-  std::printf("  heading error (rms)         %s\n", text(e["heading_error_rad"], "%.3f deg", kDegrees).c_str());
+                text(d["segment_rotation_radpm"], "%.4f deg", kDegrees).c_str(),
+                d["segments"].get<std::size_t>(), text(d["segment_unit_m"], "%g m").c_str());
+  std::printf("  heading error (rms)         %s\n",
+              text(e["heading_error_rad"], "%.3f deg", kDegrees).c_str());
 }
 
 void print_map(const ordered_json& e) {
   std::printf("Map against %s: %zu points, nearest of %zu", e["reference"].get<std::string>().c_str(),
               e["points"].get<std::size_t>(), e["reference_points"].get<std::size_t>());
-  if (e["density_per_m2"].is_number()) std::printf(" (%s of the mesh)", text(e["density_per_m2"], "%g a m^2").c_str());
+  if (e["density_per_m2"].is_number())
+    std::printf(" (%s of the mesh)", text(e["density_per_m2"], "%g a m^2").c_str());
   std::printf("\n  map error                   mean %s, std %s, median %s, max %s\n",
               text(e["error_m"]["mean"], "%.3f m").c_str(), text(e["error_m"]["std"], "%.3f m").c_str(),
               text(e["error_m"]["median"], "%.3f m").c_str(), text(e["error_m"]["max"], "%.2f m").c_str());
@@ -127,7 +131,8 @@ void evaluate(const EvaluateArguments& args) {
   if (!reference.empty()) {
     if (map_file.empty()) throw core::InputError(args.run, "", "has no map to compare; name one with --map");
     const auto points = evaluation::read_map_points(map_file);
-    result["map"] = evaluation::map_evaluation(points, evaluation::open_reference(reference, args.density_per_m2, points));
+    result["map"] = evaluation::map_evaluation(
+        points, evaluation::open_reference(reference, args.density_per_m2, points));
     result["map"]["file"] = map_file;
   }
   for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
@@ -155,26 +160,32 @@ void add_evaluate_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "evaluate",
       "Measure a run: errors of its trajectory against the truth, and of its map against a reference.\n\n"
-      "  karst evaluate runs/demo                                    a simulated flight: truth and cave are known\n"
+      "  karst evaluate runs/demo                                    a simulated flight: truth and cave are "
+      "known\n"
       "  karst evaluate runs/kitti00 --truth poses.txt               TUM, or KITTI's 3x4 matrices\n"
       "  karst evaluate slam.tum --truth truth.tum --no-align --json\n"
       "  karst evaluate runs/cave --reference scanner.pcd            map error, point to point\n\n"
       "Writes evaluation.json into the run (or beside the trajectory) and adds plots to its report.");
-  command->add_option("run", args->run, "run directory, or a trajectory (TUM)")->required()->check(not_empty());
-  command->add_option("--truth", args->truth, "true poses; default: the run's ground_truth.tum")->check(not_empty());
+  command->add_option("run", args->run, "run directory, or a trajectory (TUM)")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--truth", args->truth, "true poses; default: the run's ground_truth.tum")
+      ->check(not_empty());
   command
       ->add_option("--reference", args->reference,
                    "cave .info, mesh or cloud (PCD, PLY) to measure the map against; default: the run's cave")
       ->check(not_empty());
   command->add_option("--map", args->map, "map to measure (.bt, .ot, .ply, .pcd); default: the run's")
       ->check(not_empty());
-  command->add_option("--density", args->density_per_m2, "points a square metre, where the reference is a mesh")
+  command
+      ->add_option("--density", args->density_per_m2, "points a square metre, where the reference is a mesh")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e5));
   command->add_flag("--no-align", args->no_align, "compare as they are, without a best fit");
   command->add_flag("--scale", args->options.scale, "fit the scale as well");
   command
-      ->add_option("--max-difference", args->options.max_difference_s, "seconds between stamps of the same moment")
+      ->add_option("--max-difference", args->options.max_difference_s,
+                   "seconds between stamps of the same moment")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
   command->add_option("--delta", args->options.delta_m, "metres of path for the relative error")

@@ -10,8 +10,8 @@ namespace karst::tools {
 
 class ImuPrediction {
  public:
-  /// Reads the samples up to `still_s` after the first scan begins, or after the IMU does, whichever is later.
-  /// Times handed on are counted from `origin`.
+  /// Reads the samples up to `still_s` after the first scan begins, or after the IMU does, whichever is
+  /// later. Times handed on are counted from `origin`.
   ImuPrediction(replay::ImuFile file, const core::EstimatorOptions& options, core::TimeNs origin, bool level,
                 double still_s);
 

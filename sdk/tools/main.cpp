@@ -43,7 +43,8 @@ int main(int argc, char** argv) {
       "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
       "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
       "  karst policy list                                              see what can be flown\n"
-      "  karst replay scans --out runs/replayed                         localize and map from recorded scans\n"
+      "  karst replay scans --out runs/replayed                         localize and map from recorded "
+      "scans\n"
       "  karst evaluate runs/demo                                       errors of trajectory and map\n"
       "  karst map merge runs/a runs/b --out maps/both                  maps of several flights in one",
       "karst"};

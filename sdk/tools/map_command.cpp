@@ -37,7 +37,8 @@ ordered_json json_of(const Placed& p) {
   const Eigen::Matrix3d R = r.T_target_source.orientation.toRotationMatrix();
   ordered_json rows = ordered_json::array();
   for (int i = 0; i < 3; ++i)
-    rows.push_back({rounded(R(i, 0)), rounded(R(i, 1)), rounded(R(i, 2)), rounded(r.T_target_source.position[i])});
+    rows.push_back(
+        {rounded(R(i, 0)), rounded(R(i, 1)), rounded(R(i, 2)), rounded(r.T_target_source.position[i])});
   rows.push_back({0, 0, 0, 1});
   return {{"map", p.map->name},
           {"file", p.map->file},
@@ -69,7 +70,8 @@ core::MapRegistrationOptions options_of(const MergeArguments& args) {
 
 std::string stem_of(const std::string& out) {
   const std::string ending = fs::path(out).extension().string();
-  return ending == ".bt" || ending == ".ot" || ending == ".ply" ? out.substr(0, out.size() - ending.size()) : out;
+  return ending == ".bt" || ending == ".ot" || ending == ".ply" ? out.substr(0, out.size() - ending.size())
+                                                                : out;
 }
 
 std::vector<MapInput> read_all(const MergeArguments& args) {
@@ -80,13 +82,15 @@ std::vector<MapInput> read_all(const MergeArguments& args) {
     if (first.piece.cells && last.piece.cells &&
         std::abs(first.piece.resolution_m / last.piece.resolution_m - 1) > 0.01)
       throw core::InputError(last.file, "res",
-                             "cells of " + std::to_string(last.piece.resolution_m) + " m cannot be added to those of " +
+                             "cells of " + std::to_string(last.piece.resolution_m) +
+                                 " m cannot be added to those of " +
                                  std::to_string(first.piece.resolution_m) + " m in " + first.file);
   }
   return maps;
 }
 
-/// Each map is laid on all that were put together before it; one that does not fit waits until more are there.
+/// Each map is laid on all that were put together before it; one that does not fit waits until more are
+/// there.
 std::vector<Placed> place_all(const std::vector<MapInput>& maps, const core::MapRegistrationOptions& options,
                               MergedMap& merged) {
   std::vector<Placed> placed;
@@ -119,11 +123,13 @@ void print(const Placed& p) {
   const core::Vec3& t = r.T_target_source.position;
   std::printf("%s: %s\n", p.map->name.c_str(), r.trusted ? "in place" : ("refused: " + r.reason).c_str());
   std::printf("  moved by (%.2f, %.2f, %.2f) m, turned by %.2f deg%s\n", t.x(), t.y(), t.z(),
-              core::heading_of(r.T_target_source.orientation) * 180 / std::numbers::pi, r.trusted ? "" : " at best");
-  std::printf("  residual %.3f m, overlap %.0f %% of it and %.0f %% of the rest (%.0f m^2)\n", r.overlay.residual_m(),
-              100 * r.overlay.source_overlap(), 100 * r.overlay.target_overlap(), r.shared_m2);
-  std::printf("  agreement %.1f %%, hold %.3f, next best pose %.0f %% as good\n", 100 * r.overlay.agreement(), r.hold,
-              100 * r.rival);
+              core::heading_of(r.T_target_source.orientation) * 180 / std::numbers::pi,
+              r.trusted ? "" : " at best");
+  std::printf("  residual %.3f m, overlap %.0f %% of it and %.0f %% of the rest (%.0f m^2)\n",
+              r.overlay.residual_m(), 100 * r.overlay.source_overlap(), 100 * r.overlay.target_overlap(),
+              r.shared_m2);
+  std::printf("  agreement %.1f %%, hold %.3f, next best pose %.0f %% as good\n", 100 * r.overlay.agreement(),
+              r.hold, 100 * r.rival);
 }
 
 int merge(const MergeArguments& args) {
@@ -136,7 +142,8 @@ int merge(const MergeArguments& args) {
   const std::vector<MapInput> maps = read_all(args);
   MergedMap merged(maps.front());
   const std::vector<Placed> placed = place_all(maps, options, merged);
-  const bool all = std::all_of(placed.begin(), placed.end(), [](const Placed& p) { return p.registration.trusted; });
+  const bool all =
+      std::all_of(placed.begin(), placed.end(), [](const Placed& p) { return p.registration.trusted; });
 
   ordered_json report{{"schema", "karst.merge/1"}, {"first", maps.front().name}, {"merged", all}};
   report["maps"] = ordered_json::array();

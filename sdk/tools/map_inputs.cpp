@@ -20,9 +20,11 @@ std::string file_of(const std::string& name) {
 }
 
 std::string ply_bytes(const std::vector<core::Vec3f>& points) {
-  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(points.size()) +
                       "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  for (const core::Vec3f& p : points) bytes.append(reinterpret_cast<const char*>(p.data()), 3 * sizeof(float));
+  for (const core::Vec3f& p : points)
+    bytes.append(reinterpret_cast<const char*>(p.data()), 3 * sizeof(float));
   return bytes;
 }
 
@@ -31,7 +33,8 @@ std::shared_ptr<core::VoxelMap> copy_of(const core::VoxelMap& map) {
   core::MapOptions options;
   options.resolution_m = map.resolution_m();
   auto copy = std::make_shared<core::VoxelMap>(options);
-  map.for_each_known([&](const core::CellKey& k, core::Cell, float log_odds) { copy->assign(k, 1, log_odds); });
+  map.for_each_known(
+      [&](const core::CellKey& k, core::Cell, float log_odds) { copy->assign(k, 1, log_odds); });
   return copy;
 }
 
@@ -61,7 +64,8 @@ void MergedMap::add(const MapInput& map, const core::Pose& T_first_map) {
     return;
   }
   std::vector<core::Vec3f> points = piece_.surface;
-  for (const core::Vec3f& p : map.piece.surface) points.push_back((T_first_map * p.cast<double>()).cast<float>());
+  for (const core::Vec3f& p : map.piece.surface)
+    points.push_back((T_first_map * p.cast<double>()).cast<float>());
   piece_ = core::piece_of(points, std::min(piece_.resolution_m, map.piece.resolution_m));
 }
 

@@ -90,7 +90,8 @@ void write_settings(const fs::path& run_dir, const replay::Recording& recording,
   }
 }
 
-void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir, bool report) {
+void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir,
+                   bool report) {
   std::printf("%zu scans, %zu of them lost", s.scans, s.lost);
   if (s.lost > 0) std::printf(" (the last: %s)", s.last_problem.c_str());
   std::printf("\n  points           %zu used, %zu left out (not finite, or out of range)\n", s.points,
@@ -104,8 +105,9 @@ void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const 
     std::printf("  localization     %.1f ms a scan, %.1f ms at most\n",
                 1e3 * s.localization_s / static_cast<double>(s.scans), 1e3 * s.slowest_s);
   if (s.without_times)
-    std::printf("note: the points have no times, so motion during a scan was not compensated; see time.direction and "
-                "compensated in docs/replay.md\n");
+    std::printf(
+        "note: the points have no times, so motion during a scan was not compensated; see time.direction and "
+        "compensated in docs/replay.md\n");
   std::printf("Look next at:\n");
   if (report) std::printf("  %s   the map in 3D; open it in a browser\n", (run_dir / "report.html").c_str());
   std::printf("  %s   the trajectory (TUM); karst evaluate %s --truth FILE\n",
@@ -135,7 +137,8 @@ int replay_scans(const ReplayArguments& args) {
   RunClaim claim(run_dir);
   std::error_code error;
   fs::create_directories(run_dir, error);
-  if (error) throw core::InputError(run_dir.string(), "", "the run directory cannot be made: " + error.message());
+  if (error)
+    throw core::InputError(run_dir.string(), "", "the run directory cannot be made: " + error.message());
   write_settings(run_dir, recording, options);
   claim.keep();
 
@@ -154,7 +157,8 @@ int replay_scans(const ReplayArguments& args) {
   line.end();
   const nlohmann::json metrics = finish_run(run_dir, "", "", !args.no_report);
   if (!damage.empty()) {
-    std::fprintf(stderr, "karst: %s\nkarst: what came before it stands in %s\n", damage.c_str(), run_dir.c_str());
+    std::fprintf(stderr, "karst: %s\nkarst: what came before it stands in %s\n", damage.c_str(),
+                 run_dir.c_str());
     return 1;
   }
   if (args.json) {
@@ -180,7 +184,8 @@ void add_replay_command(CLI::App& app) {
       "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
   command->add_option("scans", args->scans, "folder of scans")->check(not_empty());
   command->add_option("--out,-o", args->out, "run directory")->check(not_empty());
-  command->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
+  command
+      ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
       ->check(not_empty());
   command->add_option("--set", args->settings, "key=value; see --keys")->allow_extra_args(false);
   command->add_flag("--json", args->json, "print metrics.json instead of a summary; no progress");

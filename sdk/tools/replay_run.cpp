@@ -19,7 +19,8 @@ using core::Vec3;
 
 /// The rays of a sweep, each from where the sensor was when it was measured; the track between two poses is
 /// taken as straight.
-std::vector<core::Ray> rays_of(const core::Sweep& sweep, const core::StateHistory& track, double max_range_m) {
+std::vector<core::Ray> rays_of(const core::Sweep& sweep, const core::StateHistory& track,
+                               double max_range_m) {
   std::vector<core::Ray> rays;
   rays.reserve(sweep.points.size());
   const Pose at_stamp = track.pose_at(sweep.stamp) * sweep.T_body_lidar;
@@ -27,7 +28,8 @@ std::vector<core::Ray> rays_of(const core::Sweep& sweep, const core::StateHistor
   for (const core::SweepPoint& p : sweep.points) {
     const Pose T_world_lidar =
         moving && p.time_s < 0
-            ? track.pose_at(sweep.stamp + core::from_seconds(static_cast<double>(p.time_s))) * sweep.T_body_lidar
+            ? track.pose_at(sweep.stamp + core::from_seconds(static_cast<double>(p.time_s))) *
+                  sweep.T_body_lidar
             : at_stamp;
     const Vec3 point = p.position.cast<double>();
     const double range = point.norm();
@@ -47,14 +49,14 @@ class ReplayFiles {
     if (!trajectory_) throw core::InputError((run_dir / "trajectory.tum").string(), "", "cannot be written");
   }
 
-  void scan(const core::LoamPose& pose, const std::vector<core::CellChange>& changes, const core::VoxelMap& map,
-            const Vec3& velocity_mps) {
+  void scan(const core::LoamPose& pose, const std::vector<core::CellChange>& changes,
+            const core::VoxelMap& map, const Vec3& velocity_mps) {
     const Vec3& p = pose.T_world_body.position;
     const core::Quat& q = pose.T_world_body.orientation;
     std::array<char, 256> line;
     std::snprintf(line.data(), line.size(), "%s %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n",
-                  replay::decimal_seconds(origin_ + pose.stamp).c_str(), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(),
-                  q.w());
+                  replay::decimal_seconds(origin_ + pose.stamp).c_str(), p.x(), p.y(), p.z(), q.x(), q.y(),
+                  q.z(), q.w());
     if (pose.valid) trajectory_ << line.data();
     const bool was_lost = lost_;
     lost_ = !pose.valid;
@@ -97,7 +99,8 @@ void describe(core::OptionTable& t, ReplayOptions& o) {
   t.section("localization.estimator", o.estimator);
   t.section("map", o.map);
   t.add("replay.mapping_range", o.mapping_range_m, "m", 1, 200, "farther returns only clear space up to it");
-  t.add("replay.level", o.level, "take the attitude at the start from the IMU's first moment, in which the sensor stood still");
+  t.add("replay.level", o.level,
+        "take the attitude at the start from the IMU's first moment, in which the sensor stood still");
   t.add("replay.still", o.still_s, "s", 0.01, 60, "length of this moment");
 }
 
@@ -140,7 +143,8 @@ ReplaySummary replay_recording(const replay::Recording& recording, const ReplayO
                      core::seconds(sweep.stamp - track.states().back().stamp);
     std::vector<core::CellChange> changes;
     if (pose.valid) {
-      track.push({sweep.stamp, pose.T_world_body.position, velocity_mps, pose.T_world_body.orientation, Vec3::Zero()});
+      track.push({sweep.stamp, pose.T_world_body.position, velocity_mps, pose.T_world_body.orientation,
+                  Vec3::Zero()});
       changes = map.insert(rays_of(sweep, track, options.mapping_range_m));
       if (summary.scans > summary.lost) summary.path_m += (pose.T_world_body.position - last.position).norm();
       last = pose.T_world_body;

@@ -15,8 +15,8 @@ struct ReplayOptions {
   core::EstimatorOptions estimator;
   core::MapOptions map;
   double mapping_range_m = 30;
-  bool level = true;      // the start's attitude from the IMU's first moment, if it has one
-  double still_s = 0.3;   // length of that moment
+  bool level = true;     // the start's attitude from the IMU's first moment, if it has one
+  double still_s = 0.3;  // length of that moment
 };
 void describe(core::OptionTable& t, ReplayOptions& o);
 
@@ -30,11 +30,12 @@ struct ReplaySummary {
 };
 
 /// Called after each scan, with its number from 1.
-using ReplayProgress = std::function<bool(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map)>;
+using ReplayProgress =
+    std::function<bool(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map)>;
 
-/// Writes trajectory.tum in the recording's own time, map files and events into `run_dir`, which must be fresh.
-/// Memory does not grow with the recording, but for the map. Stops early when `progress` returns false.
-/// Throws InputError when a file is damaged; what was written up to there is complete.
+/// Writes trajectory.tum in the recording's own time, map files and events into `run_dir`, which must be
+/// fresh. Memory does not grow with the recording, but for the map. Stops early when `progress` returns
+/// false. Throws InputError when a file is damaged; what was written up to there is complete.
 ReplaySummary replay_recording(const replay::Recording& recording, const ReplayOptions& options,
                                const std::filesystem::path& run_dir, const ReplayProgress& progress);
 

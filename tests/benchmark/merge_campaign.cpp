@@ -1,6 +1,7 @@
 // How often maps of two flights are put together rightly, wrongly, or refused. Prints a line for each pair.
 //
-//   merge_campaign same A.bt B.bt [RUNS]       two flights of one cave, in one frame: both are cut so that they
+//   merge_campaign same A.bt B.bt [RUNS]       two flights of one cave, in one frame: both are cut so that
+//   they
 //                                              share 20 to 80 % of their rock, and B is moved at random
 //   merge_campaign different A.bt B.bt ...     every pair, which have nothing in common
 //   --clouds before the files                  as bare points, without free space; --six: gravity not known
@@ -72,10 +73,12 @@ void run(const char* what, const MapPiece& target, const MapPiece& source, const
   }
   const bool found = truth && error_m < 1.0;
   (r.trusted ? (found ? tally.right : tally.wrong) : tally.refused) += 1;
-  std::printf("%-28s %s%s off %.2f m %.2f deg  overlap %.2f/%.2f agreement %.3f residual %.3f hold %.3f rival %.2f area %.0f  %.1f s  %s\n",
-              what, r.trusted ? "TRUSTED" : "refused", truth ? (found ? " (right)" : " (wrong)") : "", error_m, error_deg,
-              r.overlay.source_overlap(), r.overlay.target_overlap(), r.overlay.agreement(), r.overlay.residual_m(),
-              r.hold, r.rival, r.shared_m2, took_s, r.reason.c_str());
+  std::printf(
+      "%-28s %s%s off %.2f m %.2f deg  overlap %.2f/%.2f agreement %.3f residual %.3f hold %.3f rival %.2f "
+      "area %.0f  %.1f s  %s\n",
+      what, r.trusted ? "TRUSTED" : "refused", truth ? (found ? " (right)" : " (wrong)") : "", error_m,
+      error_deg, r.overlay.source_overlap(), r.overlay.target_overlap(), r.overlay.agreement(),
+      r.overlay.residual_m(), r.hold, r.rival, r.shared_m2, took_s, r.reason.c_str());
   std::fflush(stdout);
 }
 
@@ -90,7 +93,8 @@ void same(const VoxelMap& a, const VoxelMap& b, int runs) {
       Quat turn = from_heading(random.uniform(-std::numbers::pi, std::numbers::pi));
       if (!options.coarse.gravity_known)
         turn = (turn * Quat(Eigen::AngleAxisd(random.uniform(0, 3.1), Vec3::UnitX()))).normalized();
-      const Pose T_source_target{{random.uniform(-30, 30), random.uniform(-30, 30), random.uniform(-5, 5)}, turn};
+      const Pose T_source_target{{random.uniform(-30, 30), random.uniform(-30, 30), random.uniform(-5, 5)},
+                                 turn};
       const MapPiece source = piece(cut(b, from_x, 1e9, T_source_target));
       const Pose truth = T_source_target.inverse();
       char what[64];
@@ -126,6 +130,7 @@ int main(int argc, char** argv) {
   Tally tally;
   for (std::size_t i = 0; i < files.size(); ++i)
     for (std::size_t j = 0; j < files.size(); ++j)
-      if (i != j) run((std::to_string(i) + " <- " + std::to_string(j)).c_str(), pieces[i], pieces[j], nullptr, tally);
+      if (i != j)
+        run((std::to_string(i) + " <- " + std::to_string(j)).c_str(), pieces[i], pieces[j], nullptr, tally);
   tally.print("different");
 }

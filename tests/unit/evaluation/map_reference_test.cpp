@@ -52,7 +52,8 @@ TEST(SampleSurface, HasTheDensityAskedForEverywhereOnTheSurface) {
   std::array<int, 100> per_m2{};
   for (const Vec3f& p : points) {
     ASSERT_EQ(p.z(), 0.0f);
-    ++per_m2[static_cast<std::size_t>(std::min(9.0f, std::floor(p.x())) * 10 + std::min(9.0f, std::floor(p.y())))];
+    ++per_m2[static_cast<std::size_t>(std::min(9.0f, std::floor(p.x())) * 10 +
+                                      std::min(9.0f, std::floor(p.y())))];
   }
   for (const int n : per_m2) EXPECT_NEAR(n, 400, 40);
   EXPECT_EQ(points, sample_surface(floor_mesh(), 400, all, 0, "floor"));

@@ -38,7 +38,8 @@ TEST(Associate, TakesTheNearestStampOfAll) {
     std::vector<StampedPose> truth, estimate;
     const auto fill = [&](std::vector<StampedPose>& poses, int n) {
       double t = random.uniform();
-      for (int i = 0; i < n; ++i, t += random.uniform(0.01, 0.2)) poses.push_back({t, {Vec3(t, 0, 0), core::Quat::Identity()}});
+      for (int i = 0; i < n; ++i, t += random.uniform(0.01, 0.2))
+        poses.push_back({t, {Vec3(t, 0, 0), core::Quat::Identity()}});
     };
     fill(truth, 5 + trial % 60);
     fill(estimate, 30);
@@ -98,7 +99,8 @@ TEST(RelativeErrors, OfTwoStepsByHandInAnyFrame) {
 
 TEST(PairsByPath, BeginWhereThePathHasReachedTheLengthOnce) {
   std::vector<PosePair> pairs;
-  for (const double x : {0.0, 0.6, 1.2, 1.4, 2.0, 2.3, 3.5, 3.6}) pairs.push_back({x, {}, {Vec3(x, 0, 0), core::Quat::Identity()}});
+  for (const double x : {0.0, 0.6, 1.2, 1.4, 2.0, 2.3, 3.5, 3.6})
+    pairs.push_back({x, {}, {Vec3(x, 0, 0), core::Quat::Identity()}});
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (const IndexPair& p : pairs_by_path(pairs, 1.0)) found.emplace_back(p.from, p.to);
   // Reached at 1.2, at 2.3 (1.1 further) and at 3.5.
@@ -108,7 +110,9 @@ TEST(PairsByPath, BeginWhereThePathHasReachedTheLengthOnce) {
 std::vector<PosePair> straight(double length_m, double step_m, double scale, double heading_radpm) {
   std::vector<PosePair> pairs;
   for (double s = 0; s <= length_m; s += step_m)
-    pairs.push_back({s, {Vec3(s, 0, 0), core::Quat::Identity()}, {Vec3(scale * s, 0, 0), from_heading(heading_radpm * s)}});
+    pairs.push_back({s,
+                     {Vec3(s, 0, 0), core::Quat::Identity()},
+                     {Vec3(scale * s, 0, 0), from_heading(heading_radpm * s)}});
   return pairs;
 }
 
@@ -130,8 +134,9 @@ TEST(SegmentDrift, FindsAPlantedTurn) {
 }
 
 TEST(HeadingAndEnd, AreThoseOfThePairs) {
-  const std::vector<PosePair> pairs = {{0, {Vec3(0, 0, 0), from_heading(3.1)}, {Vec3(0, 0, 0), from_heading(-3.1)}},
-                                       {1, {Vec3(3, 0, 0), from_heading(0)}, {Vec3(3, 1, 0), from_heading(0)}}};
+  const std::vector<PosePair> pairs = {
+      {0, {Vec3(0, 0, 0), from_heading(3.1)}, {Vec3(0, 0, 0), from_heading(-3.1)}},
+      {1, {Vec3(3, 0, 0), from_heading(0)}, {Vec3(3, 1, 0), from_heading(0)}}};
   EXPECT_NEAR(*heading_rms_rad(pairs), (2 * kPi - 6.2) / std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(*end_error_m(pairs), 1, 1e-12);
   EXPECT_NEAR(true_path_m(pairs), 3, 1e-12);

@@ -17,9 +17,7 @@ using core::Vec3;
 Vec3 random_point(Random& r, double size) {
   return {r.uniform(-size, size), r.uniform(-size, size), r.uniform(-size, size)};
 }
-Quat random_turn(Random& r) {
-  return Quat(r.normal(), r.normal(), r.normal(), r.normal()).normalized();
-}
+Quat random_turn(Random& r) { return Quat(r.normal(), r.normal(), r.normal(), r.normal()).normalized(); }
 
 TEST(Umeyama, FindsWhatEigenFindsOnNoisyPoints) {
   Random random(3);
@@ -48,7 +46,8 @@ TEST(Umeyama, FindsAPlantedSimilarityAndNeverAReflection) {
   const Similarity planted{1.7, {Vec3(5, -3, 2), random_turn(random)}};
   std::vector<Vec3> flat, moved, mirrored;
   for (int i = 0; i < 30; ++i) {
-    flat.push_back({random.uniform(-5, 5), random.uniform(-5, 5), 0});  // in a plane a mirror image fits as well
+    flat.push_back(
+        {random.uniform(-5, 5), random.uniform(-5, 5), 0});  // in a plane a mirror image fits as well
     moved.push_back(planted * flat.back());
   }
   const auto found = umeyama(flat, moved, true);

@@ -20,7 +20,8 @@ struct Tunnel {
   double depth(const core::Vec3& p) const {
     const core::Vec3 d = p - centre(p.x());
     const double around = std::atan2(d.z(), d.y());
-    const double knobs = std::sin(0.9 * p.x() + 2 * around + phase) + std::sin(0.37 * p.x() - 3 * around + 5 * phase) +
+    const double knobs = std::sin(0.9 * p.x() + 2 * around + phase) +
+                         std::sin(0.37 * p.x() - 3 * around + 5 * phase) +
                          0.7 * std::sin(1.7 * p.x() + around + 2 * phase);
     return std::hypot(d.y(), d.z()) - radius_m - knobs_m * knobs;
   }

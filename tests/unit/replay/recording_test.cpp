@@ -25,7 +25,8 @@ std::string xyz(const std::vector<std::array<float, 3>>& points) {
   return bytes;
 }
 const std::string kOne = xyz({{1, 0, 0}, {0, 2, 0}});
-constexpr const char* kPlain = "bin { fields \"x y z\" }\nrings { count 3 lowest \"-10 deg\" highest \"10 deg\" }\n";
+constexpr const char* kPlain =
+    "bin { fields \"x y z\" }\nrings { count 3 lowest \"-10 deg\" highest \"10 deg\" }\n";
 
 std::string error_of(const Folder& dir) {
   try {
@@ -44,8 +45,10 @@ void expect_error(const Folder& dir, const std::string& file, const std::string&
 
 TEST(Recording, TakesFilesInTheOrderOfTheirNumbersAndStampsThemByRate) {
   Folder dir;
-  dir.write("recording.info", std::string(kPlain) + "scans \"scan_*.bin\"\nstamp { rate \"20 Hz\" of end }\n");
-  for (const char* name : {"scan_10.bin", "scan_9.bin", "scan_100.bin", "other_1.bin", "scan_2.txt"}) dir.write(name, kOne);
+  dir.write("recording.info",
+            std::string(kPlain) + "scans \"scan_*.bin\"\nstamp { rate \"20 Hz\" of end }\n");
+  for (const char* name : {"scan_10.bin", "scan_9.bin", "scan_100.bin", "other_1.bin", "scan_2.txt"})
+    dir.write(name, kOne);
   const Recording r = open_recording(dir.path(), "");
   ASSERT_EQ(r.files.size(), 3u);
   EXPECT_EQ(r.files[0].path.filename(), "scan_9.bin");
@@ -68,9 +71,10 @@ TEST(Recording, StampsOfNamesAndFilesKeepTheirNanoseconds) {
 
 TEST(Recording, PointTimesCountBackFromTheEndOfTheSweep) {
   Folder dir;
-  dir.write("recording.info", std::string(kPlain) +
-                                  "scans \"raw_*.bin\"\npoint_times { files \"times_*.bin\" }\nstamp { from names of start }\n"
-                                  "lidar { position \"0 0 0.5\" rotation \"0 0 90\" }\n");
+  dir.write("recording.info",
+            std::string(kPlain) +
+                "scans \"raw_*.bin\"\npoint_times { files \"times_*.bin\" }\nstamp { from names of start }\n"
+                "lidar { position \"0 0 0.5\" rotation \"0 0 90\" }\n");
   dir.write("raw_7.bin", xyz({{1, 0, 0}, {0, 2, 0}, {0, 0, 0}, {-3, 0, 0}}));
   std::string times;
   for (const float t : {0.0f, 0.025f, 0.03f, 0.1f}) put(times, t);
@@ -94,7 +98,8 @@ TEST(Recording, TimesAreWorkedOutFromTheTurnWhereThereAreNone) {
   dir.write("0.bin", xyz({{1, 0, 0}, {0, -1, 0}, {-1, 0, 0}, {0, 1, 0}}));
   const core::Sweep sweep = read_sweep(open_recording(dir.path(), ""), 0);
   ASSERT_EQ(sweep.points.size(), 4u);
-  for (int i = 0; i < 4; ++i) EXPECT_NEAR(sweep.points[static_cast<std::size_t>(i)].time_s, 0.05 * (i - 3), 1e-6);
+  for (int i = 0; i < 4; ++i)
+    EXPECT_NEAR(sweep.points[static_cast<std::size_t>(i)].time_s, 0.05 * (i - 3), 1e-6);
 }
 
 TEST(Recording, RingsByElevationAreTheNearestAndWhatIsFarFromAllIsLeftOut) {
@@ -102,7 +107,9 @@ TEST(Recording, RingsByElevationAreTheNearestAndWhatIsFarFromAllIsLeftOut) {
   info.rings = 5, info.lowest_rad = -0.2, info.highest_rad = 0.2;
   Scan scan;
   for (const double e : {0.21, 0.19, 0.06, 0.04, -0.14, -0.2, -0.29, -0.5, 0.9})
-    scan.points.push_back({core::Vec3f(static_cast<float>(10 * std::cos(e)), 0, static_cast<float>(10 * std::sin(e))), 0, 0, 0});
+    scan.points.push_back(
+        {core::Vec3f(static_cast<float>(10 * std::cos(e)), 0, static_cast<float>(10 * std::sin(e))), 0, 0,
+         0});
   rings_by_elevation(scan, info);
   std::vector<int> rings;
   for (const ScanPoint& p : scan.points) rings.push_back(p.ring);
@@ -116,7 +123,9 @@ TEST(Recording, RingsThatFollowEachOtherAreToldApartDespiteJitterAndGaps) {
     for (int i = 0; i < 360; ++i) {
       if (ring == 3 && i > 100 && i < 160) continue;  // nothing came back
       const double azimuth = (i + 0.6 * std::sin(40.0 * i + ring)) * std::numbers::pi / 180 + 0.01;
-      scan.points.push_back({core::Vec3f(static_cast<float>(5 * std::cos(azimuth)), static_cast<float>(5 * std::sin(azimuth)), 0), 0, 0, 0});
+      scan.points.push_back({core::Vec3f(static_cast<float>(5 * std::cos(azimuth)),
+                                         static_cast<float>(5 * std::sin(azimuth)), 0),
+                             0, 0, 0});
       truth.push_back(ring);
     }
   rings_by_order(scan);
@@ -161,7 +170,8 @@ TEST(ImuFile, ReadsColumnsInAnyOrderTurnsThemAndNamesTheBadLine) {
   const std::string file = dir.write("imu.csv",
                                      "stamp,wx,wy,wz,ax,ay,az,temperature\n# a comment\n"
                                      "1000.5,0.1,0.2,0.3,1,2,3,20\n1001.25,0,0,0,0,0,9.81,20\n");
-  ImuFile imu(file, "t wx wy wz ax ay az temperature", nanoseconds_of("ms"), core::from_heading(std::numbers::pi / 2));
+  ImuFile imu(file, "t wx wy wz ax ay az temperature", nanoseconds_of("ms"),
+              core::from_heading(std::numbers::pi / 2));
   const auto first = imu.next();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->stamp, 1000500000);
@@ -169,7 +179,8 @@ TEST(ImuFile, ReadsColumnsInAnyOrderTurnsThemAndNamesTheBadLine) {
   EXPECT_LT((first->body_rate_radps - core::Vec3(-0.2, 0.1, 0.3)).norm(), 1e-12);
   EXPECT_TRUE(imu.next());
   EXPECT_FALSE(imu.next());
-  for (const auto& [text, reason] : {std::pair{"1 2 3\n", "fewer columns"}, {"1 2 3 4 5 6 nan\n", "is not the numbers"},
+  for (const auto& [text, reason] : {std::pair{"1 2 3\n", "fewer columns"},
+                                     {"1 2 3 4 5 6 nan\n", "is not the numbers"},
                                      {"2 0 0 0 0 0 0\n1 0 0 0 0 0 0\n", "line 2: goes back in time"}}) {
     ImuFile bad(dir.write("bad.txt", text), "t ax ay az wx wy wz", kSecond, core::Quat::Identity());
     try {

@@ -30,10 +30,11 @@ const std::vector<Row> kRows = {{1.5f, -2.25f, 3.0f, 10.0f, 0, 0.0},
                                 {7.75f, 0.5f, -6.5f, 30.0f, 15, 0.09375}};
 
 std::string pcd_header(const std::string& data, std::size_t points) {
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity ring t\nSIZE 4 4 4 4 2 8\n"
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity ring t\nSIZE 4 4 4 "
+         "4 2 8\n"
          "TYPE F F F F U F\nCOUNT 1 1 1 1 1 1\nWIDTH " +
-         std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA " +
-         data + "\n";
+         std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) +
+         "\nDATA " + data + "\n";
 }
 
 std::string records(const std::vector<Row>& rows) {
@@ -104,7 +105,8 @@ std::string ascii(const std::vector<Row>& rows) {
   std::string text;
   for (const Row& r : rows) {
     char line[200];
-    std::snprintf(line, sizeof line, "%.9g %.9g %.9g %.9g %d %.17g\n", r.x, r.y, r.z, r.intensity, r.ring, r.t);
+    std::snprintf(line, sizeof line, "%.9g %.9g %.9g %.9g %d %.17g\n", r.x, r.y, r.z, r.intensity, r.ring,
+                  r.t);
     text += line;
   }
   return text;
@@ -142,7 +144,8 @@ TEST(ScanFile, CompressionThatRepeatsItselfIsUndone) {
   Folder dir;
   std::vector<Row> rows;
   for (int i = 0; i < 3000; ++i)
-    rows.push_back({static_cast<float>(i % 7), 1.0f, static_cast<float>(i / 100), 5.0f, static_cast<std::uint16_t>(i % 16), 0.5});
+    rows.push_back({static_cast<float>(i % 7), 1.0f, static_cast<float>(i / 100), 5.0f,
+                    static_cast<std::uint16_t>(i % 16), 0.5});
   const std::string bytes = compressed(rows);
   ASSERT_LT(bytes.size(), columns(rows).size() / 10) << "the packer found no repetition: nothing is tested";
   expect_rows(read_scan(dir.write("c.pcd", pcd_header("binary_compressed", rows.size()) + bytes)), rows);
@@ -166,8 +169,10 @@ RC_GTEST_PROP(Lzf, OfAnyBytesNeverWritesMoreThanAsked, ()) {
 TEST(ScanFile, PlyOfEitherByteOrderAndText) {
   Folder dir;
   const std::string properties =
-      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float scalar_intensity\n"
-      "property ushort ring\nproperty double time\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+      "scalar_intensity\n"
+      "property ushort ring\nproperty double time\nelement face 1\nproperty list uchar int "
+      "vertex_indices\nend_header\n";
   std::string swapped;
   for (const Row& r : kRows) {
     const auto add = [&](auto v) {
@@ -178,9 +183,14 @@ TEST(ScanFile, PlyOfEitherByteOrderAndText) {
     for (const float v : {r.x, r.y, r.z, r.intensity}) add(v);
     add(r.ring), add(r.t);
   }
-  expect_rows(read_scan(dir.write("a.ply", "ply\nformat ascii 1.0\n" + properties + ascii(kRows) + "3 0 1 2\n")), kRows);
-  expect_rows(read_scan(dir.write("l.ply", "ply\nformat binary_little_endian 1.0\n" + properties + records(kRows))), kRows);
-  expect_rows(read_scan(dir.write("b.ply", "ply\nformat binary_big_endian 1.0\n" + properties + swapped)), kRows);
+  expect_rows(
+      read_scan(dir.write("a.ply", "ply\nformat ascii 1.0\n" + properties + ascii(kRows) + "3 0 1 2\n")),
+      kRows);
+  expect_rows(
+      read_scan(dir.write("l.ply", "ply\nformat binary_little_endian 1.0\n" + properties + records(kRows))),
+      kRows);
+  expect_rows(read_scan(dir.write("b.ply", "ply\nformat binary_big_endian 1.0\n" + properties + swapped)),
+              kRows);
   EXPECT_EQ(ply_faces((dir.path() / "a.ply").string()), 1u);
 }
 
@@ -204,7 +214,8 @@ TEST(ScanFile, PointsThatAreNotFiniteAreLeftOutAndCounted) {
   std::vector<Row> rows = kRows;
   rows[0].y = std::numeric_limits<float>::quiet_NaN();
   rows[2].z = std::numeric_limits<float>::infinity();
-  for (const auto& [name, data] : {std::pair<std::string, std::string>{"ascii", ascii(rows)}, {"binary", records(rows)}}) {
+  for (const auto& [name, data] :
+       {std::pair<std::string, std::string>{"ascii", ascii(rows)}, {"binary", records(rows)}}) {
     const Scan scan = read_scan(dir.write(name + ".pcd", pcd_header(name, 3) + data));
     EXPECT_EQ(scan.points.size(), 1u);
     EXPECT_EQ(scan.dropped, 2u);
@@ -217,8 +228,10 @@ TEST(ScanFile, CutAnywhereItIsAnErrorThatNamesTheFileOrTheWholeCloud) {
        {std::pair<std::string, std::string>{"a.pcd", pcd_header("ascii", 3) + ascii(kRows)},
         {"b.pcd", pcd_header("binary", 3) + records(kRows)},
         {"c.pcd", pcd_header("binary_compressed", 3) + compressed(kRows)},
-        {"d.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                  "property float z\nproperty float i\nproperty ushort ring\nproperty double t\nend_header\n" + records(kRows)}})
+        {"d.ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nproperty float i\nproperty ushort ring\nproperty double t\nend_header\n" +
+             records(kRows)}})
     for (std::size_t n = 0; n + 1 < bytes.size(); ++n) {
       const std::string file = dir.write(name, bytes.substr(0, n));
       const std::string error = error_of(file);
@@ -236,15 +249,22 @@ TEST(ScanFile, HugeClaimsAreRefusedBeforeAnyMemoryIsGiven) {
     for (std::size_t at; (at = h.find(" 3\n")) != std::string::npos;) h.replace(at, 3, " " + huge + "\n");
     return h;
   };
-  EXPECT_NE(error_of(dir.write("b.pcd", header("binary") + records(kRows))).find("truncated"), std::string::npos);
-  EXPECT_NE(error_of(dir.write("a.pcd", header("ascii") + ascii(kRows))).find("truncated"), std::string::npos);
-  EXPECT_NE(error_of(dir.write("c.pcd", header("binary_compressed") + compressed(kRows))).find("declares"), std::string::npos);
+  EXPECT_NE(error_of(dir.write("b.pcd", header("binary") + records(kRows))).find("truncated"),
+            std::string::npos);
+  EXPECT_NE(error_of(dir.write("a.pcd", header("ascii") + ascii(kRows))).find("truncated"),
+            std::string::npos);
+  EXPECT_NE(error_of(dir.write("c.pcd", header("binary_compressed") + compressed(kRows))).find("declares"),
+            std::string::npos);
   std::string claim;
   put(claim, std::uint32_t{4});
   put(claim, std::uint32_t{4200000000u / 26 * 26});
-  EXPECT_NE(error_of(dir.write("d.pcd", pcd_header("binary_compressed", 4200000000u / 26) + claim + "abcd")).find("damaged"), std::string::npos);
-  EXPECT_NE(error_of(dir.write("e.ply", "ply\nformat binary_little_endian 1.0\nelement vertex " + huge +
-                                            "\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc")).find("truncated"),
+  EXPECT_NE(error_of(dir.write("d.pcd", pcd_header("binary_compressed", 4200000000u / 26) + claim + "abcd"))
+                .find("damaged"),
+            std::string::npos);
+  EXPECT_NE(error_of(dir.write("e.ply",
+                               "ply\nformat binary_little_endian 1.0\nelement vertex " + huge +
+                                   "\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc"))
+                .find("truncated"),
             std::string::npos);
 }
 
@@ -253,10 +273,15 @@ TEST(ScanFile, WhatIsNoCloudSaysWhy) {
   EXPECT_NE(error_of("/nowhere/x.pcd").find("cannot be opened"), std::string::npos);
   EXPECT_NE(error_of(dir.write("x.txt", "")).find("must be a .pcd"), std::string::npos);
   EXPECT_NE(error_of(dir.write("x.pcd", "hello\n")).find("no line DATA"), std::string::npos);
-  EXPECT_NE(error_of(dir.write("y.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nPOINTS 0\nDATA ascii\n")).find("no field z"), std::string::npos);
-  EXPECT_NE(error_of(dir.write("z.pcd", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 0\nDATA ascii\n")).find("as many entries"), std::string::npos);
+  EXPECT_NE(error_of(dir.write("y.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nPOINTS 0\nDATA ascii\n"))
+                .find("no field z"),
+            std::string::npos);
+  EXPECT_NE(error_of(dir.write("z.pcd", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 0\nDATA ascii\n"))
+                .find("as many entries"),
+            std::string::npos);
   EXPECT_NE(error_of(dir.write("w.pcd", pcd_header("zipped", 3))).find("DATA must be"), std::string::npos);
-  EXPECT_NE(error_of(dir.write("v.pcd", pcd_header("ascii", 1) + "1 2 three 4 5 6\n")).find("line 12"), std::string::npos);
+  EXPECT_NE(error_of(dir.write("v.pcd", pcd_header("ascii", 1) + "1 2 three 4 5 6\n")).find("line 12"),
+            std::string::npos);
   EXPECT_NE(error_of(dir.write("v.bin", "12345")).find("no multiple"), std::string::npos);
   std::filesystem::create_directory(dir.path() / "f.pcd");
   EXPECT_NE(error_of((dir.path() / "f.pcd").string()).find("is a folder"), std::string::npos);

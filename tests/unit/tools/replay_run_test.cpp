@@ -55,8 +55,10 @@ std::string scan_at(double end_s, core::Random& noise) {
     for (int j = 0; j < kColumns; ++j) {
       const double before_s = kPeriod_s * (1 - (j + 1.0) / kColumns);
       const Pose T = pose_at(end_s - before_s);
-      const double azimuth = std::numbers::pi * (1 - 2 * (j + 0.5) / kColumns), elevation = 0.35 - 0.7 * ring / (kRings - 1);
-      const Vec3 d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const double azimuth = std::numbers::pi * (1 - 2 * (j + 0.5) / kColumns),
+                   elevation = 0.35 - 0.7 * ring / (kRings - 1);
+      const Vec3 d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                   std::sin(elevation));
       const Vec3 p = d * (range_in_room(T.position, T.orientation * d) + 0.01 * noise.normal());
       for (int a = 0; a < 3; ++a) put(bytes, static_cast<float>(p[a]));
       put(bytes, static_cast<float>(kPeriod_s - before_s));
@@ -69,7 +71,8 @@ std::string name_of(int i) { return "scan" + std::to_string(i) + ".bin"; }
 
 void write_recording(const Folder& dir, bool with_imu) {
   std::string info =
-      "bin { fields \"x y z t ring\" }\nstamp { from file file stamps.txt of start }\nlidar { max_range \"50 m\" }\n";
+      "bin { fields \"x y z t ring\" }\nstamp { from file file stamps.txt of start }\nlidar { max_range \"50 "
+      "m\" }\n";
   core::Random noise(1);
   std::string stamps, imu;
   for (int i = 0; i < kScans; ++i) {
@@ -82,10 +85,13 @@ void write_recording(const Folder& dir, bool with_imu) {
   constexpr double h = 1e-3;
   for (double t = -0.5; t < kScans * kPeriod_s + 0.1; t += 0.005) {
     const Pose a = pose_at(t - h), b = pose_at(t), c = pose_at(t + h);
-    const Vec3 force = b.orientation.conjugate() * ((c.position - 2 * b.position + a.position) / (h * h) + Vec3(0, 0, 9.81));
-    const double rate = core::wrap_angle(core::heading_of(c.orientation) - core::heading_of(a.orientation)) / (2 * h);
+    const Vec3 force =
+        b.orientation.conjugate() * ((c.position - 2 * b.position + a.position) / (h * h) + Vec3(0, 0, 9.81));
+    const double rate =
+        core::wrap_angle(core::heading_of(c.orientation) - core::heading_of(a.orientation)) / (2 * h);
     char line[200];
-    std::snprintf(line, sizeof line, "%.4f %.6f %.6f %.6f 0 0 %.6f\n", kBegin_s + t, force.x(), force.y(), force.z(), rate);
+    std::snprintf(line, sizeof line, "%.4f %.6f %.6f %.6f 0 0 %.6f\n", kBegin_s + t, force.x(), force.y(),
+                  force.z(), rate);
     imu += line;
   }
   dir.write("imu.txt", imu);
@@ -138,8 +144,8 @@ TEST(Replay, MapsTheRoom) {
   map.for_each_known([&](const core::CellKey& k, core::Cell c, float) {
     if (c != core::Cell::occupied) return;
     const Vec3 p = map.center_of(k);
-    const double walls = std::min({std::abs(p.x() + 6), std::abs(p.x() - 8), std::abs(p.y() + 4), std::abs(p.y() - 5),
-                                   std::abs(p.z() + 1.5), std::abs(p.z() - 3.5)});
+    const double walls = std::min({std::abs(p.x() + 6), std::abs(p.x() - 8), std::abs(p.y() + 4),
+                                   std::abs(p.y() - 5), std::abs(p.z() + 1.5), std::abs(p.z() - 3.5)});
     const double pillars = std::min((p - Vec3(3.5, 2.5, p.z())).norm(), (p - Vec3(-2.6, -2.6, p.z())).norm());
     off += walls > 0.35 && pillars > 0.9;
   });
@@ -152,8 +158,11 @@ TEST(Replay, GivesTheSameBytesEveryTime) {
   write_recording(dir, true);
   replay(dir, dir.path() / "a");
   replay(dir, dir.path() / "b");
-  for (const char* file : {"trajectory.tum", "map.bt", "map.ot", "map.ply", "map_growth.bin", "events.jsonl", "telemetry.csv"})
-    EXPECT_EQ(replay::file_bytes((dir.path() / "a" / file).string()), replay::file_bytes((dir.path() / "b" / file).string())) << file;
+  for (const char* file :
+       {"trajectory.tum", "map.bt", "map.ot", "map.ply", "map_growth.bin", "events.jsonl", "telemetry.csv"})
+    EXPECT_EQ(replay::file_bytes((dir.path() / "a" / file).string()),
+              replay::file_bytes((dir.path() / "b" / file).string()))
+        << file;
 }
 
 TEST(Replay, ADamagedScanInTheMiddleEndsItWithWhatCameBefore) {
