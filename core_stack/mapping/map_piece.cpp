@@ -51,7 +51,6 @@ std::vector<Vec3f> thinned_out(const std::vector<Vec3f>& points, double cell_m) 
   struct Entry {
     PackedCell cell;
     std::uint32_t index;
-    auto operator<=>(const Entry&) const = default;
   };
   std::vector<Entry> entries;
   entries.reserve(points.size());
@@ -60,7 +59,9 @@ std::vector<Vec3f> thinned_out(const std::vector<Vec3f>& points, double cell_m) 
     if (!points[i].allFinite() || k.cwiseAbs().maxCoeff() >= kPackedLimit) continue;
     entries.push_back({pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
   }
-  std::sort(entries.begin(), entries.end());
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.index < b.index;
+  });
   std::vector<Vec3f> thin;
   for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
     Vec3 sum = Vec3::Zero();

@@ -53,7 +53,9 @@ std::string text(const char* format, auto... values) {
 std::string objection(const MapRegistration& r, double cell_m, bool free_known,
                       const MapRegistrationOptions& options) {
   const RegistrationLimits& limits = options.limits;
-  const double min_overlap = free_known ? limits.min_overlap : limits.min_overlap_blind;
+  // Two more degrees of freedom fit more by chance.
+  const double needed = options.coarse.gravity_known ? 1.0 : 1.5;
+  const double min_overlap = needed * (free_known ? limits.min_overlap : limits.min_overlap_blind);
   if (r.overlay.overlap() < min_overlap)
     return text("only %.0f %% of the rock coincides; at least %.0f %% must%s", 100 * r.overlay.overlap(),
                 100 * min_overlap, free_known ? "" : " where no free space is known");

@@ -17,14 +17,14 @@
 namespace karst::core {
 
 struct RegistrationLimits {
-  double min_overlap = 0.12;        // of the rock of the map that shares more
-  double min_overlap_blind = 0.35;  // where no free space is known
-  double min_shared_m2 = 25;        // rock that coincides
-  double min_agreement = 0.95;      // of the rock the other map can judge
-  double max_residual_cells = 0.75; // in cells of the coarser map
-  double min_hold = 0.015;          // of the least held direction
-  double max_rival = 0.75;          // score of the next best pose over the best's
-  double max_tilt_rad = 0.052;      // with gravity known
+  double min_overlap = 0.17;  // of the rock of the map that shares more; half as much again without gravity
+  double min_overlap_blind = 0.35;   // where no free space is known
+  double min_shared_m2 = 25;         // rock that coincides
+  double min_agreement = 0.985;      // of the rock the other map can judge
+  double max_residual_cells = 0.75;  // in cells of the coarser map
+  double min_hold = 0.015;           // of the least held direction
+  double max_rival = 0.75;           // score of the next best pose over the best's
+  double max_tilt_rad = 0.026;       // with gravity known
 };
 void describe(OptionTable& t, RegistrationLimits& o);
 
