@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "sdk/evaluation/trajectory_error.h"
+
 namespace karst::evaluation {
 namespace {
 
@@ -94,7 +96,8 @@ std::optional<double> min_clearance_m(const RunRecord& run) {
 /// Touches the simulator saw, or, without its record, the one that ended the flight, if one did.
 std::optional<std::int64_t> contacts(const RunRecord& run) {
   const nlohmann::json* outcome = run.last_event("outcome");
-  if (run.truth_events.empty() && !outcome) return std::nullopt;
+  const bool nobody_watched = !outcome || event_text(*outcome, "outcome") == "replayed";
+  if (run.truth_events.empty() && nobody_watched) return std::nullopt;
   std::int64_t count = 0;
   for (const auto& e : run.truth_events) count += event_text(e, "event") == "contact";
   const bool ended_so = outcome && event_text(*outcome, "outcome") == "contact";
@@ -119,20 +122,11 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
 }
 
 void estimate_errors(const RunRecord& run, double begin_s, double end_s, FlightFigures& f) {
-  if (run.truth.empty()) return;
-  RootMeanSquare heading;
-  std::optional<double> last_error_m;
-  for (const StampedPose& e : run.estimate) {
-    if (e.t_s < std::max(begin_s, run.truth.front().t_s) || e.t_s > std::min(end_s, run.truth.back().t_s))
-      continue;
-    const core::Pose truth = pose_at(run.truth, e.t_s);
-    heading.add(
-        core::wrap_angle(core::heading_of(e.T_world_body.orientation) - core::heading_of(truth.orientation)));
-    last_error_m = (e.T_world_body.position - truth.position).norm();
-  }
-  f.heading_error_rad = heading.value();
-  if (last_error_m && f.path_length_m && *f.path_length_m > 0)
-    f.drift_percent = 100.0 * *last_error_m / *f.path_length_m;
+  const std::vector<PosePair> pairs = paired_with_truth(run.truth, run.estimate, begin_s, end_s);
+  f.heading_error_rad = heading_rms_rad(pairs);
+  const std::optional<double> error_m = end_error_m(pairs);
+  if (error_m && f.path_length_m && *f.path_length_m > 0)
+    f.drift_percent = 100.0 * *error_m / *f.path_length_m;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap_io.h"
 #include "sdk/evaluation/flight_figures.h"
+#include "sdk/evaluation/map_error.h"
 #include "sdk/evaluation/whole_file.h"
 
 namespace karst::evaluation {
@@ -81,32 +82,18 @@ std::optional<double> time_of_coverage(const RunRecord& run, const Volume& volum
   return std::nullopt;
 }
 
-struct MeanAndDeviation {
-  std::optional<double> mean, deviation;
-};
-
-MeanAndDeviation map_error(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
+ErrorStatistics map_error(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
   if (!truth.distance_to_rock) return {};
-  std::vector<double> errors;
-  const auto measure = [&](const Vec3& centre) {
-    if (const double d = truth.distance_to_rock(centre); std::isfinite(d)) errors.push_back(std::abs(d));
-  };
+  std::vector<Vec3> centres;
   const double cell = run.map_resolution_m();
   if (map) {
-    map->for_each_known([&](const CellKey& k, Cell c, float) {
-      if (c == Cell::occupied) measure(map->center_of(k));
-    });
+    centres = occupied_centres(*map);
   } else {
     for (const OccupiedSpan& s : run.growth)
       if (s.until_ms == OccupiedSpan::kNever)
-        measure(cell * (Vec3(s.key.x, s.key.y, s.key.z) + Vec3::Constant(0.5)));
+        centres.push_back(cell * (Vec3(s.key.x, s.key.y, s.key.z) + Vec3::Constant(0.5)));
   }
-  if (errors.empty()) return {};
-  const double n = static_cast<double>(errors.size());
-  double sum = 0, squares = 0;
-  for (const double e : errors) sum += e;
-  for (const double e : errors) squares += (e - sum / n) * (e - sum / n);
-  return {sum / n, std::sqrt(squares / n)};
+  return statistics_of(map_errors(centres, truth.distance_to_rock));
 }
 
 }  // namespace
@@ -117,7 +104,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   const std::string cave = first_setting(run, {"cave.file", "cave"});
   const std::string seed = first_setting(run, {"seed", "mission.seed"});
   const Volume volume = volume_of(run, map, truth);
-  const MeanAndDeviation error = map_error(run, map, truth);
+  const ErrorStatistics error = map_error(run, map, truth);
   const FlightFigures f = flight_figures(run);
   const bool has_events = !run.events.empty();
 
@@ -149,8 +136,8 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["min_clearance_m"] = value(f.min_clearance_m);
   m["landing_error_m"] = value(outcome == "landed" ? f.landing_error_m : std::nullopt);
   m["battery_left"] = value(f.battery_left);
-  m["map_error_mean_m"] = value(error.mean);
-  m["map_error_std_m"] = value(error.deviation);
+  m["map_error_mean_m"] = value(error.count ? std::optional(error.mean) : std::nullopt);
+  m["map_error_std_m"] = value(error.count ? std::optional(error.std) : std::nullopt);
   m["drift_percent"] = value(f.drift_percent);
   m["heading_error_rad"] = value(f.heading_error_rad);
   m["tracking_rms_m"] = value(f.tracking_rms_m);

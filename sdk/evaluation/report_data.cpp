@@ -90,6 +90,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   for (const Setting& s : run.settings) d["settings"].push_back({s.key, s.value});
   d["timing"] = run.timing;
   d["curves"] = curves(run);
+  d["errors"] = run.evaluation;
   d["goals"] = goal_spans(run);
   d["events"] = event_rows(run);
   d["cloud"] = scene_cloud(run, duration_s, problems);

@@ -149,11 +149,16 @@ RunRecord read_run(const fs::path& run_dir) {
   run.truth_events = read_events(run_dir / "truth_events.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);
   run.truth = read_tum(run_dir / "ground_truth.tum", problems);
+  // A replay keeps its recording's own time there; all else counts from the recording's begin.
+  const double origin_s = run.number("replay.time_origin").value_or(0);
+  for (auto* poses : {&run.estimate, &run.truth})
+    for (StampedPose& p : *poses) p.t_s -= origin_s;
   run.telemetry = read_table(run_dir / "telemetry.csv", {"phase"}, problems);
   run.truth_table = read_table(run_dir / "truth.csv", {}, problems);
   run.decisions = read_table(run_dir / "decisions.csv", {}, problems);
   run.growth = read_map_growth(run_dir / "map_growth.bin", problems);
   run.timing = read_json(run_dir / "timing.json", problems);
+  run.evaluation = read_json(run_dir / "evaluation.json", problems);
   run.phases = find_phases(run);
   return run;
 }

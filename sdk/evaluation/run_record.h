@@ -31,6 +31,7 @@ struct RunRecord {
   Table telemetry, truth_table, decisions;
   std::vector<OccupiedSpan> growth;
   nlohmann::json timing;      // null if absent
+  nlohmann::json evaluation;  // null if absent
   std::vector<Phase> phases;  // consecutive; "done" is where the last one ends
   std::vector<std::string> problems;
 

@@ -4,8 +4,11 @@
 
 #include "core_stack/common/options.h"
 #include "sdk/tools/cave_command.h"
+#include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/fly_command.h"
+#include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
+#include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/table_command.h"
 
@@ -39,7 +42,11 @@ int main(int argc, char** argv) {
       "karst: fly exploration policies through caves.\n\n"
       "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
       "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
-      "  karst policy list                                              see what can be flown",
+      "  karst policy list                                              see what can be flown\n"
+      "  karst replay scans --out runs/replayed                         localize and map from recorded "
+      "scans\n"
+      "  karst evaluate runs/demo                                       errors of trajectory and map\n"
+      "  karst map merge runs/a runs/b --out maps/both                  maps of several flights in one",
       "karst"};
   app.set_version_flag("--version", KARST_VERSION);
   app.require_subcommand(1);
@@ -48,6 +55,9 @@ int main(int argc, char** argv) {
   karst::tools::add_cave_command(app);
   karst::tools::add_report_command(app);
   karst::tools::add_table_command(app);
+  karst::tools::add_replay_command(app);
+  karst::tools::add_evaluate_command(app);
+  karst::tools::add_map_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);

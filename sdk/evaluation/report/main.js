@@ -3,6 +3,7 @@ startTables();
 startTimeline();
 startMomentPanel();
 startPlots();
+startErrors();
 const caveView = startCaveView();
 moment.listeners.push((t) => caveView.setTime(t));
 const asked = new URLSearchParams(location.hash.slice(1));  // report.html#t=63.5&view=top&theme=dark

@@ -1,9 +1,12 @@
 // Header, events, metrics, timing and settings.
 
+/** A flight ends at its start; a replay with its recording. */
+function endedWell(outcome) { return outcome === "landed" || outcome === "replayed"; }
+
 function isTrouble(e) {
   return e.kind === "safety" || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
     (e.kind === "goal" && /rejected|unreachable|abandoned/.test(e.state)) ||
-    (e.kind === "outcome" && e.outcome !== "landed");
+    (e.kind === "outcome" && !endedWell(e.outcome));
 }
 
 /** What an event says, in a line. */
@@ -32,8 +35,8 @@ function showHeader() {
   const title = [m.policy || "unknown policy", m.cave || "unknown cave", m.seed === null ? "" : "seed " + m.seed].filter(Boolean);
   element("title").textContent = title.join(" · ");
   document.title = "karst: " + title.join(", ");
-  element("outcome").textContent = (m.outcome === "landed" ? "✓ " : "✕ ") + m.outcome;
-  element("outcome").className = "badge " + (m.outcome === "landed" ? "landed" : "");
+  element("outcome").textContent = (endedWell(m.outcome) ? "✓ " : "✕ ") + m.outcome;
+  element("outcome").className = "badge " + (endedWell(m.outcome) ? "landed" : "");
   element("reason").textContent = m.reason || "";
   const share = (v) => typeof v === "number" ? [numberText(100 * v, 3), "%"] : ["–", ""];
   const unit = (v, u, digits) => typeof v === "number" ? [numberText(v, digits), u] : ["–", ""];

@@ -61,6 +61,17 @@ TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
               {"sdk/", "policies/", "core_stack/mapping", "core_stack/planning", "core_stack/mission"});
 }
 
+// A file that includes PCL takes a quarter of a minute and a gigabyte to compile.
+TEST(IncludeDirection, FewSourcesAndNoHeaderIncludePcl) {
+  std::set<std::string> files;
+  for (const char* folder : {"core_stack", "plugins", "sdk", "policies", "tests"})
+    for (const Include& i : includes_below(folder))
+      if (i.target.starts_with("pcl/")) files.insert(i.file);
+  EXPECT_LE(files.size(), 3u);
+  EXPECT_FALSE(files.empty()) << "nothing is looked at";
+  for (const std::string& f : files) EXPECT_TRUE(f.ends_with(".cpp")) << f;
+}
+
 TEST(IncludeDirection, CoreModulesUseOnlyThoseAboveThem) {
   const std::vector<std::string> order = {"common",   "vehicle", "perception", "localization", "mapping",
                                           "planning", "control", "homing",     "mission"};

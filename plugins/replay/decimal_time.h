@@ -1,0 +1,23 @@
+// Times as text, read without rounding: seconds since 1970 have more digits than a double.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core_stack/common/time.h"
+
+namespace karst::replay {
+
+/// Nanoseconds a unit has: "s", "ms", "us" or "ns".
+constexpr core::TimeNs nanoseconds_of(std::string_view unit) {
+  return unit == "s" ? 1'000'000'000 : unit == "ms" ? 1'000'000 : unit == "us" ? 1000 : 1;
+}
+
+/// "1647090478.710633039" in `unit` to nanoseconds, further digits cut off; also "1.6e9", which may round.
+/// None if the text is no number, or one that 64 bits of nanoseconds do not hold.
+std::optional<core::TimeNs> parse_time(std::string_view text, core::TimeNs unit_ns);
+
+/// "1647090478.710633039": seconds with nine decimals.
+std::string decimal_seconds(core::TimeNs t);
+
+}  // namespace karst::replay

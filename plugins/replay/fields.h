@@ -1,0 +1,63 @@
+// Which numbers of a record are a point's coordinates, intensity, time and ring, and how they are stored.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plugins/replay/scan.h"
+
+namespace karst::replay {
+
+enum class ValueType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+std::size_t size_of(ValueType type);
+inline bool is_whole(ValueType type) { return type < ValueType::float32; }
+/// "float32", "uint16" ...; also PLY's "float", "ushort" ...; none if unknown.
+std::optional<ValueType> type_named(const std::string& name);
+
+enum class Role { none, x, y, z, intensity, time, ring };
+
+/// Names of a file's fields where they are not the usual ones; "" for the usual ones.
+struct FieldNames {
+  std::string intensity, time, ring;
+};
+/// Usual names: x y z; intensity, i, reflectivity; t, time, timestamp, ...; ring, channel, laser (any case,
+/// also with CloudCompare's "scalar_" before them).
+Role role_of(const std::string& name, const FieldNames& names);
+
+/// Where a field of record i lies: at `offset + i * stride`.
+struct Field {
+  Role role = Role::none;
+  ValueType type = ValueType::float32;
+  std::size_t offset = 0, stride = 0;
+};
+
+/// The role each field has, each role but `none` once: the first field of that role.
+/// Throws InputError if x, y or z is missing.
+void check_roles(std::vector<Role>& roles, const std::string& file, const std::string& place);
+
+/// Collects points one by one; leaves out those that are not finite.
+class ScanBuilder {
+ public:
+  /// `fields` in any order, roles as checked.
+  explicit ScanBuilder(std::span<const Field> fields);
+  void set(Role role, double value);
+  void end_point();
+  Scan take() { return std::move(scan_); }
+
+ private:
+  Scan scan_;
+  ScanPoint point_;
+  bool finite_ = true;
+};
+
+/// The number stored at an address.
+double value_at(const char* at, ValueType type, bool swap_bytes);
+
+/// Decodes `count` records; the caller has made sure that all of them lie within `bytes`.
+Scan decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields,
+            bool swap_bytes);
+
+}  // namespace karst::replay

@@ -1,0 +1,275 @@
+#include "plugins/replay/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core_stack/common/error.h"
+#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/rings.h"
+#include "plugins/replay/text_numbers.h"
+
+namespace karst::replay {
+namespace {
+
+using core::InputError;
+using core::TimeNs;
+namespace fs = std::filesystem;
+
+/// What `*` stands for if `name` fits a pattern with one `*` at most.
+std::optional<std::string> match(const std::string& pattern, const std::string& name) {
+  const auto star = pattern.find('*');
+  if (star == std::string::npos) return name == pattern ? std::optional(name) : std::nullopt;
+  const std::string head = pattern.substr(0, star), tail = pattern.substr(star + 1);
+  if (name.size() < head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail))
+    return std::nullopt;
+  return name.substr(head.size(), name.size() - head.size() - tail.size());
+}
+
+/// Names in the order people expect: 2 before 10.
+bool before(const std::string& a, const std::string& b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!digit(a[i]) || !digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    const auto number = [&](const std::string& s, std::size_t& at) {
+      while (at + 1 < s.size() && s[at] == '0' && digit(s[at + 1])) ++at;
+      const std::size_t begin = at;
+      while (at < s.size() && digit(s[at])) ++at;
+      return std::string_view(s).substr(begin, at - begin);
+    };
+    const std::string_view m = number(a, i), n = number(b, j);
+    if (m.size() != n.size()) return m.size() < n.size();
+    if (m != n) return m < n;
+  }
+  return a.size() - i < b.size() - j || (a.size() - i == b.size() - j && a < b);
+}
+
+std::vector<RecordedFile> find_files(const Recording& r) {
+  const std::string place = r.info_file.empty() ? r.folder.string() : r.info_file;
+  std::vector<std::pair<std::string, std::string>> found;  // name, what * stands for
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(r.folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const auto part = match(r.info.scans, name);
+    if (part && is_scan_file(name) && entry.is_regular_file()) found.emplace_back(name, *part);
+  }
+  if (error) throw InputError(r.folder.string(), "", "cannot be read: " + error.message());
+  if (found.empty())
+    throw InputError(r.folder.string(), "",
+                     "holds no scan: no .pcd, .ply or .bin file fits scans \"" + r.info.scans + "\"");
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return before(a.first, b.first); });
+  std::vector<RecordedFile> files;
+  for (const auto& [name, part] : found) {
+    RecordedFile f{r.folder / name, {}, 0};
+    if (std::string pattern = r.info.point_times_files; !pattern.empty()) {
+      const auto star = pattern.find('*');
+      if (star != std::string::npos) pattern.replace(star, 1, part);
+      f.point_times = r.folder / pattern;
+      if (!fs::is_regular_file(f.point_times))
+        throw InputError(place, "point_times.files", "no file " + pattern + " for the scan " + name);
+    }
+    files.push_back(std::move(f));
+  }
+  return files;
+}
+
+/// The number a file's name ends with: "scan_1647090478.71.pcd" has 1647090478.71.
+std::string number_in(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto last = stem.find_last_of("0123456789");
+  if (last == std::string::npos) return "";
+  auto first = stem.find_last_not_of("0123456789.", last);
+  first = stem.find_first_of("0123456789", first == std::string::npos ? 0 : first);
+  return stem.substr(first, last + 1 - first);
+}
+
+void stamp_from_file(Recording& r) {
+  const fs::path file = r.folder / r.info.stamp_file;
+  const std::string text = file_bytes(file.string());
+  TextReader reader(text);
+  std::size_t count = 0;
+  for (std::string_view line; reader.line(line);) {
+    const std::string_view word = next_word(line);
+    if (word.empty() || word.starts_with('#')) continue;
+    const auto stamp = parse_time(word, nanoseconds_of(r.info.stamp_unit));
+    if (!stamp)
+      throw InputError(file.string(), "line " + std::to_string(reader.number()),
+                       "expected a stamp, got \"" + std::string(word) + "\"");
+    if (count < r.files.size()) r.files[count].stamp = *stamp;
+    ++count;
+  }
+  if (count != r.files.size())
+    throw InputError(
+        file.string(), "",
+        "holds " + std::to_string(count) + " stamps for " + std::to_string(r.files.size()) + " scans");
+}
+
+void stamp(Recording& r) {
+  if (r.info.stamp_from == "file") stamp_from_file(r);
+  for (std::size_t i = 0; i < r.files.size(); ++i) {
+    RecordedFile& f = r.files[i];
+    if (r.info.stamp_from == "rate")
+      f.stamp = core::from_seconds(static_cast<double>(i) / r.info.stamp_rate_hz);
+    if (r.info.stamp_from == "names") {
+      const auto t = parse_time(number_in(f.path), nanoseconds_of(r.info.stamp_unit));
+      if (!t) throw InputError(f.path.string(), "", "its name ends with no number that is a stamp");
+      f.stamp = *t;
+    }
+    if (i > 0 && f.stamp <= r.files[i - 1].stamp)
+      throw InputError(f.path.string(), "",
+                       "its stamp " + decimal_seconds(f.stamp) +
+                           " s is not after that of the scan before it, " +
+                           decimal_seconds(r.files[i - 1].stamp) + " s");
+  }
+}
+
+/// Each point's time from a file of its own.
+void take_point_times(const Recording& r, const RecordedFile& f, std::size_t declared, Scan& scan) {
+  const std::string bytes = file_bytes(f.point_times.string());
+  const ValueType type = r.layout.point_times_type;
+  if (bytes.size() != declared * size_of(type) || scan.dropped > 0)
+    throw InputError(f.point_times.string(), "byte " + std::to_string(bytes.size()),
+                     "holds " + std::to_string(bytes.size() / size_of(type)) + " times for " +
+                         std::to_string(declared) + " points" +
+                         (scan.dropped > 0 ? ", some of which are not finite" : ""));
+  for (std::size_t i = 0; i < scan.points.size(); ++i)
+    scan.points[i].time = value_at(bytes.data() + i * size_of(type), type, false);
+  scan.has_time = true;
+  scan.time_is_whole = is_whole(type);
+}
+
+/// Seconds since the sweep's own zero, from the angle turned since the first point.
+void times_by_azimuth(const Recording& r, Scan& scan) {
+  const double sign = r.info.time_direction == "clockwise" ? -1 : 1;
+  const auto azimuth = [](const ScanPoint& p) { return std::atan2(p.position.y(), p.position.x()); };
+  const double first = scan.points.empty() ? 0 : azimuth(scan.points.front());
+  for (ScanPoint& p : scan.points) {
+    const double turned = core::wrap_angle(sign * (azimuth(p) - first) - std::numbers::pi) + std::numbers::pi;
+    p.time = r.info.period_s * turned / (2 * std::numbers::pi);
+  }
+  scan.has_time = true;
+}
+
+/// Times become seconds before the end of the sweep; returns the end's stamp.
+TimeNs settle_times(const Recording& r, const RecordedFile& f, bool by_azimuth, Scan& scan) {
+  const bool known = scan.has_time && !r.info.compensated && !scan.points.empty();
+  if (!known) {
+    for (ScanPoint& p : scan.points) p.time = 0;
+    return f.stamp;
+  }
+  const std::string unit = by_azimuth                   ? "s"
+                           : r.info.time_unit != "auto" ? r.info.time_unit
+                           : scan.time_is_whole         ? "ns"
+                                                        : "s";
+  const double unit_s = static_cast<double>(nanoseconds_of(unit)) * 1e-9;
+  const auto [least, greatest] = std::minmax_element(
+      scan.points.begin(), scan.points.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  const double last = greatest->time, length_s = (last - least->time) * unit_s;
+  if (length_s > 10)
+    throw InputError(
+        f.path.string(), "",
+        "its points' times spread over " + std::to_string(length_s) + " s: time.unit or the field is wrong");
+  const std::string of = by_azimuth ? "start" : r.info.time_of;
+  TimeNs end = f.stamp;
+  if (of == "absolute") {
+    end = static_cast<TimeNs>(std::llround(last * unit_s * 1e9));
+  } else if (r.info.stamp_of == "start") {
+    end += core::from_seconds(of == "start" ? last * unit_s : length_s);
+  }
+  // With the stamp at the end, times from the start say by how much each point is before the last.
+  for (ScanPoint& p : scan.points) p.time = (p.time - last) * unit_s;
+  return end;
+}
+
+void order_points(Scan& scan) {
+  const bool by_time =
+      std::any_of(scan.points.begin(), scan.points.end(), [](const auto& p) { return p.time != 0; });
+  struct Key {
+    std::uint16_t ring;
+    double within;
+    std::uint32_t index;
+  };
+  std::vector<Key> keys;
+  keys.reserve(scan.points.size());
+  for (std::uint32_t i = 0; i < scan.points.size(); ++i) {
+    const ScanPoint& p = scan.points[i];
+    keys.push_back({p.ring, by_time ? p.time : std::atan2(p.position.y(), p.position.x()), i});
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return std::tie(a.ring, a.within, a.index) < std::tie(b.ring, b.within, b.index);
+  });
+  std::vector<ScanPoint> sorted;
+  sorted.reserve(keys.size());
+  for (const Key& k : keys) sorted.push_back(scan.points[k.index]);
+  scan.points = std::move(sorted);
+}
+
+}  // namespace
+
+Recording open_recording(const fs::path& folder, const std::string& info_file) {
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "", "no such folder of scans");
+  Recording r;
+  r.folder = folder;
+  r.info_file = info_file;
+  if (info_file.empty() && fs::exists(folder / "recording.info"))
+    r.info_file = (folder / "recording.info").string();
+  if (!r.info_file.empty()) r.info = read_recording_info(r.info_file);
+  r.layout = layout_of(r.info, r.info_file);
+  r.files = find_files(r);
+  stamp(r);
+  return r;
+}
+
+core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
+  const RecordedFile& f = r.files.at(i);
+  Scan scan = read_scan(f.path.string(), r.info.fields, r.layout.bin);
+  const std::size_t declared = scan.points.size() + scan.dropped;
+  if (!f.point_times.empty()) take_point_times(r, f, declared, scan);
+  const bool by_azimuth = !scan.has_time && !r.info.compensated && r.info.time_direction != "none";
+  if (by_azimuth) times_by_azimuth(r, scan);
+  if (r.info.rings_by == "field" && !scan.has_ring)
+    throw InputError(f.path.string(), "", "has no field with rings, which rings.by asks for");
+  if (r.info.rings_by == "order") {
+    rings_by_order(scan);  // while all points are there
+  }
+  std::erase_if(scan.points, [&](const ScanPoint& p) {
+    const double range = p.position.norm();
+    return range < r.info.min_range_m || range > r.info.max_range_m || range == 0;
+  });
+  if (r.info.rings_by == "elevation" || (r.info.rings_by == "auto" && !scan.has_ring)) {
+    if (r.info.rings == 0)
+      throw InputError(
+          f.path.string(), "",
+          "has no field with rings: say in recording.info how many rings the sensor has "
+          "(rings.count, rings.lowest, rings.highest), or that they follow each other (rings.by order)");
+    rings_by_elevation(scan, r.info);
+  }
+  if (notes) {
+    notes->dropped = declared - scan.points.size();
+    notes->without_times = !scan.has_time && !r.info.compensated;
+  }
+
+  core::Sweep sweep;
+  sweep.T_body_lidar = r.layout.T_body_lidar;
+  sweep.compensated = r.info.compensated;
+  sweep.stamp = settle_times(r, f, by_azimuth, scan);
+  order_points(scan);
+  sweep.points.reserve(scan.points.size());
+  for (const ScanPoint& p : scan.points)
+    sweep.points.push_back({p.position, static_cast<float>(p.time), p.ring, p.intensity});
+  return sweep;
+}
+
+std::optional<ImuFile> open_imu(const Recording& r) {
+  if (r.info.imu_file.empty()) return std::nullopt;
+  return ImuFile((r.folder / r.info.imu_file).string(), r.info.imu_columns, nanoseconds_of(r.info.imu_unit),
+                 r.layout.R_body_imu);
+}
+
+}  // namespace karst::replay

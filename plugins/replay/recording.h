@@ -1,0 +1,43 @@
+// A folder of recorded scans: which files, stamped when, and each as a sweep.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core_stack/localization/sweep.h"
+#include "plugins/replay/imu_file.h"
+#include "plugins/replay/recording_info.h"
+
+namespace karst::replay {
+
+struct RecordedFile {
+  std::filesystem::path path, point_times;  // the latter "" if there are none
+  core::TimeNs stamp = 0;                   // the recording's own time
+};
+
+struct Recording {
+  std::filesystem::path folder;
+  std::string info_file;  // "" without one: all is as RecordingInfo's defaults
+  RecordingInfo info;
+  RecordingLayout layout;
+  std::vector<RecordedFile> files;  // stamps strictly increasing
+};
+
+/// Opens a folder, reading `info_file`, or recording.info in it if that is "" and there is one. Throws
+/// InputError: no scan there, stamps that are missing or go back, a key that is wrong.
+Recording open_recording(const std::filesystem::path& folder, const std::string& info_file);
+
+/// What a file gave besides the sweep.
+struct ReadNotes {
+  std::size_t dropped = 0;     // points that are not finite or out of range
+  bool without_times = false;  // not compensated, yet nothing tells when each point was measured
+};
+
+/// Reads one scan: rings assigned, times relative to the end of the sweep, which becomes the stamp; points by
+/// ring, in the order of time within it (of azimuth where there is no time). Throws InputError.
+core::Sweep read_sweep(const Recording& recording, std::size_t i, ReadNotes* notes = nullptr);
+
+/// The recording's IMU, if it has one.
+std::optional<ImuFile> open_imu(const Recording& recording);
+
+}  // namespace karst::replay

@@ -1,0 +1,60 @@
+#include "plugins/replay/scan_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "core_stack/common/error.h"
+
+namespace karst::replay {
+
+using core::InputError;
+
+std::string file_bytes(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(path, "", "is a folder, not a file");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw InputError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  const std::streamoff size = in.tellg();
+  if (size < 0) throw InputError(path, "", "cannot be read");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  in.seekg(0);
+  if (!in.read(bytes.data(), size)) throw InputError(path, "", "cannot be read to its end");
+  return bytes;
+}
+
+bool is_scan_file(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".pcd" || ending == ".ply" || ending == ".bin";
+}
+
+Scan read_scan(const std::string& path, const FieldNames& names, const BinLayout& layout) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == ".pcd") return read_pcd(path, names);
+  if (ending == ".ply") return read_ply(path, names);
+  if (ending == ".bin") return read_bin(path, names, layout);
+  throw InputError(path, "", "a point cloud must be a .pcd, .ply or .bin file");
+}
+
+Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout) {
+  const std::string bytes = file_bytes(path);
+  std::vector<Role> roles;
+  for (const std::string& n : layout.names) roles.push_back(role_of(n, names));
+  check_roles(roles, path, "fields");
+  std::size_t record = 0;
+  std::vector<Field> fields;
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    fields.push_back({roles[i], layout.types[i], record, 0});
+    record += size_of(layout.types[i]);
+  }
+  for (Field& f : fields) f.stride = record;
+  if (bytes.size() % record != 0)
+    throw InputError(path, "byte " + std::to_string(bytes.size() - bytes.size() % record),
+                     "ends within a record: its " + std::to_string(bytes.size()) +
+                         " bytes are no multiple of the " + std::to_string(record) + " of a point");
+  return decode(bytes, bytes.size() / record, fields, false);
+}
+
+}  // namespace karst::replay

@@ -1,0 +1,34 @@
+// Reads point clouds: .pcd (ascii, binary, binary_compressed), .ply (ascii, binary of either byte order) and
+// .bin (bare records). Any damage is an InputError that names file, place and reason.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "plugins/replay/fields.h"
+
+namespace karst::replay {
+
+/// What a bare .bin file does not say of itself.
+struct BinLayout {
+  std::vector<std::string> names = {"x", "y", "z", "intensity"};  // KITTI's
+  std::vector<ValueType> types = {ValueType::float32, ValueType::float32, ValueType::float32,
+                                  ValueType::float32};
+};
+
+/// True for the endings .pcd, .ply and .bin.
+bool is_scan_file(const std::string& path);
+
+Scan read_scan(const std::string& path, const FieldNames& names = {}, const BinLayout& layout = {});
+
+Scan read_pcd(const std::string& path, const FieldNames& names);
+/// The element "vertex"; what comes after it, such as faces, is not looked at.
+Scan read_ply(const std::string& path, const FieldNames& names);
+Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout);
+
+/// Faces a .ply file's header declares: none, and it is a cloud.
+std::size_t ply_faces(const std::string& path);
+
+/// The file's bytes; throws InputError if it is absent, a folder, or cannot be read.
+std::string file_bytes(const std::string& path);
+
+}  // namespace karst::replay

@@ -1,0 +1,29 @@
+// The similarity that brings one set of points closest to another. Umeyama, IEEE PAMI 13(4), 1991.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core_stack/common/geometry.h"
+
+namespace karst::evaluation {
+
+/// to = scale * R * from + t.
+struct Similarity {
+  double scale = 1;
+  core::Pose T_to_from;  // R and t
+
+  core::Vec3 operator*(const core::Vec3& p) const {
+    return T_to_from.position + scale * (T_to_from.orientation * p);
+  }
+  /// Moves a pose of a body: the scale acts on the way it went, not on the body.
+  core::Pose operator*(const core::Pose& T) const {
+    return {*this * T.position, (T_to_from.orientation * T.orientation).normalized()};
+  }
+};
+
+/// Minimizes the sum of |to_i - (scale R from_i + t)|^2. None for fewer than three pairs, or for points on a
+/// line (or in one place), about which the rotation is not determined.
+std::optional<Similarity> umeyama(const std::vector<core::Vec3>& from, const std::vector<core::Vec3>& to,
+                                  bool with_scale);
+
+}  // namespace karst::evaluation

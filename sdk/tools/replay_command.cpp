@@ -1,0 +1,200 @@
+#include "sdk/tools/replay_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/property_tree/info_parser.hpp>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "plugins/replay/decimal_time.h"
+#include "sdk/tools/arguments.h"
+#include "sdk/tools/replay_run.h"
+#include "sdk/tools/report_command.h"
+#include "sdk/tools/run_files.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+namespace pt = boost::property_tree;
+
+struct ReplayArguments {
+  std::string scans, out, info;
+  std::vector<std::string> settings;
+  bool json = false, quiet = false, no_report = false, keys = false;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+void on_signal(int) { interrupted = 1; }
+
+/// One line that renews itself on a terminal, a line every hundred scans elsewhere.
+class ReplayLine {
+ public:
+  ReplayLine(bool quiet, std::size_t scans) : quiet_(quiet), scans_(scans) {}
+  void show(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) const {
+    if (quiet_ || (!terminal_ && scan % 100 != 0)) return;
+    const core::Vec3& p = pose.T_world_body.position;
+    std::fprintf(stderr, "%sscan %zu of %zu  at (%.1f, %.1f, %.1f)  %d features  %.0f m^3 free  %s%s",
+                 terminal_ ? "\r\033[K" : "", scan, scans_, p.x(), p.y(), p.z(), pose.edges + pose.planes,
+                 map.free_volume_m3(), pose.valid ? "" : ("lost: " + pose.problem).c_str(),
+                 terminal_ ? "" : "\n");
+  }
+  void end() const {
+    if (!quiet_ && terminal_) std::fprintf(stderr, "\r\033[K");
+  }
+
+ private:
+  bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1;
+  std::size_t scans_;
+};
+
+core::OptionTable table_of(ReplayOptions& options) {
+  core::OptionTable table;
+  describe(table, options);
+  return table;
+}
+
+ReplayOptions options_of(const ReplayArguments& args) {
+  ReplayOptions options;
+  core::OptionTable table = table_of(options);
+  for (const std::string& s : args.settings) {
+    const auto equals = s.find('=');
+    if (equals == std::string::npos)
+      throw core::InputError("--set", s, "expected key=value, such as map.resolution=\"0.3 m\"");
+    table.set("--set", s.substr(0, equals), s.substr(equals + 1));
+  }
+  return options;
+}
+
+/// All settings as resolved, and what the recording said of itself.
+void write_settings(const fs::path& run_dir, const replay::Recording& recording, ReplayOptions options) {
+  pt::ptree tree = table_of(options).resolved();
+  core::OptionTable declared;
+  replay::RecordingInfo info = recording.info;
+  describe(declared, info);
+  tree.put_child("recording", declared.resolved());
+  const core::TimeNs origin = recording.files.front().stamp - core::from_seconds(recording.info.period_s);
+  tree.put("replay.scans", fs::absolute(recording.folder).lexically_normal().string());
+  tree.put("replay.info", recording.info_file);
+  tree.put("replay.time_origin", replay::decimal_seconds(origin));
+  tree.put("karst.version", KARST_VERSION);
+  const fs::path file = run_dir / "mission.info";
+  try {
+    pt::write_info(file.string(), tree);
+  } catch (const pt::info_parser_error& e) {
+    throw core::InputError(file.string(), "", e.message());
+  }
+}
+
+void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir,
+                   bool report) {
+  std::printf("%zu scans, %zu of them lost", s.scans, s.lost);
+  if (s.lost > 0) std::printf(" (the last: %s)", s.last_problem.c_str());
+  std::printf("\n  points           %zu used, %zu left out (not finite, or out of range)\n", s.points,
+              s.dropped_points);
+  if (s.imu_samples > 0) std::printf("  IMU              %zu samples\n", s.imu_samples);
+  std::printf("  path length      %.2f m\n", s.path_m);
+  if (metrics["explored_volume_m3"].is_number())
+    std::printf("  free volume      %.0f m^3\n", metrics["explored_volume_m3"].get<double>());
+  if (s.degenerate > 0) std::printf("  degenerate       %zu scans left a direction free\n", s.degenerate);
+  if (s.scans > 0)
+    std::printf("  localization     %.1f ms a scan, %.1f ms at most\n",
+                1e3 * s.localization_s / static_cast<double>(s.scans), 1e3 * s.slowest_s);
+  if (s.without_times)
+    std::printf(
+        "note: the points have no times, so motion during a scan was not compensated; see time.direction and "
+        "compensated in docs/replay.md\n");
+  std::printf("Look next at:\n");
+  if (report) std::printf("  %s   the map in 3D; open it in a browser\n", (run_dir / "report.html").c_str());
+  std::printf("  %s   the trajectory (TUM); karst evaluate %s --truth FILE\n",
+              (run_dir / "trajectory.tum").c_str(), run_dir.c_str());
+}
+
+int replay_scans(const ReplayArguments& args) {
+  if (args.keys) {
+    ReplayOptions options;
+    replay::RecordingInfo info;
+    core::OptionTable declared;
+    describe(declared, info);
+    std::printf("Keys for --set:\n%s\nKeys of recording.info:\n%s", table_of(options).help().c_str(),
+                declared.help().c_str());
+    return 0;
+  }
+  if (args.scans.empty() || args.out.empty())
+    throw core::InputError("karst replay", "", "needs SCANS and --out DIR; see karst replay --help");
+  const ReplayOptions options = options_of(args);
+  const replay::Recording recording = replay::open_recording(args.scans, args.info);
+  replay::read_sweep(recording, 0);  // what is wrong with all of them shows before anything is written
+  replay::open_imu(recording);
+
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  const fs::path run_dir = args.out;
+  RunClaim claim(run_dir);
+  std::error_code error;
+  fs::create_directories(run_dir, error);
+  if (error)
+    throw core::InputError(run_dir.string(), "", "the run directory cannot be made: " + error.message());
+  write_settings(run_dir, recording, options);
+  claim.keep();
+
+  ReplaySummary summary;
+  std::string damage;
+  const ReplayLine line(args.quiet || args.json, recording.files.size());
+  try {
+    summary = replay_recording(recording, options, run_dir,
+                               [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
+                                 line.show(scan, pose, map);
+                                 return interrupted == 0;
+                               });
+  } catch (const core::InputError& e) {
+    damage = e.what();
+  }
+  line.end();
+  const nlohmann::json metrics = finish_run(run_dir, "", "", !args.no_report);
+  if (!damage.empty()) {
+    std::fprintf(stderr, "karst: %s\nkarst: what came before it stands in %s\n", damage.c_str(),
+                 run_dir.c_str());
+    return 1;
+  }
+  if (args.json) {
+    std::cout << metrics.dump(2) << std::endl;
+  } else {
+    print_summary(summary, metrics, run_dir, !args.no_report);
+  }
+  return interrupted != 0 || summary.lost == summary.scans ? 2 : 0;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app) {
+  auto args = std::make_shared<ReplayArguments>();
+  CLI::App* command = app.add_subcommand(
+      "replay",
+      "Localize and map from recorded scans (PCD, PLY, bare .bin), with an IMU where there is one.\n\n"
+      "  karst replay scans/kitti00 --info kitti.info --out runs/kitti00\n"
+      "  karst replay flight7 --out runs/flight7 --set map.resolution=\"0.3 m\"\n"
+      "  karst replay --keys\n\n"
+      "SCANS is a folder; a small file recording.info in it, or --info, declares what the files do not say: "
+      "stamps, layout, units, frames, rings (docs/replay.md).\n"
+      "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
+  command->add_option("scans", args->scans, "folder of scans")->check(not_empty());
+  command->add_option("--out,-o", args->out, "run directory")->check(not_empty());
+  command
+      ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
+      ->check(not_empty());
+  command->add_option("--set", args->settings, "key=value; see --keys")->allow_extra_args(false);
+  command->add_flag("--json", args->json, "print metrics.json instead of a summary; no progress");
+  command->add_flag("--quiet", args->quiet, "no progress");
+  command->add_flag("--no-report", args->no_report, "no report.html");
+  command->add_flag("--keys", args->keys, "list every key and end");
+  command->callback([args] {
+    if (const int code = replay_scans(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace karst::tools
