@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -33,6 +34,9 @@ constexpr std::array kColumns = {
     Column{"landing_error_m", "landed off m", "%.2f", 1},
     Column{"battery_left", "battery %", "%.0f", 100},
     Column{"map_error_mean_m", "map error m", "%.3f", 1},
+    Column{"map_error_std_m", "its std m", "%.3f", 1},
+    Column{"drift_percent", "drift %", "%.3f", 1},
+    Column{"heading_error_rad", "heading deg", "%.2f", 180 / std::numbers::pi},
 };
 
 /// A run that is under way, or never flew, has no figures yet; for one that is no run or whose figures are
