@@ -110,6 +110,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     map_.clear(), last_sweep_.clear();
     map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
     out.valid = true;
+    first_is_bent_ = !prediction.covered && !sweep.compensated;
     if (lost) out.problem = "the local map began anew where the vehicle was predicted to be";
     accept(out);
     return out;
@@ -152,6 +153,8 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   out.T_world_body = found.T_world_body;
   out.valid = true;
   accept(out);
+  if (first_is_bent_) map_.clear();  // now the velocity is known: the map begins with this sweep
+  first_is_bent_ = false;
   if (map_.is_new_place(out.T_world_body.position))
     map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
   last_sweep_.clear();

@@ -65,6 +65,7 @@ class Loam {
   Pose T_world_last_;  // of the last valid pose, the start before that
   Twist twist_;        // at the last valid pose
   std::optional<TimeNs> last_stamp_, last_valid_;
+  bool first_is_bent_ = false;  // the map holds one sweep, whose motion was not known
 };
 
 }  // namespace karst::core

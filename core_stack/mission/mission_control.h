@@ -71,7 +71,7 @@ class MissionControl final : public VehicleSink {
 
   // Localization and mapping.
   void note_localization(const LoamPose& pose, bool accepted);
-  void map_scan(std::shared_ptr<const LidarScan> scan, bool filtered);
+  void map_scan(std::shared_ptr<const LidarScan> scan);
   void integrate(std::function<std::vector<Ray>()> make_rays);
   void on_map_update(const std::vector<CellChange>& changes, std::optional<double> blocked_after_m,
                      bool goal_alive);

@@ -17,27 +17,24 @@ constexpr double kSelfMargin_m = 0.05;
 }  // namespace
 
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
-  if (!loam_) return map_scan(std::move(scan), false);
-  struct Sighting {
-    std::shared_ptr<LidarScan> scan;
-    LoamPose pose;
-  };
-  auto located = std::make_shared<Sighting>();
+  if (!loam_) return map_scan(std::move(scan));
+  auto pose = std::make_shared<LoamPose>();
   executive_.job(
       "localization", Lane::localization, kLocalizationBudget,
-      [this, scan, located, history = flight_.estimator().history(),
+      [this, scan, pose, history = flight_.estimator().history(),
        self_m = description_.radius_m + kSelfMargin_m] {
-        located->scan = std::make_shared<LidarScan>(*scan);
-        filter_low_intensity(*located->scan, options_.perception);
-        located->pose = loam_->process(to_sweep(*located->scan, self_m), history);
+        // Only the paper's rule: robust matching copes with the dust that is left. What makes the map clean costs true
+        // returns at edges and bumps, and the drift grows threefold (docs/localization.md).
+        LidarScan filtered = *scan;
+        drop_weakest_returns(filtered, options_.perception.percentile, options_.perception.radius_m);
+        *pose = loam_->process(to_sweep(filtered, self_m), history);
       },
-      [this, located] {
-        const LoamPose& pose = located->pose;
+      [this, scan, pose] {
         const bool accepted =
-            pose.valid && flight_.on_lidar_pose({pose.stamp, pose.T_world_body, pose.covariance});
-        note_localization(pose, accepted);
+            pose->valid && flight_.on_lidar_pose({pose->stamp, pose->T_world_body, pose->covariance});
+        note_localization(*pose, accepted);
         // What is not known where it was seen would spoil the map.
-        if (accepted) map_scan(located->scan, true);
+        if (accepted) map_scan(scan);
       });
 }
 
@@ -62,12 +59,12 @@ void MissionControl::note_localization(const LoamPose& pose, bool accepted) {
                    {"reason", state}});
 }
 
-void MissionControl::map_scan(std::shared_ptr<const LidarScan> scan, bool filtered) {
-  integrate([scan, filtered, history = flight_.estimator().history(), options = options_,
+void MissionControl::map_scan(std::shared_ptr<const LidarScan> scan) {
+  integrate([scan, history = flight_.estimator().history(), options = options_,
              self_m = description_.radius_m + kSelfMargin_m] {
-    LidarScan clean = *scan;
-    if (!filtered) filter_low_intensity(clean, options.perception);
-    return to_rays(clean, history, self_m, options.mission.mapping_range_m);
+    LidarScan filtered = *scan;
+    filter_low_intensity(filtered, options.perception);
+    return to_rays(filtered, history, self_m, options.mission.mapping_range_m);
   });
 }
 

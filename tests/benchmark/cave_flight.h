@@ -37,7 +37,8 @@ class ClearGrid {
       Key farthest = from;
       double most = 0;
       for (const auto& [k, node] : nodes_)
-        if (node.done && node.distance > most && !near(way, place(k), 15.0)) most = node.distance, farthest = k;
+        if (node.done && node.distance > most && !near(way, place(k), 15.0))
+          most = node.distance, farthest = k;
       if (farthest == from) {  // everything was near the way already: back to the origin, or anywhere far
         for (const auto& [k, node] : nodes_)
           if (node.done && node.distance > most) most = node.distance, farthest = k;
@@ -174,13 +175,15 @@ inline Flight fly_along(const std::vector<Vec3>& way, double heading_rad, double
     Eigen::Matrix3d R;
     R << y.cross(z), y, z;
     const double gust = 0.015 * gently(t / 3);
-    const Vec3 shake = gust * Vec3(std::sin(9 * t), std::sin(7.3 * t + 2) - std::sin(2.0), 0.5 * std::sin(5 * t));
+    const Vec3 shake =
+        gust * Vec3(std::sin(9 * t), std::sin(7.3 * t + 2) - std::sin(2.0), 0.5 * std::sin(5 * t));
     const Pose pose{p, (core::Quat(R) * core::exp_so3(shake)).normalized()};
     const auto stamp = core::from_seconds(t);
     if (n > 0) {
       const Vec3 rate = core::log_so3((last.orientation.conjugate() * pose.orientation).normalized()) / kStep;
       const double m = t - kStep / 2;  // the middle of the interval
-      const Vec3 acceleration = (position(m + h) - 2 * position(m) + position(std::max(0.0, m - h))) / (h * h);
+      const Vec3 acceleration =
+          (position(m + h) - 2 * position(m) + position(std::max(0.0, m - h))) / (h * h);
       const core::Quat middle = last.orientation.slerp(0.5, pose.orientation);
       flight.imu.push_back(
           imu.sample(stamp, middle.conjugate() * (acceleration + kG * Vec3::UnitZ()), rate, kStep));

@@ -1,0 +1,48 @@
+#include "core_stack/localization/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/localization/worlds.h"
+
+namespace {
+
+using namespace karst::core;
+using namespace karst::test;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+TEST(Sweep, PointsLieWhereTheModelsBeamsPointAndCarryTheTimeOfTheirColumn) {
+  const auto model = lidar(5, 16);
+  LidarScan scan{kSecond, model, std::vector<float>(80, 7.0f), std::vector<float>(80, 0.25f)};
+  const Sweep sweep = to_sweep(scan, 0.3);
+  ASSERT_EQ(sweep.points.size(), 80u);
+  EXPECT_EQ(sweep.stamp, kSecond);
+  EXPECT_EQ(sweep.T_body_lidar.position, model->T_body_lidar.position);
+  EXPECT_FALSE(sweep.compensated);
+  for (std::size_t i = 0; i < 80; ++i) {
+    const int ring = static_cast<int>(i) / 16, column = static_cast<int>(i) % 16;
+    EXPECT_EQ(sweep.points[i].ring, ring);
+    EXPECT_LT((sweep.points[i].position - 7 * model->direction(ring, column)).norm(), 1e-5f);
+    EXPECT_NEAR(sweep.points[i].time_s, -0.1 + 0.1 * (column + 1) / 16, 1e-7);
+    EXPECT_EQ(sweep.points[i].intensity, 0.25f);
+  }
+}
+
+TEST(Sweep, NoReturnsAndReturnsOffTheVehicleAreDropped) {
+  const auto model = lidar(2, 4);
+  LidarScan scan{0, model, {1, kNan, kInf, -kInf, 0.2f, 5, 0, -1}, std::vector<float>(8)};
+  const Sweep sweep = to_sweep(scan, 0.5);
+  ASSERT_EQ(sweep.points.size(), 2u);
+  EXPECT_NEAR(sweep.points[0].position.norm(), 1, 1e-6);
+  EXPECT_NEAR(sweep.points[1].position.norm(), 5, 1e-6);
+}
+
+TEST(Sweep, ArraysThatDoNotFitTheModelGiveNoPoints) {
+  EXPECT_TRUE(to_sweep(LidarScan{}, 0.3).points.empty());
+  LidarScan scan{0, lidar(2, 4), std::vector<float>(7, 5.0f), {}};
+  EXPECT_TRUE(to_sweep(scan, 0.3).points.empty());
+  scan.range_m.resize(8, 5.0f);  // intensities may be missing
+  EXPECT_EQ(to_sweep(scan, 0.3).points.size(), 8u);
+}
+
+}  // namespace
