@@ -161,7 +161,8 @@ void Estimator::on_magnetometer(const MagnetometerSample& mag) {
   }
   if (!lidar_.started()) return;
   const Compass::Reading reading = compass_.read(mag, magnetic_.state().orientation);
-  if (reading.valid) magnetic_.on_scalar({Scalar::Kind::heading_rad, reading.heading_rad, options_.compass_noise_rad});
+  if (reading.valid)
+    magnetic_.on_scalar({Scalar::Kind::heading_rad, reading.heading_rad, options_.compass_noise_rad});
   if (!magnetic_believed_ && lidar_.heading_sigma_rad() < kHeadingKnown_rad)
     compass_.learn(mag, lidar_.state().orientation);
 }

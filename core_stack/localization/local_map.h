@@ -13,12 +13,12 @@
 namespace karst::core {
 
 struct LocalMapOptions {
-  double voxel_m = 0.15;              // of the finest grid of surfaces
-  std::int64_t levels = 3;            // grids of surfaces
-  double edge_voxel_m = 0.25;         // of the grid of edges
-  double radius_m = 150;              // what is farther away along any axis is forgotten
+  double voxel_m = 0.15;                // of the finest grid of surfaces
+  std::int64_t levels = 3;              // grids of surfaces
+  double edge_voxel_m = 0.25;           // of the grid of edges
+  double radius_m = 150;                // what is farther away along any axis is forgotten
   std::int64_t max_voxels = 1'000'000;  // of each grid, the farthest forgotten first
-  std::int64_t max_points = 1000;     // of each voxel
+  std::int64_t max_points = 1000;       // of each voxel
   double keyframe_distance_m = 0.5;
 };
 void describe(OptionTable& t, LocalMapOptions& o);

@@ -23,8 +23,8 @@ void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
       "localization", Lane::localization, kLocalizationBudget,
       [this, scan, pose, history = flight_.estimator().history(),
        self_m = description_.radius_m + kSelfMargin_m] {
-        // Only the paper's rule: robust matching copes with the dust that is left. What makes the map clean costs true
-        // returns at edges and bumps, and the drift grows threefold (docs/localization.md).
+        // Only the paper's rule: robust matching copes with the dust that is left. What makes the map clean
+        // costs true returns at edges and bumps, and the drift grows threefold (docs/localization.md).
         LidarScan filtered = *scan;
         drop_weakest_returns(filtered, options_.perception.percentile, options_.perception.radius_m);
         *pose = loam_->process(to_sweep(filtered, self_m), history);

@@ -6,7 +6,8 @@ namespace karst::sim {
 
 void describe(core::OptionTable& t, BarometerOptions& o) {
   t.add("noise", o.noise_m, "m", 0, 10, "standard deviation of a sample, as height");
-  t.add("walk", o.walk_m, "m", 0, 1, "standard deviation of the drift after one second; grows with the root of time");
+  t.add("walk", o.walk_m, "m", 0, 1,
+        "standard deviation of the drift after one second; grows with the root of time");
 }
 
 core::BarometerSample Barometer::sample(core::TimeNs stamp, double height_m, double dt_s) {

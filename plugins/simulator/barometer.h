@@ -1,5 +1,5 @@
-// Height by air pressure: coarse, and it drifts with the weather and the sensor's warmth, but no smooth shaft can
-// fool it.
+// Height by air pressure: coarse, and it drifts with the weather and the sensor's warmth, but no smooth shaft
+// can fool it.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
@@ -7,8 +7,8 @@
 
 namespace karst::sim {
 
-/// Defaults: a unit such as the MS5611 or BMP388, whose data sheets state 0.08 to 0.12 m of noise, behind a foam in a
-/// rotor's wash; its reading wanders by half a metre in five minutes.
+/// Defaults: a unit such as the MS5611 or BMP388, whose data sheets state 0.08 to 0.12 m of noise, behind a
+/// foam in a rotor's wash; its reading wanders by half a metre in five minutes.
 struct BarometerOptions {
   double noise_m = 0.12;  // standard deviation of a sample
   double walk_m = 0.03;   // a square root of a second

@@ -104,8 +104,8 @@ std::optional<std::int64_t> contacts(const RunRecord& run) {
   return std::max<std::int64_t>(count, ended_so ? 1 : 0);
 }
 
-/// Where the vehicle believed to be against where the controller wanted it, over the flight: what the estimate is
-/// wrong by is drift, and no controller can do anything about it.
+/// Where the vehicle believed to be against where the controller wanted it, over the flight: what the
+/// estimate is wrong by is drift, and no controller can do anything about it.
 std::optional<double> tracking_rms_m(const RunRecord& run) {
   const auto* t_s = run.telemetry.times();
   std::array<const std::vector<double>*, 6> c{};

@@ -9,10 +9,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kRunFiles = {"events.jsonl",  "mission.info",     "telemetry.csv", "trajectory.tum",
-                                  "decisions.csv", "localization.csv", "map_growth.bin",   "map.bt",        "map.ot",
-                                  "map.ply",       "ground_truth.tum", "truth.csv",     "truth_events.jsonl",
-                                  "timing.json",   "metrics.json",     "report.html",   "evaluation.json"};
+constexpr std::array kRunFiles = {"events.jsonl",
+                                  "mission.info",
+                                  "telemetry.csv",
+                                  "trajectory.tum",
+                                  "decisions.csv",
+                                  "localization.csv",
+                                  "map_growth.bin",
+                                  "map.bt",
+                                  "map.ot",
+                                  "map.ply",
+                                  "ground_truth.tum",
+                                  "truth.csv",
+                                  "truth_events.jsonl",
+                                  "timing.json",
+                                  "metrics.json",
+                                  "report.html",
+                                  "evaluation.json"};
 
 }  // namespace
 

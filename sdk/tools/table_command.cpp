@@ -9,8 +9,8 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 namespace karst::tools {

@@ -165,7 +165,7 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
   const std::string events = bytes_of(run / "events.jsonl");
   EXPECT_NE(events.find("the map now forbids the path ahead"), std::string::npos);
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(1, 3));
 
 TEST(Payload, OfThirtyPercentIsCarriedWithoutBeingTold) {
   const auto run = fresh_folder("flight_payload") / "run";

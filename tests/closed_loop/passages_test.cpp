@@ -123,9 +123,13 @@ TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, FallingRock, ::testing::Range(1, 1 + seeds()));
 
-/// Two rooms, one 30 m above the other.
+/// Two rooms, one 30 m above the other, with niches in their walls: between smooth walls no scan tells the
+/// height.
 const std::vector<Box> kShaft = {
-    {{-4, -4, 0}, {4, 4, 3.5}}, {{-2, -2, 3}, {2, 2, 34}}, {{-2, -4, 33.5}, {6, 4, 37}}};
+    {{-4, -4, 0}, {4, 4, 3.5}},    {{-2, -2, 3}, {2, 2, 34}},    {{-2, -4, 33.5}, {6, 4, 37}},
+    {{-5, -1, 0.4}, {-4, 1, 1.2}}, {{4, -3, 0.6}, {5, -1, 1.4}}, {{-3, 4, 0.8}, {-1, 5, 1.6}},
+    {{-3, 0, 8}, {-2, 1, 9}},      {{2, -1, 15}, {3, 0, 16}},    {{-1, 2, 22}, {0, 3, 23}},
+    {{-2, -3, 28}, {-1, -2, 29}},  {{6, -1, 34}, {7, 1, 35}},    {{1, -5, 34.2}, {3, -4, 35}}};
 
 struct ShaftFlight {
   const char *name, *vehicle;
