@@ -123,6 +123,26 @@ TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, FallingRock, ::testing::Range(1, 1 + seeds()));
 
+/// Walls as smooth as a pipe's, and neither end in sight around two bends: no scan tells how far along it is.
+TEST(SmoothTube, IsFlownWithoutTouchingAnything) {
+  const auto folder = fresh_folder("smooth_tube");
+  const std::vector<Box> boxes = {{{-4, -4, 0}, {4, 4, 3.5}},
+                                  {{4, -1.6, 0}, {16, 1.6, 3}},
+                                  {{12.8, 1.6, 0}, {16, 62, 3}},
+                                  {{16, 58.8, 0}, {28, 62, 3}},
+                                  {{28, 55, 0}, {36, 66, 3.5}}};
+  const std::string cave = draw_cave(folder, boxes, {0, 0, 1}, 0.3);
+  const Output out =
+      run_karst("fly --cave " + cave +
+                " --policy nearest_frontier --set simulator.battery_minutes=5min --quiet --no-report"
+                " --set simulator.lidar.unit=vlp16 --out " +
+                (folder / "run").string());
+  const auto m = nlohmann::json::parse(bytes_of(folder / "run" / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object()) << out.text;
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_NE(bytes_of(folder / "run" / "events.jsonl").find("\"free_directions\":1"), std::string::npos);
+}
+
 /// Two rooms, one 30 m above the other, with niches in their walls: between smooth walls no scan tells the
 /// height.
 const std::vector<Box> kShaft = {
