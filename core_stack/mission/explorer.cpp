@@ -146,6 +146,10 @@ Path Explorer::plan_to(const Vec3& from, const Vec3& to) {
   return tight ? plan_in(*tight, from, to) : path;
 }
 
+int Explorer::touching_segment(const std::vector<Vec3>& points) const {
+  return first_blocked_segment(map_, points, vehicle_.radius_m);
+}
+
 int Explorer::blocked_segment(const std::vector<Vec3>& points, const std::vector<Vec3>& narrow_places) const {
   const double usual_m = options_.planning.clearance_m - kClearanceSlack_m;
   const double narrow_m = narrow_clearance_m_ ? vehicle_.radius_m : usual_m;

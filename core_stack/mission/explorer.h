@@ -86,6 +86,8 @@ class Explorer {
   std::vector<Vec3> way_back(const std::vector<Vec3>& flown) const;
   /// What happened to its goals, and that it is over.
   void tell(const std::vector<PolicyEvent>& events, TimeNs now);
+  /// Index of the first segment of `points` nearer to an obstacle's cell than the vehicle's radius, or -1.
+  int touching_segment(const std::vector<Vec3>& points) const;
   /// Index of the first segment of `points` that the map now forbids, or -1. Near the `narrow_places` of the
   /// path it allows for less clearance.
   int blocked_segment(const std::vector<Vec3>& points, const std::vector<Vec3>& narrow_places) const;

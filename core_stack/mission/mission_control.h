@@ -155,7 +155,8 @@ class MissionControl final : public VehicleSink {
   double flown_m_ = 0;
   double home_distance_m_ = 0;
   int home_failures_ = 0;
-  bool home_planning_ = false, ignore_blocks_ = false;
+  bool home_planning_ = false;
+  bool flying_as_come_ = false;  // back along the poses flown: only what it would touch stops it
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;
   int overruns_ = 0;                                     // of the executive, as last noted

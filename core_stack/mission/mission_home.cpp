@@ -99,6 +99,7 @@ void MissionControl::plan_home_path() {
           if (!flight_.at_rest(now())) brake();
           return;
         }
+        flying_as_come_ = false;
         follow(*way);
       });
 }
@@ -123,7 +124,7 @@ void MissionControl::fly_back_as_come() {
         recorder_.event(now(), "safety",
                         {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
         follow(*way);
-        ignore_blocks_ = true;
+        flying_as_come_ = true;
         home_failures_ = 0;
       });
 }

@@ -37,7 +37,7 @@ void MissionControl::on_map_update(const std::vector<CellChange>& changes,
                                    std::optional<double> blocked_after_m, bool goal_alive) {
   recorder_.map_changes(now(), changes);
   goal_alive_ = goal_alive;
-  if (!blocked_after_m || path_blocked_ || ignore_blocks_ || flight_.at_rest(now())) return;
+  if (!blocked_after_m || path_blocked_ || flight_.at_rest(now())) return;
   const std::string reason = "the map now forbids the path ahead";
   drop_next_goal(PolicyEvent::Kind::goal_unreachable, reason);
   // What a decision and its plan take in flight, and then the stretch to stop in.
@@ -46,6 +46,7 @@ void MissionControl::on_map_update(const std::vector<CellChange>& changes,
   const double needed_m =
       seconds(decided - now()) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
   if (*blocked_after_m > needed_m && phase_ != Phase::takeoff) {
+    if (flying_as_come_) return;  // nothing else leads home; from near, what is there may look otherwise
     if (!detour_due_)
       recorder_.event(now(), "safety",
                       {{"action", "replan"}, {"reason", reason}, {"after_m", *blocked_after_m}});

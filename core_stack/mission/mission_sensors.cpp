@@ -87,11 +87,14 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
   executive_.job(
       "mapping", Lane::map, kMappingBudget,
       [this, result, frontier, make_rays = std::move(make_rays), here = flight_.state().position,
-       ahead = check ? path_ahead() : std::vector<Vec3>{}, narrow = narrow_places_] {
+       ahead = check ? path_ahead() : std::vector<Vec3>{}, narrow = narrow_places_,
+       as_come = flying_as_come_] {
         result->changes = explorer_.integrate(make_rays());
         result->explored_m3 = explorer_.map().free_volume_m3();
         if (ahead.size() > 1)
-          if (const int blocked = explorer_.blocked_segment(ahead, narrow); blocked >= 0)
+          if (const int blocked =
+                  as_come ? explorer_.touching_segment(ahead) : explorer_.blocked_segment(ahead, narrow);
+              blocked >= 0)
             result->blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
         result->hull_clearance_m = explorer_.hull_clearance_m(here);
         if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
