@@ -11,7 +11,9 @@ namespace {
 constexpr float kNearest = 0.01f, kFarthest = 1000;  // m: points outside are no measurements
 constexpr float kLongest = 1;                        // s: no sweep takes longer
 constexpr double kHeld = 1;                          // s: a velocity is not held for longer
-constexpr double kSameTwist = 0.05;                  // m/s: a sweep compensated with so little error is left
+constexpr int kRefinements = 2;                      // of a sweep's motion, where there is no prediction
+constexpr double kSameMotion = 0.01;                 // m: a sweep bent by so little is left
+constexpr double kRockDistance = 5;                  // m: where what a rotation bends is measured
 constexpr std::size_t kFromCoarsest = 99;            // more than there are levels
 
 bool is_measurement(const SweepPoint& p) {
@@ -35,6 +37,12 @@ Cloud compensated(const Features& features, const SweepMotion& motion) {
     return to;
   };
   return {moved(features.edges), moved(features.planes), moved(features.surface)};
+}
+
+/// How far apart two motions leave the first points of a sweep.
+double moved_within(double length_s, const Twist& a, const Twist& b) {
+  return length_s *
+         ((a.velocity_mps - b.velocity_mps).norm() + kRockDistance * (a.rate_radps - b.rate_radps).norm());
 }
 
 std::string counted(std::size_t n, const char* what) { return std::to_string(n) + " " + what; }
@@ -128,14 +136,16 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     const Fit with_last = fit(last_sweep_, guess, kFromCoarsest);
     if (with_last.good) guess = with_last.T_world_body;
   }
+  Twist assumed = prediction.twist;
   Fit found = fit(map_, guess, weak ? kFromCoarsest : 0);
-  if (found.good && !prediction.covered && since_s > 0) {
-    // The velocity that compensated the sweep was the last one; now the sweep's own is known.
+  // Without a prediction the last velocity compensated the sweep. Now its own is known, better each time.
+  const int refinements = prediction.covered || since_s <= 0 ? 0 : first_is_bent_ ? 1 : kRefinements;
+  for (int i = 0; i < refinements && found.good; ++i) {
     const Twist twist = twist_between(T_world_last_, found.T_world_body, since_s);
-    if ((twist.velocity_mps - prediction.twist.velocity_mps).norm() > kSameTwist) {
-      cloud = cloud_with({false, found.T_world_body, twist});
-      found = fit(map_, found.T_world_body, 0);
-    }
+    if (moved_within(length_s, twist, assumed) < kSameMotion) break;
+    assumed = twist;
+    cloud = cloud_with({false, found.T_world_body, twist});
+    found = fit(map_, found.T_world_body, 0);
   }
 
   out.edges = found.edges, out.planes = found.planes;

@@ -6,7 +6,7 @@
 namespace karst::core {
 
 namespace {
-constexpr double kCleaningStep = 0.1;  // of the radius: what is too far is dropped that often
+constexpr std::size_t kTurns = 16;  // keyframes in which every voxel is looked at once for being too far
 }
 
 void describe(OptionTable& t, LocalMapOptions& o) {
@@ -55,29 +55,19 @@ bool LocalMap::is_new_place(const Vec3& position) const {
 }
 
 void LocalMap::insert(const Cloud& cloud_world, const Vec3& position) {
-  if (empty()) last_cleaned_ = position;
   edges_.insert(cloud_world.edges);
   fill_grids(cloud_world.surface, surfaces_, 0, scratch_);
   for (std::size_t i = 0; i < surfaces_.size(); ++i) surfaces_[i].merge(scratch_[i]);
-  keyframes_.push_back(position);
-  const bool full = std::any_of(surfaces_.begin(), surfaces_.end(), [&](const VoxelGrid& g) {
-    return g.voxels().size() > static_cast<std::size_t>(options_.max_voxels);
-  });
-  if (full || (position - last_cleaned_).cwiseAbs().maxCoeff() > kCleaningStep * options_.radius_m)
-    forget_far(position);
-}
-
-void LocalMap::forget_far(const Vec3& position) {
   const auto most = static_cast<std::size_t>(options_.max_voxels);
-  // A tenth less than the most, or a full grid would be cleaned again with every keyframe.
-  const auto clean = [&](VoxelGrid& g) {
-    g.keep_near(position, options_.radius_m, g.voxels().size() > most ? most - most / 10 : most);
+  const auto forget = [&](VoxelGrid& g) {
+    g.forget_some(position, options_.radius_m, g.voxels().size() / kTurns + 1);
+    if (g.voxels().size() > most) g.keep_nearest(position, most - most / 10);  // room for some keyframes
   };
-  clean(edges_);
-  for (VoxelGrid& g : surfaces_) clean(g);
+  forget(edges_);
+  for (VoxelGrid& g : surfaces_) forget(g);
   std::erase_if(keyframes_,
                 [&](const Vec3& k) { return (k - position).cwiseAbs().maxCoeff() > options_.radius_m; });
-  last_cleaned_ = position;
+  keyframes_.push_back(position);
 }
 
 void LocalMap::clear() {

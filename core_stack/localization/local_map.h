@@ -54,13 +54,10 @@ class LocalMap {
   std::size_t bytes() const;
 
  private:
-  void forget_far(const Vec3& position);
-
   LocalMapOptions options_;
   VoxelGrid edges_;
   Grids surfaces_, scratch_;
   std::vector<Vec3> keyframes_;
-  Vec3 last_cleaned_ = Vec3::Zero();
 };
 
 }  // namespace karst::core

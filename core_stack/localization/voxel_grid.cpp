@@ -54,11 +54,14 @@ Vec3 VoxelGrid::centre_of(Key key) const {
   return {coordinate(2 * kBits), coordinate(kBits), coordinate(0)};
 }
 
-std::size_t VoxelGrid::slot_of(Key key) const {
-  const std::size_t mask = table_.size() - 1;
+std::size_t VoxelGrid::home_of(Key key) const {
   const std::uint64_t hash = (key >> 2) * 0x9e3779b97f4a7c15ull;
-  std::size_t slot = ((hash >> 32 << 2) | (key & 3)) & mask;
-  while (table_[slot].voxel != 0 && table_[slot].key != key) slot = (slot + 1) & mask;
+  return ((hash >> 32 << 2) | (key & 3)) & (table_.size() - 1);
+}
+
+std::size_t VoxelGrid::slot_of(Key key) const {
+  std::size_t slot = home_of(key);
+  while (table_[slot].voxel != 0 && table_[slot].key != key) slot = (slot + 1) & (table_.size() - 1);
   return slot;
 }
 
@@ -120,17 +123,44 @@ void VoxelGrid::clear() {
   std::fill(table_.begin(), table_.end(), Slot{0, 0});
 }
 
-void VoxelGrid::keep_near(const Vec3& centre, double radius_m, std::size_t max_voxels) {
-  const auto distance = [&](const Voxel& v) { return (centre_of(v.key) - centre).cwiseAbs().maxCoeff(); };
-  std::erase_if(voxels_, [&](const Voxel& v) { return distance(v) > radius_m; });
-  if (voxels_.size() > max_voxels) {
-    std::vector<double> distances;
-    for (const Voxel& v : voxels_) distances.push_back(distance(v));
-    const auto first_dropped = distances.begin() + static_cast<std::ptrdiff_t>(max_voxels);
-    std::nth_element(distances.begin(), first_dropped, distances.end());
-    std::erase_if(voxels_, [&](const Voxel& v) { return distance(v) >= *first_dropped; });
+/// The last voxel takes the place of the one erased. In the table, those behind the hole that may move up to
+/// it do, so that every search still ends at the first free slot.
+void VoxelGrid::erase(std::size_t voxel) {
+  const std::size_t mask = table_.size() - 1;
+  std::size_t hole = slot_of(voxels_[voxel].key);
+  if (voxel + 1 < voxels_.size()) {
+    table_[slot_of(voxels_.back().key)].voxel = static_cast<std::uint32_t>(voxel + 1);
+    voxels_[voxel] = voxels_.back();
   }
-  rebuild(std::max(kFirstSlots, std::bit_ceil(2 * voxels_.size() + 2)));
+  voxels_.pop_back();
+  for (std::size_t slot = (hole + 1) & mask; table_[slot].voxel != 0; slot = (slot + 1) & mask) {
+    const std::size_t from_home = (slot - home_of(table_[slot].key)) & mask;
+    if (from_home < ((slot - hole) & mask)) continue;  // it would come to lie before its home
+    table_[hole] = table_[slot];
+    hole = slot;
+  }
+  table_[hole].voxel = 0;
+}
+
+void VoxelGrid::forget_some(const Vec3& centre, double radius_m, std::size_t count) {
+  for (std::size_t i = 0; i < count && !voxels_.empty(); ++i) {
+    if (turn_ >= voxels_.size()) turn_ = 0;
+    if ((centre_of(voxels_[turn_].key) - centre).cwiseAbs().maxCoeff() > radius_m)
+      erase(turn_);
+    else
+      ++turn_;
+  }
+}
+
+void VoxelGrid::keep_nearest(const Vec3& centre, std::size_t max_voxels) {
+  if (voxels_.size() <= max_voxels) return;
+  const auto distance = [&](const Voxel& v) { return (centre_of(v.key) - centre).cwiseAbs().maxCoeff(); };
+  std::vector<double> distances;
+  for (const Voxel& v : voxels_) distances.push_back(distance(v));
+  const auto first_dropped = distances.begin() + static_cast<std::ptrdiff_t>(max_voxels);
+  std::nth_element(distances.begin(), first_dropped, distances.end());
+  std::erase_if(voxels_, [&](const Voxel& v) { return distance(v) >= *first_dropped; });
+  rebuild(table_.size());
 }
 
 const VoxelGrid::Voxel* VoxelGrid::find(Key key) const {

@@ -49,9 +49,12 @@ class VoxelGrid {
   /// Adds what is in a grid of voxels as large, or of half the size.
   void merge(const VoxelGrid& other);
   void clear();
-  /// Drops voxels whose centres are farther than `radius_m` from `centre` along any axis, then those farthest
-  /// away until at most `max_voxels` are left (fewer where several are equally far).
-  void keep_near(const Vec3& centre, double radius_m, std::size_t max_voxels);
+  /// Looks at the next `count` voxels in turn and drops those whose centres are farther than `radius_m` from
+  /// `centre` along any axis: a little of the work at a time.
+  void forget_some(const Vec3& centre, double radius_m, std::size_t count);
+  /// Drops the voxels farthest from `centre` until at most `max_voxels` are left (fewer where several are
+  /// equally far).
+  void keep_nearest(const Vec3& centre, std::size_t max_voxels);
 
   /// Null if there is no point in it.
   const Voxel* find(Key key) const;
@@ -70,13 +73,16 @@ class VoxelGrid {
     std::uint32_t voxel;  // index + 1, 0: free
   };
   std::size_t slot_of(Key key) const;  // where it is, or where it would be
+  std::size_t home_of(Key key) const;  // where the search for it starts
   VoxelSums& made(Key key);            // empty if it is new
+  void erase(std::size_t voxel);
   void rebuild(std::size_t slots);
 
   double voxel_m_;
   float per_m_, max_points_;
   std::vector<Voxel> voxels_;
   std::vector<Slot> table_;  // as long as a power of two
+  std::size_t turn_ = 0;     // the voxel that forget_some looks at next
 };
 
 /// With fewer points than `least` only their number is set.

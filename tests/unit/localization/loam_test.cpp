@@ -192,7 +192,7 @@ World ribbed_corridor(double length_m) {
 }
 
 TEST(Loam, MemoryStaysFlatOverAKilometre) {
-  const Motion motion = along_x(10);
+  const Motion motion = along_x(20);
   const auto model = lidar(16, 256, 22.5, 25);
   LoamOptions o;
   o.map.radius_m = 30;
@@ -201,7 +201,7 @@ TEST(Loam, MemoryStaysFlatOverAKilometre) {
   std::vector<std::size_t> bytes;
   Flown flown;
   for (int leg = 0; leg < 20; ++leg) {
-    flown = fly(loam, world, motion, leg * 50 + 1, leg * 50 + 50, {}, true, model);
+    flown = fly(loam, world, motion, leg * 25 + 1, leg * 25 + 25, {}, true, model);
     bytes.push_back(loam.map().bytes());
     EXPECT_TRUE(flown.poses.back().valid) << flown.poses.back().problem;
   }

@@ -115,16 +115,20 @@ TEST(VoxelGrid, ForgetsWhatIsFarAndTheFarthestBeyondItsLimit) {
   const std::vector<Vec3f> points = random_points(random, 5000, 10);
   grid.insert(points);
   const Vec3 centre(1, 2, 3);
-  grid.keep_near(centre, 6, 1'000'000);
+  const std::size_t all = grid.voxels().size();
+  for (int i = 0; i < 10; ++i) grid.forget_some(centre, 6, all / 10 + 1);
   const std::size_t near = grid.voxels().size();
-  for (const auto& v : grid.voxels()) EXPECT_LE((grid.centre_of(v.key) - centre).cwiseAbs().maxCoeff(), 6);
+  for (const auto& v : grid.voxels()) {
+    EXPECT_LE((grid.centre_of(v.key) - centre).cwiseAbs().maxCoeff(), 6);
+    EXPECT_EQ(grid.find(v.key), &v);
+  }
   for (const Vec3f& p : points) {
     const Vec3 d = (p.cast<double>() - centre).cwiseAbs();
     if (d.maxCoeff() < 5.8 || d.maxCoeff() > 6.2) {
       EXPECT_EQ(grid.find(grid.key_of(p)) != nullptr, d.maxCoeff() < 6) << p.transpose();
     }
   }
-  grid.keep_near(centre, 6, near / 2);
+  grid.keep_nearest(centre, near / 2);
   EXPECT_LE(grid.voxels().size(), near / 2);
   EXPECT_GT(grid.voxels().size(), near / 3);
   double farthest = 0;
