@@ -78,7 +78,7 @@ class Executive {
   void wait_until(TimeNs time) const;
 
   Clock clock_;
-  std::chrono::steady_clock::time_point begin_;  // of the first run, in real time
+  std::chrono::steady_clock::time_point begin_;  // of the run, in real time
   std::vector<std::shared_ptr<Job>> late_;       // in real time: beyond their budget
   TimeNs now_ = 0;
   std::uint64_t next_sequence_ = 0;

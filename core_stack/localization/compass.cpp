@@ -12,6 +12,8 @@ constexpr int kKnown = 20, kAverage = 3000;
 constexpr double kStrengthShare = 0.08, kDip_rad = 0.07;
 /// Towards the poles the horizontal part is too weak to steer by.
 constexpr double kLeastHorizontal_ut = 5;
+/// Without a sample for so long it is not trusted.
+constexpr TimeNs kSilent = kSecond / 5;
 
 double dip(const Vec3& field) { return std::atan2(-field.z(), field.head<2>().norm()); }
 double bearing(const Vec3& field) { return std::atan2(field.y(), field.x()); }
@@ -26,6 +28,7 @@ bool Compass::fits(const Vec3& field) const {
 
 Compass::Reading Compass::read(const MagnetometerSample& sample, const Quat& orientation) {
   Reading out;
+  last_read_ = sample.stamp;
   const Vec3 field_world = orientation * sample.field_ut;
   out.valid = learnt_ >= kKnown && field_world.allFinite() && fits(field_world);
   if (out.valid != trusted_) trusted_since_ = sample.stamp;
@@ -42,7 +45,9 @@ void Compass::learn(const MagnetometerSample& sample, const Quat& orientation) {
   field_world_ut_ += (field_world - field_world_ut_) / learnt_;
 }
 
-double Compass::trusted_s(TimeNs now) const { return trusted_ ? seconds(now - trusted_since_) : 0; }
+double Compass::trusted_s(TimeNs now) const {
+  return trusted_ && now - last_read_ < kSilent ? seconds(now - trusted_since_) : 0;
+}
 
 void Compass::forget() { *this = {}; }
 

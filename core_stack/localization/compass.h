@@ -30,7 +30,7 @@ class Compass {
 
   Vec3 field_world_ut_ = Vec3::Zero();
   int learnt_ = 0;
-  TimeNs trusted_since_ = 0;
+  TimeNs trusted_since_ = 0, last_read_ = 0;
   bool trusted_ = false;
 };
 

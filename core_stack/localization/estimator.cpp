@@ -19,6 +19,8 @@ constexpr double kHeadingOpen_rad = 0.02, kHeadingKnown_rad = 0.01;
 constexpr double kCompassTrusted_s = 2;
 /// Spread of the height below which the barometer is set by it.
 constexpr double kHeightKnown_m = 0.03;
+/// Headings and heights count as of now: older ones than this say nothing.
+constexpr TimeNs kStale = 200 * kMillisecond;
 /// A made-up sample is that much noisier.
 constexpr double kBridgeNoise = 5;
 
@@ -30,6 +32,13 @@ bool is_finite(const ImuSample& s) {
 }
 bool is_finite(const Pose& p) {
   return p.position.allFinite() && p.orientation.coeffs().allFinite() && p.orientation.norm() > 0.5;
+}
+
+/// As the sensor would say it, biases and all; that of the force along z is in the mass as learned.
+void stand_in(InertialFilter& filter, ImuSample sample) {
+  sample.specific_force_mps2.head<2>() += filter.accel_bias_mps2().head<2>();
+  sample.body_rate_radps += filter.gyro_bias_radps();
+  filter.on_imu(sample, kBridgeNoise);
 }
 
 }  // namespace
@@ -49,7 +58,8 @@ void describe(OptionTable& t, EstimatorOptions& o) {
         "standard deviation of a pose's attitude, each axis; of the LiDAR's on top of its own covariance");
   t.add("compass_noise", o.compass_noise_rad, "rad", 0.01, 3.0,
         "standard deviation of the heading by one magnetometer sample");
-  t.add("height_noise", o.height_noise_m, "m", 0.01, 100,
+  // With much less the barometer alone would make the height look known, and be set by itself.
+  t.add("height_noise", o.height_noise_m, "m", 0.3, 100,
         "standard deviation of the height by one barometer sample");
   t.add("gate", o.gate, "", 3, 100, "poses off by so many standard deviations are refused");
   t.add("pose_timeout", o.pose_timeout_s, "s", 0.05, 10.0,
@@ -64,12 +74,12 @@ void Estimator::on_imu(const ImuSample& imu) {
     last_bad_input_ = imu.stamp;
     return;
   }
+  last_imu_ = std::max(last_imu_, imu.stamp);  // it speaks, even if a made-up sample is ahead of it
   if (!lidar_.started()) {
     last_pose_ = imu.stamp;
   } else if (imu.stamp <= state().stamp) {
     return;
   }
-  last_imu_ = imu.stamp;
   lidar_.on_imu(imu);
   magnetic_.on_imu(imu);
   if (newcomer_) newcomer_->on_imu(imu);
@@ -77,9 +87,9 @@ void Estimator::on_imu(const ImuSample& imu) {
 
 void Estimator::bridge(const ImuSample& expected) {
   if (!lidar_.started() || !is_finite(expected) || expected.stamp <= state().stamp) return;
-  lidar_.on_imu(expected, kBridgeNoise);
-  magnetic_.on_imu(expected, kBridgeNoise);
-  if (newcomer_) newcomer_->on_imu(expected, kBridgeNoise);
+  stand_in(lidar_, expected);
+  stand_in(magnetic_, expected);
+  if (newcomer_) stand_in(*newcomer_, expected);
 }
 
 void Estimator::on_pose(const PoseSample& pose) {
@@ -159,7 +169,8 @@ void Estimator::on_magnetometer(const MagnetometerSample& mag) {
     last_bad_input_ = mag.stamp;
     return;
   }
-  if (!lidar_.started()) return;
+  if (!lidar_.started() || mag.stamp <= newest_mag_ || mag.stamp < state().stamp - kStale) return;
+  newest_mag_ = mag.stamp;
   const Compass::Reading reading = compass_.read(mag, magnetic_.state().orientation);
   if (reading.valid)
     magnetic_.on_scalar({Scalar::Kind::heading_rad, reading.heading_rad, options_.compass_noise_rad});
@@ -172,7 +183,9 @@ void Estimator::on_barometer(const BarometerSample& barometer) {
     last_bad_input_ = barometer.stamp;
     return;
   }
-  if (!lidar_.started()) return;
+  if (!lidar_.started() || barometer.stamp <= newest_height_ || barometer.stamp < state().stamp - kStale)
+    return;
+  newest_height_ = barometer.stamp;
   if (active().height_sigma_m() < kHeightKnown_m) height_offset_.learn(barometer, state().position.z());
   if (!height_offset_.known()) return;
   const Scalar measured{Scalar::Kind::height_m, height_offset_.height_m(barometer), options_.height_noise_m};

@@ -78,6 +78,7 @@ class Estimator {
   int refused_ = 0, agreed_ = 0, magnetic_refused_ = 0, restarts_ = 0;
   TimeNs last_imu_ = 0, last_pose_ = 0;
   TimeNs newest_pose_ = std::numeric_limits<TimeNs>::min();  // accepted or not
+  TimeNs newest_mag_ = std::numeric_limits<TimeNs>::min(), newest_height_ = newest_mag_;
   TimeNs last_bad_input_ = std::numeric_limits<TimeNs>::min();
 };
 

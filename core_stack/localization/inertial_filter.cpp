@@ -12,6 +12,7 @@ namespace {
 constexpr double kGravity = 9.81;          // m/s^2
 constexpr double kImuReferenceRate = 200;  // Hz, at which the noise of one sample is meant
 constexpr TimeNs kBuffer = kSecond;
+constexpr TimeNs kAhead = 50 * kMillisecond;  // of the IMU: a pose from later is ignored
 // Uncertainty at the start: the vehicle stands at a declared pose, its biases are unknown.
 constexpr double kStartPosition = 0.05, kStartVelocity = 0.05, kStartAngle = 0.02, kStartAccelBias = 0.2,
                  kStartGyroBias = 0.02;
@@ -135,7 +136,8 @@ void InertialFilter::inject(const Vector15& error) {
 
 InertialFilter::Verdict InertialFilter::on_pose(const PoseMeasurement& pose, double gate) {
   const auto step = step_at(pose.stamp);
-  if (!step || pose.stamp <= last_pose_) return Verdict::ignored;
+  if (!step || pose.stamp <= last_pose_ || pose.stamp > steps_.back().imu.stamp + kAhead)
+    return Verdict::ignored;
   const Step& at = steps_[*step];
   const Pose expected = extrapolated(at.state, seconds(pose.stamp - at.imu.stamp));
   Eigen::Matrix<double, 6, 1> innovation;
@@ -188,7 +190,7 @@ void InertialFilter::restart_at(const PoseMeasurement& pose) {
   if (!step) return;
   go_back_to(*step);
   state_.position = pose.T_world_body.position;
-  state_.orientation = pose.T_world_body.orientation;
+  state_.orientation = pose.T_world_body.orientation.normalized();
   for (const int at : {kP, kA}) {
     covariance_.middleRows<3>(at).setZero();
     covariance_.middleCols<3>(at).setZero();

@@ -41,7 +41,7 @@ class InertialFilter {
  public:
   InertialFilter(const InertialNoise& noise, const Pose& T_world_start);
 
-  /// Not newer than the last: ignored. `share` scales the noise: of a sample that was made up.
+  /// Not newer than the last: ignored. `noise_scale`: of a sample that was made up.
   void on_imu(const ImuSample& imu, double noise_scale = 1);
 
   enum class Verdict { accepted, gated, ignored };

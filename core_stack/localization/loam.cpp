@@ -119,7 +119,10 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
     out.valid = true;
     first_is_bent_ = !prediction.covered && !sweep.compensated;
-    if (lost) out.problem = "the local map began anew where the vehicle was predicted to be";
+    if (lost) {
+      out.problem = "the local map began anew where the vehicle was predicted to be";
+      out.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
+    }
     accept(out);
     return out;
   }

@@ -49,11 +49,19 @@ class MissionControl final : public VehicleSink {
 
   void on_lidar(std::shared_ptr<const LidarScan> scan) override;
   void on_depth(std::shared_ptr<const DepthImage> image) override;
-  void on_imu(const ImuSample& s) override { flight_.on_imu(s); }
-  void on_magnetometer(const MagnetometerSample& s) override { flight_.on_magnetometer(s); }
-  void on_barometer(const BarometerSample& s) override { flight_.on_barometer(s); }
+  // What is stamped later than now is of a clock gone wrong: taken in, it would make all that follows look
+  // old.
+  void on_imu(const ImuSample& s) override {
+    if (s.stamp <= now()) flight_.on_imu(s);
+  }
+  void on_magnetometer(const MagnetometerSample& s) override {
+    if (s.stamp <= now()) flight_.on_magnetometer(s);
+  }
+  void on_barometer(const BarometerSample& s) override {
+    if (s.stamp <= now()) flight_.on_barometer(s);
+  }
   void on_pose(const PoseSample& s) override {
-    if (!loam_) flight_.on_pose(s);
+    if (!loam_ && s.stamp <= now()) flight_.on_pose(s);
   }
   void on_battery(const BatteryStatus& s) override { battery_ = s; }
   void on_ground(TimeNs stamp, bool standing) override;
@@ -161,6 +169,7 @@ class MissionControl final : public VehicleSink {
   std::optional<double> hull_clearance_m_;
   int overruns_ = 0;                                     // of the executive, as last noted
   TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
+  int locating_ = 0;                                     // scans on their way through localization
   std::string localization_state_, believed_ = "lidar";  // as last noted in the events
 };
 

@@ -17,7 +17,11 @@ constexpr double kSelfMargin_m = 0.05;
 }  // namespace
 
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
+  if (scan->stamp > now()) return;  // of a clock gone wrong
   if (!loam_) return map_scan(std::move(scan));
+  if (locating_ > 1)
+    return;  // in real time, where it falls behind: the newest scans are of no use if they are late
+  ++locating_;
   auto pose = std::make_shared<LoamPose>();
   executive_.job(
       "localization", Lane::localization, kLocalizationBudget,
@@ -30,6 +34,7 @@ void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
         *pose = loam_->process(to_sweep(filtered, self_m), history);
       },
       [this, scan, pose] {
+        --locating_;
         const bool accepted =
             pose->valid && flight_.on_lidar_pose({pose->stamp, pose->T_world_body, pose->covariance});
         note_localization(*pose, accepted);

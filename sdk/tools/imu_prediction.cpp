@@ -56,7 +56,7 @@ const core::StateHistory& ImuPrediction::up_to(TimeNs stamp) {
 }
 
 void ImuPrediction::correct(const core::LoamPose& pose) {
-  if (pose.valid) estimator_->on_pose({pose.stamp, pose.T_world_body});
+  if (pose.valid) estimator_->on_lidar_pose({pose.stamp, pose.T_world_body, pose.covariance});
 }
 
 }  // namespace karst::tools
