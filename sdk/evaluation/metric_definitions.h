@@ -1,0 +1,23 @@
+// Every figure of a flight that campaigns compare: its name, unit, which way is better, and what it is.
+// metrics.json, the store's columns, CSV, reports and the docs follow this one table (docs/metrics.md).
+#pragma once
+#include <span>
+#include <string_view>
+
+namespace karst::evaluation {
+
+enum class Better { more, less, neither };
+
+struct MetricDefinition {
+  std::string_view name;  // also the key in metrics.json and the column of the store
+  std::string_view unit;  // "" for shares and counts
+  Better better;
+  std::string_view meaning;  // one sentence
+};
+
+std::span<const MetricDefinition> metric_definitions();
+
+/// Its index in the table, or -1.
+int metric_index(std::string_view name);
+
+}  // namespace karst::evaluation
