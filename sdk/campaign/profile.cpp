@@ -22,7 +22,8 @@ const Profile& profile(const std::string& name) {
   std::vector<std::string> names;
   for (const Profile& p : profiles()) names.push_back(p.name);
   const std::string near = core::nearest_name(name, names);
-  throw core::InputError("profile", name, "no such profile" + (near.empty() ? "" : "; did you mean " + near + "?"));
+  throw core::InputError("profile", name,
+                         "no such profile" + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
 }  // namespace karst::campaign
