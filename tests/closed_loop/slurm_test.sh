@@ -18,6 +18,7 @@ run=$(mktemp -d /tmp/karst-slurm-XXXXXX)  # sockets: their names must be short
 chmod 755 "$run"
 pids=()
 finish() {
+  squeue --noheader --format=%A 2>/dev/null | sort -u | xargs -r scancel 2>/dev/null
   for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null; done
   for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null; done
   rm -rf "$run"
@@ -85,7 +86,7 @@ here slurm --executor slurm >"$work/slurm.txt" 2>&1 || fail "$(cat "$work/slurm.
 [ "$(rows local | wc -l)" -gt 20 ] || fail "nothing is compared"
 [ "$(sqlite3 "$work/slurm/campaign.sqlite" 'SELECT count(*) FROM trial WHERE status = "done"')" = 6 ] || fail "trials are missing"
 
-here killed --executor slurm >"$work/killed.txt" 2>&1 &
+(exec "$karst" compare "${campaign[@]}" --out "$work/killed" --executor slurm >"$work/killed.txt" 2>&1) &
 killed=$!
 for _ in $(seq 600); do
   [ -n "$(ls "$work"/killed/flying 2>/dev/null)" ] && break
