@@ -1,8 +1,8 @@
 // A campaign's results in one SQLite file (docs/compare.md). Only this module knows SQL.
 //
 // What is in the file does not depend on the order in which trials ended: a trial's id follows from its
-// contestant, cave and seed, and what the wall clock decides stands in the table `timing` alone. Every write is
-// one transaction, so that a campaign killed at any moment leaves whole trials only.
+// contestant, cave and seed, and what the wall clock decides stands in the table `timing` alone. Every write
+// is one transaction, so that a campaign killed at any moment leaves whole trials only.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -31,7 +31,7 @@ struct StoreHead {
 /// What no two flights of a trial share.
 struct TrialTiming {
   std::string machine;
-  double wall_s = 0, simulated_s = 0;           // NaN: not known
+  double wall_s = 0, simulated_s = 0;            // NaN: not known
   double decide_mean_ms = 0, decide_max_ms = 0;  // of the policy's decisions
   double plan_mean_ms = 0, plan_max_ms = 0;      // of planning to the goals chosen
 };
