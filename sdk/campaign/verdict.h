@@ -43,7 +43,6 @@ struct Comparison {
   std::size_t unknown = 0;                        // pairs left out: the figure is not known of one of them
   std::size_t failed_a = 0, failed_b = 0;         // failed trials among all of them
   double mean_a = 0, mean_b = 0, difference = 0;  // a - b, in the figure's unit
-  evaluation::Interval interval{};                // 1 - alpha, over seeds: of these caves
   evaluation::Interval interval_caves{};          // over caves: of caves like these
   evaluation::SignedRank test;
   double p_corrected = 1;  // Holm, over all pairs of contestants in this figure

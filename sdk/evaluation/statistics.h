@@ -65,7 +65,8 @@ struct Forecast {
   int low = kNever, high = kNever;  // 80 % interval, for what is not known of the spread (and of the effect)
 };
 struct ForecastOptions {
-  double alpha = 0.05;  // of one test: already divided by the number of them
+  double alpha = 0.05;
+  int tests = 1;  // that share alpha: the pairs of contestants
   double power = 0.8;
   int simulations = 400;  // of a campaign, for every number of seeds tried
   std::uint64_t seed = 1;
