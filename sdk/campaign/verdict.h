@@ -43,13 +43,17 @@ struct Comparison {
   std::size_t unknown = 0;                        // pairs left out: the figure is not known of one of them
   std::size_t failed_a = 0, failed_b = 0;         // failed trials among all of them
   double mean_a = 0, mean_b = 0, difference = 0;  // a - b, in the figure's unit
+  evaluation::Interval interval{};                // of level 1 - alpha, over seeds: of these caves
   evaluation::Interval interval_caves{};          // over caves: of caves like these
+  bool few_seeds = false;  // a cave has a single pair: `interval` is that over caves, for want of another
   evaluation::SignedRank test;
   double p_corrected = 1;  // Holm, over all pairs of contestants in this figure
   double rank_biserial = 0, standardized = 0;
   Shown shown = Shown::no_difference;
-  evaluation::Forecast forecast;  // of the primary figure, where no difference is shown: seeds a cave ...
-  double forecast_effect = 0;     // ... to show one of this size, in the figure's unit
+  // Of the primary figure only: seeds a cave, in all, that show the smallest difference worth knowing, and
+  // that show a difference as large as the observed one.
+  double worthwhile = 0;  // that smallest difference, in the figure's unit
+  evaluation::Forecast forecast_worthwhile, forecast_observed;
   std::vector<double> pair_a, pair_b;    // the pairs, by cave and seed; for scatter plots
   std::vector<std::size_t> pair_cave;    // cave of each
   std::vector<std::int64_t> pair_seed;   // seed of each
