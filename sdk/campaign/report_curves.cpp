@@ -65,10 +65,8 @@ ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::si
         now.emplace_back();
         for (const Values* curve : of_cave) now.back().push_back((*curve)[i]);
       }
-    const evaluation::Interval interval =
-        bootstrap_interval(now, evaluation::Resampled::seeds,
-                           {.level = 1 - options.alpha, .resamples = kResamples, .seed = options.seed});
-    mean.push_back(short_number(mean_difference(now)));
+    const evaluation::Interval interval = mean_interval(now, options, kResamples).interval;
+    mean.push_back(short_number(evaluation::mean_difference(now)));
     low.push_back(short_number(interval.low));
     high.push_back(short_number(interval.high));
   }
@@ -94,7 +92,7 @@ ordered_json curves_of(const CampaignResults& results, Quantity quantity, const 
     ordered_json caves = ordered_json::array();
     for (const auto& of_cave : by_cave)
       caves.push_back(of_cave.empty() ? ordered_json(nullptr) : band({of_cave}, times.size(), options));
-    const bool any = std::any_of(by_cave.begin(), by_cave.end(), [](const auto& c) { return !c.empty(); });
+    const bool any = std::any_of(by_cave.begin(), by_cave.end(), [](const auto& of) { return !of.empty(); });
     bands.push_back({{"all", any ? band(by_cave, times.size(), options) : ordered_json(nullptr)},
                      {"caves", std::move(caves)}});
   }

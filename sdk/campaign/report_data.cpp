@@ -15,6 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+/// Without . and .. in it, nor a slash at its end.
+fs::path plain_path(const fs::path& path) {
+  const fs::path normal = path.lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 ordered_json definitions() {
   ordered_json list = ordered_json::array();
   for (const auto& m : evaluation::metric_definitions()) {
@@ -64,7 +70,7 @@ ordered_json trial_row(const CampaignResults& results, const TrialResult& t, con
   const bool kept = !t.run_dir.empty() && fs::is_directory(t.run_dir, no_matter);
   row["run"] = kept ? ordered_json(relative_url(t.run_dir, folder)) : ordered_json(nullptr);
   row["reported"] = kept && fs::exists(fs::path(t.run_dir) / "report.html", no_matter);
-  if (kept) row["path"] = fs::path(t.run_dir).lexically_relative(folder).string();
+  if (kept) row["path"] = plain_path(t.run_dir).lexically_relative(plain_path(folder)).string();
   if (counted != figures) row["counted"] = std::move(counted);
   row["figures"] = std::move(figures);
   return row;
@@ -103,8 +109,7 @@ ordered_json number_or_null(double v) {
 std::string relative_url(const fs::path& target, const fs::path& folder) {
   constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
   std::string url = "./";  // no name can then be taken for a scheme
-  for (const char c :
-       target.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string()) {
+  for (const char c : plain_path(target).lexically_relative(plain_path(folder)).generic_string()) {
     char coded[4];
     std::snprintf(coded, sizeof coded, "%%%02X", static_cast<unsigned char>(c));
     url += plain.find(c) != std::string_view::npos ? std::string(1, c) : coded;

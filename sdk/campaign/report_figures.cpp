@@ -53,24 +53,30 @@ ordered_json comparison_row(const Comparison& c) {
   return row;
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
-}
-
 /// n, mean and interval over the caves that have values.
 ordered_json summary(const evaluation::Differences& by_cave, const VerdictOptions& options) {
   std::size_t n = 0;
   for (const auto& values : by_cave) n += values.size();
   if (n == 0) return nullptr;
-  const Interval interval =
-      bootstrap_interval(by_cave, evaluation::Resampled::seeds,
-                         {.level = 1 - options.alpha, .resamples = options.resamples, .seed = options.seed});
-  return {{"n", n}, {"mean", number_or_null(mean_difference(by_cave))}, {"interval", pair_of(interval)}};
+  const MeanInterval of_mean = mean_interval(by_cave, options, options.resamples);
+  ordered_json row = {{"n", n},
+                      {"mean", number_or_null(evaluation::mean_difference(by_cave))},
+                      {"interval", pair_of(of_mean.interval)}};
+  if (of_mean.over_caves) row["over"] = "caves";
+  return row;
 }
 
 }  // namespace
+
+MeanInterval mean_interval(const evaluation::Differences& values, const VerdictOptions& options,
+                           int resamples) {
+  const evaluation::BootstrapOptions bootstrap{
+      .level = 1 - options.alpha, .resamples = resamples, .seed = options.seed};
+  const Interval over_seeds = bootstrap_interval(values, evaluation::Resampled::seeds, bootstrap);
+  if (!std::isnan(over_seeds.low)) return {over_seeds, false};
+  const Interval over_caves = bootstrap_interval(values, evaluation::Resampled::caves, bootstrap);
+  return {over_caves, !std::isnan(over_caves.low)};
+}
 
 ordered_json report_verdicts(const Verdicts& verdicts) {
   ordered_json d = {{"metric", verdicts.metric}, {"sentence", verdicts.sentence}};

@@ -13,6 +13,14 @@ namespace karst::campaign {
 /// A number of six significant digits, or null if it is not known.
 nlohmann::ordered_json number_or_null(double v);
 
+/// Of the mean of `values` by cave: over seeds, or over caves where a cave has too few.
+struct MeanInterval {
+  evaluation::Interval interval;
+  bool over_caves = false;
+};
+MeanInterval mean_interval(const evaluation::Differences& values, const VerdictOptions& options,
+                           int resamples);
+
 /// Verdicts, ranking, and every pair of contestants in every figure.
 nlohmann::ordered_json report_verdicts(const Verdicts& verdicts);
 

@@ -1,7 +1,7 @@
 // The trials to look at first.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <set>
 
 #include "sdk/campaign/report_parts.h"
 #include "sdk/evaluation/metric_definitions.h"
@@ -9,9 +9,10 @@
 namespace karst::campaign {
 namespace {
 
-/// How bad, least first, and why.
+enum Kind { kFailed, kContact, kNotLanded, kSlow };
+
 struct Judged {
-  int kind = 0;
+  Kind kind = kSlow;
   double against_cave = 0;  // the figure over the mean of its cave; turned so that less is worse
   WorstTrial worst;
 };
@@ -40,16 +41,14 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
     const TrialResult& t = results.trials[i];
     const double value = figure_of(t, metric, results.horizon_s), mean = means[t.cave];
     const double share = std::isfinite(value) && mean > 0 ? value / mean : 1;
-    char text[160];
-    std::snprintf(text, sizeof text, "%s is %.0f %% of this cave's mean",
-                  std::string(definition.name).c_str(), 100 * share);
-    Judged j{3, less ? -share : share, {i, text}};
+    const std::string text = std::to_string(std::lround(100 * share)) + " % of its cave's mean";
+    Judged j{kSlow, less ? -share : share, {i, text}};
     if (t.failed) {
-      j = {0, 0, {i, "failed"}};
+      j = {kFailed, 0, {i, "failed"}};
     } else if (t.outcome == "contact") {
-      j = {1, j.against_cave, {i, "touched rock"}};
+      j = {kContact, j.against_cave, {i, "touched rock"}};
     } else if (t.outcome != "landed") {
-      j = {2, j.against_cave, {i, "did not land: " + t.outcome}};
+      j = {kNotLanded, j.against_cave, {i, "did not land: " + t.outcome}};
     } else if (less ? share <= 1 : share >= 1) {
       continue;  // not below its cave's mean: nothing bad about it
     }
@@ -58,9 +57,14 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
   std::stable_sort(judged.begin(), judged.end(), [](const Judged& a, const Judged& b) {
     return a.kind != b.kind ? a.kind < b.kind : a.against_cave < b.against_cave;
   });
-  if (judged.size() > count) judged.resize(count);
   std::vector<WorstTrial> worst;
-  for (Judged& j : judged) worst.push_back(std::move(j.worst));
+  std::set<std::pair<std::size_t, std::size_t>>
+      slow;  // contestants and caves with a flight listed for little more
+  for (Judged& j : judged) {
+    const TrialResult& t = results.trials[j.worst.trial];
+    if (worst.size() == count || (j.kind == kSlow && !slow.insert({t.contestant, t.cave}).second)) continue;
+    worst.push_back(std::move(j.worst));
+  }
   return worst;
 }
 

@@ -3,13 +3,13 @@
 function cellsOf(m, cave) { return data.contestants.map((_, i) => cave < 0 ? data.summaries[m][i].all : data.summaries[m][i].caves[cave]); }
 
 /** Rows of dots with whiskers. rows: [name, [{ value, interval, style, tip }]]; an entry may be null. */
-function dotPlot({ title, heading, label, rows, zero = false, seeds }) {
+function dotPlot({ title, heading, label, rows, zero = false, seeds, width = 560 }) {
   const values = rows.flatMap(([, dots]) => dots.filter(Boolean).flatMap((d) => [d.value, ...d.interval]));
   if (zero) values.push(0);
   const step = 15, gap = 12, count = Math.max(1, ...rows.map(([, dots]) => dots.length));
   const rowHeight = count * step + gap, height = rows.length * rowHeight + 54;
   const longest = Math.max(...rows.map(([name]) => name.length));
-  const plot = makePlot({ title, heading, aside: seeds, width: 560, height, left: Math.min(200, 22 + 6.4 * longest),
+  const plot = makePlot({ title, heading, aside: seeds, width, height, left: Math.min(200, 22 + 6.4 * longest),
     x: { range: rangeOf(values), label, ticks: 6 },
     y: { range: [rows.length, 0], rows: true, ticks: rows.map((_, k) => k + 0.5),
          text: (v) => { const name = rows[Math.floor(v)][0]; return name.length > 27 ? name.slice(0, 26) + "…" : name; } } });
@@ -39,17 +39,18 @@ function showByCave(m) {
   const known = rows.some(([, dots]) => dots.some(Boolean));
   element("figure-plot").replaceChildren(known ? dotPlot({
     title: `${metricNames[m]} of each contestant in each cave, mean and ${percentOfIntervals} % interval; the numbers are in the table beside`,
-    label: metricLabel(m) + (better === "more" ? " (more is better)" : better === "less" ? " (less is better)" : ""), rows })
+    label: metricLabel(m) + (better === "more" ? " (more is better)" : better === "less" ? " (less is better)" : ""), rows, width: 480 })
     : make("p", { className: "quiet" }, "This figure is not known of any trial."));
-  fillTable(element("figure-table"), [["cave", "name"], ...contestantNames.map((_, i) => [named(i), "number"])],
+  fillTable(element("figure-table"), [["cave", "name"], ["trials", "number"], ...contestantNames.map((_, i) => [named(i), "number"])],
     caves.map((cave) => {
-      const cells = cellsOf(m, cave), means = cells.map((s) => s ? s.mean : null);
-      const known = means.filter((v) => v !== null), best = better === "less" ? Math.min(...known) : Math.max(...known);
-      return [[name(cave), "name"], ...cells.map((s, i) => {
+      const cells = cellsOf(m, cave), known = cells.filter(Boolean), means = known.map((s) => s.mean);
+      const best = better === "less" ? Math.min(...means) : Math.max(...means);
+      return [[name(cave), "name"], [countText(known.map((s) => s.n)), "number"], ...cells.map((s) => {
         if (!s) return ["–", "number"];
-        const text = numberText(s.mean), leads = better !== "neither" && known.length > 1 && means[i] === best;
-        return [make("span", {}, leads ? make("b", {}, text) : text, make("small", {}, " " + intervalText(s.interval)), make("small", {}, ` n ${s.n}`)), "number"];
+        const leads = better !== "neither" && known.length > 1 && s.mean === best;
+        return [make("span", {}, make(leads ? "b" : "span", {}, numberText(s.mean)), make("br"),
+          make("small", {}, intervalText(s.interval) + (s.over ? "*" : ""))), "number"];
       })];
     }), (_, k) => caves[k] < 0 ? "total" : "");
-  element("figure-note").textContent = `Mean, ${percentOfIntervals} % interval, number of trials. Bold is the best mean of a row; whether it is shown to be better stands under Pairs. Over all caves, each cave weighs the same.`;
+  element("figure-note").textContent = `Mean and ${percentOfIntervals} % interval; trials of each contestant. Bold is the best mean of a row; whether it is shown to be better stands under Pairs. Over all caves, each cave weighs the same` + (data.summaries[m].some((s) => s.all && s.all.over) ? "; * over caves, for want of seeds in each." : ".");
 }

@@ -7,7 +7,7 @@ startCurves();
 const withPairs = startPairs();
 function showStudy() {
   const m = choice("metric"), { meaning, better } = data.metrics[m];
-  element("metric-meaning").textContent = meaning + (better === "neither" ? "" : better === "more" ? " More is better." : " Less is better.");
+  element("metric-meaning").textContent = meaning + (better === "neither" ? "" : `; ${better} is better`);
   showByCave(m);
   if (withPairs) showPairs(m);
   showSpread(m);

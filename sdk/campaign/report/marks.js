@@ -32,11 +32,17 @@ function fillLegend(id, names, line) {
 const contestantNames = data.contestants.map((c) => c.name);
 const caveNames = data.caves.map((c) => c.name);
 const metricNames = data.metrics.map((m) => m.name);
-/** "coverage_auc, m", as axes are labelled. */
-function metricLabel(m) { const { name, unit } = data.metrics[m]; return name + (unit ? `, ${unit}` : ""); }
+/** "explored_volume_m3, m³", as axes are labelled. */
+function metricLabel(m) { const { name, unit } = data.metrics[m]; return name + (unit ? `, ${unit.replace("^3", "³")}` : ""); }
 /** What a trial counts as in a figure. */
 function countedIn(trial, m) { return (trial.counted || trial.figures)[m]; }
 
+/** "10", or "8–17" where they differ. */
+function countText(counts) {
+  if (!counts.length) return "0";
+  const least = Math.min(...counts), most = Math.max(...counts);
+  return least === most ? String(most) : `${least}–${most}`;
+}
 function pText(p) { return p === null ? "–" : p < 0.001 ? "< 0.001" : p.toFixed(3); }
 function signedText(v) { return v === null ? "–" : (v > 0 ? "+" : v < 0 ? "−" : "") + numberText(Math.abs(v)); }
 function intervalText([low, high], text = numberText) { return low === null || high === null ? "" : `[${text(low)}, ${text(high)}]`; }

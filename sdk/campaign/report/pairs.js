@@ -51,6 +51,15 @@ function differencePlot(a, b, m, c) {
     heading: `${contestantNames[a]} − ${contestantNames[b]}`, seeds: `${percentOfIntervals} % intervals`, label: metricLabel(m), rows, zero: true });
 }
 
+function differenceTable(c) {
+  const table = make("table"), number = (text) => [text, "number"];
+  const row = (name, pairs, difference, interval) => [[name, "name"], number(String(pairs)), number(signedText(difference)), number(intervalText(interval, signedText))];
+  fillTable(table, [["cave", "name"], ["pairs", "number"], ["difference", "number"], [`${percentOfIntervals} % interval`, "number"]],
+    [...(c.caves || []).map((k) => row(caveNames[k.cave], k.pairs, k.difference, k.interval)), row("these caves", c.pairs, c.difference, c.interval)],
+    (_, k) => k === (c.caves || []).length ? "total" : "");
+  return make("div", { className: "card wide" }, table);
+}
+
 const pairHeads = [["a", "name"], ["b", "name"], ["mean a", "number"], ["mean b", "number"], ["a − b", "number"],
   [`${percentOfIntervals} % interval`, "number"], ["caves like these", "number"], ["p", "number"], ["rank-biserial", "number"], ["d", "number"], ["pairs", "number"], "shown"];
 function pairCells(c) {
@@ -64,12 +73,12 @@ function pairCells(c) {
 
 function showPairs(m) {
   const a = choice("pair-a"), b = choice("pair-b"), c = comparisonOf(a, b, m), pairs = a === b ? [] : pairsOf(a, b, m);
-  element("pair-sentence").textContent = a === b ? "Choose two contestants." : c ? c.sentence : "Not compared.";
+  element("pair-sentence").textContent = a === b ? "Choose two contestants." : c ? asSentence(c.sentence) : "Not compared.";
   const flown = caveNames.map((name, i) => [name, i]).filter(([, i]) => pairs.some((p) => p.cave === i));
   element("pair-legend").replaceChildren(...flown.map(([name, i]) => make("span", {}, swatch(i, false), name)));
   const none = make("p", { className: "quiet" }, "No pair of flights has this figure.");
   element("pair-scatter").replaceChildren(pairs.length ? scatter(a, b, m, pairs) : none);
-  element("pair-differences").replaceChildren(pairs.length && c ? differencePlot(a, b, m, c) : "");
+  element("pair-differences").replaceChildren(...(pairs.length && c ? [differencePlot(a, b, m, c), differenceTable(c)] : []));
   fillTable(element("pair-table"), pairHeads, data.verdicts.comparisons.filter((k) => k.metric === m).map(pairCells));
 }
 

@@ -2,7 +2,7 @@
 
 function trialLink(t) {
   if (t.run === null) return make("span", { className: "quiet" }, "recording not kept");
-  return t.reported ? make("a", { href: t.run + "/report.html" }, "mission report") : make("code", {}, `karst report '${t.path}'`);
+  return t.reported ? make("a", { href: t.run + "/report.html" }, "mission report") : make("code", {}, `karst report '${t.path.replaceAll("'", "'\\''")}'`);
 }
 
 function showWorst() {
@@ -13,10 +13,10 @@ function showWorst() {
     return;
   }
   fillTable(element("worst-table"),
-    ["why", ["contestant", "name"], ["cave", "name"], ["seed", "number"], "outcome", ...shown.map((k) => [metricLabel(k), "number"]), "look at it"],
+    [["why", "name"], ["contestant", "name"], ["cave", "name"], ["seed", "number"], "outcome", ...shown.map((k) => [metricLabel(k), "number"]), "look at it"],
     data.worst.map(({ trial, why }) => {
       const t = data.trials[trial];
-      return [why, [named(t.contestant), "name"], [caveNames[t.cave], "name"], [String(t.seed), "number"],
+      return [[why, "name"], [named(t.contestant), "name"], [caveNames[t.cave], "name"], [String(t.seed), "number"],
         t.reason ? `${t.outcome || "failed"}: ${t.reason}` : t.outcome, ...shown.map((k) => [numberText(t.figures[k]), "number"]), trialLink(t)];
     }));
   const missing = data.worst.some(({ trial }) => data.trials[trial].run !== null && !data.trials[trial].reported);

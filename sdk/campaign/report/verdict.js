@@ -21,6 +21,13 @@ function showHeader() {
   box.querySelector("ul").append(...data.notes.map((n) => make("li", {}, n)));
 }
 
+/** Verdicts are written to stand in a line of text. Contestants keep the case of their names. */
+function asSentence(text) {
+  if (!text) return "";
+  const named = contestantNames.some((n) => text.startsWith(n));
+  return (named ? text : text[0].toUpperCase() + text.slice(1)) + (/[.!]$/.test(text) ? "" : ".");
+}
+
 /** Parameters in which contestants of the same policy differ, as "name value". */
 function differences(i) {
   const mine = data.contestants[i], list = [];
@@ -36,7 +43,7 @@ function differences(i) {
 
 function showVerdict() {
   const v = data.verdicts, m = v.metric;
-  element("sentence").textContent = v.sentence || "Nothing has flown yet.";
+  element("sentence").textContent = asSentence(v.sentence) || "Nothing has flown yet.";
   const outcomes = (i) => {
     const own = data.trials.filter((t) => t.contestant === i);
     const count = (test) => own.filter(test).length;
@@ -50,12 +57,13 @@ function showVerdict() {
       const own = p.mean !== null;
       return [[own ? String(k + 1) : "–", "number"], [named(p.contestant), "name"],
         withRemark(`${c.policy} ${c.version}`, differences(p.contestant)), [numberText(p.mean), "number"],
-        [all ? intervalText(all.interval) : "", "number"], [p.groups, "number"],
+        [all ? intervalText(all.interval) + (all.over ? "*" : "") : "", "number"], [p.groups, "number"],
         [!own ? "–" : p.best === p.worst ? String(p.best) : `${p.best} to ${p.worst}`, "number"],
         ...outcomes(p.contestant).map((n) => [String(n), "number"])];
     }));
   element("ranking-note").textContent = v.ranking.length < 2 ? "" :
     `Ranked by ${metricNames[m]}, ${data.metrics[m].better === "less" ? "less" : "more"} is better. Contestants that share a letter are not shown to differ.`;
+  if (data.summaries[m].some((s) => s.all && s.all.over)) element("ranking-note").textContent += " * over caves, for want of seeds in each.";
   const primary = v.comparisons.filter((c) => c.metric === m && c.sentence && c.sentence !== v.sentence);
-  element("sentences").append(...primary.map((c) => make("li", {}, c.sentence)));
+  element("sentences").append(...primary.map((c) => make("li", {}, asSentence(c.sentence))));
 }
