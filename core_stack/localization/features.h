@@ -24,7 +24,7 @@ struct FeatureOptions {
   double max_flatness = 0.08;       // sharpness a planar feature may have
   double min_sharpness = 0.2;       // sharpness an edge feature needs
   double min_incidence_rad = 0.17;  // between beam and rock
-  double jump_m = 0.3;              // of the range: a new surface begins
+  double jump_m = 0.07;             // of the range, a few times its noise: a new surface begins
   std::int64_t plane_sectors = 48;  // a ring
   std::int64_t edge_sectors = 12;   // a ring
 };
