@@ -30,6 +30,7 @@ struct FeatureOptions {
 };
 void describe(OptionTable& t, FeatureOptions& o);
 
+/// A point of the sweep.
 struct Feature {
   Vec3f position;  // lidar frame when measured
   float time_s;
@@ -37,10 +38,10 @@ struct Feature {
 
 struct Features {
   std::vector<Feature> edges, planes;
-  std::vector<Feature> surface;  // all points whose window has a sharpness
+  std::vector<Feature> surface;  // every point that has a sharpness
 };
 
-/// Points must be finite. `threads` changes the time it takes, not the result.
+/// Points must be finite and by ring, as in a Sweep. `threads` changes the time it takes, not the result.
 Features find_features(const std::vector<SweepPoint>& points, const FeatureOptions& options, int threads);
 
 }  // namespace karst::core
