@@ -79,9 +79,9 @@ Flying start(const TrialJob& job, std::size_t index, const ExecutorOptions& opti
 /// Gives a trial that has ended its name.
 void settle(const Flying& f, const TrialJob& job, const ProcessEnd& end, const ExecutorOptions& options) {
   if (end.exit_code != 0 || end.signal != 0) refuse_starved(f.folder);
+  if (options.finish) options.finish(f.folder);
   std::error_code error;
-  for (const std::string& file : options.drop) fs::remove(f.folder / file, error);
-  write_note(f.folder, {end, machine_name()});
+  write_note(f.folder, {end, machine_name(), job.identity});
   fs::create_directories(job.run_dir.parent_path(), error);
   fs::remove_all(job.run_dir, error);
   fs::rename(f.folder, job.run_dir, error);
@@ -156,7 +156,8 @@ void write_note(const fs::path& run_dir, const TrialNote& note) {
                                     {"signal", note.end.signal},
                                     {"hung", note.end.hung},
                                     {"wall_s", note.end.wall_s},
-                                    {"machine", note.machine}};
+                                    {"machine", note.machine},
+                                    {"identity", note.identity}};
   evaluation::write_whole_file(run_dir / kNoteFile, json.dump(2) + "\n");
 }
 
@@ -166,7 +167,7 @@ TrialNote read_note(const fs::path& run_dir) {
   const auto json = nlohmann::json::parse(in, nullptr, false);
   if (!in && !in.eof()) throw InputError(file.string(), "", "cannot be read");
   try {
-    return {{json.at("exit_code"), json.at("signal"), json.at("hung"), json.at("wall_s")}, json.at("machine")};
+    return {{json.at("exit_code"), json.at("signal"), json.at("hung"), json.at("wall_s")}, json.at("machine"), json.at("identity")};
   } catch (const nlohmann::json::exception&) {
     throw InputError(file.string(), "", "is no note of a trial");
   }

@@ -14,13 +14,15 @@ namespace karst::campaign {
 struct TrialJob {
   std::vector<std::string> command;  // without its run directory: "--out DIR" is put behind it
   std::filesystem::path run_dir;
+  std::string identity;  // of what is flown, for the note
 };
 
 struct ExecutorOptions {
   std::size_t jobs = 1;
   double timeout_s = 7200;
   std::filesystem::path flying;  // folder for trials under way, on the run directories' file system
-  std::vector<std::string> drop;  // files of a run directory that are not kept
+  /// Called with the folder of a trial that has ended, before it gets its name.
+  std::function<void(const std::filesystem::path& folder)> finish;
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -37,7 +39,7 @@ bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& option
 /// How a run directory's trial ended, as written beside its record: `trial.json`.
 struct TrialNote {
   ProcessEnd end;
-  std::string machine;
+  std::string machine, identity;
 };
 void write_note(const std::filesystem::path& run_dir, const TrialNote& note);
 /// Throws core::InputError if it is not there or cannot be read.

@@ -102,13 +102,13 @@ std::string binary_version(const fs::path& karst, const std::string& vehicle, co
 }
 
 /// The file that offers a policy.
-std::string plugin_file(const ContestantSpec& who, const fs::path& karst) {
+std::string plugin_file(const std::string& policy, const std::string& plugin, const fs::path& karst) {
   std::vector<std::string> argv = {karst.string(), "policy", "list", "--json"};
-  if (!who.plugin.empty()) argv.insert(argv.end(), {"--plugin", who.plugin});
+  if (!plugin.empty()) argv.insert(argv.end(), {"--plugin", plugin});
   const json all = json::parse(run_process(argv, kCheckLimit_s).out, nullptr, false);
   if (all.is_object() && all.contains("policies"))
     for (const json& p : all["policies"])
-      if (p.value("id", "") == who.policy && !p.contains("shadowed_by")) return p.value("file", "");
+      if (p.value("id", "") == policy && !p.contains("shadowed_by")) return p.value("file", "");
   return "";
 }
 
@@ -123,7 +123,7 @@ PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs
   mission.erase("cave");
   mission.erase("seed");
   out.binary_version =
-      binary_version(karst, mission.get("vehicle", ""), karst_version, plugin_file(who, karst));
+      binary_version(karst, mission.get("vehicle", ""), karst_version, plugin_file(who.policy, who.plugin, karst));
   out.mission = std::move(mission);
   return out;
 }
@@ -216,6 +216,16 @@ Plan make_plan(const Campaign& c, const fs::path& karst) {
     plan.contestants.push_back(planned(who, resolve(c, who, c.caves.front(), karst), karst));
   for (std::size_t i = 1; i < c.caves.size(); ++i) resolve(c, c.contestants.front(), c.caves[i], karst);
   plan.horizon_s = horizon_of(plan.contestants);
+  return plan;
+}
+
+Plan with_present_files(Plan plan, const fs::path& karst) {
+  for (PlannedCave& c : plan.caves) c = planned(CaveSpec{c.name, c.file, c.start});
+  for (PlannedContestant& c : plan.contestants) {
+    const std::string karst_version = c.binary_version.substr(0, c.binary_version.find('+'));
+    c.binary_version = binary_version(karst, c.mission.get("vehicle", ""), karst_version,
+                                      plugin_file(c.policy, c.plugin, karst));
+  }
   return plan;
 }
 

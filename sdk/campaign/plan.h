@@ -39,6 +39,9 @@ struct Plan {
 /// is wrong with it.
 Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
 
+/// The same with the hashes of the caves and binaries as they are now. Throws core::InputError if one is gone.
+Plan with_present_files(Plan plan, const std::filesystem::path& karst);
+
 /// As the store keeps it: INFO, and back.
 std::string definition_of(const Plan& plan);
 Plan plan_of(const std::string& definition, const std::string& source);

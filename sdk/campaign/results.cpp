@@ -77,13 +77,16 @@ std::vector<TrialExtras> read_extras(const fs::path& folder_or_file) {
   const OpenStore store = open_to_read(file);
   std::vector<TrialExtras> all;
   Statement s(file, store.get(),
-              "SELECT binary_version, mission_hash, machine, wall_s, simulated_s, decide_mean_ms,"
-              " decide_max_ms, plan_mean_ms, plan_max_ms FROM trial LEFT JOIN timing ON timing.trial = trial.id"
+              "SELECT binary_version, mission_hash, machine, trial_s, wall_s, simulated_s, decide_mean_ms,"
+              " decide_p99_ms, decide_max_ms, plan_mean_ms, plan_p99_ms, plan_max_ms"
+              " FROM trial LEFT JOIN timing ON timing.trial = trial.id"
               " ORDER BY trial.contestant, trial.cave, trial.seed");
-  while (s.step())
-    all.push_back({s.text(0),
-                   s.text(1),
-                   {s.text(2), s.real(3), s.real(4), s.real(5), s.real(6), s.real(7), s.real(8)}});
+  while (s.step()) {
+    const double wall_s = s.real(4), simulated_s = s.real(5);
+    const evaluation::WallClock flight{wall_s,    simulated_s, simulated_s / wall_s, s.real(6), s.real(7),
+                                       s.real(8), s.real(9),   s.real(10),           s.real(11)};
+    all.push_back({s.text(0), s.text(1), {s.text(2), s.real(3), flight}});
+  }
   return all;
 }
 

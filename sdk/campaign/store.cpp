@@ -129,9 +129,11 @@ void Store::add(const StoredTrial& trial) {
   for (const CurvePoint& p : r.curve)
     point.bind(1, id).bind(2, p.time_s).bind(3, p.explored_m3).bind(4, p.coverage).run();
   const TrialTiming& t = trial.timing;
-  Statement timing(file_, db_.get(), "INSERT OR REPLACE INTO timing VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
-  timing.bind(1, id).bind(2, t.machine).bind(3, t.wall_s).bind(4, t.simulated_s).bind(5, t.decide_mean_ms);
-  timing.bind(6, t.decide_max_ms).bind(7, t.plan_mean_ms).bind(8, t.plan_max_ms).run();
+  const evaluation::WallClock& f = t.flight;
+  Statement timing(file_, db_.get(), "INSERT OR REPLACE INTO timing VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)");
+  timing.bind(1, id).bind(2, t.machine).bind(3, t.trial_s).bind(4, f.wall_s).bind(5, f.simulated_s);
+  timing.bind(6, f.decide_mean_ms).bind(7, f.decide_p99_ms).bind(8, f.decide_max_ms);
+  timing.bind(9, f.plan_mean_ms).bind(10, f.plan_p99_ms).bind(11, f.plan_max_ms).run();
   transaction.commit();
 }
 

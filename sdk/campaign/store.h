@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sdk/campaign/results.h"
+#include "sdk/evaluation/wall_clock.h"
 
 struct sqlite3;
 
@@ -31,9 +32,8 @@ struct StoreHead {
 /// What no two flights of a trial share.
 struct TrialTiming {
   std::string machine;
-  double wall_s = 0, simulated_s = 0;           // NaN: not known
-  double decide_mean_ms = 0, decide_max_ms = 0;  // of the policy's decisions
-  double plan_mean_ms = 0, plan_max_ms = 0;      // of planning to the goals chosen
+  double trial_s = 0;  // of the whole process: loading, flight, evaluation
+  evaluation::WallClock flight{};
 };
 
 struct StoredTrial {
@@ -82,7 +82,7 @@ std::filesystem::path store_file(const std::filesystem::path& folder_or_file);
 /// Everything but timing, while a campaign runs as well as after. Takes a campaign's folder or its file.
 CampaignResults read_results(const std::filesystem::path& folder_or_file);
 
-/// A trial with all the store holds of it, in the order of the results: for exports.
+/// What exports want beside the results, in the order of their trials.
 struct TrialExtras {
   std::string binary_version, mission_hash;
   TrialTiming timing;

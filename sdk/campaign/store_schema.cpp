@@ -71,8 +71,9 @@ std::string schema_sql() {
          ", UNIQUE(contestant, cave, seed));"
          "CREATE TABLE curve(trial INTEGER NOT NULL REFERENCES trial, time_s REAL NOT NULL, explored_m3 REAL,"
          " coverage REAL, PRIMARY KEY(trial, time_s)) WITHOUT ROWID;"
-         "CREATE TABLE timing(trial INTEGER PRIMARY KEY REFERENCES trial, machine TEXT NOT NULL, wall_s REAL,"
-         " simulated_s REAL, decide_mean_ms REAL, decide_max_ms REAL, plan_mean_ms REAL, plan_max_ms REAL);"
+         "CREATE TABLE timing(trial INTEGER PRIMARY KEY REFERENCES trial, machine TEXT NOT NULL, trial_s REAL,"
+         " wall_s REAL, simulated_s REAL, decide_mean_ms REAL, decide_p99_ms REAL, decide_max_ms REAL,"
+         " plan_mean_ms REAL, plan_p99_ms REAL, plan_max_ms REAL);"
          "CREATE VIEW result AS SELECT contestant.name AS contestant, cave.name AS cave, trial.seed,"
          " trial.status, trial.outcome, trial.reason" +
          figure_columns("trial.", "") +

@@ -98,13 +98,15 @@ void add_report_command(CLI::App& app) {
       "Evaluate a run directory again and rewrite its metrics.json and report.html; also for a run that was "
       "cut short.\n\n  karst report runs/demo");
   auto run = std::make_shared<std::string>();
+  auto no_report = std::make_shared<bool>(false);
   report->add_option("run", *run, "run directory")->required();
-  report->callback([run] {
+  report->add_flag("--no-report", *no_report, "metrics only, no report.html");
+  report->callback([run, no_report] {
     if (!fs::exists(fs::path(*run) / "mission.info"))
       throw core::InputError(*run, "", "no run directory: it holds no mission.info");
     const auto info = core::read_info((fs::path(*run) / "mission.info").string());
-    finish_run(*run, info.get("cave.file", ""), info.get("cave.start", ""), true);
-    std::printf("%s\n", (fs::path(*run) / "report.html").c_str());
+    finish_run(*run, info.get("cave.file", ""), info.get("cave.start", ""), !*no_report);
+    std::printf("%s\n", (fs::path(*run) / (*no_report ? "metrics.json" : "report.html")).c_str());
   });
 }
 
