@@ -19,6 +19,7 @@
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/campaign/slurm.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/campaign_page.h"
 #include "sdk/tools/campaign_progress.h"
 #include "sdk/tools/results_text.h"
 
@@ -143,8 +144,9 @@ int compare(const CompareArguments& args) {
   }
   const campaign::CampaignResults results = campaign::read_results(options.folder);
   print_results(results, args.metric);
-  std::printf("Look next at:\n  karst results %s --csv results.csv   every trial in a line\n",
-              options.folder.c_str());
+  std::printf("Look next at:\n  %s   the report\n",
+              write_campaign_page(options.folder, args.metric).c_str());
+  std::printf("  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
   std::printf("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
   return 0;
 }
