@@ -12,7 +12,7 @@ namespace karst::selection {
 
 struct FreeSpaceOptions {
   double resolution_m = 0.2;  // of what is read from a mesh
-  double coarse_m = 0.4;      // edge of the cells that are worked with; a map's cells if they are larger
+  double coarse_m = 0.4;      // edge of the cells that are worked with; more in large caves
   double clearance_m = 0.6;   // least distance to rock where a vehicle can fly, as in evaluation::Reachable
 };
 
