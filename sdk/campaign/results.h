@@ -16,6 +16,7 @@ struct ContestantEntry {
 struct CaveEntry {
   std::string name, file, start;
   std::string description;  // JSON object of sdk/selection's figures; empty if it was not described
+  std::string hash;         // SHA-256 of the mesh's bytes
 };
 
 struct CurvePoint {

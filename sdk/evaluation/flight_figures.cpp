@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sdk/evaluation/depth.h"
 #include "sdk/evaluation/trajectory_error.h"
 
 namespace karst::evaluation {
@@ -13,6 +14,7 @@ using core::Vec3;
 
 constexpr double kStandingSpeed_mps = 0.2;
 constexpr double kProgress_m = 0.5;
+constexpr double kAtStart_m = 1;  // the mission's own bound for a landing at the start
 
 bool within(const RunRecord& run, double t_s, std::initializer_list<const char*> names) {
   for (const Phase& p : run.phases)
@@ -121,6 +123,31 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
   return rms.value();
 }
 
+/// What the battery's fraction lost during the flight, of the capacity the settings give.
+std::optional<double> energy_wh(const RunRecord& run, double begin_s, double end_s) {
+  const auto* t_s = run.telemetry.times();
+  const auto* fraction = run.telemetry.column("battery_fraction");
+  const auto hover_w = run.number("simulator.hover_power"), minutes = run.number("simulator.battery_minutes");
+  if (!t_s || !fraction || !hover_w || !minutes) return std::nullopt;
+  std::optional<double> first, last;
+  for (std::size_t i = 0; i < t_s->size(); ++i)
+    if ((*t_s)[i] >= begin_s && (*t_s)[i] <= end_s && std::isfinite((*fraction)[i])) {
+      if (!first) first = (*fraction)[i];
+      last = (*fraction)[i];
+    }
+  if (!first) return std::nullopt;
+  return (*first - *last) * *hover_w * *minutes / 60;
+}
+
+void farthest(const std::vector<StampedPose>& poses, double begin_s, double end_s, FlightFigures& f) {
+  std::vector<Vec3> positions;
+  for (const StampedPose& p : poses)
+    if (p.t_s >= begin_s && p.t_s <= end_s) positions.push_back(p.T_world_body.position);
+  if (positions.empty()) return;
+  f.depth_m = depth_along_way(positions);
+  f.vertical_reach_m = vertical_reach(positions);
+}
+
 void estimate_errors(const RunRecord& run, double begin_s, double end_s, FlightFigures& f) {
   const std::vector<PosePair> pairs = paired_with_truth(run.truth, run.estimate, begin_s, end_s);
   f.heading_error_rad = heading_rms_rad(pairs);
@@ -136,6 +163,20 @@ std::optional<double> last_finite(const std::vector<double>* column) {
   const auto last = std::find_if(column->rbegin(), column->rend(), [](double v) { return std::isfinite(v); });
   if (last == column->rend()) return std::nullopt;
   return *last;
+}
+
+bool completed(const RunRecord& run, std::optional<double> landing_error_m) {
+  const nlohmann::json* outcome = run.last_event("outcome");
+  if (!outcome || event_text(*outcome, "outcome") != "landed") return false;
+  if (landing_error_m.value_or(0) > kAtStart_m) return false;
+  double explored_until_s = -1;
+  for (const Phase& p : run.phases)
+    if (p.name == "explore") explored_until_s = p.end_s;
+  if (explored_until_s < 0) return false;
+  return std::none_of(run.events.begin(), run.events.end(), [&](const nlohmann::json& e) {
+    const std::string action = e["kind"] == "safety" ? event_text(e, "action") : "";
+    return (action == "home" || action == "land") && event_number(e, "t").value_or(0) <= explored_until_s;
+  });
 }
 
 double flight_begin_s(const RunRecord& run) {
@@ -164,6 +205,8 @@ FlightFigures flight_figures(const RunRecord& run) {
     f.landing_error_m =
         (run.truth.back().T_world_body.position - run.truth.front().T_world_body.position).head<2>().norm();
   f.battery_left = last_finite(run.telemetry.column("battery_fraction"));
+  f.energy_wh = energy_wh(run, begin_s, end_s);
+  farthest(poses, begin_s, end_s, f);
   estimate_errors(run, begin_s, end_s, f);
   f.tracking_rms_m = tracking_rms_m(run);
   return f;

@@ -8,10 +8,14 @@ namespace karst::evaluation {
 
 enum class Better { more, less, neither };
 
+/// What a failed trial counts as where its record does not tell.
+enum class IfFailed { unknown, nothing, horizon };  // left out of comparisons; 0; the campaign's horizon
+
 struct MetricDefinition {
   std::string_view name;  // also the key in metrics.json and the column of the store
   std::string_view unit;  // "" for shares and counts
   Better better;
+  IfFailed if_failed;
   std::string_view meaning;  // one sentence
 };
 

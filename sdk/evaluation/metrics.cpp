@@ -1,11 +1,13 @@
 #include "sdk/evaluation/metrics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <set>
 
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap_io.h"
+#include "sdk/evaluation/coverage_curve.h"
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/map_error.h"
 #include "sdk/evaluation/whole_file.h"
@@ -51,11 +53,14 @@ struct Volume {
   std::optional<double> explored_m3, coverage;
 };
 
-/// Of the final map; without one, the telemetry's last value (which counts the same cells).
+/// Of the final map. A run cut short has none: then the telemetry's last volume, which counts the same cells,
+/// and as if all of it lay in R, which is more than there was by the part that lies outside.
 Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
   Volume volume;
   if (!map) {
     volume.explored_m3 = last_finite(run.telemetry.column("explored_m3"));
+    if (volume.explored_m3 && truth.reachable_volume_m3 && *truth.reachable_volume_m3 > 0)
+      volume.coverage = std::min(1.0, *volume.explored_m3 / *truth.reachable_volume_m3);
     return volume;
   }
   volume.explored_m3 = map->free_volume_m3();
@@ -69,17 +74,30 @@ Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& t
   return volume;
 }
 
-/// When the coverage first reached `share`. Only the free volume is recorded over time; the part of it that
-/// lies in R is taken to grow in proportion, and is exact at the end.
-std::optional<double> time_of_coverage(const RunRecord& run, const Volume& volume, double share) {
-  const auto* t_s = run.telemetry.times();
-  const auto* explored = run.telemetry.column("explored_m3");
-  const auto final_m3 = last_finite(explored);
-  if (!t_s || !volume.coverage || !final_m3 || *final_m3 <= 0) return std::nullopt;
-  for (std::size_t i = 0; i < t_s->size(); ++i)
-    if (*volume.coverage * (*explored)[i] / *final_m3 >= share)
-      return std::max(0.0, (*t_s)[i] - flight_begin_s(run));
-  return std::nullopt;
+/// Share of the surface whose cell, or one that shares a face with it, is occupied in the map: scans are off
+/// by centimetres, and a cell that rock only just enters is seldom hit.
+std::optional<double> surface_seen(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
+  if (truth.surface.empty()) return std::nullopt;
+  std::set<CellKey> grown;
+  if (!map)
+    for (const OccupiedSpan& s : run.growth)
+      if (s.until_ms == OccupiedSpan::kNever) grown.insert(s.key);
+  const auto occupied = [&](const CellKey& k) {
+    return map ? map->at(k) == Cell::occupied : grown.count(k) > 0;
+  };
+  const auto seen = [&](const CellKey& k) {
+    constexpr std::array<CellKey, 7> kNear{
+        {{}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+    return std::any_of(kNear.begin(), kNear.end(), [&](const CellKey& d) { return occupied(k + d); });
+  };
+  const auto count = std::count_if(truth.surface.begin(), truth.surface.end(), seen);
+  return static_cast<double>(count) / static_cast<double>(truth.surface.size());
+}
+
+std::optional<double> restricted(const std::vector<CoveragePoint>& curve, double share,
+                                 std::optional<double> horizon) {
+  if (!horizon || curve.empty() || std::isnan(curve.back().coverage)) return std::nullopt;
+  return std::min(time_of_coverage(curve, share).value_or(*horizon), *horizon);
 }
 
 ErrorStatistics map_error(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
@@ -106,6 +124,8 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   const Volume volume = volume_of(run, map, truth);
   const ErrorStatistics error = map_error(run, map, truth);
   const FlightFigures f = flight_figures(run);
+  const std::vector<CoveragePoint> curve = coverage_curve(run, volume.coverage);
+  const std::optional<double> horizon = horizon_s(run);
   const bool has_events = !run.events.empty();
 
   ordered_json m;
@@ -119,6 +139,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   }
   m["outcome"] = outcome;
   m["reason"] = end ? event_text(*end, "reason") : "the record ends without an outcome";
+  m["completed"] = has_events ? ordered_json(completed(run, f.landing_error_m)) : ordered_json(nullptr);
   m["contacts"] = f.contacts ? ordered_json(*f.contacts) : ordered_json(nullptr);
   m["flight_time_s"] = value(f.flight_time_s);
   m["exploration_time_s"] = value(f.exploration_time_s);
@@ -127,12 +148,21 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["exploring_speed_mps"] = value(f.exploring_speed_mps);
   m["standing_share"] = value(f.standing_share);
   m["longest_stall_s"] = value(f.longest_stall_s);
+  m["energy_wh"] = value(f.energy_wh);
   m["explored_volume_m3"] = value(volume.explored_m3);
   m["reachable_volume_m3"] = value(truth.reachable_volume_m3);
   m["coverage"] = value(volume.coverage);
-  m["t50_s"] = value(time_of_coverage(run, volume, 0.50));
-  m["t90_s"] = value(time_of_coverage(run, volume, 0.90));
-  m["t95_s"] = value(time_of_coverage(run, volume, 0.95));
+  m["horizon_s"] = value(horizon);
+  m["coverage_auc"] = value(horizon ? mean_coverage(curve, *horizon) : std::nullopt);
+  m["t50_s"] = value(time_of_coverage(curve, 0.50));
+  m["t90_s"] = value(time_of_coverage(curve, 0.90));
+  m["t95_s"] = value(time_of_coverage(curve, 0.95));
+  m["restricted_t50_s"] = value(restricted(curve, 0.50, horizon));
+  m["restricted_t90_s"] = value(restricted(curve, 0.90, horizon));
+  m["restricted_t95_s"] = value(restricted(curve, 0.95, horizon));
+  m["surface_seen"] = value(surface_seen(run, map, truth));
+  m["depth_m"] = value(f.depth_m);
+  m["vertical_reach_m"] = value(f.vertical_reach_m);
   m["min_clearance_m"] = value(f.min_clearance_m);
   m["landing_error_m"] = value(outcome == "landed" ? f.landing_error_m : std::nullopt);
   m["battery_left"] = value(f.battery_left);
@@ -144,6 +174,8 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["goals_accepted"] = has_events ? ordered_json(count_goals(run, "accepted")) : ordered_json(nullptr);
   m["goals_rejected"] = has_events ? ordered_json(count_goals(run, "rejected")) : ordered_json(nullptr);
   m["overruns"] = has_events ? ordered_json(count_events(run, "overrun")) : ordered_json(nullptr);
+  for (const char* key : {"objects_found", "objects_reported", "data_at_base_share"})
+    m[key] = nullptr;  // no mission has objects to look for, or a link to its base, yet
   return m;
 }
 

@@ -16,6 +16,7 @@ struct Truth {
   std::optional<double> reachable_volume_m3;                  // |R|
   std::function<bool(const core::Vec3&)> is_reachable;        // whether a point of the world lies in R
   std::function<double(const core::Vec3&)> distance_to_rock;  // metres to the nearest rock surface
+  std::vector<core::CellKey> surface;                         // cells of rock that bound R, on the map's grid
 };
 
 /// Every name is there, null where the value is not known. Depends on the record and the truth only, and

@@ -40,7 +40,7 @@ void catch_signals() {
 }
 
 struct FlyArguments {
-  std::string mission_file, out;
+  std::string mission_file, out, check;
   MissionOverrides overrides;
   std::vector<std::string> plugins;
   std::optional<std::int64_t> seed;
@@ -56,8 +56,7 @@ fs::path default_run_dir(const Mission& m) {
   return dir;
 }
 
-void write_mission_info(const fs::path& run_dir, const boost::property_tree::ptree& mission) {
-  const fs::path file = run_dir / "mission.info";
+void write_mission(const fs::path& file, const boost::property_tree::ptree& mission) {
   try {
     boost::property_tree::write_info(file.string(), mission);
   } catch (const boost::property_tree::info_parser_error& e) {
@@ -88,6 +87,31 @@ void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool 
   std::printf("  %s   all figures\n", (run_dir / "metrics.json").c_str());
 }
 
+/// The mission's vehicle at the cave's start, which records in `run_dir` unless that is "".
+std::unique_ptr<core::Vehicle> make_vehicle(const Mission& mission, const std::string& run_dir) {
+  core::VehicleSetup setup;
+  setup.cave = mission.cave;
+  setup.start = mission.start;
+  setup.run_dir = run_dir;
+  setup.climb_m = mission.core.mission.takeoff_height_m;
+  setup.seed = static_cast<std::uint64_t>(mission.seed);
+  std::unique_ptr<core::Vehicle> vehicle = mission.vehicle_plugin->create(setup);
+  core::check(mission.core, vehicle->description());
+  return vehicle;
+}
+
+boost::property_tree::ptree as_flown(const Mission& mission, const host::HostedPolicy& policy,
+                                     const core::Vehicle& vehicle) {
+  return recorded_mission(mission, policy.parameters(),
+                          {policy.version(), vehicle.description().implementation});
+}
+
+/// Everything that a flight would look at before its take-off, and nothing of a flight.
+int check(const std::string& file, const Mission& mission, const host::HostedPolicy& policy) {
+  write_mission(file, as_flown(mission, policy, *make_vehicle(mission, "")));
+  return 0;
+}
+
 int fly(const FlyArguments& args) {
   if (args.keys) {
     std::fputs(mission_help("simulator").c_str(), stdout);
@@ -105,22 +129,15 @@ int fly(const FlyArguments& args) {
   choice.plugin_files = args.plugins;
   choice.parameters = mission.policy_parameters;
   choice.source = mission.file;
-  choice.seed = static_cast<std::uint64_t>(mission.seed);
+  choice.seed = policy_seed(mission);
   const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(choice);
+  if (!args.check.empty()) return check(args.check, mission, *policy);
   const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
-  core::VehicleSetup setup;
-  setup.cave = mission.cave;
-  setup.start = mission.start;
-  setup.run_dir = run_dir.string();
-  setup.climb_m = mission.core.mission.takeoff_height_m;
-  setup.seed = static_cast<std::uint64_t>(mission.seed);
   catch_signals();  // from here on there is something to tidy up
   RunClaim claim(run_dir);
   core::Recorder recorder(run_dir);
-  const std::unique_ptr<core::Vehicle> vehicle = mission.vehicle_plugin->create(setup);
-  core::check(mission.core, vehicle->description());
-  const RecordedFacts facts{policy->version(), vehicle->description().implementation};
-  write_mission_info(run_dir, recorded_mission(mission, policy->parameters(), facts));
+  const std::unique_ptr<core::Vehicle> vehicle = make_vehicle(mission, run_dir.string());
+  write_mission(run_dir / "mission.info", as_flown(mission, *policy, *vehicle));
   if (interrupted) throw core::InputError("karst fly", "", "stopped by the operator before take-off");
   claim.keep();
 
@@ -193,6 +210,11 @@ void add_fly_command(CLI::App& app) {
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->quiet, "no status line");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
+  fly_app
+      ->add_option("--check", args->check,
+                   "do not fly: look at everything that can be wrong and write the mission as resolved to "
+                   "this file")
+      ->check(not_empty());
   fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
   fly_app->callback([args] {
     if (const int code = fly(*args); code != 0) throw CLI::RuntimeError(code);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
 #include "sdk/tools/install_place.h"
 
@@ -29,6 +30,8 @@ void describe_mission(OptionTable& t, Mission& m) {
   });
   t.under("policy", [&m](OptionTable& p) {
     p.add("name", m.policy, {}, "the exploration policy; `karst policy list` shows what there is");
+    p.add("stream", m.policy_stream, 0, 9e15,
+          "gives the policy other random numbers, and nothing else: for comparing a policy with itself");
   });
   describe(t, m.core);
 }
@@ -117,6 +120,12 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   }
   m.resolved = table.resolved();
   return m;
+}
+
+std::uint64_t policy_seed(const Mission& m) {
+  const auto seed = static_cast<std::uint64_t>(m.seed);
+  if (m.policy_stream == 0) return seed;
+  return core::Random::stream(seed, "policy stream " + std::to_string(m.policy_stream)).bits();
 }
 
 pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters, const RecordedFacts& facts) {

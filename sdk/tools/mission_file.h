@@ -25,12 +25,16 @@ struct MissionOverrides {
 struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
-  std::int64_t seed = 1;
+  std::int64_t seed = 1, policy_stream = 0;
   core::CoreOptions core;
   core::VehiclePlugin* vehicle_plugin = nullptr;
   boost::property_tree::ptree policy_parameters;
   boost::property_tree::ptree resolved;  // every setting but the policy's parameters
 };
+
+/// The seed of the policy's own random stream: the mission's, or with another `policy.stream` another one,
+/// while noise, gusts and faults stay as they are.
+std::uint64_t policy_seed(const Mission& mission);
 
 /// What a run records besides the settings it was flown with: facts, which nobody sets.
 struct RecordedFacts {

@@ -10,8 +10,8 @@
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/metrics.h"
-#include "sdk/evaluation/reachable.h"
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/surface.h"
 
 namespace karst::tools {
 namespace {
@@ -44,6 +44,7 @@ evaluation::Truth truth_of(const std::string& cave_file, const std::string& star
     const Eigen::Vector3d k = (p / resolution_m).array().floor();
     return reachable->contains({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())});
   };
+  truth.surface = evaluation::surface_cells(*reachable);
   truth.distance_to_rock = [cave](const core::Vec3& p) {
     return cave->scene.distance_to_rock(p, kRockSearch_m);
   };
@@ -57,8 +58,9 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   const auto before = nlohmann::ordered_json::parse(in, nullptr, false);
   if (!before.is_object()) return;
   std::string kept;
-  for (const char* key : {"reachable_volume_m3", "coverage", "t50_s", "t90_s", "t95_s", "map_error_mean_m",
-                          "map_error_std_m"}) {
+  for (const char* key :
+       {"reachable_volume_m3", "coverage", "coverage_auc", "t50_s", "t90_s", "t95_s", "restricted_t50_s",
+        "restricted_t90_s", "restricted_t95_s", "surface_seen", "map_error_mean_m", "map_error_std_m"}) {
     const auto value = before.find(key);
     if (value == before.end() || !value->is_number() || !metrics[key].is_null()) continue;
     metrics[key] = *value;
@@ -96,13 +98,15 @@ void add_report_command(CLI::App& app) {
       "Evaluate a run directory again and rewrite its metrics.json and report.html; also for a run that was "
       "cut short.\n\n  karst report runs/demo");
   auto run = std::make_shared<std::string>();
+  auto no_report = std::make_shared<bool>(false);
   report->add_option("run", *run, "run directory")->required();
-  report->callback([run] {
+  report->add_flag("--no-report", *no_report, "metrics only, no report.html");
+  report->callback([run, no_report] {
     if (!fs::exists(fs::path(*run) / "mission.info"))
       throw core::InputError(*run, "", "no run directory: it holds no mission.info");
     const auto info = core::read_info((fs::path(*run) / "mission.info").string());
-    finish_run(*run, info.get("cave.file", ""), info.get("cave.start", ""), true);
-    std::printf("%s\n", (fs::path(*run) / "report.html").c_str());
+    finish_run(*run, info.get("cave.file", ""), info.get("cave.start", ""), !*no_report);
+    std::printf("%s\n", (fs::path(*run) / (*no_report ? "metrics.json" : "report.html")).c_str());
   });
 }
 

@@ -1,0 +1,140 @@
+#include "sdk/campaign/run_campaign.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "core_stack/common/error.h"
+#include "sdk/campaign/collect.h"
+#include "sdk/campaign/executor.h"
+
+namespace karst::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+constexpr double kEvaluationLimit_s = 1800;
+
+std::vector<std::string> dropped(Keep keep) {
+  std::vector<std::string> files;
+  if (keep == Keep::all) return files;
+  files = {"map.ot", "map.ply"};
+  if (keep == Keep::figures)
+    files.insert(files.end(), {"map.bt", "map_growth.bin", "ground_truth.tum", "trajectory.tum", "telemetry.csv",
+                               "localization.csv", "events.jsonl", "truth.csv", "truth_events.jsonl", "decisions.csv"});
+  return files;
+}
+
+Plan plan_for(const std::optional<Campaign>& campaign, const RunOptions& options) {
+  if (campaign) return make_plan(*campaign, options.karst);
+  const fs::path file = options.folder / "campaign.sqlite";
+  return with_present_files(plan_of(Store::open(file).head().definition, file.string()), options.karst);
+}
+
+/// Seed by seed, so that comparisons are whole early and what is left takes as long as what was.
+std::vector<TrialKey> in_flying_order(const Plan& plan) {
+  std::vector<TrialKey> order;
+  for (const std::int64_t seed : plan.seeds)
+    for (std::size_t c = 0; c < plan.caves.size(); ++c)
+      for (std::size_t k = 0; k < plan.contestants.size(); ++k) order.emplace_back(k, c, seed);
+  return order;
+}
+
+std::string identity_of(const Plan& plan, const TrialKey& trial) {
+  return mission_hash(plan, trial) + " " + plan.contestants.at(std::get<0>(trial)).binary_version;
+}
+
+/// Whether this very trial was flown, but its campaign died before it could be stored.
+bool is_flown(const Plan& plan, const TrialKey& trial, const fs::path& folder) {
+  try {
+    return read_note(folder / run_dir_of(plan, trial)).identity == identity_of(plan, trial);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& options) {
+  const auto& [contestant, cave, seed] = trial;
+  TrialJob job{{options.karst.string(), "fly", (options.folder / mission_file(plan, trial)).string(), "--seed",
+                std::to_string(seed), "--threads", "1", "--quiet", "--no-report"},
+               options.folder / run_dir_of(plan, trial),
+               identity_of(plan, trial)};
+  if (const std::string& plugin = plan.contestants.at(contestant).plugin; !plugin.empty())
+    job.command.insert(job.command.end(), {"--plugin", plugin});
+  return job;
+}
+
+/// The record of a trial that crashed tells what it had found until then.
+void evaluate_record(const fs::path& karst, const fs::path& folder) {
+  if (fs::exists(folder / "mission.info") && !fs::exists(folder / "metrics.json"))
+    run_process({karst.string(), "report", folder.string(), "--no-report"}, kEvaluationLimit_s);
+}
+
+}  // namespace
+
+bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& given) {
+  RunOptions options = given;
+  options.folder = fs::absolute(options.folder).lexically_normal();
+  if (!campaign && !fs::exists(options.folder / "campaign.sqlite"))
+    throw InputError(options.folder.string(), "", "holds no campaign");
+  const FolderLock lock(options.folder);
+  const Plan plan = plan_for(campaign, options);
+  Store store = open_for(plan, options.folder, options.any_binary);
+  write_missions(plan, options.folder);
+  std::error_code ignored;
+  fs::remove_all(options.folder / "flying", ignored);
+
+  const std::set<TrialKey> stored = store.finished();
+  const std::vector<TrialKey> order = in_flying_order(plan);
+  Progress progress;
+  progress.trials = order.size();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto tell = [&](const StoredTrial* trial) {
+    progress.last = trial;
+    progress.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (options.progress) options.progress(plan, progress);
+  };
+  const auto take = [&](const TrialKey& key) {
+    const StoredTrial trial = collect(plan, key, options.folder);
+    store.add(trial);
+    for (const std::string& file : dropped(options.keep))
+      fs::remove(options.folder / trial.result.run_dir / file, ignored);
+    ++progress.finished;
+    progress.failed += trial.result.failed;
+    return trial;
+  };
+
+  std::vector<TrialKey> missing;
+  std::vector<TrialJob> jobs;
+  for (const TrialKey& key : order) {
+    if (stored.contains(key)) {
+      ++progress.finished;
+    } else if (is_flown(plan, key, options.folder)) {
+      take(key);
+    } else {
+      missing.push_back(key);
+      jobs.push_back(job_of(plan, key, options));
+    }
+  }
+  tell(nullptr);
+
+  ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
+  how.finish = [&](const fs::path& folder) { evaluate_record(options.karst, folder); };
+  ExecutorEvents events;
+  events.ended = [&](std::size_t job, const ProcessEnd&) {
+    const StoredTrial trial = take(missing[job]);
+    ++progress.here;
+    if (trial.timing.flight.simulated_s > 0) progress.simulated_s += trial.timing.flight.simulated_s;
+    tell(&trial);
+  };
+  events.tick = [&](std::size_t flying) {
+    progress.flying = flying;
+    tell(nullptr);
+  };
+  const bool done = run_trials(jobs, how, events);
+  fs::remove_all(options.folder / "flying", ignored);
+  return done;
+}
+
+}  // namespace karst::campaign

@@ -1,0 +1,101 @@
+#include "sdk/tools/campaign_progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "sdk/evaluation/metric_definitions.h"
+
+namespace karst::tools {
+namespace {
+
+using campaign::Plan;
+using campaign::Progress;
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 256> line;
+  std::snprintf(line.data(), line.size(), format, values...);
+  return line.data();
+}
+
+std::string duration(double s) {
+  const long all = std::lround(s);
+  if (all < 60) return text("%ld s", all);
+  if (all < 3600) return text("%ld min", (all + 30) / 60);
+  return text("%ld h %02ld min", all / 3600, all % 3600 / 60);
+}
+
+/// From the pace since the start.
+std::string time_left(const Progress& p) {
+  if (p.here == 0) return "time left unknown";
+  return duration(p.wall_s / static_cast<double>(p.here) * static_cast<double>(p.trials - p.finished)) + " left";
+}
+
+std::string bar(const Progress& p) {
+  constexpr std::size_t kWidth = 24;
+  const std::size_t full = p.trials ? kWidth * p.finished / p.trials : kWidth;
+  return "[" + std::string(full, '#') + std::string(kWidth - full, '-') + "]";
+}
+
+double coverage_of(const campaign::StoredTrial& trial) {
+  return trial.result.figures[static_cast<std::size_t>(evaluation::metric_index("coverage"))];
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+CampaignProgress::CampaignProgress(bool quiet, std::size_t jobs)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), jobs_(jobs) {}
+
+CampaignProgress::~CampaignProgress() {
+  if (drawn_) std::fputs("\n", stderr);
+}
+
+void CampaignProgress::show(const Plan& plan, const Progress& p) {
+  tallies_.resize(plan.contestants.size());
+  if (quiet_) return;
+  if (!begun_)
+    std::fprintf(stderr, "%s: %zu contestants x %zu caves x %zu seeds = %zu trials, %zu of them flown already\n",
+                 plan.name.c_str(), plan.contestants.size(), plan.caves.size(), plan.seeds.size(), p.trials,
+                 p.finished);
+  begun_ = true;
+  if (p.last) {
+    Tally& tally = tallies_[p.last->result.contestant];
+    const double coverage = coverage_of(*p.last);  // a trial that failed and says nothing found nothing
+    tally.coverage += std::isfinite(coverage) ? coverage : 0;
+    ++tally.trials;
+  }
+  const std::string pace =
+      p.simulated_s > 0 ? text(" · %.1f flight s a second", p.simulated_s / p.wall_s) : "";
+  if (!terminal_) {
+    if (!p.last) return;
+    const campaign::TrialResult& r = p.last->result;
+    std::fprintf(stderr, "%zu/%zu · %s · %s, %s, seed %lld: %s, coverage %.1f %%%s%s\n", p.finished, p.trials,
+                 time_left(p).c_str(), plan.contestants[r.contestant].name.c_str(), plan.caves[r.cave].name.c_str(),
+                 static_cast<long long>(r.seed), r.outcome.c_str(), 100 * coverage_of(*p.last),
+                 r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
+    return;
+  }
+  std::string found = "coverage so far:";
+  for (std::size_t i = 0; i < tallies_.size(); ++i)
+    if (tallies_[i].trials)
+      found += text(" %s %.1f %%", plan.contestants[i].name.c_str(), 100 * tallies_[i].coverage / tallies_[i].trials);
+  std::string line = bar(p) + text(" %zu/%zu · %s", p.finished, p.trials, time_left(p).c_str()) + pace +
+                     (p.failed ? text(" · %zu failed", p.failed) : "");
+  const std::size_t width = terminal_width();
+  std::fprintf(stderr, "%s\r\033[K%s\n\033[K%s", drawn_ ? "\033[A" : "", line.substr(0, width).c_str(),
+               found.substr(0, width - 1).c_str());
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+}  // namespace karst::tools

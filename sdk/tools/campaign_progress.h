@@ -1,0 +1,30 @@
+// What a person sees while a campaign flies, on standard error: on a terminal two lines that renew themselves,
+// elsewhere a line for each trial that has ended.
+#pragma once
+#include <vector>
+
+#include "sdk/campaign/results.h"
+#include "sdk/campaign/run_campaign.h"
+
+namespace karst::tools {
+
+class CampaignProgress {
+ public:
+  CampaignProgress(bool quiet, std::size_t jobs);
+  ~CampaignProgress();
+  CampaignProgress(const CampaignProgress&) = delete;
+  CampaignProgress& operator=(const CampaignProgress&) = delete;
+  void show(const campaign::Plan& plan, const campaign::Progress& progress);
+
+ private:
+  struct Tally {
+    double coverage = 0;
+    int trials = 0;
+  };
+  bool quiet_, terminal_;
+  std::size_t jobs_;
+  bool begun_ = false, drawn_ = false;
+  std::vector<Tally> tallies_;
+};
+
+}  // namespace karst::tools
