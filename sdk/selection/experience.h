@@ -41,16 +41,23 @@ struct Experience {
   }
 };
 
+/// The metrics an experience keeps: what flights are compared by, and what else one wants to know beforehand.
+const std::vector<std::string>& learned_metrics();
+
 /// Caves that were not described, and those in which nothing flew, are left out. Contestants with settings of
 /// their own beside the parameters are left out as well: a selection names a policy, not another vehicle.
 /// Failed trials count as campaign::figure_of says. Throws InputError naming `source` if nothing is left.
 Experience learn(const campaign::CampaignResults& results, const std::string& source);
 
 /// Both together; caves of one name and figures, and contestants of one policy and parameters, are one.
-/// Throws InputError if a name stands for two different caves or contestants, or both hold results of the
-/// same pair.
+/// Throws InputError if one name stands for two caves or two contestants, or if both hold flights of the same
+/// pair.
 Experience merged(const Experience& a, const Experience& b, const std::string& source);
 
+/// Without one cave: for leave-one-out.
+Experience without_cave(const Experience& experience, std::size_t cave);
+
+/// Throws InputError naming file, place and reason.
 Experience read_experience(const std::string& file);
 std::string to_info(const Experience& experience);
 
