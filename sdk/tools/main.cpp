@@ -4,6 +4,7 @@
 
 #include "core_stack/common/options.h"
 #include "sdk/tools/cave_command.h"
+#include "sdk/tools/compare_command.h"
 #include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/map_command.h"
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
       "karst: fly exploration policies through caves.\n\n"
       "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
       "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
+      "  karst compare CAMPAIGN.info                                    say which of several policies is better\n"
       "  karst policy list                                              see what can be flown\n"
       "  karst replay scans --out runs/replayed                         localize and map from recorded "
       "scans\n"
@@ -52,6 +54,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", KARST_VERSION);
   app.require_subcommand(1);
   karst::tools::add_fly_command(app);
+  karst::tools::add_compare_command(app);
+  karst::tools::add_results_command(app);
   karst::tools::add_policy_command(app);
   karst::tools::add_cave_command(app);
   karst::tools::add_report_command(app);

@@ -1,0 +1,219 @@
+#include "sdk/tools/compare_command.h"
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
+#include "sdk/campaign/campaign.h"
+#include "sdk/campaign/export.h"
+#include "sdk/campaign/run_campaign.h"
+#include "sdk/tools/arguments.h"
+#include "sdk/tools/campaign_progress.h"
+#include "sdk/tools/results_text.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using campaign::Campaign;
+using core::InputError;
+
+constexpr int kInterrupted = 130;  // as a shell has it for a program that Ctrl-C ended
+
+std::atomic<bool> interrupted{false};
+void on_signal(int) { interrupted = true; }
+
+struct CompareArguments {
+  std::vector<std::string> who, caves, settings, plugins;
+  std::string out, profile, mission, executor = "local", keep = "replay", metric = "coverage_auc";
+  std::string flight_time, trial_timeout;
+  std::int64_t seeds = 0;
+  std::size_t jobs = std::max(1u, std::thread::hardware_concurrency());
+  bool quiet = false, any_binary = false;
+};
+
+double seconds_of(const std::string& option, const std::string& text, double low, double high) {
+  double s = 0;
+  core::OptionTable table;
+  table.add(option, s, "s", low, high, "");
+  table.set("command line", option, text);
+  return s;
+}
+
+/// What the command line says against, or in place of, a campaign file.
+void apply(const CompareArguments& args, Campaign& c) {
+  if (!args.profile.empty()) c.profile = args.profile;
+  if (!args.mission.empty()) c.mission = args.mission;
+  if (!args.flight_time.empty()) c.flight_time_s = seconds_of("--time", args.flight_time, 10, 86400);
+  if (!args.trial_timeout.empty()) c.trial_timeout_s = seconds_of("--trial-timeout", args.trial_timeout, 1, 1e7);
+  if (args.seeds > 0) {
+    c.seeds.clear();
+    for (std::int64_t s = 1; s <= args.seeds; ++s) c.seeds.push_back(s);
+  }
+  for (const std::string& setting : args.settings) {
+    const auto equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw InputError("--set", setting, "expected key=value, such as motion.max_speed=1.5");
+    c.settings.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+}
+
+/// `karst compare A B --caves FILE... --seeds N`.
+Campaign from_words(const CompareArguments& args) {
+  Campaign c;
+  for (const std::string& who : args.who) c.contestants.push_back(campaign::parse_contestant(who));
+  for (campaign::ContestantSpec& who : c.contestants)
+    if (!args.plugins.empty()) who.plugin = args.plugins.front();
+  for (const std::string& cave : args.caves) c.caves.push_back(campaign::parse_cave(cave));
+  for (std::int64_t s = 1; s <= 10; ++s) c.seeds.push_back(s);
+  apply(args, c);
+  c.name.clear();
+  for (const campaign::ContestantSpec& who : c.contestants) c.name += (c.name.empty() ? "" : "-vs-") + who.policy;
+  if (c.name.size() > 60) c.name.resize(60);
+  campaign::complete(c);
+  return c;
+}
+
+Campaign from_file(const CompareArguments& args) {
+  Campaign c = campaign::read_campaign(args.who.front());
+  apply(args, c);
+  campaign::complete(c);
+  return c;
+}
+
+campaign::Keep keep_of(const std::string& text) {
+  if (text == "figures") return campaign::Keep::figures;
+  return text == "all" ? campaign::Keep::all : campaign::Keep::replay;
+}
+
+int compare(const CompareArguments& args) {
+  check_metric(args.metric);
+  std::optional<Campaign> c;
+  campaign::RunOptions options;
+  options.folder = args.out;
+  if (!args.caves.empty()) {
+    c = from_words(args);
+  } else if (args.who.size() != 1) {
+    throw InputError("karst compare", "", "policies to compare need --caves FILE...; see karst compare --help");
+  } else if (fs::is_directory(args.who.front())) {
+    options.folder = args.who.front();  // goes on with the campaign there
+  } else {
+    c = from_file(args);
+  }
+  if (options.folder.empty()) options.folder = fs::path("runs") / c->name;
+  options.karst = fs::read_symlink("/proc/self/exe");
+  options.executor = args.executor;
+  options.jobs = args.jobs;
+  options.keep = keep_of(args.keep);
+  options.any_binary = args.any_binary;
+  options.stop = &interrupted;
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
+  std::signal(SIGPIPE, SIG_IGN);
+
+  bool done = false;
+  {
+    CampaignProgress progress(args.quiet, args.jobs);
+    options.progress = [&](const campaign::Plan& plan, const campaign::Progress& p) { progress.show(plan, p); };
+    done = campaign::run_campaign(c, options);
+  }
+  if (!done) {
+    std::fprintf(stderr, "karst: stopped; karst compare %s goes on where it was\n", options.folder.c_str());
+    return kInterrupted;
+  }
+  const campaign::CampaignResults results = campaign::read_results(options.folder);
+  print_results(results, args.metric);
+  std::printf("Look next at:\n  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
+  std::printf("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
+  return 0;
+}
+
+void write_to(const std::string& file, const std::function<void(std::ostream&)>& write) {
+  if (file == "-") return write(std::cout);
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  write(out);
+  out.close();
+  if (!out) throw InputError(file, "", "cannot be written");
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app) {
+  auto args = std::make_shared<CompareArguments>();
+  CLI::App* compare_app = app.add_subcommand(
+      "compare",
+      "Fly policies through the same caves with the same seeds and say which is better, and how sure that "
+      "is.\n\n"
+      "  karst compare CAMPAIGN.info\n"
+      "  karst compare nearest_frontier highest_frontier --caves caves/*.info --seeds 30\n"
+      "  karst compare nearest_frontier nearest_frontier:max_distance=20m --caves maze.info --seeds 10\n"
+      "  karst compare runs/CAMPAIGN                             goes on with one that was stopped\n\n"
+      "Started again, it goes on where it was stopped or killed; more seeds and contestants may be "
+      "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");
+  compare_app->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves")
+      ->required()
+      ->check(not_empty());
+  compare_app->add_option("--caves", args->caves, "cave .info files")->check(not_empty());
+  compare_app->add_option("--seeds", args->seeds, "how many seeds: 1, 2, 3 ...; default 10")
+      ->check(CLI::Range(1, 100000));
+  compare_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\" (default) or 5min");
+  compare_app->add_option("--profile", args->profile, "campaign (default): without what costs time only; full");
+  compare_app->add_option("--mission", args->mission, "mission file with settings that all share");
+  compare_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")->allow_extra_args(false);
+  compare_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->allow_extra_args(false)
+      ->expected(1);
+  compare_app->add_option("--out", args->out, "the campaign's folder; default runs/NAME")->check(not_empty());
+  compare_app->add_option("--jobs", args->jobs, "trials flown at once; default: one a core")
+      ->check(CLI::Range(1, 4096));
+  compare_app->add_option("--executor", args->executor, "where trials fly: local, slurm")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  compare_app->add_option("--trial-timeout", args->trial_timeout,
+                          "wall-clock time after which a trial counts as hung and failed; default 2 h");
+  compare_app->add_option("--keep", args->keep,
+                          "what stays of a trial: figures; replay (default): all but map.ot and map.ply; all")
+      ->check(CLI::IsMember({"figures", "replay", "all"}));
+  compare_app->add_option("--metric", args->metric, "figure that the verdict is about, decided before flying");
+  compare_app->add_flag("--any-binary", args->any_binary,
+                        "go on although karst or a plugin is another one than before");
+  compare_app->add_flag("--quiet", args->quiet, "no progress");
+  compare_app->callback([args] {
+    if (const int code = compare(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+void add_results_command(CLI::App& app) {
+  struct Arguments {
+    std::string folder, csv, json, metric = "coverage_auc";
+  };
+  auto args = std::make_shared<Arguments>();
+  CLI::App* results_app = app.add_subcommand(
+      "results",
+      "What a campaign found, also while it flies: verdicts, or every trial as CSV or JSON.\n\n"
+      "  karst results runs/CAMPAIGN\n  karst results runs/CAMPAIGN --csv trials.csv --json trials.json");
+  results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")->required();
+  results_app->add_option("--csv", args->csv, "write a line a trial; - for standard output")->check(not_empty());
+  results_app->add_option("--json", args->json, "write everything; - for standard output")->check(not_empty());
+  results_app->add_option("--metric", args->metric, "figure that the verdict is about");
+  results_app->callback([args] {
+    const campaign::CampaignResults results = campaign::read_results(args->folder);
+    const std::vector<campaign::TrialExtras> extras = campaign::read_extras(args->folder);
+    if (!args->csv.empty())
+      write_to(args->csv, [&](std::ostream& out) { campaign::write_csv(out, results, extras); });
+    if (!args->json.empty())
+      write_to(args->json, [&](std::ostream& out) { campaign::write_json(out, results, extras); });
+    if (args->csv.empty() && args->json.empty()) print_results(results, args->metric);
+  });
+}
+
+}  // namespace karst::tools

@@ -1,0 +1,15 @@
+// A campaign's results as text: a table of contestants and the verdict.
+#pragma once
+#include <string>
+
+#include "sdk/campaign/results.h"
+
+namespace karst::tools {
+
+/// Throws core::InputError naming the nearest one if there is no such figure.
+void check_metric(const std::string& metric);
+
+/// Throws core::InputError if `metric` is no figure.
+void print_results(const campaign::CampaignResults& results, const std::string& metric);
+
+}  // namespace karst::tools
