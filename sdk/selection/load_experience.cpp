@@ -40,7 +40,8 @@ Experience one(const std::string& file, const std::function<void(const std::stri
 
 }  // namespace
 
-Experience load_experience(const std::vector<std::string>& files, const std::function<void(const std::string&)>& tell) {
+Experience load_experience(const std::vector<std::string>& files,
+                           const std::function<void(const std::string&)>& tell) {
   if (files.empty()) throw InputError("results", "", "no file is given");
   Experience all = one(files.front(), tell);
   for (std::size_t i = 1; i < files.size(); ++i) all = merged(all, one(files[i], tell), files[i]);

@@ -8,9 +8,10 @@
 
 namespace karst::selection {
 
-/// Of all files together: an experience (.info), a campaign's store or its folder. Caves of a store that were not
-/// described yet are described from their files, and the store keeps that; `tell` hears of each, and of those whose file
-/// is gone. Throws InputError.
-Experience load_experience(const std::vector<std::string>& files, const std::function<void(const std::string&)>& tell);
+/// Of all files together: an experience (.info), a campaign's store or its folder. Caves of a store that were
+/// not described yet are described from their files, and the store keeps that; `tell` hears of each, and of
+/// those whose file is gone. Throws InputError.
+Experience load_experience(const std::vector<std::string>& files,
+                           const std::function<void(const std::string&)>& tell);
 
 }  // namespace karst::selection

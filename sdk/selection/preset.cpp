@@ -15,7 +15,8 @@ PolicyPreset read_preset(const std::string& file) {
   const ptree tree = core::read_info(file);
   for (const auto& [key, child] : tree)
     if (key != "policy") throw InputError(file, key, "a preset sets a policy and nothing else");
-  if (tree.count("policy") != 1) throw InputError(file, "policy", "expected one block policy { name ... parameters { ... } }");
+  if (tree.count("policy") != 1)
+    throw InputError(file, "policy", "expected one block policy { name ... parameters { ... } }");
   PolicyPreset preset;
   for (const auto& [key, child] : tree.get_child("policy")) {
     if (key == "name" && preset.policy.empty())

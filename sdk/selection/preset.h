@@ -1,5 +1,5 @@
-// A policy with its parameters as a file of its own: what `karst tune` and `karst select` write, `karst fly --preset` takes,
-// and a mission file without a policy section of its own can include.
+// A policy with its parameters as a file of its own: what `karst tune` and `karst select` write, `karst fly
+// --preset` takes, and a mission file without a policy section of its own can include.
 //
 //   policy { name unknown_ratio  parameters { ratio_worth "7.2 m" } }
 #pragma once

@@ -17,6 +17,7 @@ using core::InputError;
 
 constexpr std::size_t kFewestCaves = 4;  // fewer say nothing of how far an experience carries
 constexpr double kLeastShare = 0.25;     // of the weight that a contestant must have flown in
+constexpr double kNear = 0.7;            // units: less than caves drawn at random differ by
 constexpr int kResamples = 1000;
 const std::array kBandwidths{0.5, 0.7, 1.0, 1.4, 2.0, 3.0, std::numeric_limits<double>::infinity()};
 
@@ -220,7 +221,7 @@ double confidence_of(const Values& v, const std::vector<double>& weight, double 
 /// The largest distance at which a cave's nearest other one lies: leaving caves out shows nothing of larger
 /// ones.
 double limit_of(const std::vector<KnownCave>& caves, const std::vector<double>& scales) {
-  double limit = 0;
+  double limit = kNear;
   for (std::size_t a = 0; a < caves.size(); ++a) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t b = 0; b < caves.size(); ++b)

@@ -282,8 +282,10 @@ void add_cave_command(CLI::App& app) {
   auto d = std::make_shared<DescribeArguments>();
   CLI::App* like = cave->add_subcommand(
       "describe", "What a cave is like: what karst select compares caves by (docs/select.md)");
-  like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")->required();
-  like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")->check(not_empty());
+  like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
+      ->required();
+  like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")
+      ->check(not_empty());
   like->add_flag("--json", d->json, "Write JSON");
   like->callback([d] { describe(*d); });
 }

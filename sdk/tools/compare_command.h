@@ -1,4 +1,5 @@
-// `karst compare`: fly contestants through caves and say which is better; `karst results`: what a campaign found.
+// `karst compare`: fly contestants through caves and say which is better; `karst results`: what a campaign
+// found.
 #pragma once
 
 namespace CLI {

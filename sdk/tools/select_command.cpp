@@ -52,7 +52,8 @@ std::string interval_text(const selection::Expected& x) {
   return text.data();
 }
 
-void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s, const Arguments& args) {
+void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
+           const Arguments& args) {
   std::printf("The cave:\n%s", selection::to_text(cave).c_str());
   std::printf("Caves like it:\n");
   for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
@@ -68,10 +69,12 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   }
   std::printf("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
   for (const selection::Expected& x : s.ranking)
-    std::printf("  %-24s %8.3g   %s\n", e.contestants[x.contestant].name.c_str(), x.value, interval_text(x).c_str());
+    std::printf("  %-24s %8.3g   %s\n", e.contestants[x.contestant].name.c_str(), x.value,
+                interval_text(x).c_str());
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];
   std::printf("Policy: %s\n", first.policy.c_str());
-  for (const auto& [key, value] : first.parameters) std::printf("  %s = %s\n", key.c_str(), value.data().c_str());
+  for (const auto& [key, value] : first.parameters)
+    std::printf("  %s = %s\n", key.c_str(), value.data().c_str());
   std::printf("Expected there:");
   const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m)
@@ -85,17 +88,22 @@ ordered_json parameters_json(const selection::Preset& preset) {
   return j;
 }
 
-ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, const Selected& s, const Arguments& args) {
-  ordered_json j{{"refused", s.refused}, {"reason", s.reason}, {"metric", args.options.metric},
+ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
+                     const Arguments& args) {
+  ordered_json j{{"refused", s.refused},
+                 {"reason", s.reason},
+                 {"metric", args.options.metric},
                  {"cave", ordered_json::parse(selection::to_json(cave))}};
   j["limit"] = s.limit;
   j["bandwidth"] = known(s.bandwidth);
   j["near"] = ordered_json::array();
   for (const selection::NearCave& n : s.near)
-    j["near"].push_back({{"cave", e.caves[n.cave].name},
-                         {"distance", n.distance.value},
-                         {"weight", n.weight},
-                         {"most_unlike_in", selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)].name}});
+    j["near"].push_back(
+        {{"cave", e.caves[n.cave].name},
+         {"distance", n.distance.value},
+         {"weight", n.weight},
+         {"most_unlike_in",
+          selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)].name}});
   if (s.refused) return j;
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];
   j["policy"] = first.policy;
@@ -123,8 +131,9 @@ int select_for(const Arguments& args) {
   if (s.refused) return kRefused;
   if (!args.preset.empty()) {
     const selection::Preset& first = e.contestants[s.ranking.front().contestant];
-    evaluation::write_whole_file(args.preset, selection::to_info({first.policy, first.parameters},
-                                                                 "karst select --cave " + args.cave + "\n" + s.reason));
+    evaluation::write_whole_file(args.preset,
+                                 selection::to_info({first.policy, first.parameters},
+                                                    "karst select --cave " + args.cave + "\n" + s.reason));
   }
   return 0;
 }
@@ -139,10 +148,15 @@ void leave_one_out(const Arguments& args) {
   if (args.json) {
     ordered_json j{{"metric", args.options.metric}, {"caves", ordered_json::array()}, {"refused", l.refused}};
     for (const selection::LeftOut& c : l.caves)
-      j["caves"].push_back({{"cave", e.caves[c.cave].name}, {"nearest", c.nearest}, {"refused", c.refused},
-                            {"best", e.contestants[c.best].name}, {"best_value", c.best_value},
-                            {"selected", e.contestants[c.selected].name}, {"selected_value", c.selected_value},
-                            {"overall", e.contestants[c.overall].name}, {"overall_value", c.overall_value},
+      j["caves"].push_back({{"cave", e.caves[c.cave].name},
+                            {"nearest", c.nearest},
+                            {"refused", c.refused},
+                            {"best", e.contestants[c.best].name},
+                            {"best_value", c.best_value},
+                            {"selected", e.contestants[c.selected].name},
+                            {"selected_value", c.selected_value},
+                            {"overall", e.contestants[c.overall].name},
+                            {"overall_value", c.overall_value},
                             {"chance_value", c.chance_value}});
     const auto shares = [&j](const char* name, const selection::LeaveOneOut::Shares& s) {
       j[name] = {{"best", known(s.best)}, {"within_5_percent", known(s.within)}, {"lost", known(s.regret)}};
@@ -153,12 +167,14 @@ void leave_one_out(const Arguments& args) {
     std::printf("%s\n", j.dump(2).c_str());
     return;
   }
-  std::printf("Each cave left out in turn, selected for from the others, by %s:\n", args.options.metric.c_str());
+  std::printf("Each cave left out in turn, selected for from the others, by %s:\n",
+              args.options.metric.c_str());
   for (const selection::LeftOut& c : l.caves)
     std::printf("  %-24s nearest %5.2f  best %s %.3g; selected %s %.3g%s; overall best %s %.3g\n",
                 e.caves[c.cave].name.c_str(), c.nearest, e.contestants[c.best].name.c_str(), c.best_value,
-                e.contestants[c.selected].name.c_str(), c.selected_value, c.refused ? " (would be refused)" : "",
-                e.contestants[c.overall].name.c_str(), c.overall_value);
+                e.contestants[c.selected].name.c_str(), c.selected_value,
+                c.refused ? " (would be refused)" : "", e.contestants[c.overall].name.c_str(),
+                c.overall_value);
   std::printf("%zu caves               is the best   within 5 %%   lost on average\n", l.caves.size());
   print_shares("selected", l.selected);
   print_shares("always the overall best", l.overall);
@@ -181,7 +197,8 @@ void learn(const Arguments& args) {
 
 int run(const Arguments& args) {
   const int wanted = !args.cave.empty() + !args.learn.empty() + args.leave_one_out;
-  if (wanted != 1) throw InputError("karst select", "", "needs one of --cave FILE, --learn STORE, --leave-one-out");
+  if (wanted != 1)
+    throw InputError("karst select", "", "needs one of --cave FILE, --learn STORE, --leave-one-out");
   if (!args.learn.empty()) return learn(args), 0;
   if (args.leave_one_out) return leave_one_out(args), 0;
   return select_for(args);
@@ -190,7 +207,8 @@ int run(const Arguments& args) {
 }  // namespace
 
 std::string installed_experience() {
-  const std::filesystem::path file = plugin_root().parent_path().parent_path() / "share" / "karst" / "experience.info";
+  const std::filesystem::path file =
+      plugin_root().parent_path().parent_path() / "share" / "karst" / "experience.info";
   return std::filesystem::is_regular_file(file) ? file.string() : "";
 }
 
@@ -201,17 +219,26 @@ void add_select_command(CLI::App& app) {
       "Name the policy for a cave, by how policies fared in caves like it\n\n"
       "  karst select --cave caves/new.info --results runs/campaign     a mesh or a cave's .info file\n"
       "  karst select --cave runs/monday/map.bt                         the map of an earlier flight\n"
-      "  karst select --cave known.info                                 what a caver knows: width \"4 m\" ...\n"
+      "  karst select --cave known.info                                 what a caver knows: width \"4 m\" "
+      "...\n"
       "  karst select --learn runs/campaign --out mine.info             distil a campaign\n"
       "  karst select --leave-one-out --results mine.info               what selecting is worth\n\n"
       "Exit code: 0 a policy is named, 3 nothing similar was flown, 1 an error.");
-  select->add_option("--cave", args->cave, "mesh, cave .info, map (.bt, .ot), or INFO file of figures")->check(not_empty());
-  select->add_option("--start", args->start, "\"x y z\", of a mesh")->check(not_empty());
-  select->add_option("--results", args->results, "stores of campaigns, experiences; default: what is installed")
+  select->add_option("--cave", args->cave, "mesh, cave .info, map (.bt, .ot), or INFO file of figures")
       ->check(not_empty());
-  select->add_option("--metric", args->options.metric, "the figure to do best in")->check(not_empty())->capture_default_str();
-  select->add_option("--level", args->options.level, "of the intervals")->check(CLI::Range(0.5, 0.99))->capture_default_str();
-  select->add_option("--preset", args->preset, "write the policy with its parameters here, for karst fly --preset")
+  select->add_option("--start", args->start, "\"x y z\", of a mesh")->check(not_empty());
+  select
+      ->add_option("--results", args->results, "stores of campaigns, experiences; default: what is installed")
+      ->check(not_empty());
+  select->add_option("--metric", args->options.metric, "the figure to do best in")
+      ->check(not_empty())
+      ->capture_default_str();
+  select->add_option("--level", args->options.level, "of the intervals")
+      ->check(CLI::Range(0.5, 0.99))
+      ->capture_default_str();
+  select
+      ->add_option("--preset", args->preset,
+                   "write the policy with its parameters here, for karst fly --preset")
       ->check(not_empty());
   select->add_option("--learn", args->learn, "stores to distil into --out")->check(not_empty());
   select->add_option("--out", args->out, "of --learn: the experience, an INFO file")->check(not_empty());
