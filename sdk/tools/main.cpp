@@ -11,7 +11,9 @@
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
+#include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
+#include "sdk/tools/tune_command.h"
 
 namespace {
 
@@ -64,6 +66,8 @@ int main(int argc, char** argv) {
   karst::tools::add_replay_command(app);
   karst::tools::add_evaluate_command(app);
   karst::tools::add_map_command(app);
+  karst::tools::add_select_command(app);
+  karst::tools::add_tune_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);
