@@ -144,8 +144,7 @@ int compare(const CompareArguments& args) {
   }
   const campaign::CampaignResults results = campaign::read_results(options.folder);
   print_results(results, args.metric);
-  std::printf("Look next at:\n  %s   the report\n",
-              write_campaign_page(options.folder, args.metric).c_str());
+  std::printf("Look next at:\n  %s   the report\n", write_campaign_page(options.folder, args.metric).c_str());
   std::printf("  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
   std::printf("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
   return 0;
