@@ -11,6 +11,7 @@
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
+#include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
 
 namespace {
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   karst::tools::add_replay_command(app);
   karst::tools::add_evaluate_command(app);
   karst::tools::add_map_command(app);
+  karst::tools::add_select_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);
