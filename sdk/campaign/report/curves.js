@@ -40,7 +40,7 @@ function curvePlot(cave, large) {
   const where = cave < 0 ? "all caves" : caveNames[cave];
   const plot = makePlot({
     title: `${share ? "Coverage" : "Explored volume"} over time in ${where}, ${median ? "median and quartiles" : `mean and ${percentOfIntervals} % interval`} of each contestant; the numbers are in the table below`,
-    heading: where, aside: `${trials} ${trials === "1" ? "trial" : "trials"} each`, width: large ? 640 : 310, height: large ? 478 : 218, left: large ? 54 : 44,
+    heading: where, aside: `${trials} ${trials === "1" ? "trial" : "trials"} each` + (lines.some((l) => l && l.over) ? ", bands over caves for want of seeds" : ""), width: large ? 640 : 310, height: large ? 478 : 218, left: large ? 54 : 44,
     x: { range: [0, t[t.length - 1]], ticks: timeTicks(t[t.length - 1], large ? 8 : 5), text: clockText, label: large ? "time from take-off, min:s" : "" },
     y: { range: [0, Math.max(Math.min(rangeOf(seen, true)[1], share ? 1 : Infinity), 1e-9)], text: share ? (v) => tickText(100 * v) + " %" : tickText, ticks: large ? 7 : 4,
          label: large ? (share ? "coverage" : "explored volume, m³") : "" } });
