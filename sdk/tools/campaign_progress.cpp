@@ -33,7 +33,8 @@ std::string duration(double s) {
 /// From the pace since the start.
 std::string time_left(const Progress& p) {
   if (p.here == 0) return "time left unknown";
-  return duration(p.wall_s / static_cast<double>(p.here) * static_cast<double>(p.trials - p.finished)) + " left";
+  return duration(p.wall_s / static_cast<double>(p.here) * static_cast<double>(p.trials - p.finished)) +
+         " left";
 }
 
 std::string bar(const Progress& p) {
@@ -64,7 +65,8 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
   tallies_.resize(plan.contestants.size());
   if (quiet_) return;
   if (!begun_)
-    std::fprintf(stderr, "%s: %zu contestants x %zu caves x %zu seeds = %zu trials, %zu of them flown already\n",
+    std::fprintf(stderr,
+                 "%s: %zu contestants x %zu caves x %zu seeds = %zu trials, %zu of them flown already\n",
                  plan.name.c_str(), plan.contestants.size(), plan.caves.size(), plan.seeds.size(), p.trials,
                  p.finished);
   begun_ = true;
@@ -80,15 +82,16 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
     if (!p.last) return;
     const campaign::TrialResult& r = p.last->result;
     std::fprintf(stderr, "%zu/%zu · %s · %s, %s, seed %lld: %s, coverage %.1f %%%s%s\n", p.finished, p.trials,
-                 time_left(p).c_str(), plan.contestants[r.contestant].name.c_str(), plan.caves[r.cave].name.c_str(),
-                 static_cast<long long>(r.seed), r.outcome.c_str(), 100 * coverage_of(*p.last),
-                 r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
+                 time_left(p).c_str(), plan.contestants[r.contestant].name.c_str(),
+                 plan.caves[r.cave].name.c_str(), static_cast<long long>(r.seed), r.outcome.c_str(),
+                 100 * coverage_of(*p.last), r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
     return;
   }
   std::string found = "coverage so far:";
   for (std::size_t i = 0; i < tallies_.size(); ++i)
     if (tallies_[i].trials)
-      found += text(" %s %.1f %%", plan.contestants[i].name.c_str(), 100 * tallies_[i].coverage / tallies_[i].trials);
+      found += text(" %s %.1f %%", plan.contestants[i].name.c_str(),
+                    100 * tallies_[i].coverage / tallies_[i].trials);
   std::string line = bar(p) + text(" %zu/%zu · %s", p.finished, p.trials, time_left(p).c_str()) + pace +
                      (p.failed ? text(" · %zu failed", p.failed) : "");
   const std::size_t width = terminal_width();

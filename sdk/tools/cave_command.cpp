@@ -12,6 +12,7 @@
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
+#include "sdk/selection/describe.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/cave_facts.h"
 
@@ -205,6 +206,19 @@ void info(const InfoArguments& args) {
               passages.height_m[2]);
 }
 
+struct DescribeArguments {
+  std::string file, start;
+  bool json = false;
+};
+
+void describe(const DescribeArguments& args) {
+  const selection::CaveFigures figures = selection::describe_file(args.file, args.start).figures;
+  if (args.json)
+    std::printf("%s\n", ordered_json::parse(selection::to_json(figures)).dump(2).c_str());
+  else
+    std::printf("%s\n%s", args.file.c_str(), selection::to_text(figures).c_str());
+}
+
 std::string generate_footer() {
   cave::CaveRecipe recipe;
   core::OptionTable table;
@@ -264,6 +278,16 @@ void add_cave_command(CLI::App& app) {
   tell->add_flag("--json", i->json, "Write JSON");
   tell->footer("Example:\n  karst cave info tunnel.stl --start \"1 2 1.5\"");
   tell->callback([i] { info(*i); });
+
+  auto d = std::make_shared<DescribeArguments>();
+  CLI::App* like = cave->add_subcommand(
+      "describe", "What a cave is like: what karst select compares caves by (docs/select.md)");
+  like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
+      ->required();
+  like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")
+      ->check(not_empty());
+  like->add_flag("--json", d->json, "Write JSON");
+  like->callback([d] { describe(*d); });
 }
 
 }  // namespace karst::tools

@@ -17,6 +17,7 @@
 #include "sdk/campaign/campaign.h"
 #include "sdk/campaign/export.h"
 #include "sdk/campaign/run_campaign.h"
+#include "sdk/campaign/slurm.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/campaign_progress.h"
 #include "sdk/tools/results_text.h"
@@ -34,7 +35,7 @@ std::atomic<bool> interrupted{false};
 void on_signal(int) { interrupted = true; }
 
 struct CompareArguments {
-  std::vector<std::string> who, caves, settings, plugins;
+  std::vector<std::string> who, caves, settings, plugins, sbatch;
   std::string out, profile, mission, executor = "local", keep = "replay", metric = "coverage_auc";
   std::string flight_time, trial_timeout;
   std::int64_t seeds = 0;
@@ -55,7 +56,8 @@ void apply(const CompareArguments& args, Campaign& c) {
   if (!args.profile.empty()) c.profile = args.profile;
   if (!args.mission.empty()) c.mission = args.mission;
   if (!args.flight_time.empty()) c.flight_time_s = seconds_of("--time", args.flight_time, 10, 86400);
-  if (!args.trial_timeout.empty()) c.trial_timeout_s = seconds_of("--trial-timeout", args.trial_timeout, 1, 1e7);
+  if (!args.trial_timeout.empty())
+    c.trial_timeout_s = seconds_of("--trial-timeout", args.trial_timeout, 1, 1e7);
   if (args.seeds > 0) {
     c.seeds.clear();
     for (std::int64_t s = 1; s <= args.seeds; ++s) c.seeds.push_back(s);
@@ -78,7 +80,8 @@ Campaign from_words(const CompareArguments& args) {
   for (std::int64_t s = 1; s <= 10; ++s) c.seeds.push_back(s);
   apply(args, c);
   c.name.clear();
-  for (const campaign::ContestantSpec& who : c.contestants) c.name += (c.name.empty() ? "" : "-vs-") + who.policy;
+  for (const campaign::ContestantSpec& who : c.contestants)
+    c.name += (c.name.empty() ? "" : "-vs-") + who.policy;
   if (c.name.size() > 60) c.name.resize(60);
   campaign::complete(c);
   return c;
@@ -104,15 +107,20 @@ int compare(const CompareArguments& args) {
   if (!args.caves.empty()) {
     c = from_words(args);
   } else if (args.who.size() != 1) {
-    throw InputError("karst compare", "", "policies to compare need --caves FILE...; see karst compare --help");
+    throw InputError("karst compare", "",
+                     "policies to compare need --caves FILE...; see karst compare --help");
   } else if (fs::is_directory(args.who.front())) {
     options.folder = args.who.front();  // goes on with the campaign there
+  } else if (!fs::exists(args.who.front())) {
+    throw InputError(args.who.front(), "",
+                     "no such campaign file or folder; policies to compare need --caves FILE...");
   } else {
     c = from_file(args);
   }
   if (options.folder.empty()) options.folder = fs::path("runs") / c->name;
   options.karst = fs::read_symlink("/proc/self/exe");
   options.executor = args.executor;
+  options.sbatch = args.sbatch;
   options.jobs = args.jobs;
   options.keep = keep_of(args.keep);
   options.any_binary = args.any_binary;
@@ -124,7 +132,9 @@ int compare(const CompareArguments& args) {
   bool done = false;
   {
     CampaignProgress progress(args.quiet, args.jobs);
-    options.progress = [&](const campaign::Plan& plan, const campaign::Progress& p) { progress.show(plan, p); };
+    options.progress = [&](const campaign::Plan& plan, const campaign::Progress& p) {
+      progress.show(plan, p);
+    };
     done = campaign::run_campaign(c, options);
   }
   if (!done) {
@@ -133,7 +143,8 @@ int compare(const CompareArguments& args) {
   }
   const campaign::CampaignResults results = campaign::read_results(options.folder);
   print_results(results, args.metric);
-  std::printf("Look next at:\n  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
+  std::printf("Look next at:\n  karst results %s --csv results.csv   every trial in a line\n",
+              options.folder.c_str());
   std::printf("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
   return 0;
 }
@@ -160,16 +171,19 @@ void add_compare_command(CLI::App& app) {
       "  karst compare runs/CAMPAIGN                             goes on with one that was stopped\n\n"
       "Started again, it goes on where it was stopped or killed; more seeds and contestants may be "
       "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");
-  compare_app->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves")
+  compare_app
+      ->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves")
       ->required()
       ->check(not_empty());
   compare_app->add_option("--caves", args->caves, "cave .info files")->check(not_empty());
   compare_app->add_option("--seeds", args->seeds, "how many seeds: 1, 2, 3 ...; default 10")
       ->check(CLI::Range(1, 100000));
   compare_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\" (default) or 5min");
-  compare_app->add_option("--profile", args->profile, "campaign (default): without what costs time only; full");
+  compare_app->add_option("--profile", args->profile,
+                          "campaign (default): without what costs time only; full");
   compare_app->add_option("--mission", args->mission, "mission file with settings that all share");
-  compare_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")->allow_extra_args(false);
+  compare_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
+      ->allow_extra_args(false);
   compare_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
       ->allow_extra_args(false)
       ->expected(1);
@@ -178,17 +192,34 @@ void add_compare_command(CLI::App& app) {
       ->check(CLI::Range(1, 4096));
   compare_app->add_option("--executor", args->executor, "where trials fly: local, slurm")
       ->check(CLI::IsMember({"local", "slurm"}));
+  compare_app
+      ->add_option("--sbatch", args->sbatch, "further option of sbatch, such as --sbatch=--partition=long")
+      ->allow_extra_args(false);
   compare_app->add_option("--trial-timeout", args->trial_timeout,
                           "wall-clock time after which a trial counts as hung and failed; default 2 h");
-  compare_app->add_option("--keep", args->keep,
-                          "what stays of a trial: figures; replay (default): all but map.ot and map.ply; all")
+  compare_app
+      ->add_option("--keep", args->keep,
+                   "what stays of a trial: figures; replay (default): all but map.ot and map.ply; all")
       ->check(CLI::IsMember({"figures", "replay", "all"}));
-  compare_app->add_option("--metric", args->metric, "figure that the verdict is about, decided before flying");
+  compare_app->add_option("--metric", args->metric,
+                          "figure that the verdict is about, decided before flying");
   compare_app->add_flag("--any-binary", args->any_binary,
                         "go on although karst or a plugin is another one than before");
   compare_app->add_flag("--quiet", args->quiet, "no progress");
   compare_app->callback([args] {
     if (const int code = compare(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+void add_trials_command(CLI::App& app) {
+  auto batch = std::make_shared<std::string>();
+  CLI::App* trials_app =
+      app.add_subcommand("trials", "Fly a batch of a campaign's trials: what a Slurm task does.");
+  trials_app->group("");  // nobody types it
+  trials_app->add_option("batch", *batch, "batch file")->required();
+  trials_app->callback([batch] {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
+    if (!campaign::fly_batch(*batch, &interrupted)) throw CLI::RuntimeError(kInterrupted);
   });
 }
 
@@ -202,8 +233,10 @@ void add_results_command(CLI::App& app) {
       "What a campaign found, also while it flies: verdicts, or every trial as CSV or JSON.\n\n"
       "  karst results runs/CAMPAIGN\n  karst results runs/CAMPAIGN --csv trials.csv --json trials.json");
   results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")->required();
-  results_app->add_option("--csv", args->csv, "write a line a trial; - for standard output")->check(not_empty());
-  results_app->add_option("--json", args->json, "write everything; - for standard output")->check(not_empty());
+  results_app->add_option("--csv", args->csv, "write a line a trial; - for standard output")
+      ->check(not_empty());
+  results_app->add_option("--json", args->json, "write everything; - for standard output")
+      ->check(not_empty());
   results_app->add_option("--metric", args->metric, "figure that the verdict is about");
   results_app->callback([args] {
     const campaign::CampaignResults results = campaign::read_results(args->folder);

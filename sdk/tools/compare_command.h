@@ -1,4 +1,5 @@
-// `karst compare`: fly contestants through caves and say which is better; `karst results`: what a campaign found.
+// `karst compare`: fly contestants through caves and say which is better; `karst results`: what a campaign
+// found.
 #pragma once
 
 namespace CLI {
@@ -8,6 +9,7 @@ class App;
 namespace karst::tools {
 
 void add_compare_command(CLI::App& app);
+void add_trials_command(CLI::App& app);
 void add_results_command(CLI::App& app);
 
 }  // namespace karst::tools

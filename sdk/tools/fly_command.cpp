@@ -15,6 +15,7 @@
 #include "core_stack/common/error.h"
 #include "sdk/host/hosted_policy.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/auto_policy.h"
 #include "sdk/tools/mission_file.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
@@ -121,7 +122,8 @@ int fly(const FlyArguments& args) {
     throw core::InputError("karst fly", "", "needs a MISSION file or --cave FILE; see karst fly --help");
   MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
-  const Mission mission = read_mission(args.mission_file, overrides);
+  Mission mission = read_mission(args.mission_file, overrides);
+  settle_policy(mission);
 
   // Everything that can be wrong is looked at before anything is written.
   host::PolicyChoice choice;
@@ -140,6 +142,8 @@ int fly(const FlyArguments& args) {
   write_mission(run_dir / "mission.info", as_flown(mission, *policy, *vehicle));
   if (interrupted) throw core::InputError("karst fly", "", "stopped by the operator before take-off");
   claim.keep();
+  if (!mission.policy_selection.empty())
+    recorder.event(0, "selection", {{"policy", mission.policy}, {"reason", mission.policy_selection}});
 
   core::Executive executive(args.threads, args.real_time ? core::Clock::real_time : core::Clock::lockstep);
   core::MissionControl control(mission.core, *vehicle, executive, *policy, recorder);
@@ -190,7 +194,12 @@ void add_fly_command(CLI::App& app) {
   fly_app
       ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
       ->check(not_empty());
-  fly_app->add_option("--policy", args->overrides.policy, "exploration policy; see karst policy list")
+  fly_app
+      ->add_option("--policy", args->overrides.policy,
+                   "exploration policy; see karst policy list; auto: selected for the cave")
+      ->check(not_empty());
+  fly_app
+      ->add_option("--preset", args->overrides.preset, "file with a policy and its parameters (docs/tune.md)")
       ->check(not_empty());
   fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
       ->allow_extra_args(false)

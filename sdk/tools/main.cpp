@@ -11,6 +11,7 @@
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
+#include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
 
 namespace {
@@ -43,7 +44,8 @@ int main(int argc, char** argv) {
       "karst: fly exploration policies through caves.\n\n"
       "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
       "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
-      "  karst compare CAMPAIGN.info                                    say which of several policies is better\n"
+      "  karst compare CAMPAIGN.info                                    say which of several policies is "
+      "better\n"
       "  karst policy list                                              see what can be flown\n"
       "  karst replay scans --out runs/replayed                         localize and map from recorded "
       "scans\n"
@@ -54,6 +56,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   karst::tools::add_fly_command(app);
   karst::tools::add_compare_command(app);
+  karst::tools::add_trials_command(app);
   karst::tools::add_results_command(app);
   karst::tools::add_policy_command(app);
   karst::tools::add_cave_command(app);
@@ -62,6 +65,7 @@ int main(int argc, char** argv) {
   karst::tools::add_replay_command(app);
   karst::tools::add_evaluate_command(app);
   karst::tools::add_map_command(app);
+  karst::tools::add_select_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);

@@ -6,6 +6,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
+#include "sdk/selection/preset.h"
+#include "sdk/tools/auto_policy.h"
 #include "sdk/tools/install_place.h"
 
 namespace karst::tools {
@@ -15,7 +17,8 @@ namespace pt = boost::property_tree;
 using core::InputError;
 using core::OptionTable;
 
-constexpr const char* kParameters = "policy.parameters";
+constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
+                     *kSelection = "policy.selection";
 constexpr const char *kPolicyVersion = "policy.version", *kVehicleImplementation = "vehicle.implementation",
                      *kKarstVersion = "karst.version";
 
@@ -29,11 +32,26 @@ void describe_mission(OptionTable& t, Mission& m) {
           "\"x y z [heading_deg]\" above the floor to start from; empty: the cave's own");
   });
   t.under("policy", [&m](OptionTable& p) {
-    p.add("name", m.policy, {}, "the exploration policy; `karst policy list` shows what there is");
+    p.add("name", m.policy, {},
+          "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
     p.add("stream", m.policy_stream, 0, 9e15,
           "gives the policy other random numbers, and nothing else: for comparing a policy with itself");
   });
   describe(t, m.core);
+}
+
+/// Puts the settings below `prefix` into `tree`, and says whether `key` was one of them.
+bool put_below(const std::string& prefix, const std::string& key, const std::string& value, pt::ptree& tree) {
+  if (!key.starts_with(prefix + ".")) return false;
+  tree.put(key.substr(prefix.size() + 1), value);
+  return true;
+}
+
+/// A path given on the command line is relative to where that is run, not to the mission file.
+std::string as_given(const std::string& key, const std::string& value) {
+  const bool path =
+      key == "policy.auto.description" || key == "policy.auto.survey" || key == "policy.auto.results";
+  return path && !value.empty() ? std::filesystem::absolute(value).string() : value;
 }
 
 /// Takes the subtree "section.name" out of `tree`, and with it a section that holds nothing else.
@@ -70,6 +88,10 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   if (!m.policy_parameters.data().empty())
     throw InputError(m.file, kParameters,
                      "expected a block { ... }, got \"" + m.policy_parameters.data() + "\"");
+  m.auto_policy = take(tree, kAuto);
+  if (!m.auto_policy.data().empty())
+    throw InputError(m.file, kAuto, "expected a block { ... }, got \"" + m.auto_policy.data() + "\"");
+  m.policy_selection = take(tree, kSelection).data();
   for (const char* fact : {kPolicyVersion, kVehicleImplementation, kKarstVersion}) take(tree, fact);
 
   std::vector<std::pair<std::string, std::string>> settings;
@@ -86,6 +108,9 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   refuse_both(overrides.cave, "--cave", "cave.file");
   refuse_both(overrides.start, "--start", "cave.start");
   refuse_both(overrides.policy, "--policy", "policy.name");
+  refuse_both(overrides.preset, "--preset", "policy.name");
+  if (!overrides.policy.empty() && !overrides.preset.empty())
+    throw InputError("--preset", overrides.preset, "names a policy, and --policy one as well");
 
   // The vehicle comes first: its plugin adds its own section to the table.
   m.vehicle = tree.get("vehicle", m.vehicle);
@@ -98,26 +123,28 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
 
   table.read(m.file, tree);
   m.cave = relative_to(file, m.cave);
-  const std::string parameters_prefix = std::string(kParameters) + ".";
-  for (const auto& [key, value] : settings) {
-    if (key.starts_with(parameters_prefix)) {
-      m.policy_parameters.put(key.substr(parameters_prefix.size()), value);
-    } else {
+  const std::string recorded_policy = m.policy;
+  for (const auto& [key, value] : settings)
+    if (!put_below(kParameters, key, value, m.policy_parameters) &&
+        !put_below(kAuto, key, as_given(key, value), m.auto_policy))
       table.set("--set", key, value);
-    }
-  }
   if (!overrides.cave.empty()) {
     m.cave = overrides.cave;
     if (!set_to("cave.start")) m.start = "";  // another cave, another start
   }
   if (!overrides.start.empty()) m.start = overrides.start;
-  if (!overrides.policy.empty() && overrides.policy != m.policy) {
-    m.policy = overrides.policy;
-    m.policy_parameters.clear();  // another policy, other parameters
-    for (const auto& [key, value] : settings)
-      if (key.starts_with(parameters_prefix))
-        m.policy_parameters.put(key.substr(parameters_prefix.size()), value);
+  const auto other_policy = [&](const std::string& name, const pt::ptree& parameters) {
+    m.policy = name;
+    m.policy_parameters = parameters;  // another policy, other parameters
+    for (const auto& [key, value] : settings) put_below(kParameters, key, value, m.policy_parameters);
+  };
+  if (!overrides.policy.empty() && overrides.policy != m.policy) other_policy(overrides.policy, {});
+  if (!overrides.preset.empty()) {
+    const selection::PolicyPreset preset = selection::read_preset(overrides.preset);
+    other_policy(preset.policy, preset.parameters);
+    m.policy_selection.clear();
   }
+  if (m.policy != recorded_policy) m.policy_selection.clear();
   m.resolved = table.resolved();
   return m;
 }
@@ -135,6 +162,7 @@ pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
   tree.put("policy.name", m.policy);
   if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);
   tree.put(kPolicyVersion, facts.policy_version);
+  if (!m.policy_selection.empty()) tree.put(kSelection, m.policy_selection);
   tree.put(kVehicleImplementation, facts.vehicle_implementation);
   tree.put(kKarstVersion, KARST_VERSION);
   return tree;

@@ -17,7 +17,7 @@ namespace karst::tools {
 
 /// What the command line adds to, or sets against, a mission file.
 struct MissionOverrides {
-  std::string cave, start, policy;                          // "" leaves the file's
+  std::string cave, start, policy, preset;                  // "" leaves the file's
   std::vector<std::string> settings;                        // "key=value"
   std::vector<std::pair<std::string, std::string>> values;  // further keys with values
 };
@@ -29,7 +29,9 @@ struct Mission {
   core::CoreOptions core;
   core::VehiclePlugin* vehicle_plugin = nullptr;
   boost::property_tree::ptree policy_parameters;
-  boost::property_tree::ptree resolved;  // every setting but the policy's parameters
+  boost::property_tree::ptree auto_policy;  // policy.auto, as given (auto_policy.h)
+  std::string policy_selection;             // why this policy, if it was selected; "" if it was named
+  boost::property_tree::ptree resolved;     // every setting but the policy's parameters
 };
 
 /// The seed of the policy's own random stream: the mission's, or with another `policy.stream` another one,

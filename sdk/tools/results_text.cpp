@@ -15,8 +15,8 @@ namespace {
 
 using campaign::CampaignResults;
 
-constexpr std::array kColumns = {"coverage_auc", "coverage", "restricted_t50_s", "restricted_t90_s", "path_length_m",
-                                 "contacts"};
+constexpr std::array kColumns = {"coverage_auc",     "coverage",      "restricted_t50_s",
+                                 "restricted_t90_s", "path_length_m", "contacts"};
 
 /// Over the caves, of the mean over seeds: caves weigh the same.
 double mean_of(const CampaignResults& results, std::size_t contestant, int metric) {
@@ -38,7 +38,8 @@ std::string number(double v) {
   return text.data();
 }
 
-void print_row(const CampaignResults& results, const campaign::Place& place, const std::vector<std::string>& figures) {
+void print_row(const CampaignResults& results, const campaign::Place& place,
+               const std::vector<std::string>& figures) {
   int trials = 0, failed = 0;
   for (const campaign::TrialResult& t : results.trials)
     if (t.contestant == place.contestant) ++trials, failed += t.failed;
@@ -58,7 +59,8 @@ void check_metric(const std::string& metric) {
   std::vector<std::string> names;
   for (const evaluation::MetricDefinition& m : evaluation::metric_definitions()) names.emplace_back(m.name);
   const std::string near = core::nearest_name(metric, names);
-  throw core::InputError("--metric", metric, "no such figure" + (near.empty() ? "" : "; did you mean " + near + "?"));
+  throw core::InputError("--metric", metric,
+                         "no such figure" + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
 void print_results(const CampaignResults& results, const std::string& metric) {
@@ -71,8 +73,8 @@ void print_results(const CampaignResults& results, const std::string& metric) {
     if (c != metric) figures.emplace_back(c);
   std::string head = "| place | contestant | trials | failed |", rule = "|---:|---|---:|---:|";
   for (const std::string& f : figures) head += " " + f + " |", rule += "---:|";
-  std::printf("%s: means over %zu cave%s\n\n%s\n%s\n", results.name.c_str(), results.caves.size(), results.caves.size() == 1 ? "" : "s", head.c_str(),
-              rule.c_str());
+  std::printf("%s: means over %zu cave%s\n\n%s\n%s\n", results.name.c_str(), results.caves.size(),
+              results.caves.size() == 1 ? "" : "s", head.c_str(), rule.c_str());
   for (const campaign::Place& place : verdicts.ranking) print_row(results, place, figures);
   std::printf("\n");
   for (const campaign::Comparison& c : verdicts.comparisons)

@@ -1,0 +1,198 @@
+#include "sdk/selection/describe.h"
+
+#include <algorithm>
+#include <boost/property_tree/ptree.hpp>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "core_stack/common/error.h"
+#include "core_stack/mapping/octomap_io.h"
+#include "plugins/simulator/cave/cave.h"
+#include "sdk/selection/geodesic.h"
+#include "sdk/selection/passage_graph.h"
+
+namespace karst::selection {
+namespace {
+
+using core::Vec3;
+
+/// A slice of passage as measured: its middle is where the widest ball fits.
+struct Slice {
+  Vec3 middle = Vec3::Zero(), centroid = Vec3::Zero();
+  std::int32_t cell = 0;  // of the middle
+  double width_m = 0;
+};
+
+std::size_t farthest(const std::vector<float>& distance) {
+  return static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+}
+
+Vec3 centre(const CellIndex& cells, std::int32_t i, double edge) {
+  const core::CellKey& k = cells.key(static_cast<std::size_t>(i));
+  return edge * Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5);
+}
+
+/// Uphill in the distance to rock, in steps to 26 sides (along the axes alone, a ridge between two walls
+/// would hold it up) that are halved when none leads up; no farther than `reach`. A step shorter than the
+/// distance to rock leads through none.
+Vec3 climbed(const FreeSpace& space, const Vec3& from, double reach) {
+  Vec3 best = from;
+  double height = space.distance_to_rock(best);
+  for (double step = space.resolution_m / 2; step > space.resolution_m / 20; step /= 2)
+    for (bool up = true; up;) {
+      up = false;
+      for (int side = 0; side < 27; ++side) {
+        const Vec3 p = best + step * Vec3(side % 3 - 1, side / 3 % 3 - 1, side / 9 - 1);
+        if ((p - from).norm() > reach || (p - best).norm() >= height) continue;
+        const double h = space.distance_to_rock(p);
+        if (h > height + 1e-9) best = p, height = h, up = true;
+      }
+    }
+  return best;
+}
+
+Slice measured(const FreeSpace& space, const CellIndex& cells, const std::vector<float>& depth,
+               const PassageNode& node) {
+  Slice s;
+  s.cell = *std::max_element(node.cells.begin(), node.cells.end(), [&](std::int32_t a, std::int32_t b) {
+    return depth[static_cast<std::size_t>(a)] < depth[static_cast<std::size_t>(b)];
+  });
+  for (const std::int32_t c : node.cells) s.centroid += centre(cells, c, space.resolution_m);
+  s.centroid /= static_cast<double>(node.cells.size());
+  s.middle = climbed(space, centre(cells, s.cell, space.resolution_m), 1.0);
+  s.width_m = 2 * space.distance_to_rock(s.middle);
+  return s;
+}
+
+std::vector<Slice> measured(const FreeSpace& space, const CellIndex& cells, const std::vector<float>& depth,
+                            const std::vector<PassageNode>& nodes) {
+  std::vector<Slice> slices;
+  for (const PassageNode& n : nodes) slices.push_back(measured(space, cells, depth, n));
+  return slices;
+}
+
+/// The least value with at least `share` of all weight at or below it.
+double quantile(std::vector<std::pair<double, double>> value_weight, double share) {
+  if (value_weight.empty()) return kUnknown;
+  std::sort(value_weight.begin(), value_weight.end());
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : value_weight) total += weight;
+  for (const auto& [value, weight] : value_weight)
+    if ((sum += weight) >= share * total) return value;
+  return value_weight.back().first;
+}
+
+/// A first idea of the width, before slivers behind bumps of the rock are taken off: a slice weighs as much
+/// as passage of its width would be long.
+double rough_width(const std::vector<Slice>& slices, const std::vector<PassageNode>& nodes) {
+  std::vector<std::pair<double, double>> values;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    values.emplace_back(slices[i].width_m,
+                        static_cast<double>(nodes[i].cells.size()) / (slices[i].width_m * slices[i].width_m));
+  return quantile(std::move(values), 0.5);
+}
+
+/// Of ways as long as passages are wide: shorter ones show the rock's roughness, not the passage's slope.
+double verticality(const std::vector<PassageNode>& nodes, const std::vector<Slice>& slices, int steps) {
+  double up = 0, all = 0;
+  const int bands = nodes.empty() ? 0 : nodes.back().band;
+  steps = std::clamp(steps, 1, std::max(1, bands));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    std::size_t at = i;
+    int done = 0;
+    for (; done < steps && !nodes[at].below.empty(); ++done)
+      at = static_cast<std::size_t>(nodes[at].below.front());
+    if (done < steps) continue;
+    const Vec3 way = slices[i].centroid - slices[at].centroid;
+    up += std::abs(way.z()), all += way.norm();
+  }
+  return all > 0 ? up / all : kUnknown;
+}
+
+}  // namespace
+
+CaveFigures describe(const FreeSpace& space) {
+  const CellIndex cells(space.flyable);
+  const double edge = space.resolution_m;
+  // Distances count from one end of the cave, wherever the start is: the place farthest from it.
+  const std::size_t end = farthest(distances_from(cells, 0));
+  const std::vector<float> distance = distances_from(cells, end);
+  const float band =
+      static_cast<float>(std::max(2.0, 1.0 / edge));  // cells; a metre, or more than a cell's diagonal
+  const double band_m = band * edge;
+  const std::vector<float> depth = depths(cells);
+  std::vector<PassageNode> nodes = passage_nodes(cells, distance, band);
+  std::vector<Slice> slices = measured(space, cells, depth, nodes);
+  const int least = std::max(2, static_cast<int>(std::ceil(rough_width(slices, nodes) / band_m)));
+  nodes = without_short_ends(without_short_loops(nodes, least), least);
+  slices = measured(space, cells, depth, nodes);
+
+  CaveFigures f;
+  f.volume_m3 = space.volume_m3;
+  f.length_m = static_cast<double>(nodes.size()) * band_m + space.clearance_m;
+  std::vector<std::pair<double, double>> widths, ratios;
+  double log_heights = 0;
+  for (const Slice& s : slices) {
+    widths.emplace_back(s.width_m, 1.0);
+    log_heights +=
+        std::log(space.way_to_rock(s.middle, Vec3::UnitZ()) + space.way_to_rock(s.middle, -Vec3::UnitZ()));
+  }
+  f.width_m = quantile(widths, 0.5);
+  f.width_spread = quantile(widths, 0.9) / quantile(widths, 0.1);
+  f.height_m = std::exp(log_heights / static_cast<double>(slices.size()));
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double z = (cells.key(i).z + 0.5) * edge;
+    lowest = std::min(lowest, z), highest = std::max(highest, z);
+  }
+  f.drop_m = highest - lowest + 2 * space.clearance_m;
+  f.verticality = verticality(nodes, slices, least);
+  f.branching = junctions(nodes) * 100.0 / f.length_m;
+  f.loops = loops(nodes) * 100.0 / f.length_m;
+
+  // Ways from three places far from each other to everywhere that is not near.
+  std::vector<float> nearest_source = distance;
+  std::vector<float> from = distance;
+  std::size_t source = end;
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) {
+      source = farthest(nearest_source);
+      from = distances_from(cells, source);
+      for (std::size_t c = 0; c < from.size(); ++c) nearest_source[c] = std::min(nearest_source[c], from[c]);
+    }
+    for (const Slice& s : slices) {
+      const double way = from[static_cast<std::size_t>(s.cell)] * edge;
+      if (way < 3 * f.width_m) continue;
+      const Vec3 line = centre(cells, s.cell, edge) - centre(cells, static_cast<std::int32_t>(source), edge);
+      ratios.emplace_back(way / line.norm(), 1.0);
+    }
+  }
+  f.tortuosity = ratios.empty() ? 1.0 : std::max(1.0, quantile(std::move(ratios), 0.5));
+  return f;
+}
+
+Source source_of(const std::string& file) {
+  namespace fs = std::filesystem;
+  if (!fs::is_regular_file(file)) throw core::InputError(file, "", "no such file");
+  const std::string ending = fs::path(file).extension().string();
+  if (ending == ".bt" || ending == ".ot") return Source::map;
+  if (ending != ".info") return Source::mesh;
+  return core::read_info(file).count("mesh") > 0 ? Source::mesh : Source::numbers;
+}
+
+Description describe_file(const std::string& file, const std::string& start,
+                          const FreeSpaceOptions& options) {
+  const Source source = source_of(file);
+  if (source != Source::mesh && !start.empty())
+    throw core::InputError(file, "start", "is of use with a mesh only");
+  if (source == Source::numbers) return {read_figures(file), source};
+  if (source == Source::map) {
+    const core::VoxelMap map = core::read_octomap(file);
+    return {describe(free_space_of(map, options, file)), source};
+  }
+  const cave::Cave cave = cave::load_cave(file, start);
+  return {describe(free_space_of(cave.scene, cave.description.start.position, options, file)), source};
+}
+
+}  // namespace karst::selection

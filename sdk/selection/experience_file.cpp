@@ -1,0 +1,160 @@
+// An experience as an INFO file.
+//
+//   schema karst.experience/1
+//   cave { name maze1  figures { volume "5800 m^3"  width "2.4 m" } }
+//   contestant { name near  policy nearest_frontier  version 1.0.0  parameters { max_distance "30 m" } }
+//   result { contestant near  cave maze1  coverage_auc "0.41 10 0.03" }   ; mean, flights, deviation over
+//   seeds
+#include <algorithm>
+#include <boost/property_tree/info_parser.hpp>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
+#include "sdk/selection/experience.h"
+
+namespace karst::selection {
+namespace {
+
+namespace pt = boost::property_tree;
+using core::InputError;
+
+constexpr const char* kSchema = "karst.experience/1";
+
+std::string number_text(double v) {
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), v, std::chars_format::general, 6).ptr;
+  return {text.data(), end};
+}
+
+std::string required(const pt::ptree& tree, const char* key, const std::string& file,
+                     const std::string& place) {
+  const auto value = tree.get_optional<std::string>(key);
+  if (!value || value->empty()) throw InputError(file, place, std::string("lacks its ") + key);
+  return *value;
+}
+
+template <class Named>
+std::size_t index_of(const std::vector<Named>& all, const std::string& name, const std::string& file,
+                     const char* kind) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& n) { return n.name == name; });
+  if (found == all.end()) throw InputError(file, "result", std::string("no such ") + kind + ": " + name);
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+template <class Named>
+void refuse_twice(const std::vector<Named>& all, const std::string& name, const std::string& file) {
+  for (const Named& n : all)
+    if (n.name == name) throw InputError(file, name, "is there twice");
+}
+
+KnownCave cave_of(const pt::ptree& tree, const std::string& file) {
+  KnownCave cave;
+  cave.name = required(tree, "name", file, "cave");
+  core::OptionTable table;
+  for (const FigureDefinition& f : figure_definitions())
+    table.add(std::string(f.name), cave.figures.*f.value, std::string(f.unit), f.low, f.high, "");
+  table.read(file + ": cave " + cave.name, tree.get_child("figures", {}));
+  return cave;
+}
+
+Fared fared_of(const std::string& text, const std::string& file, const std::string& place) {
+  Fared f;
+  std::istringstream in(text);
+  std::string rest;
+  const bool good = static_cast<bool>(in >> f.mean >> f.flights);
+  const bool spread = good && in >> f.deviation;
+  if (good && !spread) in.clear(), f.deviation = kUnknown;
+  const bool sound = good && std::isfinite(f.mean) && f.flights > 0 && (!spread || f.deviation >= 0);
+  if (!sound || in >> rest)
+    throw InputError(file, place, "expected \"mean flights [deviation]\", got \"" + text + "\"");
+  return f;
+}
+
+}  // namespace
+
+Experience read_experience(const std::string& file) {
+  const pt::ptree tree = core::read_info(file);
+  if (tree.get("schema", "") != kSchema)
+    throw InputError(file, "schema",
+                     std::string("expected ") + kSchema + ": it is no experience of karst select");
+  Experience e;
+  e.metrics = learned_metrics();
+  for (const auto& [key, child] : tree) {
+    if (key == "cave") {
+      KnownCave cave = cave_of(child, file);
+      refuse_twice(e.caves, cave.name, file);
+      e.caves.push_back(std::move(cave));
+    } else if (key == "contestant") {
+      const std::string name = required(child, "name", file, key);
+      refuse_twice(e.contestants, name, file);
+      e.contestants.push_back({name, required(child, "policy", file, name), child.get("version", ""),
+                               child.get_child("parameters", {})});
+    } else if (key != "schema" && key != "result") {
+      const std::string near = core::nearest_name(key, {"schema", "cave", "contestant", "result"});
+      throw InputError(file, key, "no such key" + (near.empty() ? "" : "; did you mean " + near + "?"));
+    }
+  }
+  if (e.caves.empty() || e.contestants.empty()) throw InputError(file, "", "holds no cave or no contestant");
+  e.fared.resize(e.caves.size() * e.contestants.size() * e.metrics.size());
+  for (const auto& [key, child] : tree) {
+    if (key != "result") continue;
+    const std::string who = required(child, "contestant", file, key),
+                      where = required(child, "cave", file, key);
+    const std::size_t k = index_of(e.contestants, who, file, "contestant"),
+                      c = index_of(e.caves, where, file, "cave");
+    for (const auto& [name, value] : child) {
+      if (name == "contestant" || name == "cave") continue;
+      const auto metric = std::find(e.metrics.begin(), e.metrics.end(), name);
+      if (metric == e.metrics.end()) throw InputError(file, "result." + name, "no such figure");
+      Fared& there = e.at(k, c, static_cast<std::size_t>(metric - e.metrics.begin()));
+      if (there.flights > 0) throw InputError(file, who + " in " + where, name + " is there twice");
+      there = fared_of(value.data(), file, who + " in " + where + ": " + name);
+    }
+  }
+  return e;
+}
+
+std::string to_info(const Experience& e) {
+  pt::ptree tree;
+  tree.put("schema", kSchema);
+  for (const KnownCave& cave : e.caves) {
+    pt::ptree node;
+    node.put("name", cave.name);
+    for (const FigureDefinition& f : figure_definitions())
+      if (const double v = cave.figures.*f.value; std::isfinite(v))
+        node.put("figures." + std::string(f.name),
+                 number_text(v) + (f.unit.empty() ? "" : " " + std::string(f.unit)));
+    tree.push_back({"cave", node});
+  }
+  for (const Preset& preset : e.contestants) {
+    pt::ptree node;
+    node.put("name", preset.name);
+    node.put("policy", preset.policy);
+    node.put("version", preset.version);
+    if (!preset.parameters.empty()) node.put_child("parameters", preset.parameters);
+    tree.push_back({"contestant", node});
+  }
+  for (std::size_t k = 0; k < e.contestants.size(); ++k)
+    for (std::size_t c = 0; c < e.caves.size(); ++c) {
+      pt::ptree node;
+      node.put("contestant", e.contestants[k].name);
+      node.put("cave", e.caves[c].name);
+      for (std::size_t m = 0; m < e.metrics.size(); ++m) {
+        const Fared& f = e.at(k, c, m);
+        if (f.flights == 0) continue;
+        std::string text = number_text(f.mean) + " " + std::to_string(f.flights);
+        if (std::isfinite(f.deviation)) text += " " + number_text(f.deviation);
+        node.put(e.metrics[m], text);
+      }
+      if (node.size() > 2) tree.push_back({"result", node});
+    }
+  std::ostringstream out;
+  pt::write_info(out, tree);
+  return out.str();
+}
+
+}  // namespace karst::selection

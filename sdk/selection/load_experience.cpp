@@ -1,0 +1,51 @@
+#include "sdk/selection/load_experience.h"
+
+#include <filesystem>
+
+#include "core_stack/common/error.h"
+#include "sdk/campaign/store.h"
+#include "sdk/selection/describe.h"
+
+namespace karst::selection {
+namespace {
+
+using core::InputError;
+
+void describe_caves(campaign::CampaignResults& results, const std::string& store,
+                    const std::function<void(const std::string&)>& tell) {
+  for (std::size_t c = 0; c < results.caves.size(); ++c) {
+    campaign::CaveEntry& cave = results.caves[c];
+    if (!cave.description.empty()) continue;
+    try {
+      tell("describing " + cave.name);
+      cave.description = to_json(describe_file(cave.file, cave.start).figures);
+    } catch (const InputError& e) {
+      tell("left out, it cannot be described: " + std::string(e.what()));
+      continue;
+    }
+    try {
+      campaign::Store::open(store).describe_cave(c, cave.description);
+    } catch (const InputError& e) {  // read-only, or another writes: then it is described again next time
+      tell("not kept: " + std::string(e.what()));
+    }
+  }
+}
+
+Experience one(const std::string& file, const std::function<void(const std::string&)>& tell) {
+  if (std::filesystem::path(file).extension() == ".info") return read_experience(file);
+  campaign::CampaignResults results = campaign::read_results(file);
+  describe_caves(results, file, tell);
+  return learn(results, file);
+}
+
+}  // namespace
+
+Experience load_experience(const std::vector<std::string>& files,
+                           const std::function<void(const std::string&)>& tell) {
+  if (files.empty()) throw InputError("results", "", "no file is given");
+  Experience all = one(files.front(), tell);
+  for (std::size_t i = 1; i < files.size(); ++i) all = merged(all, one(files[i], tell), files[i]);
+  return all;
+}
+
+}  // namespace karst::selection

@@ -1,0 +1,60 @@
+// Which policy for this cave: from how policies fared in caves like it. The method and what it was measured
+// to be worth: docs/select.md.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "sdk/selection/experience.h"
+
+namespace karst::selection {
+
+struct SelectOptions {
+  std::string metric = "coverage_auc";
+  double level = 0.9;  // of the intervals
+};
+
+/// How far apart two caves are: root of the weighted mean of the squared scaled differences over the figures
+/// both have.
+struct Distance {
+  double value = kUnknown;  // NaN if they have no figure in common
+  int farthest = -1;        // index of the figure that differs most
+  int shared = 0;           // figures both have
+};
+
+/// The unit of each figure: 1.4826 times the median absolute deviation over the known caves, not less than
+/// the table's least scale.
+std::vector<double> robust_scales(const std::vector<KnownCave>& caves);
+Distance distance_between(const CaveFigures& a, const CaveFigures& b, const std::vector<double>& scales);
+
+struct NearCave {
+  std::size_t cave = 0;  // of the experience
+  Distance distance;
+  double weight = 0;  // share of the prediction
+};
+
+struct Expected {
+  std::size_t contestant = 0;
+  double value = kUnknown;                 // of the metric asked for
+  double low = kUnknown, high = kUnknown;  // NaN with fewer than four caves
+  double effective_caves = 0;              // how many caves the value rests on
+};
+
+struct Selected {
+  bool refused = false;
+  std::string reason;             // why this one, or why none
+  std::vector<NearCave> near;     // nearest first, all that the metric is known of
+  std::vector<Expected> ranking;  // best first
+  double limit = kUnknown;        // distance beyond which it refuses
+  double bandwidth = 0;           // of the kernel; infinity: caves tell nothing, and all weigh the same
+  double confidence = 0;          // share of resampled experiences that name the same contestant
+};
+
+/// Throws InputError if the experience knows nothing of the metric, or the description has no figure.
+Selected select(const Experience& experience, const CaveFigures& cave, const SelectOptions& options,
+                const std::string& source);
+
+/// The predicted figures of one contestant at the same bandwidth, by metric of the experience.
+std::vector<double> expected_figures(const Experience& experience, const Selected& selected,
+                                     std::size_t contestant);
+
+}  // namespace karst::selection

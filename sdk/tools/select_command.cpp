@@ -1,0 +1,252 @@
+#include "sdk/tools/select_command.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "sdk/evaluation/whole_file.h"
+#include "sdk/selection/describe.h"
+#include "sdk/selection/leave_one_out.h"
+#include "sdk/selection/load_experience.h"
+#include "sdk/selection/preset.h"
+#include "sdk/tools/arguments.h"
+#include "sdk/tools/install_place.h"
+
+namespace karst::tools {
+namespace {
+
+using core::InputError;
+using nlohmann::ordered_json;
+using selection::Experience;
+using selection::Selected;
+
+constexpr int kRefused = 3;  // exit code: nothing similar was flown
+
+struct Arguments {
+  std::string cave, start, out, preset;
+  std::vector<std::string> results, learn;
+  selection::SelectOptions options;
+  bool json = false, leave_one_out = false;
+};
+
+ordered_json known(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(); }
+
+void tell(const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); }
+
+Experience experience_of(const Arguments& args) {
+  std::vector<std::string> files = args.results;
+  if (files.empty() && !installed_experience().empty()) files = {installed_experience()};
+  if (files.empty())
+    throw InputError("karst select", "--results",
+                     "give the store of a campaign, or an experience that --learn wrote: none is installed");
+  return selection::load_experience(files, tell);
+}
+
+std::string interval_text(const selection::Expected& x) {
+  if (std::isnan(x.low)) return "not known";
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%.3g to %.3g", x.low, x.high);
+  return text.data();
+}
+
+void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
+           const Arguments& args) {
+  std::printf("The cave:\n%s", selection::to_text(cave).c_str());
+  std::printf("Caves like it:\n");
+  for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
+    const selection::NearCave& n = s.near[i];
+    const auto& far = selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)];
+    std::printf("  %-24s distance %5.2f, weight %3.0f %%, most unlike in %s (%.3g here, %.3g there)\n",
+                e.caves[n.cave].name.c_str(), n.distance.value, 100 * n.weight, std::string(far.name).c_str(),
+                cave.*far.value, e.caves[n.cave].figures.*far.value);
+  }
+  if (s.refused) {
+    std::printf("No policy is named: %s.\n", s.reason.c_str());
+    return;
+  }
+  std::printf("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
+  for (const selection::Expected& x : s.ranking)
+    std::printf("  %-24s %8.3g   %s\n", e.contestants[x.contestant].name.c_str(), x.value,
+                interval_text(x).c_str());
+  const selection::Preset& first = e.contestants[s.ranking.front().contestant];
+  std::printf("Policy: %s\n", first.policy.c_str());
+  for (const auto& [key, value] : first.parameters)
+    std::printf("  %s = %s\n", key.c_str(), value.data().c_str());
+  std::printf("Expected there:");
+  const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
+  for (std::size_t m = 0; m < figures.size(); ++m)
+    if (!std::isnan(figures[m])) std::printf(" %s %.3g", e.metrics[m].c_str(), figures[m]);
+  std::printf("\n%s.\n", s.reason.c_str());
+}
+
+ordered_json parameters_json(const selection::Preset& preset) {
+  ordered_json j = ordered_json::object();
+  for (const auto& [key, value] : preset.parameters) j[key] = value.data();
+  return j;
+}
+
+ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
+                     const Arguments& args) {
+  ordered_json j{{"refused", s.refused},
+                 {"reason", s.reason},
+                 {"metric", args.options.metric},
+                 {"cave", ordered_json::parse(selection::to_json(cave))}};
+  j["limit"] = s.limit;
+  j["bandwidth"] = known(s.bandwidth);
+  j["near"] = ordered_json::array();
+  for (const selection::NearCave& n : s.near)
+    j["near"].push_back(
+        {{"cave", e.caves[n.cave].name},
+         {"distance", n.distance.value},
+         {"weight", n.weight},
+         {"most_unlike_in",
+          selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)].name}});
+  if (s.refused) return j;
+  const selection::Preset& first = e.contestants[s.ranking.front().contestant];
+  j["policy"] = first.policy;
+  j["parameters"] = parameters_json(first);
+  j["confidence"] = s.confidence;
+  j["ranking"] = ordered_json::array();
+  for (const selection::Expected& x : s.ranking)
+    j["ranking"].push_back({{"contestant", e.contestants[x.contestant].name},
+                            {"expected", x.value},
+                            {"low", known(x.low)},
+                            {"high", known(x.high)}});
+  const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
+  for (std::size_t m = 0; m < figures.size(); ++m) j["expected"][e.metrics[m]] = known(figures[m]);
+  return j;
+}
+
+int select_for(const Arguments& args) {
+  const selection::Description cave = selection::describe_file(args.cave, args.start);
+  const Experience e = experience_of(args);
+  const Selected s = select(e, cave.figures, args.options, args.cave);
+  if (args.json)
+    std::printf("%s\n", to_json(e, cave.figures, s, args).dump(2).c_str());
+  else
+    print(e, cave.figures, s, args);
+  if (s.refused) return kRefused;
+  if (!args.preset.empty()) {
+    const selection::Preset& first = e.contestants[s.ranking.front().contestant];
+    evaluation::write_whole_file(args.preset,
+                                 selection::to_info({first.policy, first.parameters},
+                                                    "karst select --cave " + args.cave + "\n" + s.reason));
+  }
+  return 0;
+}
+
+void print_shares(const char* name, const selection::LeaveOneOut::Shares& s) {
+  std::printf("  %-28s %5.0f %% %12.0f %% %12.1f %%\n", name, 100 * s.best, 100 * s.within, 100 * s.regret);
+}
+
+void leave_one_out(const Arguments& args) {
+  const Experience e = experience_of(args);
+  const selection::LeaveOneOut l = selection::leave_one_out(e, args.options, "karst select");
+  if (args.json) {
+    ordered_json j{{"metric", args.options.metric}, {"caves", ordered_json::array()}, {"refused", l.refused}};
+    for (const selection::LeftOut& c : l.caves)
+      j["caves"].push_back({{"cave", e.caves[c.cave].name},
+                            {"nearest", c.nearest},
+                            {"refused", c.refused},
+                            {"best", e.contestants[c.best].name},
+                            {"best_value", c.best_value},
+                            {"selected", e.contestants[c.selected].name},
+                            {"selected_value", c.selected_value},
+                            {"overall", e.contestants[c.overall].name},
+                            {"overall_value", c.overall_value},
+                            {"chance_value", c.chance_value}});
+    const auto shares = [&j](const char* name, const selection::LeaveOneOut::Shares& s) {
+      j[name] = {{"best", known(s.best)}, {"within_5_percent", known(s.within)}, {"lost", known(s.regret)}};
+    };
+    shares("selected", l.selected), shares("overall_best", l.overall), shares("chance", l.chance);
+    shares("selected_answered", l.selected_answered), shares("overall_best_answered", l.overall_answered);
+    shares("chance_answered", l.chance_answered);
+    std::printf("%s\n", j.dump(2).c_str());
+    return;
+  }
+  std::printf("Each cave left out in turn, selected for from the others, by %s:\n",
+              args.options.metric.c_str());
+  for (const selection::LeftOut& c : l.caves)
+    std::printf("  %-24s nearest %5.2f  best %s %.3g; selected %s %.3g%s; overall best %s %.3g\n",
+                e.caves[c.cave].name.c_str(), c.nearest, e.contestants[c.best].name.c_str(), c.best_value,
+                e.contestants[c.selected].name.c_str(), c.selected_value,
+                c.refused ? " (would be refused)" : "", e.contestants[c.overall].name.c_str(),
+                c.overall_value);
+  std::printf("%zu caves               is the best   within 5 %%   lost on average\n", l.caves.size());
+  print_shares("selected", l.selected);
+  print_shares("always the overall best", l.overall);
+  print_shares("drawn at random", l.chance);
+  if (l.refused == 0 || l.refused == l.caves.size()) return;
+  std::printf("of the %zu caves that would not be refused\n", l.caves.size() - l.refused);
+  print_shares("selected", l.selected_answered);
+  print_shares("always the overall best", l.overall_answered);
+  print_shares("drawn at random", l.chance_answered);
+}
+
+void learn(const Arguments& args) {
+  if (args.out.empty()) throw InputError("karst select", "--learn", "needs --out FILE.info");
+  if (std::filesystem::path(args.out).extension() != ".info")
+    throw InputError("--out", args.out, "expected a name that ends in .info");
+  const Experience e = selection::load_experience(args.learn, tell);
+  evaluation::write_whole_file(args.out, selection::to_info(e));
+  std::printf("%s: %zu contestants in %zu caves\n", args.out.c_str(), e.contestants.size(), e.caves.size());
+}
+
+int run(const Arguments& args) {
+  const int wanted = !args.cave.empty() + !args.learn.empty() + args.leave_one_out;
+  if (wanted != 1)
+    throw InputError("karst select", "", "needs one of --cave FILE, --learn STORE, --leave-one-out");
+  if (!args.learn.empty()) return learn(args), 0;
+  if (args.leave_one_out) return leave_one_out(args), 0;
+  return select_for(args);
+}
+
+}  // namespace
+
+std::string installed_experience() {
+  const std::filesystem::path file =
+      plugin_root().parent_path().parent_path() / "share" / "karst" / "experience.info";
+  return std::filesystem::is_regular_file(file) ? file.string() : "";
+}
+
+void add_select_command(CLI::App& app) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* select = app.add_subcommand(
+      "select",
+      "Name the policy for a cave, by how policies fared in caves like it\n\n"
+      "  karst select --cave caves/new.info --results runs/campaign     a mesh or a cave's .info file\n"
+      "  karst select --cave runs/monday/map.bt                         the map of an earlier flight\n"
+      "  karst select --cave known.info                                 what a caver knows: width \"4 m\" "
+      "...\n"
+      "  karst select --learn runs/campaign --out mine.info             distil a campaign\n"
+      "  karst select --leave-one-out --results mine.info               what selecting is worth\n\n"
+      "Exit code: 0 a policy is named, 3 nothing similar was flown, 1 an error.");
+  select->add_option("--cave", args->cave, "mesh, cave .info, map (.bt, .ot), or INFO file of figures")
+      ->check(not_empty());
+  select->add_option("--start", args->start, "\"x y z\", of a mesh")->check(not_empty());
+  select
+      ->add_option("--results", args->results, "stores of campaigns, experiences; default: what is installed")
+      ->check(not_empty());
+  select->add_option("--metric", args->options.metric, "the figure to do best in")
+      ->check(not_empty())
+      ->capture_default_str();
+  select->add_option("--level", args->options.level, "of the intervals")
+      ->check(CLI::Range(0.5, 0.99))
+      ->capture_default_str();
+  select
+      ->add_option("--preset", args->preset,
+                   "write the policy with its parameters here, for karst fly --preset")
+      ->check(not_empty());
+  select->add_option("--learn", args->learn, "stores to distil into --out")->check(not_empty());
+  select->add_option("--out", args->out, "of --learn: the experience, an INFO file")->check(not_empty());
+  select->add_flag("--leave-one-out", args->leave_one_out, "say what selecting is worth");
+  select->add_flag("--json", args->json, "Write JSON");
+  select->callback([args] {
+    if (const int code = run(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace karst::tools

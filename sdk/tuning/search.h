@@ -1,0 +1,27 @@
+// Finds a minimum of a function that is costly, noisy and has no derivative, in the unit cube (NLopt).
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace karst::tuning {
+
+using Point = std::vector<double>;  // each from 0 to 1
+
+struct SearchOptions {
+  // bobyqa: quadratic models about the best so far (Powell, 2009); direct: cuts the cube where it is
+  // promising or large (DIRECT-L: Gablonsky, Kelley, 2001); crs: a population (CRS2: Kaelo, Ali, 2006).
+  std::string method = "bobyqa";
+  double first_step = 0.15;  // of bobyqa, per axis
+  std::uint64_t seed = 1;    // of crs
+};
+
+const std::vector<std::string>& search_methods();
+
+/// Calls `f` on one point after another, `start` first, until it says that it wants no more, or nothing is
+/// left to gain. Deterministic. An exception of `f` ends the search and is thrown on.
+void search(const Point& start, const SearchOptions& options, const std::function<double(const Point&)>& f,
+            const std::function<bool()>& enough);
+
+}  // namespace karst::tuning

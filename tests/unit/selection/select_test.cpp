@@ -1,0 +1,372 @@
+#include "sdk/selection/select.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core_stack/common/error.h"
+#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/selection/leave_one_out.h"
+#include "sdk/selection/preset.h"
+#include "tests/unit/selection/experiences.h"
+
+namespace {
+
+using namespace karst::selection;
+using karst::core::InputError;
+using karst::test::cave_figures;
+using karst::test::experience;
+
+std::string name_of_first(const Experience& e, const Selected& s) {
+  return e.contestants[s.ranking.front().contestant].name;
+}
+
+TEST(Distance, IsZeroToItselfSymmetricAndGrowsWithTheDifference) {
+  const Experience e = experience(12, 0.3, 0, 1);
+  const std::vector<double> scales = robust_scales(e.caves);
+  const CaveFigures a = cave_figures(0, 0.2);
+  EXPECT_EQ(distance_between(a, a, scales).value, 0);
+  double last = 0;
+  for (const double size : {0.2, 0.5, 1.0, 3.0}) {
+    const CaveFigures b = cave_figures(size, 0.2);
+    const double d = distance_between(a, b, scales).value;
+    EXPECT_EQ(d, distance_between(b, a, scales).value);
+    EXPECT_GT(d, last);
+    last = d;
+  }
+}
+
+TEST(Distance, ByDefinition) {
+  CaveFigures a, b;
+  a.volume_m3 = 1000, b.volume_m3 = 1000 * std::exp(0.6);  // three units of 0.2, weight 1
+  a.length_m = 100, b.length_m = 100 * std::exp(0.2);      // one unit of 0.2, weight 0.5
+  a.width_m = 3;                                           // not known of the other
+  std::vector<double> scales;
+  for (const FigureDefinition& f : figure_definitions()) scales.push_back(f.least_scale);
+  const Distance d = distance_between(a, b, scales);
+  EXPECT_NEAR(d.value, std::sqrt((9 + 0.5) / 1.5), 1e-12);
+  EXPECT_EQ(d.shared, 2);
+  EXPECT_EQ(figure_definitions()[static_cast<std::size_t>(d.farthest)].name, "volume");
+  EXPECT_TRUE(std::isnan(distance_between(a, CaveFigures{}, scales).value));
+}
+
+TEST(Distance, ScalesAreRobust) {
+  std::vector<KnownCave> caves;
+  for (const double v : {1.0, 2.0, 3.0, 4.0, 100.0}) {
+    caves.push_back({"c", {}});
+    caves.back().figures.verticality = v / 10;  // medians: 0.3, and 0.1 from it
+  }
+  for (std::size_t i = 0; i < figure_definitions().size(); ++i)
+    if (figure_definitions()[i].name == "verticality")
+      EXPECT_NEAR(robust_scales(caves)[i], 0.14826, 1e-9);
+    else
+      EXPECT_EQ(robust_scales(caves)[i], figure_definitions()[i].least_scale);
+}
+
+TEST(Select, NamesThePolicyThatDoesWellInCavesLikeIt) {
+  const Experience e = experience(20, 0.3, 0.02, 3);
+  const Selected steep = select(e, cave_figures(0, 0.7), {}, "cave"),
+                 level = select(e, cave_figures(0, 0.1), {}, "cave");
+  EXPECT_EQ(name_of_first(e, steep), "steep");
+  EXPECT_EQ(name_of_first(e, level), "level");
+  EXPECT_FALSE(steep.refused) << steep.reason;
+  EXPECT_GT(steep.confidence, 0.8);
+  EXPECT_LT(steep.bandwidth, 3);
+  EXPECT_EQ(steep.ranking.size(), 3u);
+  for (std::size_t i = 1; i < steep.near.size(); ++i)
+    EXPECT_LE(steep.near[i - 1].distance.value, steep.near[i].distance.value);
+  double weight = 0;
+  for (const NearCave& n : steep.near) weight += n.weight;
+  EXPECT_NEAR(weight, 1, 1e-12);
+}
+
+TEST(Select, IsTheSameEveryTime) {
+  const Experience e = experience(9, 0.2, 0.1, 5);
+  const Selected a = select(e, cave_figures(0.1, 0.5), {}, "cave"),
+                 b = select(e, cave_figures(0.1, 0.5), {}, "cave");
+  EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.confidence, b.confidence);
+}
+
+TEST(Select, OfEqualCavesTheMeanIsExpected) {
+  Experience e = experience(6, 0.2, 0, 7);
+  for (KnownCave& c : e.caves) c.figures = cave_figures(0, 0.4);
+  const Selected s = select(e, cave_figures(0, 0.4), {}, "cave");
+  for (const Expected& x : s.ranking) {
+    double mean = 0;
+    for (std::size_t c = 0; c < 6; ++c) mean += e.at(x.contestant, c, 0).mean / 6;
+    EXPECT_NEAR(x.value, mean, 1e-12);
+    EXPECT_NEAR(x.effective_caves, 6, 1e-9);
+  }
+}
+
+TEST(Select, LessIsBetterOfTimes) {
+  Experience e = experience(10, 0.3, 0, 3);
+  const auto m = static_cast<std::size_t>(std::find(e.metrics.begin(), e.metrics.end(), "restricted_t90_s") -
+                                          e.metrics.begin());
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    for (std::size_t k = 0; k < 3; ++k) e.at(k, c, m) = {5, 100.0 + 10 * static_cast<double>(k), 1};
+  const Selected s = select(e, cave_figures(0, 0.4), {"restricted_t90_s"}, "cave");
+  EXPECT_EQ(name_of_first(e, s), "steep");
+  EXPECT_EQ(s.ranking.back().value, 120);
+}
+
+TEST(Select, IntervalsHoldAsManyCavesAsTheySay) {
+  // 90 % intervals over 300 fresh caves of the same kind: within what 300 draws from a fixed experience allow
+  // for, which itself may be a lucky or an unlucky one.
+  int inside = 0, all = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Experience e = experience(25, 0.3, 0.05, seed);
+    Experience rest = e;
+    for (int i = 0; i < 10; ++i) rest = without_cave(rest, rest.caves.size() - 1);
+    for (std::size_t c = 15; c < 25; ++c) {
+      const Selected s = select(rest, e.caves[c].figures, {}, "cave");
+      for (const Expected& x : s.ranking) {
+        const double truth = e.at(x.contestant, c, 0).mean;
+        inside += truth >= x.low && truth <= x.high, ++all;
+      }
+    }
+  }
+  EXPECT_GT(inside, 0.85 * all);
+  EXPECT_LT(inside, 0.97 * all);
+}
+
+TEST(Select, RefusesWhatIsUnlikeAllThatWasFlownAndNamesWhy) {
+  const Experience e = experience(12, 0.3, 0.02, 3);
+  CaveFigures strange = cave_figures(0, 0.4);
+  strange.width_m = 60;
+  const Selected s = select(e, strange, {}, "cave");
+  EXPECT_TRUE(s.refused);
+  EXPECT_NE(s.reason.find("most unlike is its width: 60 m"), std::string::npos) << s.reason;
+  EXPECT_GT(s.near.front().distance.value, s.limit);
+}
+
+TEST(Select, MissingFiguresAreLeftOut) {
+  const Experience e = experience(20, 0.3, 0.02, 3);
+  CaveFigures little;
+  little.verticality = 0.7, little.drop_m = 80;
+  const Selected s = select(e, little, {}, "cave");
+  EXPECT_FALSE(s.refused) << s.reason;
+  EXPECT_EQ(s.near.front().distance.shared, 2);
+  EXPECT_EQ(name_of_first(e, s), "steep");
+  // What says nothing about the slope cannot tell the two apart: the weights differ less.
+  CaveFigures less;
+  less.volume_m3 = 5000;
+  const Selected t = select(e, less, {}, "cave");
+  EXPECT_LT(t.near.front().weight, s.near.front().weight);
+  EXPECT_LT(t.confidence, s.confidence);
+}
+
+TEST(Select, ContestantThatDidNotFlyNearbyIsNotNamed) {
+  Experience e = experience(20, 0.3, 0.02, 3);
+  // "steep" flew in level caves only, and never failed to be worst there; its absence elsewhere must not help
+  // it.
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    if (e.caves[c].figures.verticality > 0.4) e.at(0, c, 0) = {};
+  const Selected s = select(e, cave_figures(0, 0.7), {}, "cave");
+  EXPECT_NE(name_of_first(e, s), "steep");
+}
+
+TEST(Select, BadInputIsAnError) {
+  const Experience e = experience(8, 0.3, 0.02, 3);
+  const auto message = [&](const Experience& known, const CaveFigures& cave,
+                           const SelectOptions& o) -> std::string {
+    try {
+      select(known, cave, o, "here");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const CaveFigures cave = cave_figures(0, 0.4);
+  EXPECT_NE(message(e, {}, {}).find("here: nothing is known of the cave"), std::string::npos);
+  EXPECT_NE(message(e, cave, {"coverage_acu"}).find("did you mean coverage_auc?"), std::string::npos);
+  EXPECT_NE(message(e, cave, {"path_length_m"}).find("neither better nor worse"), std::string::npos);
+  EXPECT_NE(message(e, cave, {"coverage"}).find("is known of 0 caves"), std::string::npos);
+  Experience few = e;
+  while (few.caves.size() > 3) few = without_cave(few, 0);
+  EXPECT_NE(message(few, cave, {}).find("is known of 3 caves; 4 at least"), std::string::npos);
+  CaveFigures other;
+  other.tortuosity = 2;
+  Experience blind = e;
+  for (KnownCave& c : blind.caves) c.figures.tortuosity = kUnknown;
+  EXPECT_NE(message(blind, other, {}).find("no cave that was flown has a figure"), std::string::npos);
+}
+
+TEST(LeaveOneOut, SelectingIsWorthItWhereCavesTell) {
+  const LeaveOneOut l = leave_one_out(experience(24, 0.3, 0.03, 11), {}, "test");
+  EXPECT_EQ(l.caves.size(), 24u);
+  EXPECT_GT(l.selected.within, 0.75);
+  EXPECT_GT(l.selected.within, l.overall.within + 0.2);
+  EXPECT_GT(l.selected.within, l.chance.within + 0.2);
+  EXPECT_LT(l.selected.regret, l.overall.regret);
+  EXPECT_NEAR(l.chance.best, 1.0 / 3, 1e-9);
+}
+
+TEST(LeaveOneOut, WhereCavesTellNothingItIsNearlyAsGoodAsTheOverallBest) {
+  // One is better everywhere by 10 %, and noise is as large: selecting must not lose much by hunting it.
+  double selected = 0, overall = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Experience e = experience(15, 0, 0.1, seed);
+    for (std::size_t c = 0; c < e.caves.size(); ++c) e.at(2, c, 0).mean *= 1.1;
+    const LeaveOneOut l = leave_one_out(e, {}, "test");
+    selected += l.selected.regret / 10, overall += l.overall.regret / 10;
+  }
+  EXPECT_LT(selected, overall + 0.02);
+}
+
+TEST(LeaveOneOut, ByHandInFiveCaves) {
+  // Five caves that are all alike; "a" is best in four, "b" in the fifth. Left out, the others name "a" every
+  // time.
+  Experience e;
+  e.metrics = learned_metrics();
+  e.contestants = {{"a", "a", "1", {}}, {"b", "b", "1", {}}};
+  for (int c = 0; c < 5; ++c) e.caves.push_back({"c" + std::to_string(c), cave_figures(0.01 * c, 0.4)});
+  e.fared.resize(2 * 5 * e.metrics.size());
+  for (std::size_t c = 0; c < 5; ++c)
+    e.at(0, c, 0) = {3, 0.5, 0.0}, e.at(1, c, 0) = {3, c == 4 ? 0.55 : 0.48, 0.0};
+  const LeaveOneOut l = leave_one_out(e, {}, "test");
+  EXPECT_NEAR(l.selected.best, 0.8, 1e-12);
+  EXPECT_NEAR(l.selected.within, 0.8, 1e-12);
+  EXPECT_NEAR(l.selected.regret, 0.05 / 0.55 / 5, 1e-12);
+  EXPECT_NEAR(l.chance.best, 0.5, 1e-12);
+  EXPECT_NEAR(l.chance.within, (4 * 1.0 + 0.5) / 5, 1e-12);                 // 0.48 is within 5 % of 0.5
+  EXPECT_THROW(leave_one_out(without_cave(e, 0), {}, "test"), InputError);  // three others are too few
+}
+
+karst::campaign::CampaignResults results() {
+  karst::campaign::CampaignResults r;
+  r.name = "test";
+  r.horizon_s = 300;
+  r.contestants = {
+      {"near", "nearest_frontier", "1.0.0", R"({"max_distance":"30 m","goals":8,"keep":true})", "{}"},
+      {"windy", "nearest_frontier", "1.0.0", "{}", R"({"simulator.gust":"2 m/s"})"}};
+  r.caves = {{"a", "a.info", "", to_json(cave_figures(0, 0.1)), ""},
+             {"b", "b.info", "", "", ""},
+             {"c", "c.info", "", to_json(cave_figures(1, 0.4)), ""}};
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t c = 0; c < 2; ++c)
+      for (int seed = 1; seed <= 3; ++seed) {
+        karst::campaign::TrialResult t;
+        t.contestant = k, t.cave = c, t.seed = seed;
+        t.figures.assign(karst::evaluation::metric_definitions().size(), std::nan(""));
+        t.figures[static_cast<std::size_t>(karst::evaluation::metric_index("coverage"))] = 0.1 * seed;
+        t.failed = seed == 3;
+        if (t.failed) t.figures.assign(t.figures.size(), std::nan(""));
+        r.trials.push_back(t);
+      }
+  return r;
+}
+
+TEST(Experience, OfACampaignHoldsMeansAndCountsFailures) {
+  const Experience e = learn(results(), "store");
+  ASSERT_EQ(e.caves.size(), 1u);  // b was not described, c not flown
+  ASSERT_EQ(e.contestants.size(), 1u);
+  EXPECT_EQ(e.contestants[0].parameters.get<std::string>("max_distance"), "30 m");
+  EXPECT_EQ(e.contestants[0].parameters.get<std::string>("goals"), "8");
+  const auto m =
+      static_cast<std::size_t>(std::find(e.metrics.begin(), e.metrics.end(), "coverage") - e.metrics.begin());
+  EXPECT_EQ(e.at(0, 0, m).flights, 3);
+  EXPECT_NEAR(e.at(0, 0, m).mean, 0.1, 1e-12);  // 0.1, 0.2, and nothing found by the one that failed
+  EXPECT_NEAR(e.at(0, 0, m).deviation, 0.1, 1e-12);
+  const auto t90 = static_cast<std::size_t>(
+      std::find(e.metrics.begin(), e.metrics.end(), "restricted_t90_s") - e.metrics.begin());
+  EXPECT_EQ(e.at(0, 0, t90).mean, 300);
+}
+
+TEST(Experience, StoreWithoutDescribedCavesIsAnError) {
+  karst::campaign::CampaignResults r = results();
+  for (auto& c : r.caves) c.description.clear();
+  EXPECT_THROW(learn(r, "store"), InputError);
+  r = results();
+  r.trials.clear();
+  EXPECT_THROW(learn(r, "store"), InputError);
+  r = results();
+  r.caves[0].description = "{\"volume\": \"large\"}";
+  EXPECT_THROW(learn(r, "store"), InputError);
+}
+
+std::string written(const std::string& name, const std::string& text) {
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "experience_files";
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir / name) << text;
+  return (dir / name).string();
+}
+
+TEST(Experience, SurvivesItsFile) {
+  Experience e = experience(6, 0.3, 0.1, 2);
+  e.caves[2].name = "a cave; with \"quotes\"";
+  e.caves[3].figures.loops = kUnknown;
+  e.at(1, 2, 3) = {1, -0.25, kUnknown};
+  const std::string text = to_info(e);
+  const Experience f = read_experience(written("whole.info", text));
+  EXPECT_EQ(to_info(f), text);
+  EXPECT_EQ(f.caves[2].name, e.caves[2].name);
+  EXPECT_TRUE(std::isnan(f.caves[3].figures.loops));
+  EXPECT_EQ(f.at(1, 2, 3).mean, -0.25);
+  EXPECT_TRUE(std::isnan(f.at(1, 2, 3).deviation));
+  EXPECT_EQ(f.at(0, 0, 1).flights, 0);
+}
+
+TEST(Experience, BadFilesAreErrors) {
+  const std::string head = "schema karst.experience/1\ncave { name a }\ncontestant { name k policy p }\n";
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      read_experience(written("bad.info", text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message(head), "accepted");
+  EXPECT_NE(message("width 4\n").find("expected karst.experience/1"), std::string::npos);
+  EXPECT_NE(message("schema karst.experience/1\n").find("no cave or no contestant"), std::string::npos);
+  EXPECT_NE(message(head + "cave { name a }\n").find("a: is there twice"), std::string::npos);
+  EXPECT_NE(message(head + "cavee { name b }\n").find("did you mean cave?"), std::string::npos);
+  EXPECT_NE(message(head + "cave { name b figures { widht 4 } }\n").find("did you mean width?"),
+            std::string::npos);
+  EXPECT_NE(message(head + "contestant { name l }\n").find("lacks its policy"), std::string::npos);
+  EXPECT_NE(message(head + "result { contestant k cave z coverage \"1 1\" }\n").find("no such cave: z"),
+            std::string::npos);
+  EXPECT_NE(
+      message(head + "result { contestant k cave a cover \"1 1\" }\n").find("result.cover: no such figure"),
+      std::string::npos);
+  for (const char* bad : {"many", "0.5", "0.5 0", "0.5 -2", "nan 3", "0.5 3 -1", "0.5 3 0.1 7", "0.5 3 x"})
+    EXPECT_NE(message(head + "result { contestant k cave a coverage \"" + bad + "\" }\n")
+                  .find("expected \"mean flights"),
+              std::string::npos)
+        << bad;
+}
+
+TEST(Experience, OfTwoCampaignsIsOneUnlessTheyContradict) {
+  const Experience a = experience(5, 0.3, 0.1, 2);
+  Experience b = experience(4, 0.3, 0.1, 3);
+  for (KnownCave& c : b.caves) c.name += "b";
+  const Experience both = merged(a, b, "b");
+  EXPECT_EQ(both.caves.size(), 9u);
+  EXPECT_EQ(both.contestants.size(), 3u);
+  EXPECT_EQ(both.at(1, 4, 0).mean, a.at(1, 4, 0).mean);
+  EXPECT_EQ(both.at(1, 5, 0).mean, b.at(1, 0, 0).mean);
+  EXPECT_THROW(merged(a, a, "again"), InputError);  // the same flights twice
+  Experience other = b;
+  other.caves[0].name = "cave0";
+  EXPECT_THROW(merged(a, other, "other"), InputError);
+  other = b;
+  other.contestants[0].parameters.put("reach", "5 m");
+  EXPECT_THROW(merged(a, other, "other"), InputError);
+}
+
+TEST(Preset, SurvivesItsFileAndRefusesAnythingElse) {
+  PolicyPreset p{"unknown_ratio", {}};
+  p.parameters.put("ratio_worth", "7.2 m");
+  const PolicyPreset q = read_preset(written("preset.info", to_info(p, "made by hand\non a day")));
+  EXPECT_EQ(q.policy, p.policy);
+  EXPECT_EQ(q.parameters, p.parameters);
+  for (const char* bad : {"", "seed 3\n", "policy { parameters { a 1 } }\n", "policy x\n",
+                          "policy { name a }\npolicy { name b }\n", "policy { name a name b }\n",
+                          "policy { name a version 3 }\n", "policy { name a }\nmap { resolution 0.1 }\n"})
+    EXPECT_THROW(read_preset(written("bad_preset.info", bad)), InputError) << bad;
+}
+
+}  // namespace
