@@ -42,7 +42,7 @@ TEST(PolicyAuto, IsSettledBeforeTakeOffRecordedAndReplayedWithoutIt) {
   write(dir / "known.info", "verticality 0.65\nwidth \"3.1 m\"\n");
   write(dir / "mission.info",
         "cave { file cave3.info }\npolicy {\n name auto\n auto {\n description known.info\n results "
-        "experience.info\n } }\nmission { max_flight_time \"8 s\" }\n");
+        "experience.info\n } }\nmission { max_flight_time \"10 s\" }\n");
   const std::string first = (dir / "first").string(), second = (dir / "second").string();
   const Output flown =
       run_karst("fly " + (dir / "mission.info").string() + " --threads 1 --no-report --quiet --out " + first);
