@@ -4,13 +4,14 @@ JOBS ?= $(shell nproc)
 CMAKE_FLAGS ?=
 DEMO_RUN ?= runs/demo
 
-.PHONY: help demo test build bench format lint asan tsan install clean
+.PHONY: help demo test build bench format lint asan tsan fuzz install clean
 help:
 	@echo "make demo     install, build, generate a cave, fly a mission through it, write the report"
 	@echo "make test     install, build, run every test"
 	@echo "make bench    benchmarks: ratios against stock OctoMap, NLopt and the naive way"
 	@echo "make format   clang-format on every source file;  make lint  checks format, tidiness, layering"
 	@echo "make asan     unit tests under AddressSanitizer and UBSan;  make tsan  under ThreadSanitizer"
+	@echo "make fuzz     every reader of files under libFuzzer, FUZZ_SECONDS=30 each"
 	@echo "make install  into PREFIX (/usr/local)"
 
 build:
@@ -56,8 +57,16 @@ tsan:
 	@cmake --build build-tsan -j $(JOBS)
 	@.ci/ctest build-tsan -LE flight
 
+FUZZ_SECONDS ?= 30
+fuzz:
+	@.ci/install test
+	@CC=clang CXX=clang++ cmake -S . -B build-fuzz -G Ninja -DKARST_SANITIZE=fuzzer-no-link,address,undefined \
+	  -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
+	@cmake --build build-fuzz -j $(JOBS) --target fuzzers
+	@.ci/fuzz build-fuzz $(FUZZ_SECONDS)
+
 PREFIX ?= /usr/local
 install: build
 	@cmake --install $(BUILD) --prefix $(PREFIX)
 clean:
-	@rm -rf $(BUILD) build-asan build-tsan
+	@rm -rf $(BUILD) build-asan build-tsan build-fuzz

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core_stack/localization/parallel.h"
@@ -10,6 +11,8 @@ namespace karst::core {
 namespace {
 
 constexpr int kMinHalfWindow = 4, kMaxHalfWindow = 24;  // points
+constexpr float kMaxGap = 2.5f;                         // beam steps between points of one segment
+constexpr float kMaxSlope = 0.05f;                      // of the range, between points of one segment
 constexpr float kNone = -1;                             // no sharpness
 
 /// The usual angle between neighbouring beams, from a sample of the sweep.
@@ -26,98 +29,91 @@ float beam_step(const std::vector<SweepPoint>& points) {
   return *middle;
 }
 
-/// One ring with what every step below asks for.
+/// One ring with what its windows ask for.
 struct Ring {
   std::span<const SweepPoint> points;
   std::vector<float> range;
-  std::vector<Vec3> sum;         // sum[i]: of all positions before i
-  std::vector<int> segment_end;  // of the segment that point i is in
+  std::vector<Vec3> sum;                        // sum[i]: of all positions before i
+  std::vector<int> segment_begin, segment_end;  // of the segment that point i is in
 
-  Ring(std::span<const SweepPoint> p, float step, const FeatureOptions& o) : points(p) {
-    const auto n = p.size();
-    range.resize(n), sum.resize(n + 1), segment_end.resize(n);
+  Ring(std::span<const SweepPoint> p, float step, float jump_m) : points(p) {
+    const std::size_t n = p.size();
+    range.resize(n), sum.resize(n + 1), segment_begin.resize(n), segment_end.resize(n);
     sum[0].setZero();
     for (std::size_t i = 0; i < n; ++i) {
       range[i] = p[i].position.norm();
       sum[i + 1] = sum[i] + p[i].position.cast<double>();
     }
-    const float max_gap = 2.5f * step;
-    int end = static_cast<int>(n);
-    for (int i = static_cast<int>(n) - 1; i >= 0; --i) {
-      segment_end[static_cast<std::size_t>(i)] = end;
-      if (i > 0 && breaks(static_cast<std::size_t>(i), max_gap, static_cast<float>(o.jump_m))) end = i;
+    for (std::size_t begin = 0, i = 1; i <= n; ++i) {
+      if (i < n && !breaks_at(i, kMaxGap * step, jump_m)) continue;
+      std::fill(segment_begin.begin() + begin, segment_begin.begin() + i, static_cast<int>(begin));
+      std::fill(segment_end.begin() + begin, segment_end.begin() + i, static_cast<int>(i));
+      begin = i;
     }
   }
 
-  /// A new segment begins at point i.
-  bool breaks(std::size_t i, float max_gap, float jump_m) const {
-    const float a = range[i - 1], b = range[i], near = std::min(a, b);
-    if (std::abs(a - b) > std::max(jump_m, 0.05f * near)) return true;
-    const float chord2 = (points[i].position - points[i - 1].position).squaredNorm() - (a - b) * (a - b);
-    return chord2 > max_gap * max_gap * a * b;
+  Vec3f mean(int first, int last) const {
+    const Vec3 total = sum[static_cast<std::size_t>(last + 1)] - sum[static_cast<std::size_t>(first)];
+    return (total / (last - first + 1)).cast<float>();
+  }
+
+ private:
+  /// A new segment begins at point i: the range jumps, or beams between were without a return.
+  bool breaks_at(std::size_t i, float max_gap_rad, float jump_m) const {
+    const float a = range[i - 1], b = range[i];
+    if (std::abs(a - b) > std::max(jump_m, kMaxSlope * std::min(a, b))) return true;
+    const float across2 = (points[i].position - points[i - 1].position).squaredNorm() - (a - b) * (a - b);
+    return across2 > max_gap_rad * max_gap_rad * a * b;
   }
 };
 
-struct Choice {
-  int index = -1;
-  float sharpness = 0;
-};
-
-struct RingFeatures {
-  std::vector<Feature> edges, planes;
-  std::vector<Feature> surface;
-};
-
-RingFeatures features_of_ring(const Ring& ring, float step, const FeatureOptions& o) {
-  RingFeatures out;
+/// Of each point; kNone where the window leaves the segment, or where the beams graze the rock.
+std::vector<float> sharpness_of(const Ring& ring, float step, const FeatureOptions& o) {
   const int n = static_cast<int>(ring.points.size());
-  std::vector<float> sharpness(static_cast<std::size_t>(n), kNone);
-  std::vector<Vec3f> mean(static_cast<std::size_t>(n));
   const float cos_grazing = std::cos(static_cast<float>(o.min_incidence_rad));
-  int segment_begin = 0;
+  std::vector<float> sharpness(ring.points.size(), kNone);
   for (int i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (i > 0 && ring.segment_end[at] != ring.segment_end[at - 1]) segment_begin = i;
-    const int half = std::clamp(static_cast<int>(static_cast<float>(o.window_m) / (step * ring.range[at])),
-                                kMinHalfWindow, kMaxHalfWindow);
-    const int low = i - half, high = i + half;
-    if (low < segment_begin || high >= ring.segment_end[at]) continue;
-    const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
-    const Vec3f across = ring.points[h].position - ring.points[l].position;
-    const float length = across.norm();
+    const float in_window = static_cast<float>(o.window_m) / (step * ring.range[at]);
+    const int half = std::clamp(static_cast<int>(std::min(in_window, 1e6f)), kMinHalfWindow, kMaxHalfWindow);
+    if (i - half < ring.segment_begin[at] || i + half >= ring.segment_end[at]) continue;
     const Vec3f& p = ring.points[at].position;
-    if (std::abs(across.dot(p)) > cos_grazing * length * ring.range[at]) continue;
-    mean[at] = ((ring.sum[h + 1] - ring.sum[l]) / (2 * half + 1)).cast<float>();
-    // The point itself, less noisy, as the mean of it and its neighbours.
-    const Vec3f centre = ((ring.sum[at + 2] - ring.sum[at - 1]) / 3).cast<float>();
-    sharpness[at] = 2 * (mean[at] - centre).norm() / length;
-    out.surface.push_back({p, ring.points[at].time_s});
+    const Vec3f across = ring.points[static_cast<std::size_t>(i + half)].position -
+                         ring.points[static_cast<std::size_t>(i - half)].position;
+    const float length = across.norm();
+    if (length == 0 || std::abs(across.dot(p)) > cos_grazing * length * ring.range[at]) continue;
+    // The point itself as the mean of three, which halves the noise.
+    sharpness[at] = 2 * (ring.mean(i - half, i + half) - ring.mean(i - 1, i + 1)).norm() / length;
   }
+  return sharpness;
+}
 
-  const auto pick = [&](std::int64_t sectors, auto better, auto&& keep) {
-    for (std::int64_t s = 0; s < sectors; ++s) {
-      Choice best;
-      for (auto i = static_cast<int>(n * s / sectors); i < static_cast<int>(n * (s + 1) / sectors); ++i) {
-        const float v = sharpness[static_cast<std::size_t>(i)];
-        if (v != kNone && (best.index < 0 || better(v, best.sharpness))) best = {i, v};
-      }
-      if (best.index >= 0) keep(best);
-    }
-  };
-  pick(
-      o.plane_sectors, [](float a, float b) { return a < b; },
-      [&](const Choice& c) {
-        const auto i = static_cast<std::size_t>(c.index);
-        if (c.sharpness <= static_cast<float>(o.max_flatness))
-          out.planes.push_back({ring.points[i].position, ring.points[i].time_s});
-      });
-  pick(
-      o.edge_sectors, [](float a, float b) { return a > b; },
-      [&](const Choice& c) {
-        const auto i = static_cast<std::size_t>(c.index);
-        if (c.sharpness >= static_cast<float>(o.min_sharpness))
-          out.edges.push_back({ring.points[i].position, ring.points[i].time_s});
-      });
+/// The point of each sector with the largest value, if it has one of at least `least`.
+std::vector<Feature> best_of_sectors(const Ring& ring, const std::vector<float>& values, std::int64_t sectors,
+                                     float least) {
+  std::vector<Feature> best;
+  const auto n = static_cast<std::int64_t>(ring.points.size());
+  for (std::int64_t s = 0; s < sectors; ++s) {
+    const auto first = values.begin() + n * s / sectors, end = values.begin() + n * (s + 1) / sectors;
+    const auto at = std::max_element(first, end);
+    if (at == end || *at < least) continue;
+    const SweepPoint& p = ring.points[static_cast<std::size_t>(at - values.begin())];
+    best.push_back({p.position, p.time_s});
+  }
+  return best;
+}
+
+Features features_of(const Ring& ring, float step, const FeatureOptions& o) {
+  const std::vector<float> sharpness = sharpness_of(ring, step, o);
+  std::vector<float> flatness(sharpness.size());
+  Features out;
+  for (std::size_t i = 0; i < sharpness.size(); ++i) {
+    const bool has = sharpness[i] != kNone;
+    flatness[i] = has ? -sharpness[i] : -std::numeric_limits<float>::infinity();
+    if (has) out.surface.push_back({ring.points[i].position, ring.points[i].time_s});
+  }
+  out.edges = best_of_sectors(ring, sharpness, o.edge_sectors, static_cast<float>(o.min_sharpness));
+  out.planes = best_of_sectors(ring, flatness, o.plane_sectors, -static_cast<float>(o.max_flatness));
   return out;
 }
 
@@ -144,21 +140,22 @@ Features find_features(const std::vector<SweepPoint>& points, const FeatureOptio
   const std::size_t rings = begins.size();
   begins.push_back(points.size());
   const float step = beam_step(points);
-  Features all;
-  if (step <= 0) return all;
+  if (!(step > 0)) return {};
 
-  std::vector<RingFeatures> found(rings);
+  std::vector<Features> found(rings);
   for_each_chunk(rings, 4, threads, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t r = first; r < end; ++r) {
-      const Ring ring({points.data() + begins[r], begins[r + 1] - begins[r]}, step, options);
-      found[r] = features_of_ring(ring, step, options);
+      const Ring ring({points.data() + begins[r], begins[r + 1] - begins[r]}, step,
+                      static_cast<float>(options.jump_m));
+      found[r] = features_of(ring, step, options);
     }
   });
-  for (const RingFeatures& f : found) {
-    all.edges.insert(all.edges.end(), f.edges.begin(), f.edges.end());
-    all.planes.insert(all.planes.end(), f.planes.begin(), f.planes.end());
-    all.surface.insert(all.surface.end(), f.surface.begin(), f.surface.end());
-  }
+  Features all;
+  const auto append = [](std::vector<Feature>& to, const std::vector<Feature>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const Features& f : found)
+    append(all.edges, f.edges), append(all.planes, f.planes), append(all.surface, f.surface);
   return all;
 }
 

@@ -24,12 +24,13 @@ struct FeatureOptions {
   double max_flatness = 0.08;       // sharpness a planar feature may have
   double min_sharpness = 0.2;       // sharpness an edge feature needs
   double min_incidence_rad = 0.17;  // between beam and rock
-  double jump_m = 0.3;              // of the range: a new surface begins
+  double jump_m = 0.07;             // of the range, a few times its noise: a new surface begins
   std::int64_t plane_sectors = 48;  // a ring
   std::int64_t edge_sectors = 12;   // a ring
 };
 void describe(OptionTable& t, FeatureOptions& o);
 
+/// A point of the sweep.
 struct Feature {
   Vec3f position;  // lidar frame when measured
   float time_s;
@@ -37,10 +38,10 @@ struct Feature {
 
 struct Features {
   std::vector<Feature> edges, planes;
-  std::vector<Feature> surface;  // all points whose window has a sharpness
+  std::vector<Feature> surface;  // every point that has a sharpness
 };
 
-/// Points must be finite. `threads` changes the time it takes, not the result.
+/// Points must be finite and by ring, as in a Sweep. `threads` changes the time it takes, not the result.
 Features find_features(const std::vector<SweepPoint>& points, const FeatureOptions& options, int threads);
 
 }  // namespace karst::core

@@ -14,7 +14,7 @@ constexpr double kHeld = 1;                          // s: a velocity is not hel
 constexpr int kRefinements = 2;                      // of a sweep's motion, where there is no prediction
 constexpr double kSameMotion = 0.01;                 // m: a sweep bent by so little is left
 constexpr double kRockDistance = 5;                  // m: where what a rotation bends is measured
-constexpr std::size_t kFromCoarsest = 99;            // more than there are levels
+constexpr double kLongGap = 0.5;                     // s without a pose, after which a prediction is weak
 
 bool is_measurement(const SweepPoint& p) {
   const float range2 = p.position.squaredNorm();  // false comparisons: NaN
@@ -87,23 +87,31 @@ LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
   return locate(clean, predicted);
 }
 
+LoamPose Loam::begin_map(const Cloud& cloud, LoamPose pose, bool bent, bool anew) {
+  map_.clear();
+  pose.valid = true;
+  if (anew) {
+    pose.problem = "the local map began anew where the vehicle was predicted to be";
+    pose.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
+  }
+  accept(pose, cloud, false);
+  first_is_bent_ = bent;
+  return pose;
+}
+
 LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   const int threads = static_cast<int>(options_.threads);
-  const double length_s = length_of(sweep);
-  Prediction prediction = predict(sweep, length_s, states);
+  const double length_s = length_of(sweep), since_s = seconds(sweep.stamp - *last_valid_);
+  const Prediction prediction = predict(sweep, length_s, states);
   LoamPose out;
   out.stamp = sweep.stamp, out.T_world_body = prediction.T_world_body;
-  const auto refused = [&](const std::string& why) {
-    out.T_world_body = prediction.T_world_body;
-    out.problem = why;
-    return out;
-  };
 
   const Features features = find_features(sweep.points, options_.features, threads);
   const std::size_t count = features.edges.size() + features.planes.size();
-  if (count < static_cast<std::size_t>(options_.registration.min_matches))
-    return refused("too few features: " + counted(count, "in ") + counted(sweep.points.size(), "points"));
-
+  if (count < static_cast<std::size_t>(options_.registration.min_matches)) {
+    out.problem = "too few features: " + counted(count, "in ") + counted(sweep.points.size(), "points");
+    return out;
+  }
   const auto cloud_with = [&](const Prediction& p) {
     return compensated(features, SweepMotion(length_s, sweep.T_body_lidar, [&](double time_s) {
                          if (!p.covered) return pose_after(p.twist, time_s);
@@ -112,37 +120,24 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
                        }));
   };
   Cloud cloud = cloud_with(prediction);
-  const double since_s = seconds(sweep.stamp - *last_valid_);
   const bool lost = since_s > options_.restart_s;
-  if (map_.empty() || lost) {
-    map_.clear(), last_sweep_.clear();
-    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
-    out.valid = true;
-    first_is_bent_ = !prediction.covered && !sweep.compensated;
-    if (lost) {
-      out.problem = "the local map began anew where the vehicle was predicted to be";
-      out.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
-    }
-    accept(out);
-    return out;
-  }
+  if (map_.empty() || lost) return begin_map(cloud, out, !prediction.covered && !sweep.compensated, lost);
 
   const std::size_t coarsest = map_.surfaces().size() - 1;
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
-    return fit_to_map(cloud, map, guess, std::min(first_level, coarsest), options_.registration, threads,
-                      scratch_);
+    return fit_to_map(cloud, map, guess, first_level, options_.registration, threads, scratch_);
   };
-  const bool weak = !prediction.covered || since_s > 0.5;
-  Pose guess = prediction.T_world_body;
+  const bool weak = !prediction.covered || since_s > kLongGap;
   const bool scan_to_scan = options_.scan_to_scan == "always" || (options_.scan_to_scan == "auto" && weak);
+  Pose guess = prediction.T_world_body;
   if (scan_to_scan && !last_sweep_.empty()) {
-    const Fit with_last = fit(last_sweep_, guess, kFromCoarsest);
+    const Fit with_last = fit(last_sweep_, guess, coarsest);
     if (with_last.good) guess = with_last.T_world_body;
   }
-  Twist assumed = prediction.twist;
-  Fit found = fit(map_, guess, weak ? kFromCoarsest : 0);
+  Fit found = fit(map_, guess, weak ? coarsest : 0);
   // Without a prediction the last velocity compensated the sweep. Now its own is known, better each time.
   const int refinements = prediction.covered || since_s <= 0 ? 0 : first_is_bent_ ? 1 : kRefinements;
+  Twist assumed = prediction.twist;
   for (int i = 0; i < refinements && found.good; ++i) {
     const Twist twist = twist_between(T_world_last_, found.T_world_body, since_s);
     if (moved_within(length_s, twist, assumed) < kSameMotion) break;
@@ -154,32 +149,35 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   out.edges = found.edges, out.planes = found.planes;
   out.rms_residual_m = found.rms_residual_m;
   out.covariance = found.covariance, out.free_directions = found.free_directions;
-  if (!found.good)
-    return refused("the sweep does not lie on the local map: " +
-                   counted(static_cast<std::size_t>(found.edges + found.planes), "of ") +
-                   counted(count, "features match"));
   const Pose correction = prediction.T_world_body.inverse() * found.T_world_body;
-  if (correction.position.norm() > options_.max_correction_m ||
-      log_so3(correction.orientation).norm() > options_.max_correction_rad)
-    return refused("the fit lies too far from the prediction");
-
-  out.T_world_body = found.T_world_body;
-  out.valid = true;
-  accept(out);
-  if (first_is_bent_) map_.clear();  // now the velocity is known: the map begins with this sweep
-  first_is_bent_ = false;
-  if (map_.is_new_place(out.T_world_body.position))
-    map_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
-  last_sweep_.clear();
-  if (scan_to_scan) last_sweep_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
+  const bool far = correction.position.norm() > options_.max_correction_m ||
+                   log_so3(correction.orientation).norm() > options_.max_correction_rad;
+  if (!found.good) {
+    const auto matched = static_cast<std::size_t>(found.edges + found.planes);
+    out.problem = "the sweep does not lie on the local map: " + counted(matched, "of ") +
+                  counted(count, "features match");
+  } else if (far) {
+    out.problem = "the fit lies too far from the prediction";
+  } else {
+    out.valid = true;
+    out.T_world_body = found.T_world_body;
+    accept(out, cloud, scan_to_scan);
+  }
   return out;
 }
 
-void Loam::accept(const LoamPose& pose) {
+void Loam::accept(const LoamPose& pose, const Cloud& cloud, bool keep_sweep) {
   const double dt_s = seconds(pose.stamp - *last_valid_);
   twist_ = dt_s > 0 && dt_s < kHeld ? twist_between(T_world_last_, pose.T_world_body, dt_s) : Twist{};
   last_valid_ = pose.stamp;
   T_world_last_ = pose.T_world_body;
+
+  const Vec3& place = pose.T_world_body.position;
+  if (first_is_bent_) map_.clear();  // now the velocity is known: the map begins with this sweep
+  first_is_bent_ = false;
+  if (map_.is_new_place(place)) map_.insert(transformed(pose.T_world_body, cloud), place);
+  last_sweep_.clear();
+  if (keep_sweep) last_sweep_.insert(transformed(pose.T_world_body, cloud), place);
 }
 
 }  // namespace karst::core

@@ -49,14 +49,16 @@ class Loam {
   const LocalMap& map() const { return map_; }
 
  private:
+  /// Where the vehicle should be at the stamp, and how it moved during the sweep.
   struct Prediction {
     bool covered = false;  // by the states handed in
-    Pose T_world_body;     // at the stamp
-    Twist twist;           // if not covered
+    Pose T_world_body;
+    Twist twist;  // if not covered
   };
   Prediction predict(const Sweep& sweep, double length_s, const StateHistory& states) const;
   LoamPose locate(const Sweep& sweep, const StateHistory& states);
-  void accept(const LoamPose& pose);
+  LoamPose begin_map(const Cloud& cloud, LoamPose pose, bool bent, bool anew);
+  void accept(const LoamPose& pose, const Cloud& cloud, bool keep_sweep);
 
   LoamOptions options_;
   LocalMap map_;

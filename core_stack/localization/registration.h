@@ -15,10 +15,10 @@
 // huge.
 #pragma once
 #include "core_stack/localization/matching.h"
+#include "core_stack/localization/state.h"
 
 namespace karst::core {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct RegistrationOptions {

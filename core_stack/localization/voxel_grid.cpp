@@ -169,10 +169,13 @@ const VoxelGrid::Voxel* VoxelGrid::find(Key key) const {
 }
 
 VoxelGrid::Window VoxelGrid::window_around(Key key) const {
+  // A large table does not fit the cache: what will be read is called for first, so that the waits overlap.
+  for (std::size_t i = 0; i < 9; ++i) __builtin_prefetch(&table_[home_of(key + kNeighbours[i].key_step)]);
   Window window;
   for (std::size_t i = 0; i < 27; ++i) {
     const Voxel* v = find(key + kNeighbours[i].key_step);
     window[i] = v ? &v->sums : nullptr;
+    __builtin_prefetch(window[i]);
   }
   return window;
 }

@@ -170,6 +170,7 @@ class MissionControl final : public VehicleSink {
   int overruns_ = 0;                                     // of the executive, as last noted
   TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
   int locating_ = 0;                                     // scans on their way through localization
+  int mapping_ = 0;                                      // scans and depth images on their way into the map
   std::string localization_state_, believed_ = "lidar";  // as last noted in the events
 };
 

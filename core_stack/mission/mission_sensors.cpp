@@ -11,6 +11,9 @@ namespace {
 /// A scan's pose counts this long after the scan came in: with the sensor's own delay of 20 ms the estimate
 /// rests on a scan that ended 80 ms ago when the pose arrives.
 constexpr TimeNs kLocalizationBudget = 60 * kMillisecond;
+/// In real time, where mapping falls behind: what is seen beyond so many waiting messages is not mapped. In
+/// lockstep no more than a budget's worth waits.
+constexpr int kMostWaiting = 16;
 /// Returns within this margin around the vehicle are the vehicle.
 constexpr double kSelfMargin_m = 0.05;
 
@@ -80,6 +83,8 @@ void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
 }
 
 void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
+  if (mapping_ >= kMostWaiting) return;
+  ++mapping_;
   struct Result {
     std::vector<CellChange> changes;
     double explored_m3 = 0;
@@ -105,6 +110,7 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
         if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
       },
       [this, result, frontier] {
+        --mapping_;
         explored_m3_ = result->explored_m3;
         hull_clearance_m_ = result->hull_clearance_m;
         last_seen_ = now();

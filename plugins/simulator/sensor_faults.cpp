@@ -13,7 +13,7 @@ namespace {
 
 std::string in_words(const cave::Fault& fault) {
   constexpr const char* kSensors[] = {"lidar", "imu", "magnetometer", "barometer", "camera", "pose"};
-  constexpr const char* kKinds[] = {"lost", "nan", "three_points", "stamp_back"};
+  constexpr const char* kKinds[] = {"lost", "nan", "three_points", "stamp_back", "stamp_ahead"};
   char text[80];
   std::snprintf(text, sizeof text, "%s %s for %.3f s", kSensors[static_cast<int>(fault.sensor)],
                 kKinds[static_cast<int>(fault.kind)], fault.lasts_s);
@@ -40,7 +40,7 @@ SensorFaults::Strike SensorFaults::strike(cave::Fault::Sensor sensor, double t_s
 
 void spoil(core::LidarScan& scan, Kind kind) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  constexpr core::TimeNs kBack = 250 * core::kMillisecond;
+  constexpr core::TimeNs kOff = 250 * core::kMillisecond;
   if (kind == Kind::nan) {
     for (std::size_t i = 0; i < scan.range_m.size(); i += 2) scan.range_m[i] = kNan;
     for (std::size_t i = 0; i < scan.intensity.size(); i += 3) scan.intensity[i] = kNan;
@@ -49,7 +49,9 @@ void spoil(core::LidarScan& scan, Kind kind) {
     for (float& r : scan.range_m)
       if (!std::isfinite(r) || left-- <= 0) r = kNan;
   } else if (kind == Kind::stamp_back) {
-    scan.stamp -= kBack;
+    scan.stamp -= kOff;
+  } else if (kind == Kind::stamp_ahead) {
+    scan.stamp += kOff;
   }
 }
 

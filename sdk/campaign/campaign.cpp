@@ -53,8 +53,10 @@ Settings take_settings(pt::ptree& tree, const std::string& name, const std::stri
 /// Keys that a campaign decides by other means than settings.
 void refuse_reserved(const Campaign& c, const std::string& place, const Settings& settings) {
   const std::vector<std::pair<std::string, std::string>> reserved = {
-      {"seed", "seeds or seed_list"},       {"cave.", "the blocks `cave`"},
-      {"policy.name", "contestant.policy"}, {"policy.parameters.", "contestant.parameters"},
+      {"seed", "seeds or seed_list"},
+      {"cave.", "the blocks `cave`"},
+      {"policy.name", "contestant.policy"},
+      {"policy.parameters.", "contestant.parameters"},
       {"mission.max_flight_time", "flight_time"}};
   for (const auto& [key, value] : settings)
     for (const auto& [what, instead] : reserved)
@@ -62,7 +64,8 @@ void refuse_reserved(const Campaign& c, const std::string& place, const Settings
         throw InputError(c.source, place + key, "is given by " + instead + " in a campaign");
 }
 
-std::vector<std::int64_t> parse_seeds(const std::string& source, std::int64_t count, const std::string& list) {
+std::vector<std::int64_t> parse_seeds(const std::string& source, std::int64_t count,
+                                      const std::string& list) {
   std::vector<std::int64_t> seeds;
   if (list.empty()) {
     for (std::int64_t s = 1; s <= count; ++s) seeds.push_back(s);
@@ -116,8 +119,12 @@ CaveSpec read_cave(const pt::ptree& block, const std::string& source) {
   return c;
 }
 
+const std::string kGoodName = "expected up to 100 letters, digits and _-+=.% without a . or - in front";
+
 bool good_name(const std::string& name) {
-  const auto good = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=.%", c); };
+  const auto good = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+=.%", c);
+  };
   return !name.empty() && name.size() <= 100 && name[0] != '.' && name[0] != '-' &&
          std::all_of(name.begin(), name.end(), good);
 }
@@ -138,9 +145,7 @@ template <class Named>
 void check_names(const Campaign& c, const std::vector<Named>& all, const std::string& what) {
   std::set<std::string> seen;
   for (const Named& n : all) {
-    if (!good_name(n.name))
-      throw InputError(c.source, what + ".name",
-                       "\"" + n.name + "\": expected up to 100 letters, digits and _-+=.% without a . or - in front");
+    if (!good_name(n.name)) throw InputError(c.source, what + ".name", "\"" + n.name + "\": " + kGoodName);
     if (!seen.insert(n.name).second)
       throw InputError(c.source, what + " " + n.name, "there are two of this name; give one another `name`");
   }
@@ -152,7 +157,8 @@ ContestantSpec parse_contestant(const std::string& text) {
   ContestantSpec c;
   const auto colon = text.find(':');
   c.policy = text.substr(0, colon);
-  if (c.policy.empty()) throw InputError("command line", text, "expected policy or policy:key=value,key=value");
+  if (c.policy.empty())
+    throw InputError("command line", text, "expected policy or policy:key=value,key=value");
   std::istringstream rest(colon == std::string::npos ? "" : text.substr(colon + 1));
   for (std::string item; std::getline(rest, item, ',');) {
     const auto equals = item.find('=');
@@ -170,10 +176,12 @@ void complete(Campaign& c) {
   if (c.caves.empty()) throw InputError(c.source, "cave", "there is none");
   if (c.seeds.empty()) throw InputError(c.source, "seeds", "there are none");
   profile(c.profile);
+  if (!good_name(c.name)) throw InputError(c.source, "name", "\"" + c.name + "\": " + kGoodName);
   for (ContestantSpec& k : c.contestants) {
     if (k.name.empty()) k.name = made_name(k);
     if (!k.plugin.empty()) {
-      if (!fs::is_regular_file(k.plugin)) throw InputError(c.source, "contestant.plugin", k.plugin + " is not there");
+      if (!fs::is_regular_file(k.plugin))
+        throw InputError(c.source, "contestant.plugin", k.plugin + " is not there");
       k.plugin = fs::absolute(k.plugin).lexically_normal().string();
     }
     refuse_reserved(c, "contestant " + k.name + ": ", k.settings);
@@ -207,7 +215,8 @@ Campaign read_campaign(const std::string& file) {
   table.add("mission", c.mission, {}, "mission file with settings that all share");
   table.add("profile", c.profile, profile_names, "set of mission settings");
   table.add("flight_time", c.flight_time_s, "s", 10, 86400, "homing begins at the latest in time for this");
-  table.add("trial_timeout", c.trial_timeout_s, "s", 1, 1e7, "a trial that takes longer, by the wall clock, hangs");
+  table.add("trial_timeout", c.trial_timeout_s, "s", 1, 1e7,
+            "a trial that takes longer, by the wall clock, hangs");
   table.add("seeds", seeds, 1, kMostSeeds, "how many: 1, 2, 3 ...");
   table.add("seed_list", seed_list, {}, "the seeds themselves");
   table.read(file, tree);

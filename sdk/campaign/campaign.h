@@ -26,9 +26,9 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 struct ContestantSpec {
   std::string name;  // letters, digits and _-+=.%: folders are named after it
   std::string policy;
-  std::string plugin;    // file to look for the policy in first, or ""
-  Settings parameters;   // of the policy
-  Settings settings;     // what else this contestant alone flies with
+  std::string plugin;   // file to look for the policy in first, or ""
+  Settings parameters;  // of the policy
+  Settings settings;    // what else this contestant alone flies with
 };
 
 struct CaveSpec {
@@ -48,8 +48,9 @@ struct Campaign {
   std::vector<CaveSpec> caves;
 };
 
-/// Throws core::InputError naming file, place and reason: also for names that are taken twice, and if it lacks
-/// contestants, caves or seeds. Whether policies and settings exist is seen when it is planned (plan.h).
+/// Throws core::InputError naming file, place and reason: also for names that are taken twice, and if it
+/// lacks contestants, caves or seeds. Whether policies and settings exist is seen when it is planned
+/// (plan.h).
 Campaign read_campaign(const std::string& file);
 
 /// A contestant as the command line names it: "policy" or "policy:key=value,key=value".

@@ -69,7 +69,8 @@ std::vector<CurvePoint> curve_of(const evaluation::RunRecord& run, double covera
 
 fs::path run_dir_of(const Plan& plan, const TrialKey& trial) {
   const auto& [contestant, cave, seed] = trial;
-  return fs::path("trials") / plan.contestants.at(contestant).name / plan.caves.at(cave).name / std::to_string(seed);
+  return fs::path("trials") / plan.contestants.at(contestant).name / plan.caves.at(cave).name /
+         std::to_string(seed);
 }
 
 StoredTrial collect(const Plan& plan, const TrialKey& key, const fs::path& folder) {
@@ -80,7 +81,8 @@ StoredTrial collect(const Plan& plan, const TrialKey& key, const fs::path& folde
   TrialResult& r = trial.result;
   std::tie(r.contestant, r.cave, r.seed) = key;
   r.run_dir = relative.string();
-  const bool ended_well = !note.end.hung && note.end.signal == 0 && (note.end.exit_code == 0 || note.end.exit_code == 2);
+  const bool ended_well =
+      !note.end.hung && note.end.signal == 0 && (note.end.exit_code == 0 || note.end.exit_code == 2);
   r.failed = !ended_well || !metrics.is_object();
   r.outcome = r.failed ? "failed" : text_of(metrics, "outcome");
   r.reason = r.failed ? failure(plan, run_dir, note.end) : text_of(metrics, "reason");

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 using core::InputError;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uintmax_t kLeastSpace = 64u << 20;  // bytes free to begin a trial; one writes tens of megabytes
+constexpr std::uintmax_t kLeastSpace = 64u
+                                       << 20;  // bytes free to begin a trial; one writes tens of megabytes
 constexpr const char* kNoteFile = "trial.json";
 
 std::string machine_name() {
@@ -43,9 +44,10 @@ void refuse_full_disk(const fs::path& folder) {
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
   if (!error && space.available < kLeastSpace)
-    throw InputError(folder.string(), "",
-                     "the disk is full: less than 64 MB are free; make room and start the campaign again, it goes on "
-                     "where it was");
+    throw InputError(
+        folder.string(), "",
+        "the disk is full: less than 64 MB are free; make room and start the campaign again, it goes on "
+        "where it was");
 }
 
 /// A trial that failed for want of space says nothing about its policy.
@@ -56,16 +58,18 @@ void refuse_starved(const fs::path& folder) {
   if (text.str().find(std::strerror(ENOSPC)) != std::string::npos) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
-    throw InputError(folder.string(), "",
-                     "the disk is full: the trial could not be recorded; make room and start the campaign again, it "
-                     "goes on where it was");
+    throw InputError(
+        folder.string(), "",
+        "the disk is full: the trial could not be recorded; make room and start the campaign again, it "
+        "goes on where it was");
   }
   refuse_full_disk(folder);
 }
 
 Flying start(const TrialJob& job, std::size_t index, const ExecutorOptions& options) {
   refuse_full_disk(options.flying);
-  const fs::path folder = options.flying / (machine_name() + "-" + std::to_string(getpid()) + "-" + std::to_string(index));
+  const fs::path folder =
+      options.flying / (machine_name() + "-" + std::to_string(getpid()) + "-" + std::to_string(index));
   std::error_code error;
   fs::remove_all(folder, error);
   fs::create_directories(folder, error);
@@ -118,7 +122,8 @@ class InTheAir {
 
 }  // namespace
 
-bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& options, const ExecutorEvents& events) {
+bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& options,
+                const ExecutorEvents& events) {
   std::error_code error;
   fs::create_directories(options.flying, error);
   if (error) throw InputError(options.flying.string(), "", "cannot be made: " + error.message());
@@ -151,12 +156,9 @@ bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& option
 }
 
 void write_note(const fs::path& run_dir, const TrialNote& note) {
-  const nlohmann::ordered_json json{{"schema", "karst.trial/1"},
-                                    {"exit_code", note.end.exit_code},
-                                    {"signal", note.end.signal},
-                                    {"hung", note.end.hung},
-                                    {"wall_s", note.end.wall_s},
-                                    {"machine", note.machine},
+  const nlohmann::ordered_json json{{"schema", "karst.trial/1"}, {"exit_code", note.end.exit_code},
+                                    {"signal", note.end.signal}, {"hung", note.end.hung},
+                                    {"wall_s", note.end.wall_s}, {"machine", note.machine},
                                     {"identity", note.identity}};
   evaluation::write_whole_file(run_dir / kNoteFile, json.dump(2) + "\n");
 }
@@ -167,7 +169,9 @@ TrialNote read_note(const fs::path& run_dir) {
   const auto json = nlohmann::json::parse(in, nullptr, false);
   if (!in && !in.eof()) throw InputError(file.string(), "", "cannot be read");
   try {
-    return {{json.at("exit_code"), json.at("signal"), json.at("hung"), json.at("wall_s")}, json.at("machine"), json.at("identity")};
+    return {{json.at("exit_code"), json.at("signal"), json.at("hung"), json.at("wall_s")},
+            json.at("machine"),
+            json.at("identity")};
   } catch (const nlohmann::json::exception&) {
     throw InputError(file.string(), "", "is no note of a trial");
   }

@@ -1,5 +1,5 @@
-// Flies trials as processes of this machine, one a core, and never more: each into a folder that gets its name
-// only once the trial has ended, so that what has a name is whole.
+// Flies trials as processes of this machine, one a core, and never more: each into a folder that gets its
+// name only once the trial has ended, so that what has a name is whole.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -32,9 +32,10 @@ struct ExecutorEvents {
   std::function<void(std::size_t flying)> tick;
 };
 
-/// Runs all jobs in their order; returns false if stopped before the last had ended: what was under way then is
-/// gone. Throws core::InputError if the disk is full or cannot be written: that is no result of a trial.
-bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& options, const ExecutorEvents& events);
+/// Runs all jobs in their order; returns false if stopped before the last had ended: what was under way then
+/// is gone. Throws core::InputError if the disk is full or cannot be written: that is no result of a trial.
+bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& options,
+                const ExecutorEvents& events);
 
 /// How a run directory's trial ended, as written beside its record: `trial.json`.
 struct TrialNote {

@@ -68,7 +68,8 @@ ordered_json trial_json(const CampaignResults& results, const TrialResult& t, co
   const auto definitions = evaluation::metric_definitions();
   for (std::size_t i = 0; i < definitions.size(); ++i)
     j["figures"][std::string(definitions[i].name)] = value(t.figures[i]);
-  for (const CurvePoint& p : t.curve) j["curve"].push_back({p.time_s, value(p.explored_m3), value(p.coverage)});
+  for (const CurvePoint& p : t.curve)
+    j["curve"].push_back({p.time_s, value(p.explored_m3), value(p.coverage)});
   for (const auto& [name, v] : timing_of(extras.timing)) j["timing"][name] = value(v);
   return j;
 }
@@ -84,8 +85,8 @@ void write_csv(std::ostream& out, const CampaignResults& results, const std::vec
   for (std::size_t i = 0; i < results.trials.size(); ++i) {
     const TrialResult& t = results.trials[i];
     const ContestantEntry& who = results.contestants[t.contestant];
-    out << cell(who.name) << ',' << cell(who.policy) << ',' << cell(results.caves[t.cave].name) << ',' << t.seed
-        << ',' << (t.failed ? "failed" : "done") << ',' << cell(t.outcome) << ',' << cell(t.reason);
+    out << cell(who.name) << ',' << cell(who.policy) << ',' << cell(results.caves[t.cave].name) << ','
+        << t.seed << ',' << (t.failed ? "failed" : "done") << ',' << cell(t.outcome) << ',' << cell(t.reason);
     for (const double v : t.figures) out << ',' << cell(v);
     out << ',' << cell(extras[i].binary_version) << ',' << cell(extras[i].mission_hash) << ','
         << cell(extras[i].timing.machine);
@@ -95,12 +96,9 @@ void write_csv(std::ostream& out, const CampaignResults& results, const std::vec
 }
 
 void write_json(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras) {
-  ordered_json j{{"schema", "karst.results/1"},
-                 {"name", results.name},
-                 {"horizon_s", results.horizon_s},
-                 {"contestants", ordered_json::array()},
-                 {"caves", ordered_json::array()},
-                 {"trials", ordered_json::array()}};
+  ordered_json j{{"schema", "karst.results/1"},    {"name", results.name},
+                 {"horizon_s", results.horizon_s}, {"contestants", ordered_json::array()},
+                 {"caves", ordered_json::array()}, {"trials", ordered_json::array()}};
   for (const ContestantEntry& c : results.contestants)
     j["contestants"].push_back({{"name", c.name},
                                 {"policy", c.policy},

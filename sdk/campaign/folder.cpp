@@ -30,10 +30,12 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(-1) {
   make_folder(folder);
   const fs::path file = folder / "lock";
   descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) throw InputError(file.string(), "", std::string("cannot be written: ") + std::strerror(errno));
+  if (descriptor_ < 0)
+    throw InputError(file.string(), "", std::string("cannot be written: ") + std::strerror(errno));
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   close(descriptor_);
-  throw InputError(folder.string(), "", "another campaign is writing here; wait for it, or choose another --out");
+  throw InputError(folder.string(), "",
+                   "another campaign is writing here; wait for it, or choose another --out");
 }
 
 FolderLock::~FolderLock() { close(descriptor_); }
@@ -50,8 +52,9 @@ Store open_for(const Plan& plan, const fs::path& folder, bool any_binary) {
       text += "\n  " + differences[i];
     if (differences.size() > kChangesNamed)
       text += "\n  and " + std::to_string(differences.size() - kChangesNamed) + " more";
-    throw InputError(file.string(), "",
-                     "holds another campaign, which cannot be gone on with; choose another --out. It differs:" + text);
+    throw InputError(
+        file.string(), "",
+        "holds another campaign, which cannot be gone on with; choose another --out. It differs:" + text);
   }
   if (const StoreHead head = head_of(plan); head.definition != store.head().definition) store.extend(head);
   return store;

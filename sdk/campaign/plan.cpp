@@ -122,8 +122,8 @@ PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs
   if (out.parameters.empty()) out.parameters = "{}";
   mission.erase("cave");
   mission.erase("seed");
-  out.binary_version =
-      binary_version(karst, mission.get("vehicle", ""), karst_version, plugin_file(who.policy, who.plugin, karst));
+  out.binary_version = binary_version(karst, mission.get("vehicle", ""), karst_version,
+                                      plugin_file(who.policy, who.plugin, karst));
   out.mission = std::move(mission);
   return out;
 }
@@ -173,7 +173,8 @@ Facts facts_of(const PlannedContestant& c, bool any_binary) {
 }
 Facts facts_of(const PlannedCave& c, bool) { return {{"start", c.start}, {"content", c.hash.substr(0, 12)}}; }
 
-void compare_facts(const std::string& what, const Facts& then, const Facts& now, std::vector<std::string>& out) {
+void compare_facts(const std::string& what, const Facts& then, const Facts& now,
+                   std::vector<std::string>& out) {
   const auto value = [](const Facts& facts, const std::string& key) {
     const auto found = facts.find(key);
     return found == facts.end() ? std::string("not there") : "\"" + found->second + "\"";
@@ -193,7 +194,8 @@ void compare_lists(const std::string& what, const std::vector<Named>& then, cons
       out.push_back(what + " " + std::to_string(i + 1) + " was " + then[i].name + ", is " +
                     (i < now.size() ? now[i].name : "missing"));
     else
-      compare_facts(what + " " + then[i].name, facts_of(then[i], any_binary), facts_of(now[i], any_binary), out);
+      compare_facts(what + " " + then[i].name, facts_of(then[i], any_binary), facts_of(now[i], any_binary),
+                    out);
   }
 }
 
@@ -297,7 +299,8 @@ std::vector<std::string> changes(const Plan& then, const Plan& now, bool any_bin
   std::vector<std::string> out;
   compare_lists("contestant", then.contestants, now.contestants, any_binary, out);
   compare_lists("cave", then.caves, now.caves, any_binary, out);
-  if (now.seeds.size() < then.seeds.size() || !std::equal(then.seeds.begin(), then.seeds.end(), now.seeds.begin()))
+  if (now.seeds.size() < then.seeds.size() ||
+      !std::equal(then.seeds.begin(), then.seeds.end(), now.seeds.begin()))
     out.push_back("seeds were " + seeds_text(then.seeds) + ", are " + seeds_text(now.seeds));
   return out;
 }
@@ -320,8 +323,8 @@ std::string mission_text(const Plan& plan, std::size_t contestant, std::size_t c
 std::string mission_hash(const Plan& plan, const TrialKey& trial) {
   const auto& [contestant, cave, seed] = trial;
   const PlannedCave& c = plan.caves.at(cave);
-  return sha256(info_text(plan.contestants.at(contestant).mission) + "\ncave " + c.hash + "\nstart " + c.start +
-                "\nseed " + std::to_string(seed) + "\n");
+  return sha256(info_text(plan.contestants.at(contestant).mission) + "\ncave " + c.hash + "\nstart " +
+                c.start + "\nseed " + std::to_string(seed) + "\n");
 }
 
 }  // namespace karst::campaign

@@ -14,9 +14,9 @@ namespace karst::campaign {
 
 struct PlannedContestant {
   std::string name, policy, plugin, version;
-  std::string binary_version;              // of karst and of the policy's plugin
-  std::string parameters, settings;        // JSON objects, as the store has them
-  boost::property_tree::ptree mission;     // every setting as resolved, but cave and seed
+  std::string binary_version;           // of karst and of the policy's plugin
+  std::string parameters, settings;     // JSON objects, as the store has them
+  boost::property_tree::ptree mission;  // every setting as resolved, but cave and seed
 };
 
 struct PlannedCave {
@@ -34,12 +34,13 @@ struct Plan {
   std::vector<std::int64_t> seeds;
 };
 
-/// Asks the `karst` program for every contestant in the first cave, and in every other cave for the first one,
-/// whether it can fly, and with which settings. Throws core::InputError naming the contestant or cave and what
-/// is wrong with it.
+/// Asks the `karst` program for every contestant in the first cave, and in every other cave for the first
+/// one, whether it can fly, and with which settings. Throws core::InputError naming the contestant or cave
+/// and what is wrong with it.
 Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
 
-/// The same with the hashes of the caves and binaries as they are now. Throws core::InputError if one is gone.
+/// The same with the hashes of the caves and binaries as they are now. Throws core::InputError if one is
+/// gone.
 Plan with_present_files(Plan plan, const std::filesystem::path& karst);
 
 /// As the store keeps it: INFO, and back.
@@ -47,8 +48,8 @@ std::string definition_of(const Plan& plan);
 Plan plan_of(const std::string& definition, const std::string& source);
 StoreHead head_of(const Plan& plan);
 
-/// What `now` changes of what `then` was, a sentence each; more contestants, caves and seeds behind those there
-/// were are no change, nor are name, timeout and, if `any_binary`, what flies.
+/// What `now` changes of what `then` was, a sentence each; more contestants, caves and seeds behind those
+/// there were are no change, nor are name, timeout and, if `any_binary`, what flies.
 std::vector<std::string> changes(const Plan& then, const Plan& now, bool any_binary);
 
 /// All trials: by contestant, cave, seed.

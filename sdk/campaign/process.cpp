@@ -41,7 +41,8 @@ using Clock = std::chrono::steady_clock;
 
 pid_t start_process(const std::vector<std::string>& argv, const std::filesystem::path& log) {
   std::vector<char*> words;
-  for (const std::string& a : argv) words.push_back(const_cast<char*>(a.c_str()));  // NOLINT: execv's signature
+  for (const std::string& a : argv)
+    words.push_back(const_cast<char*>(a.c_str()));  // NOLINT: execv's signature
   words.push_back(nullptr);
   const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   const int error = errno;
@@ -52,9 +53,11 @@ pid_t start_process(const std::vector<std::string>& argv, const std::filesystem:
   const int fork_error = errno;
   if (out >= 0) close(out);
   if (nothing >= 0) close(nothing);
-  if (out < 0) throw core::InputError(log.string(), "", std::string("cannot be written: ") + std::strerror(error));
+  if (out < 0)
+    throw core::InputError(log.string(), "", std::string("cannot be written: ") + std::strerror(error));
   if (pid < 0)
-    throw core::InputError(argv[0], "", std::string("no process can be made for it: ") + std::strerror(fork_error));
+    throw core::InputError(argv[0], "",
+                           std::string("no process can be made for it: ") + std::strerror(fork_error));
   setpgid(pid, pid);  // here as well: whichever of the two comes first
   return pid;
 }

@@ -17,8 +17,9 @@ struct ProcessEnd {
 };
 
 /// Runs argv[0] with both outputs going to `log` and nothing to read, in a process group of its own, so that
-/// Ctrl-C on a terminal does not reach it. The kernel ends it when this thread's process dies, however it dies.
-/// Throws core::InputError if no process can be made; exit code 127 says that the program could not be run.
+/// Ctrl-C on a terminal does not reach it. The kernel ends it when this thread's process dies, however it
+/// dies. Throws core::InputError if no process can be made; exit code 127 says that the program could not be
+/// run.
 pid_t start_process(const std::vector<std::string>& argv, const std::filesystem::path& log);
 
 /// Fills `end` and returns true if the process has ended.

@@ -1,5 +1,6 @@
-// Named sets of mission settings a campaign is flown with. A profile sets what costs time and, as measured, does
-// not change which policy is better (docs/compare.md); what the campaign or a contestant says itself wins.
+// Named sets of mission settings a campaign is flown with. A profile sets what costs time and, as measured,
+// does not change which policy is better (docs/compare.md); what the campaign or a contestant says itself
+// wins.
 #pragma once
 #include <string>
 #include <vector>

@@ -52,8 +52,8 @@ CampaignResults read_results(const fs::path& folder_or_file) {
   CampaignResults results{head.name, head.horizon_s, std::move(head.contestants), std::move(head.caves), {}};
   std::map<std::int64_t, std::size_t> place;
   Statement s(file, db,
-              "SELECT id, contestant, cave, seed, status, outcome, reason, run_dir" + figures_or_null(file, db) +
-                  " FROM trial ORDER BY contestant, cave, seed");
+              "SELECT id, contestant, cave, seed, status, outcome, reason, run_dir" +
+                  figures_or_null(file, db) + " FROM trial ORDER BY contestant, cave, seed");
   while (s.step()) {
     TrialResult t;
     place[s.integer(0)] = results.trials.size();

@@ -7,6 +7,7 @@
 #include "core_stack/common/error.h"
 #include "sdk/campaign/collect.h"
 #include "sdk/campaign/executor.h"
+#include "sdk/campaign/slurm.h"
 
 namespace karst::campaign {
 namespace {
@@ -14,15 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 using core::InputError;
 
-constexpr double kEvaluationLimit_s = 1800;
-
 std::vector<std::string> dropped(Keep keep) {
   std::vector<std::string> files;
   if (keep == Keep::all) return files;
   files = {"map.ot", "map.ply"};
   if (keep == Keep::figures)
-    files.insert(files.end(), {"map.bt", "map_growth.bin", "ground_truth.tum", "trajectory.tum", "telemetry.csv",
-                               "localization.csv", "events.jsonl", "truth.csv", "truth_events.jsonl", "decisions.csv"});
+    files.insert(files.end(),
+                 {"map.bt", "map_growth.bin", "ground_truth.tum", "trajectory.tum", "telemetry.csv",
+                  "localization.csv", "events.jsonl", "truth.csv", "truth_events.jsonl", "decisions.csv"});
   return files;
 }
 
@@ -45,19 +45,10 @@ std::string identity_of(const Plan& plan, const TrialKey& trial) {
   return mission_hash(plan, trial) + " " + plan.contestants.at(std::get<0>(trial)).binary_version;
 }
 
-/// Whether this very trial was flown, but its campaign died before it could be stored.
-bool is_flown(const Plan& plan, const TrialKey& trial, const fs::path& folder) {
-  try {
-    return read_note(folder / run_dir_of(plan, trial)).identity == identity_of(plan, trial);
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& options) {
   const auto& [contestant, cave, seed] = trial;
-  TrialJob job{{options.karst.string(), "fly", (options.folder / mission_file(plan, trial)).string(), "--seed",
-                std::to_string(seed), "--threads", "1", "--quiet", "--no-report"},
+  TrialJob job{{options.karst.string(), "fly", (options.folder / mission_file(plan, trial)).string(),
+                "--seed", std::to_string(seed), "--threads", "1", "--quiet", "--no-report"},
                options.folder / run_dir_of(plan, trial),
                identity_of(plan, trial)};
   if (const std::string& plugin = plan.contestants.at(contestant).plugin; !plugin.empty())
@@ -65,10 +56,21 @@ TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& optio
   return job;
 }
 
-/// The record of a trial that crashed tells what it had found until then.
-void evaluate_record(const fs::path& karst, const fs::path& folder) {
-  if (fs::exists(folder / "mission.info") && !fs::exists(folder / "metrics.json"))
-    run_process({karst.string(), "report", folder.string(), "--no-report"}, kEvaluationLimit_s);
+/// Of the wall clock, at thirty seconds of flight a second: the fastest that was seen.
+double expected_trial_s(const Plan& plan) { return plan.horizon_s / 30; }
+
+bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& options,
+         const ExecutorEvents& events) {
+  if (options.executor == "slurm")
+    return run_on_slurm(jobs,
+                        {options.folder, options.karst, plan.name, plan.trial_timeout_s,
+                         expected_trial_s(plan), options.sbatch, options.stop},
+                        events);
+  std::error_code ignored;
+  fs::remove_all(options.folder / "flying", ignored);  // what a killed campaign left
+  ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
+  how.finish = [&](const fs::path& run_dir) { evaluate_record(options.karst, run_dir); };
+  return run_trials(jobs, how, events);
 }
 
 }  // namespace
@@ -78,12 +80,10 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
   options.folder = fs::absolute(options.folder).lexically_normal();
   if (!campaign && !fs::exists(options.folder / "campaign.sqlite"))
     throw InputError(options.folder.string(), "", "holds no campaign");
-  const FolderLock lock(options.folder);
   const Plan plan = plan_for(campaign, options);
+  const FolderLock lock(options.folder);
   Store store = open_for(plan, options.folder, options.any_binary);
   write_missions(plan, options.folder);
-  std::error_code ignored;
-  fs::remove_all(options.folder / "flying", ignored);
 
   const std::set<TrialKey> stored = store.finished();
   const std::vector<TrialKey> order = in_flying_order(plan);
@@ -95,6 +95,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     progress.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (options.progress) options.progress(plan, progress);
   };
+  std::error_code ignored;
   const auto take = [&](const TrialKey& key) {
     const StoredTrial trial = collect(plan, key, options.folder);
     store.add(trial);
@@ -108,19 +109,18 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
   std::vector<TrialKey> missing;
   std::vector<TrialJob> jobs;
   for (const TrialKey& key : order) {
+    const TrialJob job = job_of(plan, key, options);
     if (stored.contains(key)) {
       ++progress.finished;
-    } else if (is_flown(plan, key, options.folder)) {
+    } else if (is_flown(job)) {  // its campaign died before it could be stored
       take(key);
     } else {
       missing.push_back(key);
-      jobs.push_back(job_of(plan, key, options));
+      jobs.push_back(job);
     }
   }
   tell(nullptr);
 
-  ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
-  how.finish = [&](const fs::path& folder) { evaluate_record(options.karst, folder); };
   ExecutorEvents events;
   events.ended = [&](std::size_t job, const ProcessEnd&) {
     const StoredTrial trial = take(missing[job]);
@@ -132,7 +132,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     progress.flying = flying;
     tell(nullptr);
   };
-  const bool done = run_trials(jobs, how, events);
+  const bool done = fly(plan, jobs, options, events);
   fs::remove_all(options.folder / "flying", ignored);
   return done;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sdk/campaign/folder.h"
 #include "sdk/campaign/plan.h"
@@ -25,15 +26,16 @@ struct Progress {
   std::size_t here = 0;      // finished since this start
   std::size_t failed = 0;
   std::size_t flying = 0;
-  double wall_s = 0;         // since this start
-  double simulated_s = 0;    // flown since this start
+  double wall_s = 0;                  // since this start
+  double simulated_s = 0;             // flown since this start
   const StoredTrial* last = nullptr;  // that has just ended; null at a tick
 };
 
 struct RunOptions {
   std::filesystem::path folder;
-  std::filesystem::path karst;  // the program that flies
-  std::string executor = "local";
+  std::filesystem::path karst;      // the program that flies
+  std::string executor = "local";   // or slurm
+  std::vector<std::string> sbatch;  // further options of sbatch
   std::size_t jobs = 1;
   Keep keep = Keep::replay;
   bool any_binary = false;  // go on although karst or a plugin is another one than before

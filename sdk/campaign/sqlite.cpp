@@ -37,7 +37,8 @@ void Statement::check(int code) const {
 }
 
 Statement& Statement::bind(int at, const std::string& text) {
-  check(sqlite3_bind_text(statement_.get(), at, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT));
+  check(
+      sqlite3_bind_text(statement_.get(), at, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT));
   return *this;
 }
 Statement& Statement::bind(int at, std::int64_t number) {

@@ -63,9 +63,10 @@ Store Store::create(const fs::path& file, const StoreHead& head) {
   return open(file);
 }
 
-Store Store::open(const fs::path& file) {
+Store Store::open(const fs::path& file, double lock_wait_s) {
   Store store(file);
   store.db_.reset(open_to_read(file).release());
+  sqlite3_busy_timeout(store.db_.get(), static_cast<int>(lock_wait_s * 1000));
   const std::set<std::string> columns = trial_columns(file, store.db_.get());
   for (const evaluation::MetricDefinition& m : evaluation::metric_definitions())
     if (!columns.contains(std::string(m.name)))
@@ -117,8 +118,8 @@ void Store::add(const StoredTrial& trial) {
   sqlite::Transaction transaction(file_, db_.get());
   Statement row(file_, db_.get(),
                 "INSERT OR REPLACE INTO trial(id, contestant, cave, seed, status, outcome, reason,"
-                " binary_version, mission_hash, run_dir" + names +
-                    ") VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10" + marks + ")");
+                " binary_version, mission_hash, run_dir" +
+                    names + ") VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10" + marks + ")");
   row.bind(1, id).bind(2, contestant).bind(3, cave).bind(4, r.seed);
   row.bind(5, std::string(r.failed ? "failed" : "done")).bind(6, r.outcome).bind(7, r.reason);
   row.bind(8, trial.binary_version).bind(9, trial.mission_hash).bind(10, r.run_dir);
@@ -130,7 +131,8 @@ void Store::add(const StoredTrial& trial) {
     point.bind(1, id).bind(2, p.time_s).bind(3, p.explored_m3).bind(4, p.coverage).run();
   const TrialTiming& t = trial.timing;
   const evaluation::WallClock& f = t.flight;
-  Statement timing(file_, db_.get(), "INSERT OR REPLACE INTO timing VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)");
+  Statement timing(file_, db_.get(),
+                   "INSERT OR REPLACE INTO timing VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)");
   timing.bind(1, id).bind(2, t.machine).bind(3, t.trial_s).bind(4, f.wall_s).bind(5, f.simulated_s);
   timing.bind(6, f.decide_mean_ms).bind(7, f.decide_p99_ms).bind(8, f.decide_max_ms);
   timing.bind(9, f.plan_mean_ms).bind(10, f.plan_p99_ms).bind(11, f.plan_max_ms).run();
@@ -144,8 +146,6 @@ std::set<TrialKey> Store::finished() const {
   return keys;
 }
 
-fs::path store_file(const fs::path& path) {
-  return fs::is_directory(path) ? path / "campaign.sqlite" : path;
-}
+fs::path store_file(const fs::path& path) { return fs::is_directory(path) ? path / "campaign.sqlite" : path; }
 
 }  // namespace karst::campaign

@@ -1,8 +1,8 @@
 // A campaign's results in one SQLite file (docs/compare.md). Only this module knows SQL.
 //
 // What is in the file does not depend on the order in which trials ended: a trial's id follows from its
-// contestant, cave and seed, and what the wall clock decides stands in the table `timing` alone. Every write is
-// one transaction, so that a campaign killed at any moment leaves whole trials only.
+// contestant, cave and seed, and what the wall clock decides stands in the table `timing` alone. Every write
+// is one transaction, so that a campaign killed at any moment leaves whole trials only.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -51,8 +51,8 @@ class Store {
  public:
   /// A new file, refused if there is one.
   static Store create(const std::filesystem::path& file, const StoreHead& head);
-  /// An existing one, to add to.
-  static Store open(const std::filesystem::path& file);
+  /// An existing one, to add to. Another program's lock is waited for so long.
+  static Store open(const std::filesystem::path& file, double lock_wait_s = 60);
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
   ~Store();

@@ -65,13 +65,15 @@ std::string schema_sql() {
          " start TEXT NOT NULL, hash TEXT NOT NULL, description TEXT NOT NULL);"
          "CREATE TABLE trial(id INTEGER PRIMARY KEY, contestant INTEGER NOT NULL REFERENCES contestant,"
          " cave INTEGER NOT NULL REFERENCES cave, seed INTEGER NOT NULL,"
-         " status TEXT NOT NULL CHECK(status IN ('done', 'failed')), outcome TEXT NOT NULL, reason TEXT NOT NULL,"
+         " status TEXT NOT NULL CHECK(status IN ('done', 'failed')), outcome TEXT NOT NULL, reason TEXT NOT "
+         "NULL,"
          " binary_version TEXT NOT NULL, mission_hash TEXT NOT NULL, run_dir TEXT NOT NULL" +
          figure_columns("", " REAL") +
          ", UNIQUE(contestant, cave, seed));"
          "CREATE TABLE curve(trial INTEGER NOT NULL REFERENCES trial, time_s REAL NOT NULL, explored_m3 REAL,"
          " coverage REAL, PRIMARY KEY(trial, time_s)) WITHOUT ROWID;"
-         "CREATE TABLE timing(trial INTEGER PRIMARY KEY REFERENCES trial, machine TEXT NOT NULL, trial_s REAL,"
+         "CREATE TABLE timing(trial INTEGER PRIMARY KEY REFERENCES trial, machine TEXT NOT NULL, trial_s "
+         "REAL,"
          " wall_s REAL, simulated_s REAL, decide_mean_ms REAL, decide_p99_ms REAL, decide_max_ms REAL,"
          " plan_mean_ms REAL, plan_p99_ms REAL, plan_max_ms REAL);"
          "CREATE VIEW result AS SELECT contestant.name AS contestant, cave.name AS cave, trial.seed,"
@@ -106,7 +108,6 @@ std::set<std::string> trial_columns(const fs::path& file, sqlite3* db) {
   return names;
 }
 
-
 void check_store(const fs::path& file, sqlite3* db) {
   if (number(file, db, "PRAGMA application_id") != kApplicationId)
     throw InputError(file.string(), "", "is no store of a karst campaign");
@@ -118,7 +119,8 @@ void check_store(const fs::path& file, sqlite3* db) {
   if (!check.step() || check.text(0) != "ok")
     throw InputError(file.string(), "", "is damaged (" + check.text(0) + ")");
   if (const std::string schema = value_of(file, db, "schema"); schema != kSchema)
-    throw InputError(file.string(), "campaign.schema", "expected " + std::string(kSchema) + ", got \"" + schema + "\"");
+    throw InputError(file.string(), "campaign.schema",
+                     "expected " + std::string(kSchema) + ", got \"" + schema + "\"");
 }
 
 void write_head(const fs::path& file, sqlite3* db, const StoreHead& head) {
@@ -145,7 +147,8 @@ void write_head(const fs::path& file, sqlite3* db, const StoreHead& head) {
 StoreHead read_head(const fs::path& file, sqlite3* db) {
   const auto json_of = [&](const char* key) {
     const auto parsed = nlohmann::json::parse(value_of(file, db, key), nullptr, false);
-    if (parsed.is_discarded()) throw InputError(file.string(), std::string("campaign.") + key, "cannot be read");
+    if (parsed.is_discarded())
+      throw InputError(file.string(), std::string("campaign.") + key, "cannot be read");
     return parsed;
   };
   StoreHead head;

@@ -61,9 +61,13 @@ Shown judge(const Comparison& c, double alpha) {
 
 void forecast(Comparison& c, const VerdictOptions& options, std::size_t tests) {
   const Differences differences = differences_of(c);
-  const ForecastOptions forecast{
-      .alpha = options.alpha, .tests = static_cast<int>(tests), .seed = options.seed};
+  ForecastOptions forecast;
+  forecast.alpha = options.alpha;
+  forecast.tests = static_cast<int>(tests);
+  forecast.simulations = options.simulations;
+  forecast.seed = options.seed;
   c.worthwhile = options.worthwhile * std::abs(c.mean_a + c.mean_b) / 2;
+  if (options.simulations == 0) return;
   c.forecast_worthwhile = forecast_seeds(differences, c.worthwhile, forecast);
   c.forecast_observed = forecast_seeds_as_observed(differences, forecast);
 }

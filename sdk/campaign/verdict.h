@@ -15,6 +15,7 @@ struct VerdictOptions {
   double alpha = 0.05;                  // chance of calling contestants different that are not
   double worthwhile = 0.05;  // smallest difference worth knowing, as a share of the contestants' mean
   int resamples = 4000;
+  int simulations = 1000;  // of campaigns, for a forecast; 0: none is made
   std::uint64_t seed = 1;
 };
 

@@ -130,6 +130,7 @@ std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
   const double factor = is_share(d.name) ? 100 : 1, effect = factor * c.worthwhile;
   const std::string difference = "a difference of " + number(100 * options.worthwhile, 10) + " % (" +
                                  number(effect, effect) + unit_of(d) + ")";
+  if (options.simulations == 0) return "";
   if (c.few_seeds) return "; two seeds a cave or more would tell how many show " + difference;
   if (f.seeds >= Forecast::kNever) return "; " + difference + " would need a thousand seeds a cave or more";
   int flown = Forecast::kNever;

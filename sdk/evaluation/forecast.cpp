@@ -14,6 +14,8 @@
 namespace karst::evaluation {
 namespace {
 
+constexpr double kMostSimulated = 25;  // seeds a cave, about; more follow by scaling
+
 /// What campaigns are drawn from: with the mean at `effect`, and the variances within and between caves
 /// unbiased. Nothing if a cave has a single pair.
 std::optional<Differences> moved_to(const Differences& differences, double effect) {
@@ -41,11 +43,13 @@ std::optional<Differences> moved_to(const Differences& differences, double effec
 
 /// The verdict's rule (docs/statistics.md), with Student's interval in the place of the bootstrap's.
 bool is_shown(const Differences& campaign, double sign, const ForecastOptions& options) {
+  constexpr std::size_t kMostExact = 12;  // beyond, the normal approximation is as good, and fast
   const Spread s = spread_within_caves(campaign);
   if (!(s.mean * sign > 0)) return false;
-  if (signed_rank(campaign).p >= options.alpha / options.tests) return false;
-  return s.variance == 0 ||
-         std::abs(s.mean) > std::sqrt(s.variance) * student_t_quantile(1 - options.alpha / 2, s.degrees);
+  const bool excludes_zero =
+      s.variance == 0 ||
+      std::abs(s.mean) > std::sqrt(s.variance) * student_t_quantile(1 - options.alpha / 2, s.degrees);
+  return excludes_zero && signed_rank(campaign, kMostExact).p < options.alpha / options.tests;
 }
 
 double power_of(int seeds, const Differences& pool, double sign, const ForecastOptions& options) {
@@ -70,9 +74,7 @@ double first_guess(const Differences& pool, double effect, const ForecastOptions
   return z * z * variance / (caves * caves * effect * effect);
 }
 
-int seeds_needed(const Differences& pool, double effect, const ForecastOptions& options) {
-  const double guess = first_guess(pool, effect, options);
-  if (!(guess < 2.0 * Forecast::kNever)) return Forecast::kNever;
+int seeds_needed(const Differences& pool, double effect, double guess, const ForecastOptions& options) {
   const auto enough = [&](int n) { return power_of(n, pool, effect, options) >= options.power; };
   int low = 1, high = std::clamp(static_cast<int>(guess), 2, Forecast::kNever);  // a single seed never is
   while (!enough(high)) {
@@ -95,10 +97,16 @@ int scaled(int seeds, double factor) {
 }  // namespace
 
 Forecast forecast_seeds(const Differences& differences, double effect, const ForecastOptions& options) {
-  const auto pool = moved_to(differences, effect);
+  auto pool = moved_to(differences, effect);
   if (!pool || !(std::abs(effect) > 0)) return {};
   Forecast f;
-  f.seeds = seeds_needed(*pool, effect, options);
+  const double guess = first_guess(*pool, effect, options);
+  if (!(guess < 2.0 * Forecast::kNever)) return f;
+  // Many pairs of a small effect are as good as fewer of one larger by the root of their number.
+  const double fewer = std::max(1.0, guess / kMostSimulated);
+  const double larger_effect = effect * std::sqrt(fewer);
+  pool = moved_to(differences, larger_effect);
+  f.seeds = scaled(seeds_needed(*pool, larger_effect, guess / fewer, options), fewer);
   const double degrees = spread_within_caves(differences).degrees;
   if (degrees > 0 && f.seeds < Forecast::kNever) {  // the need goes with the variance, which is uncertain
     f.low = scaled(f.seeds, degrees / chi_squared_quantile(0.9, degrees));

@@ -139,7 +139,8 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   }
   m["outcome"] = outcome;
   m["reason"] = end ? event_text(*end, "reason") : "the record ends without an outcome";
-  m["completed"] = has_events ? ordered_json(completed(run, f.landing_error_m)) : ordered_json(nullptr);
+  m["completed"] =
+      has_events ? ordered_json(completed(run, f.landing_error_m) ? 1 : 0) : ordered_json(nullptr);
   m["contacts"] = f.contacts ? ordered_json(*f.contacts) : ordered_json(nullptr);
   m["flight_time_s"] = value(f.flight_time_s);
   m["exploration_time_s"] = value(f.exploration_time_s);

@@ -1,13 +1,18 @@
-// The report's page, styles and scripts, compiled in: the installed program needs no files beside it.
+// The reports' pages, styles and scripts, compiled in: the installed program needs no files beside it.
 #pragma once
 #include <string_view>
 #include <vector>
 
 namespace karst::evaluation {
 
+// What every page uses.
+std::string_view page_style();
+std::vector<std::string_view> three_library();  // three.js, as Debian packages it
+std::vector<std::string_view> page_scripts();   // in the order they must run
+
+// The page of a run.
 std::string_view report_template();
-std::string_view report_style();
-std::vector<std::string_view> report_libraries();  // three.js and Chart.js, as Debian packages them
-std::vector<std::string_view> report_scripts();    // ours, in the order they must run
+std::vector<std::string_view> chart_library();  // Chart.js, likewise
+std::vector<std::string_view> report_scripts();
 
 }  // namespace karst::evaluation

@@ -13,7 +13,6 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxCloudPoints = 300000;
-constexpr std::size_t kMaxTrackPoses = 12000;
 constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, all moments together
 
 double centimetres(double metres) { return std::round(metres * 100) / 100; }
@@ -55,19 +54,21 @@ ordered_json thinned(std::vector<Moment> moments, const char* what, std::vector<
 
 }  // namespace
 
-ordered_json scene_cloud(const RunRecord& run, double duration_s, std::vector<std::string>& problems) {
+CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double least_cell_m, double tick_ms,
+                         std::vector<std::string>& problems) {
   const auto& poses = run.estimate.empty() ? run.truth : run.estimate;
-  const Cloud cloud = make_cloud(run.growth, run.map_resolution_m(), kMaxCloudPoints, poses);
-  if (cloud.points.empty()) return nullptr;
+  const Cloud cloud = make_cloud(run.growth, run.map_resolution_m(), max_points, poses, least_cell_m);
+  CloudArrays arrays;
+  arrays.cell_m = cloud.cell_m;
+  arrays.tick_s = 1e-3 * tick_ms;
+  if (cloud.points.empty()) return arrays;
 
   const core::CellKey base = cloud.points[cloud.points.size() / 2].key;
-  const double ticks_per_ms = 65534.0 / std::max(1.0, duration_s * 1000);
+  const auto centre = [&](std::int32_t k) { return (k + 0.5) * cloud.cell_m; };
+  arrays.origin = {centre(base.x), centre(base.y), centre(base.z)};
   const auto tick = [&](std::int32_t t_ms) {
-    return static_cast<std::uint16_t>(std::clamp(std::lround(t_ms * ticks_per_ms), 0l, 65534l));
+    return static_cast<std::uint16_t>(std::clamp(std::lround(t_ms / tick_ms), 0l, 65534l));
   };
-  std::vector<std::int16_t> cells;
-  std::vector<std::uint16_t> from, until;
-  std::vector<std::int8_t> normals;
   std::size_t far = 0;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const OccupiedSpan& p = cloud.points[i];
@@ -77,30 +78,32 @@ ordered_json scene_cloud(const RunRecord& run, double duration_s, std::vector<st
       ++far;
       continue;
     }
-    for (const std::int64_t d : offset) cells.push_back(static_cast<std::int16_t>(d));
-    from.push_back(tick(p.from_ms));
-    until.push_back(p.until_ms == OccupiedSpan::kNever ? 65535 : tick(p.until_ms));
-    normals.insert(normals.end(), cloud.normals[i].begin(), cloud.normals[i].end());
+    for (const std::int64_t d : offset) arrays.cells.push_back(static_cast<std::int16_t>(d));
+    arrays.from.push_back(tick(p.from_ms));
+    arrays.until.push_back(p.until_ms == OccupiedSpan::kNever ? 65535 : tick(p.until_ms));
+    arrays.normals.insert(arrays.normals.end(), cloud.normals[i].begin(), cloud.normals[i].end());
   }
   if (far > 0)
     problems.push_back("map_growth.bin: " + std::to_string(far) + " cells lie kilometres away; left out");
+  return arrays;
+}
+
+ordered_json scene_cloud(const RunRecord& run, double duration_s, std::vector<std::string>& problems) {
+  const double tick_ms = std::max(1.0, duration_s * 1000) / 65534.0;
+  const CloudArrays cloud = cloud_arrays(run, kMaxCloudPoints, 0, tick_ms, problems);
+  if (cloud.cells.empty()) return nullptr;
   if (cloud.cell_m > run.map_resolution_m())
     problems.push_back("report: the map is drawn with cells of " + std::to_string(cloud.cell_m).substr(0, 4) +
                        " m, to keep the page small");
-  const auto centre = [&](std::int32_t k) { return (k + 0.5) * cloud.cell_m; };
-  return {{"count", from.size()},
-          {"cell_m", cloud.cell_m},
-          {"origin", {centre(base.x), centre(base.y), centre(base.z)}},
-          {"tick_s", 1e-3 / ticks_per_ms},
-          {"cells", base64_of(cells)},
-          {"from", base64_of(from)},
-          {"until", base64_of(until)},
-          {"normals", base64_of(normals)}};
+  return {{"count", cloud.from.size()},      {"cell_m", cloud.cell_m},
+          {"origin", cloud.origin},          {"tick_s", cloud.tick_s},
+          {"cells", base64_of(cloud.cells)}, {"from", base64_of(cloud.from)},
+          {"until", base64_of(cloud.until)}, {"normals", base64_of(cloud.normals)}};
 }
 
-ordered_json scene_track(const std::vector<StampedPose>& poses) {
+ordered_json scene_track(const std::vector<StampedPose>& poses, std::size_t max_poses) {
   if (poses.empty()) return nullptr;
-  const std::size_t stride = poses.size() / kMaxTrackPoses + 1;
+  const std::size_t stride = poses.size() / max_poses + 1;
   std::vector<float> t, xyz, heading;
   const auto add = [&](const StampedPose& p) {
     t.push_back(static_cast<float>(p.t_s));

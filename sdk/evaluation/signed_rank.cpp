@@ -35,7 +35,7 @@ double normal_p(double n, double lesser_sum, double ties) {
 
 }  // namespace
 
-SignedRank signed_rank(std::span<const double> differences) {
+SignedRank signed_rank(std::span<const double> differences, std::size_t most_exact) {
   SignedRank test;
   std::vector<double> nonzero;
   for (const double d : differences)
@@ -59,17 +59,17 @@ SignedRank signed_rank(std::span<const double> differences) {
   test.rank_sum_positive = static_cast<double>(doubled_positive) / 2;
   test.rank_sum_negative = static_cast<double>(doubled_negative) / 2;
   if (nonzero.empty()) return test;
-  test.exact = nonzero.size() <= kMostExact;
+  test.exact = nonzero.size() <= std::min(most_exact, kMostExact);
   const std::size_t lesser = std::min(doubled_positive, doubled_negative);
   test.p = test.exact ? std::min(1.0, 2 * lower_tail(doubled_ranks, lesser))
                       : normal_p(static_cast<double>(nonzero.size()), static_cast<double>(lesser) / 2, ties);
   return test;
 }
 
-SignedRank signed_rank(const Differences& differences) {
+SignedRank signed_rank(const Differences& differences, std::size_t most_exact) {
   std::vector<double> all;
   for (const auto& cave : differences) all.insert(all.end(), cave.begin(), cave.end());
-  return signed_rank(std::span<const double>(all));
+  return signed_rank(std::span<const double>(all), most_exact);
 }
 
 double rank_biserial(const SignedRank& test) {

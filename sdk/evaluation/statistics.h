@@ -43,8 +43,10 @@ struct SignedRank {
   double p = 1;        // 1 if all differences are zero
   bool exact = false;  // else normal approximation, corrected for ties and continuity
 };
-SignedRank signed_rank(std::span<const double> differences);
-SignedRank signed_rank(const Differences& differences);  // all caves' pairs together
+/// Exact for up to `most_exact` differences that are not zero, at most 50.
+SignedRank signed_rank(std::span<const double> differences, std::size_t most_exact = 50);
+/// Of all caves' pairs together.
+SignedRank signed_rank(const Differences& differences, std::size_t most_exact = 50);
 
 /// Matched-pairs rank-biserial correlation (W+ - W-) / (W+ + W-), from -1 (b always more) to 1; 0 without any
 /// difference.
@@ -68,7 +70,7 @@ struct ForecastOptions {
   double alpha = 0.05;
   int tests = 1;  // that share alpha: the pairs of contestants
   double power = 0.8;
-  int simulations = 400;  // of a campaign, for every number of seeds tried
+  int simulations = 1000;  // of a campaign, for every number of seeds tried
   std::uint64_t seed = 1;
 };
 /// If the true mean difference were `effect` and pairs spread as those observed: they are moved there, and

@@ -17,6 +17,7 @@
 #include "sdk/campaign/campaign.h"
 #include "sdk/campaign/export.h"
 #include "sdk/campaign/run_campaign.h"
+#include "sdk/campaign/slurm.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/campaign_progress.h"
 #include "sdk/tools/results_text.h"
@@ -34,7 +35,7 @@ std::atomic<bool> interrupted{false};
 void on_signal(int) { interrupted = true; }
 
 struct CompareArguments {
-  std::vector<std::string> who, caves, settings, plugins;
+  std::vector<std::string> who, caves, settings, plugins, sbatch;
   std::string out, profile, mission, executor = "local", keep = "replay", metric = "coverage_auc";
   std::string flight_time, trial_timeout;
   std::int64_t seeds = 0;
@@ -110,12 +111,16 @@ int compare(const CompareArguments& args) {
                      "policies to compare need --caves FILE...; see karst compare --help");
   } else if (fs::is_directory(args.who.front())) {
     options.folder = args.who.front();  // goes on with the campaign there
+  } else if (!fs::exists(args.who.front())) {
+    throw InputError(args.who.front(), "",
+                     "no such campaign file or folder; policies to compare need --caves FILE...");
   } else {
     c = from_file(args);
   }
   if (options.folder.empty()) options.folder = fs::path("runs") / c->name;
   options.karst = fs::read_symlink("/proc/self/exe");
   options.executor = args.executor;
+  options.sbatch = args.sbatch;
   options.jobs = args.jobs;
   options.keep = keep_of(args.keep);
   options.any_binary = args.any_binary;
@@ -187,6 +192,9 @@ void add_compare_command(CLI::App& app) {
       ->check(CLI::Range(1, 4096));
   compare_app->add_option("--executor", args->executor, "where trials fly: local, slurm")
       ->check(CLI::IsMember({"local", "slurm"}));
+  compare_app
+      ->add_option("--sbatch", args->sbatch, "further option of sbatch, such as --sbatch=--partition=long")
+      ->allow_extra_args(false);
   compare_app->add_option("--trial-timeout", args->trial_timeout,
                           "wall-clock time after which a trial counts as hung and failed; default 2 h");
   compare_app
@@ -200,6 +208,18 @@ void add_compare_command(CLI::App& app) {
   compare_app->add_flag("--quiet", args->quiet, "no progress");
   compare_app->callback([args] {
     if (const int code = compare(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+void add_trials_command(CLI::App& app) {
+  auto batch = std::make_shared<std::string>();
+  CLI::App* trials_app =
+      app.add_subcommand("trials", "Fly a batch of a campaign's trials: what a Slurm task does.");
+  trials_app->group("");  // nobody types it
+  trials_app->add_option("batch", *batch, "batch file")->required();
+  trials_app->callback([batch] {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
+    if (!campaign::fly_batch(*batch, &interrupted)) throw CLI::RuntimeError(kInterrupted);
   });
 }
 

@@ -9,6 +9,7 @@ class App;
 namespace karst::tools {
 
 void add_compare_command(CLI::App& app);
+void add_trials_command(CLI::App& app);
 void add_results_command(CLI::App& app);
 
 }  // namespace karst::tools

@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   karst::tools::add_fly_command(app);
   karst::tools::add_compare_command(app);
+  karst::tools::add_trials_command(app);
   karst::tools::add_results_command(app);
   karst::tools::add_policy_command(app);
   karst::tools::add_cave_command(app);

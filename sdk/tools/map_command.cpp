@@ -1,7 +1,11 @@
 #include "sdk/tools/map_command.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -132,6 +136,16 @@ void print(const Placed& p) {
               r.hold, 100 * r.rival);
 }
 
+/// Before minutes of registration, not after them.
+void check_can_write(const std::string& stem) {
+  const fs::path parent = fs::absolute(stem).parent_path();
+  std::error_code error;
+  fs::create_directories(parent, error);
+  if (error) throw core::InputError(parent.string(), "", "cannot be made: " + error.message());
+  if (::access(parent.c_str(), W_OK) != 0)
+    throw core::InputError(parent.string(), "", std::string("cannot be written to: ") + std::strerror(errno));
+}
+
 int merge(const MergeArguments& args) {
   const core::MapRegistrationOptions options = options_of(args);
   const std::string stem = stem_of(args.out);
@@ -139,6 +153,7 @@ int merge(const MergeArguments& args) {
     for (const char* ending : {".ot", ".bt", ".ply", ".json"})
       if (fs::exists(stem + ending))
         throw core::InputError(stem + ending, "", "is there already; choose another --out, or --force");
+  check_can_write(stem);
   const std::vector<MapInput> maps = read_all(args);
   MergedMap merged(maps.front());
   const std::vector<Placed> placed = place_all(maps, options, merged);

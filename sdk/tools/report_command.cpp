@@ -9,9 +9,11 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
+#include "sdk/campaign/verdict.h"
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/surface.h"
+#include "sdk/tools/campaign_page.h"
 
 namespace karst::tools {
 namespace {
@@ -93,20 +95,33 @@ nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, cons
 }
 
 void add_report_command(CLI::App& app) {
+  struct Arguments {
+    std::string run, metric = campaign::VerdictOptions{}.metric;
+    bool no_report = false, worst = false;
+  };
+  auto args = std::make_shared<Arguments>();
   CLI::App* report = app.add_subcommand(
       "report",
       "Evaluate a run directory again and rewrite its metrics.json and report.html; also for a run that was "
-      "cut short.\n\n  karst report runs/demo");
-  auto run = std::make_shared<std::string>();
-  auto no_report = std::make_shared<bool>(false);
-  report->add_option("run", *run, "run directory")->required();
-  report->add_flag("--no-report", *no_report, "metrics only, no report.html");
-  report->callback([run, no_report] {
-    if (!fs::exists(fs::path(*run) / "mission.info"))
-      throw core::InputError(*run, "", "no run directory: it holds no mission.info");
-    const auto info = core::read_info((fs::path(*run) / "mission.info").string());
-    finish_run(*run, info.get("cave.file", ""), info.get("cave.start", ""), !*no_report);
-    std::printf("%s\n", (fs::path(*run) / (*no_report ? "metrics.json" : "report.html")).c_str());
+      "cut short. Or write the report of a campaign, also while it flies.\n\n"
+      "  karst report runs/demo\n  karst report runs/CAMPAIGN --worst");
+  report->add_option("run", args->run, "run directory, or a campaign's folder or store")->required();
+  report->add_flag("--no-report", args->no_report, "of a run: metrics only, no report.html");
+  report->add_option("--metric", args->metric, "of a campaign: the figure that its verdict is about");
+  report->add_flag("--worst", args->worst,
+                   "of a campaign: write the mission reports of its worst trials, too");
+  report->callback([args] {
+    const fs::path run = args->run;
+    if (is_campaign(run)) {
+      std::printf("%s\n", write_campaign_page(run, args->metric, args->worst).c_str());
+      return;
+    }
+    if (!fs::exists(run / "mission.info"))
+      throw core::InputError(args->run, "",
+                             "no run directory, as it holds no mission.info, nor a campaign's folder");
+    const auto info = core::read_info((run / "mission.info").string());
+    finish_run(run, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
+    std::printf("%s\n", (run / (args->no_report ? "metrics.json" : "report.html")).c_str());
   });
 }
 

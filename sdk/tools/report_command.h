@@ -1,4 +1,5 @@
-// `karst report RUN`: evaluates a run directory again and rewrites its metrics.json and report.html.
+// `karst report RUN`: evaluates a run directory again and rewrites its metrics.json and report.html, or
+// writes the report of a campaign.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>

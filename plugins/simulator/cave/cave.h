@@ -57,7 +57,8 @@ struct Fault {
     lost,          // no message
     nan,           // every second range and every third intensity is NaN; LiDAR only, as the rest
     three_points,  // three returns are left
-    stamp_back     // stamped 250 ms early: before scans that came earlier
+    stamp_back,    // stamped 250 ms early: before scans that came earlier
+    stamp_ahead    // stamped 250 ms late: in the future
   };
   Sensor sensor = Sensor::lidar;
   Kind kind = Kind::lost;

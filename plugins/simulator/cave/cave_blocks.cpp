@@ -133,7 +133,7 @@ Cloud read_cloud(const std::string& source, const pt::ptree& tree) {
 Fault read_fault(const std::string& source, const pt::ptree& tree) {
   static const std::vector<std::string> kSensors{"lidar",     "imu",    "magnetometer",
                                                  "barometer", "camera", "pose"},
-      kKinds{"lost", "nan", "three_points", "stamp_back"};
+      kKinds{"lost", "nan", "three_points", "stamp_back", "stamp_ahead"};
   Fault fault;
   std::string sensor, kind = "lost";
   OptionTable table;

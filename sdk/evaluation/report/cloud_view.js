@@ -42,16 +42,21 @@ function rampTexture() {
 /** Value at a share of the sorted samples. */
 function quantile(sorted, share) { return sorted[Math.round(share * (sorted.length - 1))]; }
 
+/** The arrays of a cloud that carries them as base64 (docs/report.md). */
+function decodeCloud(c) {
+  return c && { ...c, cells: decode(c.cells, Int16Array), from: decode(c.from, Uint16Array),
+                until: decode(c.until, Uint16Array), normals: decode(c.normals, Int8Array) };
+}
+
 /** { object, low, high, sample, setTime(t), uniforms } or null without a map. `sample`: some points, world frame. */
-function makeCloud() {
-  const c = data.cloud;
+function makeCloud(c) {
   if (!c) return null;
-  const cells = decode(c.cells, Int16Array);
+  const cells = c.cells;
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(cells, 3));
-  geometry.setAttribute("from", new THREE.BufferAttribute(decode(c.from, Uint16Array), 1));
-  geometry.setAttribute("until", new THREE.BufferAttribute(decode(c.until, Uint16Array), 1));
-  geometry.setAttribute("facing", new THREE.BufferAttribute(decode(c.normals, Int8Array), 3, true));
+  geometry.setAttribute("from", new THREE.BufferAttribute(c.from, 1));
+  geometry.setAttribute("until", new THREE.BufferAttribute(c.until, 1));
+  geometry.setAttribute("facing", new THREE.BufferAttribute(c.normals, 3, true));
 
   const sample = [], heights = [];
   const stride = Math.max(1, Math.floor(c.count / 4000));
@@ -76,7 +81,7 @@ function makeCloud() {
   object.position.set(...c.origin);
   object.frustumCulled = false;
   return {
-    object, low, high, top, bottom: heights[0], sample, uniforms,
+    object, low, high, top, bottom: heights[0], sample, uniforms, cell_m: c.cell_m,
     setTime(t) { uniforms.now.value = Math.min(65534, t / c.tick_s); },
     setOpacity(v) {
       uniforms.opacity.value = v;

@@ -1,97 +1,11 @@
 // What moves in the map: the flown path, the vehicle, its goal and plan, the frontiers, what the policy drew.
 
-/** A line of constant width in pixels through `xyz`, of which the first n segments can be shown. */
-function thickLine(xyz, width, colour, segmentColours) {
-  const geometry = new THREE.LineGeometry();
-  geometry.setPositions(xyz);
-  if (segmentColours) geometry.setColors(segmentColours);
-  const material = new THREE.LineMaterial({
-    color: segmentColours ? 0xffffff : new THREE.Color(colour).getHex(), linewidth: width, depthTest: false,
-    transparent: true, vertexColors: segmentColours ? THREE.VertexColors : THREE.NoColors });
-  const line = new THREE.Line2(geometry, material);
-  line.frustumCulled = false;
-  return line;
+function phaseAt(run, t) {
+  for (const [name, begin, end] of run.phases) if (t >= begin && t < end) return name;
+  return run.phases.length && t >= run.phases[run.phases.length - 1][2] ? "done" : "";
 }
-
-/** Round marks with sizes in pixels. */
-function roundMarks(colour) {
-  const material = new THREE.ShaderMaterial({
-    uniforms: { colour: { value: new THREE.Color(colour) }, ratio: { value: window.devicePixelRatio } },
-    transparent: true, depthTest: false,
-    vertexShader: `attribute float size; uniform float ratio;
-      void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-                    gl_PointSize = size * ratio; }`,
-    fragmentShader: `uniform vec3 colour;
-      void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
-                    gl_FragColor = vec4(r > 0.4 ? colour * 0.45 : colour, 0.85); }` });
-  const points = new THREE.Points(new THREE.BufferGeometry(), material);
-  points.frustumCulled = false;
-  return points;
-}
-function setMarks(points, xyz, sizes) {
-  points.geometry.dispose();
-  points.geometry = new THREE.BufferGeometry();
-  points.geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-  points.geometry.setAttribute("size", new THREE.Float32BufferAttribute(sizes, 1));
-}
-
-/** An icon of constant size on the screen, drawn by `draw(context)` on 64 x 64. */
-function icon(draw, scale) {
-  const canvas = make("canvas", { width: 64, height: 64 });
-  draw(canvas.getContext("2d"));
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({
-    map: new THREE.CanvasTexture(canvas), depthTest: false, sizeAttenuation: false, transparent: true }));
-  sprite.scale.setScalar(scale);
-  return sprite;
-}
-function goalIcon() {
-  return icon((c) => {
-    for (const [width, colour] of [[13, "#111"], [7, colours.goal]]) {
-      c.strokeStyle = colour; c.lineWidth = width;
-      c.beginPath(); c.arc(32, 32, 20, 0, 2 * Math.PI); c.stroke();
-    }
-    c.fillStyle = "#111"; c.beginPath(); c.arc(32, 32, 8, 0, 2 * Math.PI); c.fill();
-    c.fillStyle = colours.goal; c.beginPath(); c.arc(32, 32, 5, 0, 2 * Math.PI); c.fill();
-  }, 0.042);
-}
-
-/** A flat arrow that points where the vehicle does. */
-function vehicleArrow() {
-  const group = new THREE.Group();
-  for (const [scale, colour, order] of [[1.35, 0x111111, 20], [1, 0xffffff, 21]]) {
-    const shape = new THREE.Shape();
-    shape.moveTo(1, 0); shape.lineTo(-0.75, 0.7); shape.lineTo(-0.4, 0); shape.lineTo(-0.75, -0.7);
-    const mesh = new THREE.Mesh(new THREE.ShapeBufferGeometry(shape), new THREE.MeshBasicMaterial({
-      color: colour, side: THREE.DoubleSide, depthTest: false, transparent: true }));
-    mesh.scale.setScalar(scale);
-    mesh.renderOrder = order;
-    group.add(mesh);
-  }
-  return group;
-}
-
-function decodeTrack(track) {
-  if (!track) return null;
-  return { count: track.count, t: decode(track.t, Float32Array), xyz: decode(track.xyz, Float32Array),
-           heading: decode(track.heading, Float32Array) };
-}
-/** Where the vehicle is at t: { position, heading, index }. */
-function poseAt(track, t) {
-  const i = Math.max(0, lastAt(track.count, (k) => track.t[k], t));
-  const j = Math.min(i + 1, track.count - 1);
-  const span = track.t[j] - track.t[i];
-  const s = span > 0 ? Math.min(1, Math.max(0, (t - track.t[i]) / span)) : 0;
-  const at = (k) => new THREE.Vector3(track.xyz[3 * k], track.xyz[3 * k + 1], track.xyz[3 * k + 2]);
-  const turn = Math.atan2(Math.sin(track.heading[j] - track.heading[i]), Math.cos(track.heading[j] - track.heading[i]));
-  return { position: at(i).lerp(at(j), s), heading: track.heading[i] + s * turn, index: i };
-}
-
-function phaseAt(t) {
-  for (const [name, begin, end] of data.phases) if (t >= begin && t < end) return name;
-  return data.phases.length && t >= data.phases[data.phases.length - 1][2] ? "done" : "";
-}
-function goalAt(t) {
-  return data.goals.find((g) => g.t <= t && (g.until === null || t < g.until)) || null;
+function goalAt(run, t) {
+  return run.goals.find((g) => g.t <= t && (g.until === null || t < g.until)) || null;
 }
 
 /** The policy's drawings of one moment as an object, and its texts as labels. */
@@ -114,9 +28,10 @@ function makeDrawings(drawings) {
   return { group, labels };
 }
 
-/** { object, layers: {name: {object, ...}}, setTime(t), setResolution(w, h), labels, vehicle } */
-function makeFlight() {
-  const track = decodeTrack(data.track), truth = decodeTrack(data.true_track);
+/** { object, layer: {name: object}, setTime(t), setResolution(w, h), labels, vehicle } of a run with phases, goals,
+ *  plans, frontiers, drawings, and tracks or null. */
+function makeFlight(run) {
+  const track = decodeTrack(run.track), truth = decodeTrack(run.true_track);
   const object = new THREE.Group(), lines = [];
   const layer = {};
   const add = (name, child, order) => {
@@ -130,7 +45,7 @@ function makeFlight() {
   const flown = [];
   if (track && track.count > 1) {
     const tints = [];
-    for (let i = 0; i < track.count; ++i) tints.push(...new THREE.Color(phaseColour(phaseAt(track.t[i]))).toArray());
+    for (let i = 0; i < track.count; ++i) tints.push(...new THREE.Color(phaseColour(phaseAt(run, track.t[i]))).toArray());
     flown.push(addLine("path", thickLine(track.xyz, 5, "#101418"), 2));
     flown.push(addLine("path", thickLine(track.xyz, 3, "", tints), 3));
   }
@@ -162,11 +77,11 @@ function makeFlight() {
     vehicle.visible = Boolean(track);
     if (trueLine) trueLine.geometry.maxInstancedCount = Math.max(0, lastAt(truth.count, (k) => truth.t[k], t));
 
-    const active = goalAt(t);
+    const active = goalAt(run, t);
     goal.visible = Boolean(active && active.position);
     if (goal.visible) goal.position.set(...active.position);
 
-    const plan = phaseAt(t) === "done" ? null : entryAt(data.plans, t);
+    const plan = phaseAt(run, t) === "done" ? null : entryAt(run.plans, t);
     if (plan !== shownPlan) {
       shownPlan = plan;
       layer.plan.children.forEach((c) => { c.geometry.dispose(); c.material.dispose(); });
@@ -177,14 +92,14 @@ function makeFlight() {
         layer.plan.add(line);
       }
     }
-    const clusters = entryAt(data.frontiers, t);
+    const clusters = entryAt(run.frontiers, t);
     if (clusters !== shownFrontiers) {
       shownFrontiers = clusters;
       const list = clusters ? clusters[1] : [];
       setMarks(frontiers, [].concat(...list.map((c) => c.slice(0, 3))),
                list.map((c) => Math.min(11, 3.5 + 0.3 * Math.sqrt(c[3]))));
     }
-    const drawings = /^(home|land|done)$/.test(phaseAt(t)) ? null : entryAt(data.drawings, t);
+    const drawings = /^(home|land|done)$/.test(phaseAt(run, t)) ? null : entryAt(run.drawings, t);
     if (drawings !== shownDrawings) {
       shownDrawings = drawings;
       layer.drawings.children.forEach((g) => g.children.forEach((c) => { c.geometry.dispose(); c.material.dispose(); }));

@@ -1,5 +1,7 @@
 startTheme();
 startTables();
+setTimeRange(data.begin_s, data.duration_s);
+drawTrack();
 startTimeline();
 startMomentPanel();
 startPlots();

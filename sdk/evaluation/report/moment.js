@@ -20,7 +20,7 @@ function withUnit(v, unit, digits = 3) {
 }
 
 function goalPanel(t) {
-  const goal = goalAt(t);
+  const goal = goalAt(data, t);
   if (!goal) return [make("div", { className: "quiet" }, "none")];
   const place = goal.position ? goal.position.map((v) => v.toFixed(1)).join(", ") : "–";
   const end = goal.until !== null && goal.fate ? `${goal.fate} at ${clockText(goal.until)}` : "–";
@@ -53,7 +53,7 @@ function startMomentPanel() {
     const c = data.curves;
     box.replaceChildren(
       make("h3", {}, "Now"),
-      make("div", { className: "phase" }, phaseAt(t) || "–"),
+      make("div", { className: "phase" }, phaseAt(data, t) || "–"),
       rows([["speed", withUnit(curveAt(c.speed, t), "m/s", 2)], ["explored", withUnit(curveAt(c.volume, t), "m³", 4)],
             ["battery", withUnit(curveAt(c.battery, t), "%", 2)],
             ["clearance", withUnit(curveAt(c.clearance, t), "m", 2)], ["from the start", withUnit(curveAt(c.distance, t), "m", 3)]]),

@@ -1,50 +1,33 @@
 // The time slider: one moment for the whole page.
-const moment = { t: data.duration_s, listeners: [] };
+const moment = { t: 0, begin: 0, end: 1, listeners: [] };
 function setMoment(t) {
-  moment.t = Math.min(data.duration_s, Math.max(0, t));
+  moment.t = Math.min(moment.end, Math.max(0, t));
   for (const listener of moment.listeners) listener(moment.t);
 }
-
-/** Bands of the phases and ticks of the decisions above and below the slider. */
-function drawTrack() {
-  const share = (t) => 100 * Math.min(1, Math.max(0, t / data.duration_s));
-  for (const [name, begin, end] of data.phases) {
-    const band = make("span", { textContent: name, title: `${name} ${clockText(begin)} to ${clockText(end)}` });
-    band.style.left = share(begin) + "%";
-    band.style.width = share(end) - share(begin) + "%";
-    band.style.background = phaseColour(name);
-    band.style.color = "#101418";
-    if (share(end) - share(begin) < 3.5) band.textContent = "";
-    element("phases").append(band);
-  }
-  for (const e of data.events) {
-    const bad = isTrouble(e);
-    if (e.kind !== "decision" && !bad) continue;
-    const tick = make("i", { className: bad ? "bad" : "", title: clockText(e.t) + " " + eventText(e) });
-    tick.style.left = share(e.t) + "%";
-    element("ticks").append(tick);
-  }
+/** The slider's range, and where playing from the end begins again. */
+function setTimeRange(begin, end) {
+  Object.assign(moment, { begin, end });
+  element("time").max = end;
 }
 
 function startTimeline() {
   const slider = element("time"), play = element("play"), clock = element("clock");
-  slider.max = data.duration_s;
-  drawTrack();
   moment.listeners.push((t) => {
     slider.value = t;
-    clock.textContent = clockText(t) + " / " + clockText(data.duration_s);
+    clock.textContent = clockText(t) + " / " + clockText(moment.end);
+    slider.setAttribute("aria-valuetext", clock.textContent);
   });
   let last = null;
   const show = () => { play.textContent = last === null ? "▶" : "❚❚"; };
   const tick = (now) => {
     if (last === null) return;
     setMoment(moment.t + (now - last) / 1000 * Number(element("rate").value));
-    last = moment.t >= data.duration_s ? null : now;
+    last = moment.t >= moment.end ? null : now;
     if (last === null) show(); else requestAnimationFrame(tick);
   };
   const toggle = () => {
     if (last !== null) { last = null; show(); return; }
-    if (moment.t >= data.duration_s) setMoment(data.begin_s);
+    if (moment.t >= moment.end) setMoment(moment.begin);
     last = performance.now();
     show();
     requestAnimationFrame(tick);

@@ -1,12 +1,5 @@
 // The sliders, choices and layers over the 3D view.
 
-function connectSlider(id, text, apply) {
-  const slider = element(id), output = element(id + "-text");
-  const change = () => { output.textContent = text(Number(slider.value)); apply(Number(slider.value)); };
-  slider.addEventListener("input", change);
-  change();
-}
-
 /** The colour bar with what it stands for. */
 function showScale(cloud, step, mode) {
   const box = element("scale");

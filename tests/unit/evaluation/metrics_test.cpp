@@ -41,6 +41,7 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "seed",
                                        "outcome",
                                        "reason",
+                                       "completed",
                                        "contacts",
                                        "flight_time_s",
                                        "exploration_time_s",
@@ -49,12 +50,21 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "exploring_speed_mps",
                                        "standing_share",
                                        "longest_stall_s",
+                                       "energy_wh",
                                        "explored_volume_m3",
                                        "reachable_volume_m3",
                                        "coverage",
+                                       "horizon_s",
+                                       "coverage_auc",
                                        "t50_s",
                                        "t90_s",
                                        "t95_s",
+                                       "restricted_t50_s",
+                                       "restricted_t90_s",
+                                       "restricted_t95_s",
+                                       "surface_seen",
+                                       "depth_m",
+                                       "vertical_reach_m",
                                        "min_clearance_m",
                                        "landing_error_m",
                                        "battery_left",
@@ -65,7 +75,10 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "tracking_rms_m",
                                        "goals_accepted",
                                        "goals_rejected",
-                                       "overruns"};
+                                       "overruns",
+                                       "objects_found",
+                                       "objects_reported",
+                                       "data_at_base_share"};
   std::vector<std::string> found;
   for (const auto& [key, value] : m.items()) {
     found.push_back(key);
@@ -262,7 +275,7 @@ TEST(Metrics, VolumeAndCoverageCountTheFinalMapsFreeCells) {
   EXPECT_EQ(m["reachable_volume_m3"], 40.0);
 }
 
-TEST(Metrics, VolumeWithoutAMapIsTheTelemetrysLast) {
+TEST(Metrics, OfARunCutShortAreThoseOfTheTelemetrysLastVolume) {
   TemporaryDirectory dir;
   dir.write("telemetry.csv", "t_s,phase,explored_m3\n0,explore,10\n1,explore,20\n2,explore,nan\n");
   Truth truth;
@@ -270,7 +283,10 @@ TEST(Metrics, VolumeWithoutAMapIsTheTelemetrysLast) {
   truth.is_reachable = [](const Vec3&) { return true; };
   const ordered_json m = figures(dir, truth);
   EXPECT_EQ(m["explored_volume_m3"], 20.0);
-  EXPECT_TRUE(m["coverage"].is_null());
+  EXPECT_EQ(m["coverage"], 0.5);
+  truth.reachable_volume_m3 = 16.0;
+  EXPECT_EQ(figures(dir, truth)["coverage"], 1.0) << "never more than all of it";
+  EXPECT_TRUE(figures(dir)["coverage"].is_null()) << "of an unknown cave";
 }
 
 TEST(Metrics, TimesOfCoverageAreCountedFromTakeOffAndNullIfNeverReached) {
@@ -302,6 +318,80 @@ TEST(Metrics, ACoverageReachedBeforeTakeOffTookNoTime) {
   const ordered_json m = evaluate(read_run(dir.path()), &map, truth);
   EXPECT_EQ(m["t50_s"], 0.0);
   EXPECT_EQ(m["t90_s"], 2.0);
+}
+
+TEST(Metrics, RestrictedTimesEndAtTheHorizonAndTheAreaRunsToIt) {
+  const core::VoxelMap map = ball_map(2.0);
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", std::string(kPhases) + kLanded);  // take-off at 10 s
+  dir.write("telemetry.csv", "t_s,phase,explored_m3\n2,x,0\n20,x,60\n30,x,100\n44,x,100\n");
+  dir.write("mission.info", "mission\n{\nmax_flight_time \"100 s\"\n}\n");
+  Truth truth;
+  truth.is_reachable = [](const Vec3&) { return true; };
+  truth.reachable_volume_m3 = map.free_volume_m3() / 0.92;
+  const ordered_json m = evaluate(read_run(dir.path()), &map, truth);
+  EXPECT_EQ(m["horizon_s"], 100.0);
+  EXPECT_EQ(m["restricted_t50_s"], 10.0);
+  EXPECT_EQ(m["restricted_t90_s"], 20.0);
+  EXPECT_TRUE(m["t95_s"].is_null());
+  EXPECT_EQ(m["restricted_t95_s"], 100.0);
+  EXPECT_NEAR(m["coverage_auc"].get<double>(), 0.92 * (0.6 * 10 + 1.0 * 80) / 100, 1e-6);
+  dir.write("mission.info", "mission\n{\nmax_flight_time \"15 s\"\n}\n");
+  const ordered_json shorter = evaluate(read_run(dir.path()), &map, truth);
+  EXPECT_EQ(shorter["restricted_t90_s"], 15.0) << "reached, but after the horizon";
+  EXPECT_NEAR(shorter["coverage_auc"].get<double>(), 0.92 * 0.6 * 5 / 15, 1e-6);
+  EXPECT_TRUE(figures(dir)["restricted_t90_s"].is_null()) << "the cave is not known";
+}
+
+TEST(Metrics, EnergyIsWhatTheBatteryLostInFlight) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", std::string(kPhases) + kLanded);  // flies from 10 to 44 s
+  dir.write("mission.info", "simulator\n{\nhover_power \"300 W\"\nbattery_minutes \"6 min\"\n}\n");
+  dir.write(
+      "telemetry.csv",
+      "t_s,phase,battery_fraction\n0,standby,1\n10,takeoff,0.9\n20,explore,nan\n44,land,0.4\n50,done,0.3\n");
+  EXPECT_NEAR(figures(dir)["energy_wh"].get<double>(), 0.5 * 300 * 6 / 60, 1e-9);
+  dir.write("mission.info", "simulator\n{\nhover_power \"300 W\"\n}\n");
+  EXPECT_TRUE(figures(dir)["energy_wh"].is_null());
+}
+
+TEST(Metrics, DepthIsThatOfTheFlightNotOfTheLandingSite) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", std::string(kPhases) + kLanded);
+  std::string truth = "0 99 0 0 0 0 0 1\n";  // before the flight
+  for (int i = 0; i <= 170; ++i) {           // 17 m in, 3 m down on the way, and back
+    const double s = 0.2 * (i <= 85 ? i : 170 - i);
+    truth += std::to_string(10 + 0.2 * i) + " " + std::to_string(s) + " 0 " + std::to_string(-3 * s / 17) +
+             " 0 0 0 1\n";
+  }
+  dir.write("ground_truth.tum", truth);
+  const ordered_json m = figures(dir);
+  EXPECT_NEAR(m["depth_m"].get<double>(), std::hypot(17.0, 3.0), 0.3);
+  EXPECT_NEAR(m["vertical_reach_m"].get<double>(), 3, 1e-6);
+}
+
+TEST(Metrics, CompletedIsAMissionAsItIsMeantToGo) {
+  TemporaryDirectory dir;
+  const auto completed = [&](const std::string& more_events, const std::string& end) {
+    dir.write("events.jsonl", kPhases + more_events + end);
+    return figures(dir)["completed"];
+  };
+  EXPECT_EQ(completed("", kLanded), 1);
+  EXPECT_EQ(completed("", ""), 0) << "cut short";
+  EXPECT_EQ(completed("", R"({"t":44,"kind":"outcome","outcome":"contact","reason":""})"
+                          "\n"),
+            0);
+  const auto safety = [](int t, const char* action) {
+    return "{\"t\": " + std::to_string(t) + ", \"kind\": \"safety\", \"action\": \"" + action + "\"}\n";
+  };
+  EXPECT_EQ(completed(safety(20, "brake") + safety(21, "slow"), kLanded), 1);
+  EXPECT_EQ(completed(safety(32, "home"), kLanded), 0) << "sent home while exploring";
+  EXPECT_EQ(completed(safety(35, "home"), kLanded), 1) << "another way on the way home";
+  EXPECT_EQ(completed(safety(30, "land"), kLanded), 0);
+  dir.write("ground_truth.tum", "0 0 0 0 0 0 0 1\n44 0.6 0.7 9 0 0 0 1\n");
+  EXPECT_EQ(completed("", kLanded), 1);
+  dir.write("ground_truth.tum", "0 0 0 0 0 0 0 1\n44 0.8 0.7 0 0 0 0 1\n");
+  EXPECT_EQ(completed("", kLanded), 0) << "landed elsewhere than it thought";
 }
 
 TEST(Metrics, MapErrorIsMeanAndDeviationOfTheDistanceToRock) {

@@ -1,10 +1,8 @@
 // The report's page in a real browser.
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
-
 #include "sdk/evaluation/report.h"
+#include "tests/unit/evaluation/browser.h"
 #include "tests/unit/evaluation/fake_run.h"
 
 namespace karst::evaluation {
@@ -13,23 +11,6 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryDirectory;
 
-/// The page's DOM after its scripts ran in headless chromium, or "" if there is none.
-std::string dom_of(const fs::path& page) {
-  if (std::system("command -v chromium >/dev/null 2>&1") != 0) return "";
-  TemporaryDirectory profile;
-  const std::string command =
-      "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
-      "--disable-background-networking --disable-component-update --use-angle=swiftshader "
-      "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 --user-data-dir=" +
-      profile.path().string() + " --dump-dom file://" + page.string() + " 2>/dev/null";
-  std::FILE* pipe = popen(command.c_str(), "r");
-  std::string dom;
-  char buffer[65536];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) dom.append(buffer, n);
-  pclose(pipe);
-  return dom;
-}
-
 TEST(ReportInBrowser, ShowsTheFlightWithoutAnError) {
   TemporaryDirectory dir;
   test::FakeRunOptions small;
@@ -37,7 +18,7 @@ TEST(ReportInBrowser, ShowsTheFlightWithoutAnError) {
   small.map_resolution_m = 0.5;
   test::write_fake_run(dir.path(), small);
   write_report(dir.path());
-  const std::string dom = dom_of(dir.path() / "report.html");
+  const std::string dom = test::dom_in_browser(dir.path() / "report.html");
   if (dom.empty()) GTEST_SKIP() << "skipped: no chromium";
   const std::string root = dom.substr(0, dom.find("<head>"));
   EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << root;
@@ -55,7 +36,7 @@ TEST(ReportInBrowser, ShowsTheFlightWithoutAnError) {
 TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {
   TemporaryDirectory dir;
   write_report(dir.path());
-  const std::string dom = dom_of(dir.path() / "report.html");
+  const std::string dom = test::dom_in_browser(dir.path() / "report.html");
   if (dom.empty()) GTEST_SKIP() << "skipped: no chromium";
   const std::string root = dom.substr(0, dom.find("<head>"));
   EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << root;

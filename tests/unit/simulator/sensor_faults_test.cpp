@@ -53,6 +53,9 @@ TEST(SensorFaults, SpoilScansAsTheySay) {
   sim::spoil(s, Kind::stamp_back);
   EXPECT_EQ(s.stamp, 750 * core::kMillisecond) << "before the scans of the last 200 ms";
   EXPECT_EQ(s.range_m, scan().range_m);
+  s = scan();
+  sim::spoil(s, Kind::stamp_ahead);
+  EXPECT_EQ(s.stamp, 1250 * core::kMillisecond);
 }
 
 }  // namespace

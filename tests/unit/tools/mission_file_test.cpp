@@ -47,6 +47,16 @@ TEST(MissionFile, ReadsEverySectionWithUnits) {
   EXPECT_NEAR(m.core.motion.max_speed_mps, 1.5, 1e-12);
 }
 
+TEST(MissionFile, APolicysStreamGivesItAnotherSeedAndLeavesTheMissions) {
+  const Mission plain = read_mission(written("stream0.info", "seed 9\n"), {});
+  const Mission other = read_mission(written("stream1.info", "seed 9\npolicy { stream 1 }\n"), {});
+  const Mission third = read_mission(written("stream2.info", "seed 9\npolicy { stream 2 }\n"), {});
+  EXPECT_EQ(policy_seed(plain), 9u) << "stream 0 is what it always was";
+  EXPECT_EQ(other.seed, 9);
+  EXPECT_NE(policy_seed(other), policy_seed(plain));
+  EXPECT_NE(policy_seed(other), policy_seed(third));
+}
+
 TEST(MissionFile, AnUnknownKeyNamesFileKeyAndTheNearestOne) {
   const std::string e = error_of("unknown_key.info", "motion { max_sped \"1 m/s\" }\n");
   EXPECT_TRUE(holds(e, "unknown_key.info") && holds(e, "motion.max_sped") &&

@@ -1,5 +1,6 @@
-# cmake -DOUT=assets.cpp "-DTEMPLATE=..." "-DSTYLE=..." "-DLIBRARIES=a|b" "-DSCRIPTS=a|b" -P embed.cmake
-# Writes the files' bytes into a C++ source as raw string literals.
+# cmake -DOUT=assets.cpp -DHEADER=... -DNAMESPACE=... "-DONE=name=file|name=file" "-DMANY=name=file,file|..." -P karst_embed.cmake
+# Writes the files' bytes into a C++ source as raw string literals: a function for each name, that gives one
+# file's text or a list of several.
 set(END "karst_asset")
 
 function(literal file out)
@@ -17,7 +18,7 @@ function(one name file)
 endfunction()
 
 function(many name files)
-  string(REPLACE "|" ";" files "${files}")
+  string(REPLACE "," ";" files "${files}")
   file(APPEND "${OUT}" "std::vector<std::string_view> ${name}() {\n  return {\n")
   foreach(file IN LISTS files)
     literal("${file}" text)
@@ -26,9 +27,13 @@ function(many name files)
   file(APPEND "${OUT}" "  };\n}\n\n")
 endfunction()
 
-file(WRITE "${OUT}" "#include \"sdk/evaluation/report_assets.h\"\n\nnamespace karst::evaluation {\n\n")
-one(report_template "${TEMPLATE}")
-one(report_style "${STYLE}")
-many(report_libraries "${LIBRARIES}")
-many(report_scripts "${SCRIPTS}")
-file(APPEND "${OUT}" "}  // namespace karst::evaluation\n")
+file(WRITE "${OUT}" "#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n\n")
+foreach(kind one many)
+  string(TOUPPER ${kind} list)
+  string(REPLACE "|" ";" assets "${${list}}")
+  foreach(asset IN LISTS assets)
+    string(REGEX MATCH "^([^=]*)=(.*)$" matched "${asset}")
+    cmake_language(CALL ${kind} ${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
+  endforeach()
+endforeach()
+file(APPEND "${OUT}" "}  // namespace ${NAMESPACE}\n")

@@ -1,0 +1,13 @@
+// The campaign's page, style and scripts, compiled in.
+#pragma once
+#include <string_view>
+#include <vector>
+
+namespace karst::campaign {
+
+std::string_view campaign_template();
+std::string_view campaign_style();
+std::string_view plot_style();                     // of the plots, and of those saved as files
+std::vector<std::string_view> campaign_scripts();  // in the order they must run
+
+}  // namespace karst::campaign

@@ -1,0 +1,7 @@
+#include "plugins/replay/scan_file.h"
+#include "tests/fuzz/as_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return karst::fuzz::read_as_file(data, size, ".pcd",
+                                   [](const std::string& path) { karst::replay::read_scan(path); });
+}

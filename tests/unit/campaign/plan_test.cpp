@@ -1,0 +1,111 @@
+#include "sdk/campaign/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "sdk/campaign/folder.h"
+#include "sdk/campaign/hash.h"
+#include "sdk/campaign/process.h"
+#include "tests/unit/campaign/store_fixture.h"
+
+namespace karst::campaign {
+namespace {
+
+Plan small_plan() {
+  Plan plan{"small", "full", 300, 7200, {}, {}, {1, 2, 3}};
+  for (const char* name : {"near", "far"}) {
+    PlannedContestant c{
+        name, "policy", "", "1.0.0", "0.1.0+ab", R"({"a":"1 m"})", R"({"motion.max_speed":"1 m/s"})", {}};
+    c.mission.put("motion.max_speed", "1 m/s");
+    c.mission.put("policy.parameters.a", name);
+    c.mission.put("text", "with \"quotes\", {braces} ; and a comment sign");
+    plan.contestants.push_back(c);
+  }
+  plan.caves = {{"maze", "/caves/maze.info", "", "m1", "h1"},
+                {"shaft", "/caves/shaft.ply", "1 2 3 90", "m2", "h2"}};
+  return plan;
+}
+
+TEST(Plan, ComesBackFromItsDefinition) {
+  const Plan plan = small_plan(), back = plan_of(definition_of(plan), "here");
+  EXPECT_TRUE(changes(plan, back, false).empty());
+  EXPECT_EQ(definition_of(back), definition_of(plan));
+  EXPECT_EQ(back.seeds, plan.seeds);
+  EXPECT_EQ(back.contestants[1].settings, plan.contestants[1].settings);
+  EXPECT_EQ(back.caves[1].start, "1 2 3 90");
+  EXPECT_EQ(mission_text(back, 1, 1), mission_text(plan, 1, 1));
+}
+
+TEST(Plan, ADamagedDefinitionIsAnError) {
+  for (const std::string& text : {std::string("name x\n"), std::string("name {\n"), std::string()})
+    EXPECT_TRUE(says(error_of([&] { plan_of(text, "store"); }), "store: campaign.definition"));
+}
+
+TEST(Plan, WhatChangedIsNamed) {
+  const auto changed = [](auto change, bool any_binary = false) {
+    Plan now = small_plan();
+    change(now);
+    const auto all = changes(small_plan(), now, any_binary);
+    return all.empty() ? std::string() : all.front();
+  };
+  EXPECT_EQ(changed([](Plan& p) { p.contestants[0].mission.put("motion.max_speed", "2 m/s"); }),
+            "contestant near: motion.max_speed was \"1 m/s\", is \"2 m/s\"");
+  EXPECT_EQ(changed([](Plan& p) { p.contestants[1].policy = "other"; }),
+            "contestant far: policy was \"policy\", is \"other\"");
+  EXPECT_EQ(changed([](Plan& p) { p.contestants.pop_back(); }), "contestant 2 was far, is missing");
+  EXPECT_EQ(changed([](Plan& p) { p.caves[0].hash = "other"; }),
+            "cave maze: content was \"h1\", is \"other\"");
+  EXPECT_EQ(changed([](Plan& p) { p.seeds = {1, 3}; }), "seeds were 1 2 3, are 1 3");
+  EXPECT_TRUE(says(changed([](Plan& p) { p.contestants[0].binary_version = "0.2.0"; }), "binary"));
+  EXPECT_EQ(changed([](Plan& p) { p.contestants[0].binary_version = "0.2.0"; }, true), "");
+  EXPECT_EQ(changed([](Plan& p) { p.seeds.push_back(9), p.contestants.push_back(p.contestants[0]); }), "");
+  EXPECT_EQ(changed([](Plan& p) { p.caves[0].file = "/moved/maze.info"; }), "") << "the same cave elsewhere";
+}
+
+TEST(Plan, EveryTrialHasAHashOfItsOwnThatDoesNotTellWhereTheCaveLies) {
+  const Plan plan = small_plan();
+  std::set<std::string> hashes;
+  for (const TrialKey& key : trials_of(plan)) hashes.insert(mission_hash(plan, key));
+  EXPECT_EQ(hashes.size(), 12u);
+  Plan moved = plan;
+  moved.caves[0].file = "/elsewhere/maze.info";
+  EXPECT_EQ(mission_hash(moved, {0, 0, 1}), mission_hash(plan, {0, 0, 1}));
+}
+
+TEST(Folder, OnlyOneCampaignWritesIntoIt) {
+  const fs::path dir = fresh_folder("lock");
+  {
+    const FolderLock lock(dir);
+    EXPECT_TRUE(says(error_of([&] { FolderLock second(dir); }), "another campaign is writing here"));
+  }
+  EXPECT_EQ(error_of([&] { FolderLock again(dir); }), "");
+}
+
+TEST(Folder, AnotherCampaignsStoreIsRefusedSayingWhatDiffers) {
+  const fs::path dir = fresh_folder("other_campaign");
+  { open_for(small_plan(), dir, false); }
+  { open_for(small_plan(), dir, false); }
+  Plan other = small_plan();
+  other.contestants[0].mission.put("motion.max_speed", "2 m/s");
+  const std::string e = error_of([&] { open_for(other, dir, false); });
+  EXPECT_TRUE(says(e, "contestant near: motion.max_speed was \"1 m/s\", is \"2 m/s\"")) << e;
+  Plan more = small_plan();
+  more.seeds.push_back(4);
+  { open_for(more, dir, false); }
+  EXPECT_EQ(Store::open(dir / "campaign.sqlite").head().seeds, more.seeds);
+}
+
+TEST(Hash, IsWhatSha256sumPrints) {
+  const fs::path file = fresh_folder("hash") / "file";
+  std::string bytes;
+  for (int i = 0; i < 3'000'001; ++i) bytes += static_cast<char>(i * 7 + i / 255);
+  std::ofstream(file, std::ios::binary) << bytes;
+  const std::string wanted = run_process({"/usr/bin/sha256sum", file.string()}, 100).out.substr(0, 64);
+  EXPECT_EQ(sha256_of_file(file), wanted);
+  EXPECT_EQ(sha256(bytes), wanted);
+  EXPECT_NE(error_of([] { sha256_of_file("/nowhere"); }), "");
+}
+
+}  // namespace
+}  // namespace karst::campaign
