@@ -13,6 +13,7 @@
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
+#include "sdk/tools/tune_command.h"
 
 namespace {
 
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   karst::tools::add_evaluate_command(app);
   karst::tools::add_map_command(app);
   karst::tools::add_select_command(app);
+  karst::tools::add_tune_command(app);
   int code = 0;
   try {
     app.parse(argc, argv);

@@ -1,0 +1,236 @@
+#include "sdk/tools/tune_command.h"
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
+#include "sdk/campaign/run_campaign.h"
+#include "sdk/evaluation/whole_file.h"
+#include "sdk/selection/preset.h"
+#include "sdk/tools/arguments.h"
+#include "sdk/tuning/tune.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using campaign::Campaign;
+using core::InputError;
+using tuning::TuneResult;
+
+constexpr int kStopped = 130;  // as a shell has it for a program that Ctrl-C ended
+
+std::atomic<bool> interrupted{false};
+void on_signal(int) { interrupted = true; }
+
+struct Arguments {
+  std::string policy, plugin, out, mission, profile = "campaign", flight_time = "300 s";
+  std::vector<std::string> caves, held_out, parameters, settings;
+  std::int64_t seeds = 2;
+  std::size_t jobs = std::max(1u, std::thread::hardware_concurrency());
+  bool quiet = false, any_binary = false;
+  tuning::TuneOptions tune;
+};
+
+double flight_time_of(const std::string& text) {
+  double s = 0;
+  core::OptionTable table;
+  table.add("--time", s, "s", 10, 86400, "");
+  table.set("command line", "--time", text);
+  return s;
+}
+
+host::PolicyListing listing_of(const std::string& name, const std::string& plugin) {
+  std::vector<std::string> names;
+  std::vector<std::string> files;
+  if (!plugin.empty()) files.push_back(plugin);
+  for (const host::PolicyListing& p : host::list_policies(host::default_search_path(files))) {
+    if (!p.broken.empty() || !p.shadowed_by.empty()) continue;
+    if (p.id == name) return p;
+    names.push_back(p.id);
+  }
+  const std::string near = core::nearest_name(name, names);
+  throw InputError("policy", name,
+                   "no plugin offers it" + (near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+tuning::TuneOptions options_of(const Arguments& args) {
+  tuning::TuneOptions o = args.tune;
+  o.policy = campaign::parse_contestant(args.policy);
+  o.policy.plugin = args.plugin;
+  o.axes = tuning::axes_of(listing_of(o.policy.policy, args.plugin), args.parameters);
+  for (const auto& [key, value] : o.policy.parameters)  // what is given stays as it is
+    std::erase_if(o.axes, [&key = key](const tuning::Axis& a) { return a.id == key; });
+  if (o.axes.empty())
+    throw InputError("karst tune", args.policy, "gives every parameter a value: none is left to tune");
+  Campaign& c = o.campaign;
+  c.source = "karst tune";
+  c.profile = args.profile;
+  c.mission = args.mission;
+  c.flight_time_s = flight_time_of(args.flight_time);
+  for (const std::string& s : args.settings) {
+    const auto equals = s.find('=');
+    if (equals == std::string::npos) throw InputError("--set", s, "expected key=value");
+    c.settings.emplace_back(s.substr(0, equals), s.substr(equals + 1));
+  }
+  for (std::int64_t s = 1; s <= args.seeds; ++s) c.seeds.push_back(s);
+  for (const std::string& file : args.caves) c.caves.push_back(campaign::parse_cave(file));
+  for (const std::string& file : args.held_out) o.held_out.push_back(campaign::parse_cave(file));
+  return o;
+}
+
+std::string parameters_text(const campaign::Settings& parameters) {
+  std::string out;
+  for (const auto& [key, value] : parameters) out += (out.empty() ? "" : ", ") + key + " = " + value;
+  return out;
+}
+
+void write_table(const fs::path& file, const TuneResult& r, const std::string& metric) {
+  std::string text = "candidate";
+  for (const auto& [key, value] : r.tried.front().parameters) text += "," + key;
+  text += "," + metric + "\n";
+  for (std::size_t i = 0; i < r.tried.size(); ++i) {
+    text += std::to_string(i);
+    for (const auto& [key, value] : r.tried[i].parameters) text += "," + value;
+    std::array<char, 32> number;
+    std::snprintf(number.data(), number.size(), ",%.6g\n", r.tried[i].mean);
+    text += number.data();
+  }
+  evaluation::write_whole_file(file, text);
+}
+
+/// The remark of the preset: what it is worth, and what that rests on.
+std::string worth_text(const TuneResult& r) {
+  std::string out;
+  if (r.tuned_on) out += "On the caves it was tuned on (which flatters it): " + r.tuned_on->sentence + "\n";
+  if (r.held_out) out += "On caves held out: " + r.held_out->sentence + "\n";
+  if (r.tuned_on && !r.held_out) out += "No cave was held out: nothing is known of other caves.\n";
+  return out;
+}
+
+int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult& r) {
+  const fs::path folder = args.out;
+  if (!r.tried.empty()) write_table(folder / "tune.csv", r, o.metric);
+  if (r.stopped) {
+    std::fprintf(stderr, "karst: stopped after %zu candidates; the same command goes on where it was\n",
+                 r.tried.size());
+    return kStopped;
+  }
+  if (r.best == 0) {
+    std::printf("None of %zu candidates did better than the default; no preset is written.\n",
+                r.tried.size());
+    return 0;
+  }
+  const tuning::Candidate& best = r.tried[r.best];
+  selection::PolicyPreset preset{o.policy.policy, {}};
+  for (const auto* settings : {&o.policy.parameters, &best.parameters})
+    for (const auto& [key, value] : *settings)
+      preset.parameters.push_back({key, boost::property_tree::ptree(value)});
+  const std::string worth = worth_text(r);
+  evaluation::write_whole_file(
+      folder / "preset.info",
+      selection::to_info(preset, "karst tune " + args.policy + ", by " + o.metric + "\n" + worth));
+  std::printf("Best of %zu candidates: %s\n%sLook next at:\n", r.tried.size(),
+              parameters_text(best.parameters).c_str(), worth.c_str());
+  std::printf("  karst fly --preset %s --cave FILE\n", (folder / "preset.info").c_str());
+  std::printf("  %s   all candidates\n", (folder / "tune.csv").c_str());
+  if (r.held_out)
+    std::printf("  karst results %s   the flights through caves held out\n", (folder / "held_out").c_str());
+  return 0;
+}
+
+int tune(const Arguments& args) {
+  const tuning::TuneOptions o = options_of(args);
+  const std::size_t candidates = tuning::candidates_of(o);
+  if (!args.quiet)
+    std::fprintf(stderr, "%zu parameters, %zu candidates through %zu caves with %zu seeds\n", o.axes.size(),
+                 candidates, o.campaign.caves.size(), o.campaign.seeds.size());
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
+  const tuning::Fly fly = [&](const Campaign& wanted,
+                              const std::string& name) -> std::optional<campaign::CampaignResults> {
+    Campaign c = wanted;
+    c.name = name;
+    campaign::complete(c);
+    campaign::RunOptions run;
+    run.folder = fs::path(args.out) / name;
+    run.karst = fs::read_symlink("/proc/self/exe");
+    run.jobs = args.jobs;
+    run.keep = campaign::Keep::figures;
+    run.any_binary = args.any_binary;
+    run.stop = &interrupted;
+    fs::create_directories(args.out);
+    if (interrupted || !campaign::run_campaign(c, run)) return std::nullopt;
+    return campaign::read_results(run.folder);
+  };
+  std::size_t n = 0;
+  tuning::TuneEvents events;
+  events.tried = [&](const tuning::Candidate& tried, std::size_t of) {
+    if (!args.quiet)
+      std::fprintf(stderr, "%3zu of %zu  %s %.4g  %s\n", ++n, of, o.metric.c_str(), tried.mean,
+                   parameters_text(tried.parameters).c_str());
+  };
+  return finish(args, o, tuning::tune(o, fly, events));
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* tune_app = app.add_subcommand(
+      "tune",
+      "Find better parameters for a policy by flying it, and say what they are worth in caves it was not "
+      "tuned on\n\n"
+      "  karst tune unknown_ratio --caves a.info b.info --held-out c.info d.info --flights 120 --out "
+      "runs/tuned\n"
+      "  karst tune unknown_ratio:goals=4 --parameter ratio_worth --parameter half_edge --caves a.info --out "
+      "runs/t\n\n"
+      "Writes OUT/preset.info (karst fly --preset), OUT/tune.csv and the flights' stores. Started again with "
+      "the same "
+      "words it goes on where it was stopped or killed.\nExit code: 0 done, 130 stopped, 1 otherwise.");
+  tune_app->add_option("policy", args->policy, "the policy; policy:key=value,... keeps these as given")
+      ->required()
+      ->check(not_empty());
+  tune_app->add_option("--caves", args->caves, "cave .info files to tune on")->required()->check(not_empty());
+  tune_app->add_option("--held-out", args->held_out, "cave .info files that only judge what came of it")
+      ->check(not_empty());
+  tune_app->add_option("--parameter", args->parameters, "a parameter to tune; default: all that are numbers")
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  tune_app->add_option("--metric", args->tune.metric, "the figure to do better in")->capture_default_str();
+  tune_app->add_option("--seeds", args->seeds, "seeds in each cave, the same for all candidates")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  tune_app->add_option("--flights", args->tune.flights, "how many flights it may take in all")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  tune_app->add_option("--method", args->tune.search.method, "bobyqa, direct, crs (docs/tune.md)")
+      ->capture_default_str();
+  tune_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\"")->capture_default_str();
+  tune_app->add_option("--profile", args->profile, "as of karst compare")->capture_default_str();
+  tune_app->add_option("--mission", args->mission, "mission file with settings that all share")
+      ->check(not_empty());
+  tune_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
+      ->allow_extra_args(false);
+  tune_app->add_option("--plugin", args->plugin, "policy plugin file (.so) to look in first")
+      ->check(not_empty());
+  tune_app->add_option("--out", args->out, "folder for the preset, the table and the stores")
+      ->required()
+      ->check(not_empty());
+  tune_app->add_option("--jobs", args->jobs, "flights at once; default: one a core")
+      ->check(CLI::Range(1, 4096));
+  tune_app->add_flag("--any-binary", args->any_binary,
+                     "go on although karst or a plugin is another one than before");
+  tune_app->add_flag("--quiet", args->quiet, "no progress");
+  tune_app->callback([args] {
+    if (const int code = tune(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace karst::tools

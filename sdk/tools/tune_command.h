@@ -1,0 +1,13 @@
+// `karst tune`: better parameters for a policy.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace karst::tools {
+
+/// Adds `tune` to the application.
+void add_tune_command(CLI::App& app);
+
+}  // namespace karst::tools
