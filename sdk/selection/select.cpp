@@ -263,7 +263,10 @@ std::string why_first(const Experience& e, const Selected& s, const SelectOption
                          e.contestants[first.contestant].name.c_str(), options.metric.c_str(), first.value);
   if (!std::isnan(first.low))
     out += text(", %.0f %% interval %.3g to %.3g", 100 * options.level, first.low, first.high);
-  out += ") by caves like this one: ";
+  out += std::isinf(s.bandwidth)
+             ? ") by all caves flown alike, for what these are like did not foretell which policy is best; "
+               "nearest: "
+             : ") by caves like this one: ";
   for (std::size_t i = 0; i < s.near.size() && i < 3; ++i)
     out += text("%s%s (distance %.2f, weight %.0f %%)", i ? ", " : "", e.caves[s.near[i].cave].name.c_str(),
                 s.near[i].distance.value, 100 * s.near[i].weight);

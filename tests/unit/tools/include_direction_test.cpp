@@ -56,6 +56,16 @@ TEST(IncludeDirection, TheCoreKnowsNeitherAbiNorSimulatorNorPolicies) {
 TEST(IncludeDirection, TheHostKnowsNoSimulator) {
   expect_none("sdk/host", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation"});
 }
+// evaluation <- campaign <- selection, tuning <- tools
+TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
+  expect_none("sdk/evaluation", {"sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/tools"});
+  expect_none("sdk/campaign", {"sdk/selection", "sdk/tuning", "sdk/tools"});
+}
+TEST(IncludeDirection, SelectionAndTuningKnowNoCommandAndNotEachOther) {
+  expect_none("sdk/selection",
+              {"sdk/tuning", "sdk/tools", "sdk/host", "plugins/replay", "plugins/simulator/cave_generator"});
+  expect_none("sdk/tuning", {"sdk/selection", "sdk/tools", "plugins/"});
+}
 TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
   expect_none("plugins",
               {"sdk/", "policies/", "core_stack/mapping", "core_stack/planning", "core_stack/mission"});

@@ -128,6 +128,7 @@ TEST(Tune, FindsTheOptimumThroughNoiseThatAllCandidatesShare) {
     double lost = 0;
     for (const auto& [id, text] : r.tried[r.best].parameters)
       lost += 0.1 * std::pow(std::log(std::stod(text) / (id == "reach" ? 12 : 20)), 2);
+    RecordProperty(method, std::to_string(lost));
     EXPECT_LT(lost, 0.08) << method;
     ASSERT_TRUE(r.held_out.has_value()) << method;
     EXPECT_EQ(r.held_out->shown, karst::campaign::Shown::a_better) << method << ": " << r.held_out->sentence;

@@ -1,0 +1,136 @@
+// `policy auto` and `karst tune` as a user has them: short flights through a small cave.
+#include <gtest/gtest.h>
+
+#include "tests/closed_loop/command.h"
+
+namespace karst {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string small_cave(const fs::path& dir, int seed) {
+  const std::string stem = (dir / ("cave" + std::to_string(seed))).string();
+  const Output made = run_karst("cave generate --set volume=500 --set \"grid=0.4 m\" --seed " +
+                                std::to_string(seed) + " --out " + stem);
+  EXPECT_EQ(made.code, 0) << made.text;
+  return stem + ".info";
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+/// Four caves that differ in their slope; unknown_ratio is the better one in steep ones, nearest_frontier in
+/// level ones.
+std::string experience() {
+  std::string text =
+      "schema karst.experience/1\ncontestant { name near policy nearest_frontier }\n"
+      "contestant { name ratio policy unknown_ratio parameters { goals 4 } }\n";
+  for (int c = 0; c < 6; ++c) {
+    const std::string name = "c" + std::to_string(c), steep = std::to_string(0.1 + 0.12 * c);
+    text += "cave { name " + name + " figures { width \"3 m\" verticality " + steep + " } }\n";
+    text += "result { contestant near cave " + name + " coverage_auc \"" + std::to_string(0.6 - 0.05 * c) +
+            " 5 0.01\" }\n";
+    text += "result { contestant ratio cave " + name + " coverage_auc \"" + std::to_string(0.4 + 0.05 * c) +
+            " 5 0.01\" }\n";
+  }
+  return text;
+}
+
+TEST(PolicyAuto, IsSettledBeforeTakeOffRecordedAndReplayedWithoutIt) {
+  const fs::path dir = fresh_folder("policy_auto");
+  small_cave(dir, 3);
+  write(dir / "experience.info", experience());
+  write(dir / "known.info", "verticality 0.65\nwidth \"3.1 m\"\n");
+  write(dir / "mission.info",
+        "cave { file cave3.info }\npolicy {\n name auto\n auto {\n description known.info\n results "
+        "experience.info\n } }\nmission { max_flight_time \"10 s\" }\n");
+  const std::string first = (dir / "first").string(), second = (dir / "second").string();
+  const Output flown =
+      run_karst("fly " + (dir / "mission.info").string() + " --threads 1 --no-report --quiet --out " + first);
+  ASSERT_NE(flown.code, 1) << flown.text;
+  const std::string mission = bytes_of(dir / "first" / "mission.info"),
+                    events = bytes_of(dir / "first" / "events.jsonl");
+  EXPECT_NE(mission.find("name unknown_ratio"), std::string::npos);
+  EXPECT_NE(mission.find("goals 4"), std::string::npos);
+  EXPECT_EQ(mission.find("name auto"), std::string::npos);
+  EXPECT_NE(events.find("\"kind\":\"selection\""), std::string::npos);
+  EXPECT_NE(events.find("ratio is expected to do best in coverage_auc"), std::string::npos);
+  fs::remove(dir / "experience.info");  // what was selected by is no longer there: the run stands by itself
+  const Output again =
+      run_karst("fly " + first + "/mission.info --threads 1 --no-report --quiet --out " + second);
+  ASSERT_NE(again.code, 1) << again.text;
+  EXPECT_EQ(bytes_of(dir / "second" / "mission.info"), mission);
+  EXPECT_EQ(bytes_of(dir / "second" / "events.jsonl"), events);
+}
+
+TEST(PolicyAuto, TheMissionsTableWinsAndNothingElseIsAsked) {
+  const fs::path dir = fresh_folder("policy_auto_table");
+  small_cave(dir, 3);
+  write(dir / "tuned.info", "policy { name nearest_frontier parameters { goals 3 } }\n");
+  write(dir / "mission.info",
+        "cave { file cave3.info }\npolicy { name auto\n auto {\n results none.info\n cave { name other "
+        "policy unknown_ratio }\n cave { name cave3 preset tuned.info }\n } }\n");
+  const std::string resolved = (dir / "resolved.info").string();
+  const Output out = run_karst("fly " + (dir / "mission.info").string() + " --check " + resolved);
+  ASSERT_EQ(out.code, 0) << out.text;
+  const std::string mission = bytes_of(resolved);
+  EXPECT_NE(mission.find("name nearest_frontier"), std::string::npos);
+  EXPECT_NE(mission.find("goals 3"), std::string::npos);
+  EXPECT_NE(mission.find("the mission's table says so"), std::string::npos);
+}
+
+TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
+  const fs::path dir = fresh_folder("policy_auto_refused");
+  const std::string cave = small_cave(dir, 3), out = " --out " + (dir / "run").string();
+  write(dir / "experience.info", experience());
+  write(dir / "wide.info", "width \"80 m\"\n");
+  const std::string fly =
+      "fly --cave " + cave + " --policy auto --set policy.auto.results=" + (dir / "experience.info").string();
+  const Output nothing = run_karst(fly + out);
+  EXPECT_EQ(nothing.code, 1);
+  EXPECT_TRUE(nothing.says("nothing is known of the cave")) << nothing.text;
+  const Output peeking = run_karst(fly + out + " --set policy.auto.description=" + cave);
+  EXPECT_EQ(peeking.code, 1);
+  EXPECT_TRUE(peeking.says("give it as policy.auto.survey")) << peeking.text;
+  const Output wide = run_karst(fly + out + " --set policy.auto.description=" + (dir / "wide.info").string());
+  EXPECT_EQ(wide.code, 1);
+  EXPECT_TRUE(wide.says("most unlike is its width: 80 m")) << wide.text;
+  EXPECT_FALSE(fs::exists(dir / "run"));
+  const Output otherwise =
+      run_karst(fly + " --set policy.auto.otherwise=nearest_frontier --set policy.auto.description=" +
+                (dir / "wide.info").string() + " --check " + (dir / "resolved.info").string());
+  EXPECT_EQ(otherwise.code, 0) << otherwise.text;
+  const Output survey =
+      run_karst(fly + " --set policy.auto.survey=" + cave + " --check " + (dir / "surveyed.info").string());
+  EXPECT_EQ(survey.code, 0) << survey.text;
+}
+
+TEST(Tune, WritesAPresetThatFliesAndGoesOnWithoutFlyingAgain) {
+  const fs::path dir = fresh_folder("tune");
+  const std::string a = small_cave(dir, 3), b = small_cave(dir, 4), out = (dir / "out").string();
+  const std::string tune = "tune nearest_frontier --caves " + a + " --held-out " + b +
+                           " --parameter min_distance --seeds 1 --flights 6 --time \"10 s\" --jobs 1 --out " +
+                           out;
+  const Output first = run_karst(tune);
+  ASSERT_EQ(first.code, 0) << first.text;
+  EXPECT_TRUE(first.says("4 candidates through 1 caves with 1 seeds")) << first.text;
+  const std::string table = bytes_of(dir / "out" / "tune.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
+  const auto stored = fs::last_write_time(dir / "out" / "candidate001" / "campaign.sqlite");
+  const Output again = run_karst(tune);
+  ASSERT_EQ(again.code, 0) << again.text;
+  EXPECT_EQ(bytes_of(dir / "out" / "tune.csv"), table);
+  EXPECT_EQ(fs::last_write_time(dir / "out" / "candidate001" / "campaign.sqlite"), stored);
+  if (!fs::exists(dir / "out" / "preset.info")) {
+    EXPECT_TRUE(first.says("None of 4 candidates did better")) << first.text;
+    return;
+  }
+  EXPECT_TRUE(first.says("On caves held out: ")) << first.text;
+  const Output flown =
+      run_karst("fly --preset " + out + "/preset.info --cave " + b + " --check " + (dir / "r.info").string());
+  EXPECT_EQ(flown.code, 0) << flown.text;
+  const Output both = run_karst("fly --preset " + out + "/preset.info --policy unknown_ratio --cave " + b);
+  EXPECT_EQ(both.code, 1);
+}
+
+}  // namespace
+}  // namespace karst
