@@ -57,6 +57,7 @@ ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::si
                   const VerdictOptions& options) {
   ordered_json mean = ordered_json::array(), low = ordered_json::array(), high = ordered_json::array();
   std::size_t n = 0;
+  bool over_caves = false;
   for (const auto& of_cave : curves) n += of_cave.size();
   for (std::size_t i = 0; i < times; ++i) {
     Differences now;
@@ -65,12 +66,16 @@ ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::si
         now.emplace_back();
         for (const Values* curve : of_cave) now.back().push_back((*curve)[i]);
       }
-    const evaluation::Interval interval = mean_interval(now, options, kResamples).interval;
+    const auto [interval, from_caves] = mean_interval(now, options, kResamples);
+    over_caves = over_caves || from_caves;
     mean.push_back(short_number(evaluation::mean_difference(now)));
     low.push_back(short_number(interval.low));
     high.push_back(short_number(interval.high));
   }
-  return {{"n", n}, {"mean", std::move(mean)}, {"low", std::move(low)}, {"high", std::move(high)}};
+  ordered_json row = {
+      {"n", n}, {"mean", std::move(mean)}, {"low", std::move(low)}, {"high", std::move(high)}};
+  if (over_caves) row["over"] = "caves";
+  return row;
 }
 
 ordered_json curves_of(const CampaignResults& results, Quantity quantity, const Values& times,

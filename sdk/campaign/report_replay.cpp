@@ -91,7 +91,8 @@ ordered_json packed(const CloudArrays& cloud) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<std::int8_t> coarse;
     for (std::size_t i = 0; i < n; ++i)
-      coarse.push_back(static_cast<std::int8_t>(8 * std::lround(cloud.normals[3 * i + axis] / 8.5)));
+      coarse.push_back(static_cast<std::int8_t>(
+          8 * std::clamp(std::lround(cloud.normals[3 * i + axis] / 8.0), -15l, 15l)));
     append(coarse);
   }
   return {{"count", n},

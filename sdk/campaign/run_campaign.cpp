@@ -64,7 +64,7 @@ bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& 
   if (options.executor == "slurm")
     return run_on_slurm(jobs,
                         {options.folder, options.karst, plan.name, plan.trial_timeout_s,
-                         expected_trial_s(plan), options.sbatch, options.stop},
+                         expected_trial_s(plan), options.batch, options.sbatch, options.stop},
                         events);
   std::error_code ignored;
   fs::remove_all(options.folder / "flying", ignored);  // what a killed campaign left

@@ -36,6 +36,7 @@ struct RunOptions {
   std::filesystem::path karst;      // the program that flies
   std::string executor = "local";   // or slurm
   std::vector<std::string> sbatch;  // further options of sbatch
+  std::size_t batch = 0;            // trials a Slurm task flies; 0: as many as are ten seconds of work
   std::size_t jobs = 1;
   Keep keep = Keep::replay;
   bool any_binary = false;  // go on although karst or a plugin is another one than before

@@ -16,6 +16,7 @@ struct SlurmOptions {
   std::string name;
   double timeout_s = 7200;
   double expected_trial_s = 10;     // wall clock; what batches are measured by
+  std::size_t batch = 0;            // trials a task; 0: batch_size(expected_trial_s)
   std::vector<std::string> sbatch;  // further options of sbatch, such as "--partition=long"
   const std::atomic<bool>* stop = nullptr;
 };

@@ -65,7 +65,7 @@ struct Comparison {
 /// A contestant's place by the primary figure.
 struct Place {
   std::size_t contestant = 0;
-  double mean = 0;          // over caves of the mean over seeds; NaN if it has no trials
+  double mean = 0;  // over caves of the mean over seeds, of what all contestants flew; NaN without trials
   int best = 1, worst = 1;  // places it may hold: 1 + contestants shown better ... all less those shown worse
   std::string groups;       // letters: contestants that share one are not shown to differ
 };

@@ -2,7 +2,7 @@
 // are shown to differ (the compact letter display of multiple comparisons).
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 
 #include "sdk/campaign/verdict_parts.h"
 #include "sdk/evaluation/metric_definitions.h"
@@ -12,14 +12,28 @@ namespace {
 
 using Group = std::vector<std::size_t>;  // places, ascending
 
-double mean_figure(const CampaignResults& results, std::size_t contestant, int metric) {
-  evaluation::Differences by_cave(results.caves.size());
-  for (const TrialResult& t : results.trials) {
-    if (t.contestant != contestant) continue;
-    if (const double f = figure_of(t, metric, results.horizon_s); std::isfinite(f))
-      by_cave[t.cave].push_back(f);
+using Flown = std::map<std::pair<std::size_t, std::int64_t>, double>;  // by cave and seed
+
+/// The mean over caves of each contestant over what all of them flew, so that caves that only some flew do
+/// not tell them apart; over all that each flew if there is nothing they share.
+std::vector<double> comparable_means(const CampaignResults& results, int metric) {
+  std::vector<Flown> flown(results.contestants.size());
+  std::map<std::pair<std::size_t, std::int64_t>, std::size_t> flown_by;
+  for (const TrialResult& t : results.trials)
+    if (const double f = figure_of(t, metric, results.horizon_s); std::isfinite(f)) {
+      flown[t.contestant][{t.cave, t.seed}] = f;
+      ++flown_by[{t.cave, t.seed}];
+    }
+  const bool any_shared =
+      std::any_of(flown_by.begin(), flown_by.end(), [&](auto& k) { return k.second == flown.size(); });
+  std::vector<double> means;
+  for (const Flown& own : flown) {
+    evaluation::Differences by_cave(results.caves.size());
+    for (const auto& [key, f] : own)
+      if (!any_shared || flown_by[key] == flown.size()) by_cave[key.first].push_back(f);
+    means.push_back(evaluation::mean_difference(by_cave));
   }
-  return evaluation::mean_difference(by_cave);
+  return means;
 }
 
 /// 1: a is shown better than b, -1: worse, 0: not shown to differ.
@@ -59,11 +73,12 @@ std::string letter(std::size_t i) {
 
 std::vector<Place> rank_contestants(const Verdicts& verdicts, const CampaignResults& results) {
   const auto better = evaluation::metric_definitions()[static_cast<std::size_t>(verdicts.metric)].better;
+  const std::vector<double> means = comparable_means(results, verdicts.metric);
   std::vector<Place> places;
   for (std::size_t i = 0; i < results.contestants.size(); ++i) {
     Place& place = places.emplace_back();
     place.contestant = i;
-    place.mean = mean_figure(results, i, verdicts.metric);
+    place.mean = means[i];
   }
   std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
     if (std::isnan(a.mean) || std::isnan(b.mean)) return !std::isnan(a.mean) && std::isnan(b.mean);

@@ -114,7 +114,7 @@ std::string size_of(const Comparison& c, const CampaignResults& results, const V
   const double factor = is_share(d.name) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
   double low = sign * c.interval.low, high = sign * c.interval.high;
   if (low > high) std::swap(low, high);
-  const double scale = std::isnan(low) ? std::abs(factor * c.difference) : high - low;
+  const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
   const bool corrected = results.contestants.size() > 2;
   std::string text = number(sign * c.difference, scale) + unit_of(d) + " (";
   if (!std::isnan(low))

@@ -46,7 +46,8 @@ double depth_along_way(const std::vector<Vec3>& positions) {
   };
   reach(0, 0);
   while (!queue.empty()) {  // Dijkstra
-    const auto [d, at] = queue.top();
+    const double d = queue.top().first;
+    const std::size_t at = queue.top().second;
     queue.pop();
     if (d > distance_m[at]) continue;
     const auto step = [&](std::size_t to) { reach(to, d + (way[to] - way[at]).norm()); };

@@ -30,6 +30,8 @@ std::string duration(double s) {
   return text("%ld h %02ld min", all / 3600, all % 3600 / 60);
 }
 
+std::string count(std::size_t n, const char* what) { return text("%zu %s%s", n, what, n == 1 ? "" : "s"); }
+
 /// From the pace since the start.
 std::string time_left(const Progress& p) {
   if (p.here == 0) return "time left unknown";
@@ -65,9 +67,9 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
   tallies_.resize(plan.contestants.size());
   if (quiet_) return;
   if (!begun_)
-    std::fprintf(stderr,
-                 "%s: %zu contestants x %zu caves x %zu seeds = %zu trials, %zu of them flown already\n",
-                 plan.name.c_str(), plan.contestants.size(), plan.caves.size(), plan.seeds.size(), p.trials,
+    std::fprintf(stderr, "%s: %s x %s x %s = %zu trials, %zu of them flown already\n", plan.name.c_str(),
+                 count(plan.contestants.size(), "contestant").c_str(),
+                 count(plan.caves.size(), "cave").c_str(), count(plan.seeds.size(), "seed").c_str(), p.trials,
                  p.finished);
   begun_ = true;
   if (p.last) {
@@ -81,10 +83,12 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
   if (!terminal_) {
     if (!p.last) return;
     const campaign::TrialResult& r = p.last->result;
-    std::fprintf(stderr, "%zu/%zu · %s · %s, %s, seed %lld: %s, coverage %.1f %%%s%s\n", p.finished, p.trials,
+    const double coverage = coverage_of(*p.last);
+    std::fprintf(stderr, "%zu/%zu · %s · %s, %s, seed %lld: %s%s%s%s\n", p.finished, p.trials,
                  time_left(p).c_str(), plan.contestants[r.contestant].name.c_str(),
                  plan.caves[r.cave].name.c_str(), static_cast<long long>(r.seed), r.outcome.c_str(),
-                 100 * coverage_of(*p.last), r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
+                 std::isfinite(coverage) ? text(", coverage %.1f %%", 100 * coverage).c_str() : "",
+                 r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
     return;
   }
   std::string found = "coverage so far:";

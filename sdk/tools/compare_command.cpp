@@ -19,6 +19,7 @@
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/campaign/slurm.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/campaign_page.h"
 #include "sdk/tools/campaign_progress.h"
 #include "sdk/tools/results_text.h"
 
@@ -39,6 +40,7 @@ struct CompareArguments {
   std::string out, profile, mission, executor = "local", keep = "replay", metric = "coverage_auc";
   std::string flight_time, trial_timeout;
   std::int64_t seeds = 0;
+  std::size_t batch = 0;
   std::size_t jobs = std::max(1u, std::thread::hardware_concurrency());
   bool quiet = false, any_binary = false;
 };
@@ -121,6 +123,7 @@ int compare(const CompareArguments& args) {
   options.karst = fs::read_symlink("/proc/self/exe");
   options.executor = args.executor;
   options.sbatch = args.sbatch;
+  options.batch = args.batch;
   options.jobs = args.jobs;
   options.keep = keep_of(args.keep);
   options.any_binary = args.any_binary;
@@ -143,8 +146,8 @@ int compare(const CompareArguments& args) {
   }
   const campaign::CampaignResults results = campaign::read_results(options.folder);
   print_results(results, args.metric);
-  std::printf("Look next at:\n  karst results %s --csv results.csv   every trial in a line\n",
-              options.folder.c_str());
+  std::printf("Look next at:\n  %s   the report\n", write_campaign_page(options.folder, args.metric).c_str());
+  std::printf("  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
   std::printf("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
   return 0;
 }
@@ -192,6 +195,10 @@ void add_compare_command(CLI::App& app) {
       ->check(CLI::Range(1, 4096));
   compare_app->add_option("--executor", args->executor, "where trials fly: local, slurm")
       ->check(CLI::IsMember({"local", "slurm"}));
+  compare_app
+      ->add_option("--batch", args->batch,
+                   "trials a Slurm task flies; default: as many as are ten seconds of work")
+      ->check(CLI::Range(1, 100000));
   compare_app
       ->add_option("--sbatch", args->sbatch, "further option of sbatch, such as --sbatch=--partition=long")
       ->allow_extra_args(false);

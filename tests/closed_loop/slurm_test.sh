@@ -18,6 +18,7 @@ run=$(mktemp -d /tmp/karst-slurm-XXXXXX)  # sockets: their names must be short
 chmod 755 "$run"
 pids=()
 finish() {
+  squeue --noheader --format=%A 2>/dev/null | sort -u | xargs -r scancel 2>/dev/null
   for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null; done
   for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null; done
   rm -rf "$run"
@@ -80,12 +81,12 @@ rows() { for table in campaign contestant cave trial curve; do sqlite3 "$work/$1
 here() { "$karst" compare "${campaign[@]}" --out "$work/$1" "${@:2}"; }
 
 here local >"$work/local.txt" 2>&1 || fail "$(cat "$work/local.txt")"
-here slurm --executor slurm >"$work/slurm.txt" 2>&1 || fail "$(cat "$work/slurm.txt")"
+here slurm --executor slurm --batch 2 >"$work/slurm.txt" 2>&1 || fail "$(cat "$work/slurm.txt")"
 [ "$(rows slurm)" = "$(rows local)" ] || fail "other rows than with the local executor"
 [ "$(rows local | wc -l)" -gt 20 ] || fail "nothing is compared"
 [ "$(sqlite3 "$work/slurm/campaign.sqlite" 'SELECT count(*) FROM trial WHERE status = "done"')" = 6 ] || fail "trials are missing"
 
-here killed --executor slurm >"$work/killed.txt" 2>&1 &
+(exec "$karst" compare "${campaign[@]}" --out "$work/killed" --executor slurm --batch 2 >"$work/killed.txt" 2>&1) &
 killed=$!
 for _ in $(seq 600); do
   [ -n "$(ls "$work"/killed/flying 2>/dev/null)" ] && break
@@ -94,10 +95,10 @@ done
 kill -9 $killed
 wait $killed 2>/dev/null
 [ -n "$(squeue --noheader)" ] || fail "it was over before it could be killed"
-here killed --executor slurm >"$work/resumed.txt" 2>&1 || fail "$(cat "$work/resumed.txt")"
+here killed --executor slurm --batch 2 >"$work/resumed.txt" 2>&1 || fail "$(cat "$work/resumed.txt")"
 [ "$(rows killed)" = "$(rows local)" ] || fail "other rows after kill and resume"
 [ -z "$(squeue --noheader)" ] || fail "tasks are left"
 
-here refused --executor slurm --sbatch=--partition=nowhere >"$work/refused.txt" 2>&1 && fail "a bad partition was accepted"
+here refused --executor slurm --batch 2 --sbatch=--partition=nowhere >"$work/refused.txt" 2>&1 && fail "a bad partition was accepted"
 grep -q "slurm: sbatch: .*partition" "$work/refused.txt" || fail "$(cat "$work/refused.txt")"
 echo "the same rows: here, on Slurm, and on Slurm after a kill"

@@ -33,7 +33,6 @@ function curvePlot(cave, large) {
   const withTrials = element("curve-trials").checked;
   const t = data.curves.t, share = quantity === "coverage";
   const lines = data.contestants.map((_, i) => middleOf(quantity, i, cave, median));
-  if (share) for (const l of lines.filter(Boolean)) l.high = l.high.map((v) => v === null ? v : Math.min(1, v));
   const seen = lines.filter(Boolean).flatMap((l) => [...l.mean, ...l.high]);
   if (withTrials)
     data.contestants.forEach((_, i) => { for (const k of trialsOf(i, cave, data.curves[quantity].trials)) seen.push(...data.curves[quantity].trials[k]); });
@@ -41,11 +40,13 @@ function curvePlot(cave, large) {
   const where = cave < 0 ? "all caves" : caveNames[cave];
   const plot = makePlot({
     title: `${share ? "Coverage" : "Explored volume"} over time in ${where}, ${median ? "median and quartiles" : `mean and ${percentOfIntervals} % interval`} of each contestant; the numbers are in the table below`,
-    heading: where, aside: `${trials} ${trials === "1" ? "trial" : "trials"} each`, width: large ? 640 : 310, height: large ? 478 : 218, left: large ? 54 : 44,
+    heading: where, aside: `${trials} ${trials === "1" ? "trial" : "trials"} each` + (lines.some((l) => l && l.over) ? ", bands over caves for want of seeds" : ""), width: large ? 640 : 310, height: large ? 478 : 218, left: large ? 54 : 44,
     x: { range: [0, t[t.length - 1]], ticks: timeTicks(t[t.length - 1], large ? 8 : 5), text: clockText, label: large ? "time from take-off, min:s" : "" },
     y: { range: [0, Math.max(Math.min(rangeOf(seen, true)[1], share ? 1 : Infinity), 1e-9)], text: share ? (v) => tickText(100 * v) + " %" : tickText, ticks: large ? 7 : 4,
          label: large ? (share ? "coverage" : "explored volume, m³") : "" } });
-  lines.forEach((l, i) => { if (l) plot.body.append(svg("path", { class: "band", d: bandPath(plot, t, l.low, l.high), style: `fill: ${colourOf(i)}` })); });
+  // Intervals of few seeds reach beyond what can be: bands end at the frame, the table has them whole.
+  const framed = (values) => values.map((v) => v === null ? v : Math.min(plot.range[1], Math.max(plot.range[0], v)));
+  lines.forEach((l, i) => { if (l) plot.body.append(svg("path", { class: "band", d: bandPath(plot, t, framed(l.low), framed(l.high)), style: `fill: ${colourOf(i)}` })); });
   if (withTrials)
     data.contestants.forEach((_, i) => {
       for (const k of trialsOf(i, cave, data.curves[quantity].trials))

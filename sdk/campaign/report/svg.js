@@ -26,7 +26,7 @@ function rangeOf(values, zero = false) {
 }
 function tickText(v) { return Math.abs(v) >= 1e4 ? numberText(v) : String(Number(v.toPrecision(6))); }
 
-/** Axes in a frame: { figure, body, x(v), y(v), area }. Each axis: { range, label, text(v), ticks (values, or how
+/** Axes in a frame: { figure, root, body, x(v), y(v), area, range (of y) }. Each axis: { range, label, text(v), ticks (values, or how
  *  many), rows (names instead of numbers) }. `title` is read to those who do not see the plot. */
 function makePlot({ title, heading, aside, width = 420, height = 280, x, y, left = 50 }) {
   const area = { left, right: width - 12, top: 10, bottom: height - (x.label ? 40 : 24) };
@@ -50,7 +50,7 @@ function makePlot({ title, heading, aside, width = 420, height = 280, x, y, left
   const figure = make("figure", { className: "card plot" });
   if (heading) figure.append(make("h3", {}, make("span", {}, heading), make("small", {}, aside || "")));
   figure.append(root, saveButton(root, heading || title));
-  return { figure, root, body, x: X, y: Y, area };
+  return { figure, root, body, x: X, y: Y, area, range: y.range };
 }
 
 /** The points as a path; null breaks it. */

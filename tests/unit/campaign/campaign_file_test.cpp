@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"SettingsThatAreNoBlock", kWho + kCave + kSeeds + "settings 4\n", {"settings", "block"}},
         Bad{"AKeyTwice", "name a\nname b\n" + kWho + kCave + kSeeds, {"name", "twice"}},
         Bad{"ASyntaxError", kWho + kCave + kSeeds + "cave {\n", {"line"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& bad) { return bad.param.name; });
 
 TEST(CampaignFile, ThatIsNotThereIsNamed) {
   EXPECT_TRUE(says(error_of([] { read_campaign("/nowhere/c.info"); }), "/nowhere/c.info"));

@@ -1,4 +1,4 @@
-karst_test(campaign_report_test report_test.cpp fake_campaign.cpp ../evaluation/fake_run.cpp LINK karst_campaign_report)
+karst_test(campaign_report_test report_test.cpp report_scene_test.cpp fake_campaign.cpp ../evaluation/fake_run.cpp LINK karst_campaign_report)
 karst_test(campaign_report_browser_test report_browser_test.cpp fake_campaign.cpp ../evaluation/browser.cpp ../evaluation/fake_run.cpp
   LINK karst_campaign_report LABELS browser)
 

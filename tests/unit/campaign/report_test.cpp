@@ -110,6 +110,16 @@ TEST(CampaignReport, BandsAreMeansOverCavesWithIntervalsAround) {
   EXPECT_NEAR(curves["bands"][1]["all"]["mean"][k].get<double>(), over_caves, 2e-4);
 }
 
+TEST(CampaignReport, SaysWhereAnIntervalIsOverCavesForWantOfSeeds) {
+  const json one = written(fake_campaign(1, 4, 1)), many = written(fake_campaign(1, 4, 3));
+  const int metric = evaluation::metric_index("coverage");
+  EXPECT_EQ(one["curves"]["coverage"]["bands"][0]["all"]["over"], "caves");
+  EXPECT_EQ(one["summaries"][metric][0]["all"]["over"], "caves");
+  EXPECT_TRUE(one["summaries"][metric][0]["caves"][0]["interval"][0].is_null());
+  EXPECT_FALSE(many["curves"]["coverage"]["bands"][0]["all"].contains("over"));
+  EXPECT_FALSE(many["summaries"][metric][0]["all"].contains("over"));
+}
+
 TEST(CampaignReport, OfATrialCutShortKeepsWhatItHadExploredToTheEnd) {
   CampaignResults results = fake_campaign(1, 1, 2);
   results.trials[0].curve.resize(10);

@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -15,11 +16,18 @@ namespace karst::campaign {
 
 namespace fs = std::filesystem;
 
-inline fs::path fresh_folder(const std::string& name) {
-  const fs::path dir = fs::path(KARST_BINARY_DIR) / "test_runs" / "campaign" / name;
+inline fs::path fresh_folder(const std::string& name, const fs::path& root = KARST_BINARY_DIR) {
+  const fs::path dir = root / "test_runs" / "campaign" / name;
   fs::remove_all(dir);
   fs::create_directories(dir);
   return dir;
+}
+
+/// In memory, where the hundreds of transactions of a property do not wait for a disk.
+inline fs::path quick_folder(const std::string& name) {
+  const bool shared = fs::exists("/dev/shm") && access("/dev/shm", W_OK) == 0;
+  return fresh_folder(
+      name, fs::path(shared ? "/dev/shm" : KARST_BINARY_DIR) / ("karst-" + std::to_string(getpid())));
 }
 
 inline StoreHead small_head() {

@@ -24,8 +24,8 @@ void add(Store& store, const TrialKey& key) {
   store.add(trial_of(std::get<0>(key), std::get<1>(key), std::get<2>(key)));
 }
 
-fs::path full_store(const std::string& name) {
-  const fs::path file = fresh_folder(name) / "campaign.sqlite";
+fs::path full_store(const fs::path& folder) {
+  const fs::path file = folder / "campaign.sqlite";
   Store store = Store::create(file, small_head());
   for (const TrialKey& key : all_trials(small_head())) add(store, key);
   return file;
@@ -38,7 +38,7 @@ void overwrite(const fs::path& file, std::size_t at, const std::string& bytes) {
 }
 
 TEST(Store, GivesBackWhatItWasGiven) {
-  const fs::path file = full_store("back");
+  const fs::path file = full_store(quick_folder("back"));
   const CampaignResults r = read_results(file.parent_path());  // the folder is enough
   EXPECT_EQ(r.name, "small");
   EXPECT_EQ(r.horizon_s, 300);
@@ -74,11 +74,11 @@ TEST(Store, GivesBackWhatItWasGiven) {
 }
 
 RC_GTEST_PROP(Store, HoldsTheSameWhateverTheOrderAndHoweverOftenItWasInterrupted, ()) {
-  static const std::string undisturbed = dump(full_store("undisturbed"));
+  static const std::string undisturbed = dump(full_store(quick_folder("undisturbed")));
   std::vector<TrialKey> keys = all_trials(small_head());
   for (std::size_t i = keys.size(); i > 1; --i)
     std::swap(keys[i - 1], keys[*rc::gen::inRange<std::size_t>(0, i)]);
-  const fs::path file = fresh_folder("shuffled") / "campaign.sqlite";
+  const fs::path file = quick_folder("shuffled") / "campaign.sqlite";
   { Store::create(file, small_head()); }
   std::size_t at = 0;
   while (at < keys.size()) {  // opened anew after some, with the last one done twice
@@ -95,17 +95,17 @@ TEST(Store, AppendedSeedsAndContestantsLeaveIdsAsTheyWere) {
   StoreHead small = small_head();
   small.contestants.pop_back();
   small.seeds.pop_back();
-  const fs::path file = fresh_folder("appended") / "campaign.sqlite";
+  const fs::path file = quick_folder("appended") / "campaign.sqlite";
   Store store = Store::create(file, small);
   for (const TrialKey& key : all_trials(small)) add(store, key);
   store.extend(small_head());
   for (const TrialKey& key : all_trials(small_head()))
     if (!store.finished().contains(key)) add(store, key);
-  EXPECT_EQ(dump(file), dump(full_store("at_once")));
+  EXPECT_EQ(dump(file), dump(full_store(quick_folder("at_once"))));
 }
 
 TEST(Store, RefusesAnythingButAppending) {
-  const fs::path file = full_store("reordered");
+  const fs::path file = full_store(quick_folder("reordered"));
   Store store = Store::open(file);
   StoreHead head = small_head();
   std::swap(head.contestants[0], head.contestants[1]);
@@ -116,7 +116,7 @@ TEST(Store, RefusesAnythingButAppending) {
 }
 
 TEST(Store, KeepsADescriptionOfACaveWhenTheCampaignGrows) {
-  const fs::path file = full_store("described");
+  const fs::path file = full_store(quick_folder("described"));
   Store store = Store::open(file);
   store.describe_cave(1, R"({"volume": 3})");
   store.extend(small_head());
@@ -125,7 +125,7 @@ TEST(Store, KeepsADescriptionOfACaveWhenTheCampaignGrows) {
 }
 
 TEST(Store, RefusesATrialThatIsNoneOfTheCampaigns) {
-  const fs::path file = full_store("foreign_trial");
+  const fs::path file = full_store(quick_folder("foreign_trial"));
   Store store = Store::open(file);
   EXPECT_NE(error_of([&] { store.add(trial_of(0, 0, 77)); }), "");
 }
@@ -146,7 +146,7 @@ TEST(Store, NamesWhatAFileIsInsteadOfAStore) {
 }
 
 TEST(Store, OfALaterVersionIsRefusedAsSuch) {
-  const fs::path file = full_store("later");
+  const fs::path file = full_store(quick_folder("later"));
   sqlite3* db = nullptr;
   sqlite3_open(file.c_str(), &db);
   sqlite3_exec(db, "PRAGMA user_version = 7", nullptr, nullptr, nullptr);
@@ -155,7 +155,7 @@ TEST(Store, OfALaterVersionIsRefusedAsSuch) {
 }
 
 TEST(Store, ThatLacksAFigureIsReadWithoutAndNotWritten) {
-  const fs::path file = full_store("lacking");
+  const fs::path file = full_store(quick_folder("lacking"));
   sqlite3* db = nullptr;
   sqlite3_open(file.c_str(), &db);
   ASSERT_EQ(
@@ -168,9 +168,9 @@ TEST(Store, ThatLacksAFigureIsReadWithoutAndNotWritten) {
 }
 
 RC_GTEST_PROP(Store, ThatIsDamagedIsAnErrorOrReadButNeverACrash, ()) {
-  static const fs::path whole = full_store("whole");
+  static const fs::path whole = full_store(quick_folder("whole"));
   const auto size = fs::file_size(whole);
-  const fs::path file = fresh_folder("damaged") / "campaign.sqlite";
+  const fs::path file = quick_folder("damaged") / "campaign.sqlite";
   fs::copy_file(whole, file);
   for (int i = *rc::gen::inRange(1, 6); i > 0; --i) {
     const auto junk = *rc::gen::container<std::string>(64, rc::gen::arbitrary<char>());
@@ -182,13 +182,13 @@ RC_GTEST_PROP(Store, ThatIsDamagedIsAnErrorOrReadButNeverACrash, ()) {
 }
 
 TEST(Store, WithAPageOfZerosIsCalledDamaged) {
-  const fs::path file = full_store("zeros");
+  const fs::path file = full_store(quick_folder("zeros"));
   overwrite(file, 4096 * 3, std::string(4096, '\0'));
   EXPECT_TRUE(says(error_of([&] { read_results(file); }), "damaged"));
 }
 
 TEST(Store, LockedByAnotherProgramIsNamedAndLosesNothing) {
-  const fs::path file = full_store("locked");
+  const fs::path file = full_store(quick_folder("locked"));
   const std::string before = dump(file);
   Store store = Store::open(file, 0.1);
   sqlite3* other = nullptr;
@@ -235,6 +235,12 @@ TEST(Store, OnAFullDiskSaysSoAndLosesNothing) {
   for (const TrialKey& key : all_trials(head)) add(store, key);
   EXPECT_EQ(read_results(file).trials.size(), all_trials(head).size());
 }
+
+/// The folders in memory go with the program.
+class NoTrace : public testing::Environment {
+  void TearDown() override { fs::remove_all(quick_folder("x").parent_path().parent_path().parent_path()); }
+};
+const auto* const no_trace = testing::AddGlobalTestEnvironment(new NoTrace);
 
 }  // namespace
 }  // namespace karst::campaign

@@ -204,6 +204,17 @@ TEST(Verdict, RanksWithLettersForWhatIsNotToldApart) {
       << v.sentence;
 }
 
+TEST(Verdict, RanksByWhatAllContestantsFlew) {
+  auto results = coverage_campaign(6, {1.1, 1, 0.9}, 4, 6);
+  // A flew only the two caves where all cover least.
+  std::erase_if(results.trials, [](auto& t) { return t.contestant == 0 && t.cave >= 2; });
+  const Verdicts v = compare_all(results);
+  EXPECT_EQ(v.ranking[0].contestant, 0u);
+  EXPECT_EQ(v.ranking[2].contestant, 2u);
+  EXPECT_EQ(primary(v, 0, 1).caves, 2u);
+  EXPECT_EQ(primary(v, 1, 2).caves, 4u);
+}
+
 TEST(Verdict, GroupsOverlapWhereTheMiddleIsLikeBothEnds) {
   // A > C is shown, A ~ B and B ~ C are not: letters a, ab, b.
   auto results = drawn_campaign(3, 1, 8, [](std::size_t c, std::size_t, std::int64_t seed) {
