@@ -2,7 +2,7 @@
 //
 //   schema karst.experience/1
 //   cave { name maze1  figures { volume "5800 m^3"  width "2.4 m" } }
-//   contestant { name near  policy nearest_frontier  version 1.0.0  parameters { max_distance "30 m" } }
+//   contestant { name near  policy nearest_frontier  version 1.0.0  parameters { horizon "60 m" } }
 //   result { contestant near  cave maze1  coverage_auc "0.41 10 0.03" }   ; mean, flights, deviation over
 //   seeds
 #include <algorithm>

@@ -2,7 +2,7 @@
 //
 //   seed 7
 //   cave { file caves/demo.info }
-//   policy { name nearest_frontier  parameters { max_distance "30 m" } }
+//   policy { name nearest_frontier  parameters { horizon "60 m" } }
 //   motion { max_speed "1.5 m/s" }
 #pragma once
 #include <boost/property_tree/ptree.hpp>
