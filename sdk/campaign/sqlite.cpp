@@ -70,9 +70,12 @@ std::string Statement::text(int column) const {
 }
 
 double Statement::real(int column) const {
-  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL
-             ? std::numeric_limits<double>::quiet_NaN()
-             : sqlite3_column_double(statement_.get(), column);
+  const int type = sqlite3_column_type(statement_.get(), column);
+  if (type == SQLITE_NULL) return std::numeric_limits<double>::quiet_NaN();
+  if (type != SQLITE_FLOAT && type != SQLITE_INTEGER)  // SQLite would read it as 0
+    throw core::InputError(file_.string(), sqlite3_column_name(statement_.get(), column),
+                           "expected a number, got \"" + text(column) + "\"");
+  return sqlite3_column_double(statement_.get(), column);
 }
 
 void run(const std::filesystem::path& file, sqlite3* db, const std::string& sql) {

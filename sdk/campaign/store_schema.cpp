@@ -116,8 +116,9 @@ void check_store(const fs::path& file, sqlite3* db) {
                      "its schema has version " + std::to_string(version) + ", this karst reads version " +
                          std::to_string(kSchemaVersion));
   Statement check(file, db, "PRAGMA quick_check(1)");
-  if (!check.step() || check.text(0) != "ok")
-    throw InputError(file.string(), "", "is damaged (" + check.text(0) + ")");
+  const std::string found = check.step() ? check.text(0) : "";
+  if (found != "ok")  // a headline, and what is wrong in the last line
+    throw InputError(file.string(), "", "is damaged (" + found.substr(found.rfind('\n') + 1) + ")");
   if (const std::string schema = value_of(file, db, "schema"); schema != kSchema)
     throw InputError(file.string(), "campaign.schema",
                      "expected " + std::string(kSchema) + ", got \"" + schema + "\"");
