@@ -184,10 +184,14 @@ std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results
                [](const Place& p) { return p.best == 1; });
   if (first.size() == ranking.size() && ranking.front().worst == static_cast<int>(ranking.size()))
     return "no difference shown" + by + " between any two of " + names_of(ranking, results);
+  if (first.empty())  // a better than b, b than c, c than a: where they did not all fly the same
+    return "each of " + names_of(ranking, results) + " is shown worse than another" + by;
   if (first.size() > 1) return "nobody is shown to be better" + by + " than " + names_of(first, results);
-  const Comparison* next = verdicts.find(ranking[0].contestant, ranking[1].contestant, verdicts.metric);
+  const std::size_t best = first.front().contestant;
+  const Place& second = ranking[ranking[0].contestant == best ? 1 : 0];
+  const Comparison* next = verdicts.find(best, second.contestant, verdicts.metric);
   const bool over_all = first.front().worst == 1;
-  return results.contestants[first.front().contestant].name + " is best" + by +
+  return results.contestants[best].name + " is best" + by +
          (over_all ? ", shown better than all others; the next: "
                    : ", though not shown better than all others; ") +
          next->sentence;
