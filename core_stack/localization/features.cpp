@@ -82,7 +82,7 @@ std::vector<float> sharpness_of(const Ring& ring, float step, const FeatureOptio
                          ring.points[static_cast<std::size_t>(i - half)].position;
     const float length = across.norm();
     if (length == 0 || std::abs(across.dot(p)) > cos_grazing * length * ring.range[at]) continue;
-    // The point itself as the mean of three, which halves the noise.
+    // The point itself as the mean of three, with 1 / sqrt(3) of the noise.
     sharpness[at] = 2 * (ring.mean(i - half, i + half) - ring.mean(i - 1, i + 1)).norm() / length;
   }
   return sharpness;
