@@ -129,7 +129,7 @@ bool good_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), good);
 }
 
-/// A name that folders can have: nearest_frontier+max_distance=50m.
+/// A name that folders can have: nearest_frontier+horizon=60m.
 std::string made_name(const ContestantSpec& c) {
   std::string name = c.policy;
   for (const Settings* some : {&c.parameters, &c.settings})
@@ -139,6 +139,11 @@ std::string made_name(const ContestantSpec& c) {
         if (v != ' ') name += std::isalnum(static_cast<unsigned char>(v)) || v == '.' || v == '-' ? v : '_';
     }
   return name;
+}
+
+void refuse_no_file(const Campaign& c, const std::string& key, const std::string& file) {
+  if (!fs::exists(file)) throw InputError(c.source, key, file + " is not there");
+  if (!fs::is_regular_file(file)) throw InputError(c.source, key, file + " is no file");
 }
 
 template <class Named>
@@ -180,15 +185,14 @@ void complete(Campaign& c) {
   for (ContestantSpec& k : c.contestants) {
     if (k.name.empty()) k.name = made_name(k);
     if (!k.plugin.empty()) {
-      if (!fs::is_regular_file(k.plugin))
-        throw InputError(c.source, "contestant.plugin", k.plugin + " is not there");
+      refuse_no_file(c, "contestant.plugin", k.plugin);
       k.plugin = fs::absolute(k.plugin).lexically_normal().string();
     }
     refuse_reserved(c, "contestant " + k.name + ": ", k.settings);
   }
   for (CaveSpec& k : c.caves) {
     if (k.name.empty()) k.name = fs::path(k.file).stem().string();
-    if (!fs::is_regular_file(k.file)) throw InputError(c.source, "cave.file", k.file + " is not there");
+    refuse_no_file(c, "cave.file", k.file);
     k.file = fs::absolute(k.file).lexically_normal().string();
   }
   refuse_reserved(c, "settings.", c.settings);

@@ -90,13 +90,16 @@ pt::ptree take(pt::ptree& tree, const std::string& section, const std::string& n
   return taken;
 }
 
+fs::path vehicle_file(const fs::path& karst, const std::string& vehicle) {
+  return karst.parent_path().parent_path() / "lib" / "karst" / "vehicles" / (vehicle + ".so");
+}
+
 /// "0.1.0+" and hashes of the program with its vehicle, and of the policy's plugin; what a karst was linked
 /// with, such as Embree, is not in it.
 std::string binary_version(const fs::path& karst, const std::string& vehicle, const std::string& version,
                            const std::string& plugin) {
   std::string parts = sha256_of_file(karst);
-  const fs::path so = karst.parent_path().parent_path() / "lib" / "karst" / "vehicles" / (vehicle + ".so");
-  if (fs::exists(so)) parts += sha256_of_file(so);
+  if (const fs::path so = vehicle_file(karst, vehicle); fs::exists(so)) parts += sha256_of_file(so);
   return version + "+" + sha256(parts).substr(0, kShortHash) +
          (plugin.empty() ? "" : "." + sha256_of_file(plugin).substr(0, kShortHash));
 }
@@ -113,7 +116,8 @@ std::string plugin_file(const std::string& policy, const std::string& plugin, co
 }
 
 PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs::path& karst) {
-  PlannedContestant out{who.name, who.policy, who.plugin, {}, {}, {}, json_object(who.settings), {}};
+  const std::string policy = mission.get("policy.name", who.policy);  // what `auto` chose
+  PlannedContestant out{who.name, policy, who.plugin, {}, {}, {}, json_object(who.settings), {}};
   out.version = take(mission, "policy", "version").data();
   const std::string karst_version = take(mission, "karst", "version").data();
   take(mission, "vehicle", "implementation");
@@ -123,7 +127,7 @@ PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs
   mission.erase("cave");
   mission.erase("seed");
   out.binary_version = binary_version(karst, mission.get("vehicle", ""), karst_version,
-                                      plugin_file(who.policy, who.plugin, karst));
+                                      plugin_file(policy, who.plugin, karst));
   out.mission = std::move(mission);
   return out;
 }
@@ -205,6 +209,19 @@ std::string seeds_text(const std::vector<std::int64_t>& seeds) {
   return text;
 }
 
+/// A contestant is one policy: `auto` may not choose another one in another cave.
+void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const PlannedContestant& first,
+                         const fs::path& karst) {
+  const auto chosen = [](const pt::ptree& mission) {
+    return std::pair(mission.get("policy.name", ""), mission.get_child("policy.parameters", {}));
+  };
+  for (std::size_t i = 1; i < c.caves.size(); ++i)
+    if (chosen(resolve(c, who, c.caves[i], karst)) != chosen(first.mission))
+      throw InputError(c.source, "contestant " + who.name,
+                       "auto chooses otherwise in cave " + c.caves[i].name + " than in " + c.caves[0].name +
+                           "; make a campaign of each, or name what is chosen as contestants");
+}
+
 }  // namespace
 
 Plan make_plan(const Campaign& c, const fs::path& karst) {
@@ -214,8 +231,11 @@ Plan make_plan(const Campaign& c, const fs::path& karst) {
   plan.trial_timeout_s = c.trial_timeout_s;
   plan.seeds = c.seeds;
   for (const CaveSpec& cave : c.caves) plan.caves.push_back(planned(cave));
-  for (const ContestantSpec& who : c.contestants)
+  for (const ContestantSpec& who : c.contestants) {
     plan.contestants.push_back(planned(who, resolve(c, who, c.caves.front(), karst), karst));
+    if (plan.contestants.back().policy != who.policy)
+      refuse_other_choice(c, who, plan.contestants.back(), karst);
+  }
   for (std::size_t i = 1; i < c.caves.size(); ++i) resolve(c, c.contestants.front(), c.caves[i], karst);
   plan.horizon_s = horizon_of(plan.contestants);
   return plan;
@@ -229,6 +249,19 @@ Plan with_present_files(Plan plan, const fs::path& karst) {
                                       plugin_file(c.policy, c.plugin, karst));
   }
   return plan;
+}
+
+std::vector<fs::path> binaries_of(const Plan& plan, const fs::path& karst) {
+  std::vector<fs::path> files{karst};
+  for (const PlannedContestant& c : plan.contestants) {
+    files.push_back(vehicle_file(karst, c.mission.get("vehicle", "")));
+    files.emplace_back(plugin_file(c.policy, c.plugin, karst));
+  }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  files.erase(std::remove_if(files.begin(), files.end(), [](const fs::path& f) { return !fs::exists(f); }),
+              files.end());
+  return files;
 }
 
 std::string definition_of(const Plan& plan) {

@@ -43,6 +43,9 @@ Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
 /// gone.
 Plan with_present_files(Plan plan, const std::filesystem::path& karst);
 
+/// The files whose content binary versions tell, as far as they are there.
+std::vector<std::filesystem::path> binaries_of(const Plan& plan, const std::filesystem::path& karst);
+
 /// As the store keeps it: INFO, and back.
 std::string definition_of(const Plan& plan);
 Plan plan_of(const std::string& definition, const std::string& source);

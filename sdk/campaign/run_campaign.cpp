@@ -59,8 +59,32 @@ TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& optio
 /// Of the wall clock, at thirty seconds of flight a second: the fastest that was seen.
 double expected_trial_s(const Plan& plan) { return plan.horizon_s / 30; }
 
+/// What flies, and when it was written: a build under a campaign's feet would fly the rest with another
+/// binary than its rows say.
+class Binaries {
+ public:
+  Binaries(const Plan& plan, const RunOptions& options) : folder_(options.folder) {
+    for (const fs::path& file : binaries_of(plan, options.karst)) written_.emplace_back(file, when(file));
+  }
+  void refuse_changed() const {
+    for (const auto& [file, then] : written_)
+      if (when(file) != then)
+        throw InputError(file.string(), "",
+                         "was changed while the campaign flew; karst compare " + folder_.string() +
+                             " --any-binary goes on with what is there now");
+  }
+
+ private:
+  static fs::file_time_type when(const fs::path& file) {
+    std::error_code gone;
+    return fs::last_write_time(file, gone);
+  }
+  fs::path folder_;
+  std::vector<std::pair<fs::path, fs::file_time_type>> written_;
+};
+
 bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& options,
-         const ExecutorEvents& events) {
+         const Binaries& binaries, const ExecutorEvents& events) {
   if (options.executor == "slurm")
     return run_on_slurm(jobs,
                         {options.folder, options.karst, plan.name, plan.trial_timeout_s,
@@ -69,7 +93,10 @@ bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& 
   std::error_code ignored;
   fs::remove_all(options.folder / "flying", ignored);  // what a killed campaign left
   ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
-  how.finish = [&](const fs::path& run_dir) { evaluate_record(options.karst, run_dir); };
+  how.finish = [&](const fs::path& run_dir) {
+    binaries.refuse_changed();
+    evaluate_record(options.karst, run_dir);
+  };
   return run_trials(jobs, how, events);
 }
 
@@ -81,6 +108,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
   if (!campaign && !fs::exists(options.folder / "campaign.sqlite"))
     throw InputError(options.folder.string(), "", "holds no campaign");
   const Plan plan = plan_for(campaign, options);
+  const Binaries binaries(plan, options);
   const FolderLock lock(options.folder);
   Store store = open_for(plan, options.folder, options.any_binary);
   write_missions(plan, options.folder);
@@ -123,6 +151,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
 
   ExecutorEvents events;
   events.ended = [&](std::size_t job, const ProcessEnd&) {
+    binaries.refuse_changed();
     const StoredTrial trial = take(missing[job]);
     ++progress.here;
     if (trial.timing.flight.simulated_s > 0) progress.simulated_s += trial.timing.flight.simulated_s;
@@ -132,7 +161,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     progress.flying = flying;
     tell(nullptr);
   };
-  const bool done = fly(plan, jobs, options, events);
+  const bool done = fly(plan, jobs, options, binaries, events);
   fs::remove_all(options.folder / "flying", ignored);
   return done;
 }

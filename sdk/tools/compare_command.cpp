@@ -53,6 +53,23 @@ double seconds_of(const std::string& option, const std::string& text, double low
   return s;
 }
 
+/// A campaign's folder says itself what flies: what is given beside it would be lost.
+void refuse_beside_folder(const CompareArguments& args) {
+  const std::pair<const char*, bool> given[] = {{"--seeds", args.seeds > 0},
+                                                {"--time", !args.flight_time.empty()},
+                                                {"--profile", !args.profile.empty()},
+                                                {"--mission", !args.mission.empty()},
+                                                {"--set", !args.settings.empty()},
+                                                {"--plugin", !args.plugins.empty()},
+                                                {"--trial-timeout", !args.trial_timeout.empty()},
+                                                {"--out", !args.out.empty()}};
+  for (const auto& [option, is_given] : given)
+    if (is_given)
+      throw InputError(args.who.front(), option,
+                       "a campaign's folder goes on as it began; to append seeds or contestants, give the "
+                       "campaign file or the policies again");
+}
+
 /// What the command line says against, or in place of, a campaign file.
 void apply(const CompareArguments& args, Campaign& c) {
   if (!args.profile.empty()) c.profile = args.profile;
@@ -90,6 +107,8 @@ Campaign from_words(const CompareArguments& args) {
 }
 
 Campaign from_file(const CompareArguments& args) {
+  if (!args.plugins.empty())
+    throw InputError(args.who.front(), "--plugin", "is given by contestant.plugin in a campaign file");
   Campaign c = campaign::read_campaign(args.who.front());
   apply(args, c);
   campaign::complete(c);
@@ -112,6 +131,7 @@ int compare(const CompareArguments& args) {
     throw InputError("karst compare", "",
                      "policies to compare need --caves FILE...; see karst compare --help");
   } else if (fs::is_directory(args.who.front())) {
+    refuse_beside_folder(args);
     options.folder = args.who.front();  // goes on with the campaign there
   } else if (!fs::exists(args.who.front())) {
     throw InputError(args.who.front(), "",
@@ -170,7 +190,7 @@ void add_compare_command(CLI::App& app) {
       "is.\n\n"
       "  karst compare CAMPAIGN.info\n"
       "  karst compare nearest_frontier highest_frontier --caves caves/*.info --seeds 30\n"
-      "  karst compare nearest_frontier nearest_frontier:max_distance=20m --caves maze.info --seeds 10\n"
+      "  karst compare nearest_frontier nearest_frontier:horizon=15m --caves maze.info --seeds 10\n"
       "  karst compare runs/CAMPAIGN                             goes on with one that was stopped\n\n"
       "Started again, it goes on where it was stopped or killed; more seeds and contestants may be "
       "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");

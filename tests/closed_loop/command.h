@@ -20,17 +20,21 @@ struct Output {
   bool says(const std::string& part) const { return text.find(part) != std::string::npos; }
 };
 
-/// `arguments` as typed in a shell behind `karst`.
-inline Output run_karst(const std::string& arguments) {
-  const std::string line = std::string(KARST_BINARY_DIR) + "/bin/karst " + arguments + " 2>&1";
+/// `line` as typed in a shell.
+inline Output run_command(const std::string& line) {
   Output out;
-  FILE* pipe = popen(line.c_str(), "r");
+  FILE* pipe = popen((line + " 2>&1").c_str(), "r");
   std::array<char, 4096> buffer;
   for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
     out.text.append(buffer.data(), n);
   const int status = pclose(pipe);
   out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return out;
+}
+
+/// `arguments` as typed in a shell behind `karst`.
+inline Output run_karst(const std::string& arguments) {
+  return run_command(std::string(KARST_BINARY_DIR) + "/bin/karst " + arguments);
 }
 
 /// How many seeds the tests that take some fly: two, or what KARST_SEEDS says.

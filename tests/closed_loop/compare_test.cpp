@@ -173,6 +173,47 @@ TEST(Compare, AnotherCampaignInTheFolderIsRefusedSayingWhatDiffersAndMoreSeedsAr
   EXPECT_EQ(stored_trials(dir / "c"), 4);
 }
 
+TEST(Compare, WhatIsGivenBesideAFolderIsRefused) {
+  const fs::path dir = fresh_folder("compare_beside");
+  const Output out = run_karst("compare " + dir.string() + " --seeds 20");
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("--seeds")) << out.text;
+}
+
+TEST(Compare, ABuildUnderItsFeetStopsTheCampaign) {
+  const fs::path dir = fresh_folder("compare_rebuilt");
+  fs::create_directories(dir / "bin");
+  fs::create_directories(dir / "lib");
+  const fs::path build = KARST_BINARY_DIR, karst = dir / "bin/karst", store = dir / "c";
+  fs::copy_file(build / "bin/karst", karst);
+  fs::create_directory_symlink(build / "lib/karst", dir / "lib/karst");
+  const std::string compare = "compare nearest_frontier --seeds 40 --jobs 1 --caves " +
+                              generated_cave("small", 3) + " --out " + store.string();
+  const Output out = run_command(karst.string() + " " + compare +
+                                 " --time 12s 2>&1 & p=$!; while [ -z \"$(ls " + (store / "flying").string() +
+                                 " 2>/dev/null)\" ]; do sleep 0.05; done; touch -d 2001-01-01 " +
+                                 karst.string() + "; wait $p; echo code $?");
+  EXPECT_TRUE(out.says("code 1")) << out.text;
+  EXPECT_TRUE(out.says("was changed while the campaign flew")) << out.text;
+  EXPECT_LT(stored_trials(store), 40);
+}
+
+TEST(Compare, WhatAutoChoseIsTheContestantsPolicyInEveryCave) {
+  const fs::path dir = fresh_folder("compare_auto");
+  const std::string table =
+      " --set policy.auto.cave.name=small3 --set policy.auto.cave.policy=highest_frontier --seeds 1 --time "
+      "12s";
+  const std::string compare = "compare auto --caves " + generated_cave("small", 3);
+  const Output one = run_karst(compare + table + " --out " + (dir / "one").string());
+  ASSERT_EQ(one.code, 0) << one.text;
+  EXPECT_NE(rows(dir / "one").find("|auto|highest_frontier|"), std::string::npos) << rows(dir / "one");
+  const Output two =
+      run_karst(compare + " " + generated_cave("small", 4) + table + " --out " + (dir / "two").string());
+  EXPECT_EQ(two.code, 1);
+  EXPECT_TRUE(two.says("contestant auto in cave small4")) << two.text;
+  EXPECT_FALSE(fs::exists(dir / "two" / "campaign.sqlite"));
+}
+
 TEST(Compare, AHungTrialIsAResult) {
   const fs::path dir = fresh_folder("compare_crash");
   const std::string cave = generated_cave("small", 3);
