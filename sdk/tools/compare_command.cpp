@@ -170,7 +170,7 @@ void add_compare_command(CLI::App& app) {
       "is.\n\n"
       "  karst compare CAMPAIGN.info\n"
       "  karst compare nearest_frontier highest_frontier --caves caves/*.info --seeds 30\n"
-      "  karst compare nearest_frontier nearest_frontier:max_distance=20m --caves maze.info --seeds 10\n"
+      "  karst compare nearest_frontier nearest_frontier:horizon=15m --caves maze.info --seeds 10\n"
       "  karst compare runs/CAMPAIGN                             goes on with one that was stopped\n\n"
       "Started again, it goes on where it was stopped or killed; more seeds and contestants may be "
       "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");
