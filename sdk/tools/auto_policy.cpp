@@ -64,7 +64,7 @@ bool settled(Mission& m) {
       else if (field == "preset")
         file = value.data();
       else
-        throw InputError(m.file, where + "." + field,
+        throw InputError(m.file, "policy.auto.cave." + field,
                          "no such key; there are name, policy, parameters, preset");
     }
     if (cave.empty()) throw InputError(m.file, where, "lacks its name");
