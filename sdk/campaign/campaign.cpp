@@ -44,9 +44,11 @@ Settings take_settings(pt::ptree& tree, const std::string& name, const std::stri
   if (!blocks[0].data().empty())
     throw InputError(source, place + name, "expected a block { ... }, got \"" + blocks[0].data() + "\"");
   Settings settings = core::leaves_of(blocks[0]);
+  const std::string at = place + name;
   std::set<std::string> seen;
   for (const auto& [key, value] : settings)
-    if (!seen.insert(key).second) throw InputError(source, place + name + "." + key, "given twice");
+    if (!seen.insert(key).second)
+      throw InputError(source, std::string(at).append(".").append(key), "given twice");
   return settings;
 }
 

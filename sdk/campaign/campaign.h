@@ -7,7 +7,7 @@
 //   seeds 30                 ; 1 to 30; or  seed_list "3 5 8"
 //   settings { simulator { gust "2 m/s" } }                 ; for all
 //   contestant { policy nearest_frontier }
-//   contestant { name far  policy nearest_frontier  parameters { horizon "60 m" } }
+//   contestant { name far  policy nearest_frontier  parameters { horizon "50 m" } }
 //   contestant { policy mine  plugin build/mine.so  settings { policy { stream 1 } } }
 //   cave { file caves/maze.info }
 //   cave { name tunnel  file tunnel.stl  start "1 2 1.5 90" }

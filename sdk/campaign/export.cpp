@@ -48,7 +48,7 @@ std::string cell(double v) {
 ordered_json value(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
 
 ordered_json parsed(const std::string& text) {
-  const auto json = ordered_json::parse(text, nullptr, false);
+  auto json = ordered_json::parse(text, nullptr, false);
   return json.is_discarded() ? ordered_json(nullptr) : json;
 }
 

@@ -128,7 +128,7 @@ PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs
   mission.erase("seed");
   out.binary_version = binary_version(karst, mission.get("vehicle", ""), karst_version,
                                       plugin_file(policy, who.plugin, karst));
-  out.mission = std::move(mission);
+  out.mission.swap(mission);
   return out;
 }
 
@@ -185,9 +185,12 @@ void compare_facts(const std::string& what, const Facts& then, const Facts& now,
   };
   Facts both = then;
   both.insert(now.begin(), now.end());
-  for (const auto& [key, ignored] : both)
-    if (value(then, key) != value(now, key))
-      out.push_back(what + ": " + key + " was " + value(then, key) + ", is " + value(now, key));
+  for (const auto& [key, ignored] : both) {
+    const std::string was = value(then, key), is = value(now, key);
+    if (was == is) continue;
+    std::string& text = out.emplace_back(what);
+    text.append(": ").append(key).append(" was ").append(was).append(", is ").append(is);
+  }
 }
 
 template <class Named>

@@ -125,7 +125,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
   };
   std::error_code ignored;
   const auto take = [&](const TrialKey& key) {
-    const StoredTrial trial = collect(plan, key, options.folder);
+    StoredTrial trial = collect(plan, key, options.folder);
     store.add(trial);
     for (const std::string& file : dropped(options.keep))
       fs::remove(options.folder / trial.result.run_dir / file, ignored);

@@ -114,7 +114,7 @@ std::string submit(const std::vector<TrialJob>& jobs, std::size_t batch, const S
   const std::string printed = ask(argv);
   const std::string last =
       printed.substr(printed.rfind('\n') == std::string::npos ? 0 : printed.rfind('\n') + 1);
-  const std::string array = last.substr(0, last.find(';'));  // "12;cluster" where there are several
+  std::string array = last.substr(0, last.find(';'));  // "12;cluster" where there are several
   evaluation::write_whole_file(array_file(o), array + "\n");
   return array;
 }

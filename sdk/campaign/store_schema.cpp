@@ -147,7 +147,7 @@ void write_head(const fs::path& file, sqlite3* db, const StoreHead& head) {
 
 StoreHead read_head(const fs::path& file, sqlite3* db) {
   const auto json_of = [&](const char* key) {
-    const auto parsed = nlohmann::json::parse(value_of(file, db, key), nullptr, false);
+    auto parsed = nlohmann::json::parse(value_of(file, db, key), nullptr, false);
     if (parsed.is_discarded())
       throw InputError(file.string(), std::string("campaign.") + key, "cannot be read");
     return parsed;

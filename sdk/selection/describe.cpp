@@ -43,7 +43,8 @@ Vec3 climbed(const FreeSpace& space, const Vec3& from, double reach) {
     for (bool up = true; up;) {
       up = false;
       for (int side = 0; side < 27; ++side) {
-        const Vec3 p = best + step * Vec3(side % 3 - 1, side / 3 % 3 - 1, side / 9 - 1);
+        const int x = side % 3 - 1, y = side / 3 % 3 - 1, z = side / 9 - 1;
+        const Vec3 p = best + step * Vec3(x, y, z);
         if ((p - from).norm() > reach || (p - best).norm() >= height) continue;
         const double h = space.distance_to_rock(p);
         if (h > height + 1e-9) best = p, height = h, up = true;
@@ -68,6 +69,7 @@ Slice measured(const FreeSpace& space, const CellIndex& cells, const std::vector
 std::vector<Slice> measured(const FreeSpace& space, const CellIndex& cells, const std::vector<float>& depth,
                             const std::vector<PassageNode>& nodes) {
   std::vector<Slice> slices;
+  slices.reserve(nodes.size());
   for (const PassageNode& n : nodes) slices.push_back(measured(space, cells, depth, n));
   return slices;
 }

@@ -51,7 +51,7 @@ bool settled(Mission& m) {
   bool found = false;
   for (const auto& [key, entry] : m.auto_policy) {
     if (key != "cave") continue;
-    const std::string where = "policy.auto.cave";
+    const std::string where = "policy.auto.cave ";  // the name follows
     selection::PolicyPreset preset;
     std::string cave, file;
     for (const auto& [field, value] : entry) {
@@ -64,14 +64,14 @@ bool settled(Mission& m) {
       else if (field == "preset")
         file = value.data();
       else
-        throw InputError(m.file, where + "." + field,
+        throw InputError(m.file, "policy.auto.cave." + field,
                          "no such key; there are name, policy, parameters, preset");
     }
     if (cave.empty()) throw InputError(m.file, where, "lacks its name");
     if (preset.policy.empty() == file.empty())
-      throw InputError(m.file, where + " " + cave, "expected either a policy or a preset");
+      throw InputError(m.file, where + cave, "expected either a policy or a preset");
     if (cave != name) continue;
-    if (found) throw InputError(m.file, where + " " + cave, "is there twice");
+    if (found) throw InputError(m.file, where + cave, "is there twice");
     if (!file.empty()) preset = selection::read_preset(beside(m.file, file));
     take(m, preset.policy, preset.parameters, "the mission's table says so for the cave " + name);
     found = true;

@@ -6,9 +6,12 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "sdk/campaign/store.h"
 #include "sdk/evaluation/metric_definitions.h"
 #include "sdk/selection/leave_one_out.h"
+#include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
+#include "tests/unit/cave/boxes.h"
 #include "tests/unit/selection/experiences.h"
 
 namespace {
@@ -292,6 +295,46 @@ std::string written(const std::string& name, const std::string& text) {
   std::filesystem::create_directories(dir);
   std::ofstream(dir / name) << text;
   return (dir / name).string();
+}
+
+// As it was: given a campaign's folder, descriptions were not kept.
+TEST(Experience, CavesOfAStoreAreDescribedOnceAndThoseWhoseFileIsGoneAreLeftOut) {
+  namespace fs = std::filesystem;
+  const fs::path dir = fs::path(testing::TempDir()) / "undescribed_store";
+  fs::remove_all(dir);
+  fs::create_directories(dir);
+  std::set<std::array<int, 3>> cells;
+  karst::test::fill(cells, {0, 0, 0}, {12, 4, 3});
+  karst::cave::write_mesh((dir / "box.ply").string(),
+                          karst::test::lattice_mesh(cells, 1.0, {0.03, 0.03, 0.03}));
+  karst::campaign::StoreHead head;
+  head.name = "test";
+  head.horizon_s = 300;
+  head.contestants = {{"near", "nearest_frontier", "1.0.0", "{}", "{}"}};
+  head.caves = {{"box", (dir / "box.ply").string(), "2 2 1.5", "", ""},
+                {"gone", (dir / "gone.ply").string(), "0 0 1", "", ""}};
+  head.seeds = {1};
+  {
+    auto store = karst::campaign::Store::create(dir / "campaign.sqlite", head);
+    for (std::size_t c = 0; c < 2; ++c) {
+      karst::campaign::StoredTrial t;
+      t.result.cave = c, t.result.seed = 1, t.result.outcome = "landed";
+      t.result.figures.assign(karst::evaluation::metric_definitions().size(), 0.5);
+      store.add(t);
+    }
+  }
+  std::vector<std::string> told;
+  const auto tell = [&](const std::string& s) { told.push_back(s); };
+  const Experience e = load_experience({dir.string()}, tell);
+  ASSERT_EQ(e.caves.size(), 1u);
+  EXPECT_NEAR(e.caves[0].figures.width_m, 3, 0.1);
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[0], "describing box");
+  EXPECT_NE(told[2].find("gone.ply"), std::string::npos) << told[2];
+  told.clear();
+  const Experience again = load_experience({(dir / "campaign.sqlite").string()}, tell);
+  EXPECT_EQ(to_info(again), to_info(e));
+  EXPECT_EQ(told.size(), 2u);  // the one that is gone, again
 }
 
 TEST(Experience, SurvivesItsFile) {
