@@ -15,6 +15,7 @@ namespace {
 
 using core::InputError;
 
+constexpr double kMostAlike = 1.5;       // times the weight each cave would have if all had the same
 constexpr std::size_t kFewestCaves = 4;  // fewer say nothing of how far an experience carries
 constexpr double kLeastShare = 0.25;     // of the weight that a contestant must have flown in
 constexpr double kNear = 0.7;            // units: less than caves drawn at random differ by
@@ -263,7 +264,9 @@ std::string why_first(const Experience& e, const Selected& s, const SelectOption
                          e.contestants[first.contestant].name.c_str(), options.metric.c_str(), first.value);
   if (!std::isnan(first.low))
     out += text(", %.0f %% interval %.3g to %.3g", 100 * options.level, first.low, first.high);
-  out += std::isinf(s.bandwidth)
+  // A wide bandwidth weighs all nearly alike: that the nearest are like this cave then decides nothing.
+  const bool alike = s.near.front().weight < kMostAlike / static_cast<double>(e.caves.size());
+  out += std::isinf(s.bandwidth) || alike
              ? ") by all caves flown alike, for what these are like did not foretell which policy is best; "
                "nearest: "
              : ") by caves like this one: ";
