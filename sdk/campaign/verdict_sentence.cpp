@@ -124,6 +124,17 @@ std::string size_of(const Comparison& c, const CampaignResults& results, const V
          failures(c, results) + ")";
 }
 
+/// Why none is shown, where the interval alone would not tell.
+std::string why_none(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
+  // All pairs falling one way have p = 2 / 2^pairs, times the pairs of contestants after correction.
+  const auto contestants = static_cast<double>(results.contestants.size());
+  const double least_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
+  if (least_p >= options.alpha) return "; " + plural(c.pairs, "pair") + " cannot show any";
+  if (c.interval.excludes(0) && c.p_corrected >= options.alpha)
+    return "; the means differ, but pairs fall either way: who is ahead depends on the cave";
+  return "";
+}
+
 std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
   const Forecast& f = c.forecast_worthwhile;
   const MetricDefinition& d = definition(c.metric);
@@ -137,8 +148,9 @@ std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
   for (const CaveComparison& cave : c.per_cave) flown = std::min(flown, static_cast<int>(cave.pairs));
   if (f.seeds <= flown) return "; " + difference + " would most likely have been shown";
   const auto more = [&](int seeds) { return std::to_string(std::max(0, seeds - flown)); };
-  return "; about " + more(f.seeds) + " more seeds a cave (" + more(f.low) + " to " +
-         (f.high >= Forecast::kNever ? "a thousand" : more(f.high)) + ") would show " + difference;
+  return "; about " + more(f.seeds) + " more seed" + (f.seeds - flown == 1 ? "" : "s") + " a cave (" +
+         more(f.low) + " to " + (f.high >= Forecast::kNever ? "a thousand" : more(f.high)) + ") would show " +
+         difference;
 }
 
 std::string names_of(const std::vector<Place>& places, const CampaignResults& results) {
@@ -166,7 +178,7 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
       return between + ": all " + plural(c.pairs, "pair") + " equal";
     const bool primary = d.name == options.metric;
     return between + ": " + a + " " + (a_has_more ? "more" : "less") + " by " + size_of(c, results, options) +
-           (primary ? seeds_text(c, options) : "");
+           why_none(c, results, options) + (primary ? seeds_text(c, options) : "");
   }
   // The better one speaks first; of figures without a better, the one with more.
   const bool a_first = c.shown == Shown::a_better || c.shown == Shown::a_more;

@@ -89,6 +89,24 @@ TEST(Verdict, SaysSoonerOfShorterTimes) {
   EXPECT_NE(v.sentence.find(" s (95 % CI "), std::string::npos) << v.sentence;
 }
 
+TEST(Verdict, SaysWhyNoDifferenceIsShownWhereTheIntervalAloneDoesNotTell) {
+  // Six pairs: p is 2/64 at least, and 6/64 for three contestants.
+  const Verdicts few = compare_all(coverage_campaign(1, {1, 1.3, 1.6}, 3, 2));
+  EXPECT_EQ(primary(few).shown, Shown::no_difference);
+  EXPECT_NE(primary(few).sentence.find("; 6 pairs cannot show any"), std::string::npos)
+      << primary(few).sentence;
+  // A is far ahead in one cave, and a little behind in two.
+  const auto by_cave = drawn_campaign(2, 3, 10, [](std::size_t k, std::size_t c, std::int64_t seed) {
+    const double ahead = k == 1 ? 0 : c == 0 ? 0.3 : -0.01;
+    return Figures{{"coverage_auc", 0.5 + ahead + 0.001 * double(seed % 3)}};
+  });
+  const Verdicts v = compare_all(by_cave);
+  EXPECT_EQ(primary(v).shown, Shown::no_difference);
+  EXPECT_GT(primary(v).interval.low, 0);
+  EXPECT_NE(v.sentence.find("; the means differ, but pairs fall either way"), std::string::npos)
+      << v.sentence;
+}
+
 TEST(Verdict, SaysWhereNoDifferenceIsShownAndWhatWouldShowOne) {
   const Verdicts v = compare_all(coverage_campaign(1, {1, 1.01}, 3, 4));
   EXPECT_EQ(primary(v).shown, Shown::no_difference);
