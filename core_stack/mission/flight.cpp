@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kControlPeriod_s = 0.01;
 constexpr double kOffGround_m = 0.15;
-constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: it has failed, at least for now
+constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: commands stand in until the next
 
 /// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
 constexpr double kBrakingShare = 0.8;
