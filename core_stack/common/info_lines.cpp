@@ -87,4 +87,9 @@ void check_depth(const std::vector<InfoLine>& lines) {
   }
 }
 
+std::string beside(const std::string& file, const std::string& path) {
+  if (path.empty() || std::filesystem::path(path).is_absolute()) return path;
+  return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
+}
+
 }  // namespace karst::core

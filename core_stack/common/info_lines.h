@@ -19,4 +19,7 @@ std::vector<InfoLine> info_lines(const std::string& file);
 /// destroying a tree recurse.
 void check_depth(const std::vector<InfoLine>& lines);
 
+/// A path that a file names, from that file's folder and not from the one the command is run in.
+std::string beside(const std::string& file, const std::string& path);
+
 }  // namespace karst::core

@@ -1,24 +1,12 @@
 #include "core_stack/mapping/obstacle_tree.h"
 
 #include <limits>
-#include <nanoflann.hpp>
 
+#include "core_stack/mapping/kd_points.h"
 #include "core_stack/mapping/obstacle_cells.h"
 
 namespace karst::core {
 namespace {
-
-struct Cloud {
-  std::vector<Vec3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
 
 /// nanoflann result set: the nearest point within a bound; `first_will_do` stops at any point within it.
 struct NearestWithin {
@@ -47,10 +35,8 @@ std::vector<Vec3f> obstacle_centers(const VoxelMap& map, const CellKey& low, con
 }  // namespace
 
 struct ObstacleTree::Storage {
-  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3,
-                                                    std::uint32_t>;
-  Cloud cloud;
-  Index index;
+  KdPoints cloud;
+  KdIndex index;
 
   explicit Storage(std::vector<Vec3f> points)
       : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}

@@ -1,30 +1,14 @@
 #include "core_stack/mapping/point_tree.h"
 
 #include <algorithm>
-#include <nanoflann.hpp>
+
+#include "core_stack/mapping/kd_points.h"
 
 namespace karst::core {
-namespace {
-
-struct TreePoints {
-  std::vector<Vec3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-}  // namespace
 
 struct PointTree::Storage {
-  TreePoints cloud;
-  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, TreePoints>, TreePoints, 3,
-                                      std::uint32_t>
-      index;
+  KdPoints cloud;
+  KdIndex index;
   explicit Storage(std::vector<Vec3f> points)
       : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
 };

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_lines.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/profile.h"
 
@@ -20,11 +21,6 @@ using core::InputError;
 using core::OptionTable;
 
 constexpr std::int64_t kMostSeeds = 100'000;
-
-std::string beside(const std::string& file, const std::string& path) {
-  if (path.empty() || fs::path(path).is_absolute()) return path;
-  return (fs::path(file).parent_path() / path).lexically_normal().string();
-}
 
 /// Takes the blocks of a name out of a tree.
 std::vector<pt::ptree> take_blocks(pt::ptree& tree, const std::string& name) {
@@ -101,7 +97,7 @@ ContestantSpec read_contestant(pt::ptree block, const std::string& source) {
   tree.add_child("contestant", block);
   table.read(source, tree);
   if (c.policy.empty()) throw InputError(source, "contestant.policy", "is missing");
-  c.plugin = beside(source, c.plugin);
+  c.plugin = core::beside(source, c.plugin);
   return c;
 }
 
@@ -117,7 +113,7 @@ CaveSpec read_cave(const pt::ptree& block, const std::string& source) {
   tree.add_child("cave", block);
   table.read(source, tree);
   if (c.file.empty()) throw InputError(source, "cave.file", "is missing");
-  c.file = beside(source, c.file);
+  c.file = core::beside(source, c.file);
   return c;
 }
 
@@ -227,7 +223,7 @@ Campaign read_campaign(const std::string& file) {
   table.add("seed_list", seed_list, {}, "the seeds themselves");
   table.read(file, tree);
   c.seeds = parse_seeds(file, seeds, seed_list);
-  c.mission = beside(file, c.mission);
+  c.mission = core::beside(file, c.mission);
   complete(c);
   return c;
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core_stack/common/error.h"
+
 namespace karst::evaluation {
 namespace {
 
@@ -66,6 +68,15 @@ int metric_index(std::string_view name) {
   for (std::size_t i = 0; i < kDefinitions.size(); ++i)
     if (kDefinitions[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+double better_sign(const std::string& name, const std::string& source) {
+  const int i = metric_index(name);
+  if (i < 0) throw core::InputError(source, name, "no such figure");
+  const Better better = metric_definitions()[static_cast<std::size_t>(i)].better;
+  if (better == Better::neither)
+    throw core::InputError(source, name, "more of it is neither better nor worse: nothing to choose by");
+  return better == Better::more ? 1 : -1;
 }
 
 }  // namespace karst::evaluation

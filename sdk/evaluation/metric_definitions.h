@@ -2,6 +2,7 @@
 // metrics.json, the store's columns, CSV, reports and the docs follow this one table (docs/metrics.md).
 #pragma once
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace karst::evaluation {
@@ -23,5 +24,9 @@ std::span<const MetricDefinition> metric_definitions();
 
 /// Its index in the table, or -1.
 int metric_index(std::string_view name);
+
+/// 1 if more of it is better, -1 if less is. Throws core::InputError naming `source` if there is no such
+/// figure, or neither is better.
+double better_sign(const std::string& name, const std::string& source);
 
 }  // namespace karst::evaluation

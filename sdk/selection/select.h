@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sdk/selection/experience.h"
+#include "sdk/selection/cave_distance.h"
 
 namespace karst::selection {
 
@@ -12,19 +12,6 @@ struct SelectOptions {
   std::string metric = "coverage_auc";
   double level = 0.9;  // of the intervals
 };
-
-/// How far apart two caves are: root of the weighted mean of the squared scaled differences over the figures
-/// both have.
-struct Distance {
-  double value = kUnknown;  // NaN if they have no figure in common
-  int farthest = -1;        // index of the figure that differs most
-  int shared = 0;           // figures both have
-};
-
-/// The unit of each figure: 1.4826 times the median absolute deviation over the known caves, not less than
-/// the table's least scale.
-std::vector<double> robust_scales(const std::vector<KnownCave>& caves);
-Distance distance_between(const CaveFigures& a, const CaveFigures& b, const std::vector<double>& scales);
 
 struct NearCave {
   std::size_t cave = 0;  // of the experience

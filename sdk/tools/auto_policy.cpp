@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_lines.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
@@ -30,12 +31,6 @@ void describe(core::OptionTable& t, AutoOptions& o) {
   t.add("results", o.results, {}, "store of a campaign, or an experience; empty: what is installed");
   t.add("metric", o.select.metric, {}, "the figure to do best in");
   t.add("otherwise", o.otherwise, {}, "the policy if nothing similar was flown; empty: no flight");
-}
-
-/// From the file's folder, not the one the command is run in.
-std::string beside(const std::string& file, const std::string& path) {
-  if (path.empty() || std::filesystem::path(path).is_absolute()) return path;
-  return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
 }
 
 void take(Mission& m, const std::string& policy, const ptree& parameters, const std::string& why) {
@@ -72,7 +67,7 @@ bool settled(Mission& m) {
       throw InputError(m.file, where + cave, "expected either a policy or a preset");
     if (cave != name) continue;
     if (found) throw InputError(m.file, where + cave, "is there twice");
-    if (!file.empty()) preset = selection::read_preset(beside(m.file, file));
+    if (!file.empty()) preset = selection::read_preset(core::beside(m.file, file));
     take(m, preset.policy, preset.parameters, "the mission's table says so for the cave " + name);
     found = true;
   }
@@ -87,7 +82,7 @@ AutoOptions options_of(const Mission& m) {
   rest.erase("cave");
   tree.put_child("policy.auto", rest);
   if (!rest.empty()) table.read(m.file, tree);
-  for (std::string* path : {&o.description, &o.survey, &o.results}) *path = beside(m.file, *path);
+  for (std::string* path : {&o.description, &o.survey, &o.results}) *path = core::beside(m.file, *path);
   return o;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_lines.h"
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
 #include "sdk/selection/preset.h"
@@ -73,11 +74,6 @@ std::pair<std::string, std::string> split_setting(const std::string& setting) {
   return {setting.substr(0, equals), setting.substr(equals + 1)};
 }
 
-std::string relative_to(const std::string& file, const std::string& path) {
-  if (path.empty() || std::filesystem::path(path).is_absolute()) return path;
-  return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
-}
-
 }  // namespace
 
 Mission read_mission(const std::string& file, const MissionOverrides& overrides) {
@@ -122,7 +118,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   table.under(m.vehicle, [&m](OptionTable& t) { m.vehicle_plugin->describe_options(t); });
 
   table.read(m.file, tree);
-  m.cave = relative_to(file, m.cave);
+  m.cave = core::beside(file, m.cave);
   const std::string recorded_policy = m.policy;
   for (const auto& [key, value] : settings)
     if (!put_below(kParameters, key, value, m.policy_parameters) &&

@@ -21,15 +21,6 @@ std::string folder_name(std::size_t candidate) {
   return name.data();
 }
 
-double sign_of(const std::string& metric) {
-  const int i = evaluation::metric_index(metric);
-  if (i < 0) throw InputError("tune", metric, "no such figure");
-  const evaluation::Better better = evaluation::metric_definitions()[static_cast<std::size_t>(i)].better;
-  if (better == evaluation::Better::neither)
-    throw InputError("tune", metric, "more of it is neither better nor worse: nothing to tune for");
-  return better == evaluation::Better::more ? 1 : -1;
-}
-
 /// Over caves of the mean over seeds, as verdicts weigh them.
 double mean_of(const CampaignResults& r, std::size_t contestant, int metric) {
   std::map<std::size_t, std::pair<double, int>> caves;
@@ -97,7 +88,7 @@ std::size_t candidates_of(const TuneOptions& o) {
 }
 
 TuneResult tune(const TuneOptions& o, const Fly& fly, const TuneEvents& events) {
-  const double sign = sign_of(o.metric);
+  const double sign = evaluation::better_sign(o.metric, "tune");
   const int metric = evaluation::metric_index(o.metric);
   const std::size_t most = candidates_of(o);
   for (const campaign::CaveSpec& held : o.held_out)

@@ -1,0 +1,57 @@
+#include "sdk/selection/select_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace karst::selection {
+namespace {
+
+constexpr double kMostAlike = 1.5;  // times the weight each cave would have if all had the same
+
+std::string text(const char* format, auto... values) {
+  std::array<char, 400> buffer;
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+}  // namespace
+
+std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave& nearest, double limit) {
+  const FigureDefinition& f = figure_definitions()[static_cast<std::size_t>(nearest.distance.farthest)];
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const KnownCave& k : e.caves)
+    if (const double x = k.figures.*f.value; std::isfinite(x))
+      low = std::min(low, x), high = std::max(high, x);
+  const std::string unit = f.unit.empty() ? "" : " " + std::string(f.unit);
+  return text(
+      "nothing like this cave was flown: the nearest, %s, is at distance %.2f, and caves farther than %.2f "
+      "from all "
+      "others were never tried; most unlike is its %s: %.3g%s, against %.3g%s there and %.3g to %.3g%s in "
+      "all",
+      e.caves[nearest.cave].name.c_str(), nearest.distance.value, limit, std::string(f.name).c_str(),
+      cave.*f.value, unit.c_str(), e.caves[nearest.cave].figures.*f.value, unit.c_str(), low, high,
+      unit.c_str());
+}
+
+std::string why_first(const Experience& e, const Selected& s, const SelectOptions& options) {
+  const Expected& first = s.ranking.front();
+  std::string out = text("%s is expected to do best in %s (%.3g",
+                         e.contestants[first.contestant].name.c_str(), options.metric.c_str(), first.value);
+  if (!std::isnan(first.low))
+    out += text(", %.0f %% interval %.3g to %.3g", 100 * options.level, first.low, first.high);
+  // A wide bandwidth weighs all nearly alike: that the nearest are like this cave then decides nothing.
+  const bool alike = s.near.front().weight < kMostAlike / static_cast<double>(e.caves.size());
+  out += std::isinf(s.bandwidth) || alike
+             ? ") by all caves flown alike, for what these are like did not foretell which policy is best; "
+               "nearest: "
+             : ") by caves like this one: ";
+  for (std::size_t i = 0; i < s.near.size() && i < 3; ++i)
+    out += text("%s%s (distance %.2f, weight %.0f %%)", i ? ", " : "", e.caves[s.near[i].cave].name.c_str(),
+                s.near[i].distance.value, 100 * s.near[i].weight);
+  return out + text("; confidence %.0f %%", 100 * s.confidence);
+}
+
+}  // namespace karst::selection
