@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
 #include "sdk/campaign/plan.h"
 
 namespace karst::campaign {
@@ -52,6 +53,24 @@ std::string definition_of(const Plan& plan) {
     block.put_child("mission", c.mission);
   }
   return info_text(tree);
+}
+
+void read_conditions(const std::string& definition, CampaignResults& results) {
+  pt::ptree tree;
+  try {
+    std::istringstream in(definition);
+    pt::read_info(in, tree);
+  } catch (const pt::info_parser_error&) {
+    return;
+  }
+  results.profile = tree.get("profile", "");
+  for (const auto& [key, contestant] : tree) {
+    if (key != "contestant" || contestant.get("settings", "{}") != "{}") continue;
+    for (const auto& [name, value] : core::leaves_of(contestant.get_child("mission", {})))
+      if (!name.starts_with("policy.") && name != "mission.max_flight_time")
+        results.shared.emplace_back(name, value);
+    return;  // what the others have in common with it
+  }
 }
 
 Plan plan_of(const std::string& definition, const std::string& source) {

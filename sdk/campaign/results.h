@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace karst::campaign {
@@ -40,6 +41,10 @@ struct CampaignResults {
   std::vector<ContestantEntry> contestants;
   std::vector<CaveEntry> caves;
   std::vector<TrialResult> trials;  // by contestant, cave, seed
+  std::string profile = {};         // sdk/campaign/profile.h; "" if the store does not tell
+  // Keys and values of the mission as resolved that the contestants without settings of their own share:
+  // all but what is theirs (policy), the flight time and the cave.
+  std::vector<std::pair<std::string, std::string>> shared = {};
 };
 
 }  // namespace karst::campaign

@@ -51,7 +51,8 @@ std::string why_first(const Experience& e, const Selected& s, const SelectOption
   for (std::size_t i = 0; i < s.near.size() && i < 3; ++i)
     out += text("%s%s (distance %.2f, weight %.0f %%)", i ? ", " : "", e.caves[s.near[i].cave].name.c_str(),
                 s.near[i].distance.value, 100 * s.near[i].weight);
-  return out + text("; confidence %.0f %%", 100 * s.confidence);
+  return out + text("; confidence %.0f %%; from flights of at most %g s in profile %s", 100 * s.confidence,
+                    e.flown.horizon_s, e.flown.profile.c_str());
 }
 
 }  // namespace karst::selection
