@@ -191,6 +191,7 @@ Experience without_cave(const Experience& experience, std::size_t cave) {
   std::vector<KnownCave> caves = experience.caves;
   caves.erase(caves.begin() + static_cast<std::ptrdiff_t>(cave));
   Experience e = empty_like(caves, experience.contestants, experience.flown);
+  e.source = experience.source;
   for (std::size_t k = 0; k < e.contestants.size(); ++k)
     for (std::size_t c = 0; c < caves.size(); ++c)
       for (std::size_t m = 0; m < e.metrics.size(); ++m) e.at(k, c, m) = experience.at(k, c + (c >= cave), m);

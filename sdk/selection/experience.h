@@ -47,6 +47,7 @@ struct Experience {
   std::vector<std::string> metrics;  // names of evaluation::metric_definitions()
   std::vector<Fared> fared;          // by contestant, cave, metric
   Conditions flown = {};
+  std::string source = {};  // the files it is of, for messages
 
   const Fared& at(std::size_t contestant, std::size_t cave, std::size_t metric) const {
     return fared[(contestant * caves.size() + cave) * metrics.size() + metric];

@@ -11,11 +11,11 @@
 #include <boost/property_tree/info_parser.hpp>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
+#include "sdk/evaluation/metric_definitions.h"
 #include "sdk/selection/experience.h"
 
 namespace karst::selection {
@@ -105,10 +105,11 @@ KnownCave cave_of(const pt::ptree& tree, const std::string& file) {
   return cave;
 }
 
-/// What a figure of flights can be at most; none is negative.
+/// What a figure of flights can be at most; of those learned none is negative.
 double most_of(const std::string& metric, double horizon_s) {
-  if (metric == "completed" || metric == "coverage" || metric == "coverage_auc") return 1;
-  return metric.starts_with("restricted_") ? horizon_s : std::numeric_limits<double>::infinity();
+  const evaluation::MetricDefinition& m =
+      evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(metric))];
+  return m.if_failed == evaluation::IfFailed::horizon ? horizon_s : m.most;
 }
 
 Fared fared_of(const std::string& text, double most, const std::string& file, const std::string& place) {

@@ -171,6 +171,76 @@ TEST(Select, ContestantThatDidNotFlyNearbyIsNotNamed) {
   EXPECT_NE(name_of_first(e, s), "steep");
 }
 
+TEST(Select, OfACaveThatWasFlownRestsOnWhatWasFoundThere) {
+  Experience e = experience(20, 0.3, 0.02, 3);
+  std::size_t steepest = 0;
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    if (e.caves[c].figures.verticality > e.caves[steepest].figures.verticality) steepest = c;
+  // Against all that caves like it say, "level" was best in the steepest.
+  e.at(0, steepest, 0) = {4, 0.40, 0.02}, e.at(1, steepest, 0) = {4, 0.60, 0.02},
+                    e.at(2, steepest, 0) = {1, 0.5, kUnknown};
+  const CaveFigures cave = e.caves[steepest].figures;
+  const Selected s = select(e, cave, {}, "cave");
+  EXPECT_TRUE(s.flown);
+  EXPECT_FALSE(s.refused);
+  EXPECT_EQ(name_of_first(e, s), "level");
+  EXPECT_NEAR(s.ranking.front().value, 0.60, 1e-12);
+  // Student's quantile of 95 % with 3 degrees of freedom is 2.353.
+  EXPECT_NEAR(s.ranking.front().high - 0.60, 2.353 * 0.02 / 2, 1e-4);
+  EXPECT_TRUE(std::isnan(s.ranking[1].low));  // of a single flight
+  EXPECT_EQ(s.near.front().cave, steepest);
+  EXPECT_EQ(s.near.front().weight, 1);
+  EXPECT_EQ(s.near[1].weight, 0);
+  EXPECT_GT(s.confidence, 0.99);
+  EXPECT_EQ(s.reason.find("this very cave was flown: " + e.caves[steepest].name +
+                          "; of 3 contestants there level did best"),
+            0u)
+      << s.reason;
+  // The mesh tells it, too: from another start, or described by other means.
+  CaveFigures other = cave;
+  other.volume_m3 *= 1.01;
+  EXPECT_FALSE(select(e, other, {}, "cave", "abc").flown);
+  e.caves[steepest].hash = "abc";
+  EXPECT_TRUE(select(e, other, {}, "cave", "abc").flown);
+  EXPECT_FALSE(select(e, other, {}, "cave").flown);
+  // Few figures agree by chance; and one contestant alone tells nothing of the others.
+  CaveFigures little;
+  little.width_m = cave.width_m, little.volume_m3 = cave.volume_m3;
+  EXPECT_FALSE(select(e, little, {}, "cave").flown);
+  e.at(0, steepest, 0) = e.at(2, steepest, 0) = {};
+  EXPECT_FALSE(select(e, cave, {}, "cave", "abc").flown);
+}
+
+TEST(Select, OfACaveThatWasFlownFewOthersAreEnough) {
+  Experience e = experience(6, 0.3, 0.02, 3);
+  while (e.caves.size() > 1) e = without_cave(e, 0);
+  const Selected s = select(e, e.caves[0].figures, {}, "cave");
+  EXPECT_TRUE(s.flown);
+  EXPECT_EQ(s.ranking.size(), 3u);
+  EXPECT_NEAR(s.ranking[0].value, std::max({e.at(0, 0, 0).mean, e.at(1, 0, 0).mean, e.at(2, 0, 0).mean}),
+              1e-12);
+}
+
+// As it was: of too few caves the cave asked about was named.
+TEST(Select, WhatTheResultsLackIsSaidOfThem) {
+  Experience e = experience(6, 0.3, 0.02, 3);
+  e.source = "runs/some";
+  while (e.caves.size() > 3) e = without_cave(e, 0);
+  const auto message = [&](auto action) -> std::string {
+    try {
+      action();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message([&] {
+              select(e, cave_figures(0, 0.4), {}, "new.info");
+            }).find("runs/some: coverage_auc: is known of 3"),
+            0u);
+  EXPECT_EQ(message([&] { leave_one_out(e, {"coverage_acu"}, "karst select"); }).find("runs/some: "), 0u);
+}
+
 TEST(Select, BadInputIsAnError) {
   const Experience e = experience(8, 0.3, 0.02, 3);
   const auto message = [&](const Experience& known, const CaveFigures& cave,
