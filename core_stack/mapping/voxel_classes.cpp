@@ -1,5 +1,6 @@
-// Blocks by class: what of a map other processes and records hold.
-#include "core_stack/mapping/voxel_storage.h"
+#include "core_stack/mapping/voxel_classes.h"
+
+#include "core_stack/mapping/voxel_reader.h"
 
 namespace karst::core {
 namespace {
@@ -25,9 +26,9 @@ bool is_sound(const ClassBlock& block) {
                       [](std::uint8_t four) { return (four & four >> 1 & 0x55) != 0; });
 }
 
-std::vector<ClassBlock> VoxelMap::blocks_changed_after(std::uint64_t since) const {
+std::vector<ClassBlock> blocks_changed_after(const VoxelMap& map, std::uint64_t since) {
   std::vector<const Block*> changed;
-  for (const auto& b : storage_->blocks.all())
+  for (const auto& b : VoxelReader(map).blocks().all())
     if (b->revision > since) changed.push_back(b.get());
   std::sort(changed.begin(), changed.end(), [](const Block* a, const Block* b) { return a->id < b->id; });
   std::vector<ClassBlock> out;
@@ -36,10 +37,11 @@ std::vector<ClassBlock> VoxelMap::blocks_changed_after(std::uint64_t since) cons
   return out;
 }
 
-std::vector<CellChange> VoxelMap::assign_blocks(std::span<const ClassBlock> blocks, std::uint64_t revision) {
+std::vector<CellChange> assign_blocks(VoxelMap& map, std::span<const ClassBlock> blocks,
+                                      std::uint64_t revision) {
   constexpr std::array<std::int16_t, 3> values = {kUnknown, -static_cast<std::int16_t>(kLogOddsScale),
                                                   static_cast<std::int16_t>(kLogOddsScale)};
-  Storage& s = *storage_;
+  auto& s = VoxelReader::storage_of(map);
   s.revision = revision;
   std::vector<CellChange> changes;
   for (const ClassBlock& from : blocks) {

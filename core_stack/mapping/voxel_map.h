@@ -5,7 +5,6 @@
 // boundaries are OctoMap's: cell k covers [k, k+1) * resolution in each axis, and so is the world's size:
 // keys from -32768 to 32767 (6.5 km at 0.2 m). What lies beyond is unknown and stays so.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -47,14 +46,6 @@ struct CellChange {
   Cell before, after;
 };
 
-/// A block of 8 x 8 x 8 cells by class only: what of a map goes to other processes.
-struct ClassBlock {
-  CellKey low;                            // a multiple of 8 in each axis
-  std::array<std::uint8_t, 128> classes;  // two bits a cell, lowest first; x fastest, then y
-};
-/// The block lies in the world and holds classes only.
-bool is_sound(const ClassBlock& block);
-
 class VoxelMap {
  public:
   explicit VoxelMap(const MapOptions& options);
@@ -83,12 +74,6 @@ class VoxelMap {
   /// Gives every cell of a cube the same log-odds, clamped to what the map stores (+-7.9); for maps that are
   /// read from storage or drawn by hand. What of the cube lies outside the world is ignored.
   void assign(const CellKey& low, std::int32_t edge_cells, float log_odds);
-
-  /// Blocks in which a cell's class changed after write number `since` (0: all that were written to), sorted.
-  std::vector<ClassBlock> blocks_changed_after(std::uint64_t since) const;
-  /// Gives the cells of sound blocks these classes, at one log-odds each way, and takes over the number of
-  /// the write they come from. Returns the cells whose class changed, sorted by key.
-  std::vector<CellChange> assign_blocks(std::span<const ClassBlock> blocks, std::uint64_t revision);
 
   std::size_t free_cells() const;
   std::size_t occupied_cells() const;

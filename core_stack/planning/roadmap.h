@@ -46,7 +46,6 @@ class Roadmap {
   std::vector<Vec3> places_near(const Vec3& p, double reach_m) const;
 
   std::size_t node_count() const;
-  const PlanningOptions& options() const;
   const RoadmapGraph& graph() const { return *graph_; }
 
  private:

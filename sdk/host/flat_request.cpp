@@ -2,6 +2,9 @@
 
 #include <array>
 
+#include "core_stack/mapping/voxel_classes.h"
+#include "core_stack/planning/roadmap_graph.h"
+
 namespace karst::host {
 namespace {
 
@@ -101,7 +104,7 @@ void put_frontiers(FlatWriter& out, const std::vector<core::FrontierOffer>& offe
 void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t since) {
   out.put(r.map != nullptr);
   if (r.map == nullptr) return;
-  const std::vector<core::ClassBlock> blocks = r.map->blocks_changed_after(since);
+  const std::vector<core::ClassBlock> blocks = core::blocks_changed_after(*r.map, since);
   out.put(r.map->resolution_m()), out.put(r.map->revision()), out.put(since);
   out.put<std::uint64_t>(blocks.size());
   out.reserve(blocks.size() * kBlockBytes);
@@ -111,7 +114,8 @@ void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t sinc
   }
   out.put(r.roadmap != nullptr);
   if (r.roadmap == nullptr) return;
-  out.put(r.roadmap->options().clearance_m), out.put(r.roadmap->options().search_slack_cells);
+  const core::PlanningOptions& planned = r.roadmap->graph().options;
+  out.put(planned.clearance_m), out.put(planned.search_slack_cells);
 }
 
 /// The body behind a header that agrees with it.
@@ -231,7 +235,7 @@ void RequestReader::read_map(FlatReader& in) {
     std::memcpy(b.classes.data(), in.raw(sizeof b.classes).data(), sizeof b.classes);
     if (!core::is_sound(b)) in.fail("a block of the map is none");
   }
-  const std::vector<core::CellChange> changes = map_->assign_blocks(blocks, revision);
+  const std::vector<core::CellChange> changes = core::assign_blocks(*map_, blocks, revision);
   request_.map = &*map_;
   if (!in.flag()) return;
   core::PlanningOptions options;

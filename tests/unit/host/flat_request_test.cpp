@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "core_stack/mapping/voxel_classes.h"
 #include "sdk/host/translation.h"
 #include "tests/abi/room.h"
 
