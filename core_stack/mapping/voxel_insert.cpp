@@ -100,11 +100,6 @@ CellKey cell_at(const Vec3& p) {
   return {floor_of(p.x()), floor_of(p.y()), floor_of(p.z())};
 }
 
-void sort_by_key(std::vector<CellChange>& changes) {
-  std::sort(changes.begin(), changes.end(),
-            [](const CellChange& a, const CellChange& b) { return a.key < b.key; });
-}
-
 template <class Visit>
 void for_each_bit(const std::array<std::uint64_t, 8>& bits, Visit&& visit) {
   for (std::uint32_t w = 0; w < bits.size(); ++w)

@@ -23,6 +23,8 @@ class VoxelReader {
   /// Counts the cells of a closed box by class, about a nanosecond a cell.
   CellCounts count(const CellKey& low, const CellKey& high) const;
   const BlockTable& blocks() const { return blocks_; }
+  /// What a map holds, for those in mapping who write whole blocks.
+  static VoxelMap::Storage& storage_of(VoxelMap& map) { return *map.storage_; }
 
  private:
   const BlockTable& blocks_;

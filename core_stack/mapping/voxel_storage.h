@@ -22,10 +22,16 @@ struct VoxelMap::Storage {
     if (before == after) return;
     if (before == Cell::free) --free_cells;
     if (before == Cell::occupied) --occupied_cells;
-    (after == Cell::free ? free_cells : occupied_cells) += 1;
+    if (after == Cell::free) ++free_cells;
+    if (after == Cell::occupied) ++occupied_cells;
     b.revision = revision;
     changes.push_back({cell_in(corner, local), before, after});
   }
 };
+
+inline void sort_by_key(std::vector<CellChange>& changes) {
+  std::sort(changes.begin(), changes.end(),
+            [](const CellChange& a, const CellChange& b) { return a.key < b.key; });
+}
 
 }  // namespace karst::core

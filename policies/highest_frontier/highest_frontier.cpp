@@ -5,7 +5,7 @@
 
 namespace {
 
-class HighestFrontier : public karst::Policy {
+class HighestFrontier : public karst::Policy, public karst::Restorable {
  public:
   HighestFrontier() {
     ranking_.path_weight = 0.5;
@@ -28,6 +28,7 @@ class HighestFrontier : public karst::Policy {
   }
 
   void on_event(const karst::Event& event) override { ranking_.on_event(event); }
+  void memory(karst::Memory& m) override { ranking_.memory(m); }
 
  private:
   double climb_worth_ = 5.0;

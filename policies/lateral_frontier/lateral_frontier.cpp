@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-class LateralFrontier : public karst::Policy {
+class LateralFrontier : public karst::Policy, public karst::Restorable {
  public:
   LateralFrontier() {
     ranking_.path_weight = 0.5;
@@ -38,6 +38,7 @@ class LateralFrontier : public karst::Policy {
   }
 
   void on_event(const karst::Event& event) override { ranking_.on_event(event); }
+  void memory(karst::Memory& m) override { ranking_.memory(m); }
 
  private:
   /// 0: just in the preferred direction, pi: against it. A frontier straight above or below has no bearing

@@ -5,7 +5,7 @@
 
 namespace {
 
-class NearestFrontier : public karst::Policy {
+class NearestFrontier : public karst::Policy, public karst::Restorable {
  public:
   NearestFrontier() { ranking_.turn_cost_m = 6.0; }
 
@@ -27,6 +27,7 @@ class NearestFrontier : public karst::Policy {
   }
 
   void on_event(const karst::Event& event) override { ranking_.on_event(event); }
+  void memory(karst::Memory& m) override { ranking_.memory(m); }
 
  private:
   double opening_bonus_m_ = 3.0;

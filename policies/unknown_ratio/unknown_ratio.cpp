@@ -7,7 +7,7 @@
 
 namespace {
 
-class UnknownRatio : public karst::Policy {
+class UnknownRatio : public karst::Policy, public karst::Restorable {
  public:
   UnknownRatio() {
     ranking_.path_weight = 0.5;
@@ -35,6 +35,7 @@ class UnknownRatio : public karst::Policy {
   }
 
   void on_event(const karst::Event& event) override { ranking_.on_event(event); }
+  void memory(karst::Memory& m) override { ranking_.memory(m); }
 
  private:
   /// Of every reachable frontier, from one batch.

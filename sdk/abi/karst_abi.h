@@ -11,6 +11,7 @@
 #ifndef KARST_ABI_H
 #define KARST_ABI_H
 #include "karst_abi_policy.h"
+#include "karst_abi_state.h"
 
 #define KARST_ABI_MAJOR 1
 #define KARST_ABI_MINOR 0

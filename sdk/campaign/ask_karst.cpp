@@ -12,8 +12,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/hash.h"
-#include "sdk/campaign/process.h"
 #include "sdk/campaign/profile.h"
+#include "sdk/host/process.h"
 
 namespace karst::campaign {
 namespace {
@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 namespace pt = boost::property_tree;
 using core::InputError;
+using host::ProcessOutput;
+using host::run_process;
 using nlohmann::json;
 
 constexpr double kCheckLimit_s = 600;  // for loading a policy and a cave, on a busy machine

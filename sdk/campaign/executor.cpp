@@ -20,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using core::InputError;
+using host::end_process;
+using host::start_process;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uintmax_t kLeastSpace = 64u

@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "sdk/campaign/process.h"
+#include "sdk/host/process.h"
 
 namespace karst::campaign {
+
+using host::ProcessEnd;
 
 struct TrialJob {
   std::vector<std::string> command;  // without its run directory: "--out DIR" is put behind it

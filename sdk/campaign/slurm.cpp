@@ -11,14 +11,16 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
-#include "sdk/campaign/process.h"
 #include "sdk/evaluation/whole_file.h"
+#include "sdk/host/process.h"
 
 namespace karst::campaign {
 namespace {
 
 namespace fs = std::filesystem;
 using core::InputError;
+using host::ProcessOutput;
+using host::run_process;
 using nlohmann::json;
 
 constexpr double kTask_s = 10;               // least work of a task

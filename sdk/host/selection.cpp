@@ -34,7 +34,7 @@ std::string missing_text(const std::string& name, const std::vector<PolicyListin
 
 }  // namespace
 
-Selection select_policy(const std::string& name, const SearchPath& path) {
+PolicyListing find_policy(const std::string& name, const SearchPath& path) {
   const std::vector<PolicyListing> all = list_policies(path);
   for (const PolicyListing& p : all) {
     const bool explicit_file = std::find(path.files.begin(), path.files.end(), p.file) != path.files.end();
@@ -43,13 +43,20 @@ Selection select_policy(const std::string& name, const SearchPath& path) {
   const auto offers = [&](const PolicyListing& p) { return p.broken.empty() && p.id == name; };
   const auto found = std::find_if(all.begin(), all.end(), offers);
   if (found == all.end()) throw core::InputError("policy", name, missing_text(name, all, path));
-  Selection out{open_plugin(found->file), nullptr};
+  return *found;
+}
+
+Selection open_policy(const std::string& file, const std::string& name) {
+  Selection out{open_plugin(file), nullptr};
   for (const karst_policy_t* policy : out.plugin.policies)
     if (name == std::string(policy->descriptor->id.data, policy->descriptor->id.length)) out.policy = policy;
   if (out.policy == nullptr)
-    throw core::InputError(found->file, name,
-                           "the file offered this policy when listed, but not when opened");
+    throw core::InputError(file, name, "the file offered this policy when listed, but not when opened");
   return out;
+}
+
+Selection select_policy(const std::string& name, const SearchPath& path) {
+  return open_policy(find_policy(name, path).file, name);
 }
 
 }  // namespace karst::host

@@ -168,16 +168,16 @@ struct Services {
       demand_batch(count, KARST_MAX_PATH_GOALS, goals, out);
       demand(finite(from), "from is not finite");
       demand(tolerance_m >= 0 && tolerance_m <= 100, "tolerance_m is not in [0, 100] m");
-      if (s.live_.map == nullptr || s.roadmap_ == nullptr)
-        throw Refusal{KARST_ERROR_STATE, "paths can be asked for during decide() only"};
+      const Refusal closed{KARST_ERROR_STATE, "paths can be asked for during decide() only"};
+      if (s.live_.map == nullptr || !s.lengths_) throw closed;
       std::vector<core::Vec3> places;
       for (std::uint64_t i = 0; i < count; ++i) {
         demand(finite(goals[i]), "a goal is not finite");
         places.push_back(to_core(goals[i]));
       }
-      const std::vector<double> found =
-          s.roadmap_->distances(*s.live_.map, to_core(from), places, tolerance_m);
-      std::copy(found.begin(), found.end(), out);
+      const std::optional<std::vector<double>> found = s.lengths_(to_core(from), places, tolerance_m);
+      if (!found || found->size() != count) throw closed;
+      std::copy(found->begin(), found->end(), out);
     });
   }
 
@@ -263,6 +263,7 @@ struct Services {
     const std::int32_t code = serve(h, nullptr, [&](Session& s) {
       on_decision_thread(s);
       for (std::uint64_t i = 0; i < count; ++i) out[i] = s.random_.uniform();
+      s.numbers_drawn_ += count;
     });
     if (code != KARST_OK) std::fill_n(out, count, 0.5);  // never numbers that differ from run to run
   }

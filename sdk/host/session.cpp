@@ -9,23 +9,29 @@ constexpr std::size_t kMostLogLines = 200;  // between two decisions
 
 }  // namespace
 
-Session::Session(std::uint64_t seed, const std::string& policy_id)
-    : random_(core::Random::stream(seed, "policy " + policy_id)) {
+Session::Session(std::uint64_t seed, const std::string& policy_id, std::uint64_t numbers_drawn)
+    : random_(core::Random::stream(seed, "policy " + policy_id)), numbers_drawn_(numbers_drawn) {
+  for (std::uint64_t i = 0; i < numbers_drawn; ++i) random_.uniform();
   install_services(*this, host_);
 }
 
-void Session::begin_deciding(const core::DecisionRequest& request) {
+void Session::begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths) {
   const std::unique_lock lock(gate_);
   now_ = request.stamp;
   live_.map = request.map;
   live_.revision = request.map == nullptr ? 0 : request.map->revision();
-  roadmap_ = request.roadmap;
+  lengths_ = lengths;
+  if (!lengths_ && request.map != nullptr && request.roadmap != nullptr)
+    lengths_ = [&map = *request.map, &roadmap = *request.roadmap](
+                   const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
+      return std::optional(roadmap.distances(map, from, goals, tolerance_m));
+    };
 }
 
 void Session::end_deciding() {
   const std::unique_lock lock(gate_);
   live_.map = nullptr;
-  roadmap_ = nullptr;
+  lengths_ = {};
 }
 
 void Session::abandon() {

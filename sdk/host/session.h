@@ -5,9 +5,12 @@
 // Whoever may still call in holds the session by shared_ptr.
 #pragma once
 #include <atomic>
+#include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -17,9 +20,15 @@
 
 namespace karst::host {
 
+/// Lengths of ways through the request's map, as core::Roadmap::distances gives them; none if this request
+/// has no roadmap.
+using PathLengths = std::function<std::optional<std::vector<double>>(
+    const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m)>;
+
 class Session {
  public:
-  Session(std::uint64_t seed, const std::string& policy_id);
+  /// `numbers_drawn`: how far a former session of this policy had come in its random stream.
+  Session(std::uint64_t seed, const std::string& policy_id, std::uint64_t numbers_drawn = 0);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -28,8 +37,8 @@ class Session {
   void set_decision_thread(std::thread::id id) { decision_thread_ = id; }
   void set_now(core::TimeNs now) { now_ = now; }
 
-  /// Between these two the request's map and roadmap may be asked.
-  void begin_deciding(const core::DecisionRequest& request);
+  /// Between these two the request's map and ways may be asked; `lengths`, if given, in place of its roadmap.
+  void begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths = {});
   void end_deciding();
   void abandon();
 
@@ -38,6 +47,7 @@ class Session {
   std::vector<core::Drawing> take_drawings();
   std::vector<std::string> take_log();
   void note(std::string line);
+  std::uint64_t numbers_drawn() const { return numbers_drawn_; }
 
  private:
   friend struct Services;
@@ -54,7 +64,7 @@ class Session {
   std::atomic<core::TimeNs> now_ = 0;
   std::thread::id decision_thread_;
   Snapshot live_;
-  const core::Roadmap* roadmap_ = nullptr;
+  PathLengths lengths_;
   std::mutex kept_mutex_;
   std::map<const karst_map_t*, std::unique_ptr<Snapshot>> kept_;
 
@@ -63,6 +73,7 @@ class Session {
   std::size_t drawn_points_ = 0;
   std::vector<std::string> log_;
   core::Random random_;
+  std::uint64_t numbers_drawn_ = 0;
 };
 
 /// Fills the four tables and the host's own with the functions of services.cpp.

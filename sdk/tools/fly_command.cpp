@@ -113,6 +113,27 @@ int check(const std::string& file, const Mission& mission, const host::HostedPol
   return 0;
 }
 
+/// Which policy, and what it may do to this process.
+host::PolicyChoice policy_choice(const Mission& mission, const FlyArguments& args) {
+  host::PolicyChoice choice;
+  choice.name = mission.policy;
+  choice.plugin_files = args.plugins;
+  choice.parameters = mission.policy_parameters;
+  choice.source = mission.file;
+  choice.seed = policy_seed(mission);
+  if (mission.policy_isolation == "process") {
+    choice.isolation = host::Isolation::process;
+    choice.cpu_limit_s = mission.policy_cpu_limit_s;
+    choice.memory_limit_mib = mission.policy_memory_limit_mib;
+    // In lockstep the vehicle's clock stands still meanwhile: a loaded machine must not cost a policy its
+    // flight. On a vehicle nobody waits longer than until the next decision is due.
+    choice.hang_limit_s = mission.policy_hang_limit_s;
+    if (args.real_time)
+      choice.hang_limit_s = std::min(choice.hang_limit_s, mission.core.mission.decision_period_s);
+  }
+  return choice;
+}
+
 int fly(const FlyArguments& args) {
   if (args.keys) {
     std::fputs(mission_help("simulator").c_str(), stdout);
@@ -126,13 +147,7 @@ int fly(const FlyArguments& args) {
   settle_policy(mission);
 
   // Everything that can be wrong is looked at before anything is written.
-  host::PolicyChoice choice;
-  choice.name = mission.policy;
-  choice.plugin_files = args.plugins;
-  choice.parameters = mission.policy_parameters;
-  choice.source = mission.file;
-  choice.seed = policy_seed(mission);
-  const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(choice);
+  const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(policy_choice(mission, args));
   if (!args.check.empty()) return check(args.check, mission, *policy);
   const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
   catch_signals();  // from here on there is something to tidy up

@@ -37,6 +37,16 @@ void describe_mission(OptionTable& t, Mission& m) {
           "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
     p.add("stream", m.policy_stream, 0, 9e15,
           "gives the policy other random numbers, and nothing else: for comparing a policy with itself");
+    p.add("isolation", m.policy_isolation, {"in_process", "process"},
+          "process: the policy runs in a process of its own, where a crash costs the policy and not the "
+          "vehicle");
+    p.add("cpu_limit", m.policy_cpu_limit_s, "s", 0.1, 3600,
+          "processor time a call may take of a policy in a process of its own, in all its threads");
+    p.add("hang_limit", m.policy_hang_limit_s, "s", 0.1, 3600,
+          "by the wall clock, a call of a policy in a process of its own; with --real-time "
+          "mission.decision_period if that is less");
+    p.add("memory_limit_mib", m.policy_memory_limit_mib, 256, 1 << 20,
+          "address space of a policy in a process of its own, in MiB");
   });
   describe(t, m.core);
 }

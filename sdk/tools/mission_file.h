@@ -26,6 +26,9 @@ struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   std::int64_t seed = 1, policy_stream = 0;
+  std::string policy_isolation = "in_process";  // or "process" (docs/isolation.md)
+  double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;
+  std::int64_t policy_memory_limit_mib = 2048;
   core::CoreOptions core;
   core::VehiclePlugin* vehicle_plugin = nullptr;
   boost::property_tree::ptree policy_parameters;

@@ -2,7 +2,7 @@
 # Compares the ABI with the reviewed baseline, and proves that the comparison would see a break.
 # usage: abidiff_test.sh SOURCE_DIR WORK_DIR CC [--accept]   (--accept writes a new baseline)
 set -u
-source=$1 work=$2 cc=$3 accept=${4:-}
+source=$(cd "$1" && pwd) work=$2 cc=$3 accept=${4:-}
 baseline=$source/tests/abi/karst_abi_1_0.abi
 command -v abidiff >/dev/null && command -v abidw >/dev/null || { echo "skipped: abidiff is not installed"; exit 77; }
 mkdir -p "$work" && cd "$work" || exit 1

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <karst/memory.h>
 #include <karst/types.h>
 
 namespace karst {
@@ -34,6 +35,8 @@ class PlaceMemory {
         break;
     }
   }
+
+  void memory(Memory& m) { m.add(places_); }
 
   Verdict judge(const Frontier& f, std::int64_t now_ns) const {
     Verdict v;

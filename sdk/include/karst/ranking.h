@@ -42,7 +42,8 @@ class Ranking {
     p.add("patience", patience_s, "s", 0, 120, "without any goal for this long, the cave counts as explored");
   }
 
-  void on_event(const Event& event) { memory_.on_event(event); }
+  void on_event(const Event& event) { places_.on_event(event); }
+  void memory(Memory& m) { m.add(places_), m.add(idle_since_ns_); }
 
   /// `merit_of(frontier)` for each frontier that can be flown to; the best become goals.
   template <class MeritOf>
@@ -52,7 +53,7 @@ class Ranking {
     for (const Frontier& f : request.frontiers) {
       if (!f.reachable() || f.cells < static_cast<std::uint32_t>(min_cells)) continue;
       if (distance(f.viewpoint, request.position()) < min_distance_m) continue;
-      const PlaceMemory::Verdict verdict = memory_.judge(f, request.stamp_ns);
+      const PlaceMemory::Verdict verdict = places_.judge(f, request.stamp_ns);
       some_closed |= verdict.closed_now;
       if (!verdict.open) continue;
       Merit merit = merit_of(f);
@@ -92,7 +93,7 @@ class Ranking {
     return Decision::explored("no frontier can be reached");
   }
 
-  PlaceMemory memory_;
+  PlaceMemory places_;
   std::int64_t idle_since_ns_ = -1;
 };
 

@@ -5,8 +5,10 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
+#include <karst/memory.h>
 #include <karst/policy.h>
 
 namespace karst::border {
@@ -83,7 +85,42 @@ inline void deactivate(void* self) noexcept {
 inline void destroy(void* self) noexcept {
   guarded(nullptr, [&] { delete &self_of(self); });
 }
-inline const void* extension(void*, karst_text_t) noexcept { return nullptr; }
+
+template <class P>
+Restorable& memory_of(void* self) {
+  return static_cast<P&>(*self_of(self).policy);
+}
+template <class P>
+std::int32_t save(void* self, const karst_state_sink_t* sink, karst_error_t* error) noexcept {
+  return guarded(error, [&] {
+    Memory memory;
+    memory_of<P>(self).memory(memory);
+    karst_error_t e{};
+    const std::vector<unsigned char> bytes = memory.sealed();
+    check(sink->write(sink, bytes.data(), bytes.size(), &e), e);
+  });
+}
+template <class P>
+std::int32_t restore(void* self, const void* bytes, std::uint64_t count, karst_error_t* error) noexcept {
+  return guarded(error, [&] {
+    Memory memory(bytes, count);
+    memory_of<P>(self).memory(memory);
+    memory.done();
+  });
+}
+
+/// NULL for a policy that says nothing of its memory.
+template <class P>
+const void* extension(void*, karst_text_t id) noexcept {
+  if constexpr (std::is_base_of_v<Restorable, P>) {
+    constexpr std::size_t length = sizeof KARST_STATE_EXTENSION - 1;
+    if (id.length == length && std::memcmp(id.data, KARST_STATE_EXTENSION, length) == 0) {
+      static constexpr karst_state_extension_t table{sizeof table, 0, &save<P>, &restore<P>};
+      return &table;
+    }
+  }
+  return nullptr;
+}
 
 template <class P>
 void* create(const karst_host_t* host, karst_error_t* error) noexcept {
@@ -122,8 +159,8 @@ std::unique_ptr<Entry> make_entry(const char* id, const char* version, const cha
   e->descriptor.parameter_count = static_cast<std::uint32_t>(e->parameters.size());
   e->descriptor.parameters = e->parameters.data();
   e->descriptor.one_line = to_abi(e->one_line);
-  e->policy = {sizeof e->policy, 0,         &e->descriptor, &create<P>, &init,     &activate,
-               &decide,          &on_event, &deactivate,    &destroy,   &extension};
+  e->policy = {sizeof e->policy, 0,         &e->descriptor, &create<P>, &init,        &activate,
+               &decide,          &on_event, &deactivate,    &destroy,   &extension<P>};
   return e;
 }
 

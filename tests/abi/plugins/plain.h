@@ -79,8 +79,15 @@ static int32_t decide(void* self, const karst_request_t* r, const karst_decision
 }
 #endif
 
+#ifndef ON_EVENT
+#define ON_EVENT
+#endif
+#ifndef EXTENSION
+#define EXTENSION 0
+#endif
 static int32_t on_event(void* self, const karst_event_t* event, karst_error_t* error) {
   (void)self, (void)event, (void)error;
+  ON_EVENT
   return KARST_OK;
 }
 
@@ -107,7 +114,7 @@ static const karst_policy_descriptor_t descriptor = {sizeof(karst_policy_descrip
 #define DECIDE_SLOT decide
 #endif
 static const karst_policy_t policy_table = {TABLE_SIZE,  0,        &descriptor, create,  init, activate,
-                                            DECIDE_SLOT, on_event, deactivate,  destroy, 0};
+                                            DECIDE_SLOT, on_event, deactivate,  destroy, EXTENSION};
 
 static const karst_policy_t* policy(uint32_t index) { return index == 0 ? &policy_table : 0; }
 static const karst_plugin_t plugin = {sizeof(karst_plugin_t), ABI_MAJOR, ABI_MINOR, 1, policy};

@@ -13,6 +13,9 @@
 namespace karst::campaign {
 namespace {
 
+using host::ProcessOutput;
+using host::run_process;
+
 /// A trial that runs a line of shell; $2 is its run directory.
 TrialJob job(const fs::path& dir, const std::string& name, const std::string& script) {
   return {{"/bin/sh", "-c", script, "trial"}, dir / "trials" / name, "identity of " + name};

@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sdk/campaign/process.h"
+#include "sdk/host/process.h"
 #include "tests/unit/campaign/store_fixture.h"
 
 namespace karst::campaign {
 namespace {
+
+using host::run_process;
 
 fs::path small_store(const std::string& name) {
   const fs::path file = fresh_folder(name) / "campaign.sqlite";

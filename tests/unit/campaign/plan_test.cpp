@@ -6,11 +6,13 @@
 
 #include "sdk/campaign/folder.h"
 #include "sdk/campaign/hash.h"
-#include "sdk/campaign/process.h"
+#include "sdk/host/process.h"
 #include "tests/unit/campaign/store_fixture.h"
 
 namespace karst::campaign {
 namespace {
+
+using host::run_process;
 
 Plan small_plan() {
   Plan plan{"small", "full", 300, 7200, {}, {}, {1, 2, 3}};

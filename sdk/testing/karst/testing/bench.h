@@ -21,21 +21,12 @@ class Bench {
  public:
   using Values = std::vector<std::pair<std::string, std::string>>;  // in SI units, without the unit
 
-  Bench(const karst_plugin_t* plugin, DrawnMap map, const Values& values = {}, std::uint32_t index = 0)
-      : host_(std::move(map)), policy_(plugin->policy(index)) {
+  Bench(const karst_plugin_t* plugin, DrawnMap map, Values values = {}, std::uint32_t index = 0)
+      : host_(std::move(map)), policy_(plugin->policy(index)), values_(std::move(values)) {
     if (policy_ == nullptr) throw Error("the plugin has no such policy");
-    karst_error_t e{};
-    self_ = policy_->create(host_.host(), &e);
-    if (self_ == nullptr) throw Error(e.text, e.code);
-    std::vector<karst_parameter_value_t> resolved = defaults();
-    for (const auto& [id, text] : values) set(resolved, id, text);
-    check(policy_->init(self_, resolved.data(), resolved.size(), &e), e);
-    check(policy_->activate(self_, &e), e);
+    start({});
   }
-  ~Bench() {
-    policy_->deactivate(self_);
-    policy_->destroy(self_);
-  }
+  ~Bench() { end(); }
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
@@ -108,6 +99,21 @@ class Bench {
     return answer;
   }
 
+  /// What the policy remembers, through the extension "karst.state/1". Throws Error if it offers none.
+  std::vector<unsigned char> saved() {
+    std::vector<unsigned char> bytes;
+    const karst_state_sink_t sink{sizeof(karst_state_sink_t), 0, 16u << 20, &bytes, &keep};
+    karst_error_t e{};
+    check(state().save(self_, &sink, &e), e);
+    return bytes;
+  }
+  /// As after a crash: a new object with the same parameters, and with the memory of `bytes` unless they are
+  /// empty.
+  void restart(const std::vector<unsigned char>& bytes) {
+    end();
+    start(bytes);
+  }
+
   void tell(karst_event_kind_t kind, const Goal& goal, const std::string& reason = "") {
     karst_event_t event{sizeof(karst_event_t), kind, static_cast<std::int64_t>(time_s * 1e9), to_abi(goal),
                         to_abi(reason)};
@@ -116,6 +122,42 @@ class Bench {
   }
 
  private:
+  void start(const std::vector<unsigned char>& bytes) {
+    karst_error_t e{};
+    self_ = policy_->create(host_.host(), &e);
+    if (self_ == nullptr) throw Error(e.text, e.code);
+    try {
+      std::vector<karst_parameter_value_t> resolved = defaults();
+      for (const auto& [id, text] : values_) set(resolved, id, text);
+      check(policy_->init(self_, resolved.data(), resolved.size(), &e), e);
+      if (!bytes.empty()) check(state().restore(self_, bytes.data(), bytes.size(), &e), e);
+      check(policy_->activate(self_, &e), e);
+      active_ = true;
+    } catch (...) {
+      end();
+      throw;
+    }
+  }
+  void end() {
+    if (self_ == nullptr) return;
+    if (active_) policy_->deactivate(self_);
+    policy_->destroy(self_);
+    self_ = nullptr, active_ = false;
+  }
+  const karst_state_extension_t& state() {
+    const void* table = nullptr;
+    if (KARST_HAS(karst_policy_t, policy_, extension))
+      table = policy_->extension(self_, {KARST_STATE_EXTENSION, sizeof KARST_STATE_EXTENSION - 1});
+    if (table == nullptr) throw Error("the policy does not offer " KARST_STATE_EXTENSION);
+    return *static_cast<const karst_state_extension_t*>(table);
+  }
+  static std::int32_t keep(const karst_state_sink_t* sink, const void* bytes, std::uint64_t count,
+                           karst_error_t*) noexcept {
+    const auto* from = static_cast<const unsigned char*>(bytes);
+    auto& to = *static_cast<std::vector<unsigned char>*>(sink->context);
+    to.insert(to.end(), from, from + count);
+    return KARST_OK;
+  }
   static std::int32_t add_goals(const karst_decision_sink_t* sink, const karst_goal_t* goals,
                                 std::uint64_t count, karst_error_t*) noexcept {
     for (std::uint64_t i = 0; i < count; ++i)
@@ -154,7 +196,9 @@ class Bench {
 
   DrawnHost host_;
   const karst_policy_t* policy_;
+  Values values_;
   void* self_ = nullptr;
+  bool active_ = false;
   std::uint32_t sequence_ = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace karst::campaign {
+namespace karst::host {
 
 /// How a process ended.
 struct ProcessEnd {
@@ -38,4 +38,4 @@ ProcessOutput run_process(const std::vector<std::string>& argv, double limit_s);
 /// "killed by signal 11 (Segmentation fault)", "exit code 3".
 std::string describe(const ProcessEnd& end);
 
-}  // namespace karst::campaign
+}  // namespace karst::host

@@ -1,4 +1,4 @@
-#include "sdk/campaign/process.h"
+#include "sdk/host/process.h"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -16,7 +16,7 @@
 
 #include "core_stack/common/error.h"
 
-namespace karst::campaign {
+namespace karst::host {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -107,4 +107,4 @@ std::string describe(const ProcessEnd& end) {
   return "exit code " + std::to_string(end.exit_code);
 }
 
-}  // namespace karst::campaign
+}  // namespace karst::host

@@ -1,0 +1,250 @@
+// The drawer again, each plugin in a process of its own: whatever it does there, the host goes on, says why
+// in the same words every time, and asks somebody else after the second time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include "sdk/host/isolated_policy.h"
+#include "sdk/host/sandbox.h"
+#include "tests/abi/room.h"
+
+namespace karst::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+host::PolicyChoice isolated(const std::string& policy = "plain") {
+  host::PolicyChoice c = choice_of(policy);
+  c.isolation = host::Isolation::process;
+  c.cpu_limit_s = 1.0;
+  c.memory_limit_mib = 512;
+  return c;
+}
+
+std::unique_ptr<host::HostedPolicy> load_isolated(const std::string& file,
+                                                  const std::string& policy = "plain") {
+  return load(file, isolated(policy));
+}
+
+std::string failure_of(core::PolicyPort& policy, const core::DecisionRequest& request) {
+  try {
+    policy.decide(request);
+  } catch (const core::PolicyFailure& e) {
+    return e.what();
+  }
+  return "";
+}
+
+std::string why_of(const std::string& file, host::Isolation isolation) {
+  host::PolicyChoice c = isolated();
+  c.isolation = isolation;
+  Room room;
+  return load(file, c)->decide(room.request).goals.at(0).why;
+}
+
+/// Sanitizers catch signals, print, and exit instead.
+constexpr bool kSanitized = !host::memory_can_be_limited();
+
+struct Breaker {
+  const char* file;
+  const char* says;            // of the first break
+  double hang_limit_s = 60.0;  // far above anything a loaded machine needs
+};
+void PrintTo(const Breaker& b, std::ostream* out) { *out << b.file; }
+
+class BreakingPlugin : public ::testing::TestWithParam<Breaker> {};
+
+TEST_P(BreakingPlugin, IsHeldOnceStartedOnceMoreThenGivenUp) {
+  if (kSanitized && std::string(GetParam().file) == "memory_flood")
+    GTEST_SKIP() << "skipped: a sanitizer's shadow fits no memory limit";
+  host::PolicyChoice c = isolated();
+  c.hang_limit_s = GetParam().hang_limit_s;
+  Room room;
+  const auto policy = load(GetParam().file, c);
+  const core::Decision d = policy->decide(room.request);
+  EXPECT_EQ(d.outcome, core::Outcome::hold);
+  EXPECT_TRUE(d.goals.empty());
+  const std::string says = kSanitized && std::string(GetParam().says).find("signal") != std::string::npos
+                               ? "its process ended in decide()"
+                               : GetParam().says;
+  EXPECT_THAT(d.reason, AllOf(HasSubstr("plain broke, and was started once more"), HasSubstr(says)));
+  EXPECT_THAT(d.log, Contains(HasSubstr(says)));
+  const pid_t second = dynamic_cast<host::IsolatedPolicy&>(*policy).process_id();
+  EXPECT_THAT(failure_of(*policy, room.request),
+              AllOf(HasSubstr(says), HasSubstr("had been started once more before")));
+  EXPECT_EQ(kill(second, 0), -1) << "its process is still there";
+  EXPECT_THAT(failure_of(*policy, room.request), HasSubstr(says));
+  policy->notify({core::PolicyEvent::Kind::homing, 0, {}, ""});
+  EXPECT_FALSE(policy->abandoned());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Drawer, BreakingPlugin,
+    ::testing::Values(Breaker{"segfault", "ended in decide(): killed by signal 11 (Segmentation fault)"},
+                      Breaker{"aborting", "ended in decide(): killed by signal 6 (Aborted)"},
+                      Breaker{"exiting", "ended in decide(): exit code 0"},
+                      Breaker{"spinning", "decide() took more than 1 s of processor time"},
+                      Breaker{"endless_loop", "decide() did not return within 5 s", 5.0},
+                      Breaker{"memory_flood", "ended in decide(): killed by signal 11"},
+                      Breaker{"thread_bomb", "ran more than 64 threads in decide()"},
+                      Breaker{"stack_overflow", "ended in decide(): killed by signal 11"},
+                      Breaker{"stops_itself", "process stopped itself in decide()"},
+                      Breaker{"scribbling", "garbage came from its process in decide()"}),
+    [](const auto& i) { return std::string(i.param.file); });
+
+/// What fails without breaking the process is told in the same words as in process.
+class FailingPlugin : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FailingPlugin, FailsAsInProcess) {
+  const std::string name = GetParam();
+  const std::string policy = name == "memory_hog" || name == "throwing_init" ? name : "plain";
+  const auto in_process = load(name, policy), in_child = load_isolated(name, policy);
+  Room room;
+  for (int i = 0; i < 2; ++i) {
+    const core::Decision a = in_process->decide(room.request), b = in_child->decide(room.request);
+    EXPECT_EQ(a.outcome, core::Outcome::hold);
+    EXPECT_EQ(b.outcome, core::Outcome::hold);
+    EXPECT_EQ(a.reason, b.reason);
+    EXPECT_EQ(a.log, b.log);
+  }
+  const std::string failure = failure_of(*in_process, room.request);
+  EXPECT_THAT(failure, HasSubstr("failed 3 times in a row"));
+  EXPECT_EQ(failure_of(*in_child, room.request), failure);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawer, FailingPlugin,
+                         ::testing::Values("throwing", "throwing_init", "memory_hog", "million_goals",
+                                           "ignores_refusal", "no_outcome", "only_nan_goals", "babbling"),
+                         [](const auto& i) { return std::string(i.param); });
+
+/// What is refused when it is opened is refused in the same words.
+class RefusedPlugin : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RefusedPlugin, IsRefusedAsInProcess) {
+  std::string in_process, in_child;
+  try {
+    load(GetParam());
+  } catch (const core::InputError& e) {
+    in_process = e.what();
+  }
+  try {
+    load_isolated(GetParam());
+  } catch (const core::InputError& e) {
+    in_child = e.what();
+  }
+  EXPECT_NE(in_process, "");
+  EXPECT_EQ(in_child, in_process);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawer, RefusedPlugin,
+                         ::testing::Values("no_entry", "wrong_major", "newer_minor", "missing_slot",
+                                           "bad_default", "crash_at_load"),
+                         [](const auto& i) { return std::string(i.param); });
+
+/// What answers in spite of all, answers the same.
+class OddPlugin : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(OddPlugin, AnswersAsInProcess) {
+  const auto in_process = load(GetParam()), in_child = load_isolated(GetParam());
+  EXPECT_EQ(in_process->version(), in_child->version());
+  EXPECT_EQ(in_process->parameters(), in_child->parameters());
+  Room room;
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  const core::Decision a = in_process->decide(room.request), b = in_child->decide(room.request);
+  ::testing::internal::GetCapturedStdout();
+  ::testing::internal::GetCapturedStderr();
+  ASSERT_EQ(a.goals.size(), 1u);
+  ASSERT_EQ(b.goals.size(), 1u);
+  EXPECT_EQ(a.goals[0].position, b.goals[0].position);
+  EXPECT_EQ(a.goals[0].why, b.goals[0].why);
+  EXPECT_EQ(a.log, b.log);
+  EXPECT_EQ(a.reason, b.reason);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawer, OddPlugin,
+                         ::testing::Values("plain", "nan_goal", "locale_changer", "changes_process_at_load",
+                                           "talkative", "flooding_stdout", "writes_request"),
+                         [](const auto& i) { return std::string(i.param); });
+
+TEST(IsolatedPlugin, ReachesNothingButFilesToRead) {
+  EXPECT_EQ(why_of("reaching_out", host::Isolation::process),
+            "read+ write- create- inet- unix- signal- exec- limit- ");
+  EXPECT_THAT(why_of("reaching_out", host::Isolation::in_process),
+              HasSubstr("read+ write+ create+"));  // the plugin does try
+}
+
+TEST(IsolatedPlugin, CannotFork) {
+  EXPECT_EQ(why_of("forking", host::Isolation::process), "could not fork");
+  EXPECT_EQ(why_of("forking", host::Isolation::in_process), "forked");
+}
+
+TEST(IsolatedPlugin, GoesOnWithItsStateAndItsRandomNumbersAfterACrash) {
+  Room room;
+  const auto policy = load_isolated("remembering");
+  const auto never_crashed = load("remembering");
+  std::vector<double> scores, expected;
+  for (room.request.sequence = 1; room.request.sequence <= 5; ++room.request.sequence) {
+    const core::Decision d = policy->decide(room.request);
+    EXPECT_EQ(d.goals.empty(), room.request.sequence == 3u);
+    if (!d.goals.empty()) scores.push_back(d.goals[0].score);
+  }
+  for (int i = 0; i < 2; ++i) expected.push_back(never_crashed->decide(room.request).goals.at(0).score);
+  ASSERT_EQ(scores.size(), 4u);
+  EXPECT_EQ(scores[0], expected[0]);
+  EXPECT_EQ(scores[1], expected[1]);
+  EXPECT_EQ(std::floor(scores[2]), 3);  // what was lost is the decision it crashed in
+  EXPECT_EQ(std::floor(scores[3]), 4);
+  core::Random drawn = core::Random::stream(isolated().seed, "policy plain");
+  for (const double s : scores) EXPECT_NEAR(s - std::floor(s), drawn.uniform(), 1e-12);
+}
+
+TEST(IsolatedPlugin, ThatCrashesInAnEventTellsWithTheNextDecision) {
+  Room room;
+  const auto policy = load_isolated("crash_in_event");
+  EXPECT_EQ(policy->decide(room.request).goals.size(), 1u);
+  policy->notify({core::PolicyEvent::Kind::goal_reached, 0, {}, ""});
+  EXPECT_THAT(policy->decide(room.request).reason, HasSubstr("in on_event()"));
+  EXPECT_EQ(policy->decide(room.request).goals.size(), 1u);
+  policy->notify({core::PolicyEvent::Kind::goal_reached, 0, {}, ""});
+  EXPECT_THAT(failure_of(*policy, room.request), HasSubstr("in on_event()"));
+}
+
+TEST(IsolatedPlugin, WhoseProcessIsKilledFromOutsideIsStartedOnceMore) {
+  Room room;
+  const auto policy = load_isolated("plain");
+  EXPECT_EQ(policy->decide(room.request).goals.size(), 1u);
+  kill(dynamic_cast<host::IsolatedPolicy&>(*policy).process_id(), SIGKILL);
+  EXPECT_THAT(policy->decide(room.request).reason, HasSubstr("killed by signal 9"));
+  EXPECT_EQ(policy->decide(room.request).goals.size(), 1u);
+}
+
+/// Every service, asked of a map that changes between requests.
+TEST(IsolatedPlugin, GetsTheSameAnswersOfEveryService) {
+  Room here, there;
+  const auto in_process = load("inquisitive", "inquisitive"),
+             in_child = load_isolated("inquisitive", "inquisitive");
+  for (int i = 0; i < 3; ++i) {
+    const core::Decision a = in_process->decide(here.request), b = in_child->decide(there.request);
+    EXPECT_EQ(a.outcome, b.outcome);
+    EXPECT_EQ(a.log, b.log);
+    ASSERT_EQ(a.goals.size(), b.goals.size());
+    ASSERT_GT(a.goals.size(), 10u);
+    for (std::size_t j = 0; j < a.goals.size(); ++j) EXPECT_EQ(a.goals[j].why, b.goals[j].why) << j;
+    ASSERT_EQ(a.drawings.size(), b.drawings.size());
+    for (std::size_t j = 0; j < a.drawings.size(); ++j) {
+      EXPECT_EQ(a.drawings[j].points, b.drawings[j].points);
+      EXPECT_EQ(a.drawings[j].text, b.drawings[j].text);
+    }
+    for (Room* room : {&here, &there})
+      room->roadmap.update(room->map, room->map.declare_free({10.5, 4.5, 4.5 + i % 2}, 0.6));
+  }
+}
+
+}  // namespace
+}  // namespace karst::test

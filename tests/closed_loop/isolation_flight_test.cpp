@@ -1,0 +1,80 @@
+// Missions with the policy in a process of its own: the same flight where the policy behaves, and always a
+// landing where it does not.
+#include <nlohmann/json.hpp>
+
+#include "tests/closed_loop/command.h"
+
+namespace karst {
+namespace {
+
+constexpr const char* kInChild =
+    " --set policy.isolation=process --set policy.cpu_limit=1s --set policy.hang_limit=10s "
+    "--set policy.memory_limit_mib=512";
+
+std::filesystem::path fly(const std::string& name, const std::string& arguments, int flight_s) {
+  const auto run = fresh_folder("isolation_" + name) / "run";
+  const Output out = run_karst("fly --cave " + generated_cave("small", 7) + " " + arguments +
+                               " --set mission.max_flight_time=" + std::to_string(flight_s) +
+                               "s --quiet --no-report --out " + run.string());
+  EXPECT_EQ(out.code, 0) << out.text;
+  return run;
+}
+
+class SameFlight : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SameFlight, ByteForByteInAProcessOfItsOwn) {
+  const std::string policy = GetParam();
+  const auto here = fly(policy + "_here", "--policy " + policy, 70);
+  const auto there = fly(policy + "_there", "--policy " + policy + kInChild, 70);
+  for (const char* file : {"events.jsonl", "metrics.json", "trajectory.tum", "ground_truth.tum",
+                           "telemetry.csv", "map.bt", "map.ot"}) {
+    const std::string bytes = bytes_of(here / file);
+    EXPECT_GT(bytes.size(), 0u) << file;
+    EXPECT_TRUE(bytes == bytes_of(there / file)) << file;
+  }
+  EXPECT_NE(bytes_of(there / "mission.info").find("isolation process"), std::string::npos);
+}
+INSTANTIATE_TEST_SUITE_P(Policies, SameFlight, ::testing::Values("nearest_frontier", "unknown_ratio"));
+
+TEST(CrashInFlight, CostsThePolicyAndTheVehicleLands) {
+  const auto run = fly(
+      "crash_later",
+      std::string("--policy plain --plugin ") + KARST_BINARY_DIR + "/tests/plugins/crash_later.so" + kInChild,
+      70);
+  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_GT(m["path_length_m"].get<double>(), 20) << "the fallback goes on exploring";
+  const std::string events = bytes_of(run / "events.jsonl");
+  EXPECT_NE(events.find("plain broke, and was started once more"), std::string::npos);
+  EXPECT_NE(events.find("the policy failed: plain: its process ended in decide()"), std::string::npos);
+}
+
+/// Every way a plugin of the drawer misbehaves once it is loaded.
+class DrawerFlight : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(DrawerFlight, Lands) {
+  const std::string name = GetParam();
+  const std::string policy = name == "memory_hog" ? name : "plain";
+  const auto run = fly(
+      name,
+      "--policy " + policy + " --plugin " + KARST_BINARY_DIR + "/tests/plugins/" + name + ".so" + kInChild,
+      25);
+  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed") << m["reason"];
+  EXPECT_EQ(m["contacts"], 0);
+}
+INSTANTIATE_TEST_SUITE_P(Drawer, DrawerFlight,
+                         ::testing::Values("throwing", "nan_goal", "only_nan_goals", "million_goals",
+                                           "ignores_refusal", "no_outcome", "failing", "endless_loop",
+                                           "spinning", "segfault", "aborting", "exiting", "memory_hog",
+                                           "memory_flood", "thread_bomb", "forking", "talkative",
+                                           "flooding_stdout", "locale_changer", "reaching_out", "babbling",
+                                           "writes_request", "stack_overflow", "stops_itself", "scribbling",
+                                           "crash_in_event"),
+                         [](const auto& i) { return std::string(i.param); });
+
+}  // namespace
+}  // namespace karst
