@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
       "  karst compare CAMPAIGN.info                                    say which of several policies is "
       "better\n"
       "  karst policy list                                              see what can be flown\n"
+      "  karst policy new NAME                                          begin a policy of your own\n"
       "  karst replay scans --out runs/replayed                         localize and map from recorded "
       "scans\n"
       "  karst evaluate runs/demo                                       errors of trajectory and map\n"

@@ -6,6 +6,7 @@
 
 #include "sdk/host/discovery.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/policy_new.h"
 
 namespace karst::tools {
 namespace {
@@ -80,6 +81,7 @@ void add_policy_command(CLI::App& app) {
   auto args = std::make_shared<Arguments>();
   CLI::App* policy = app.add_subcommand("policy", "Exploration policies this installation can fly");
   policy->require_subcommand(1);
+  add_policy_new(*policy);
   CLI::App* list =
       policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
   list->add_option("--plugin", args->plugins, "Look at this plugin file first")

@@ -1,8 +1,12 @@
 // The reviewed layout table, seen by a C++ compiler (layout_check.c asserts the same in C11).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <map>
+#include <set>
+#include <string>
 #include <type_traits>
 
 #include "sdk/abi/karst_abi.h"
@@ -17,6 +21,29 @@ TEST(Layout, IsAsReviewed) {
 #define KARST_FIELD(type, field, offset) \
   EXPECT_EQ(offsetof(struct type, field), offset##u) << #type "." #field;
 #include "sdk/abi/karst_abi_layout.inc"
+#undef KARST_SIZE
+#undef KARST_FIELD
+}
+
+TEST(Layout, AppendableStructsEndWithoutPadding) {
+  // A field that is added later would lie in the padding, and look filled to KARST_HAS in tables made before
+  // it.
+  std::map<std::string, std::size_t> end;
+  std::set<std::string> appendable;
+#define KARST_SIZE(type, bytes)
+#define KARST_FIELD(type, field, offset)                                                 \
+  end[#type] = std::max(end[#type], offsetof(struct type, field) + sizeof(type::field)); \
+  if (std::string(#field) == "size") appendable.insert(#type);
+#include "sdk/abi/karst_abi_layout.inc"
+#undef KARST_SIZE
+#undef KARST_FIELD
+#define KARST_SIZE(type, bytes)                          \
+  if (appendable.contains(#type)) {                      \
+    EXPECT_EQ(end[#type], sizeof(struct type)) << #type; \
+  }
+#define KARST_FIELD(type, field, offset)
+#include "sdk/abi/karst_abi_layout.inc"
+  EXPECT_GE(appendable.size(), 11u);
 }
 
 TEST(HasMacro, AsksSizeBeforeItReadsTheSlot) {

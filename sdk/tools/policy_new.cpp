@@ -1,0 +1,149 @@
+#include "sdk/tools/policy_new.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "core_stack/common/error.h"
+#include "sdk/tools/arguments.h"
+#include "sdk/tools/policy_name.h"
+#include "sdk/tools/policy_templates.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+struct Template {
+  std::string_view name, help, policy, test;
+};
+
+std::array<Template, 3> templates() {
+  return {{{"nearest", "flies to the nearest frontier", nearest_policy(), nearest_test()},
+           {"tour", "a short tour over the nearest viewpoints", tour_policy(), tour_test()},
+           {"memory", "remembers across decisions: branch by branch", memory_policy(), memory_test()}}};
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+/// The template's text, about the policy `name`.
+std::string renamed(std::string_view text, std::string_view kind, const std::string& name) {
+  const std::string id = "my_" + std::string(kind);
+  return replaced(replaced(std::string(text), id, name), class_name(id), class_name(name));
+}
+
+fs::path this_karst() { return fs::read_symlink("/proc/self/exe"); }
+
+/// As it is typed: its name if the shell finds this very program by it, otherwise its path.
+std::string karst_command() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path program = fs::path(folder) / "karst";
+    if (::access(program.c_str(), X_OK) != 0) continue;
+    std::error_code error;
+    if (fs::equivalent(program, this_karst(), error)) return "karst";
+    break;
+  }
+  const std::string all = this_karst().string();
+  return all.find_first_of(" \t'\"\\$`;&|<>()*?[]{}~#!") == std::string::npos
+             ? all
+             : "'" + replaced(all, "'", "'\\''") + "'";
+}
+
+/// Where this karst was installed or built with its SDK, or "" if that is not beside it.
+std::string sdk_prefix() {
+  const fs::path prefix = this_karst().parent_path().parent_path();
+  return fs::exists(prefix / "lib/cmake/karst/karstConfig.cmake") ? prefix.string() : "";
+}
+
+void write(const fs::path& file, const std::string& text) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw InputError(file.string(), "", std::string("cannot be written: ") + std::strerror(errno));
+}
+
+void write_folder(const fs::path& folder, const Template& from, const std::string& name,
+                  const std::string& sdk) {
+  std::string cmake = renamed(policy_cmake(), "nearest", name);
+  if (!sdk.empty())
+    cmake = replaced(cmake, "find_package(karst REQUIRED)",
+                     "find_package(karst REQUIRED HINTS [==[" + sdk + "]==])");
+  write(folder / "CMakeLists.txt", cmake);
+  write(folder / "README.md",
+        replaced(renamed(policy_readme(), "nearest", name), "@karst@", karst_command()));
+  write(folder / (name + ".cpp"), renamed(from.policy, from.name, name));
+  write(folder / (name + "_test.cpp"), renamed(from.test, from.name, name));
+}
+
+void write_policy(const std::string& name, const std::string& dir, const std::string& kind) {
+  if (const std::string fault = name_fault(name); !fault.empty())
+    throw InputError("karst policy new", name, fault);
+  const std::array all = templates();
+  const auto* const from =
+      std::find_if(all.begin(), all.end(), [&](const Template& t) { return t.name == kind; });
+  const fs::path folder = fs::path(dir) / name;
+  std::error_code error;
+  if (fs::exists(folder, error))
+    throw InputError(folder.string(), "", "is there already; give another name, or another --dir");
+  fs::create_directories(dir, error);
+  if (!error) fs::create_directory(folder, error);
+  if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
+  const std::string sdk = sdk_prefix();
+  try {
+    write_folder(folder, *from, name, sdk);
+  } catch (...) {
+    fs::remove_all(folder, error);
+    throw;
+  }
+  std::printf("%s: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
+  for (const std::string& file :
+       {name + ".cpp", name + "_test.cpp", std::string("CMakeLists.txt"), std::string("README.md")})
+    std::printf("  %s\n", file.c_str());
+  std::printf(
+      "next, in that folder:\n  cmake -S . -B build && cmake --build build && ctest --test-dir build\n"
+      "README.md says how to fly it\n");
+  if (sdk.empty())
+    std::printf("no SDK lies beside this karst: tell cmake where it is, by -DCMAKE_PREFIX_PATH=FOLDER\n");
+}
+
+}  // namespace
+
+void add_policy_new(CLI::App& policy) {
+  struct Arguments {
+    std::string name, dir = ".", kind = "nearest";
+  };
+  auto args = std::make_shared<Arguments>();
+  std::string help = "Which policy to start from:";
+  std::vector<std::string> names;
+  for (const Template& t : templates()) {
+    names.emplace_back(t.name);
+    help += " " + names.back() + " (" + std::string(t.help) + ")" +
+            (names.size() < templates().size() ? "," : "");
+  }
+  CLI::App* command = policy.add_subcommand(
+      "new", "Write a folder with a policy to start from: its code, its test, its build");
+  command->add_option("NAME", args->name, "What the policy is called: [a-z][a-z0-9_]*")->required();
+  command->add_option("--dir", args->dir, "The folder is written into this one")->check(not_empty());
+  command->add_option("--template", args->kind, help)->check(CLI::IsMember(names))->capture_default_str();
+  command->callback([args] { write_policy(args->name, args->dir, args->kind); });
+}
+
+}  // namespace karst::tools

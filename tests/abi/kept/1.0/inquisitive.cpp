@@ -1,0 +1,40 @@
+// Asks every service once and puts the answers into its goals' reasons, for the test to compare.
+#include <karst/policy.h>
+
+#include <sstream>
+
+namespace {
+class Inquisitive : public karst::Policy {
+  karst::Decision decide(const karst::Request& r) override {
+    std::vector<karst::Goal> goals;
+    const auto say = [&](const auto& what) {
+      std::ostringstream text;
+      text << what;
+      karst::Goal g;
+      g.position = r.position();
+      g.why = text.str();
+      goals.push_back(g);
+    };
+    const karst_map_info_t info = r.map.info();
+    say(info.free_cells);
+    say(info.occupied_cells);
+    say(static_cast<int>(r.map.cell({0.5, 0.5, 0.5})));
+    say(r.map.cast({{{0.5, 0.5, 0.5}, {9.5, 0.5, 0.5}}}, false)[0].length_m);
+    say(r.map.counts({{{0, 0, 0}, {3, 3, 3}}})[0].unknown);
+    say(r.map.surface({{-100, -100, -100}, {100, 100, 100}}).size());
+    say(r.sensors.size());
+    say(r.newly_seen(r.sensors.at(0), {{r.position(), 0.0}})[0]);
+    say(r.path_lengths(r.position(), {r.position()}, 0.5)[0]);
+    say(r.random());
+    r.draw_points({{1, 2, 3}}, 0x123456);
+    r.draw_lines({{{0, 0, 0}, {1, 1, 1}}}, 0xff0000);
+    r.draw_text({1, 1, 1}, "here", 0xffffff);
+    r.log("asked everything");
+    if (kept_.handle() == nullptr) kept_ = r.map.retained();
+    say(kept_.info().free_cells);
+    return karst::Decision::fly(goals);
+  }
+  karst::MapView kept_;
+};
+}  // namespace
+KARST_POLICY(Inquisitive, "inquisitive", "1.0.0", "Asks everything.")

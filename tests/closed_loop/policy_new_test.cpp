@@ -1,0 +1,99 @@
+// `karst policy new`: what it writes is what the tutorials explain, and what it refuses.
+#include <map>
+
+#include "tests/closed_loop/command.h"
+
+namespace karst {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Among empty folders of policies: what this machine's user has installed is not the test's business.
+Output policy_new(const std::string& arguments, const fs::path& home) {
+  return run_command("HOME=" + home.string() + " XDG_DATA_HOME= " KARST_BINARY_DIR "/bin/karst policy new " +
+                     arguments);
+}
+
+class Template : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Template, IsTheTutorialsPolicy) {
+  const std::string kind = GetParam(), name = "my_" + kind;
+  const fs::path folder = fresh_folder("policy_new_" + kind);
+  const Output out = policy_new(name + " --template " + kind + " --dir " + folder.string(), folder);
+  ASSERT_EQ(out.code, 0) << out.text;
+  const std::map<std::string, std::string> number{{"nearest", "1_"}, {"tour", "2_"}, {"memory", "3_"}};
+  const fs::path example = fs::path(KARST_SOURCE_DIR) / "examples/policies" / (number.at(kind) + kind);
+  for (const std::string& file : {name + ".cpp", name + "_test.cpp"})
+    EXPECT_EQ(bytes_of(folder / name / file), bytes_of(example / file)) << file;
+  // Beyond the example's, the build knows where this karst's SDK is.
+  std::string cmake = bytes_of(folder / name / "CMakeLists.txt");
+  const std::string hint = " HINTS [==[" KARST_BINARY_DIR "]==]";
+  ASSERT_NE(cmake.find(hint), std::string::npos) << cmake;
+  EXPECT_EQ(cmake.erase(cmake.find(hint), hint.size()), bytes_of(example / "CMakeLists.txt"));
+  EXPECT_EQ(bytes_of(folder / name / "README.md").find("@"), std::string::npos) << "a place left unfilled";
+}
+INSTANTIATE_TEST_SUITE_P(All, Template, ::testing::Values("nearest", "tour", "memory"));
+
+TEST(PolicyNew, NamesEverythingAfterThePolicy) {
+  const fs::path folder = fresh_folder("policy_new_named");
+  ASSERT_EQ(policy_new("deep_first_2 --dir " + folder.string() + "/not/yet/there", folder).code, 0);
+  const fs::path made = folder / "not/yet/there/deep_first_2";
+  const std::string source = bytes_of(made / "deep_first_2.cpp");
+  EXPECT_NE(source.find("class DeepFirst2 : public karst::Policy"), std::string::npos);
+  EXPECT_NE(source.find("KARST_POLICY(DeepFirst2, \"deep_first_2\""), std::string::npos);
+  for (const char* file : {"deep_first_2.cpp", "deep_first_2_test.cpp", "CMakeLists.txt", "README.md"}) {
+    ASSERT_TRUE(fs::exists(made / file)) << file;
+    EXPECT_EQ(bytes_of(made / file).find("my_nearest"), std::string::npos) << file;
+  }
+}
+
+class BadName : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(BadName, IsRefusedWithAReasonAndNothingIsWritten) {
+  const auto [name, reason] = GetParam();
+  const fs::path folder = fresh_folder("policy_new_bad");
+  const Output out = policy_new(std::string("--dir ") + folder.string() + "/made -- '" + name + "'", folder);
+  EXPECT_EQ(out.code, 1) << out.text;
+  EXPECT_TRUE(out.says(reason)) << out.text;
+  EXPECT_FALSE(fs::exists(folder / "made"));
+}
+INSTANTIATE_TEST_SUITE_P(
+    Names, BadName,
+    ::testing::Values(
+        std::pair("Deep", "[a-z][a-z0-9_]*"), std::pair("", "[a-z][a-z0-9_]*"),
+        std::pair("2nd", "[a-z][a-z0-9_]*"), std::pair("-x", "[a-z][a-z0-9_]*"),
+        std::pair("../up", "[a-z][a-z0-9_]*"), std::pair("h\xc3\xb6hle", "[a-z][a-z0-9_]*"),
+        std::pair("new", "a word of C++ or of CMake"), std::pair("auto", "a word of C++ or of CMake"),
+        std::pair("test", "a word of C++ or of CMake"),
+        std::pair("a1234567890123456789012345678901234567890123456789012345678901234", "at most 64"),
+        std::pair("nearest_frontier", "a policy of this name is there already: " KARST_BINARY_DIR)));
+
+TEST(PolicyNew, LeavesAFolderThatIsThereAsItIs) {
+  const fs::path folder = fresh_folder("policy_new_twice");
+  fs::create_directories(folder / "mine");
+  std::ofstream(folder / "mine/mine.cpp") << "my work";
+  const Output out = policy_new("mine --dir " + folder.string(), folder);
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says((folder / "mine").string() + ": is there already")) << out.text;
+  EXPECT_EQ(bytes_of(folder / "mine/mine.cpp"), "my work");
+}
+
+TEST(PolicyNew, SaysWhereItCannotWrite) {
+  const fs::path folder = fresh_folder("policy_new_nowhere");
+  std::ofstream(folder / "file") << "no folder";
+  Output out = policy_new("mine --dir " + folder.string() + "/file", folder);
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says(folder.string() + "/file/mine: cannot be made: Not a directory")) << out.text;
+  out = policy_new("mine --dir /proc/nowhere", folder);  // also root may not
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("/proc/nowhere/mine: cannot be made: ")) << out.text;
+}
+
+TEST(PolicyNew, NamesTheTemplatesThereAre) {
+  const Output out = policy_new("mine --template best", fresh_folder("policy_new_template"));
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("{nearest,tour,memory}")) << out.text;
+}
+
+}  // namespace
+}  // namespace karst

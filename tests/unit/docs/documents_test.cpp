@@ -1,0 +1,147 @@
+// What the documentation quotes is there: code of examples, fields of the ABI, reasons for refusing a goal,
+// pages linked.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path root = KARST_SOURCE_DIR;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  EXPECT_TRUE(in) << file;
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+/// Runs of blanks become one.
+std::string squeezed(const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); }
+
+std::vector<std::smatch> all_matches(const std::string& text, const std::regex& pattern) {
+  return {std::sregex_iterator(text.begin(), text.end(), pattern), {}};
+}
+
+std::vector<fs::path> pages() {
+  std::vector<fs::path> out{root / "README.md", root / "CONTRIBUTING.md"};
+  for (const auto& e : fs::recursive_directory_iterator(root / "docs"))
+    if (e.path().extension() == ".md") out.push_back(e.path());
+  return out;
+}
+
+TEST(Documents, QuoteExamplesWordForWord) {
+  std::size_t quotes = 0;
+  for (const fs::path& page : pages()) {
+    const std::string text = text_of(page);
+    const std::regex quote("<!-- (examples/[^ ]+) -->\n```[a-z]+\n([^`]*)```");
+    for (const std::smatch& m : all_matches(text, quote)) {
+      EXPECT_NE(text_of(root / m[1].str()).find(m[2].str()), std::string::npos)
+          << page << " quotes what is not in " << m[1] << ":\n"
+          << m[2];
+      ++quotes;
+    }
+  }
+  EXPECT_GE(quotes, 12u);
+}
+
+TEST(Documents, LinkPagesThatThereAre) {
+  for (const fs::path& page : pages()) {
+    const std::string text = text_of(page);
+    for (const std::smatch& m : all_matches(text, std::regex("\\]\\(([^)#: ]+)(#[^)]*)?\\)")))
+      EXPECT_TRUE(fs::exists(page.parent_path() / m[1].str())) << page << " links " << m[1];
+  }
+}
+
+/// The fields of every struct in the ABI's headers, by the struct's name (with _t).
+std::map<std::string, std::set<std::string>> declared_fields() {
+  std::map<std::string, std::set<std::string>> out;
+  for (const auto& e : fs::directory_iterator(root / "sdk/abi")) {
+    if (e.path().extension() != ".h") continue;
+    const std::string header = std::regex_replace(text_of(e.path()), std::regex("/\\*[^]*?\\*/"), "");
+    for (const std::smatch& s : all_matches(header, std::regex("struct (karst_\\w+) \\{([^}]*)\\}"))) {
+      const std::string body = squeezed(s[2]);
+      std::set<std::string>& fields = out[s[1].str() + "_t"];
+      std::istringstream declarations(body);
+      for (std::string d; std::getline(declarations, d, ';');) {
+        if (d.find_first_not_of(' ') == std::string::npos) continue;
+        if (std::smatch slot; std::regex_search(d, slot, std::regex("\\(\\*(\\w+)\\)"))) {
+          fields.insert(slot[1]);
+          continue;
+        }
+        for (const std::smatch& name : all_matches(d, std::regex("(\\w+) *(\\[\\w+\\] *)?(,|$)")))
+          fields.insert(name[1]);
+      }
+    }
+  }
+  return out;
+}
+
+TEST(Reference, HasEveryFieldOfTheHeadersAndNoOther) {
+  const std::string page = text_of(root / "docs/policy_reference.md");
+  const auto declared = declared_fields();
+  ASSERT_GE(declared.size(), 29u);
+  EXPECT_EQ(declared.at("karst_vec3_t"), (std::set<std::string>{"x", "y", "z"}))
+      << "the headers are read wrongly";
+  EXPECT_TRUE(declared.at("karst_policy_t").contains("on_event"));
+  EXPECT_TRUE(declared.at("karst_error_t").contains("text"));
+  for (const auto& [type, fields] : declared) {
+    const std::size_t begin = page.find("### `" + type + "`");
+    ASSERT_NE(begin, std::string::npos) << "docs/policy_reference.md has no section for " << type;
+    const std::string section = page.substr(begin, page.find("\n#", begin + 1) - begin);
+    std::set<std::string> listed{"size", "reserved"};  // said of all structs at the head of the page
+    for (const std::smatch& m : all_matches(section, std::regex("\n\\| `(\\w+)` \\|"))) listed.insert(m[1]);
+    for (const std::string& field : fields) EXPECT_TRUE(listed.contains(field)) << type << " has " << field;
+    for (const std::string& field : listed)
+      EXPECT_TRUE(fields.contains(field) || field == "size" || field == "reserved")
+          << type << " has no " << field;
+  }
+}
+
+TEST(Reference, NamesEveryConstantOfTheHeaders) {
+  std::string pages_of_abi;
+  for (const char* page : {"policy_reference.md", "goals.md", "abi.md"})
+    pages_of_abi += text_of(root / "docs" / page);
+  // What is named by its last word, within a list of its kind.
+  const std::set<std::string> guards_and_sizes{"KARST_ERROR_TEXT_SIZE", "KARST_PLUGIN_ENTRY_NAME",
+                                               "KARST_NOEXCEPT", "KARST_EXPORT", "KARST_API"};
+  std::size_t constants = 0;
+  for (const auto& e : fs::directory_iterator(root / "sdk/abi")) {
+    if (e.path().extension() != ".h") continue;
+    const std::string header = std::regex_replace(text_of(e.path()), std::regex("/\\*[^]*?\\*/"), "");
+    for (const std::smatch& m :
+         all_matches(header, std::regex("(#define )?\\b(KARST_[A-Z_0-9]+)( = | [\"0-9])"))) {
+      const std::string name = m[2];
+      if (guards_and_sizes.contains(name) || name.ends_with("_H")) continue;
+      const bool event = name.starts_with("KARST_EVENT_");
+      EXPECT_NE(pages_of_abi.find(event ? "`" + name.substr(12) + "`" : name), std::string::npos) << name;
+      ++constants;
+    }
+  }
+  EXPECT_GT(constants, 40u);
+}
+
+TEST(Goals, QuoteTheReasonsThatTheSourcesGive) {
+  std::string sources;
+  for (const char* folder : {"core_stack/mission", "sdk/host"})
+    for (const auto& e : fs::directory_iterator(root / folder))
+      if (e.path().extension() == ".cpp") sources += text_of(e.path());
+  const std::string page = text_of(root / "docs/goals.md");
+  std::size_t reasons = 0;
+  for (const std::smatch& m : all_matches(page, std::regex("`((its|it|the|no|passed|going) [^`.]*[^`. ])"))) {
+    EXPECT_NE(sources.find(m[1]), std::string::npos) << "docs/goals.md quotes: " << m[1];
+    ++reasons;
+  }
+  EXPECT_GE(reasons, 16u);
+}
+
+}  // namespace
