@@ -20,12 +20,17 @@ void Session::begin_deciding(const core::DecisionRequest& request) {
   live_.map = request.map;
   live_.revision = request.map == nullptr ? 0 : request.map->revision();
   roadmap_ = request.roadmap;
+  imaged_ = request.imaged;
+  rgb_ = request.vehicle == nullptr ? nullptr : request.vehicle->rgb.get();
 }
 
 void Session::end_deciding() {
   const std::unique_lock lock(gate_);
   live_.map = nullptr;
   roadmap_ = nullptr;
+  imaged_ = nullptr;
+  rgb_ = nullptr;
+  unimaged_.reset();
 }
 
 void Session::abandon() {

@@ -7,12 +7,14 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <thread>
 #include <vector>
 
 #include "core_stack/common/random.h"
 #include "core_stack/mission/policy_port.h"
+#include "sdk/abi/karst_abi_imaged.h"
 #include "sdk/host/snapshot.h"
 
 namespace karst::host {
@@ -40,7 +42,9 @@ class Session {
   void note(std::string line);
 
  private:
+  friend struct Serving;
   friend struct Services;
+  friend struct ImagedServices;
   const Snapshot* find(const karst_map_t* map);
 
   karst_map_service_t map_service_{};
@@ -55,6 +59,9 @@ class Session {
   std::thread::id decision_thread_;
   Snapshot live_;
   const core::Roadmap* roadmap_ = nullptr;
+  const core::ImagedSurface* imaged_ = nullptr;  // null: no colour camera
+  const core::RgbCameraModel* rgb_ = nullptr;
+  std::optional<core::UnimagedSurface> unimaged_;  // of this request; made when it is first asked for
   std::mutex kept_mutex_;
   std::map<const karst_map_t*, std::unique_ptr<Snapshot>> kept_;
 
@@ -64,6 +71,9 @@ class Session {
   std::vector<std::string> log_;
   core::Random random_;
 };
+
+/// The extension "karst.imaged/1".
+const karst_imaged_service_t* imaged_service();
 
 /// Fills the four tables and the host's own with the functions of services.cpp.
 void install_services(Session& session, karst_host_t& host);
