@@ -160,7 +160,9 @@ class SurfaceCoverage : public karst::Policy {
 
   /// Where it is, all around: a turn costs little. And the stop under way, against dithering.
   void add_turns(const karst::Request& request, std::vector<Viewpoint>& places) const {
-    if (clear_places(request, {request.position()}).front())
+    constexpr double kStanding_mps = 0.3;  // from a flight it would have to come back
+    if (karst::norm(request.state.velocity) < kStanding_mps &&
+        clear_places(request, {request.position()}).front())
       for (int i = 0; i < 8; ++i)
         places.push_back({request.position(), std::remainder(i * kPi / 4, 2 * kPi)});
     if (const Stop* s = under_way(request); s && s->frontier_id == 0) places.push_back(s->at);
@@ -297,7 +299,7 @@ class SurfaceCoverage : public karst::Policy {
   }
 
   double horizon_m_ = 20, patch_m_ = 1.2, frontier_worth_ = 2, patience_s_ = 12;
-  int patches_ = 60, min_gain_ = 12, stops_ = 6, tries_ = 2;
+  int patches_ = 60, min_gain_ = 12, stops_ = 6, tries_ = 3;
   OwnMemory own_;
   karst::PlaceMemory memory_;
   static constexpr std::size_t kRemembered = 32;

@@ -31,7 +31,9 @@ TEST(ImagedRock, OfAWallAheadIsThePicturesRectangle) {
       const bool edge = std::abs(std::abs(0.2 * (y + 0.5)) - 3.05 * 0.8) < 0.2 ||
                         std::abs(std::abs(0.2 * (z + 0.5)) - 3.05 * 0.6) < 0.2;
       const bool found = std::binary_search(cells.begin(), cells.end(), CellKey{15, y, z});
-      if (!edge) EXPECT_EQ(found, in) << y << " " << z;
+      if (!edge) {
+        EXPECT_EQ(found, in) << y << " " << z;
+      }
       expected += in;
     }
   EXPECT_NEAR(static_cast<double>(cells.size()), static_cast<double>(expected),

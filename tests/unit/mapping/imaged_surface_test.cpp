@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -20,7 +22,7 @@ RgbCameraModel camera(double fov_rad = 1.4, float range_m = 6, double incidence_
   m.camera.horizontal_fov_rad = fov_rad;
   m.camera.vertical_fov_rad = 0.75 * fov_rad;
   m.camera.min_range_m = 0.3f;
-  m.camera.max_range_m = range_m;
+  m.camera.max_range_m = static_cast<float>(range_m);
   m.max_incidence_rad = incidence_rad;
   return m;
 }
@@ -86,7 +88,7 @@ bool imaged_by_the_book(const VoxelMap& map, int side, const Pose& T, const RgbC
     for (int z = -1; z <= side && !blocked; ++z)
       for (int y = -1; y <= side && !blocked; ++y)
         for (int x = -1; x <= side && !blocked; ++x)
-          blocked = map.at({x, y, z}) != Cell::free && passes(T.position, place, {x, y, z}, edge);
+          blocked = map.at(CellKey{x, y, z}) != Cell::free && passes(T.position, place, {x, y, z}, edge);
     if (!blocked) return true;
   }
   return false;
@@ -96,19 +98,19 @@ TEST(ImagedSurface, IsThatOfTheRulesAppliedCellByCell) {
   constexpr int kSide = 12;
   Random random(11);
   std::size_t imaged = 0, surface = 0;
-  for (int world = 0; world < 12; ++world) {
+  for (int world = 0; world < 30; ++world) {
     VoxelMap map{MapOptions{}};
-    const int rock = 3 + 3 * (world % 4);
+    const int rock = 2 + 3 * (world % 4);
     for (int i = 0; i < kSide * kSide * kSide; ++i) {
       const CellKey k{i % kSide, i / kSide % kSide, i / kSide / kSide};
       const auto p = static_cast<int>(random.uniform(0, 100));
-      if (p < 97) map.assign(k, 1, p < rock ? kRock : kFree);  // the rest is unknown
+      if (p < 99) map.assign(k, 1, p < rock ? kRock : kFree);  // the rest is unknown
     }
-    const Pose T{{random.uniform(0.3, 2.1), random.uniform(0.3, 2.1), random.uniform(0.3, 2.1)},
-                 Quat(Vec3(random.normal(), random.normal(), random.normal()).norm() + 0.1, random.normal(),
-                      random.normal(), random.normal())
-                     .normalized()};
-    const RgbCameraModel m = camera(1.6, 2.5f, world % 2 ? 1.2 : 0.8);
+    Pose T;
+    do T.position = {random.uniform(0.3, 2.1), random.uniform(0.3, 2.1), random.uniform(0.3, 2.1)};
+    while (map.at(T.position) != Cell::free);
+    T.orientation = Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
+    const RgbCameraModel m = camera(1.6, 2.5, world % 2 ? 1.2 : 0.8);
     ImagedSurface account;
     account.take(map, T, m);
     const std::vector<CellKey> cells = account.cells();
@@ -144,8 +146,12 @@ TEST(ImagedSurface, OfAWallIsTheDiscWithinRangeAndIncidence) {
     for (int z = -30; z < 30; ++z) {
       const double away = std::hypot(0.2 * (y + 0.5) - 0.01, 0.2 * (z + 0.5) - 0.013);
       const bool in = account.cells().size() > 0 && !account.contains({20, y, z});
-      if (away < radius - 0.3) EXPECT_FALSE(in) << y << " " << z;
-      if (away > radius + 0.6) EXPECT_TRUE(in) << y << " " << z;
+      if (away < radius - 0.3) {
+        EXPECT_FALSE(in) << y << " " << z;
+      }
+      if (away > radius + 0.6) {
+        EXPECT_TRUE(in) << y << " " << z;
+      }
     }
 }
 

@@ -107,7 +107,9 @@ TEST(SurfaceCoverage, GivesUpWhatPicturesDoNotShow) {
     bench.time_s += 4;
     const karst::Decision d = bench.decide();
     ended = d.outcome == KARST_OUTCOME_EXPLORED;
-    if (ended) EXPECT_NE(d.reason.find("given up"), std::string::npos);
+    if (ended) {
+      EXPECT_NE(d.reason.find("given up"), std::string::npos);
+    }
     if (!d.goals.empty()) bench.tell(KARST_EVENT_GOAL_REACHED, d.goals.front());
   }
   EXPECT_TRUE(ended);
@@ -125,7 +127,9 @@ TEST(SurfaceCoverage, AGoalRefusedIsNotProposedAgainAtOnce) {
   bench.time_s = 2;
   for (const karst::Goal& again : bench.decide().goals)
     for (const karst::Goal& g : first.goals)
-      if (distance(g.position, bench.position) > 0.1) EXPECT_GT(distance(again.position, g.position), 0.5);
+      if (distance(g.position, bench.position) > 0.1) {
+        EXPECT_GT(distance(again.position, g.position), 0.5);
+      }
 }
 
 TEST(SurfaceCoverage, WithNothingToLookAtItGoesToTheFrontier) {
