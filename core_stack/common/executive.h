@@ -21,7 +21,7 @@
 
 namespace karst::core {
 
-enum class Lane { sensing, localization, map };
+enum class Lane { sensing, localization, map, pictures };
 
 /// Wall-clock cost of one named step or job, for timing.json only: nothing decides by it.
 struct Cost {
@@ -83,7 +83,7 @@ class Executive {
   TimeNs now_ = 0;
   std::uint64_t next_sequence_ = 0;
   std::vector<Event> queue_;                        // heap on (time, sequence)
-  std::array<std::unique_ptr<Worker>, 3> workers_;  // by lane; all or none
+  std::array<std::unique_ptr<Worker>, 4> workers_;  // by lane; all or none
   std::map<std::string, Cost> costs_;
 };
 

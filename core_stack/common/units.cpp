@@ -44,6 +44,8 @@ constexpr std::array kUnits = {
     Unit{"1/m", "extinction", 1},
     Unit{"1/km", "extinction", 0.001},
     Unit{"sr", "solid angle", 1},
+    Unit{"cd", "luminous intensity", 1},
+    Unit{"cd/m^2", "luminance", 1},
     Unit{"1/s", "gain", 1},
     Unit{"1/s^2", "stiffness gain", 1},
     Unit{"1/s^3", "integral gain", 1},

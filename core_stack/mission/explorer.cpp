@@ -39,6 +39,10 @@ std::vector<CellChange> Explorer::declare_launch_site(const Vec3& hover_point) {
   return take_in(map_.declare_free(hover_point, options_.mission.launch_clear_radius_m));
 }
 
+void Explorer::note_picture(const Pose& T_world_camera) {
+  if (vehicle_.rgb) imaged_.take(map_, T_world_camera, *vehicle_.rgb);
+}
+
 std::vector<CellChange> Explorer::take_in(std::vector<CellChange> changes) {
   frontiers_.update(map_, changes);
   wide_.due.insert(wide_.due.end(), changes.begin(), changes.end());

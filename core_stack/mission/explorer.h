@@ -77,6 +77,9 @@ class Explorer {
   std::vector<CellChange> integrate(const std::vector<Ray>& rays);
   std::vector<CellChange> declare_launch_site(const Vec3& hover_point);
 
+  /// A picture was taken from there, by the vehicle's colour camera.
+  void note_picture(const Pose& T_world_camera);
+
   RoundResult decide(const RoundInput& input);
   /// A way from `from` to `to` for going home or around a new obstacle.
   Path plan_to(const Vec3& from, const Vec3& to);
@@ -130,6 +133,7 @@ class Explorer {
 
   VoxelMap map_;
   Frontiers frontiers_;
+  ImagedSurface imaged_;
   Reach wide_;
   std::optional<double> narrow_clearance_m_;  // if narrow passages may be flown
   std::optional<Reach> narrow_;               // made when it is first needed

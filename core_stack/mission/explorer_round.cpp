@@ -123,6 +123,7 @@ DecisionRequest Explorer::request(const Reach& reach, const RoundInput& input) {
   if (input.last_goal) request.last_goal = input.last_goal->position;
   request.map = &map_;
   request.roadmap = &reach.roadmap;
+  if (vehicle_.rgb) request.imaged = &imaged_;
   request.vehicle = &vehicle_;
   return request;
 }

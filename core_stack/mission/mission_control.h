@@ -49,6 +49,7 @@ class MissionControl final : public VehicleSink {
 
   void on_lidar(std::shared_ptr<const LidarScan> scan) override;
   void on_depth(std::shared_ptr<const DepthImage> image) override;
+  void on_rgb(std::shared_ptr<const RgbFrame> frame) override;
   // What is stamped later than now is of a clock gone wrong: taken in, it would make all that follows look
   // old.
   void on_imu(const ImuSample& s) override {
@@ -79,6 +80,7 @@ class MissionControl final : public VehicleSink {
 
   // Localization and mapping.
   void note_localization(const LoamPose& pose, bool accepted);
+  void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
   void map_scan(std::shared_ptr<const LidarScan> scan);
   void integrate(std::function<std::vector<Ray>()> make_rays);
   void on_map_update(const std::vector<CellChange>& changes, std::optional<double> blocked_after_m,
@@ -170,6 +172,7 @@ class MissionControl final : public VehicleSink {
   int overruns_ = 0;                                     // of the executive, as last noted
   TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
   int locating_ = 0;                                     // scans on their way through localization
+  int writing_ = 0, pictures_lost_ = 0;                  // pictures on their way to the disk, and not kept
   int mapping_ = 0;                                      // scans and depth images on their way into the map
   std::string localization_state_, believed_ = "lidar";  // as last noted in the events
 };

@@ -1,8 +1,11 @@
 // What the sensors say: scans are located, then they and depth images go into the map.
+#include <array>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/mapping/rays.h"
 #include "core_stack/mission/mission_control.h"
+#include "core_stack/mission/picture_file.h"
 #include "core_stack/perception/intensity_filter.h"
 
 namespace karst::core {
@@ -80,6 +83,46 @@ void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
   integrate([image, history = flight_.estimator().history(), radius = description_.radius_m] {
     return to_rays(*image, history, radius + kSelfMargin_m);
   });
+}
+
+/// Where it was taken is known as well as it can be: scans of that moment have been located since.
+void MissionControl::on_rgb(std::shared_ptr<const RgbFrame> frame) {
+  if (frame->stamp > now() || !frame->model) return;
+  const Pose T_world_camera =
+      flight_.estimator().history().pose_at(frame->stamp) * frame->model->camera.T_body_camera;
+  executive_.job(
+      "imaged surface", Lane::map, kMappingBudget,
+      [this, T_world_camera] { explorer_.note_picture(T_world_camera); }, [] {});
+  std::string file;
+  if (!frame->rgb.empty() && writing_ < kMostWaiting) {
+    std::array<char, 40> name;
+    std::snprintf(name.data(), name.size(), "frames/%09.3f.jpg", seconds(frame->stamp));
+    file = name.data();
+    keep_picture(frame, file);
+  } else if (!frame->rgb.empty() && pictures_lost_++ == 0) {
+    recorder_.event(now(), "log", {{"text", "pictures come faster than they can be written: some are not kept"}});
+  }
+  recorder_.frame(*frame, T_world_camera, file);
+}
+
+/// Nothing waits for it; a disk that refuses costs the picture and a warning, not the flight.
+void MissionControl::keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file) {
+  ++writing_;
+  auto problem = std::make_shared<std::string>();
+  executive_.job(
+      "picture file", Lane::pictures, kSecond / 2,
+      [frame, path = recorder_.directory() / file, problem] {
+        try {
+          write_jpeg(path, *frame);
+        } catch (const std::exception& e) {
+          *problem = e.what();
+        }
+      },
+      [this, problem] {
+        --writing_;
+        if (!problem->empty() && pictures_lost_++ == 0)
+          recorder_.event(now(), "log", {{"text", *problem}});
+      });
 }
 
 void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {

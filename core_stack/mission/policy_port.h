@@ -7,6 +7,7 @@
 
 #include "core_stack/localization/state.h"
 #include "core_stack/mapping/frontiers.h"
+#include "core_stack/mapping/imaged_surface.h"
 #include "core_stack/mapping/voxel_map.h"
 #include "core_stack/planning/roadmap.h"
 #include "core_stack/vehicle/vehicle.h"
@@ -37,6 +38,7 @@ struct DecisionRequest {
   Vec3 last_goal = Vec3::Zero();
   const VoxelMap* map = nullptr;
   const Roadmap* roadmap = nullptr;
+  const ImagedSurface* imaged = nullptr;  // by the colour camera; null if there is none
   const VehicleDescription* vehicle = nullptr;
   std::vector<FrontierOffer> frontiers;  // by id
 };

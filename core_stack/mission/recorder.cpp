@@ -1,6 +1,7 @@
 #include "core_stack/mission/recorder.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -82,6 +83,20 @@ void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
   }
 }
 
+void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& file) {
+  if (!frames_.is_open()) {
+    frames_ = open(directory_ / "frames.csv");
+    frames_ << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n";
+  }
+  const CameraModel& c = frame.model->camera;
+  const Quat& q = T.orientation;
+  frames_ << formatted("%.3f,", seconds(frame.stamp)) << file
+          << formatted(",%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.7f,%d,%d,%.4f,%.4f,%.2f,%.2f\n", T.position.x(),
+                       T.position.y(), T.position.z(), q.x(), q.y(), q.z(), q.w(), c.width, c.height,
+                       c.width / 2.0 / std::tan(c.horizontal_fov_rad / 2),
+                       c.height / 2.0 / std::tan(c.vertical_fov_rad / 2), c.width / 2.0, c.height / 2.0);
+}
+
 void Recorder::decision_cost(TimeNs t, double decide_ms, double plan_ms) {
   decisions_ << formatted("%.2f,%.3f,%.3f\n", seconds(t), decide_ms, plan_ms);
 }
@@ -93,7 +108,7 @@ void Recorder::final_map(const VoxelMap& map) {
 
 bool Recorder::flush() {
   bool good = true;
-  for (std::ofstream* f : {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_}) {
+  for (std::ofstream* f : {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_}) {
     f->flush();
     good = good && f->good();
   }

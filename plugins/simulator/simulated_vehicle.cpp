@@ -21,7 +21,8 @@ namespace {
 constexpr TimeNs kTick = 5 * kMillisecond;  // also the period of the IMU
 constexpr int kStepsPerTick = 5;
 constexpr TimeNs kBarometerPeriod = 40 * kMillisecond;
-constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond;
+constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond,
+                 kPictureBudget = 100 * kMillisecond;
 
 std::shared_ptr<cave::Cave> open_cave(const SimulatorOptions& o, const core::VehicleSetup& setup) {
   auto cave = std::make_shared<cave::Cave>(cave::load_cave(setup.cave, setup.start));
@@ -65,6 +66,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
                  cave_->scene, Wind(options.wind, Random::stream(setup.seed, "wind"))),
       lidar_(options.vehicle == "camera_uav" ? nullptr : std::make_shared<const Lidar>(options.lidar)),
       cameras_(mount_cameras(options)),
+      rgb_(options.rgb.fitted ? std::make_shared<const RgbCamera>(options.rgb) : nullptr),
       imu_(options.imu, Random::stream(setup.seed, "imu"), Random::stream(setup.seed, "vibration")),
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
       barometer_(options.barometer, Random::stream(setup.seed, "barometer")),
@@ -78,6 +80,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
   description_.max_body_rate_radps = options.autopilot.max_body_rate_radps;
   if (lidar_) description_.lidar = lidar_->model();
   for (const auto& camera : cameras_) description_.cameras.push_back(camera->model());
+  if (rgb_) description_.rgb = rgb_->model();
   description_.pose_sensor =
       options.pose.fitted == "always" || (options.pose.fitted == "without_lidar" && !lidar_);
   description_.T_world_start = site_.T_world_start;
@@ -128,6 +131,7 @@ void SimulatedVehicle::schedule_sensors() {
     const TimeNs period = cameras_[i]->model()->period;
     every(period, static_cast<TimeNs>(i + 1) * 30 * kMillisecond % period, [this, i] { fire_camera(i); });
   }
+  if (rgb_) every(rgb_->model()->camera.period, 0, [this] { take_picture(); });
   if (!cave_->description.boulders.empty()) every(20 * kMillisecond, 0, [this] { move_rocks(); });
   every(core::from_seconds(CaveAir::kPuffPeriod_s), 0, [this] { stir_air(); });
   every(10 * kMillisecond, 0, [this] { log_truth(); });
@@ -232,6 +236,24 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
        air = air_for(name)] { *image = camera->image(*cave, T, stamp, random, air); },
       [this, image] {
         if (!lost_) sink_->on_depth(image);
+      });
+}
+
+/// On a lane of its own: a picture takes longer than a sweep, and nothing in flight waits for it.
+void SimulatedVehicle::take_picture() {
+  if (faults_of(Sensor::camera).lost()) return;
+  const core::Pose& T_world_body = quadrotor_.state().T_world_body;
+  log_.picture(now(), T_world_body * rgb_->model()->camera.T_body_camera, *rgb_->model());
+  auto frame = std::make_shared<core::RgbFrame>(core::RgbFrame{now(), rgb_->model(), {}});
+  const bool draw = rgb_->takes_pictures();
+  executive_->job(
+      "rgb camera", Lane::pictures, kPictureBudget,
+      [frame, draw, rgb = rgb_, cave = cave_, T = T_world_body, random = measurement_random("rgb"),
+       air = draw ? air_for("rgb") : Air{}] {
+        if (draw) frame->rgb = rgb->picture(*cave, T, random, air);
+      },
+      [this, frame] {
+        if (!lost_) sink_->on_rgb(frame);
       });
 }
 

@@ -39,6 +39,7 @@ class SimulatedVehicle final : public core::Vehicle {
   void lose(const std::string& outcome, const std::string& reason);
   void fire_lidar();
   void fire_camera(std::size_t index);
+  void take_picture();
   void report_pose();
   void move_rocks();
   void stir_air();
@@ -60,6 +61,7 @@ class SimulatedVehicle final : public core::Vehicle {
   Quadrotor quadrotor_;
   std::shared_ptr<const Lidar> lidar_;
   std::vector<std::shared_ptr<const DepthCamera>> cameras_;
+  std::shared_ptr<const RgbCamera> rgb_;
   Imu imu_;
   core::Random magnetometer_random_;
   Barometer barometer_;

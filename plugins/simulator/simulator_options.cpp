@@ -12,6 +12,7 @@ void describe(core::OptionTable& t, SimulatorOptions& o) {
   t.section("air", o.air);
   t.section("lidar", o.lidar);
   t.section("camera", o.camera);
+  t.section("rgb", o.rgb);
   t.section("imu", o.imu);
   t.section("magnetometer", o.magnetometer);
   t.section("barometer", o.barometer);

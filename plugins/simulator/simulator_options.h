@@ -10,6 +10,7 @@
 #include "plugins/simulator/magnetometer.h"
 #include "plugins/simulator/motors.h"
 #include "plugins/simulator/pose_sensor.h"
+#include "plugins/simulator/rgb_camera.h"
 #include "plugins/simulator/wind.h"
 
 namespace karst::sim {
@@ -21,6 +22,7 @@ struct SimulatorOptions {
   AirOptions air;
   LidarOptions lidar;
   CameraOptions camera;
+  RgbOptions rgb;
   ImuOptions imu;
   MagnetometerOptions magnetometer;
   BarometerOptions barometer;

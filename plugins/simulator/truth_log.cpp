@@ -1,5 +1,6 @@
 #include "plugins/simulator/truth_log.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "core_stack/common/error.h"
@@ -8,15 +9,20 @@ namespace karst::sim {
 
 using core::Vec3;
 
+namespace {
+
+void open(std::ofstream& file, const std::string& path) {
+  file.open(path, std::ios::binary);
+  if (!file) throw core::InputError(path, "", "cannot be written");
+}
+
+}  // namespace
+
 TruthLog::TruthLog(const std::string& run_dir) : run_dir_(run_dir) {
   if (run_dir.empty()) return;
-  const auto open = [&](std::ofstream& file, const std::string& name) {
-    file.open(run_dir + "/" + name, std::ios::binary);
-    if (!file) throw core::InputError(run_dir + "/" + name, "", "cannot be written");
-  };
-  open(tum_, "ground_truth.tum");
-  open(csv_, "truth.csv");
-  open(events_, "truth_events.jsonl");
+  open(tum_, run_dir + "/ground_truth.tum");
+  open(csv_, run_dir + "/truth.csv");
+  open(events_, run_dir + "/truth_events.jsonl");
   csv_ << "time_s,clearance_m,speed_mps,battery,power_w,wind_east_mps,wind_north_mps,wind_up_mps\n";
 }
 
@@ -28,6 +34,25 @@ void TruthLog::pose(core::TimeNs stamp, const core::Pose& T) {
   std::snprintf(line, sizeof line, "%.3f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", core::seconds(stamp), p.x(),
                 p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   tum_ << line;
+}
+
+void TruthLog::picture(core::TimeNs stamp, const core::Pose& T, const core::RgbCameraModel& model) {
+  if (run_dir_.empty()) return;
+  if (!pictures_.is_open()) {
+    open(pictures_, run_dir_ + "/ground_truth_frames.csv");
+    pictures_ << "time_s,x,y,z,qx,qy,qz,qw,tan_half_width,tan_half_height,min_range_m,max_range_m,"
+                 "max_incidence_rad\n";
+  }
+  char line[300];
+  const auto& p = T.position;
+  const auto& q = T.orientation;
+  const core::CameraModel& c = model.camera;
+  std::snprintf(line, sizeof line,
+                "%.3f,%.6f,%.6f,%.6f,%.8f,%.8f,%.8f,%.8f,%.8f,%.8f,%.4f,%.4f,%.8f\n", core::seconds(stamp),
+                p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), std::tan(c.horizontal_fov_rad / 2),
+                std::tan(c.vertical_fov_rad / 2), static_cast<double>(c.min_range_m),
+                static_cast<double>(c.max_range_m), model.max_incidence_rad);
+  pictures_ << line;
 }
 
 void TruthLog::row(core::TimeNs stamp, const TruthRow& r) {
@@ -56,15 +81,17 @@ void TruthLog::flush() {
   tum_.flush();
   csv_.flush();
   events_.flush();
+  pictures_.flush();
 }
 
 void TruthLog::close() {
   if (run_dir_.empty()) return;
   flush();
-  const bool whole = tum_.good() && csv_.good() && events_.good();
+  const bool whole = tum_.good() && csv_.good() && events_.good() && pictures_.good();
   tum_.close();
   csv_.close();
   events_.close();
+  pictures_.close();
   if (!whole)
     throw core::InputError(run_dir_, "", "ground truth could not be written completely; is the disk full?");
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core_stack/common/time.h"
+#include "core_stack/vehicle/rgb_camera_model.h"
 #include "plugins/simulator/rigid_body.h"
 
 namespace karst::sim {
@@ -14,13 +15,17 @@ struct TruthRow {
   core::Vec3 wind_mps = core::Vec3::Zero();
 };
 
-/// `ground_truth.tum` (time x y z qx qy qz qw), `truth.csv` and `truth_events.jsonl` in a run directory.
+/// `ground_truth.tum` (time x y z qx qy qz qw), `truth.csv`, `truth_events.jsonl` and, with a colour camera,
+/// `ground_truth_frames.csv` in a run directory.
 /// Numbers have fixed digits, so that replays give the same bytes. Without a directory nothing is written.
 class TruthLog {
  public:
   /// Throws InputError if the files cannot be made.
   explicit TruthLog(const std::string& run_dir);
   void pose(core::TimeNs stamp, const core::Pose& T_world_body);
+  /// A line of ground_truth_frames.csv, made with the first picture: the camera's pose (x along its axis), the
+  /// tangents of half its fields of view, and what counts as seen.
+  void picture(core::TimeNs stamp, const core::Pose& T_world_camera, const core::RgbCameraModel& model);
   void row(core::TimeNs stamp, const TruthRow& row);
   /// `what` is one of start, take-off, landed, contact, battery, rockfall, fault.
   void event(core::TimeNs stamp, const std::string& what, const BodyState& s, const std::string& detail);
@@ -31,7 +36,7 @@ class TruthLog {
 
  private:
   std::string run_dir_;
-  std::ofstream tum_, csv_, events_;
+  std::ofstream tum_, csv_, events_, pictures_;
 };
 
 }  // namespace karst::sim

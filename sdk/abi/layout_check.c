@@ -1,5 +1,6 @@
 /* Compiles only while every struct of the ABI lies in memory as karst_abi_layout.inc says. */
 #include "karst_abi.h"
+#include "karst_abi_imaged.h"
 
 _Static_assert(sizeof(void*) == 8, "the policy ABI is defined for 64-bit platforms");
 

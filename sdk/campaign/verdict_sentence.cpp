@@ -36,6 +36,8 @@ constexpr std::array kPhrases = {
     Phrase{"restricted_t90_s", "covers 90 % later than", "covers 90 % sooner than", "time to 90 % coverage"},
     Phrase{"restricted_t95_s", "covers 95 % later than", "covers 95 % sooner than", "time to 95 % coverage"},
     Phrase{"surface_seen", "sees more of the surface than", "sees less of the surface than", "surface seen"},
+    Phrase{"surface_imaged", "takes pictures of more of the surface than",
+           "takes pictures of less of the surface than", "surface in pictures"},
     Phrase{"depth_m", "comes deeper than", "comes less deep than", "depth reached"},
     Phrase{"min_clearance_m", "keeps farther from rock than", "comes nearer to rock than", "least clearance"},
 };
@@ -62,7 +64,7 @@ std::string subject(const MetricDefinition& d) {
 /// Shares are told in percentage points.
 bool is_share(std::string_view name) {
   constexpr std::array kShares = {"completed",    "standing_share", "coverage",          "coverage_auc",
-                                  "surface_seen", "battery_left",   "data_at_base_share"};
+                                  "surface_seen", "surface_imaged", "battery_left",   "data_at_base_share"};
   return std::find(kShares.begin(), kShares.end(), name) != kShares.end();
 }
 

@@ -39,6 +39,8 @@ constexpr std::array kDefinitions = {
                      "time to 95 % coverage, or the horizon if it was not reached before"},
     MetricDefinition{"surface_seen", "", more, nothing,
                      "share of the rock surface around R that the map holds", 0, 1},
+    MetricDefinition{"surface_imaged", "", more, nothing,
+                     "share of the rock surface around R that the colour camera's pictures show", 0, 1},
     MetricDefinition{"depth_m", "m", more, nothing,
                      "greatest distance from the start, measured along the way flown without its detours"},
     MetricDefinition{"vertical_reach_m", "m", more, nothing, "greatest height above or below the start"},

@@ -74,6 +74,17 @@ Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& t
   return volume;
 }
 
+/// Share of cells that hold, or share a face with one that holds.
+template <class Holds>
+double share_near(const std::vector<CellKey>& cells, const Holds& holds) {
+  constexpr std::array<CellKey, 7> kNear{
+      {{}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+  const auto count = std::count_if(cells.begin(), cells.end(), [&](const CellKey& k) {
+    return std::any_of(kNear.begin(), kNear.end(), [&](const CellKey& d) { return holds(k + d); });
+  });
+  return static_cast<double>(count) / static_cast<double>(cells.size());
+}
+
 /// Share of the surface whose cell, or one that shares a face with it, is occupied in the map: scans are off
 /// by centimetres, and a cell that rock only just enters is seldom hit.
 std::optional<double> surface_seen(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
@@ -85,13 +96,15 @@ std::optional<double> surface_seen(const RunRecord& run, const core::VoxelMap* m
   const auto occupied = [&](const CellKey& k) {
     return map ? map->at(k) == Cell::occupied : grown.count(k) > 0;
   };
-  const auto seen = [&](const CellKey& k) {
-    constexpr std::array<CellKey, 7> kNear{
-        {{}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
-    return std::any_of(kNear.begin(), kNear.end(), [&](const CellKey& d) { return occupied(k + d); });
-  };
-  const auto count = std::count_if(truth.surface.begin(), truth.surface.end(), seen);
-  return static_cast<double>(count) / static_cast<double>(truth.surface.size());
+  return share_near(truth.surface, occupied);
+}
+
+/// The same of what the colour camera's pictures truly show. Null without such a camera.
+std::optional<double> surface_imaged(const Truth& truth) {
+  if (truth.surface.empty() || !truth.imaged_rock) return std::nullopt;
+  const std::vector<CellKey>& imaged = *truth.imaged_rock;
+  return share_near(truth.surface,
+                    [&](const CellKey& k) { return std::binary_search(imaged.begin(), imaged.end(), k); });
 }
 
 std::optional<double> restricted(const std::vector<CoveragePoint>& curve, double share,
@@ -162,6 +175,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["restricted_t90_s"] = value(restricted(curve, 0.90, horizon));
   m["restricted_t95_s"] = value(restricted(curve, 0.95, horizon));
   m["surface_seen"] = value(surface_seen(run, map, truth));
+  m["surface_imaged"] = value(surface_imaged(truth));
   m["depth_m"] = value(f.depth_m);
   m["vertical_reach_m"] = value(f.vertical_reach_m);
   m["min_clearance_m"] = value(f.min_clearance_m);

@@ -17,6 +17,8 @@ struct Truth {
   std::function<bool(const core::Vec3&)> is_reachable;        // whether a point of the world lies in R
   std::function<double(const core::Vec3&)> distance_to_rock;  // metres to the nearest rock surface
   std::vector<core::CellKey> surface;                         // cells of rock that bound R, on the map's grid
+  /// Of a run with a colour camera: cells of rock that some picture shows well enough, sorted.
+  std::optional<std::vector<core::CellKey>> imaged_rock;
 };
 
 /// Every name is there, null where the value is not known. Depends on the record and the truth only, and

@@ -5,6 +5,7 @@
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/report_goals.h"
+#include "sdk/evaluation/report_pictures.h"
 #include "sdk/evaluation/report_scene.h"
 
 namespace karst::evaluation {
@@ -99,6 +100,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   d["frontiers"] = scene_frontiers(run, problems);
   d["plans"] = scene_plans(run, problems);
   d["drawings"] = scene_drawings(run, problems);
+  d["pictures"] = report_pictures(run.directory, problems);
   d["problems"] = problems;
   return d;
 }

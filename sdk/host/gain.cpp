@@ -59,6 +59,10 @@ void walk(const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit
   }
 }
 
+bool is_pinhole(const karst_sensor_t& s) {
+  return s.kind == KARST_SENSOR_CAMERA || s.kind == KARST_SENSOR_RGB;
+}
+
 int steps_over(double low, double high, double step) {
   return std::max(1, static_cast<int>(std::ceil((high - low) / step)));
 }
@@ -75,17 +79,17 @@ std::vector<double> spread(double low, double high, double step) {
 
 std::string sensor_fault(const karst_sensor_t& s) {
   constexpr double pi = std::numbers::pi;
-  if (s.kind != KARST_SENSOR_LIDAR && s.kind != KARST_SENSOR_CAMERA) return "unknown kind of sensor";
+  if (s.kind != KARST_SENSOR_LIDAR && !is_pinhole(s)) return "unknown kind of sensor";
   if (!(s.max_range_m > 0 && s.max_range_m <= KARST_MAX_GAIN_RANGE_M))
     return "max_range_m is not in (0, 60] m";
   if (!(s.min_range_m >= 0 && s.min_range_m < s.max_range_m)) return "min_range_m is not in [0, max_range_m)";
   if (!(s.low_elevation_rad >= -pi / 2 - 1e-9 && s.low_elevation_rad <= s.high_elevation_rad &&
         s.high_elevation_rad <= pi / 2 + 1e-9))
     return "the elevations are not a range within [-pi/2, pi/2]";
-  const double widest = s.kind == KARST_SENSOR_CAMERA ? 3.0 : 2 * pi + 1e-9;
+  const double widest = is_pinhole(s) ? 3.0 : 2 * pi + 1e-9;
   if (!(s.horizontal_fov_rad > 0 && s.horizontal_fov_rad <= widest))
     return "horizontal_fov_rad is out of range";
-  if (s.kind == KARST_SENSOR_CAMERA && !(s.low_elevation_rad > -1.5 && s.high_elevation_rad < 1.5))
+  if (is_pinhole(s) && !(s.low_elevation_rad > -1.5 && s.high_elevation_rad < 1.5))
     return "a camera sees less than 1.5 rad up or down";
   const karst_quaternion_t& q = s.T_body_sensor.orientation;
   if (!(std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 1e-6))
@@ -99,7 +103,7 @@ std::string sensor_excess(const karst_sensor_t& s, double resolution_m) {
   constexpr double kRounding = 1e-9;  // 60 m at 0.2 m are 300 cells
   if (s.max_range_m / resolution_m > KARST_MAX_GAIN_RANGE_CELLS + kRounding)
     return "max_range_m is more than " + std::to_string(KARST_MAX_GAIN_RANGE_CELLS) + " cells of the map";
-  if (s.kind != KARST_SENSOR_CAMERA) return "";  // all around at the longest range is 1.1 million rays
+  if (!is_pinhole(s)) return "";  // all around at the longest range is 1.1 million rays
   const double step = resolution_m / s.max_range_m, half = std::tan(0.5 * s.horizontal_fov_rad);
   const double rows = steps_over(std::tan(s.low_elevation_rad), std::tan(s.high_elevation_rad), step) + 1.0;
   const double columns = steps_over(-half, half, step) + 1.0;
@@ -114,7 +118,7 @@ SensorRays::SensorRays(const karst_sensor_t& s, double resolution_m)
   const karst_quaternion_t& q = s.T_body_sensor.orientation;
   T_body_sensor_ = {to_core(s.T_body_sensor.position), core::Quat(q.w, q.x, q.y, q.z)};
   const double step = resolution_m / s.max_range_m;
-  if (s.kind == KARST_SENSOR_CAMERA) {
+  if (is_pinhole(s)) {
     const double half = std::tan(0.5 * s.horizontal_fov_rad);
     for (const double up : spread(std::tan(s.low_elevation_rad), std::tan(s.high_elevation_rad), step))
       for (const double left : spread(-half, half, step))

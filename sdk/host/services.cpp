@@ -1,70 +1,13 @@
 // The functions behind the service tables. Each checks its arguments, then works through the session's gate.
 #include <cmath>
-#include <cstring>
 #include <optional>
+#include <string_view>
 
-#include "sdk/abi/karst_abi.h"
 #include "sdk/host/gain.h"
-#include "sdk/host/session.h"
-#include "sdk/host/text.h"
+#include "sdk/host/serving.h"
 
 namespace karst::host {
-namespace {
-
-struct Refusal {
-  std::int32_t code;
-  std::string text;
-};
-
-void demand(bool holds, const char* text) {
-  if (!holds) throw Refusal{KARST_ERROR_ARGUMENT, text};
-}
-
-void demand_batch(std::uint64_t count, std::uint64_t limit, const void* in, const void* out) {
-  if (count > limit)
-    throw Refusal{KARST_ERROR_LIMIT,
-                  std::to_string(count) + " items in one call, the limit is " + std::to_string(limit)};
-  demand(count == 0 || (in != nullptr && out != nullptr), "an array is NULL");
-}
-
-bool finite(const karst_vec3_t& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-void demand_box(const karst_box_t& b) {
-  demand(finite(b.low) && finite(b.high) && b.low.x <= b.high.x && b.low.y <= b.high.y && b.low.z <= b.high.z,
-         "a box is not finite, or its low corner is above its high one");
-}
-
-}  // namespace
-
-struct Services {
-  static Session& session(const karst_host_t* host) { return *static_cast<Session*>(host->context); }
-
-  /// Runs `work(session)` inside the gate; whatever it throws becomes an error code.
-  template <class Work>
-  static std::int32_t serve(const karst_host_t* host, karst_error_t* error, Work&& work) noexcept {
-    Refusal refusal{KARST_ERROR_FAILED, "the host ran out of memory"};
-    try {
-      Session& s = session(host);
-      const std::shared_lock lock(s.gate_);
-      going_on(s);
-      work(s);
-      return KARST_OK;
-    } catch (Refusal& r) {
-      refusal = std::move(r);
-    } catch (const std::exception& e) {
-      refusal.text = e.what();
-    }
-    fill_error(error, refusal.code, refusal.text);
-    return refusal.code;
-  }
-
-  static void going_on(const Session& s) {
-    if (s.abandoned_) throw Refusal{KARST_ERROR_ABANDONED, "the host has given up this policy"};
-  }
-  static void on_decision_thread(const Session& s) {
-    if (std::this_thread::get_id() != s.decision_thread_)
-      throw Refusal{KARST_ERROR_THREAD, "this slot is for the decision thread only"};
-  }
+struct Services : Serving {
   static const Snapshot& snapshot(Session& s, const karst_map_t* map) {
     const Snapshot* found = s.find(map);
     if (found == nullptr)
@@ -270,7 +213,10 @@ struct Services {
 
   static std::int64_t now_ns(const karst_host_t* h) noexcept { return session(h).now_; }
   static std::uint32_t should_stop(const karst_host_t* h) noexcept { return session(h).abandoned_ ? 1u : 0u; }
-  static const void* extension(const karst_host_t*, karst_text_t) noexcept { return nullptr; }
+  static const void* extension(const karst_host_t*, karst_text_t id) noexcept {
+    return id.data != nullptr && std::string_view(id.data, id.length) == KARST_IMAGED_ID ? imaged_service()
+                                                                                         : nullptr;
+  }
 
   static void install(Session& s, karst_host_t& host) {
     s.map_service_ = {sizeof s.map_service_, 0,       &info,   &cell_states, &cast_rays, &count_in_boxes,

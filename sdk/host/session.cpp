@@ -26,12 +26,17 @@ void Session::begin_deciding(const core::DecisionRequest& request, const PathLen
                    const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
       return std::optional(roadmap.distances(map, from, goals, tolerance_m));
     };
+  imaged_ = request.imaged;
+  rgb_ = request.vehicle == nullptr ? nullptr : request.vehicle->rgb.get();
 }
 
 void Session::end_deciding() {
   const std::unique_lock lock(gate_);
   live_.map = nullptr;
   lengths_ = {};
+  imaged_ = nullptr;
+  rgb_ = nullptr;
+  unimaged_.reset();
 }
 
 void Session::abandon() {

@@ -16,6 +16,7 @@
 
 #include "core_stack/common/random.h"
 #include "core_stack/mission/policy_port.h"
+#include "sdk/abi/karst_abi_imaged.h"
 #include "sdk/host/snapshot.h"
 
 namespace karst::host {
@@ -50,7 +51,9 @@ class Session {
   std::uint64_t numbers_drawn() const { return numbers_drawn_; }
 
  private:
+  friend struct Serving;
   friend struct Services;
+  friend struct ImagedServices;
   const Snapshot* find(const karst_map_t* map);
 
   karst_map_service_t map_service_{};
@@ -65,6 +68,9 @@ class Session {
   std::thread::id decision_thread_;
   Snapshot live_;
   PathLengths lengths_;
+  const core::ImagedSurface* imaged_ = nullptr;  // null: no colour camera
+  const core::RgbCameraModel* rgb_ = nullptr;
+  std::optional<core::UnimagedSurface> unimaged_;  // of this request; made when it is first asked for
   std::mutex kept_mutex_;
   std::map<const karst_map_t*, std::unique_ptr<Snapshot>> kept_;
 
@@ -75,6 +81,9 @@ class Session {
   core::Random random_;
   std::uint64_t numbers_drawn_ = 0;
 };
+
+/// The extension "karst.imaged/1".
+const karst_imaged_service_t* imaged_service();
 
 /// Fills the four tables and the host's own with the functions of services.cpp.
 void install_services(Session& session, karst_host_t& host);

@@ -22,6 +22,9 @@ class RequestPack {
   karst_request_t request_{};
 };
 
+/// Without its name.
+karst_sensor_t to_abi(const core::RgbCameraModel& camera);
+
 /// A view of `event`, which must outlive it.
 karst_event_t to_abi(const core::PolicyEvent& event);
 

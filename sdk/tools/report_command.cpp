@@ -11,6 +11,7 @@
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/imaged_rock.h"
 #include "sdk/evaluation/surface.h"
 #include "sdk/tools/campaign_page.h"
 
@@ -33,7 +34,8 @@ double cell_size_m(const fs::path& run_dir) {
 }
 
 /// What the cave's mesh says. Holds the cave that its functions look into.
-evaluation::Truth truth_of(const std::string& cave_file, const std::string& start, double resolution_m) {
+evaluation::Truth truth_of(const std::string& cave_file, const std::string& start, double resolution_m,
+                           const std::vector<evaluation::PicturePose>& pictures) {
   const auto cave = std::make_shared<cave::Cave>(cave::load_cave(cave_file, start));
   evaluation::ReachableOptions options;  // its clearance is not the mission's: coverage compares missions
   options.resolution_m = resolution_m;
@@ -46,6 +48,7 @@ evaluation::Truth truth_of(const std::string& cave_file, const std::string& star
     return reachable->contains({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())});
   };
   truth.surface = evaluation::surface_cells(*reachable);
+  if (!pictures.empty()) truth.imaged_rock = evaluation::imaged_rock(cave->scene, pictures, resolution_m);
   truth.distance_to_rock = [cave](const core::Vec3& p) {
     return cave->scene.distance_to_rock(p, kRockSearch_m);
   };
@@ -61,7 +64,7 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   std::string kept;
   for (const char* key :
        {"reachable_volume_m3", "coverage", "coverage_auc", "t50_s", "t90_s", "t95_s", "restricted_t50_s",
-        "restricted_t90_s", "restricted_t95_s", "surface_seen", "map_error_mean_m", "map_error_std_m"}) {
+        "restricted_t90_s", "restricted_t95_s", "surface_seen", "surface_imaged", "map_error_mean_m", "map_error_std_m"}) {
     const auto value = before.find(key);
     if (value == before.end() || !value->is_number() || !metrics[key].is_null()) continue;
     metrics[key] = *value;
@@ -75,17 +78,20 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
 nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, const std::string& start,
                           bool with_report) {
   evaluation::Truth truth;
+  std::vector<std::string> problems;
   bool lost_cave = false;
   if (!cave.empty()) {
     try {
-      truth = truth_of(cave, start, cell_size_m(run_dir));
+      truth = truth_of(cave, start, cell_size_m(run_dir),
+                       evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems));
     } catch (const core::InputError& e) {
       lost_cave = true;
       std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());
     }
   }
-  std::vector<std::string> problems;
-  nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &problems);
+  std::vector<std::string> run_problems;
+  nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &run_problems);
+  problems.insert(problems.end(), run_problems.begin(), run_problems.end());
   if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);

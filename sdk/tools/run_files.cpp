@@ -16,12 +16,15 @@ constexpr std::array kRunFiles = {"events.jsonl",
                                   "decisions.csv",
                                   "localization.csv",
                                   "map_growth.bin",
+                                  "frames.csv",
+                                  "frames",
                                   "map.bt",
                                   "map.ot",
                                   "map.ply",
                                   "ground_truth.tum",
                                   "truth.csv",
                                   "truth_events.jsonl",
+                                  "ground_truth_frames.csv",
                                   "timing.json",
                                   "metrics.json",
                                   "report.html",
@@ -47,7 +50,7 @@ RunClaim::RunClaim(fs::path run_dir) : run_dir_(std::move(run_dir)) {
 RunClaim::~RunClaim() {
   if (kept_) return;
   std::error_code ignored;
-  for (const char* file : kRunFiles) fs::remove(run_dir_ / file, ignored);
+  for (const char* file : kRunFiles) fs::remove_all(run_dir_ / file, ignored);
   if (!was_there_) fs::remove(run_dir_, ignored);
 }
 

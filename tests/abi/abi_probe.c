@@ -3,6 +3,7 @@
  * itself abidiff sees nothing, because its tables are reached through a factory.
  */
 #include "karst_abi.h"
+#include "karst_abi_imaged.h"
 
 #define PROBE(type)                                           \
   KARST_EXPORT const void* karst_probe_##type(const type* x); \
@@ -39,3 +40,6 @@ PROBE(karst_policy_t)
 PROBE(karst_plugin_t)
 PROBE(karst_state_sink_t)
 PROBE(karst_state_extension_t)
+PROBE(karst_imaged_camera_t)
+PROBE(karst_surface_cell_t)
+PROBE(karst_imaged_service_t)

@@ -8,6 +8,7 @@ startPlots();
 startErrors();
 const caveView = startCaveView();
 moment.listeners.push((t) => caveView.setTime(t));
+startPictures(caveView);
 const asked = new URLSearchParams(location.hash.slice(1));  // report.html#t=63.5&view=top&theme=dark
 if (asked.get("theme")) setTheme(asked.get("theme") === "dark");
 setMoment(asked.has("t") ? Number(asked.get("t")) || 0 : data.duration_s);

@@ -85,6 +85,8 @@ class Request {
     host_->random(host_, &v, 1);
     return v;
   }
+  /// For extensions: see karst/imaged.h.
+  const karst_host_t* host() const { return host_; }
   /// True once the host waits no longer: long loops ask now and then, and return.
   bool should_stop() const { return host_->should_stop(host_) != 0; }
 

@@ -8,6 +8,7 @@
 // The test is linked with the policy's own source, which defines karst_plugin_entry. Any test framework will
 // do.
 #pragma once
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -33,6 +34,7 @@ class Bench {
   // What the next request says; change it as the test needs.
   Vec3 position;
   Vec3 direction_of_flight{1, 0, 0};
+  double heading_rad = 0;
   double time_s = 0, seconds_before_homing = 600;
   karst_goal_fate_t last_fate = KARST_FATE_NONE;
   Vec3 last_goal;
@@ -79,7 +81,8 @@ class Bench {
     r.sequence = ++sequence_;
     r.stamp_ns = r.deadline_ns = r.state.stamp_ns = host_.now_ns;
     r.state.position = position;
-    r.state.orientation.w = r.T_world_start.orientation.w = 1;
+    r.state.orientation = {std::cos(heading_rad / 2), 0, 0, std::sin(heading_rad / 2)};
+    r.T_world_start.orientation.w = 1;
     r.direction_of_flight = direction_of_flight;
     r.seconds_before_homing = seconds_before_homing;
     r.max_speed_mps = 2.0;

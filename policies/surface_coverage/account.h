@@ -1,0 +1,54 @@
+// What the camera has yet to see: from the host, or where the host keeps no account, from the policy's own.
+#pragma once
+#include <karst/imaged.h>
+
+#include <memory>
+#include <set>
+#include <tuple>
+#include <vector>
+
+namespace surface_coverage {
+
+using karst::Box;
+using karst::distance;
+using karst::ImagingCamera;
+using karst::SurfaceCell;
+using karst::Vec3;
+using karst::Viewpoint;
+
+/// A cell of the map by the place of its centre; the map's own numbering is not known here.
+struct CellId {
+  long x = 0, y = 0, z = 0;
+  bool operator<(const CellId& o) const { return std::tie(x, y, z) < std::tie(o.x, o.y, o.z); }
+};
+CellId cell_id(const Vec3& center, double resolution_m);
+
+/// Questions about one request's state of things.
+class Account {
+ public:
+  virtual ~Account() = default;
+  virtual const ImagingCamera& camera() const = 0;
+  virtual std::vector<SurfaceCell> unimaged(const Box& box) const = 0;
+  /// Centres of the cells a picture from each viewpoint would add.
+  virtual std::vector<std::vector<Vec3>> looks(const std::vector<Viewpoint>& from) const = 0;
+};
+
+/// Remembers what pictures taken at the poses of decisions must have shown. Coarser than the core's account:
+/// between two decisions it knows of no picture, and a normal is the mean of a cell's free face neighbours.
+class OwnMemory {
+ public:
+  /// The account as of `request`, for as long as its decide() runs.
+  std::unique_ptr<Account> update(const karst::Request& request);
+
+ private:
+  friend class OwnAccount;
+  std::set<CellId> imaged_;
+};
+
+/// The host's account, or nothing.
+std::unique_ptr<Account> host_account(const karst::Request& request);
+
+/// The colour camera among the sensors; without one, 80 x 64 degrees forward, 6 m.
+ImagingCamera camera_of(const karst::Request& request);
+
+}  // namespace surface_coverage
