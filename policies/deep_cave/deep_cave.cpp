@@ -13,7 +13,7 @@ namespace {
 class DeepCave : public karst::Policy {
  public:
   DeepCave() {
-    ranking_.path_weight = 0.0;    // what the way costs is in the depth that can still be reached
+    ranking_.path_weight = 0.0;  // what the way costs is in the depth that can still be reached
     ranking_.horizon_m = 1000.0;
     ranking_.turn_cost_m = 4.0;
     ranking_.keep_bonus_m = 6.0;

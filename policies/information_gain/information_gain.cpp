@@ -54,7 +54,8 @@ class InformationGain : public karst::Policy {
     double best = 0;
     const std::size_t most = std::min(open.size(), static_cast<std::size_t>(looks_));
     for (std::size_t begin = 0; begin < most; begin += batch) {
-      const double soonest_s = stop_s_ + open[begin].frontier->path_length_m / (cruise_ * request.max_speed_mps);
+      const double soonest_s =
+          stop_s_ + open[begin].frontier->path_length_m / (cruise_ * request.max_speed_mps);
       if (most_volume_m3_ / soonest_s * (1 + keep_) < best || request.should_stop()) break;
       std::vector<const karst::Frontier*> some;
       for (std::size_t i = begin; i < std::min(begin + batch, most); ++i) some.push_back(open[i].frontier);

@@ -1,8 +1,9 @@
-// An open tour that brings in much soon: the order of stops in which the sum of weight times arrival is least.
+// An open tour that brings in much soon: the order of stops in which the sum of weight times arrival is
+// least.
 //
-// That is the minimum latency problem (travelling repairman) with weights. A tour of least length makes all of a cave
-// wait for the last corner of the place where it begins; here a small stop is worth a detour only while
-// what the detour delays, all the weight still ahead, costs less than coming back for it.
+// That is the minimum latency problem (travelling repairman) with weights. A tour of least length makes all
+// of a cave wait for the last corner of the place where it begins; here a small stop is worth a detour only
+// while what the detour delays, all the weight still ahead, costs less than coming back for it.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -14,9 +15,9 @@
 namespace tour {
 
 struct Problem {
-  std::vector<double> weight;             // of each stop
-  std::vector<double> first_s;            // time from where the vehicle is to each stop, its own included
-  std::vector<std::vector<double>> leg_s; // [from][to] between stops; need not be symmetric
+  std::vector<double> weight;              // of each stop
+  std::vector<double> first_s;             // time from where the vehicle is to each stop, its own included
+  std::vector<std::vector<double>> leg_s;  // [from][to] between stops; need not be symmetric
   std::size_t size() const { return weight.size(); }
 };
 
@@ -47,17 +48,18 @@ inline Order greedy(const Problem& p, std::size_t first) {
   return order;
 }
 
-/// The best of all 2-opt moves (a stretch flown backwards) and Or-opt moves (up to three stops elsewhere, either way
-/// round) that leave the first `fixed` stops in place. False if none is better.
-inline bool improve_once(const Problem& p, std::size_t fixed, Order& order, double& cost) {
+/// Tries all 2-opt moves (a stretch flown backwards) and Or-opt moves (up to three stops elsewhere, either
+/// way round) that leave the first `fixed` stops in place, and makes each that helps. False if none did.
+inline bool sweep(const Problem& p, std::size_t fixed, Order& order, double& cost) {
   const std::size_t n = order.size();
-  Order best = order, trial;
-  double least = cost;
+  bool better = false;
+  Order trial;
+  const auto at = [](Order& o, std::size_t i) { return o.begin() + static_cast<std::ptrdiff_t>(i); };
   const auto consider = [&] {
     const double c = latency(p, trial);
-    if (c < least - 1e-9) least = c, best = trial;
+    if (!(c < cost - 1e-9)) return;
+    cost = c, order = trial, better = true;
   };
-  const auto at = [](Order& o, std::size_t i) { return o.begin() + static_cast<std::ptrdiff_t>(i); };
   for (std::size_t i = fixed; i < n; ++i)
     for (std::size_t j = i + 2; j <= n; ++j) {
       trial = order;
@@ -73,20 +75,19 @@ inline bool improve_once(const Problem& p, std::size_t fixed, Order& order, doub
           std::rotate(at(trial, to), at(trial, i), at(trial, i + length));
         else
           std::rotate(at(trial, i), at(trial, i + length), at(trial, to + length));
+        Order reversed = trial;
         consider();
         if (length == 1) continue;
-        std::reverse(at(trial, to), at(trial, to + length));
+        std::reverse(at(reversed, to), at(reversed, to + length));
+        trial = std::move(reversed);
         consider();
       }
-  if (!(least < cost)) return false;
-  order = std::move(best);
-  cost = least;
-  return true;
+  return better;
 }
 
 inline Order improved(const Problem& p, std::size_t fixed, Order order) {
   double cost = latency(p, order);
-  while (improve_once(p, fixed, order, cost)) {
+  while (sweep(p, fixed, order, cost)) {
   }
   return order;
 }

@@ -3,6 +3,7 @@
 #include <karst/open_frontiers.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "tour.h"
@@ -20,8 +21,10 @@ class ViewpointTour : public karst::Policy {
     p.add("stop_time", stop_s_, "s", 0.1, 60, "what a stop takes besides the flight to it");
     p.add("turn_time", turn_s_, "s", 0, 60, "what flying straight back costs; less for smaller turns");
     p.add("cruise", cruise_, "", 0.1, 1, "mean speed of a flight, as a share of the greatest");
-    p.add("keep", keep_, "", 0, 10, "share by which a tour must be better than one that keeps the goal under way");
-    p.add("stops", stops_, 1, 200, "stops planned at most; those with the most volume for the time come first");
+    p.add("keep", keep_, "", 0, 10,
+          "share by which a tour must be better than one that keeps the goal under way");
+    p.add("stops", stops_, 1, 200,
+          "stops planned at most; those with the most volume for the time come first");
     p.add("goals", goals_, 1, 32, "how much of the tour to propose");
   }
 
@@ -62,11 +65,10 @@ class ViewpointTour : public karst::Policy {
     }
     // The goal under way stands for what it sees: a stop that changes its name must not change the plan.
     std::sort(stops.begin(), stops.end(), [&](const Stop& a, const Stop& b) {
-      const bool kept_a = karst::under_way(request, *a.frontier), kept_b = karst::under_way(request, *b.frontier);
+      const bool kept_a = karst::under_way(request, *a.frontier),
+                 kept_b = karst::under_way(request, *b.frontier);
       const double rate_a = a.weight_m3 / a.first_s, rate_b = b.weight_m3 / b.first_s;
-      return kept_a != kept_b ? kept_a
-             : rate_a != rate_b ? rate_a > rate_b
-                                : a.frontier->id < b.frontier->id;
+      return kept_a != kept_b ? kept_a : rate_a != rate_b ? rate_a > rate_b : a.frontier->id < b.frontier->id;
     });
     std::vector<Stop> chosen;
     for (const Stop& s : stops) {

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <karst/policy.h>
 
-/// Viewpoints within `same_place_m` of each other share a place, since the core moves a viewpoint a little whenever the
-/// map around it changes. A known way stays known, and a shorter one is learnt when it is asked for again,
-/// after `refresh_s`.
+/// Viewpoints within `same_place_m` of each other share a place, since the core moves a viewpoint a little
+/// whenever the map around it changes. A known way stays known, and a shorter one is learnt when it is asked
+/// for again, after `refresh_s`.
 class WayLengths {
  public:
   /// [from][to] in metres. Where the service knows no way, as far as through where the vehicle is:
@@ -17,9 +18,9 @@ class WayLengths {
   std::vector<std::vector<double>> between(const karst::Request& request,
                                            const std::vector<karst::Vec3>& viewpoints,
                                            const std::vector<double>& from_here_m) {
-    std::vector<Place> kept;
     std::vector<std::size_t> place_of(viewpoints.size());
-    for (std::size_t i = 0; i < viewpoints.size(); ++i) place_of[i] = place_at(viewpoints[i], request.stamp_ns);
+    for (std::size_t i = 0; i < viewpoints.size(); ++i)
+      place_of[i] = place_at(viewpoints[i], request.stamp_ns);
     std::vector<char> due(places_.size(), 0);
     for (const std::size_t p : place_of)
       due[p] = request.stamp_ns - places_[p].asked_ns > static_cast<std::int64_t>(refresh_s * 1e9);
@@ -45,9 +46,11 @@ class WayLengths {
   static constexpr double refresh_s = 20.0, forget_s = 60.0;
 
  private:
+  static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::min() / 2;
+
   struct Place {
     karst::Vec3 position;
-    std::int64_t used_ns = 0, asked_ns = INT64_MIN / 2;
+    std::int64_t used_ns = 0, asked_ns = never_ns;
     std::vector<double> way_m;  // to the places before this one
   };
 
@@ -58,7 +61,7 @@ class WayLengths {
         return i;
       }
     const std::vector<double> unknown(places_.size(), std::numeric_limits<double>::infinity());
-    places_.push_back({p, now_ns, INT64_MIN / 2, unknown});
+    places_.push_back({p, now_ns, never_ns, unknown});
     return places_.size() - 1;
   }
 

@@ -1,5 +1,5 @@
-// How much free space a look at a frontier is expected to show: the host's gain service, shortened, remembered, and
-// bounded by the opening that leads there.
+// How much free space a look at a frontier is expected to show: the host's gain service, shortened,
+// remembered, and bounded by the opening that leads there.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace karst {
 
-/// A ray's cost grows with its range, and the number of rays with its square; and what unknown cells lie far behind a
-/// frontier are mostly rock. So sensors look `range_m` far. A look is remembered until the core's own figures of
-/// its cluster change: its cells, the counts around it, its viewpoint.
+/// A ray's cost grows with its range, and the number of rays with its square; and what unknown cells lie far
+/// behind a frontier are mostly rock. So sensors look `range_m` far. A look is remembered until the core's
+/// own figures of its cluster change: its cells, the counts around it, its viewpoint.
 class ExpectedGain {
  public:
   double range_m = 5.0;
@@ -24,9 +24,9 @@ class ExpectedGain {
           "for how far the cave behind an opening is expected to be as wide as the opening");
   }
 
-  /// Volume in m^3 expected to be seen from the viewpoint of each frontier: the unknown cells in view, but no more
-  /// than lies `depth_m` deep behind the openings in view. What is unknown is mostly rock: behind a narrow opening
-  /// the cells in view would make as much as behind a wide one.
+  /// Volume in m^3 expected to be seen from the viewpoint of each frontier: the unknown cells in view, but no
+  /// more than lies `depth_m` deep behind the openings in view. What is unknown is mostly rock: behind a
+  /// narrow opening the cells in view would make as much as behind a wide one.
   std::vector<double> volumes_m3(const Request& request, const std::vector<const Frontier*>& frontiers) {
     forget_all_but(request);
     std::vector<Viewpoint> fresh;

@@ -1,5 +1,6 @@
 // The frontiers worth thinking about: what most policies sort out before they begin to choose.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
