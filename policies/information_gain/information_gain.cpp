@@ -19,7 +19,6 @@ class InformationGain : public karst::Policy {
     p.add("turn_time", turn_s_, "s", 0, 60, "what flying straight back costs; less for smaller turns");
     p.add("cruise", cruise_, "", 0.1, 1, "mean speed of a flight, as a share of the greatest");
     p.add("keep", keep_, "", 0, 10, "share by which another goal must be better than the one under way");
-    p.add("looks", looks_, 1, 4096, "expected volumes computed in one decision at most; the nearest first");
     p.add("goals", goals_, 1, 32, "how many goals to propose, best first");
   }
 
@@ -52,13 +51,13 @@ class InformationGain : public karst::Policy {
                                   const std::vector<karst::OpenFrontiers::Candidate>& open) {
     std::vector<karst::Goal> goals;
     double best = 0;
-    const std::size_t most = std::min(open.size(), static_cast<std::size_t>(looks_));
-    for (std::size_t begin = 0; begin < most; begin += batch) {
+    for (std::size_t begin = 0; begin < open.size(); begin += batch) {
       const double soonest_s =
           stop_s_ + open[begin].frontier->path_length_m / (cruise_ * request.max_speed_mps);
       if (most_volume_m3_ / soonest_s * (1 + keep_) < best || request.should_stop()) break;
       std::vector<const karst::Frontier*> some;
-      for (std::size_t i = begin; i < std::min(begin + batch, most); ++i) some.push_back(open[i].frontier);
+      for (std::size_t i = begin; i < std::min(begin + batch, open.size()); ++i)
+        some.push_back(open[i].frontier);
       const std::vector<double> volumes_m3 = gain_.volumes_m3(request, some);
       for (std::size_t i = 0; i < some.size(); ++i) {
         goals.push_back(goal(request, open[begin + i], volumes_m3[i]));
@@ -89,7 +88,6 @@ class InformationGain : public karst::Policy {
   double turn_s_ = 3.0;
   double cruise_ = 0.75;
   double keep_ = 0.3;
-  int looks_ = 64;
   int goals_ = 8;
 };
 

@@ -24,8 +24,7 @@ class WayLengths {
     std::vector<char> due(places_.size(), 0);
     for (const std::size_t p : place_of)
       due[p] = request.stamp_ns - places_[p].asked_ns > static_cast<std::int64_t>(refresh_s * 1e9);
-    for (std::size_t p = 0; p < places_.size(); ++p)
-      if (due[p] != 0) ask(request, p);
+    ask_nearest(request, due);
     std::vector<std::vector<double>> out(viewpoints.size(), std::vector<double>(viewpoints.size(), 0.0));
     for (std::size_t i = 0; i < viewpoints.size(); ++i)
       for (std::size_t j = 0; j < viewpoints.size(); ++j) {
@@ -44,6 +43,7 @@ class WayLengths {
 
   static constexpr double same_place_m = 1.0;
   static constexpr double refresh_s = 20.0, forget_s = 60.0;
+  static constexpr std::size_t most_asked = 8;
 
  private:
   static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::min() / 2;
@@ -63,6 +63,20 @@ class WayLengths {
     const std::vector<double> unknown(places_.size(), std::numeric_limits<double>::infinity());
     places_.push_back({p, now_ns, never_ns, unknown});
     return places_.size() - 1;
+  }
+
+  /// A decision asks for a few places only; those near the vehicle matter most.
+  void ask_nearest(const karst::Request& request, const std::vector<char>& due) {
+    std::vector<std::size_t> asked;
+    for (std::size_t p = 0; p < due.size(); ++p)
+      if (due[p] != 0) asked.push_back(p);
+    const auto away_m = [&](std::size_t p) {
+      return karst::distance(places_[p].position, request.position());
+    };
+    std::stable_sort(asked.begin(), asked.end(),
+                     [&](std::size_t a, std::size_t b) { return away_m(a) < away_m(b); });
+    if (asked.size() > most_asked) asked.resize(most_asked);
+    for (const std::size_t p : asked) ask(request, p);
   }
 
   double& length_m(std::size_t a, std::size_t b) { return places_[std::max(a, b)].way_m[std::min(a, b)]; }

@@ -17,31 +17,37 @@ class ExpectedGain {
  public:
   double range_m = 5.0;
   double depth_m = 3.0;
+  int looks = 24;
 
   void parameters(Parameters& p) {
     p.add("gain_range", range_m, "m", 1, 20, "how far unknown space behind a frontier is counted");
     p.add("gain_depth", depth_m, "m", 0.1, 100,
           "for how far the cave behind an opening is expected to be as wide as the opening");
+    p.add("looks", looks, 0, 4096, "looks computed in one decision at most, the nearest first");
   }
 
   /// Volume in m^3 expected to be seen from the viewpoint of each frontier: the unknown cells in view, but no
   /// more than lies `depth_m` deep behind the openings in view. What is unknown is mostly rock: behind a
   /// narrow opening the cells in view would make as much as behind a wide one.
+  /// What is yet to be looked at counts by its openings, or as it was.
   std::vector<double> volumes_m3(const Request& request, const std::vector<const Frontier*>& frontiers) {
-    forget_all_but(request);
-    std::vector<Viewpoint> fresh;
-    std::vector<const Frontier*> asked;
-    for (const Frontier* f : frontiers) {
-      const auto found = known_.find(f->id);
-      if (found != known_.end() && same(found->second.frontier, *f)) continue;
-      fresh.push_back({f->viewpoint, f->viewpoint_heading_rad});
-      asked.push_back(f);
-    }
-    const std::vector<double> found = looks(request, fresh);
-    for (std::size_t i = 0; i < asked.size(); ++i) known_[asked[i]->id] = {*asked[i], found[i]};
-    std::vector<double> out;
+    begin_decision(request);
+    std::vector<const Frontier*> fresh;
     for (const Frontier* f : frontiers)
-      out.push_back(std::min(known_.at(f->id).volume_m3, depth_m * opening_m2(request, *f)));
+      if (const auto found = known_.find(f->id); found == known_.end() || !same(found->second.frontier, *f))
+        fresh.push_back(f);
+    std::stable_sort(fresh.begin(), fresh.end(), [](const Frontier* a, const Frontier* b) {
+      return a->path_length_m < b->path_length_m;
+    });
+    if (fresh.size() > looks_left_) fresh.resize(looks_left_);
+    looks_left_ -= fresh.size();
+    look(request, fresh);
+    std::vector<double> out;
+    for (const Frontier* f : frontiers) {
+      const double behind_m3 = depth_m * opening_m2(request, *f);
+      const auto found = known_.find(f->id);
+      out.push_back(found == known_.end() ? behind_m3 : std::min(found->second.volume_m3, behind_m3));
+    }
     return out;
   }
 
@@ -72,27 +78,35 @@ class ExpectedGain {
   }
 
   /// Ids are never used twice: what is offered no more is gone for good, or will be looked at again.
-  void forget_all_but(const Request& request) {
+  void begin_decision(const Request& request) {
+    if (request.sequence == sequence_) return;
+    sequence_ = request.sequence;
+    looks_left_ = static_cast<std::size_t>(looks);
     std::map<std::uint32_t, Known> kept;
     for (const Frontier& f : request.frontiers)
       if (const auto found = known_.find(f.id); found != known_.end()) kept.insert(*found);
     known_ = std::move(kept);
   }
 
-  std::vector<double> looks(const Request& request, const std::vector<Viewpoint>& from) const {
-    std::vector<double> out(from.size(), 0.0);
-    if (from.empty()) return out;
+  void look(const Request& request, const std::vector<const Frontier*>& frontiers) {
+    if (frontiers.empty()) return;
+    std::vector<Viewpoint> from;
+    for (const Frontier* f : frontiers) {
+      from.push_back({f->viewpoint, f->viewpoint_heading_rad});
+      known_[f->id] = {*f, 0.0};
+    }
     const double edge_m = request.map.resolution_m();
     for (Sensor sensor : request.sensors) {
       sensor.max_range_m = std::min(sensor.max_range_m, range_m);
       if (sensor.min_range_m >= sensor.max_range_m) continue;
       const std::vector<std::uint64_t> cells = request.newly_seen(sensor, from);
-      for (std::size_t i = 0; i < out.size(); ++i)
-        out[i] += static_cast<double>(cells[i]) * edge_m * edge_m * edge_m;
+      for (std::size_t i = 0; i < frontiers.size(); ++i)
+        known_[frontiers[i]->id].volume_m3 += static_cast<double>(cells[i]) * edge_m * edge_m * edge_m;
     }
-    return out;
   }
 
+  std::uint32_t sequence_ = 0;
+  std::size_t looks_left_ = 0;
   std::map<std::uint32_t, Known> known_;
 };
 
