@@ -34,7 +34,8 @@ TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
 }
 INSTANTIATE_TEST_SUITE_P(Policies, EveryPolicy,
                          ::testing::Values("nearest_frontier", "lateral_frontier", "highest_frontier",
-                                           "unknown_ratio"));
+                                           "unknown_ratio", "information_gain", "viewpoint_tour",
+                                           "deep_cave"));
 
 /// What is there to compare with flies as safely, if not as well.
 class Alternative : public ::testing::TestWithParam<const char*> {};

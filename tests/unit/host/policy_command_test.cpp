@@ -18,11 +18,12 @@ std::string said(const std::string& arguments) {
   return ::testing::internal::GetCapturedStdout();
 }
 
-TEST(PolicyList, JsonNamesTheFourPoliciesWithTheirParameters) {
+TEST(PolicyList, JsonNamesThePoliciesThatComeWithKarstWithTheirParameters) {
   const nlohmann::json out = nlohmann::json::parse(said("policy list --json"));
   std::map<std::string, nlohmann::json> found;
   for (const auto& p : out.at("policies")) found[p.at("id")] = p;
-  for (const char* id : {"nearest_frontier", "lateral_frontier", "highest_frontier", "unknown_ratio"}) {
+  for (const char* id : {"nearest_frontier", "lateral_frontier", "highest_frontier", "unknown_ratio",
+                         "information_gain", "viewpoint_tour", "deep_cave"}) {
     ASSERT_TRUE(found.contains(id)) << id;
     EXPECT_EQ(found[id].at("abi"), "1.0");
     for (const auto& p : found[id].at("parameters")) EXPECT_FALSE(p.at("help").get<std::string>().empty());

@@ -1,0 +1,113 @@
+// How much free space a look at a frontier is expected to show: the host's gain service, shortened,
+// remembered, and bounded by the opening that leads there.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include <karst/policy.h>
+
+namespace karst {
+
+/// A ray's cost grows with its range, and the number of rays with its square; and what unknown cells lie far
+/// behind a frontier are mostly rock. So sensors look `range_m` far. A look is remembered until the core's
+/// own figures of its cluster change: its cells, the counts around it, its viewpoint.
+class ExpectedGain {
+ public:
+  double range_m = 5.0;
+  double depth_m = 3.0;
+  int looks = 24;
+
+  void parameters(Parameters& p) {
+    p.add("gain_range", range_m, "m", 1, 20, "how far unknown space behind a frontier is counted");
+    p.add("gain_depth", depth_m, "m", 0.1, 100,
+          "for how far the cave behind an opening is expected to be as wide as the opening");
+    p.add("looks", looks, 0, 4096, "looks computed in one decision at most, the nearest first");
+  }
+
+  /// Volume in m^3 expected to be seen from the viewpoint of each frontier: the unknown cells in view, but no
+  /// more than lies `depth_m` deep behind the openings in view. What is unknown is mostly rock: behind a
+  /// narrow opening the cells in view would make as much as behind a wide one.
+  /// What is yet to be looked at counts by its openings, or as it was.
+  std::vector<double> volumes_m3(const Request& request, const std::vector<const Frontier*>& frontiers) {
+    begin_decision(request);
+    std::vector<const Frontier*> fresh;
+    for (const Frontier* f : frontiers)
+      if (const auto found = known_.find(f->id); found == known_.end() || !same(found->second.frontier, *f))
+        fresh.push_back(f);
+    std::stable_sort(fresh.begin(), fresh.end(), [](const Frontier* a, const Frontier* b) {
+      return a->path_length_m < b->path_length_m;
+    });
+    if (fresh.size() > looks_left_) fresh.resize(looks_left_);
+    looks_left_ -= fresh.size();
+    look(request, fresh);
+    std::vector<double> out;
+    for (const Frontier* f : frontiers) {
+      const double behind_m3 = depth_m * opening_m2(request, *f);
+      const auto found = known_.find(f->id);
+      out.push_back(found == known_.end() ? behind_m3 : std::min(found->second.volume_m3, behind_m3));
+    }
+    return out;
+  }
+
+ private:
+  /// Of the clusters in range that lie the same way as `f` from its viewpoint.
+  double opening_m2(const Request& request, const Frontier& f) const {
+    constexpr double same_way = 0.5;  // cosine
+    const double edge_m = request.map.resolution_m();
+    const Vec3 there = f.centroid - f.viewpoint;
+    double cells = 0;
+    for (const Frontier& other : request.frontiers) {
+      const Vec3 d = other.centroid - f.viewpoint;
+      if (other.id == f.id || (norm(d) < range_m && dot(d, there) > same_way * norm(d) * norm(there)))
+        cells += other.cells;
+    }
+    return cells * edge_m * edge_m;
+  }
+
+  struct Known {
+    Frontier frontier;
+    double volume_m3;
+  };
+
+  static bool same(const Frontier& a, const Frontier& b) {
+    return a.cells == b.cells && a.unknown_cells == b.unknown_cells && a.free_cells == b.free_cells &&
+           distance(a.centroid, b.centroid) == 0 && distance(a.viewpoint, b.viewpoint) == 0 &&
+           a.viewpoint_heading_rad == b.viewpoint_heading_rad;
+  }
+
+  /// Ids are never used twice: what is offered no more is gone for good, or will be looked at again.
+  void begin_decision(const Request& request) {
+    if (request.sequence == sequence_) return;
+    sequence_ = request.sequence;
+    looks_left_ = static_cast<std::size_t>(looks);
+    std::map<std::uint32_t, Known> kept;
+    for (const Frontier& f : request.frontiers)
+      if (const auto found = known_.find(f.id); found != known_.end()) kept.insert(*found);
+    known_ = std::move(kept);
+  }
+
+  void look(const Request& request, const std::vector<const Frontier*>& frontiers) {
+    if (frontiers.empty()) return;
+    std::vector<Viewpoint> from;
+    for (const Frontier* f : frontiers) {
+      from.push_back({f->viewpoint, f->viewpoint_heading_rad});
+      known_[f->id] = {*f, 0.0};
+    }
+    const double edge_m = request.map.resolution_m();
+    for (Sensor sensor : request.sensors) {
+      sensor.max_range_m = std::min(sensor.max_range_m, range_m);
+      if (sensor.min_range_m >= sensor.max_range_m) continue;
+      const std::vector<std::uint64_t> cells = request.newly_seen(sensor, from);
+      for (std::size_t i = 0; i < frontiers.size(); ++i)
+        known_[frontiers[i]->id].volume_m3 += static_cast<double>(cells[i]) * edge_m * edge_m * edge_m;
+    }
+  }
+
+  std::uint32_t sequence_ = 0;
+  std::size_t looks_left_ = 0;
+  std::map<std::uint32_t, Known> known_;
+};
+
+}  // namespace karst

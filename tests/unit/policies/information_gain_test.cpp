@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <karst/testing/bench.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/unit/policies/sphere_sensor.h"
+
+namespace {
+
+using karst::testing::Bench;
+using karst::testing::DrawnMap;
+
+// Behind a the unknown lies open, behind b a wall leaves one cell of it in sight.
+DrawnMap passage() {
+  return {1.0,
+          {R"(
+    ??????????????????
+    ??a......s......b#
+    ??????????????????)",
+           R"(
+    ??################
+    ??################
+    ??################)"}};
+}
+
+/// Unknown volume within `range_m` of the eye that no rock hides: cell by cell, in small steps along each
+/// line.
+double volume_in_sight(const DrawnMap& map, const karst::Vec3& eye, double range_m) {
+  const double edge_m = map.resolution_m();
+  const int reach = static_cast<int>(range_m / edge_m) + 2;
+  const karst::testing::Index at = map.index_of(eye);
+  double volume = 0;
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) {
+        const karst::Vec3 cell = map.center_of({at.x + x, at.y + y, at.z + z});
+        if (map.at(cell) != karst::Cell::unknown || karst::distance(cell, eye) > range_m) continue;
+        bool hidden = false;
+        for (double t = 0; t < 1; t += 0.002)
+          hidden |= map.at(eye + t * (cell - eye)) == karst::Cell::occupied;
+        volume += hidden ? 0 : edge_m * edge_m * edge_m;
+      }
+  return volume;
+}
+
+const karst::Goal& goal_of(const karst::Decision& d, std::uint32_t frontier) {
+  return *std::find_if(d.goals.begin(), d.goals.end(),
+                       [&](const karst::Goal& g) { return g.frontier_id == frontier; });
+}
+
+TEST(InformationGain, ScoreIsTheVolumeInSightOverTheTimeItTakes) {
+  const DrawnMap map = passage();
+  const Bench::Values plain = {{"gain_range", "2.5"}, {"gain_depth", "100"}, {"stop_time", "2"},
+                               {"turn_time", "0"},    {"cruise", "0.5"},     {"most_volume", "1000"}};
+  Bench bench(karst_plugin_entry(), map, plain);
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  bench.position = map.place('s');
+  // Off the cells' centres: from there many lines pass just through corners.
+  const karst::Vec3 off(0.11, 0.07, 0.03), at_a = map.place('a') + off, at_b = map.place('b') + off;
+  bench.offer(1, at_a, map.place('a'));
+  bench.offer(2, at_b, map.place('b'));
+  const karst::Decision d = bench.decide();
+  ASSERT_EQ(d.goals.size(), 2u);
+  const double a = volume_in_sight(map, at_a, 2.5), b = volume_in_sight(map, at_b, 2.5);
+  ASSERT_GT(a, b);
+  EXPECT_NEAR(goal_of(d, 1).score, a / (2 + 7 / 1.0), 1e-9);
+  EXPECT_NEAR(goal_of(d, 2).score, b / (2 + 7 / 1.0), 1e-9);
+}
+
+TEST(InformationGain, ANarrowOpeningIsNotWorthAllTheUnknownBehindIt) {
+  const DrawnMap map = passage();
+  Bench bench(karst_plugin_entry(), map,
+              {{"gain_depth", "2"}, {"gain_range", "3"}, {"stop_time", "1"}, {"turn_time", "0"}});
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  bench.position = map.place('s');
+  bench.offer(1, map.place('a'), map.place('a') - karst::Vec3(1, 0, 0), 10);
+  EXPECT_NEAR(bench.decide().goals.at(0).score, 20 / (1 + 7 / 1.5), 1e-9)
+      << "10 cells of a square metre, 2 m deep";
+}
+
+TEST(InformationGain, KeepsItsGoalUnlessAnotherIsBetterByMore) {
+  const DrawnMap map(1.0, {"??a......s.....b??"});
+  Bench bench(karst_plugin_entry(), map, {{"turn_time", "0"}, {"keep", "0.5"}});
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  bench.position = map.place('s');
+  bench.offer(1, map.place('a'), map.place('a'));
+  bench.offer(2, map.place('b'), map.place('b'));
+  EXPECT_EQ(bench.decide().goals.at(0).frontier_id, 2u) << "a metre nearer";
+  bench.last_fate = KARST_FATE_UNDER_WAY;
+  bench.last_goal = map.place('a');
+  EXPECT_EQ(bench.decide().goals.at(0).frontier_id, 1u);
+}
+
+TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
+  // Many frontiers along a passage, with openings of all sizes. Their volume is bounded by the opening: the
+  // best is known without any look.
+  std::string row = "??";
+  for (int i = 0; i < 120; ++i) row += '.';
+  const DrawnMap map(1.0, {row + "??"});
+  std::mt19937 chance(3);
+  for (int round = 0; round < 20; ++round) {
+    Bench bench(karst_plugin_entry(), map,
+                {{"gain_depth", "0.5"},
+                 {"turn_time", "0"},
+                 {"stop_time", "1.5"},
+                 {"most_volume", "20"},
+                 {"gain_range", "2"}});
+    bench.sensors = {karst::test::sphere_sensor(10)};
+    bench.position = map.center_of({60, 0, 0});
+    double best = 0;
+    std::uint32_t id = 0;
+    for (int x = 3; x < 120; x += 4) {
+      if (std::abs(x - 60) < 2) continue;
+      const auto cells = 10 + static_cast<std::uint32_t>(chance() % 40);
+      const karst::Vec3 at = map.center_of({x, 0, 0});
+      bench.offer(++id, at, at, cells);
+      const double seen = volume_in_sight(map, at, 2);
+      best = std::max(best, std::min({seen, 0.5 * cells, 20.0}) / (1.5 + std::abs(x - 60) / 1.5));
+    }
+    EXPECT_NEAR(bench.decide().goals.at(0).score, best, 1e-9);
+  }
+}
+
+TEST(InformationGain, WorksWithoutAnyFrontier) {
+  Bench bench(karst_plugin_entry(), passage(), {{"patience", "0"}});
+  EXPECT_EQ(bench.decide().outcome, karst_outcome_t{KARST_OUTCOME_EXPLORED});
+}
+
+}  // namespace
