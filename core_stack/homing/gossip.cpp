@@ -10,6 +10,8 @@ constexpr double kBurstFrames = 10;
 constexpr double kLongestWait_s = 0.4;
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
+/// A state from later than that would stand in the way of all that follow. The team's clocks are set together.
+constexpr TimeNs kMostAhead = 5 * kSecond;
 
 }  // namespace
 
@@ -84,7 +86,7 @@ void Gossip::hear(const Frame& frame, TimeNs now) {
   if (in_contact(peer, now)) {
     // A mean over the last ten frames or so; each gap counts as that many lost.
     constexpr double kShare = 0.1;
-    const auto gap = static_cast<std::uint16_t>(frame.sequence - peer.sequence);
+    const auto gap = static_cast<std::int16_t>(frame.sequence - peer.sequence);
     for (int lost = std::min<int>(gap, 20); lost > 1; --lost) peer.quality -= kShare * peer.quality;
     peer.quality += kShare * (1 - peer.quality);
   } else {
@@ -92,7 +94,7 @@ void Gossip::hear(const Frame& frame, TimeNs now) {
   }
   peer.sequence = frame.sequence;
   peer.heard_at = now;
-  for (const TeamState& s : frame.states) take_state(s);
+  for (const TeamState& s : frame.states) take_state(s, now);
   for (const SentRecord& r : frame.records) take_record(r, frame.sender, now);
   if (!frame.tells_held) return;
   peer.held.fill({});
@@ -101,7 +103,11 @@ void Gossip::hear(const Frame& frame, TimeNs now) {
   answer(frame.sender, now);
 }
 
-void Gossip::take_state(const TeamState& s) {
+void Gossip::take_state(const TeamState& s, TimeNs now) {
+  if (s.stamp > now + kMostAhead) {
+    ++counts_.states_refused;
+    return;
+  }
   auto& known = states_[s.robot];
   if (s.robot != self_ && (!known || s.stamp > known->stamp)) known = s;
 }

@@ -30,6 +30,7 @@ struct GossipCounts {
   std::uint64_t frames_sent = 0, bytes_sent = 0, frames_heard = 0, bytes_heard = 0;
   std::array<std::uint64_t, kRefusals> refused{};  // frames, by Refusal
   std::uint64_t records_refused = 0;               // within good frames: no record, or too far ahead, or too many
+  std::uint64_t states_refused = 0;                // from the future
   std::uint64_t contradictions = 0;                // another text under a number that is known
   std::uint64_t records_taken = 0, records_again = 0;
 };
@@ -89,7 +90,7 @@ class Gossip {
 
   bool in_contact(const Peer& p, TimeNs now) const;
   void hear(const Frame& frame, TimeNs now);
-  void take_state(const TeamState& s);
+  void take_state(const TeamState& s, TimeNs now);
   void take_record(const SentRecord& r, RobotId from, TimeNs now);
   void answer(RobotId peer, TimeNs now);
   void queue(RobotId author, std::uint32_t number, TimeNs due);
