@@ -83,7 +83,8 @@ std::size_t record_bytes(const SentRecord& r) { return bytes_of(r); }
 std::optional<Bytes> write_frame(const Frame& frame) {
   Bytes out;
   PartWriter w(out);
-  w.number(kMark, 2), w.byte(kWireVersion), w.byte(static_cast<std::uint8_t>(frame.sender | frame.tells_held << 7));
+  w.number(kMark, 2), w.byte(kWireVersion),
+      w.byte(static_cast<std::uint8_t>(frame.sender | frame.tells_held << 7));
   if (frame.sender >= kMostRobots) w.refuse();
   w.number(frame.sequence, 2);
   const auto parts = [&w](const auto& list) {

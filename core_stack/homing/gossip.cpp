@@ -10,7 +10,8 @@ constexpr double kBurstFrames = 10;
 constexpr double kLongestWait_s = 0.4;
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
-/// A state from later than that would stand in the way of all that follow. The team's clocks are set together.
+/// A state from later than that would stand in the way of all that follow. The team's clocks are set
+/// together.
 constexpr TimeNs kMostAhead = 5 * kSecond;
 
 }  // namespace
@@ -125,12 +126,18 @@ void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
     case RecordStore::Taken::known:
       ++counts_.records_again;
       // It was just sent; who did not hear it will say so.
-      std::erase_if(waiting_, [&r](const Waiting& w) { return w.author == r.author && w.number == r.number; });
+      std::erase_if(waiting_,
+                    [&r](const Waiting& w) { return w.author == r.author && w.number == r.number; });
       return;
-    case RecordStore::Taken::differs: ++counts_.contradictions; return;
+    case RecordStore::Taken::differs:
+      ++counts_.contradictions;
+      return;
     case RecordStore::Taken::full:
-    case RecordStore::Taken::too_far: ++counts_.records_refused; return;
-    case RecordStore::Taken::fresh: break;
+    case RecordStore::Taken::too_far:
+      ++counts_.records_refused;
+      return;
+    case RecordStore::Taken::fresh:
+      break;
   }
   ++counts_.records_taken;
   // A robot that started anew goes on behind what it is reminded of.
@@ -155,9 +162,8 @@ void Gossip::answer(RobotId peer, TimeNs now) {
 }
 
 void Gossip::queue(RobotId author, std::uint32_t number, TimeNs due) {
-  const bool there = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& w) {
-    return w.author == author && w.number == number;
-  });
+  const bool there = std::any_of(waiting_.begin(), waiting_.end(),
+                                 [&](const Waiting& w) { return w.author == author && w.number == number; });
   if (!there && waiting_.size() < kMostWaiting) waiting_.push_back({due, author, number});
 }
 

@@ -2,12 +2,12 @@
 // come and go.
 //
 // Each robot says every period what it holds (a version vector) and how it is. Who hears that the other lacks
-// something it holds itself sends it (anti-entropy; Demers et al., Epidemic Algorithms for Replicated Database
-// Maintenance, 1987). Records are forwarded by whoever first hears them, after a random wait, unless by then
-// another was heard to send it or all in contact are known to hold it: the radio is heard by all around, and one
-// of several neighbours is enough. Nothing is assumed about contact: a robot that was away for an hour is brought up to
-// date by the first it meets. What is heard says how good links are: the gaps in the numbers of a robot's
-// frames.
+// something it holds itself sends it (anti-entropy; Demers et al., Epidemic Algorithms for Replicated
+// Database Maintenance, 1987). Records are forwarded by whoever first hears them, after a random wait, unless
+// by then another was heard to send it or all in contact are known to hold it: the radio is heard by all
+// around, and one of several neighbours is enough. Nothing is assumed about contact: a robot that was away
+// for an hour is brought up to date by the first it meets. What is heard says how good links are: the gaps in
+// the numbers of a robot's frames.
 #pragma once
 #include <array>
 #include <optional>
@@ -19,9 +19,9 @@
 namespace karst::core {
 
 struct GossipOptions {
-  double period_s = 1.0;       // of telling its state and what it holds
-  double bytes_per_s = 1000;   // of its own frames, as a mean; a burst may be ten frames
-  double contact_age_s = 5.0;  // a robot not heard for longer is out of contact
+  double period_s = 1.0;              // of telling its state and what it holds
+  double bytes_per_s = 1000;          // of its own frames, as a mean; a burst may be ten frames
+  double contact_age_s = 5.0;         // a robot not heard for longer is out of contact
   std::int64_t most_records = 20000;  // of one robot
 };
 void describe(OptionTable& t, GossipOptions& o);
@@ -29,9 +29,9 @@ void describe(OptionTable& t, GossipOptions& o);
 struct GossipCounts {
   std::uint64_t frames_sent = 0, bytes_sent = 0, frames_heard = 0, bytes_heard = 0;
   std::array<std::uint64_t, kRefusals> refused{};  // frames, by Refusal
-  std::uint64_t records_refused = 0;               // within good frames: no record, or too far ahead, or too many
-  std::uint64_t states_refused = 0;                // from the future
-  std::uint64_t contradictions = 0;                // another text under a number that is known
+  std::uint64_t records_refused = 0;  // within good frames: no record, or too far ahead, or too many
+  std::uint64_t states_refused = 0;   // from the future
+  std::uint64_t contradictions = 0;   // another text under a number that is known
   std::uint64_t records_taken = 0, records_again = 0;
 };
 

@@ -132,7 +132,8 @@ std::optional<std::uint32_t> HomingTree::find_or_name(const NodeId& id) {
   return i;
 }
 
-/// Two nodes of one id: robots do not do that, but if it happened the tree must not depend on who spoke first.
+/// Two nodes of one id: robots do not do that, but if it happened the tree must not depend on who spoke
+/// first.
 bool HomingTree::place(const TreeNode& node) {
   if (!node.position.allFinite() || node.position.cwiseAbs().maxCoeff() > 1e6) return false;
   const auto i = find_or_name(node.id);
@@ -175,8 +176,7 @@ bool HomingTree::set_ray(const RayFact& fact) {
       if (r.to == to) return r;
     return entries_[from].rays.emplace_back(Ray{to, false, -1});
   };
-  if (ray(*i, *k) == nullptr &&
-      std::max(entries_[*i].rays.size(), entries_[*k].rays.size()) >= kMostRays)
+  if (ray(*i, *k) == nullptr && std::max(entries_[*i].rays.size(), entries_[*k].rays.size()) >= kMostRays)
     return false;
   Ray &there = entry_of(*i, *k), &back = entry_of(*k, *i);
   if (fact.stamp < there.stamp || (fact.stamp == there.stamp && fact.free)) return true;

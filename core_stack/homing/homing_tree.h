@@ -1,13 +1,13 @@
-// The homing tree (Algorithm 1 of the paper): from every place where robots were, the quickest known way to the
-// nearest communication node.
+// The homing tree (Algorithm 1 of the paper): from every place where robots were, the quickest known way to
+// the nearest communication node.
 //
 // Pose nodes are past poses of any robot, communication nodes the base, landed robots and dropped nodes. Two
 // nodes no farther apart than the longest edge are joined if a vehicle can fly the straight line between them
 // (a free ray). Every node knows the least flight time over free rays to a living communication node
 // (ShortestWays). docs/homing.md says where this goes beyond the paper, and why.
 //
-// The tree is a function of the set of facts that went into it (tree_facts.h): robots that hold the same facts
-// hold the same tree to the last bit, whatever the order in which they heard them.
+// The tree is a function of the set of facts that went into it (tree_facts.h): robots that hold the same
+// facts hold the same tree to the last bit, whatever the order in which they heard them.
 #pragma once
 #include <functional>
 #include <optional>
@@ -21,7 +21,8 @@
 
 namespace karst::core {
 
-/// Whether a vehicle can fly the straight line between two points. Asked with the node of the lesser id first.
+/// Whether a vehicle can fly the straight line between two points. Asked with the node of the lesser id
+/// first.
 using FreeRay = std::function<bool(const Vec3& from, const Vec3& to)>;
 
 struct HomingTreeOptions {

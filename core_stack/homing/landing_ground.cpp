@@ -85,7 +85,8 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
   }
   out.ground = {place.x(), place.y(), map.center_of(*floor).z() + res / 2};
   // Ground may fall away by the whole of the step and slope; farther down there is none.
-  const double fall_m = options.most_step_m + 2 * reach_m * std::tan(options.most_slope_deg * std::numbers::pi / 180);
+  const double fall_m =
+      options.most_step_m + 2 * reach_m * std::tan(options.most_slope_deg * std::numbers::pi / 180);
   const int lowest = top.z - floor->z + static_cast<int>(std::ceil(fall_m / res));
   const int reach = static_cast<int>(std::ceil(reach_m / res));
   std::vector<Vec3> ground;

@@ -21,10 +21,11 @@ struct Ground {
   double slope_rad = 0, step_m = 0;
 };
 
-/// Looks straight down from `place` in all columns of cells whose centre is within the vehicle's radius and the
-/// margin of it, from the cell of `place` on: air that is known to be free, then a cell that is known to be
-/// rock. `ground` is valid unless there is no floor below the place itself.
-Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radius_m, const GroundOptions& options);
+/// Looks straight down from `place` in all columns of cells whose centre is within the vehicle's radius and
+/// the margin of it, from the cell of `place` on: air that is known to be free, then a cell that is known to
+/// be rock. `ground` is valid unless there is no floor below the place itself.
+Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radius_m,
+                    const GroundOptions& options);
 
 /// Whether another vehicle can still fly from everywhere to everywhere within the cube of half edge `reach_m`
 /// around a landed one whose centre is at `standing`: what was connected within the cube by places clear by

@@ -64,10 +64,13 @@ void describe(OptionTable& t, LandingOptions& o) {
 }
 
 const char* landing_refusal_text(LandingRefusal r) {
-  constexpr std::array<const char*, kLandingRefusals> texts = {
-      "no ground that is known, flat and clear", "out of the relays' reach", "too near to a relay to extend the reach",
-      "too near to another vehicle",             "no way there",             "too far for the time left",
-      "others could not get by"};
+  constexpr std::array<const char*, kLandingRefusals> texts = {"no ground that is known, flat and clear",
+                                                               "out of the relays' reach",
+                                                               "too near to a relay to extend the reach",
+                                                               "too near to another vehicle",
+                                                               "no way there",
+                                                               "too far for the time left",
+                                                               "others could not get by"};
   return texts[static_cast<std::size_t>(r)];
 }
 
@@ -129,8 +132,8 @@ LandingSearch find_landing_places(const VoxelMap& map, const Roadmap& roadmap, c
   for (const LandingPlace& p : reached) {
     if (search.places.size() >= static_cast<std::size_t>(options.most_places)) break;
     const Vec3 standing = p.ground + Vec3(0, 0, request.vehicle_radius_m);
-    if (others_get_by(map, standing, request.vehicle_radius_m, search_clearance_m(planning, map.resolution_m()),
-                      options.passage_reach_m))
+    if (others_get_by(map, standing, request.vehicle_radius_m,
+                      search_clearance_m(planning, map.resolution_m()), options.passage_reach_m))
       search.places.push_back(p);
     else
       refuse(LandingRefusal::in_the_way);

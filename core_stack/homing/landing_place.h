@@ -25,12 +25,12 @@ struct LandingOptions {
 void describe(OptionTable& t, LandingOptions& o);
 
 struct LandingRequest {
-  Vec3 from = Vec3::Zero();    // where the vehicle is
-  std::vector<Vec3> around;    // candidates lie within `reach_m` of these: the homing route, thinned
+  Vec3 from = Vec3::Zero();  // where the vehicle is
+  std::vector<Vec3> around;  // candidates lie within `reach_m` of these: the homing route, thinned
   double reach_m = 4.0;
-  double most_time_s = 1e9;    // flight and descent may take so long
-  std::vector<Vec3> nodes;     // antennas of the communication nodes that reach the base
-  std::vector<Vec3> others;    // kept apart from
+  double most_time_s = 1e9;  // flight and descent may take so long
+  std::vector<Vec3> nodes;   // antennas of the communication nodes that reach the base
+  std::vector<Vec3> others;  // kept apart from
   double vehicle_radius_m = 0.3;
 };
 
@@ -46,7 +46,15 @@ struct LandingPlace {
 };
 
 /// Why candidates were refused, in the order they are looked at.
-enum class LandingRefusal { ground, out_of_reach, no_extension, too_near_others, no_way, no_time, in_the_way };
+enum class LandingRefusal {
+  ground,
+  out_of_reach,
+  no_extension,
+  too_near_others,
+  no_way,
+  no_time,
+  in_the_way
+};
 constexpr std::size_t kLandingRefusals = 7;
 const char* landing_refusal_text(LandingRefusal r);
 
@@ -56,8 +64,9 @@ struct LandingSearch {
   std::array<std::size_t, kLandingRefusals> refused{};
 };
 
-/// Candidates are the roadmap's nodes near `around` with ground below. The two dear questions are asked last: the
-/// ways to all candidates in one search, and whether others get by, best candidate first, until enough are found.
+/// Candidates are the roadmap's nodes near `around` with ground below. The two dear questions are asked last:
+/// the ways to all candidates in one search, and whether others get by, best candidate first, until enough
+/// are found.
 LandingSearch find_landing_places(const VoxelMap& map, const Roadmap& roadmap, const LandingRequest& request,
                                   const LandingOptions& options, const PlanningOptions& planning,
                                   const MotionLimits& limits);

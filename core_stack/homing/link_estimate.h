@@ -1,13 +1,13 @@
-// What a link between two places would be like, judged by the map: for choosing where to land, before anybody is
-// there to be heard.
+// What a link between two places would be like, judged by the map: for choosing where to land, before anybody
+// is there to be heard.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/mapping/voxel_map.h"
 
 namespace karst::core {
 
-/// The log-distance law in air and a loss for each metre that the map does not show free. What radios are like is
-/// known before a mission; what was heard in it (RelayGraph) overrules this where somebody was.
+/// The log-distance law in air and a loss for each metre that the map does not show free. What radios are
+/// like is known before a mission; what was heard in it (RelayGraph) overrules this where somebody was.
 struct LinkEstimateOptions {
   double range_m = 50;  // in free air
   double path_loss_exponent = 2.0;

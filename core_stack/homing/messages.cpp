@@ -76,7 +76,8 @@ void write(PartWriter& w, const Receipt& receipt) {
 
 Record read_body(Kind kind, PartReader& r) {
   switch (kind) {
-    case Kind::tree: return read_tree(r);
+    case Kind::tree:
+      return read_tree(r);
     case Kind::goal: {
       GoalClaim g;
       g.stamp = r.time(), g.position = r.place(), g.given_up = r.yes_or_no();
@@ -94,7 +95,8 @@ Record read_body(Kind kind, PartReader& r) {
       o.deviation_m = 0.1 * r.byte();
       return o;
     }
-    case Kind::receipt: break;
+    case Kind::receipt:
+      break;
   }
   Receipt receipt;
   const std::size_t rows = r.count(2);
@@ -109,9 +111,13 @@ Record read_body(Kind kind, PartReader& r) {
 }  // namespace
 
 const char* refusal_text(Refusal r) {
-  constexpr std::array<const char*, kRefusals> texts = {
-      "shorter or longer than a frame can be", "not a frame", "of another version", "its checksum is wrong",
-      "its parts do not fill it",              "of a kind that there is not", "a number is out of range"};
+  constexpr std::array<const char*, kRefusals> texts = {"shorter or longer than a frame can be",
+                                                        "not a frame",
+                                                        "of another version",
+                                                        "its checksum is wrong",
+                                                        "its parts do not fill it",
+                                                        "of a kind that there is not",
+                                                        "a number is out of range"};
   return texts[static_cast<std::size_t>(r)];
 }
 

@@ -1,9 +1,10 @@
 // What the team says over the radio, and how it is written (docs/homing.md has the layout byte by byte).
 //
-// A robot's *records* are what the others must come to know for good: nodes and rays of the homing tree, claims,
-// landings, objects of interest. They are numbered, each stands by itself, and gossip.h sees to it that they
-// arrive. Its *state* is only of interest while it is new. A *frame* is what is sent at once: at most kFrameBytes,
-// with a version and a checksum. Nothing is longer than a frame; what is, is said in several records.
+// A robot's *records* are what the others must come to know for good: nodes and rays of the homing tree,
+// claims, landings, objects of interest. They are numbered, each stands by itself, and gossip.h sees to it
+// that they arrive. Its *state* is only of interest while it is new. A *frame* is what is sent at once: at
+// most kFrameBytes, with a version and a checksum. Nothing is longer than a frame; what is, is said in
+// several records.
 #pragma once
 #include <array>
 #include <optional>
@@ -61,7 +62,8 @@ struct ObjectSeen {
   Vec3 position = Vec3::Zero();
   double deviation_m = 0;  // standard deviation, 0 to 25.5 m
 };
-/// "I hold the first `records` records of each of these": said by the base, so that finders know what arrived.
+/// "I hold the first `records` records of each of these": said by the base, so that finders know what
+/// arrived.
 struct Receipt {
   struct Row {
     RobotId robot = 0;
@@ -113,9 +115,9 @@ struct Held {
 /// have room; each part may be missing.
 struct Frame {
   RobotId sender = 0;
-  bool tells_held = false;         // `held` is the whole of what it holds
-  std::uint16_t sequence = 0;      // of the sender's frames: gaps show what was lost
-  std::vector<TeamState> states;   // its own first, others' as it knows them
+  bool tells_held = false;        // `held` is the whole of what it holds
+  std::uint16_t sequence = 0;     // of the sender's frames: gaps show what was lost
+  std::vector<TeamState> states;  // its own first, others' as it knows them
   std::vector<Held> held;
   std::vector<SentRecord> records;
 };

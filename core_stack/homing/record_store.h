@@ -16,8 +16,8 @@ class HeldNumbers {
 
   std::uint32_t first() const { return first_; }
   bool holds(std::uint32_t number) const {
-    return number <= first_ || (number > first_ + 1 && number - first_ - 2 < window &&
-                                (beyond_ >> (number - first_ - 2) & 1));
+    return number <= first_ ||
+           (number > first_ + 1 && number - first_ - 2 < window && (beyond_ >> (number - first_ - 2) & 1));
   }
   bool takes(std::uint32_t number) const { return number <= first_ + 1 + window; }
   /// `number` must be one it takes.

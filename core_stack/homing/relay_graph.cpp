@@ -7,7 +7,8 @@ namespace karst::core {
 
 void describe(OptionTable& t, RelayOptions& o) {
   t.add("link_age", o.link_age_s, "s", 1, 600, "what was said of a link longer ago no longer counts");
-  t.add("least_quality", o.least_quality, "", 0.01, 1, "share of frames that arrive, of what counts as a link");
+  t.add("least_quality", o.least_quality, "", 0.01, 1,
+        "share of frames that arrive, of what counts as a link");
 }
 
 void RelayGraph::note(const TeamState& state) {
@@ -42,7 +43,8 @@ std::vector<RelayLink> RelayGraph::links(TimeNs now) const {
   return out;
 }
 
-std::vector<RobotId> RelayGraph::connected(TimeNs now, RobotId from, const std::vector<RobotId>& without) const {
+std::vector<RobotId> RelayGraph::connected(TimeNs now, RobotId from,
+                                           const std::vector<RobotId>& without) const {
   const auto cost = costs(now);
   std::array<bool, kMostRobots> seen{};
   for (const RobotId r : without) seen[r] = true;
@@ -79,7 +81,8 @@ std::optional<RobotId> RelayGraph::next_hop(TimeNs now, RobotId from) const {
   if (from == kBase || to_base[from] == std::numeric_limits<double>::infinity()) return std::nullopt;
   RobotId hop = kMostRobots;
   for (RobotId i = 0; i < kMostRobots; ++i)
-    if (cost[from][i] > 0 && (hop == kMostRobots || cost[from][i] + to_base[i] < cost[from][hop] + to_base[hop]))
+    if (cost[from][i] > 0 &&
+        (hop == kMostRobots || cost[from][i] + to_base[i] < cost[from][hop] + to_base[hop]))
       hop = i;
   return hop;
 }
@@ -102,9 +105,8 @@ std::vector<RobotId> RelayGraph::indispensable(TimeNs now) const {
 bool RelayGraph::survives_any_loss(TimeNs now, const std::vector<RobotId>& neighbours) const {
   const auto reached_without = [&](const std::vector<RobotId>& lost) {
     const std::vector<RobotId> left = connected(now, kBase, lost);
-    return std::any_of(neighbours.begin(), neighbours.end(), [&left](RobotId r) {
-      return std::find(left.begin(), left.end(), r) != left.end();
-    });
+    return std::any_of(neighbours.begin(), neighbours.end(),
+                       [&left](RobotId r) { return std::find(left.begin(), left.end(), r) != left.end(); });
   };
   if (!reached_without({})) return false;
   for (RobotId r = 1; r < kMostRobots; ++r)

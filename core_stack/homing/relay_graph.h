@@ -1,5 +1,5 @@
-// Who can talk to whom, as one robot knows it, and what that means for a message to the base: the connected part,
-// the next hop, and what a relay's loss would cut off.
+// Who can talk to whom, as one robot knows it, and what that means for a message to the base: the connected
+// part, the next hop, and what a relay's loss would cut off.
 //
 // A link is known by what both ends say they hear of the other (TeamState::heard), each with the time it was
 // said. It stands while both are fresh: a word that is not heard back is no link, for what arrives must be
@@ -38,7 +38,8 @@ class RelayGraph {
 
   std::vector<RelayLink> links(TimeNs now) const;
   /// Robots that reach `from` over links, itself first, the rest in order; `without` are taken out.
-  std::vector<RobotId> connected(TimeNs now, RobotId from = kBase, const std::vector<RobotId>& without = {}) const;
+  std::vector<RobotId> connected(TimeNs now, RobotId from = kBase,
+                                 const std::vector<RobotId>& without = {}) const;
   bool reaches_base(TimeNs now, RobotId robot) const;
   /// Whom to send to on the cheapest way to the base; nothing if there is none, or for the base.
   std::optional<RobotId> next_hop(TimeNs now, RobotId from) const;

@@ -66,8 +66,8 @@ void ShortestWays::settle() {
   for (std::size_t i = 0; i < lost_.size(); ++i)
     for (const Edge& e : nodes_[lost_[i]].edges) {
       const double cost = nodes_[e.to].cost + e.cost;
-      if (cost < offers[i].cost || (cost == offers[i].cost && cost < unreachable &&
-                                    comes_before(e.to, offers[i].node)))
+      if (cost < offers[i].cost ||
+          (cost == offers[i].cost && cost < unreachable && comes_before(e.to, offers[i].node)))
         offers[i] = {cost, e.to};
     }
   for (std::size_t i = 0; i < lost_.size(); ++i) {

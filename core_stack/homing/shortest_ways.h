@@ -2,10 +2,10 @@
 //
 // Edges may come and go, sources too. What a change makes dearer is forgotten and settled anew from the
 // neighbours that still know a way; what it makes cheaper is passed on, cheapest first (Ramalingam and Reps,
-// An Incremental Algorithm for a Generalization of the Shortest-Path Problem, 1996). A change costs as much as
-// there are nodes whose cost it changes. Costs are the same bits as Dijkstra's algorithm gives from scratch,
-// and so are the ways: of equally cheap ones the node of the least name is kept. So both depend on the graph
-// only, not on the order in which it came about.
+// An Incremental Algorithm for a Generalization of the Shortest-Path Problem, 1996). A change costs as much
+// as there are nodes whose cost it changes. Costs are the same bits as Dijkstra's algorithm gives from
+// scratch, and so are the ways: of equally cheap ones the node of the least name is kept. So both depend on
+// the graph only, not on the order in which it came about.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -20,8 +20,8 @@ class ShortestWays {
 
   /// A new node with an own `name`; returns its index, one more than the last.
   std::uint32_t add(std::uint64_t name);
-  /// Joins two nodes both ways; they must not be joined yet. `cost` is finite and large enough to be felt when
-  /// added to a way's cost, or ways could run in circles.
+  /// Joins two nodes both ways; they must not be joined yet. `cost` is finite and large enough to be felt
+  /// when added to a way's cost, or ways could run in circles.
   void join(std::uint32_t a, std::uint32_t b, double cost);
   void part(std::uint32_t a, std::uint32_t b);
   void set_source(std::uint32_t n, bool source);

@@ -1,6 +1,6 @@
 // What robots tell one another of the homing tree: nodes, rays between them, and which communication nodes
-// live. Facts are never taken back, only overruled by later ones, so they may arrive in any order and more than
-// once.
+// live. Facts are never taken back, only overruled by later ones, so they may arrive in any order and more
+// than once.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -31,8 +31,8 @@ struct TreeNode {
   Vec3 position = Vec3::Zero();
 };
 
-/// The straight line between two nodes can be flown, or not, as seen at `stamp`. Of two facts the later holds;
-/// of two at one time the one that says no.
+/// The straight line between two nodes can be flown, or not, as seen at `stamp`. Of two facts the later
+/// holds; of two at one time the one that says no.
 struct RayFact {
   NodeId a, b;
   bool free = false;

@@ -53,8 +53,9 @@ class WireReader {
       const std::uint8_t b = byte();
       v |= std::uint64_t{b & 0x7fu} << shift;
       // One number, one way to write it: no leading zeros, no more than 32 bits.
-      if (b < 0x80) return (b == 0 && shift > 0) || v > 0xffffffffu ? static_cast<std::uint32_t>(fail())
-                                                                    : static_cast<std::uint32_t>(v);
+      if (b < 0x80)
+        return (b == 0 && shift > 0) || v > 0xffffffffu ? static_cast<std::uint32_t>(fail())
+                                                        : static_cast<std::uint32_t>(v);
     }
     return static_cast<std::uint32_t>(fail());
   }

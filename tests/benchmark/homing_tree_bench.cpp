@@ -1,5 +1,6 @@
-// The homing tree at 10,000 nodes: five robots' poses in 20 km of winding passages, rays judged in closed form,
-// against the same tree computed from scratch by Dijkstra's algorithm with a heap. Times are processor times.
+// The homing tree at 10,000 nodes: five robots' poses in 20 km of winding passages, rays judged in closed
+// form, against the same tree computed from scratch by Dijkstra's algorithm with a heap. Times are processor
+// times.
 #include <cstdio>
 #include <map>
 #include <queue>
@@ -17,8 +18,9 @@ using testing::noise;
 constexpr double kCruise = 1.6;
 constexpr std::uint32_t kNodes = 10000;
 
-/// Rays see along a passage and are lost round its bends: free if both ends lie within 2 m of the straight line
-/// between what is `straight` along the passage. A stand-in for a map, so that it is the tree that is timed.
+/// Rays see along a passage and are lost round its bends: free if both ends lie within 2 m of the straight
+/// line between what is `straight` along the passage. A stand-in for a map, so that it is the tree that is
+/// timed.
 struct Passages {
   std::vector<Vec3> poses;
 
@@ -138,8 +140,9 @@ void run() {
   for (int i = 0; i < 20000; ++i) {
     const Vec3 from = cave.poses[random.bits() % cave.poses.size()] + Vec3(0.3, 0.2, 0.1);
     query.ms.push_back(1e3 * cpu_ms([&] {
-      if (const auto route = tree.route(from, rays)) longest = std::max(longest, route->length_m);
-    }));
+                         if (const auto route = tree.route(from, rays))
+                           longest = std::max(longest, route->length_m);
+                       }));
   }
   const auto print = [](const char* what, bench::Times& t) {
     std::printf("  %-40s mean %9.1f  p50 %9.0f  p99 %9.0f  max %9.0f us  (%zu)\n", what, t.mean(), t.at(0.5),

@@ -1,5 +1,5 @@
-// Any bytes from the radio: they are refused, or what was read can be written and read again. A frame's checksum
-// is put right first, or the fuzzer would never get past it.
+// Any bytes from the radio: they are refused, or what was read can be written and read again. A frame's
+// checksum is put right first, or the fuzzer would never get past it.
 #include <cstdlib>
 
 #include "core_stack/homing/gossip.h"

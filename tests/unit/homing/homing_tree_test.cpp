@@ -221,14 +221,14 @@ TEST(HomingTree, InAMapRaysKeepTheClearanceAndARockfallIsFlownAround) {
   HomingTree tree({.least_edge_m = 1}, 1);
   tree.insert_communication({0, 0}, {1, 1, 1}, 0, rays);
   std::uint32_t number = 0;
-  for (const Vec3& p : {Vec3(4, 1, 1), {8, 1, 1}, {11, 1, 1}, {11, 4, 1}, {11, 7, 1}, {6, 7, 1}, {1, 7, 1}, {1, 4, 1}})
+  for (const Vec3& p :
+       {Vec3(4, 1, 1), {8, 1, 1}, {11, 1, 1}, {11, 4, 1}, {11, 7, 1}, {6, 7, 1}, {1, 7, 1}, {1, 4, 1}})
     tree.insert_pose({1, number++}, p, 0, rays);
   const auto straight = tree.route({10.5, 1.2, 1}, rays);
   ASSERT_TRUE(straight);
   EXPECT_NEAR(straight->length_m, 9.5, 0.1);
   // No ray leads through the block.
-  for (const RayFact& r : tree.facts().rays)
-    EXPECT_FALSE(r.a == (NodeId{1, 1}) && r.b == (NodeId{1, 5}));
+  for (const RayFact& r : tree.facts().rays) EXPECT_FALSE(r.a == (NodeId{1, 1}) && r.b == (NodeId{1, 5}));
 
   std::vector<CellChange> fall;
   for (int z = 0; z < 10; ++z)

@@ -38,7 +38,8 @@ TEST(Ground, FlatIsGoodAndLiesWhereTheFloorIs) {
 TEST(Ground, SteepRoughObstructedUnknownAndBottomlessAreRefused) {
   EXPECT_EQ(verdict(floor_map([](int x, int) { return 2 + (x >> 1); })), GroundVerdict::steep);
   EXPECT_EQ(verdict(floor_map([](int x, int) { return x == 0 ? 4 : 2; })), GroundVerdict::rough);
-  EXPECT_EQ(verdict(floor_map([](int x, int y) { return x == 2 && y == 0 ? 12 : 2; })), GroundVerdict::obstructed);
+  EXPECT_EQ(verdict(floor_map([](int x, int y) { return x == 2 && y == 0 ? 12 : 2; })),
+            GroundVerdict::obstructed);
   EXPECT_EQ(verdict(floor_map([](int, int) { return -3; })), GroundVerdict::no_floor);
   EXPECT_EQ(verdict(floor_map([](int x, int) { return x < 2 ? 2 : -3; })), GroundVerdict::rough);  // an edge
   VoxelMap map{MapOptions{}};
@@ -82,8 +83,10 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
       }
     Eigen::MatrixXd a(points.size(), 3);
     Eigen::VectorXd z(points.size());
-    for (Eigen::Index i = 0; i < a.rows(); ++i)
-      a.row(i) << points[i].x(), points[i].y(), 1, z[i] = points[i].z();
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      a.row(i) << points[i].x(), points[i].y(), 1;
+      z[i] = points[i].z();
+    }
     const Eigen::Vector3d plane = a.jacobiSvd(Eigen::ComputeThinU | Eigen::ComputeThinV).solve(z);
     const Eigen::VectorXd above = z - a * plane;
     const double step = above.maxCoeff() - above.minCoeff();
@@ -102,9 +105,11 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
 }
 
 /// A passage along x with a floor at z = 0, free inside.
-VoxelMap passage(double width_m, double height_m, double length_m = 20, std::vector<CellChange>* changes = nullptr) {
+VoxelMap passage(double width_m, double height_m, double length_m = 20,
+                 std::vector<CellChange>* changes = nullptr) {
   VoxelMap map{MapOptions{}};
-  const int w = static_cast<int>(std::lround(width_m / 0.4)), h = static_cast<int>(std::lround(height_m / 0.2)),
+  const int w = static_cast<int>(std::lround(width_m / 0.4)),
+            h = static_cast<int>(std::lround(height_m / 0.2)),
             l = static_cast<int>(std::lround(length_m / 0.4));
   testing::draw(
       map, {-l - 2, -w - 2, -2}, {l + 2, w + 2, h + 2},
@@ -117,9 +122,9 @@ VoxelMap passage(double width_m, double height_m, double length_m = 20, std::vec
 
 TEST(OthersGetBy, OverItBesideItOrNotAtAll) {
   const Vec3 middle(0.1, 0.1, 0.3);
-  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRadius, 0.55, 3));   // over it
+  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRadius, 0.55, 3));     // over it
   EXPECT_FALSE(others_get_by(passage(1.6, 1.4), middle, kRadius, 0.55, 3));  // neither over nor past it
-  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRadius, 0.55, 3));   // past it
+  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRadius, 0.55, 3));     // past it
   EXPECT_TRUE(others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRadius, 0.55, 3));  // on one side of it
   // At the end of a blind passage nobody is held up.
   EXPECT_TRUE(others_get_by(passage(2, 1.6), {9, 0.1, 0.3}, kRadius, 0.55, 3));
@@ -146,7 +151,7 @@ TEST(LinkEstimate, UnknownAndRockTakeTheirDecibels) {
   EXPECT_LT(expected_margin_db(map, {0, 0, 1}, {0, 50.1, 1}, distance), 0);
 }
 
-struct Landing : testing::Test {
+struct Landing : ::testing::Test {
   std::vector<CellChange> changes;
   VoxelMap map = passage(4, 3.2, 60, &changes);
   PlanningOptions planning;
@@ -187,7 +192,8 @@ TEST_F(Landing, AsFarFromTheNodeAsTheRadioCarriesAndAllOfItHolds) {
 TEST_F(Landing, KeepsApartFromOthersInTimeAndPrefersASecondLink) {
   const LandingPlace best = find().places.at(0);
   request.others = {best.ground};
-  for (const LandingPlace& p : find().places) EXPECT_GE((p.ground - best.ground).norm(), options.keep_apart_m);
+  for (const LandingPlace& p : find().places)
+    EXPECT_GE((p.ground - best.ground).norm(), options.keep_apart_m);
   request.others.clear();
   request.most_time_s = best.time_s / 2;
   const LandingSearch hurried = find();
@@ -244,11 +250,13 @@ TEST(LandingInACave, EveryPlaceIsOnTheRockItselfClearOfItAndReachable) {
     // The map's floor is the top of a cell that holds rock: the rock is at most a cell lower.
     const double down_m = scene.ray_cast(p.hover, -Vec3::UnitZ(), 10);
     EXPECT_NEAR(down_m, (p.hover - p.ground).z(), 0.25);
-    // On the way down the vehicle's sphere touches nothing, until it comes to what the floor's roughness may be.
+    // On the way down the vehicle's sphere touches nothing, until it comes to what the floor's roughness may
+    // be.
     for (double z = p.ground.z() + kRadius + 0.3; z < p.hover.z(); z += 0.1)
       EXPECT_GE(scene.distance_to_rock({p.hover.x(), p.hover.y(), z}, 1), kRadius) << p.hover.transpose();
     EXPECT_TRUE(roadmap.find(drawn.map, request.from, p.hover).found());
-    EXPECT_GE(expected_margin_db(drawn.map, p.ground + Vec3(0, 0, kRadius), request.nodes[0], options.link), 0);
+    EXPECT_GE(expected_margin_db(drawn.map, p.ground + Vec3(0, 0, kRadius), request.nodes[0], options.link),
+              0);
   }
 }
 

@@ -118,9 +118,14 @@ TEST(Messages, AnyDamageIsNoticed) {
     Refusal why{};
     const std::size_t at = random.bits() % bytes.size();
     switch (below(random, 3)) {
-      case 0: bytes[at] ^= static_cast<std::uint8_t>(1 + below(random, 255)); break;
-      case 1: bytes.resize(at); break;
-      default: bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), 0x55);
+      case 0:
+        bytes[at] ^= static_cast<std::uint8_t>(1 + below(random, 255));
+        break;
+      case 1:
+        bytes.resize(at);
+        break;
+      default:
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), 0x55);
     }
     RC_ASSERT(!read_frame(bytes, why).has_value());
   });
@@ -151,11 +156,11 @@ TEST(Messages, HostileFramesAreRefusedByReason) {
   EXPECT_EQ(why_of(Bytes(50, 0)), Refusal::no_frame);
   EXPECT_EQ(why_of(sealed({0x4b, 0x72, 0, 2, 0, 0, 0, 0, 0})), Refusal::version);
   EXPECT_EQ(why_of({0x4b, 0x72, 1, 2, 0, 0, 0, 0, 0, 1, 2, 3, 4}), Refusal::checksum);
-  EXPECT_EQ(why_of(with({255, 0, 0})), Refusal::truncated);     // says it holds 255 states
+  EXPECT_EQ(why_of(with({255, 0, 0})), Refusal::truncated);  // says it holds 255 states
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 1, 250})), Refusal::truncated);
-  EXPECT_EQ(why_of(with({0, 0, 0, 9})), Refusal::truncated);    // a byte too many
-  EXPECT_EQ(why_of(with({0, 1, 16, 0, 0, 0})), Refusal::range); // robot 16
-  EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);  // record 0
+  EXPECT_EQ(why_of(with({0, 0, 0, 9})), Refusal::truncated);     // a byte too many
+  EXPECT_EQ(why_of(with({0, 1, 16, 0, 0, 0})), Refusal::range);  // robot 16
+  EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);   // record 0
   Bytes sender = {0x4b, 0x72, kWireVersion, 99, 0, 0, 0, 0, 0};
   EXPECT_EQ(why_of(sealed(sender)), Refusal::range);
   for (std::size_t r = 0; r < kRefusals; ++r) EXPECT_NE(refusal_text(static_cast<Refusal>(r)), nullptr);
@@ -169,11 +174,11 @@ TEST(Messages, HostileRecordsAreRefusedByReason) {
   };
   EXPECT_EQ(why_of({}), Refusal::truncated);
   EXPECT_EQ(why_of({77}), Refusal::kind);
-  EXPECT_EQ(why_of({0, 200, 0, 0}), Refusal::truncated);                   // 200 nodes in no bytes
-  EXPECT_EQ(why_of({0, 0, 1, 0, 3, 1, 1, 1, 2}), Refusal::kind);           // the first ray like the one before
+  EXPECT_EQ(why_of({0, 200, 0, 0}), Refusal::truncated);          // 200 nodes in no bytes
+  EXPECT_EQ(why_of({0, 0, 1, 0, 3, 1, 1, 1, 2}), Refusal::kind);  // the first ray like the one before
   EXPECT_EQ(why_of({0, 0, 1, 0, 1, 1, 5, 0, 0, 0, 0, 1, 5}), Refusal::range);  // from a node to itself
   Bytes far = {1, 0, 0, 0, 0, 0xff, 0xff, 0x7f, 0, 0, 0, 0, 0, 0, 0};
-  EXPECT_EQ(why_of(far), Refusal::range);                                  // 84 km east
+  EXPECT_EQ(why_of(far), Refusal::range);  // 84 km east
   EXPECT_EQ(why_of(Bytes(300, 1)), Refusal::range);
 }
 

@@ -31,15 +31,18 @@ inline TreeFacts random_facts(Random& r, std::uint32_t most) {
 
 inline Record random_record(Random& r) {
   switch (below(r, 5)) {
-    case 0: return random_facts(r, 2);
-    case 1: return GoalClaim{random_time(r), random_place(r), r.uniform() < 0.5};
+    case 0:
+      return random_facts(r, 2);
+    case 1:
+      return GoalClaim{random_time(r), random_place(r), r.uniform() < 0.5};
     case 2:
       return LandingClaim{random_time(r), random_place(r), random_place(r),
                           static_cast<LandingClaim::State>(below(r, 3))};
     case 3:
       return ObjectSeen{random_time(r), below(r, kMostNumber), static_cast<std::uint8_t>(below(r, 256)),
                         random_place(r), 0.1 * below(r, 256)};
-    default: break;
+    default:
+      break;
   }
   Receipt receipt;
   for (std::uint32_t n = below(r, kMostRobots + 1); n > 0; --n)

@@ -4,6 +4,7 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "core_stack/common/random.h"
@@ -85,7 +86,8 @@ TEST(RelayGraph, AgreesWithAllPathsTriedOneByOne) {
         walk(q, k, path, [&](const std::vector<RobotId>& p) { ways.push_back({p.begin(), p.end()}); });
       bool survives = !ways.empty();
       for (RobotId relay = 1; relay < n; ++relay)
-        survives = survives && !std::all_of(ways.begin(), ways.end(), [&](const auto& p) { return p.contains(relay); });
+        survives = survives &&
+                   !std::all_of(ways.begin(), ways.end(), [&](const auto& p) { return p.contains(relay); });
       RC_ASSERT(g.survives_any_loss(0, neighbours) == survives);
     }
   });

@@ -14,7 +14,8 @@ namespace {
 using Edges = std::map<std::pair<std::uint32_t, std::uint32_t>, double>;  // a < b
 
 /// Bellman and Ford: relax every edge until nothing changes.
-std::vector<double> costs_from_scratch(std::size_t n, const Edges& edges, const std::set<std::uint32_t>& sources) {
+std::vector<double> costs_from_scratch(std::size_t n, const Edges& edges,
+                                       const std::set<std::uint32_t>& sources) {
   std::vector<double> cost(n, ShortestWays::unreachable);
   for (const std::uint32_t s : sources) cost[s] = 0;
   for (bool again = true; again;) {

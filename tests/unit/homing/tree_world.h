@@ -41,8 +41,8 @@ struct BallWorld {
   }
 };
 
-/// Dijkstra's algorithm in its plainest form over all pairs that a world leaves free. A node that is dead or a
-/// pose is no source.
+/// Dijkstra's algorithm in its plainest form over all pairs that a world leaves free. A node that is dead or
+/// a pose is no source.
 inline std::map<NodeId, double> costs_from_scratch(const std::vector<TreeNode>& nodes,
                                                    const std::map<NodeId, bool>& dead, const FreeRay& free,
                                                    double longest_m, double cruise_mps) {
