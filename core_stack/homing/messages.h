@@ -115,11 +115,11 @@ struct Held {
 /// have room; each part may be missing.
 struct Frame {
   RobotId sender = 0;
-  bool tells_held = false;        // `held` is the whole of what it holds
-  std::uint16_t sequence = 0;     // of the sender's frames: gaps show what was lost
-  std::vector<TeamState> states;  // its own first, others' as it knows them
-  std::vector<Held> held;
-  std::vector<SentRecord> records;
+  bool tells_held = false;          // `held` is the whole of what it holds
+  std::uint16_t sequence = 0;       // of the sender's frames: gaps show what was lost
+  std::vector<TeamState> states{};  // its own first, others' as it knows them
+  std::vector<Held> held{};
+  std::vector<SentRecord> records{};
 };
 /// Nothing if it would be longer than kFrameBytes or holds what cannot be written.
 std::optional<Bytes> write_frame(const Frame& frame);

@@ -31,7 +31,7 @@ TEST(Ground, FlatIsGoodAndLiesWhereTheFloorIs) {
   const Ground g = ground_below(floor_map([](int, int) { return 2; }), kPlace, kRadius, {});
   EXPECT_EQ(g.verdict, GroundVerdict::good);
   EXPECT_NEAR((g.ground - Vec3(0.1, 0.1, 0.4)).norm(), 0, 1e-9);
-  EXPECT_EQ(g.step_m, 0);
+  EXPECT_NEAR(g.step_m, 0, 1e-9);
   EXPECT_NEAR(g.slope_rad, 0, 1e-9);
 }
 
