@@ -36,8 +36,10 @@ Path WayHome::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from
   return none;
 }
 
+double cruise_speed_mps(const MotionLimits& limits) { return kCruiseShare * limits.max_speed_mps; }
+
 double flight_time_s(double length_m, const MotionLimits& limits) {
-  const double cruise = kCruiseShare * limits.max_speed_mps, a = limits.max_acceleration_mps2;
+  const double cruise = cruise_speed_mps(limits), a = limits.max_acceleration_mps2;
   // A ramp up and a ramp down of cruise / a each; shorter ways never reach the cruise.
   return length_m >= cruise * cruise / a ? length_m / cruise + cruise / a : 2 * std::sqrt(length_m / a);
 }

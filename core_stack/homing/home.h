@@ -27,6 +27,9 @@ class WayHome {
   double rest_m_ = 0;  // from the place of approach
 };
 
+/// The speed that is held on the way, as a mean over bends and turns.
+double cruise_speed_mps(const MotionLimits& limits);
+
 /// Time to fly `length_m` from rest to rest. The speed held on the way is taken as a share of the greatest
 /// that caves with bends allow.
 double flight_time_s(double length_m, const MotionLimits& limits);

@@ -109,6 +109,10 @@ std::size_t Roadmap::node_count() const {
   return n;
 }
 
+bool Roadmap::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const {
+  return graph_->rule && graph_->free.segment_clear(a, b, clearance_m);
+}
+
 std::vector<Vec3> Roadmap::places_near(const Vec3& p, double reach_m) const {
   const RoadmapGraph& g = *graph_;
   std::vector<Vec3> out;

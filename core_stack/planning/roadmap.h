@@ -45,6 +45,10 @@ class Roadmap {
   /// point that is so by the whole.
   std::vector<Vec3> places_near(const Vec3& p, double reach_m) const;
 
+  /// The straight line runs through free cells and is nowhere nearer than `clearance_m` to an obstacle's
+  /// centre, as the map was at the last update. Microseconds.
+  bool segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const;
+
   std::size_t node_count() const;
   const RoadmapGraph& graph() const { return *graph_; }
 

@@ -1,0 +1,260 @@
+#include "core_stack/homing/gossip.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace karst::core {
+namespace {
+
+constexpr double kBurstFrames = 10;
+constexpr double kLongestWait_s = 0.4;
+constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
+constexpr std::size_t kMostWaiting = 400;
+/// A state from later than that would stand in the way of all that follow. The team's clocks are set
+/// together.
+constexpr TimeNs kMostAhead = 5 * kSecond;
+
+}  // namespace
+
+void describe(OptionTable& t, GossipOptions& o) {
+  t.add("period", o.period_s, "s", 0.1, 60, "every robot tells its state and what it holds so often");
+  t.add("bytes_per_second", o.bytes_per_s, "", 50, 1e6, "a robot sends no more than that, as a mean");
+  t.add("contact_age", o.contact_age_s, "s", 0.5, 600, "a robot not heard for longer is out of contact");
+  t.add("most_records", o.most_records, 100, 1e6, "of one robot; more are refused");
+}
+
+Gossip::Gossip(RobotId self, const GossipOptions& options, std::uint64_t seed)
+    : self_(self),
+      options_(options),
+      random_(Random::stream(seed, "gossip " + std::to_string(self))),
+      store_(static_cast<std::uint32_t>(options.most_records)),
+      allowance_bytes_(kBurstFrames * kFrameBytes) {
+  next_news_ = from_seconds(options_.period_s * random_.uniform());
+}
+
+TimeNs Gossip::wait() { return from_seconds(kLongestWait_s * random_.uniform()); }
+
+std::uint32_t Gossip::publish(const Record& record) {
+  std::vector<Record> pieces;
+  if (const auto* facts = std::get_if<TreeFacts>(&record))
+    for (TreeFacts& piece : split(*facts)) pieces.push_back(std::move(piece));
+  else
+    pieces.push_back(record);
+  std::uint32_t last = 0;
+  for (const Record& piece : pieces) {
+    const auto bytes = write_record(piece);
+    if (!bytes) return 0;
+    if (store_.take({self_, published_ + 1, *bytes}) != RecordStore::Taken::fresh) return 0;
+    last = ++published_;
+    queue(self_, last, last_send_);
+  }
+  return last;
+}
+
+bool Gossip::in_contact(const Peer& p, TimeNs now) const {
+  return p.heard_at && now - *p.heard_at <= from_seconds(options_.contact_age_s);
+}
+
+void Gossip::receive(std::span<const std::uint8_t> bytes, TimeNs now) {
+  ++counts_.frames_heard;
+  counts_.bytes_heard += bytes.size();
+  Refusal why{};
+  const std::optional<Frame> frame = read_frame(bytes, why);
+  if (!frame) {
+    ++counts_.refused[static_cast<std::size_t>(why)];
+  } else if (frame->sender != self_) {  // its own voice, thrown back or feigned
+    hear(*frame, now);
+  }
+}
+
+void Gossip::hear(const Frame& frame, TimeNs now) {
+  Peer& peer = peers_[frame.sender];
+  if (in_contact(peer, now)) {
+    // A mean over the last ten frames or so; each gap counts as that many lost.
+    constexpr double kShare = 0.1;
+    const auto gap = static_cast<std::int16_t>(frame.sequence - peer.sequence);
+    for (int lost = std::min<int>(gap, 20); lost > 1; --lost) peer.quality -= kShare * peer.quality;
+    peer.quality += kShare * (1 - peer.quality);
+  } else {
+    peer.quality = 0.5;  // nothing is known yet
+  }
+  peer.sequence = frame.sequence;
+  peer.heard_at = now;
+  for (const TeamState& s : frame.states) take_state(s, now);
+  for (const SentRecord& r : frame.records) take_record(r, frame.sender, now);
+  if (!frame.tells_held) return;
+  peer.held.fill({});
+  for (const Held& h : frame.held) peer.held[h.author].set(h);
+  if (frame.sender == kBase) known_at_base_ = std::max(known_at_base_, peer.held[self_].first());
+  answer(frame.sender, now);
+}
+
+void Gossip::take_state(const TeamState& s, TimeNs now) {
+  if (s.stamp > now + kMostAhead) {
+    ++counts_.states_refused;
+    return;
+  }
+  auto& known = states_[s.robot];
+  if (s.robot != self_ && (!known || s.stamp > known->stamp)) known = s;
+}
+
+void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
+  Refusal why{};
+  std::optional<Record> record = read_record(r.bytes, why);
+  if (!record) {
+    ++counts_.records_refused;
+    return;
+  }
+  HeldNumbers& theirs = peers_[from].held[r.author];
+  if (theirs.takes(r.number)) theirs.add(r.number);
+  switch (store_.take(r)) {
+    case RecordStore::Taken::known:
+      ++counts_.records_again;
+      // It was just sent; who did not hear it will say so.
+      std::erase_if(waiting_,
+                    [&r](const Waiting& w) { return w.author == r.author && w.number == r.number; });
+      return;
+    case RecordStore::Taken::differs:
+      ++counts_.contradictions;
+      return;
+    case RecordStore::Taken::full:
+    case RecordStore::Taken::too_far:
+      ++counts_.records_refused;
+      return;
+    case RecordStore::Taken::fresh:
+      break;
+  }
+  ++counts_.records_taken;
+  // A robot that started anew goes on behind what it is reminded of.
+  if (r.author == self_) published_ = std::max(published_, r.number);
+  if (const auto* receipt = std::get_if<Receipt>(&*record); receipt && r.author == kBase)
+    for (const Receipt::Row& row : receipt->rows)
+      if (row.robot == self_) known_at_base_ = std::max(known_at_base_, row.records);
+  delivered_.push_back({r.author, r.number, std::move(*record)});
+  queue(r.author, r.number, now + wait());
+}
+
+/// Queues what a peer lacks, oldest first.
+void Gossip::answer(RobotId peer, TimeNs now) {
+  std::size_t queued = 0;
+  const TimeNs due = now + wait();
+  for (RobotId author = 0; author < kMostRobots; ++author) {
+    const HeldNumbers &mine = store_.held(author), &theirs = peers_[peer].held[author];
+    for (std::uint32_t n = theirs.first() + 1;
+         theirs.takes(n) && n <= mine.first() + 1 + HeldNumbers::window && queued < kMostAnswered; ++n)
+      if (mine.holds(n) && !theirs.holds(n)) queue(author, n, due), ++queued;
+  }
+}
+
+void Gossip::queue(RobotId author, std::uint32_t number, TimeNs due) {
+  const bool there = std::any_of(waiting_.begin(), waiting_.end(),
+                                 [&](const Waiting& w) { return w.author == author && w.number == number; });
+  if (!there && waiting_.size() < kMostWaiting) waiting_.push_back({due, author, number});
+}
+
+/// Somebody in contact is not known to hold it, and would take it.
+bool Gossip::wanted(const Waiting& w, TimeNs now) const {
+  return std::any_of(peers_.begin(), peers_.end(), [&](const Peer& p) {
+    const HeldNumbers& theirs = p.held[w.author];
+    return in_contact(p, now) && !theirs.holds(w.number) && theirs.takes(w.number);
+  });
+}
+
+std::vector<Bytes> Gossip::send(TimeNs now) {
+  allowance_bytes_ = std::min(allowance_bytes_ + options_.bytes_per_s * seconds(now - last_send_),
+                              kBurstFrames * kFrameBytes);
+  last_send_ = now;
+  std::vector<Bytes> out;
+  const auto due = [now](const Waiting& w) { return w.due <= now; };
+  std::erase_if(waiting_, [&](const Waiting& w) { return due(w) && !wanted(w, now); });
+  while (allowance_bytes_ >= kFrameBytes) {
+    const bool news = now >= next_news_;
+    if (!news && std::none_of(waiting_.begin(), waiting_.end(), due)) break;
+    Frame frame = news ? own_news(now) : Frame{};
+    std::size_t room = kFrameBytes - kEmptyFrameBytes;
+    for (const TeamState& s : frame.states) room -= state_bytes(s);
+    for (const Held& h : frame.held) room -= held_bytes(h);
+    std::erase_if(waiting_, [&](const Waiting& w) {
+      const SentRecord* r = due(w) ? store_.find(w.author, w.number) : nullptr;
+      const std::size_t bytes = r ? record_bytes(*r) : 0;
+      if (r == nullptr || bytes > room) return false;
+      frame.records.push_back(*r);
+      room -= bytes;
+      return true;
+    });
+    if (news) add_states(frame, room);
+    finish(frame, out);
+  }
+  return out;
+}
+
+Frame Gossip::own_news(TimeNs now) {
+  // A little off the beat, or two that fall on one moment would do so forever.
+  next_news_ = now + from_seconds(options_.period_s * random_.uniform(0.9, 1.1));
+  Frame frame;
+  state_.robot = self_;
+  state_.heard.clear();
+  frame.tells_held = true;
+  std::size_t bytes = kEmptyFrameBytes + state_bytes(state_);
+  for (RobotId author = 0; author < kMostRobots; ++author) {
+    const Held h = store_.held(author).told(author);
+    if (h.first == 0 && h.beyond == 0) continue;
+    frame.held.push_back(h);
+    bytes += held_bytes(h);
+  }
+  state_.heard = contacts(now);
+  state_.heard.resize(std::min(state_.heard.size(), (kFrameBytes - bytes) / 2));
+  frame.states = {state_};
+  return frame;
+}
+
+/// Others' states where there is room, each in its turn.
+void Gossip::add_states(Frame& frame, std::size_t& room) {
+  for (RobotId i = 0; i < kMostRobots; ++i) {
+    const auto& s = states_[next_told_ % kMostRobots];
+    if (s && state_bytes(*s) > room) return;
+    if (s) frame.states.push_back(*s), room -= state_bytes(*s);
+    next_told_ = static_cast<RobotId>((next_told_ + 1) % kMostRobots);
+  }
+}
+
+void Gossip::finish(Frame& frame, std::vector<Bytes>& out) {
+  frame.sender = self_;
+  frame.sequence = sequence_++;
+  std::optional<Bytes> bytes = write_frame(frame);
+  if (!bytes && !frame.states.empty()) {
+    // Its own state cannot be told (not finite, say): the rest is told all the same.
+    frame.states.clear();
+    bytes = write_frame(frame);
+  }
+  if (!bytes) return;
+  ++counts_.frames_sent;
+  counts_.bytes_sent += bytes->size();
+  allowance_bytes_ -= static_cast<double>(bytes->size());
+  out.push_back(std::move(*bytes));
+}
+
+std::vector<Delivery> Gossip::take_delivered() { return std::exchange(delivered_, {}); }
+
+Receipt Gossip::receipt() const {
+  Receipt out;
+  for (RobotId i = 0; i < kMostRobots; ++i)
+    if (store_.held(i).first() > 0) out.rows.push_back({i, store_.held(i).first()});
+  return out;
+}
+
+std::vector<TeamState> Gossip::states() const {
+  std::vector<TeamState> out;
+  for (const auto& s : states_)
+    if (s) out.push_back(*s);
+  return out;
+}
+
+std::vector<HeardRobot> Gossip::contacts(TimeNs now) const {
+  std::vector<HeardRobot> out;
+  for (RobotId i = 0; i < kMostRobots; ++i)
+    if (in_contact(peers_[i], now)) out.push_back({i, peers_[i].quality});
+  return out;
+}
+
+}  // namespace karst::core

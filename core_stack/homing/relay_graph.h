@@ -1,0 +1,65 @@
+// Who can talk to whom, as one robot knows it, and what that means for a message to the base: the connected
+// part, the next hop, and what a relay's loss would cut off.
+//
+// A link is known by what both ends say they hear of the other (TeamState::heard), each with the time it was
+// said. It stands while both are fresh: a word that is not heard back is no link, for what arrives must be
+// confirmed. Ways are the cheapest in expected transmissions (ETX; De Couto et al., A High-Throughput Path
+// Metric for Multi-Hop Wireless Routing, 2003): a link costs 1 / (quality there * quality back).
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core_stack/common/options.h"
+#include "core_stack/homing/messages.h"
+
+namespace karst::core {
+
+struct RelayOptions {
+  double link_age_s = 15.0;    // what was said longer ago no longer counts
+  double least_quality = 0.1;  // of a link, each way
+};
+void describe(OptionTable& t, RelayOptions& o);
+
+struct RelayLink {
+  RobotId a = 0, b = 0;  // a < b
+  double transmissions = 1;
+};
+
+class RelayGraph {
+ public:
+  explicit RelayGraph(const RelayOptions& options) : options_(options) {}
+
+  /// What a robot says of whom it hears; older news than what is known changes nothing. What it does not name
+  /// any more it does not hear.
+  void note(const TeamState& state);
+  /// When a robot was last heard of, through whomever.
+  std::optional<TimeNs> last_heard_of(RobotId robot) const { return stamps_[robot]; }
+
+  std::vector<RelayLink> links(TimeNs now) const;
+  /// Robots that reach `from` over links, itself first, the rest in order; `without` are taken out.
+  std::vector<RobotId> connected(TimeNs now, RobotId from = kBase,
+                                 const std::vector<RobotId>& without = {}) const;
+  bool reaches_base(TimeNs now, RobotId robot) const;
+  /// Whom to send to on the cheapest way to the base; nothing if there is none, or for the base.
+  std::optional<RobotId> next_hop(TimeNs now, RobotId from) const;
+  /// Robots that would no longer reach the base without this one, it not counted.
+  std::vector<RobotId> lost_without(TimeNs now, RobotId relay) const;
+  /// All whose loss would cut somebody off: the articulation points on ways to the base, by number.
+  std::vector<RobotId> indispensable(TimeNs now) const;
+  /// Whether one that hears and is heard by these would still reach the base if any one of them, or any one
+  /// farther on, were lost: two ways to the base that share no relay.
+  bool survives_any_loss(TimeNs now, const std::vector<RobotId>& neighbours) const;
+
+ private:
+  using Row = std::array<double, kMostRobots>;
+  /// Cost of each link in transmissions; 0: none.
+  std::array<Row, kMostRobots> costs(TimeNs now) const;
+  bool fresh(RobotId robot, TimeNs now) const;
+
+  RelayOptions options_;
+  std::array<std::optional<TimeNs>, kMostRobots> stamps_;  // of what each said last
+  std::array<Row, kMostRobots> heard_{};                   // [by][whom], 0..1
+};
+
+}  // namespace karst::core
