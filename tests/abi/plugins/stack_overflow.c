@@ -1,4 +1,5 @@
 /* Calls itself without end. */
+#pragma GCC diagnostic ignored "-Winfinite-recursion"
 static int deeper(volatile char* above) {
   volatile char here[4096];
   here[0] = above[0];
@@ -8,5 +9,4 @@ static int deeper(volatile char* above) {
   volatile char top[1] = {1};                   \
   (void)self, (void)r, (void)sink, (void)error; \
   return deeper(top);
-#pragma GCC diagnostic ignored "-Winfinite-recursion"
 #include "plain.h"
