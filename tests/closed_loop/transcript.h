@@ -83,9 +83,9 @@ class Shell {
 
   Output run(const std::string& command) {
     const std::filesystem::path where = home_ / ".where";
-    const Output out = run_command("cd " + at_.string() + " && export HOME=" + home_.string() +
+    const Output out = run_command("{ cd " + at_.string() + " && export HOME=" + home_.string() +
                                    " XDG_DATA_HOME= PATH=" + bin_ + ":$PATH && { " + command +
-                                   "\n} && pwd > " + where.string());
+                                   "\n} && pwd > " + where.string() + "; }");
     if (out.code == 0) at_ = lines_of(bytes_of(where)).at(0);
     return out;
   }
