@@ -7,7 +7,7 @@
 namespace karst::core {
 namespace {
 
-constexpr double kLookahead_m = 1.6;
+constexpr double kLookahead_m = 0.8;
 /// A vehicle that (nearly) stands turns on the spot first when it would start this far off its heading.
 constexpr double kTurnFirst_rad = 0.7, kStanding_mps = 0.2;
 constexpr double kHeadingReached_rad = 1e-3;
