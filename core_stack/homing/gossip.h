@@ -1,13 +1,13 @@
 // Store and forward: every robot comes to hold every record of every robot, over links that lose, corrupt and
 // come and go.
 //
-// Each robot says every period what it holds (a version vector) and how it is. Who hears that the other lacks
-// something it holds itself sends it (anti-entropy; Demers et al., Epidemic Algorithms for Replicated
-// Database Maintenance, 1987). Records are forwarded by whoever first hears them, after a random wait, unless
-// by then another was heard to send it or all in contact are known to hold it: the radio is heard by all
-// around, and one of several neighbours is enough. Nothing is assumed about contact: a robot that was away
-// for an hour is brought up to date by the first it meets. What is heard says how good links are: the gaps in
-// the numbers of a robot's frames.
+// Each robot says every period what it holds (a version vector) and how it is; three times as often while
+// those around it do not hold the same. Who hears that the other lacks something it holds itself sends it
+// (anti-entropy; Demers et al., Epidemic Algorithms for Replicated Database Maintenance, 1987). Records are
+// forwarded by whoever first hears them, after a random wait, unless by then another was heard to send it or
+// all in contact are known to hold it: the radio is heard by all around, and one of several neighbours is
+// enough. Nothing is assumed about contact: a robot that was away for an hour is brought up to date by the
+// first it meets. What is heard says how good links are: the gaps in the numbers of a robot's frames.
 #pragma once
 #include <array>
 #include <optional>
@@ -95,6 +95,7 @@ class Gossip {
   void answer(RobotId peer, TimeNs now);
   void queue(RobotId author, std::uint32_t number, TimeNs due);
   bool wanted(const Waiting& w, TimeNs now) const;
+  bool unsettled(TimeNs now) const;
   Frame own_news(TimeNs now);
   void add_states(Frame& frame, std::size_t& room);
   void finish(Frame& frame, std::vector<Bytes>& out);

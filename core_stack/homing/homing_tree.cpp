@@ -86,7 +86,7 @@ void HomingTree::add_free_rays(std::uint32_t i, TimeNs stamp, const FreeRay& fre
 }
 
 TreeFacts HomingTree::recheck(const Vec3& low, const Vec3& high, double margin_m, TimeNs stamp,
-                              const FreeRay& free_ray) {
+                              const FreeRay& free_ray, const FreeRay& rock) {
   const Vec3 margin = Vec3::Constant(margin_m), reach = Vec3::Constant(options_.longest_edge_m + margin_m);
   std::vector<std::uint32_t> touched;
   grid_.for_each_in_box(low - reach, high + reach,
@@ -97,11 +97,11 @@ TreeFacts HomingTree::recheck(const Vec3& low, const Vec3& high, double margin_m
       const TreeNode &a = entries_[i].node, &b = entries_[k].node;
       if (!(a.id < b.id) || !meets_box(a.position, b.position, low - margin, high + margin)) continue;
       const Ray* known = ray(i, k);
-      const bool free = ask(i, k, free_ray);
-      if (free == (known != nullptr && known->free)) continue;
+      const bool was_free = known != nullptr && known->free;
+      if (was_free ? !ask(i, k, rock) : !ask(i, k, free_ray)) continue;
       // What is seen now overrules what was said before, even by a robot whose clock is ahead.
       const TimeNs later = std::max(to_milliseconds(stamp), known ? known->stamp + kMillisecond : 0);
-      const RayFact fact{a.id, b.id, free, later};
+      const RayFact fact{a.id, b.id, !was_free, later};
       if (set_ray(fact)) facts.rays.push_back(fact);
     }
   ways_.settle();

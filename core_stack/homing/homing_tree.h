@@ -54,10 +54,11 @@ class HomingTree {
   TreeFacts set_alive(const NodeId& id, bool alive, TimeNs stamp);
   /// Asks for the rays of a node that nobody has said anything of: for nodes that others told of.
   TreeFacts look_from(const NodeId& id, TimeNs stamp, const FreeRay& free_ray);
-  /// The map changed within the box: asks again for every ray that passes within `margin_m` of it. The facts
-  /// are what changed by it.
-  TreeFacts recheck(const Vec3& low, const Vec3& high, double margin_m, TimeNs stamp,
-                    const FreeRay& free_ray);
+  /// The map changed within the box: asks again for every ray that passes within `margin_m` of it. A ray that
+  /// is known to be free is taken back only if `rock` says that the map shows rock in it: what is unknown
+  /// here another robot may have seen through. The facts are what changed by it.
+  TreeFacts recheck(const Vec3& low, const Vec3& high, double margin_m, TimeNs stamp, const FreeRay& free_ray,
+                    const FreeRay& rock);
 
   /// Takes in what others told. Returns how many facts had to be refused: positions that are not finite,
   /// nodes beyond max_nodes, rays to themselves or beyond what a node can have.

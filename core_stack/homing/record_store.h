@@ -14,6 +14,7 @@ class HeldNumbers {
  public:
   static constexpr std::uint32_t window = 32;  // records are taken up to so far behind the first one lacking
 
+  bool operator==(const HeldNumbers&) const = default;
   std::uint32_t first() const { return first_; }
   bool holds(std::uint32_t number) const {
     return number <= first_ ||

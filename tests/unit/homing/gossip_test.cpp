@@ -198,7 +198,9 @@ TEST(Gossip, HomingTreesOfAllBecomeOneOverALossyNetwork) {
     for (RobotId r = 1; r < n; ++r) {
       const Vec3 p(2.2 * i, 3.0 * r + std::sin(0.3 * i), 1);
       const TreeFacts facts = trees[r].insert_pose({r, i}, p, net.now, all_free);
-      if (!facts.empty()) EXPECT_GT(net.robots[r].publish(facts), 0u);
+      if (!facts.empty()) {
+        EXPECT_GT(net.robots[r].publish(facts), 0u);
+      }
     }
     if (i == 40)
       net.robots[2].publish(trees[2].insert_communication({2, 1000}, {88, 6, 1}, net.now, all_free));

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core_stack/homing/home.h"
+#include "core_stack/homing/map_rays.h"
 #include "core_stack/planning/roadmap.h"
 #include "tests/unit/homing/tree_world.h"
 #include "tests/unit/planning/test_maps.h"
@@ -104,7 +104,8 @@ TEST(HomingTree, FactsInAnyOrderTwiceAndInPiecesMakeOneTree) {
         const FreeRay fallen = [&](const Vec3& a, const Vec3& b) {
           return world.free(a, b) && (a - p).norm() > 6 && (b - p).norm() > 6;
         };
-        say(robot.recheck(p - Vec3::Constant(3), p + Vec3::Constant(3), 0.5, now, fallen));
+        const FreeRay rock = [&](const Vec3& a, const Vec3& b) { return !fallen(a, b); };
+        say(robot.recheck(p - Vec3::Constant(3), p + Vec3::Constant(3), 0.5, now, fallen, rock));
       } else {
         say(robot.set_alive({0, 0}, random.uniform() < 0.5, now));
       }
@@ -217,7 +218,7 @@ TEST(HomingTree, InAMapRaysKeepTheClearanceAndARockfallIsFlownAround) {
       &changes);
   Roadmap roadmap{PlanningOptions{}};
   roadmap.update(map, changes);
-  const FreeRay rays = [&](const Vec3& a, const Vec3& b) { return roadmap.segment_clear(a, b, 0.5); };
+  const FreeRay rays = free_rays(roadmap, 0.5), rock = rock_rays(map, 0.5);
   HomingTree tree({.least_edge_m = 1}, 1);
   tree.insert_communication({0, 0}, {1, 1, 1}, 0, rays);
   std::uint32_t number = 0;
@@ -238,7 +239,7 @@ TEST(HomingTree, InAMapRaysKeepTheClearanceAndARockfallIsFlownAround) {
     }
   roadmap.update(map, fall);
   const TreeFacts news =
-      tree.recheck(map.center_of({30, 0, 0}), map.center_of({30, 9, 9}), 0.5, kSecond, rays);
+      tree.recheck(map.center_of({30, 0, 0}), map.center_of({30, 9, 9}), 0.5, kSecond, rays, rock);
   EXPECT_FALSE(news.rays.empty());
   for (const RayFact& r : news.rays) EXPECT_FALSE(r.free);
   const auto around = tree.route({10.5, 1.2, 1}, rays);
@@ -246,6 +247,21 @@ TEST(HomingTree, InAMapRaysKeepTheClearanceAndARockfallIsFlownAround) {
   EXPECT_GT(around->length_m, 20);
   for (std::size_t i = 0; i + 1 < around->points.size(); ++i)
     EXPECT_TRUE(roadmap.segment_clear(around->points[i], around->points[i + 1], 0.5));
+}
+
+TEST(HomingTree, WhatOthersSawThroughIsNotTakenBackBecauseItIsUnknownHere) {
+  VoxelMap map{MapOptions{}};
+  map.declare_free({0, 0, 1}, 2);  // all that this robot has seen
+  const FreeRay none = [](const Vec3&, const Vec3&) { return false; };
+  HomingTree tree({}, kCruise);
+  tree.insert_communication({0, 0}, {0, 0, 1}, 0, kAllFree);
+  tree.apply({{{{2, 0}, NodeKind::pose, {8, 0, 1}}}, {{{0, 0}, {2, 0}, true, 0}}, {}});
+  const Vec3 low(-2, -2, -1), high(2, 2, 3);
+  EXPECT_TRUE(tree.recheck(low, high, 0.5, kSecond, none, rock_rays(map, 0.5)).empty());
+  EXPECT_LT(tree.cost_s({2, 0}), 10);
+  map.assign(map.key_of({4, 0.3, 1}), 1, 2.0f);  // beside the line, nearer than the clearance
+  EXPECT_EQ(tree.recheck(low, high, 0.5, kSecond, none, rock_rays(map, 0.5)).rays.size(), 1u);
+  EXPECT_EQ(tree.cost_s({2, 0}), ShortestWays::unreachable);
 }
 
 TEST(HomingTree, ARouteIsTheCheapestOfAllFirstRays) {
