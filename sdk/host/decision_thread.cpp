@@ -1,9 +1,31 @@
 #include "sdk/host/decision_thread.h"
 
+#include <pthread.h>
+
+#include <array>
 #include <chrono>
+#include <cstdio>
+#include <ctime>
 #include <utility>
 
 namespace karst::host {
+namespace {
+
+constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
+
+std::string seconds(double s) {
+  std::array<char, 40> text;
+  std::snprintf(text.data(), text.size(), "%g s", s);
+  return text.data();
+}
+
+}  // namespace
+
+std::string passed(const CallLimits& limits, double wall_s, double cpu_s) {
+  if (cpu_s > limits.cpu_s) return "took more than " + seconds(limits.cpu_s) + " of processor time";
+  if (wall_s > limits.wall_s) return "did not return within " + seconds(limits.wall_s);
+  return "";
+}
 
 DecisionThread::DecisionThread()
     : channel_(std::make_shared<Channel>()), thread_([channel = channel_] { serve(channel); }) {}
@@ -35,14 +57,27 @@ void DecisionThread::serve(std::shared_ptr<Channel> channel) {
   }
 }
 
-bool DecisionThread::run(std::function<void()> task, double limit_s) {
-  if (hangs_) return false;
+double DecisionThread::cpu_s() {
+  clockid_t clock{};
+  timespec t{};
+  if (pthread_getcpuclockid(thread_.native_handle(), &clock) != 0 || clock_gettime(clock, &t) != 0) return 0;
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+std::string DecisionThread::run(std::function<void()> task, const CallLimits& limits) {
+  if (hangs_) return "hangs in an earlier call";
+  const auto begin = std::chrono::steady_clock::now();
+  const double cpu_before_s = cpu_s();
   std::unique_lock lock(channel_->mutex);
   channel_->task = std::move(task);
   channel_->changed.notify_all();
-  hangs_ = !channel_->changed.wait_for(lock, std::chrono::duration<double>(limit_s),
-                                       [&] { return !channel_->task; });
-  return !hangs_;
+  while (!channel_->changed.wait_for(lock, kBetweenLooks, [&] { return !channel_->task; })) {
+    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+    const std::string which = passed(limits, waited.count(), cpu_s() - cpu_before_s);
+    hangs_ = !which.empty();
+    if (hangs_) return which;
+  }
+  return "";
 }
 
 }  // namespace karst::host

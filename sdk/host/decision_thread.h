@@ -4,7 +4,10 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
+
+#include "sdk/host/call_limits.h"
 
 namespace karst::host {
 
@@ -16,10 +19,10 @@ class DecisionThread {
   DecisionThread(const DecisionThread&) = delete;
   DecisionThread& operator=(const DecisionThread&) = delete;
 
-  /// Runs `task` on the thread. False if it has not returned within the limit: the thread is then given up
-  /// for good, and all a task refers to must stay alive by itself (shared ownership), as it may still run.
-  /// `task` must not throw.
-  bool run(std::function<void()> task, double limit_s);
+  /// Runs `task` on the thread; "" once it returned. Otherwise which limit it passed, in words: the thread is
+  /// then given up for good, and all a task refers to must stay alive by itself (shared ownership), as it may
+  /// still run. `task` must not throw. Processor time is that of this thread alone.
+  std::string run(std::function<void()> task, const CallLimits& limits);
   bool hangs() const { return hangs_; }
   std::thread::id id() const { return thread_.get_id(); }
 
@@ -31,6 +34,7 @@ class DecisionThread {
     bool stop = false;
   };
   static void serve(std::shared_ptr<Channel> channel);
+  double cpu_s();
 
   std::shared_ptr<Channel> channel_;
   std::thread thread_;

@@ -1,8 +1,8 @@
 // A policy plugin behind the core's port: in this process, or in one of its own (docs/isolation.md).
 //
-// In this process the plugin runs on a decision thread of its own. A call that does not return within the
-// hang limit is abandoned: its services fail from then on, should_stop() says so, and PolicyFailure is
-// thrown. This is the only thing a wall clock decides, and it is a failure path: a replay of a run in which
+// In this process the plugin runs on a decision thread of its own. A call that passes a limit of time is
+// abandoned: its services fail from then on, should_stop() says so, and PolicyFailure is
+// thrown. This is the only thing a clock decides, and it is a failure path: a replay of a run in which
 // no policy hangs is bit-identical.
 //
 // A thread cannot be killed. If it never returns, it stays until the process ends; `abandoned()` tells, and
@@ -29,9 +29,9 @@ struct PolicyChoice {
   boost::property_tree::ptree parameters;  // values as text with units, such as "2 m"
   std::string source = "policy";           // the file the parameters come from, for messages
   std::uint64_t seed = 1;
-  double hang_limit_s = 10.0;  // of a call, by the wall clock
+  double hang_limit_s = 60.0;  // of a call, by the wall clock
   Isolation isolation = Isolation::in_process;
-  double cpu_limit_s = 10.0;             // of a call, in all threads; of a policy's own process
+  double cpu_limit_s = 10.0;  // of a call: of its thread, or of all threads of the policy's own process
   std::int64_t memory_limit_mib = 2048;  // of a policy's own process
   int failures_allowed = 2;              // in a row; one more is a PolicyFailure
 };

@@ -44,7 +44,7 @@ std::string LoadedPolicy::call(const char* slot, Work work) {
   auto call = std::make_shared<Call>();
   call->session = session_;
   const ProcessState before;
-  const bool returned = thread_.run(
+  const std::string given_up_as = thread_.run(
       [call, work] {
         const ProcessState state;
         try {
@@ -56,14 +56,11 @@ std::string LoadedPolicy::call(const char* slot, Work work) {
         }
         call->process_change = state.restore();
       },
-      choice_.hang_limit_s);
-  if (!returned) {
+      {choice_.hang_limit_s, choice_.cpu_limit_s});
+  if (!given_up_as.empty()) {
     session_->abandon();
     before.restore();
-    char text[120];
-    std::snprintf(text, sizeof text, "%s() did not return within %g s: it is given up", slot,
-                  choice_.hang_limit_s);
-    return text;
+    return std::string(slot) + "() " + given_up_as + ": it is given up";
   }
   if (!call->process_change.empty()) warn_of_change(call->process_change, std::string("in ") + slot + "()");
   return call->failure.empty() ? "" : std::string(slot) + "(): " + call->failure;

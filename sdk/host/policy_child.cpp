@@ -65,7 +65,7 @@ class Server {
     choice.source = order.source;
     choice.seed = order.seed;
     choice.failures_allowed = order.failures_allowed;
-    choice.hang_limit_s = 1e9;  // the host's to enforce: it can end this process
+    choice.hang_limit_s = choice.cpu_limit_s = 1e9;  // the host's to enforce: it can end this process
     try {
       confine_this_process(order.memory_limit_bytes);
       end_with(host_);

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -75,12 +74,6 @@ std::size_t threads_of(pid_t id) {
   return stat(path.c_str(), &s) == 0 && s.st_nlink > 2 ? s.st_nlink - 2 : 0;
 }
 
-std::string seconds(double s) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%g s", s);
-  return text;
-}
-
 }  // namespace
 
 std::string policy_child_program() {
@@ -131,12 +124,9 @@ void PolicyProcess::watch() {
     end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     throw ProcessBroken("its process ended" + in_call + ": " + describe(end));
   }
-  if (cpu_s() - cpu_before_s_ > limits_.cpu_s)
-    throw ProcessBroken(std::string(call_) + "() took more than " + seconds(limits_.cpu_s) +
-                        " of processor time");
   const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - call_began_;
-  if (waited.count() > limits_.wall_s)
-    throw ProcessBroken(std::string(call_) + "() did not return within " + seconds(limits_.wall_s));
+  if (const std::string which = passed(limits_, waited.count(), cpu_s() - cpu_before_s_); !which.empty())
+    throw ProcessBroken(std::string(call_) + "() " + which);
   if (threads_of(id_) > kMostThreads)
     throw ProcessBroken("it ran more than " + std::to_string(kMostThreads) + " threads" + in_call);
 }

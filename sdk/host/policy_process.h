@@ -5,6 +5,7 @@
 #include <chrono>
 #include <string>
 
+#include "sdk/host/call_limits.h"
 #include "sdk/host/shared_ring.h"
 
 namespace karst::host {
@@ -12,11 +13,6 @@ namespace karst::host {
 /// The process is of no more use. `what()` says why, in the same words in every replay.
 struct ProcessBroken : std::runtime_error {
   using std::runtime_error::runtime_error;
-};
-
-/// What one question may cost.
-struct CallLimits {
-  double wall_s = 10, cpu_s = 10;
 };
 
 /// The program that such a process runs: lib/karst/karst-policy-child beside this program's folder.

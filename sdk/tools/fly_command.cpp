@@ -121,16 +121,17 @@ host::PolicyChoice policy_choice(const Mission& mission, const FlyArguments& arg
   choice.parameters = mission.policy_parameters;
   choice.source = mission.file;
   choice.seed = policy_seed(mission);
-  if (mission.policy_isolation == "process") {
-    choice.isolation = host::Isolation::process;
-    choice.cpu_limit_s = mission.policy_cpu_limit_s;
-    choice.memory_limit_mib = mission.policy_memory_limit_mib;
-    // In lockstep the vehicle's clock stands still meanwhile: a loaded machine must not cost a policy its
-    // flight. On a vehicle nobody waits longer than until the next decision is due.
-    choice.hang_limit_s = mission.policy_hang_limit_s;
-    if (args.real_time)
-      choice.hang_limit_s = std::min(choice.hang_limit_s, mission.core.mission.decision_period_s);
-  }
+  const bool own_process = mission.policy_isolation == "process";
+  choice.isolation = own_process ? host::Isolation::process : host::Isolation::in_process;
+  choice.memory_limit_mib = mission.policy_memory_limit_mib;
+  choice.cpu_limit_s = mission.policy_cpu_limit_s;
+  // In lockstep the vehicle's clock stands still meanwhile: a loaded machine must not cost a policy its
+  // flight. On a vehicle nobody waits longer than until the next decision is due, for a policy that can be
+  // started once more.
+  choice.hang_limit_s = mission.policy_hang_limit_s;
+  if (args.real_time)
+    choice.hang_limit_s = std::min(choice.hang_limit_s, own_process ? mission.core.mission.decision_period_s
+                                                                    : mission.policy_cpu_limit_s);
   return choice;
 }
 

@@ -41,10 +41,10 @@ void describe_mission(OptionTable& t, Mission& m) {
           "process: the policy runs in a process of its own, where a crash costs the policy and not the "
           "vehicle");
     p.add("cpu_limit", m.policy_cpu_limit_s, "s", 0.1, 3600,
-          "processor time a call may take of a policy in a process of its own, in all its threads");
+          "processor time a call may take: of its thread, or of all threads of the policy's own process");
     p.add("hang_limit", m.policy_hang_limit_s, "s", 0.1, 3600,
-          "by the wall clock, a call of a policy in a process of its own; with --real-time "
-          "mission.decision_period if that is less");
+          "by the wall clock, for calls that wait for ever; with --real-time cpu_limit if that is less, "
+          "mission.decision_period of a policy in a process of its own");
     p.add("memory_limit_mib", m.policy_memory_limit_mib, 256, 1 << 20,
           "address space of a policy in a process of its own, in MiB");
   });

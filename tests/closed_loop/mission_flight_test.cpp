@@ -83,7 +83,7 @@ TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
   const auto run = fresh_folder(std::string("flight_bad_") + GetParam()) / "run";
   const Output out =
       run_karst("fly --cave " + generated_cave("small", 7) + " --policy plain --plugin " + plugin +
-                " --set mission.max_flight_time=90s --quiet --no-report --out " + run.string());
+                " --set policy.hang_limit=10s --set mission.max_flight_time=90s --quiet --no-report --out " + run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(metrics_of(run)["outcome"], "landed") << out.text;
   EXPECT_GT(metrics_of(run)["path_length_m"].get<double>(), 20.0) << "the fallback did not explore";

@@ -12,11 +12,12 @@ TEST(DecisionThread, RunsEveryTaskOnTheSameThreadInOrder) {
   DecisionThread thread;
   int count = 0;
   for (int i = 0; i < 1000; ++i) {
-    ASSERT_TRUE(thread.run(
-        [&, i] {
-          if (count == i && std::this_thread::get_id() == thread.id()) ++count;
-        },
-        60.0));
+    ASSERT_EQ(thread.run(
+                  [&, i] {
+                    if (count == i && std::this_thread::get_id() == thread.id()) ++count;
+                  },
+                  {60, 60}),
+              "");
   }
   EXPECT_EQ(count, 1000);
 }
@@ -27,19 +28,34 @@ TEST(DecisionThread, GivesUpOnATaskThatDoesNotReturnAndTakesNoOther) {
   std::future<void> done = left->get_future();
   {
     DecisionThread thread;
-    EXPECT_FALSE(thread.run(
-        [gate, left] {
-          gate->get_future().wait();
-          left->set_value();
-        },
-        0.05));
+    EXPECT_EQ(thread.run(
+                  [gate, left] {
+                    gate->get_future().wait();
+                    left->set_value();
+                  },
+                  {0.05, 60}),
+              "did not return within 0.05 s");
     EXPECT_TRUE(thread.hangs());
     bool ran = false;
-    EXPECT_FALSE(thread.run([&] { ran = true; }, 60.0));
+    EXPECT_NE(thread.run([&] { ran = true; }, {60, 60}), "");
     EXPECT_FALSE(ran);
   }
   gate->set_value();  // the object is gone; its thread still ends well
   done.wait();
+}
+
+TEST(DecisionThread, CountsProcessorTimeSoThatALoadedMachineCostsNoPolicyItsFlight) {
+  DecisionThread thread;
+  const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(300)); };
+  EXPECT_EQ(thread.run(wait, {60, 0.2}), "");  // as a thread that other programs keep from the processor
+  auto stop = std::make_shared<std::atomic<bool>>(false);
+  EXPECT_EQ(thread.run(
+                [stop] {
+                  while (!*stop) continue;
+                },
+                {60, 0.2}),
+            "took more than 0.2 s of processor time");
+  *stop = true;
 }
 
 }  // namespace
