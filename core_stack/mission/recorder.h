@@ -9,6 +9,7 @@
 
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/voxel_map.h"
+#include "core_stack/vehicle/rgb_camera_model.h"
 
 namespace karst::core {
 
