@@ -29,6 +29,9 @@ DrawnMap hall(int length, int width, int height) {
   return {0.5, layers};
 }
 
+/// The drawn host is slow: few patches and stops.
+const Bench::Values kQuick = {{"patches", "6"}, {"stops", "2"}};
+
 karst::Sensor camera() {
   karst::Sensor s{};
   s.kind = KARST_SENSOR_RGB;
@@ -66,8 +69,8 @@ Flight fly(Bench& bench, int decisions) {
 }
 
 TEST(SurfaceCoverage, LooksAtEveryWallOfAHallAndIsDone) {
-  const DrawnMap map = hall(20, 16, 8);
-  Bench bench(karst_plugin_entry(), map);
+  const DrawnMap map = hall(14, 12, 7);
+  Bench bench(karst_plugin_entry(), map, kQuick);
   bench.position = map.place('s');
   bench.sensors = {camera()};
   const Flight flight = fly(bench, 60);
@@ -84,10 +87,10 @@ TEST(SurfaceCoverage, LooksAtEveryWallOfAHallAndIsDone) {
 }
 
 TEST(SurfaceCoverage, TheSameRequestsGetTheSameAnswers) {
-  const DrawnMap map = hall(18, 14, 8);
+  const DrawnMap map = hall(12, 12, 7);
   std::vector<std::vector<Vec3>> places(2);
   for (auto& run : places) {
-    Bench bench(karst_plugin_entry(), map);
+    Bench bench(karst_plugin_entry(), map, kQuick);
     bench.position = map.place('s');
     bench.sensors = {camera()};
     for (const karst::Goal& g : fly(bench, 12).goals) run.push_back(g.position);
@@ -98,8 +101,8 @@ TEST(SurfaceCoverage, TheSameRequestsGetTheSameAnswers) {
 
 TEST(SurfaceCoverage, GivesUpWhatPicturesDoNotShow) {
   // The vehicle says it was there, but looked the other way each time: cells stay unseen.
-  const DrawnMap map = hall(12, 12, 8);
-  Bench bench(karst_plugin_entry(), map, {{"tries", "1"}});
+  const DrawnMap map = hall(12, 10, 7);
+  Bench bench(karst_plugin_entry(), map, {{"tries", "1"}, {"patches", "6"}, {"stops", "2"}});
   bench.position = map.place('s');
   bench.sensors = {camera()};
   bool ended = false;
@@ -116,8 +119,8 @@ TEST(SurfaceCoverage, GivesUpWhatPicturesDoNotShow) {
 }
 
 TEST(SurfaceCoverage, AGoalRefusedIsNotProposedAgainAtOnce) {
-  const DrawnMap map = hall(20, 16, 8);
-  Bench bench(karst_plugin_entry(), map);
+  const DrawnMap map = hall(14, 12, 7);
+  Bench bench(karst_plugin_entry(), map, kQuick);
   bench.position = map.place('s');
   bench.sensors = {camera()};
   bench.time_s = 1;
