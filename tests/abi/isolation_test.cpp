@@ -7,6 +7,8 @@
 #include <csignal>
 #include <filesystem>
 
+#include "core_stack/common/error.h"
+#include "core_stack/common/random.h"
 #include "sdk/host/isolated_policy.h"
 #include "sdk/host/sandbox.h"
 #include "tests/abi/room.h"
