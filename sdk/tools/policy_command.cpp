@@ -6,6 +6,8 @@
 
 #include "sdk/host/discovery.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/check_command.h"
+#include "sdk/tools/request_replay_command.h"
 
 namespace karst::tools {
 namespace {
@@ -96,6 +98,8 @@ void add_policy_command(CLI::App& app) {
     else
       print_text(all, path, args->verbose);
   });
+  add_check_command(*policy);
+  add_request_replay_command(*policy);
 }
 
 }  // namespace karst::tools
