@@ -24,6 +24,8 @@ class DecisionBox {
 
   /// Why the answer as a whole is no answer; "" if it is one.
   std::string fault() const;
+  /// True if the sink refused something: an error that decide() then returns is of its own making.
+  bool misused() const { return !fault_.empty(); }
   bool is_tour() const { return tour_; }
   /// The well-formed part of the answer.
   core::Decision decision() const;

@@ -73,34 +73,6 @@ std::string parameter_fault(const karst_parameter_t& p) {
   }
 }
 
-std::string descriptor_fault(const karst_policy_descriptor_t& d) {
-  if (d.size < sizeof(karst_policy_descriptor_t)) return "its descriptor is smaller than in ABI 1.0";
-  for (const karst_text_t* t : {&d.id, &d.name, &d.version, &d.one_line})
-    if (const std::string fault = fault_of(*t, kLineLimit); !fault.empty())
-      return "a text in its descriptor " + fault;
-  if (!is_identifier(string_of(d.id))) return "its id must be [a-z][a-z0-9_]*";
-  const std::string id = string_of(d.id);
-  if (std::lexicographical_compare(kHostRelease.begin(), kHostRelease.end(), d.min_host, d.min_host + 3))
-    return id + " needs karst " + release_text(d.min_host) + " or later, this is " +
-           release_text(kHostRelease.data()) + ": install a newer karst, or an older release of the policy";
-  if (d.parameter_count > kMostParameters) return id + " declares too many parameters";
-  if (d.parameter_count > 0 && d.parameters == nullptr) return id + " declares parameters but gives none";
-  std::set<std::string> seen;
-  for (std::uint32_t i = 0; i < d.parameter_count; ++i) {
-    std::string fault = parameter_fault(d.parameters[i]);
-    if (fault.empty() && !seen.insert(string_of(d.parameters[i].id)).second) fault = "the id is given twice";
-    if (!fault.empty()) return id + ": parameter " + std::to_string(i) + ": " + fault;
-  }
-  return "";
-}
-
-std::string policy_fault(const karst_policy_t* p) {
-  if (p == nullptr) return "has no table (could it not be constructed?)";
-  if (const std::string slot = missing_slot(*p); !slot.empty())
-    return "its table has no \"" + slot + "\", which ABI 1.0 demands";
-  return descriptor_fault(*p->descriptor);
-}
-
 /// The entry found in `handle` may come from a library the plugin links: its own would then be hidden.
 bool belongs_to(const void* symbol, const std::string& path) {
   Dl_info info{};
@@ -109,8 +81,9 @@ bool belongs_to(const void* symbol, const std::string& path) {
          std::filesystem::equivalent(info.dli_fname, path, error) && !error;
 }
 
-/// Runs the plugin's constructors, its entry and its tables' getters.
-PluginFile opened(const std::string& path) {
+}  // namespace
+
+const karst_plugin_t& enter_plugin(const std::string& path) {
   const std::string file =
       std::filesystem::absolute(path).string();  // a bare name must not search LD_LIBRARY_PATH
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -128,24 +101,8 @@ PluginFile opened(const std::string& path) {
   if (plugin == nullptr) throw InputError(path, "", KARST_PLUGIN_ENTRY_NAME " returned nothing");
   if (plugin->size < offsetof(karst_plugin_t, abi_minor) + sizeof plugin->abi_minor)
     throw InputError(path, "", "its plugin table is too small to name an ABI version");
-  if (const std::string fault = handshake_fault(plugin->abi_major, plugin->abi_minor); !fault.empty())
-    throw InputError(path, "", fault);
-  if (!KARST_HAS(karst_plugin_t, plugin, policy))
-    throw InputError(path, "", "its plugin table has no \"policy\"");
-  if (plugin->policy_count == 0 || plugin->policy_count > kMostPolicies)
-    throw InputError(path, "",
-                     "offers " + std::to_string(plugin->policy_count) + " policies, 1 to 64 were expected");
-  PluginFile out{path, plugin, {}, ""};
-  for (std::uint32_t i = 0; i < plugin->policy_count; ++i) {
-    const karst_policy_t* policy = plugin->policy(i);
-    if (const std::string fault = policy_fault(policy); !fault.empty())
-      throw InputError(path, "policy " + std::to_string(i), fault);
-    out.policies.push_back(policy);
-  }
-  return out;
+  return *plugin;
 }
-
-}  // namespace
 
 std::string handshake_fault(std::uint32_t abi_major, std::uint32_t abi_minor) {
   const std::string both = "built for policy ABI " + abi_text(abi_major, abi_minor) + ", this karst offers " +
@@ -157,6 +114,70 @@ std::string handshake_fault(std::uint32_t abi_major, std::uint32_t abi_minor) {
     return both + "install a newer karst, or rebuild the plugin with this karst's SDK";
   return "";
 }
+
+std::string plugin_fault(const karst_plugin_t& plugin) {
+  if (!KARST_HAS(karst_plugin_t, &plugin, policy)) return "its plugin table has no \"policy\"";
+  if (plugin.policy_count == 0 || plugin.policy_count > kMostPolicies)
+    return "offers " + std::to_string(plugin.policy_count) + " policies, 1 to 64 were expected";
+  return "";
+}
+
+std::string table_fault(const karst_policy_t* p) {
+  if (p == nullptr) return "has no table (could it not be constructed?)";
+  if (const std::string slot = missing_slot(*p); !slot.empty())
+    return "its table has no \"" + slot + "\", which ABI 1.0 demands";
+  return "";
+}
+
+std::string descriptor_fault(const karst_policy_descriptor_t& d) {
+  if (d.size < sizeof(karst_policy_descriptor_t)) return "its descriptor is smaller than in ABI 1.0";
+  for (const karst_text_t* t : {&d.id, &d.name, &d.version, &d.one_line})
+    if (const std::string fault = fault_of(*t, kLineLimit); !fault.empty())
+      return "a text in its descriptor " + fault;
+  if (!is_identifier(string_of(d.id))) return "its id must be [a-z][a-z0-9_]*";
+  const std::string id = string_of(d.id);
+  if (std::lexicographical_compare(kHostRelease.begin(), kHostRelease.end(), d.min_host, d.min_host + 3))
+    return id + " needs karst " + release_text(d.min_host) + " or later, this is " +
+           release_text(kHostRelease.data()) + ": install a newer karst, or an older release of the policy";
+  return "";
+}
+
+std::string parameters_fault(const karst_policy_descriptor_t& d) {
+  const std::string id = string_of(d.id);
+  if (d.parameter_count > kMostParameters) return id + " declares too many parameters";
+  if (d.parameter_count > 0 && d.parameters == nullptr) return id + " declares parameters but gives none";
+  std::set<std::string> seen;
+  for (std::uint32_t i = 0; i < d.parameter_count; ++i) {
+    std::string fault = parameter_fault(d.parameters[i]);
+    if (fault.empty() && !seen.insert(string_of(d.parameters[i].id)).second) fault = "the id is given twice";
+    if (!fault.empty()) return id + ": parameter " + std::to_string(i) + ": " + fault;
+  }
+  return "";
+}
+
+namespace {
+
+/// Runs the plugin's constructors, its entry and its tables' getters.
+PluginFile opened(const std::string& path) {
+  const karst_plugin_t& plugin = enter_plugin(path);
+  const auto demand = [&](const std::string& place, const std::string& fault) {
+    if (!fault.empty()) throw InputError(path, place, fault);
+  };
+  demand("", handshake_fault(plugin.abi_major, plugin.abi_minor));
+  demand("", plugin_fault(plugin));
+  PluginFile out{path, &plugin, {}, ""};
+  for (std::uint32_t i = 0; i < plugin.policy_count; ++i) {
+    const karst_policy_t* policy = plugin.policy(i);
+    const std::string place = "policy " + std::to_string(i);
+    demand(place, table_fault(policy));
+    demand(place, descriptor_fault(*policy->descriptor));
+    demand(place, parameters_fault(*policy->descriptor));
+    out.policies.push_back(policy);
+  }
+  return out;
+}
+
+}  // namespace
 
 PluginFile open_plugin(const std::string& path) {
   const ProcessState before;

@@ -19,7 +19,18 @@ struct PluginFile {
 /// both versions and what to do), a missing slot, a descriptor that contradicts itself.
 PluginFile open_plugin(const std::string& path);
 
+// The same, a step at a time: each returns "" or the reason, and presupposes the steps before it.
+
+/// dlopen and the entry; throws core::InputError.
+const karst_plugin_t& enter_plugin(const std::string& path);
 /// "" if this host can use a plugin of that ABI, otherwise both versions and what to do.
 std::string handshake_fault(std::uint32_t abi_major, std::uint32_t abi_minor);
+/// The plugin's own table.
+std::string plugin_fault(const karst_plugin_t& plugin);
+/// A policy's table: every mandatory slot is there.
+std::string table_fault(const karst_policy_t* policy);
+/// Its texts and the karst it needs.
+std::string descriptor_fault(const karst_policy_descriptor_t& descriptor);
+std::string parameters_fault(const karst_policy_descriptor_t& descriptor);
 
 }  // namespace karst::host

@@ -14,6 +14,7 @@
 
 #include "core_stack/common/error.h"
 #include "sdk/host/hosted_policy.h"
+#include "sdk/host/request_log.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/auto_policy.h"
 #include "sdk/tools/mission_file.h"
@@ -46,7 +47,8 @@ struct FlyArguments {
   std::vector<std::string> plugins;
   std::optional<std::int64_t> seed;
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool json = false, quiet = false, keys = false, no_report = false, real_time = false;
+  bool json = false, quiet = false, keys = false, no_report = false, real_time = false,
+       record_requests = false;
 };
 
 /// runs/POLICY-CAVE-SEED, with a number behind it if that is taken.
@@ -161,8 +163,15 @@ int fly(const FlyArguments& args) {
   if (!mission.policy_selection.empty())
     recorder.event(0, "selection", {{"policy", mission.policy}, {"reason", mission.policy_selection}});
 
+  std::optional<host::RecordingPolicy> recording;
+  if (args.record_requests)
+    recording.emplace(
+        *policy, run_dir / host::kRequestLogName,
+        host::RequestLogHeader{policy->name(), policy->version(), choice.seed, policy->parameters()});
+  core::PolicyPort& asked = recording ? static_cast<core::PolicyPort&>(*recording) : *policy;
+
   core::Executive executive(args.threads, args.real_time ? core::Clock::real_time : core::Clock::lockstep);
-  core::MissionControl control(mission.core, *vehicle, executive, *policy, recorder);
+  core::MissionControl control(mission.core, *vehicle, executive, asked, recorder);
   int code = kNotLanded;
   try {
     StatusLine line(args.quiet || args.json);
@@ -240,6 +249,9 @@ void add_fly_command(CLI::App& app) {
                    "do not fly: look at everything that can be wrong and write the mission as resolved to "
                    "this file")
       ->check(not_empty());
+  fly_app->add_flag(
+      "--record-requests", args->record_requests,
+      "write what the policy is asked, and its answers, into requests.bin; see karst policy replay");
   fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
   fly_app->callback([args] {
     if (const int code = fly(*args); code != 0) throw CLI::RuntimeError(code);

@@ -6,7 +6,9 @@
 
 #include "sdk/host/discovery.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/check_command.h"
 #include "sdk/tools/policy_new.h"
+#include "sdk/tools/request_replay_command.h"
 
 namespace karst::tools {
 namespace {
@@ -98,6 +100,8 @@ void add_policy_command(CLI::App& app) {
     else
       print_text(all, path, args->verbose);
   });
+  add_check_command(*policy);
+  add_request_replay_command(*policy);
 }
 
 }  // namespace karst::tools

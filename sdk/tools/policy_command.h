@@ -1,4 +1,4 @@
-// `karst policy`: the policies this installation can fly, and new ones.
+// `karst policy`: the policies this installation can fly, and what can be done with one.
 #pragma once
 
 namespace CLI {
@@ -7,7 +7,7 @@ class App;
 
 namespace karst::tools {
 
-/// Adds `policy list [--json] [--verbose] [--plugin FILE...]` and `policy new` to the application.
+/// Adds `policy` with its subcommands to the application.
 void add_policy_command(CLI::App& app);
 
 }  // namespace karst::tools

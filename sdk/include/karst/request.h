@@ -52,7 +52,9 @@ class Request {
                                    double tolerance_m) const {
     std::vector<double> out(goals.size());
     karst_error_t e{};
-    check(host_->path->lengths(host_, from, goals.data(), goals.size(), tolerance_m, out.data(), &e), e);
+    check(offered(host_->path, "paths")
+              .lengths(host_, from, goals.data(), goals.size(), tolerance_m, out.data(), &e),
+          e);
     return out;
   }
 
@@ -60,22 +62,23 @@ class Request {
   std::vector<std::uint64_t> newly_seen(const Sensor& sensor, const std::vector<Viewpoint>& from) const {
     std::vector<std::uint64_t> out(from.size());
     karst_error_t e{};
-    check(host_->gain->newly_seen(host_, map.handle(), &sensor, 1, from.data(), from.size(), out.data(), &e),
+    check(offered(host_->gain, "gains")
+              .newly_seen(host_, map.handle(), &sensor, 1, from.data(), from.size(), out.data(), &e),
           e);
     return out;
   }
 
   void draw_points(const std::vector<Vec3>& points, std::uint32_t rgb) const {
     karst_error_t e{};
-    check(host_->draw->points(host_, points.data(), points.size(), rgb, &e), e);
+    check(offered(host_->draw, "drawings").points(host_, points.data(), points.size(), rgb, &e), e);
   }
   void draw_lines(const std::vector<karst_segment_t>& lines, std::uint32_t rgb) const {
     karst_error_t e{};
-    check(host_->draw->lines(host_, lines.data(), lines.size(), rgb, &e), e);
+    check(offered(host_->draw, "drawings").lines(host_, lines.data(), lines.size(), rgb, &e), e);
   }
   void draw_text(const Vec3& at, const std::string& text, std::uint32_t rgb) const {
     karst_error_t e{};
-    check(host_->draw->text(host_, at, to_abi(text), rgb, &e), e);
+    check(offered(host_->draw, "drawings").text(host_, at, to_abi(text), rgb, &e), e);
   }
 
   void log(const std::string& line) const { host_->log(host_, KARST_LOG_INFO, to_abi(line)); }
@@ -91,6 +94,13 @@ class Request {
   bool should_stop() const { return host_->should_stop(host_) != 0; }
 
  private:
+  /// A service this host does not offer is an error, not a crash.
+  template <class Service>
+  static const Service& offered(const Service* service, const char* what) {
+    if (service == nullptr) throw Error(std::string("this host offers no ") + what, KARST_ERROR_UNAVAILABLE);
+    return *service;
+  }
+
   const karst_host_t* host_;
 };
 

@@ -56,6 +56,10 @@ TEST(IncludeDirection, TheCoreKnowsNeitherAbiNorSimulatorNorPolicies) {
 TEST(IncludeDirection, TheHostKnowsNoSimulator) {
   expect_none("sdk/host", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation"});
 }
+TEST(IncludeDirection, TheCheckKnowsTheHostOnly) {
+  expect_none("sdk/check", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation", "sdk/campaign"});
+  expect_none("sdk/host", {"sdk/check"});
+}
 // evaluation <- campaign <- selection, tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
   expect_none("sdk/evaluation", {"sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/tools"});

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <karst/testing/drawn_frontiers.h>
 #include <karst/testing/drawn_host.h>
 
 namespace karst::testing {
@@ -61,6 +62,33 @@ class Bench {
     return frontiers.back();
   }
 
+  /// Offers what the drawing shows, in place of what was offered before; ids from 1.
+  void offer_drawn(std::uint32_t min_cells = 1) {
+    frontiers.clear();
+    for (const Frontier& f : find_frontiers(host_.map(), position, min_cells)) {
+      Frontier& mine = offer(f.id, f.viewpoint, f.centroid, f.cells);
+      mine.low = f.low, mine.high = f.high, mine.normal = f.normal;
+      mine.viewpoint_heading_rad = f.viewpoint_heading_rad;
+    }
+  }
+
+  /// The first goal of the last answer has been reached: the vehicle is there, the policy is told, and paths
+  /// are measured from there.
+  void arrive() {
+    const Goal goal = first_goal();
+    position = goal.position;
+    settle(KARST_EVENT_GOAL_REACHED, KARST_FATE_REACHED, goal, "reached");
+    for (Frontier& f : frontiers) f.path_length_m = host_.map().path_length_m(position, f.viewpoint);
+  }
+  /// It came to nothing: KARST_EVENT_GOAL_REJECTED, _UNREACHABLE, _ABANDONED or _SUPERSEDED.
+  void fail(karst_event_kind_t kind, const std::string& reason = "as the test wants it") {
+    const karst_goal_fate_t fate = kind == KARST_EVENT_GOAL_REJECTED      ? KARST_FATE_REJECTED
+                                   : kind == KARST_EVENT_GOAL_UNREACHABLE ? KARST_FATE_UNREACHABLE
+                                   : kind == KARST_EVENT_GOAL_ABANDONED   ? KARST_FATE_ABANDONED
+                                                                          : KARST_FATE_SUPERSEDED;
+    settle(kind, fate, first_goal(), reason);
+  }
+
   /// Asks once. Throws Error if the policy fails.
   Decision decide() {
     std::vector<karst_frontier_cluster_t> clusters;
@@ -99,6 +127,7 @@ class Bench {
     karst_decision_sink_t sink{sizeof(karst_decision_sink_t), 64, &answer, &add_goals, &set_outcome};
     karst_error_t e{};
     check(policy_->decide(self_, &r, &sink, &e), e);
+    last_answer_ = answer;
     return answer;
   }
 
@@ -125,6 +154,15 @@ class Bench {
   }
 
  private:
+  Goal first_goal() const {
+    if (last_answer_.goals.empty()) throw Error("the last answer had no goal");
+    return last_answer_.goals.front();
+  }
+  void settle(karst_event_kind_t kind, karst_goal_fate_t fate, const Goal& goal, const std::string& reason) {
+    last_goal = goal.position;
+    last_fate = fate;
+    tell(kind, goal, reason);
+  }
   void start(const std::vector<unsigned char>& bytes) {
     karst_error_t e{};
     self_ = policy_->create(host_.host(), &e);
@@ -200,6 +238,7 @@ class Bench {
   DrawnHost host_;
   const karst_policy_t* policy_;
   Values values_;
+  Decision last_answer_;
   void* self_ = nullptr;
   bool active_ = false;
   std::uint32_t sequence_ = 0;

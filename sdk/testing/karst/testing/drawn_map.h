@@ -7,7 +7,8 @@
 //
 // A layer is seen from above: the first row is the northernmost. '#' is occupied, '?' unknown, '.' free; a
 // letter is a free cell with a name. Blanks before a row are ignored; a row that ends early goes on unknown,
-// as does everything outside. Layers go up. The lower south-western corner is the world's origin.
+// as does everything outside. Layers go up. The lower south-western corner is the world's origin. A legend
+// gives other characters a meaning; what is tedious to draw is added with fill(), room() and tube().
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -34,11 +35,63 @@ struct Index {
 
 class DrawnMap {
  public:
-  DrawnMap(double resolution_m, const std::vector<std::string>& layers) : resolution_m_(resolution_m) {
-    for (std::size_t z = 0; z < layers.size(); ++z) draw(layers[z], static_cast<int>(z));
+  using Legend = std::map<char, Cell>;  // of characters beside '#', '.', '?' and letters, or in their stead
+
+  DrawnMap(double resolution_m, const std::vector<std::string>& layers, const Legend& legend = {})
+      : resolution_m_(resolution_m), layers_(layers.size()) {
+    for (std::size_t z = 0; z < layers.size(); ++z) draw(layers[z], static_cast<int>(z), legend);
+  }
+
+  /// Every cell whose centre lies in the closed box, metres.
+  DrawnMap& fill(const Box& box, Cell cell) {
+    const Index low = index_of(box.low), high = index_of(box.high);
+    for (int x = low.x; x <= high.x; ++x)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int z = low.z; z <= high.z; ++z) {
+          const Vec3 c = center_of({x, y, z});
+          const bool inside = c.x >= box.low.x && c.y >= box.low.y && c.z >= box.low.z && c.x <= box.high.x &&
+                              c.y <= box.high.y && c.z <= box.high.z;
+          if (inside) set({x, y, z}, cell);
+        }
+    return *this;
+  }
+  /// Free inside, with a wall of one cell around it.
+  DrawnMap& room(const Box& inside) {
+    const Vec3 wall{resolution_m_, resolution_m_, resolution_m_};
+    return fill({inside.low - wall, inside.high + wall}, Cell::occupied).fill(inside, Cell::free);
+  }
+  /// Free within `radius_m` of the segment, with a wall of one cell around it, open at both ends. What is
+  /// free already stays free.
+  DrawnMap& tube(const Vec3& from, const Vec3& to, double radius_m) {
+    const double length = distance(from, to), reach = radius_m + resolution_m_;
+    const Vec3 margin{reach, reach, reach};
+    const Index low =
+        index_of(Vec3(std::min(from.x, to.x), std::min(from.y, to.y), std::min(from.z, to.z)) - margin);
+    const Index high =
+        index_of(Vec3(std::max(from.x, to.x), std::max(from.y, to.y), std::max(from.z, to.z)) + margin);
+    for (int x = low.x; x <= high.x; ++x)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int z = low.z; z <= high.z; ++z) {
+          const Vec3 c = center_of({x, y, z});
+          const double along = length > 0 ? dot(c - from, to - from) / length : 0;
+          if (along < -1e-9 || along > length + 1e-9) continue;
+          const double off = distance(c, from + (length > 0 ? along / length : 0.0) * (to - from));
+          if (off <= radius_m)
+            set({x, y, z}, Cell::free);
+          else if (off <= reach && at(Index{x, y, z}) != Cell::free)
+            set({x, y, z}, Cell::occupied);
+        }
+    return *this;
+  }
+  void set(const Index& i, Cell cell) {
+    if (cell == Cell::unknown)
+      known_.erase(i);
+    else
+      known_[i] = cell;
   }
 
   double resolution_m() const { return resolution_m_; }
+  std::size_t layers() const { return layers_; }  // drawn
   const std::map<Index, Cell>& known() const { return known_; }
   Cell at(const Index& i) const {
     const auto found = known_.find(i);
@@ -88,7 +141,7 @@ class DrawnMap {
   }
 
  private:
-  void draw(const std::string& layer, int z) {
+  void draw(const std::string& layer, int z, const Legend& legend) {
     std::vector<std::string> rows;
     std::istringstream in(layer);
     for (std::string row; std::getline(in, row);) {
@@ -100,18 +153,21 @@ class DrawnMap {
         const Index i{static_cast<int>(x), static_cast<int>(rows.size() - 1 - r), z};
         const char c = rows[r][x];
         const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-        if (c == '#')
+        if (const auto meaning = legend.find(c); meaning != legend.end())
+          set(i, meaning->second);
+        else if (c == '#')
           known_[i] = Cell::occupied;
         else if (c == '.' || is_letter)
           known_[i] = Cell::free;
         else if (c != '?')
           throw std::invalid_argument(std::string("a drawn map holds '#', '.', '?' and letters, not '") + c +
                                       "'");
-        if (is_letter) places_[c] = i;
+        if (is_letter && at(i) == Cell::free) places_[c] = i;
       }
   }
 
   double resolution_m_;
+  std::size_t layers_;
   std::map<Index, Cell> known_;
   std::map<char, Index> places_;
 };

@@ -1,0 +1,51 @@
+// A make-believe flight: requests as mission control would make them, each depending on the last answer. The
+// vehicle is at a goal as soon as it is proposed, or the goal fails, as chance has it; the map grows.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core_stack/common/random.h"
+#include "sdk/check/cave.h"
+#include "sdk/check/subject.h"
+
+namespace karst::check {
+
+class Flight {
+ public:
+  /// The cave is known up to `known_share` of its length at first. Everything follows from the seed.
+  Flight(std::uint64_t seed, const CaveShape& shape, double known_share = 0.3);
+  bool map_grows = true;
+  Flight(const Flight&) = delete;
+  Flight& operator=(const Flight&) = delete;
+
+  /// The request to be asked next; valid until react().
+  const core::DecisionRequest& request();
+  /// To change the request that request() has made.
+  core::DecisionRequest& edit() { return request_; }
+  /// What happens then, and what the policy is told of it.
+  std::vector<karst_event_t> react(const Answer& answer);
+
+  Cave& cave() { return cave_; }
+  const core::VehicleDescription& vehicle() const { return vehicle_; }
+
+ private:
+  karst_event_t event_of(const core::Goal& goal);
+  void fly_to(const core::Vec3& place);
+
+  core::Random random_;
+  Cave cave_;
+  double known_m_;
+  core::VehicleDescription vehicle_;
+  core::DecisionRequest request_;
+  std::vector<std::string> texts_;  // of the last events
+};
+
+/// Shapes of all kinds for a seed: narrow and wide, short and long, coarse and fine.
+CaveShape any_shape(core::Random& random);
+
+/// Asks `count` times and tells what happens in between. Throws Failed if a call fails.
+std::vector<Answer> fly(Object& object, Flight& flight, int count);
+/// The answers' texts, one after the other.
+std::string text_of(const std::vector<Answer>& answers);
+
+}  // namespace karst::check

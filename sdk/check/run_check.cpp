@@ -1,0 +1,188 @@
+#include "sdk/check/run_check.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
+#include "sdk/host/probe.h"
+#include "sdk/host/process.h"
+
+namespace karst::check {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+using nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kTestLimit_s = 600;  // of a whole test, on a busy machine
+
+double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+
+bool of_file(const Test& t) { return t.of == Test::Of::file || t.of == Test::Of::file_gate; }
+bool is_gate(const Test& t) { return t.of == Test::Of::file_gate || t.of == Test::Of::policy_gate; }
+
+/// A folder of our own that is gone at the end.
+struct ScratchFolder {
+  ScratchFolder() {
+    if (mkdtemp(path.data()) == nullptr) throw InputError(path, "", "cannot be made");
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::string path = (fs::temp_directory_path() / "karst-check-XXXXXX").string();
+};
+
+/// A word for the shell.
+std::string quoted(const std::string& word) {
+  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string repeat_command(const CheckOptions& o, const std::string& policy, const Test& test) {
+  return "karst policy check " + quoted(o.file) + (policy.empty() ? "" : " --policy " + policy) + " --seed " +
+         std::to_string(o.seed) + " --level " + name_of(o.level) + " --test " + test.name;
+}
+
+/// Waits for the child. "" or why it had to be ended.
+std::string wait_for(pid_t child, const Progress& progress, double hang_limit_s, host::ProcessEnd& end) {
+  const auto begin = Clock::now();
+  std::uint64_t count = progress.count();
+  auto changed = begin;
+  while (!host::has_ended(child, end)) {
+    if (progress.count() != count) count = progress.count(), changed = Clock::now();
+    const bool inside = count % 2 == 1;
+    const bool hangs = inside && seconds_since(changed) > hang_limit_s;
+    if (hangs || seconds_since(begin) > kTestLimit_s) {
+      host::end_process(child);
+      char limit[32];
+      std::snprintf(limit, sizeof limit, "%g s", hang_limit_s);
+      return hangs ? progress.what() + " did not return within " + limit
+                   : "the test took more than ten minutes";
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(inside ? 2 : 1));
+  }
+  return "";
+}
+
+TestResult run_in_child(const CheckOptions& o, const std::string& policy, const Test& test) {
+  const ScratchFolder work;
+  const fs::path folder = work.path;
+  const Progress progress(folder / "progress");
+  TestResult r{
+      &test, policy, Verdict::passed, "", ordered_json::object(), 0, repeat_command(o, policy, test)};
+  std::vector<std::string> argv = {
+      o.karst.string(), "policy",         "check-one", fs::absolute(o.file).string(),
+      "--test",         test.name,        "--seed",    std::to_string(o.seed),
+      "--level",        name_of(o.level), "--work",    work.path};
+  if (!policy.empty()) argv.insert(argv.end(), {"--policy", policy});
+  const auto begin = Clock::now();
+  host::ProcessEnd end;
+  const std::string ended =
+      wait_for(host::start_process(argv, folder / "output"), progress, o.hang_limit_s, end);
+  r.wall_s = seconds_since(begin);
+  std::ifstream in(folder / "result.json");
+  const ordered_json said = ordered_json::parse(in, nullptr, false);
+  if (ended.empty() && end.signal == 0 && end.exit_code == 0 && said.is_object()) {
+    r.reason = said.value("reason", "");
+    r.figures = said.value("figures", ordered_json::object());
+    for (const Verdict v : {Verdict::passed, Verdict::failed, Verdict::not_applicable})
+      if (said.value("outcome", "") == name_of(v)) r.verdict = v;
+    return r;
+  }
+  r.verdict = Verdict::failed;
+  const bool inside = progress.count() % 2 == 1;
+  const std::string where = inside ? " in " + progress.what() : " outside of any call";
+  r.reason = !ended.empty() ? ended
+             : end.signal
+                 ? host::describe(end) + where
+                 : "it ended the process" + where + " (exit code " + std::to_string(end.exit_code) + ")";
+  return r;
+}
+
+bool wanted(const CheckOptions& o, const Test& t) {
+  if (o.tests.empty()) return t.level <= o.level;
+  const std::string name = t.name;
+  return std::any_of(o.tests.begin(), o.tests.end(), [&](const std::string& asked) {
+    return name == asked || name.starts_with(asked + ".");
+  });
+}
+
+void check_names(const CheckOptions& o) {
+  std::vector<std::string> names;
+  for (const Test& t : all_tests()) {
+    const std::string name = t.name;
+    names.push_back(name), names.push_back(name.substr(0, name.find('.')));
+  }
+  for (const std::string& asked : o.tests) {
+    if (std::find(names.begin(), names.end(), asked) != names.end()) continue;
+    const std::string near = core::nearest_name(asked, names);
+    throw InputError("--test", asked,
+                     "there is no such test" + (near.empty() ? "" : "; did you mean " + near + "?"));
+  }
+}
+
+/// Ids of the policies to be tested; none if the file is broken, which its own tests then say.
+std::vector<std::string> policies_of(const CheckOptions& o) {
+  std::vector<std::string> ids;
+  for (const host::PolicyListing& p : host::probe(o.file, o.hang_limit_s))
+    if (p.broken.empty() && (o.policy.empty() || p.id == o.policy)) ids.push_back(p.id);
+  return ids;
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::passed:
+      return "passed";
+    case Verdict::failed:
+      return "failed";
+    case Verdict::not_applicable:
+      return "not applicable";
+    default:
+      return "not run";
+  }
+}
+
+std::vector<TestResult> run_check(const CheckOptions& o, const std::function<void(const TestResult&)>& done) {
+  if (std::error_code error; !fs::is_regular_file(o.file, error))
+    throw InputError(o.file, "", "is not a file");
+  if (access(o.file.c_str(), R_OK) != 0) throw InputError(o.file, "", "cannot be read");
+  check_names(o);
+  std::vector<TestResult> results;
+  std::string broken_gate;
+  const auto run = [&](const std::string& policy, const Test& test) {
+    if (!wanted(o, test)) return;
+    TestResult r{&test, policy, Verdict::not_run, broken_gate + " failed", ordered_json::object(), 0, ""};
+    if (broken_gate.empty()) r = run_in_child(o, policy, test);
+    if (is_gate(test) && r.verdict == Verdict::failed) broken_gate = test.name;
+    done(r);
+    results.push_back(std::move(r));
+  };
+  for (const Test& t : all_tests())
+    if (of_file(t)) run("", t);
+  const std::string file_gate = broken_gate;
+  const std::vector<std::string> ids = file_gate.empty() ? policies_of(o) : std::vector<std::string>{""};
+  if (ids.empty() && !o.policy.empty()) throw InputError(o.file, o.policy, "the file offers no such policy");
+  for (const std::string& id : ids) {
+    broken_gate = file_gate;
+    for (const Test& t : all_tests())
+      if (!of_file(t)) run(id, t);
+  }
+  return results;
+}
+
+}  // namespace karst::check

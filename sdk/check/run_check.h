@@ -1,0 +1,47 @@
+// Runs the tests of a plugin, one child process each: what it breaks is its own process only.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sdk/check/tests.h"
+
+namespace karst::check {
+
+struct CheckOptions {
+  std::string file;
+  std::string policy;  // "": every policy of the file
+  std::uint64_t seed = 1;
+  Level level = Level::strict;
+  std::vector<std::string> tests;  // names or groups; empty: all of the level
+  double hang_limit_s = 10;        // of one call into the plugin
+  std::filesystem::path karst;     // the executable, for the children
+};
+
+enum class Verdict { passed, failed, not_applicable, not_run };
+const char* name_of(Verdict verdict);
+
+struct TestResult {
+  const Test* test = nullptr;
+  std::string policy;  // "" for a test of the file
+  Verdict verdict = Verdict::passed;
+  std::string reason;  // unless passed
+  nlohmann::ordered_json figures;
+  double wall_s = 0;
+  std::string repeat;  // the command that runs this test alone, the same way
+};
+
+/// Calls `done` after each test. Throws core::InputError: a file that cannot be read, a policy or a test that
+/// is not there.
+std::vector<TestResult> run_check(const CheckOptions& options,
+                                  const std::function<void(const TestResult&)>& done);
+
+/// In a child: runs one test and writes its result into `work`.
+void run_test(Context& context, const Test& test, const std::filesystem::path& work);
+
+/// In a child: opens the file and chooses the policy. Throws core::InputError.
+void choose_policy(Context& context);
+
+}  // namespace karst::check

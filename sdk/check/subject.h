@@ -1,0 +1,99 @@
+// The policy under test: one object of it, driven slot by slot on this thread.
+#pragma once
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sdk/check/progress.h"
+#include "sdk/host/decision_box.h"
+#include "sdk/host/plugin_file.h"
+#include "sdk/host/session.h"
+
+namespace karst::check {
+
+/// basic: what a flight needs. strict: what a policy given to others should hold. pedantic: hygiene.
+enum class Level { basic, strict, pedantic };
+
+/// A test throws it with the reason, one line.
+struct Failed {
+  std::string reason;
+};
+/// The policy does not offer what the test looks at.
+struct NotApplicable {
+  std::string reason;
+};
+
+/// What a test is given.
+struct Context {
+  std::string file;
+  std::string karst;                       // the executable, for a second process
+  const karst_policy_t* policy = nullptr;  // null for tests of the file as a whole
+  std::string id;
+  std::uint64_t seed = 1;
+  Level level = Level::strict;
+  Progress* progress = nullptr;
+  nlohmann::ordered_json figures = nlohmann::ordered_json::object();  // what was measured
+};
+
+/// One decide().
+struct Answer {
+  std::string failure;  // the call's own: an error, an exception; not what the sink refused
+  host::DecisionBox box;
+  double cpu_s = 0, wall_s = 0;  // of this thread
+
+  bool good() const { return failure.empty() && box.fault().empty(); }
+  std::string fault() const { return failure.empty() ? box.fault() : failure; }
+  /// Everything it says, every digit, for comparing.
+  std::string text() const;
+};
+
+class Object {
+ public:
+  /// create(). `host` is what the policy sees of `session`; by default the session's own.
+  Object(Context& context, host::Session& session, const karst_host_t* host = nullptr);
+  /// destroy(), unless that has been done.
+  ~Object();
+  Object(const Object&) = delete;
+  Object& operator=(const Object&) = delete;
+
+  // Each returns "" or why the call failed.
+  std::string create_fault() const { return create_fault_; }
+  std::string init(const std::vector<karst_parameter_value_t>& values);
+  std::string activate();
+  std::string deactivate();
+  std::string destroy();
+  std::string event(const karst_event_t& event);
+  std::string save(std::vector<std::byte>& bytes);
+  std::string restore(const std::vector<std::byte>& bytes);
+
+  Answer decide(const core::DecisionRequest& request);
+  /// Null if it offers no "karst.state/1".
+  const karst_state_extension_t* state();
+  void* self() const { return self_; }
+  /// What calls changed in the process, and was put back.
+  const std::vector<std::string>& changes() const { return changes_; }
+
+ private:
+  template <class Work>
+  std::string call(const std::string& slot, Work work);
+
+  Context& context_;
+  host::Session& session_;
+  const karst_host_t* host_;
+  void* self_ = nullptr;
+  std::string create_fault_;
+  std::vector<std::string> changes_;
+};
+
+/// The declared defaults; views of the descriptor.
+std::vector<karst_parameter_value_t> defaults(const karst_policy_t& policy);
+
+/// created -> initialized -> active. Throws Failed.
+std::unique_ptr<Object> started(Context& context, host::Session& session, const karst_host_t* host = nullptr);
+/// A session of this test's seed, of which this thread is the decision thread.
+std::unique_ptr<host::Session> new_session(const Context& context);
+/// Throws Failed with `where` before it, unless `fault` is "".
+void demand(const std::string& fault, const std::string& where = "");
+
+}  // namespace karst::check

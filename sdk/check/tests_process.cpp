@@ -1,0 +1,57 @@
+// process: what all share with it, and it must leave alone.
+#include "sdk/check/flight.h"
+#include "sdk/check/process_view.h"
+#include "sdk/check/tests.h"
+
+namespace karst::check {
+namespace {
+
+using Of = Test::Of;
+
+const CaveShape kShape{.volume_m3 = 150, .radius_m = 1.6, .branches = 3, .resolution_m = 0.2};
+
+/// A whole life, between two looks at the process. Returns what its calls changed.
+std::vector<std::string> live(Context& c) {
+  const auto session = new_session(c);
+  Flight flight(c.seed, kShape);
+  const auto object = started(c, *session);
+  fly(*object, flight, 8);
+  demand(object->deactivate());
+  demand(object->destroy());
+  return object->changes();
+}
+
+void output(Context& c) {
+  const ProcessView before;
+  live(c);
+  demand(before.output_since());
+}
+void arithmetic(Context& c) {
+  if (const std::vector<std::string> changes = live(c); !changes.empty()) throw Failed{changes.front()};
+}
+void signals(Context& c) {
+  const ProcessView before;
+  live(c);
+  demand(before.signals_since());
+}
+void leftovers(Context& c) {
+  const ProcessView before;
+  live(c);
+  demand(before.leftovers_since());
+}
+
+}  // namespace
+
+std::vector<Test> process_tests() {
+  return {
+      {"process.output", Level::strict, Of::policy, "It writes nothing to standard output or standard error.",
+       output},
+      {"process.locale_and_arithmetic", Level::strict, Of::policy,
+       "No call leaves another locale or other rules of floating-point arithmetic.", arithmetic},
+      {"process.signals", Level::strict, Of::policy, "It takes over no signal and blocks none.", signals},
+      {"process.leftovers", Level::pedantic, Of::policy,
+       "It leaves no file open, and working folder, file mode mask and environment as they were.", leftovers},
+  };
+}
+
+}  // namespace karst::check

@@ -1,0 +1,139 @@
+#include "sdk/tools/request_replay_command.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "sdk/host/hosted_policy.h"
+#include "sdk/host/request_log.h"
+#include "sdk/tools/arguments.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using host::RequestLogReader;
+using nlohmann::ordered_json;
+
+constexpr int kDiffers = 2;
+constexpr double kNoLimit_s = 1e7;  // a debugger may stop the policy for as long as it takes
+
+struct Arguments {
+  std::string run, policy;
+  std::vector<std::string> plugins, settings;
+  std::uint32_t from = 1, to = std::numeric_limits<std::uint32_t>::max();
+  bool expect_same = false, json = false;
+};
+
+host::PolicyChoice choice_of(const Arguments& args, const host::RequestLogHeader& header) {
+  host::PolicyChoice c;
+  c.name = args.policy.empty() ? header.policy : args.policy;
+  c.plugin_files = args.plugins;
+  if (c.name == header.policy) c.parameters = header.parameters;
+  for (const std::string& setting : args.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw core::InputError("--set", setting, "expected parameter=value");
+    c.parameters.put(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  c.source = args.run;
+  c.seed = header.seed;
+  c.hang_limit_s = kNoLimit_s;
+  return c;
+}
+
+std::string ask(host::HostedPolicy& policy, const core::DecisionRequest& request) {
+  try {
+    return host::answer_text(policy.decide(request));
+  } catch (const core::PolicyFailure& failure) {
+    return ordered_json{{"failure", failure.what()}}.dump(-1, ' ', false,
+                                                          ordered_json::error_handler_t::replace);
+  }
+}
+
+void print(const core::DecisionRequest& r, const std::string& recorded, const std::string& now) {
+  std::printf("%5u  %7.1f s  %3zu frontiers  %s  %s\n", r.sequence, core::seconds(r.stamp),
+              r.frontiers.size(), recorded == now ? "same   " : "DIFFERS", host::answer_line(now).c_str());
+  if (recorded != now) std::printf("%31s recorded: %s\n", "", host::answer_line(recorded).c_str());
+}
+
+int replay(const Arguments& args) {
+  const fs::path file =
+      fs::is_directory(args.run) ? fs::path(args.run) / host::kRequestLogName : fs::path(args.run);
+  if (!fs::exists(file) && fs::is_directory(args.run))
+    throw core::InputError(args.run, "", "holds no requests: fly with --record-requests");
+  RequestLogReader log(file);
+  const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(choice_of(args, log.header()));
+  std::size_t asked = 0, different = 0;
+  ordered_json decisions = ordered_json::array();
+  std::string now;
+  bool shown = false;
+  for (RequestLogReader::Kind kind = log.next(); kind != RequestLogReader::Kind::end; kind = log.next()) {
+    if (kind == RequestLogReader::Kind::event) policy->notify(log.event());
+    if (kind == RequestLogReader::Kind::request) {
+      if (log.request().sequence > args.to) break;
+      now = ask(*policy, log.request());
+      shown = log.request().sequence >= args.from;
+    }
+    if (kind != RequestLogReader::Kind::answer || !shown) continue;
+    ++asked;
+    different += now != log.answer();
+    if (args.json)
+      decisions.push_back({{"sequence", log.request().sequence},
+                           {"t", core::seconds(log.request().stamp)},
+                           {"same", now == log.answer()},
+                           {"recorded", ordered_json::parse(log.answer(), nullptr, false)},
+                           {"now", ordered_json::parse(now, nullptr, false)}});
+    else
+      print(log.request(), log.answer(), now);
+  }
+  if (args.json)
+    std::cout << ordered_json{{"schema", 1},
+                              {"policy", policy->name()},
+                              {"asked", asked},
+                              {"different", different},
+                              {"decisions", decisions}}
+                     .dump(2, ' ', false, ordered_json::error_handler_t::replace)
+              << "\n";
+  else
+    std::printf("%zu decisions of %s %s, %zu as recorded, %zu different\n", asked, policy->name().c_str(),
+                policy->version().c_str(), asked - different, different);
+  return args.expect_same && different > 0 ? kDiffers : 0;
+}
+
+}  // namespace
+
+void add_request_replay_command(CLI::App& policy) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* app = policy.add_subcommand(
+      "replay",
+      "Put the requests of a flight to a policy once more, without a vehicle.\n\n"
+      "  karst fly demo.info --record-requests --out runs/demo\n"
+      "  karst policy replay runs/demo                         the same policy, the same parameters\n"
+      "  karst policy replay runs/demo --set path_weight=2     what it would have said with another value\n"
+      "  gdb --args karst policy replay runs/demo --plugin build/lib/karst/policies/mine.so --to 40\n\n"
+      "Exit code: 0 replayed, 2 with --expect-same: an answer differs, 1 an error.");
+  app->add_option("run", args->run, "run directory, or a file of recorded requests")
+      ->required()
+      ->check(not_empty());
+  app->add_option("--policy", args->policy, "another policy than the one recorded")->check(not_empty());
+  app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  app->add_option("--set", args->settings, "parameter=value")->allow_extra_args(false);
+  app->add_option("--from", args->from,
+                  "show decisions from this number on; those before are put to it as well");
+  app->add_option("--to", args->to, "end after this decision");
+  app->add_flag("--expect-same", args->expect_same,
+                "exit code 2 if an answer shown differs from the one recorded");
+  app->add_flag("--json", args->json, "write JSON, with whole answers");
+  app->callback([args] {
+    if (const int code = replay(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace karst::tools
