@@ -87,6 +87,17 @@ void put_vehicle(FlatWriter& out, const core::VehicleDescription* v) {
   if (v->lidar) put(out, *v->lidar);
   out.put<std::uint64_t>(v->cameras.size());
   for (const auto& c : v->cameras) put(out, *c);
+  out.put(v->rgb != nullptr);
+  if (v->rgb) put(out, v->rgb->camera), out.put(v->rgb->max_incidence_rad);
+}
+
+void put_imaged(FlatWriter& out, const core::ImagedSurface* imaged) {
+  out.put(imaged != nullptr);
+  if (imaged == nullptr) return;
+  const std::vector<core::CellKey> cells = imaged->cells();
+  out.put<std::uint64_t>(cells.size());
+  out.reserve(cells.size() * kKeyBytes);
+  for (const core::CellKey& k : cells) put(out, k);
 }
 
 void put_frontiers(FlatWriter& out, const std::vector<core::FrontierOffer>& offers) {
@@ -149,6 +160,7 @@ Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   put_vehicle(out, r.vehicle);
   put_frontiers(out, r.frontiers);
   put_map(out, r, map_since);
+  put_imaged(out, r.imaged);
   Bytes bytes = out.take();
   const std::uint64_t length = bytes.size() - kHeader,
                       sum = checksum(std::span<const std::byte>(bytes).subspan(kHeader));
@@ -177,6 +189,7 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     read_vehicle(in);
     read_frontiers(in);
     read_map(in);
+    read_imaged(in);
     in.demand_end();
   } catch (...) {
     request_ = {};
@@ -194,7 +207,21 @@ void RequestReader::read_vehicle(FlatReader& in) {
   const std::size_t cameras = in.count(1, kMostSensors, "cameras");
   for (std::size_t i = 0; i < cameras; ++i)
     vehicle_.cameras.push_back(std::make_shared<core::CameraModel>(camera(in)));
+  if (in.flag()) {
+    const core::CameraModel model = camera(in);
+    vehicle_.rgb =
+        std::make_shared<core::RgbCameraModel>(core::RgbCameraModel{model, in.number<double>()});
+  }
   request_.vehicle = &vehicle_;
+}
+
+void RequestReader::read_imaged(FlatReader& in) {
+  request_.imaged = nullptr;
+  if (!in.flag()) return;
+  std::vector<core::CellKey> cells(in.count(kKeyBytes, kMostCells, "imaged cells"));
+  for (core::CellKey& k : cells) k = key(in);
+  imaged_ = core::ImagedSurface(cells);
+  request_.imaged = &imaged_;
 }
 
 void RequestReader::read_frontiers(FlatReader& in) {

@@ -37,6 +37,7 @@ class RequestReader {
   void read_vehicle(FlatReader& in);
   void read_frontiers(FlatReader& in);
   void read_map(FlatReader& in);
+  void read_imaged(FlatReader& in);
   void update_roadmap(const core::PlanningOptions& options, std::span<const core::CellChange> changes);
 
   bool with_roadmap_;
@@ -44,6 +45,7 @@ class RequestReader {
   std::optional<core::Roadmap> roadmap_;
   core::PlanningOptions roadmap_options_;
   core::VehicleDescription vehicle_;
+  core::ImagedSurface imaged_;
   std::vector<core::FrontierCluster> clusters_;
   core::DecisionRequest request_;
 };

@@ -48,6 +48,9 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
   camera.vertical_fov_rad = 1.1;
   camera.T_body_camera.position = {0.1, 0, -0.05};
   room.vehicle.cameras.push_back(std::make_shared<core::CameraModel>(camera));
+  room.vehicle.rgb = std::make_shared<core::RgbCameraModel>(core::RgbCameraModel{camera, 1.1});
+  const core::ImagedSurface imaged(std::vector<CellKey>{{3, -4, 5}, {0, 0, 1}});
+  room.request.imaged = &imaged;
   room.request.last_fate = core::GoalFate::abandoned;
   room.request.last_goal = {1, 2, 3};
   room.request.state.orientation = core::Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
@@ -60,11 +63,14 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
 
   const host::RequestPack a(room.request, nullptr), b(read, nullptr);
   karst_request_t x = a.request(), y = b.request();
-  ASSERT_EQ(x.sensor_count, 2u);
-  ASSERT_EQ(y.sensor_count, 2u);
+  ASSERT_NE(read.imaged, nullptr);
+  EXPECT_EQ(read.imaged->cells(), imaged.cells());
+  EXPECT_EQ(read.vehicle->rgb->max_incidence_rad, 1.1);
+  ASSERT_EQ(x.sensor_count, 3u);
+  ASSERT_EQ(y.sensor_count, 3u);
   ASSERT_EQ(y.frontier_count, 1u);
   EXPECT_EQ(std::memcmp(x.frontiers, y.frontiers, sizeof *x.frontiers), 0);
-  for (std::uint32_t i = 0; i < 2; ++i) {
+  for (std::uint32_t i = 0; i < 3; ++i) {
     karst_sensor_t s = x.sensors[i], t = y.sensors[i];
     EXPECT_EQ(std::string(s.name.data, s.name.length), std::string(t.name.data, t.name.length));
     s.name = t.name = {};
