@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core_stack/mapping/imaged_surface.h"
 #include "core_stack/mission/policy_port.h"
 #include "sdk/host/flat_bytes.h"
 
