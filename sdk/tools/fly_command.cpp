@@ -165,9 +165,9 @@ int fly(const FlyArguments& args) {
 
   std::optional<host::RecordingPolicy> recording;
   if (args.record_requests)
-    recording.emplace(
-        *policy, run_dir / host::kRequestLogName,
-        host::RequestLogHeader{policy->name(), policy->version(), choice.seed, policy->parameters()});
+    recording.emplace(*policy, run_dir / host::kRequestLogName,
+                      host::RequestLogHeader{policy->name(), policy->version(), policy_seed(mission),
+                                             policy->parameters()});
   core::PolicyPort& asked = recording ? static_cast<core::PolicyPort&>(*recording) : *policy;
 
   core::Executive executive(args.threads, args.real_time ? core::Clock::real_time : core::Clock::lockstep);
