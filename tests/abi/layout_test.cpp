@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "sdk/abi/karst_abi.h"
+#include "sdk/abi/karst_abi_imaged.h"
 
 namespace {
 
