@@ -63,6 +63,7 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "restricted_t90_s",
                                        "restricted_t95_s",
                                        "surface_seen",
+                                       "surface_imaged",
                                        "depth_m",
                                        "vertical_reach_m",
                                        "min_clearance_m",

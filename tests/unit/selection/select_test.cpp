@@ -369,7 +369,9 @@ TEST(Experience, StoreWithoutDescribedCavesIsAnError) {
 }
 
 std::string written(const std::string& name, const std::string& text) {
-  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "experience_files";
+  // A folder of each test's own: they run side by side.
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "experience_files" /
+                                    testing::UnitTest::GetInstance()->current_test_info()->name();
   std::filesystem::create_directories(dir);
   std::ofstream(dir / name) << text;
   return (dir / name).string();
