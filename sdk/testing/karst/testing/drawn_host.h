@@ -101,21 +101,28 @@ class DrawnHost {
     }
     return KARST_OK;
   }
+  static bool holds(const karst_box_t& b, const Vec3& p) {
+    return p.x >= b.low.x && p.x <= b.high.x && p.y >= b.low.y && p.y <= b.high.y && p.z >= b.low.z &&
+           p.z <= b.high.z;
+  }
   static std::int32_t surface_cells(const karst_host_t* h, const karst_map_t*, karst_box_t box,
                                     karst_vec3_t* out, std::uint64_t capacity, std::uint64_t* total,
                                     karst_error_t*) noexcept {
     const DrawnMap& m = self(h).map_;
-    *total = 0;
-    for_each_in(m, box, [&](const Index& k) {
-      if (m.at(k) != Cell::occupied) return;
+    std::vector<Index> surface;
+    for (const auto& [k, cell] : m.known()) {  // a box may be far larger than what is drawn
+      if (cell != Cell::occupied || !holds(box, m.center_of(k))) continue;
       const Index faces[] = {{k.x - 1, k.y, k.z}, {k.x + 1, k.y, k.z}, {k.x, k.y - 1, k.z},
                              {k.x, k.y + 1, k.z}, {k.x, k.y, k.z - 1}, {k.x, k.y, k.z + 1}};
-      if (std::none_of(std::begin(faces), std::end(faces),
-                       [&](const Index& f) { return m.at(f) == Cell::free; }))
-        return;
-      if (*total < capacity) out[*total] = m.center_of(k);
-      ++*total;
+      if (std::any_of(std::begin(faces), std::end(faces),
+                      [&](const Index& f) { return m.at(f) == Cell::free; }))
+        surface.push_back(k);
+    }
+    std::sort(surface.begin(), surface.end(), [](const Index& a, const Index& b) {
+      return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
     });
+    *total = surface.size();
+    for (std::size_t i = 0; i < surface.size() && i < capacity; ++i) out[i] = m.center_of(surface[i]);
     return KARST_OK;
   }
   static const karst_map_t* retain(const karst_host_t*, const karst_map_t* map, karst_error_t*) noexcept {
