@@ -2,10 +2,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
@@ -48,6 +50,34 @@ std::string last_line(const std::string& text) {
   return last.starts_with("karst: ") ? last.substr(7) : last;
 }
 
+bool has(const Settings& settings, const std::string& key) {
+  return std::any_of(settings.begin(), settings.end(), [&](const auto& s) { return s.first == key; });
+}
+
+std::string without(std::string text, const std::string& part) {
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part))
+    text.erase(at, part.size());
+  return text;
+}
+
+/// What karst says of a setting, which it was given as an option, said of the entry that the setting is of.
+InputError complaint(const Campaign& c, const ContestantSpec& who, const CaveSpec& cave,
+                     const std::string& said) {
+  const std::string contestant = "contestant " + who.name, parameter = "policy.parameters.",
+                    start = cave.file + ": start: ";
+  if (!cave.start.empty() && said.starts_with(start))
+    return {c.source, "cave " + cave.name, said.substr(cave.file.size() + 2)};
+  for (const std::string_view option : {std::string_view("command line: "), std::string_view("--set: ")}) {
+    if (!said.starts_with(option)) continue;
+    const std::string rest = said.substr(option.size()), key = rest.substr(0, rest.find(": "));
+    if (key.starts_with(parameter)) return {c.source, contestant, "parameters." + without(rest, parameter)};
+    if (has(who.settings, key)) return {c.source, contestant, "settings." + rest};
+    if (has(c.overrides, key)) return {"command line", "--set", rest};
+    if (has(c.settings, key)) return {c.source, "", "settings." + rest};
+  }
+  return {c.source, contestant + " in cave " + cave.name, said};
+}
+
 }  // namespace
 
 pt::ptree resolve(const Campaign& c, const ContestantSpec& who, const CaveSpec& cave, const fs::path& karst) {
@@ -60,15 +90,15 @@ pt::ptree resolve(const Campaign& c, const ContestantSpec& who, const CaveSpec& 
   const auto set = [&argv](const std::string& key, const std::string& value) {
     argv.insert(argv.end(), {"--set", key + "=" + value});
   };
-  for (const Settings* some : {&profile(c.profile).settings, &c.settings, &who.settings})
+  for (const Settings* some : {&profile(c.profile).settings, &c.settings, &c.overrides, &who.settings})
     for (const auto& [key, value] : *some) set(key, value);
   set("mission.max_flight_time", json(c.flight_time_s).dump() + " s");
   for (const auto& [key, value] : who.parameters) set("policy.parameters." + key, value);
   const ProcessOutput checked = run_process(argv, kCheckLimit_s);
   if (checked.end.hung || checked.end.signal || checked.end.exit_code)
-    throw InputError(c.source, "contestant " + who.name + " in cave " + cave.name,
-                     checked.end.exit_code == 1 ? last_line(checked.out)
-                                                : describe(checked.end) + ": " + last_line(checked.out));
+    throw complaint(c, who, cave,
+                    checked.end.exit_code == 1 ? last_line(checked.out)
+                                               : describe(checked.end) + ": " + last_line(checked.out));
   return core::read_info(resolved.path);
 }
 

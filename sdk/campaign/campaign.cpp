@@ -11,6 +11,7 @@
 #include "core_stack/common/info_lines.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/profile.h"
+#include "sdk/evaluation/metric_definitions.h"
 
 namespace karst::campaign {
 namespace {
@@ -29,6 +30,12 @@ std::vector<pt::ptree> take_blocks(pt::ptree& tree, const std::string& name) {
     if (key == name) blocks.push_back(child);
   tree.erase(name);
   return blocks;
+}
+
+std::vector<std::string> metric_names() {
+  std::vector<std::string> names;
+  for (const evaluation::MetricDefinition& m : evaluation::metric_definitions()) names.emplace_back(m.name);
+  return names;
 }
 
 /// The leaves of a block that is there at most once.
@@ -194,6 +201,7 @@ void complete(Campaign& c) {
     k.file = fs::absolute(k.file).lexically_normal().string();
   }
   refuse_reserved(c, "settings.", c.settings);
+  refuse_reserved(c, "--set ", c.overrides);
   check_names(c, c.contestants, "contestant");
   check_names(c, c.caves, "cave");
 }
@@ -221,6 +229,7 @@ Campaign read_campaign(const std::string& file) {
             "a trial that takes longer, by the wall clock, hangs");
   table.add("seeds", seeds, 1, kMostSeeds, "how many: 1, 2, 3 ...");
   table.add("seed_list", seed_list, {}, "the seeds themselves");
+  table.add("metric", c.metric, metric_names(), "the figure that the verdict is about");
   table.read(file, tree);
   c.seeds = parse_seeds(file, seeds, seed_list);
   c.mission = core::beside(file, c.mission);

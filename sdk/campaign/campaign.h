@@ -5,6 +5,7 @@
 //   profile campaign         ; sdk/campaign/profile.h
 //   flight_time "300 s"
 //   seeds 30                 ; 1 to 30; or  seed_list "3 5 8"
+//   metric coverage_auc      ; the figure that the verdict is about
 //   settings { simulator { gust "2 m/s" } }                 ; for all
 //   contestant { policy nearest_frontier }
 //   contestant { name far  policy nearest_frontier  parameters { horizon "50 m" } }
@@ -43,7 +44,9 @@ struct Campaign {
   double flight_time_s = 300;
   double trial_timeout_s = 7200;  // of the wall clock; a trial that takes longer hangs
   std::vector<std::int64_t> seeds;
+  std::string metric = "coverage_auc";  // of evaluation::metric_definitions(): what the verdict is about
   Settings settings;
+  Settings overrides;  // of the command line; they stand above `settings`
   std::vector<ContestantSpec> contestants;
   std::vector<CaveSpec> caves;
 };

@@ -40,7 +40,7 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(-1) {
 
 FolderLock::~FolderLock() { close(descriptor_); }
 
-Store open_for(const Plan& plan, const fs::path& folder, bool any_binary) {
+Store open_for(const Plan& plan, const fs::path& folder, bool any_binary, const std::string& source) {
   const fs::path file = folder / "campaign.sqlite";
   if (!fs::exists(file)) return Store::create(file, head_of(plan));
   Store store = Store::open(file);
@@ -52,11 +52,14 @@ Store open_for(const Plan& plan, const fs::path& folder, bool any_binary) {
       text += "\n  " + differences[i];
     if (differences.size() > kChangesNamed)
       text += "\n  and " + std::to_string(differences.size() - kChangesNamed) + " more";
-    throw InputError(
-        file.string(), "",
-        "holds another campaign, which cannot be gone on with; choose another --out. It differs:" + text);
+    throw InputError(source, "",
+                     "is another campaign than the one in " + file.string() +
+                         ", which cannot be gone on with; choose another --out. It differs:" + text);
   }
-  if (const StoreHead head = head_of(plan); head.definition != store.head().definition) store.extend(head);
+  Plan same_metric = plan;
+  same_metric.metric = then.metric;
+  if (const StoreHead head = head_of(same_metric); head.definition != store.head().definition)
+    store.extend(head);
   return store;
 }
 

@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 namespace pt = boost::property_tree;
 using core::InputError;
 
+constexpr double kEndless_s = 1e9;
+
 std::string json_object(const Settings& settings) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
   for (const auto& [key, value] : settings) object[key] = value;
@@ -71,13 +73,18 @@ double seconds_of(const pt::ptree& mission, const std::string& key, double other
   return s;
 }
 
-/// Until when the longest-flying contestant may explore: flight time, or what its battery lasts.
-double horizon_of(const std::vector<PlannedContestant>& contestants) {
-  double horizon = 0;
-  for (const PlannedContestant& c : contestants)
-    horizon = std::max(horizon, std::min(seconds_of(c.mission, "mission.max_flight_time", 1e9),
-                                         seconds_of(c.mission, "simulator.battery_minutes", 1e9)));
-  return horizon;
+double horizon_of(const PlannedContestant& c) {
+  return std::min(seconds_of(c.mission, "mission.max_flight_time", kEndless_s),
+                  seconds_of(c.mission, "simulator.battery_minutes", kEndless_s));
+}
+
+/// The cave with what is wrong said of the campaign's entry.
+PlannedCave planned(const CaveSpec& cave, const std::string& source) {
+  try {
+    return planned(cave);
+  } catch (const InputError& e) {
+    throw InputError(source, "cave " + cave.name, e.what());
+  }
 }
 
 /// A contestant is one policy: `auto` may not choose another one in another cave.
@@ -95,20 +102,34 @@ void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const Pla
 
 }  // namespace
 
+double horizon_of(const std::vector<PlannedContestant>& contestants, const std::string& source) {
+  const double horizon_s = contestants.empty() ? 0 : horizon_of(contestants.front());
+  for (const PlannedContestant& c : contestants)
+    if (const double other_s = horizon_of(c); other_s != horizon_s)
+      throw InputError(
+          source, "contestant " + c.name,
+          "may explore for " + nlohmann::json(other_s).dump() + " s, " + contestants.front().name + " for " +
+              nlohmann::json(horizon_s).dump() +
+              " s (mission.max_flight_time, simulator.battery_minutes): figures of such flights do "
+              "not compare; give both the same flight_time, or fly a campaign of each");
+  return horizon_s;
+}
+
 Plan make_plan(const Campaign& c, const fs::path& karst) {
   Plan plan;
   plan.name = c.name;
   plan.profile = c.profile;
   plan.trial_timeout_s = c.trial_timeout_s;
   plan.seeds = c.seeds;
-  for (const CaveSpec& cave : c.caves) plan.caves.push_back(planned(cave));
+  plan.metric = c.metric;
+  for (const CaveSpec& cave : c.caves) plan.caves.push_back(planned(cave, c.source));
   for (const ContestantSpec& who : c.contestants) {
     plan.contestants.push_back(planned(who, resolve(c, who, c.caves.front(), karst), karst));
     if (plan.contestants.back().policy != who.policy)
       refuse_other_choice(c, who, plan.contestants.back(), karst);
   }
   for (std::size_t i = 1; i < c.caves.size(); ++i) resolve(c, c.contestants.front(), c.caves[i], karst);
-  plan.horizon_s = horizon_of(plan.contestants);
+  plan.horizon_s = horizon_of(plan.contestants, c.source);
   return plan;
 }
 

@@ -32,12 +32,17 @@ struct Plan {
   std::vector<PlannedContestant> contestants;
   std::vector<PlannedCave> caves;
   std::vector<std::int64_t> seeds;
+  std::string metric = "coverage_auc";  // what the verdict is about
 };
 
 /// Asks the `karst` program for every contestant in the first cave, and in every other cave for the first
 /// one, whether it can fly, and with which settings. Throws core::InputError naming the contestant or cave
 /// and what is wrong with it.
 Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
+
+/// Until when all of them may explore: the flight time, or what the battery lasts. Throws core::InputError
+/// naming `source` if one may longer than another: their figures would not compare.
+double horizon_of(const std::vector<PlannedContestant>& contestants, const std::string& source);
 
 /// The same with the hashes of the caves and binaries as they are now. Throws core::InputError if one is
 /// gone.

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
 #include "sdk/campaign/plan.h"
 
 namespace karst::campaign {
@@ -32,6 +33,7 @@ std::string definition_of(const Plan& plan) {
   tree.put("horizon_s", json(plan.horizon_s).dump());
   tree.put("trial_timeout_s", json(plan.trial_timeout_s).dump());
   tree.put("seeds", seeds_text(plan.seeds));
+  tree.put("metric", plan.metric);
   for (const PlannedCave& c : plan.caves) {
     pt::ptree& block = tree.add("cave", "");
     block.put("name", c.name);
@@ -54,6 +56,25 @@ std::string definition_of(const Plan& plan) {
   return info_text(tree);
 }
 
+void read_conditions(const std::string& definition, CampaignResults& results) {
+  pt::ptree tree;
+  try {
+    std::istringstream in(definition);
+    pt::read_info(in, tree);
+  } catch (const pt::info_parser_error&) {
+    return;
+  }
+  results.profile = tree.get("profile", "");
+  results.metric = tree.get("metric", results.metric);
+  for (const auto& [key, contestant] : tree) {
+    if (key != "contestant" || contestant.get("settings", "{}") != "{}") continue;
+    for (const auto& [name, value] : core::leaves_of(contestant.get_child("mission", {})))
+      if (!name.starts_with("policy.") && name != "mission.max_flight_time")
+        results.shared.emplace_back(name, value);
+    return;  // what the others have in common with it
+  }
+}
+
 Plan plan_of(const std::string& definition, const std::string& source) {
   Plan plan;
   try {
@@ -64,6 +85,7 @@ Plan plan_of(const std::string& definition, const std::string& source) {
     plan.profile = tree.get<std::string>("profile");
     plan.horizon_s = tree.get<double>("horizon_s");
     plan.trial_timeout_s = tree.get<double>("trial_timeout_s");
+    plan.metric = tree.get("metric", plan.metric);
     std::istringstream seeds(tree.get<std::string>("seeds"));
     for (std::int64_t seed = 0; seeds >> seed;) plan.seeds.push_back(seed);
     for (const auto& [key, b] : tree) {

@@ -1,6 +1,7 @@
 // Coverage and explored volume over time, of trials that end at different moments, on one grid.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sdk/campaign/report_parts.h"
 
@@ -54,7 +55,7 @@ ordered_json short_number(double v) {
 
 /// Mean and interval at every time; `curves[cave]` are its trials'.
 ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::size_t times,
-                  const VerdictOptions& options) {
+                  const VerdictOptions& options, const evaluation::Interval& possible) {
   ordered_json mean = ordered_json::array(), low = ordered_json::array(), high = ordered_json::array();
   std::size_t n = 0;
   bool over_caves = false;
@@ -66,7 +67,7 @@ ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::si
         now.emplace_back();
         for (const Values* curve : of_cave) now.back().push_back((*curve)[i]);
       }
-    const auto [interval, from_caves] = mean_interval(now, options, kResamples);
+    const auto [interval, from_caves] = mean_interval(now, options, kResamples, possible);
     over_caves = over_caves || from_caves;
     mean.push_back(short_number(evaluation::mean_difference(now)));
     low.push_back(short_number(interval.low));
@@ -79,7 +80,7 @@ ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::si
 }
 
 ordered_json curves_of(const CampaignResults& results, Quantity quantity, const Values& times,
-                       const VerdictOptions& options) {
+                       const VerdictOptions& options, const evaluation::Interval& possible) {
   std::vector<Values> trials;
   ordered_json rows = ordered_json::array();
   for (const TrialResult& t : results.trials) {
@@ -96,9 +97,10 @@ ordered_json curves_of(const CampaignResults& results, Quantity quantity, const 
         by_cave[results.trials[i].cave].push_back(&trials[i]);
     ordered_json caves = ordered_json::array();
     for (const auto& of_cave : by_cave)
-      caves.push_back(of_cave.empty() ? ordered_json(nullptr) : band({of_cave}, times.size(), options));
+      caves.push_back(of_cave.empty() ? ordered_json(nullptr)
+                                      : band({of_cave}, times.size(), options, possible));
     const bool any = std::any_of(by_cave.begin(), by_cave.end(), [](const auto& of) { return !of.empty(); });
-    bands.push_back({{"all", any ? band(by_cave, times.size(), options) : ordered_json(nullptr)},
+    bands.push_back({{"all", any ? band(by_cave, times.size(), options, possible) : ordered_json(nullptr)},
                      {"caves", std::move(caves)}});
   }
   return {{"trials", std::move(rows)}, {"bands", std::move(bands)}};
@@ -112,8 +114,9 @@ ordered_json report_curves(const CampaignResults& results, const VerdictOptions&
   ordered_json t = ordered_json::array();
   for (const double v : times) t.push_back(number_or_null(v));
   return {{"t", std::move(t)},
-          {"coverage", curves_of(results, &CurvePoint::coverage, times, options)},
-          {"explored_m3", curves_of(results, &CurvePoint::explored_m3, times, options)}};
+          {"coverage", curves_of(results, &CurvePoint::coverage, times, options, {0, 1})},
+          {"explored_m3", curves_of(results, &CurvePoint::explored_m3, times, options,
+                                    {0, std::numeric_limits<double>::infinity()})}};
 }
 
 }  // namespace karst::campaign

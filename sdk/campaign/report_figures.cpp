@@ -1,4 +1,5 @@
 // Verdicts and figures for the page.
+#include <algorithm>
 #include <cmath>
 
 #include "sdk/campaign/report_parts.h"
@@ -54,11 +55,12 @@ ordered_json comparison_row(const Comparison& c) {
 }
 
 /// n, mean and interval over the caves that have values.
-ordered_json summary(const evaluation::Differences& by_cave, const VerdictOptions& options) {
+ordered_json summary(const evaluation::Differences& by_cave, const VerdictOptions& options,
+                     const Interval& possible) {
   std::size_t n = 0;
   for (const auto& values : by_cave) n += values.size();
   if (n == 0) return nullptr;
-  const MeanInterval of_mean = mean_interval(by_cave, options, options.resamples);
+  const MeanInterval of_mean = mean_interval(by_cave, options, options.resamples, possible);
   ordered_json row = {{"n", n},
                       {"mean", number_or_null(evaluation::mean_difference(by_cave))},
                       {"interval", pair_of(of_mean.interval)}};
@@ -69,13 +71,17 @@ ordered_json summary(const evaluation::Differences& by_cave, const VerdictOption
 }  // namespace
 
 MeanInterval mean_interval(const evaluation::Differences& values, const VerdictOptions& options,
-                           int resamples) {
+                           int resamples, const Interval& possible) {
   const evaluation::BootstrapOptions bootstrap{
       .level = 1 - options.alpha, .resamples = resamples, .seed = options.seed};
   const Interval over_seeds = bootstrap_interval(values, evaluation::Resampled::seeds, bootstrap);
-  if (!std::isnan(over_seeds.low)) return {over_seeds, false};
+  const auto cut = [&](const Interval& i) {
+    return Interval{std::max(i.low, possible.low), std::min(i.high, possible.high)};
+  };
+  if (!std::isnan(over_seeds.low)) return {cut(over_seeds), false};
   const Interval over_caves = bootstrap_interval(values, evaluation::Resampled::caves, bootstrap);
-  return {over_caves, !std::isnan(over_caves.low)};
+  const bool known = !std::isnan(over_caves.low);
+  return {known ? cut(over_caves) : over_caves, known};
 }
 
 ordered_json report_verdicts(const Verdicts& verdicts) {
@@ -95,6 +101,9 @@ ordered_json report_verdicts(const Verdicts& verdicts) {
 ordered_json report_summaries(const CampaignResults& results, const VerdictOptions& options) {
   ordered_json figures = ordered_json::array();
   for (int m = 0; m < static_cast<int>(evaluation::metric_definitions().size()); ++m) {
+    const evaluation::MetricDefinition& figure =
+        evaluation::metric_definitions()[static_cast<std::size_t>(m)];
+    const Interval possible{figure.least, figure.most};
     std::vector<evaluation::Differences> values(results.contestants.size(),
                                                 evaluation::Differences(results.caves.size()));
     for (const TrialResult& t : results.trials) {
@@ -104,8 +113,8 @@ ordered_json report_summaries(const CampaignResults& results, const VerdictOptio
     ordered_json row = ordered_json::array();
     for (const evaluation::Differences& by_cave : values) {
       ordered_json caves = ordered_json::array();
-      for (const auto& one : by_cave) caves.push_back(summary({one}, options));
-      row.push_back({{"all", summary(by_cave, options)}, {"caves", std::move(caves)}});
+      for (const auto& one : by_cave) caves.push_back(summary({one}, options, possible));
+      row.push_back({{"all", summary(by_cave, options, possible)}, {"caves", std::move(caves)}});
     }
     figures.push_back(std::move(row));
   }

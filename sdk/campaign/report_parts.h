@@ -13,13 +13,14 @@ namespace karst::campaign {
 /// A number of six significant digits, or null if it is not known.
 nlohmann::ordered_json number_or_null(double v);
 
-/// Of the mean of `values` by cave: over seeds, or over caves where a cave has too few.
+/// Of the mean of `values` by cave: over seeds, or over caves where a cave has too few. It is cut at what the
+/// figure can be, where the widening for few seeds leads beyond: the truth cannot lie there.
 struct MeanInterval {
   evaluation::Interval interval;
   bool over_caves = false;
 };
 MeanInterval mean_interval(const evaluation::Differences& values, const VerdictOptions& options,
-                           int resamples);
+                           int resamples, const evaluation::Interval& possible);
 
 /// Verdicts, ranking, and every pair of contestants in every figure.
 nlohmann::ordered_json report_verdicts(const Verdicts& verdicts);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core_stack/common/error.h"
+#include "sdk/campaign/plan_text.h"
 #include "sdk/campaign/sqlite.h"
 #include "sdk/campaign/store.h"
 #include "sdk/campaign/store_schema.h"
@@ -50,6 +51,7 @@ CampaignResults read_results(const fs::path& folder_or_file) {
   const sqlite::Transaction one_moment(file, db, sqlite::Transaction::Kind::read);
   StoreHead head = read_head(file, db);
   CampaignResults results{head.name, head.horizon_s, std::move(head.contestants), std::move(head.caves), {}};
+  read_conditions(head.definition, results);
   std::map<std::int64_t, std::size_t> place;
   Statement s(file, db,
               "SELECT id, contestant, cave, seed, status, outcome, reason, run_dir" +

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace karst::campaign {
@@ -39,7 +40,12 @@ struct CampaignResults {
   double horizon_s = 0;  // the longest a trial's exploration could take; what restricted times are cut at
   std::vector<ContestantEntry> contestants;
   std::vector<CaveEntry> caves;
-  std::vector<TrialResult> trials;  // by contestant, cave, seed
+  std::vector<TrialResult> trials;      // by contestant, cave, seed
+  std::string metric = "coverage_auc";  // what the verdict is about, as declared before the first flight
+  std::string profile = {};             // sdk/campaign/profile.h; "" if the store does not tell
+  // Keys and values of the mission as resolved that the contestants without settings of their own share:
+  // all but what is theirs (policy), the flight time and the cave.
+  std::vector<std::pair<std::string, std::string>> shared = {};
 };
 
 }  // namespace karst::campaign

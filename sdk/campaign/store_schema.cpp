@@ -94,6 +94,8 @@ OpenStore open_file(const fs::path& file, int flags) {
 }
 
 OpenStore open_to_read(const fs::path& file) {
+  if (!fs::exists(file) && fs::is_directory(file.parent_path()) && file.filename() == "campaign.sqlite")
+    throw InputError(file.parent_path().string(), "", "holds no campaign: there is no campaign.sqlite in it");
   if (!fs::exists(file)) throw InputError(file.string(), "", "no such store");
   // Not read-only: what a killed writer left half done has to be rolled back first.
   OpenStore store = open_file(file, SQLITE_OPEN_READWRITE);

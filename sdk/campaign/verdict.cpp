@@ -74,6 +74,15 @@ void forecast(Comparison& c, const VerdictOptions& options, std::size_t tests) {
 
 }  // namespace
 
+std::size_t least_pairs(std::size_t contestants, double alpha) {
+  if (contestants < 2) return 0;
+  const double comparisons = static_cast<double>(contestants) * static_cast<double>(contestants - 1) / 2;
+  // n pairs that all fall to one side have p = 2 / 2^n; Holm multiplies the least p by all comparisons.
+  int pairs = 1;
+  while (std::ldexp(comparisons, 1 - pairs) >= alpha) ++pairs;
+  return static_cast<std::size_t>(pairs);
+}
+
 double figure_of(const TrialResult& trial, int metric, double horizon_s) {
   const MetricDefinition& d = metric_definitions()[static_cast<std::size_t>(metric)];
   if (trial.failed && d.name == "completed") return 0;

@@ -80,6 +80,11 @@ struct Verdicts {
   const Comparison* find(std::size_t a, std::size_t b, int metric) const;
 };
 
+/// How many pairs of flights two of so many contestants need at least for any difference to be shown: with
+/// fewer, even pairs that all fall to one side stay above `alpha` in the signed-rank test, corrected. 0 of a
+/// single contestant.
+std::size_t least_pairs(std::size_t contestants, double alpha);
+
 /// Throws InputError if the options name no figure, or a trial is there twice or has not one value a figure.
 Verdicts compare_all(const CampaignResults& results, const VerdictOptions& options = {});
 

@@ -1,6 +1,7 @@
 // Every figure of a flight that campaigns compare: its name, unit, which way is better, and what it is.
 // metrics.json, the store's columns, CSV, reports and the docs follow this one table (docs/metrics.md).
 #pragma once
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,7 +18,8 @@ struct MetricDefinition {
   std::string_view unit;  // "" for shares and counts
   Better better;
   IfFailed if_failed;
-  std::string_view meaning;  // one sentence
+  std::string_view meaning;                                          // one sentence
+  double least = 0, most = std::numeric_limits<double>::infinity();  // what it can be
 };
 
 std::span<const MetricDefinition> metric_definitions();

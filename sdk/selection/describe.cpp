@@ -176,6 +176,7 @@ CaveFigures describe(const FreeSpace& space) {
 
 Source source_of(const std::string& file) {
   namespace fs = std::filesystem;
+  if (fs::is_directory(file)) throw core::InputError(file, "", "is a directory, not a file");
   if (!fs::is_regular_file(file)) throw core::InputError(file, "", "no such file");
   const std::string ending = fs::path(file).extension().string();
   if (ending == ".bt" || ending == ".ot") return Source::map;

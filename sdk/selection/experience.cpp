@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -12,6 +13,8 @@ namespace karst::selection {
 namespace {
 
 using core::InputError;
+
+constexpr std::size_t kSettingsNamed = 4;
 
 /// A mission file says a policy's parameters as text.
 boost::property_tree::ptree parameters_of(const std::string& json, const std::string& source,
@@ -42,13 +45,53 @@ Fared fared_of(const std::vector<double>& figures) {
   return f;
 }
 
-Experience empty_like(const std::vector<KnownCave>& caves, const std::vector<Preset>& contestants) {
-  Experience e{caves, contestants, learned_metrics(), {}};
+Experience empty_like(const std::vector<KnownCave>& caves, const std::vector<Preset>& contestants,
+                      const Conditions& flown) {
+  Experience e{caves, contestants, learned_metrics(), {}, flown};
   e.fared.resize(caves.size() * contestants.size() * e.metrics.size());
   return e;
 }
 
+/// A key that is there several times (a list of blocks) has all its values.
+std::map<std::string, std::string> by_key(const std::vector<std::pair<std::string, std::string>>& settings) {
+  std::map<std::string, std::string> values;
+  for (const auto& [key, value] : settings) values[key] += (values.count(key) ? ", " : "") + value;
+  return values;
+}
+
+std::string text_of(const boost::property_tree::ptree& parameters) {
+  std::string text;
+  for (const auto& [key, value] : parameters) text += " " + key + "=" + value.data();
+  return text;
+}
+
+/// Why the same name stands for two contestants; "" if it does not.
+std::string difference(const Preset& a, const Preset& b) {
+  if (a.policy != b.policy) return "policy " + b.policy + " here, " + a.policy + " there";
+  if (a.version != b.version) return "version " + b.version + " here, " + a.version + " there";
+  if (a.parameters != b.parameters)
+    return "parameters" + text_of(b.parameters) + " here," + text_of(a.parameters) + " there";
+  return "";
+}
+
 }  // namespace
+
+std::string difference(const Conditions& a, const Conditions& b) {
+  std::string text;
+  const auto differ = [&](const std::string& what, const std::string& there, const std::string& here) {
+    text += (text.empty() ? "" : "; ") + what + " " + here + " here, " + there + " there";
+  };
+  if (a.horizon_s != b.horizon_s)
+    differ("horizon", nlohmann::json(a.horizon_s).dump() + " s", nlohmann::json(b.horizon_s).dump() + " s");
+  if (a.profile != b.profile) differ("profile", a.profile, b.profile);
+  std::size_t settings = 0;
+  const std::map<std::string, std::string> here = by_key(b.mission);
+  for (const auto& [key, value] : by_key(a.mission))
+    if (const auto same = here.find(key); same != here.end() && same->second != value)
+      if (++settings <= kSettingsNamed) differ(key, value, same->second);
+  if (settings > kSettingsNamed) text += "; " + std::to_string(settings - kSettingsNamed) + " more settings";
+  return text;
+}
 
 const std::vector<std::string>& learned_metrics() {
   static const std::vector<std::string> metrics{
@@ -66,7 +109,7 @@ Experience learn(const campaign::CampaignResults& results, const std::string& so
     const campaign::CaveEntry& cave = results.caves[c];
     if (!flown[c] || cave.description.empty()) continue;
     cave_of[c] = static_cast<int>(caves.size());
-    caves.push_back({cave.name, figures_from_json(cave.description, source)});
+    caves.push_back({cave.name, figures_from_json(cave.description, source), cave.hash});
   }
   if (caves.empty()) throw InputError(source, "", "holds no flight through a cave that was described");
   std::vector<Preset> contestants;
@@ -78,8 +121,11 @@ Experience learn(const campaign::CampaignResults& results, const std::string& so
   }
   if (contestants.empty())
     throw InputError(source, "", "holds no flight of a policy without settings of its own");
+  if (!(results.horizon_s > 0) || results.profile.empty())
+    throw InputError(source, "campaign.definition",
+                     "does not tell for how long and in which profile it flew");
 
-  Experience e = empty_like(caves, contestants);
+  Experience e = empty_like(caves, contestants, {results.horizon_s, results.profile, results.shared});
   for (std::size_t m = 0; m < e.metrics.size(); ++m) {
     const int metric = evaluation::metric_index(e.metrics[m]);
     std::vector<std::vector<double>> figures(contestants.size() * caves.size());
@@ -97,6 +143,11 @@ Experience learn(const campaign::CampaignResults& results, const std::string& so
 }
 
 Experience merged(const Experience& a, const Experience& b, const std::string& source) {
+  if (const std::string how = difference(a.flown, b.flown); !how.empty())
+    throw InputError(source, "",
+                     "was flown otherwise than the other results, and figures of such flights do not "
+                     "compare: " +
+                         how);
   std::vector<KnownCave> caves = a.caves;
   std::vector<Preset> contestants = a.contestants;
   std::vector<std::size_t> cave_of, contestant_of;
@@ -106,7 +157,7 @@ Experience merged(const Experience& a, const Experience& b, const std::string& s
     cave_of.push_back(static_cast<std::size_t>(same - caves.begin()));
     if (same == caves.end())
       caves.push_back(cave);
-    else if (to_json(same->figures) != to_json(cave.figures))
+    else if (same->hash != cave.hash || to_json(same->figures) != to_json(cave.figures))
       throw InputError(source, cave.name, "is another cave than the one of the same name in other results");
   }
   for (const Preset& preset : b.contestants) {
@@ -115,11 +166,11 @@ Experience merged(const Experience& a, const Experience& b, const std::string& s
     contestant_of.push_back(static_cast<std::size_t>(same - contestants.begin()));
     if (same == contestants.end())
       contestants.push_back(preset);
-    else if (same->policy != preset.policy || same->parameters != preset.parameters)
+    else if (const std::string how = difference(*same, preset); !how.empty())
       throw InputError(source, preset.name,
-                       "is another contestant than the one of the same name in other results");
+                       "is another contestant than the one of the same name in other results: " + how);
   }
-  Experience e = empty_like(caves, contestants);
+  Experience e = empty_like(caves, contestants, a.flown);
   for (std::size_t m = 0; m < e.metrics.size(); ++m) {
     for (std::size_t k = 0; k < a.contestants.size(); ++k)
       for (std::size_t c = 0; c < a.caves.size(); ++c) e.at(k, c, m) = a.at(k, c, m);
@@ -139,7 +190,8 @@ Experience merged(const Experience& a, const Experience& b, const std::string& s
 Experience without_cave(const Experience& experience, std::size_t cave) {
   std::vector<KnownCave> caves = experience.caves;
   caves.erase(caves.begin() + static_cast<std::ptrdiff_t>(cave));
-  Experience e = empty_like(caves, experience.contestants);
+  Experience e = empty_like(caves, experience.contestants, experience.flown);
+  e.source = experience.source;
   for (std::size_t k = 0; k < e.contestants.size(); ++k)
     for (std::size_t c = 0; c < caves.size(); ++c)
       for (std::size_t m = 0; m < e.metrics.size(); ++m) e.at(k, c, m) = experience.at(k, c + (c >= cave), m);

@@ -4,6 +4,7 @@
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sdk/campaign/results.h"
@@ -14,6 +15,7 @@ namespace karst::selection {
 struct KnownCave {
   std::string name;
   CaveFigures figures;
+  std::string hash = {};  // SHA-256 of the mesh's bytes; "" if it is not known
 };
 
 struct Preset {
@@ -27,11 +29,25 @@ struct Fared {
   double mean = kUnknown, deviation = kUnknown;  // deviation over seeds; NaN of fewer than two
 };
 
+/// How all of an experience was flown. Figures of flights that differ in any of it do not compare: a longer
+/// flight covers more.
+struct Conditions {
+  double horizon_s = 0;  // the longest an exploration could take
+  std::string profile;
+  std::vector<std::pair<std::string, std::string>> mission;  // campaign::CampaignResults::shared
+};
+
+/// What differs, in words; "" if nothing does. A setting that only one of them has is none: it may be of
+/// another version of karst.
+std::string difference(const Conditions& a, const Conditions& b);
+
 struct Experience {
   std::vector<KnownCave> caves;
   std::vector<Preset> contestants;
   std::vector<std::string> metrics;  // names of evaluation::metric_definitions()
   std::vector<Fared> fared;          // by contestant, cave, metric
+  Conditions flown = {};
+  std::string source = {};  // the files it is of, for messages
 
   const Fared& at(std::size_t contestant, std::size_t cave, std::size_t metric) const {
     return fared[(contestant * caves.size() + cave) * metrics.size() + metric];
@@ -46,12 +62,13 @@ const std::vector<std::string>& learned_metrics();
 
 /// Caves that were not described, and those in which nothing flew, are left out. Contestants with settings of
 /// their own beside the parameters are left out as well: a selection names a policy, not another vehicle.
-/// Failed trials count as campaign::figure_of says. Throws InputError naming `source` if nothing is left.
+/// Failed trials count as campaign::figure_of says. Throws InputError naming `source` if nothing is left, or
+/// if the campaign does not tell how it flew.
 Experience learn(const campaign::CampaignResults& results, const std::string& source);
 
-/// Both together; caves of one name and figures, and contestants of one policy and parameters, are one.
-/// Throws InputError if one name stands for two caves or two contestants, or if both hold flights of the same
-/// pair.
+/// Both together; caves and contestants of one name are one. Throws InputError if they were flown under other
+/// conditions, if one name stands for two caves or for two contestants (another policy, version or
+/// parameters), or if both hold flights of the same pair.
 Experience merged(const Experience& a, const Experience& b, const std::string& source);
 
 /// Without one cave: for leave-one-out.

@@ -1,10 +1,12 @@
 // An experience as an INFO file.
 //
-//   schema karst.experience/1
-//   cave { name maze1  figures { volume "5800 m^3"  width "2.4 m" } }
+//   schema karst.experience/2
+//   flown { horizon "300 s"  profile campaign  mission { motion { max_speed "1.5 m/s" } ... } }
+//   cave { name maze1  hash 5f1c...  figures { volume "5800 m^3"  width "2.4 m" } }
 //   contestant { name near  policy nearest_frontier  version 1.0.0  parameters { horizon "60 m" } }
-//   result { contestant near  cave maze1  coverage_auc "0.41 10 0.03" }   ; mean, flights, deviation over
-//   seeds
+//   result { contestant near  cave maze1  coverage_auc "0.41 10 0.03" }
+//
+// What a result holds of a figure: mean, flights, deviation over the seeds.
 #include <algorithm>
 #include <boost/property_tree/info_parser.hpp>
 #include <charconv>
@@ -13,6 +15,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
+#include "sdk/evaluation/metric_definitions.h"
 #include "sdk/selection/experience.h"
 
 namespace karst::selection {
@@ -21,7 +24,11 @@ namespace {
 namespace pt = boost::property_tree;
 using core::InputError;
 
-constexpr const char* kSchema = "karst.experience/1";
+constexpr const char* kSchema = "karst.experience/2";
+constexpr const char* kFirstSchema = "karst.experience/1";
+constexpr double kLongest_s = 1e7;
+constexpr std::size_t kHashDigits = 64;
+constexpr double kWidest = 0.708;  // deviation of two figures, the least and the most there is: 1 / sqrt(2)
 
 std::string number_text(double v) {
   std::array<char, 32> text;
@@ -51,9 +58,46 @@ void refuse_twice(const std::vector<Named>& all, const std::string& name, const 
     if (n.name == name) throw InputError(file, name, "is there twice");
 }
 
+void check_schema(const std::string& schema, const std::string& file) {
+  if (schema == kSchema) return;
+  if (schema == kFirstSchema)
+    throw InputError(file, "schema",
+                     std::string(kFirstSchema) +
+                         " does not tell how it was flown; make it anew from the campaign: "
+                         "karst select --learn STORE --out " +
+                         file);
+  throw InputError(file, "schema",
+                   std::string("expected ") + kSchema + ": it is no experience of karst select");
+}
+
+core::OptionTable table_of(Conditions& flown) {
+  core::OptionTable table;
+  table.add("horizon", flown.horizon_s, "s", 1, kLongest_s, "");
+  table.add("profile", flown.profile, {}, "");
+  return table;
+}
+
+Conditions conditions_of(const pt::ptree& tree, const std::string& file) {
+  Conditions flown;
+  core::OptionTable table = table_of(flown);
+  for (const auto& [key, child] : tree)
+    if (key == "mission")
+      flown.mission = core::leaves_of(child);
+    else
+      table.set(file + ": flown", key, child.data());
+  if (!(flown.horizon_s > 0)) throw InputError(file, "flown", "lacks its horizon");
+  if (flown.profile.empty()) throw InputError(file, "flown", "lacks its profile");
+  return flown;
+}
+
 KnownCave cave_of(const pt::ptree& tree, const std::string& file) {
   KnownCave cave;
   cave.name = required(tree, "name", file, "cave");
+  cave.hash = tree.get("hash", "");
+  if (!cave.hash.empty() && (cave.hash.size() != kHashDigits ||
+                             cave.hash.find_first_not_of("0123456789abcdef") != std::string::npos))
+    throw InputError(file, "cave " + cave.name,
+                     "hash: expected the SHA-256 of its mesh, got \"" + cave.hash + "\"");
   core::OptionTable table;
   for (const FigureDefinition& f : figure_definitions())
     table.add(std::string(f.name), cave.figures.*f.value, std::string(f.unit), f.low, f.high, "");
@@ -61,7 +105,14 @@ KnownCave cave_of(const pt::ptree& tree, const std::string& file) {
   return cave;
 }
 
-Fared fared_of(const std::string& text, const std::string& file, const std::string& place) {
+/// What a figure of flights can be at most; of those learned none is negative.
+double most_of(const std::string& metric, double horizon_s) {
+  const evaluation::MetricDefinition& m =
+      evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(metric))];
+  return m.if_failed == evaluation::IfFailed::horizon ? horizon_s : m.most;
+}
+
+Fared fared_of(const std::string& text, double most, const std::string& file, const std::string& place) {
   Fared f;
   std::istringstream in(text);
   std::string rest;
@@ -71,6 +122,15 @@ Fared fared_of(const std::string& text, const std::string& file, const std::stri
   const bool sound = good && std::isfinite(f.mean) && f.flights > 0 && (!spread || f.deviation >= 0);
   if (!sound || in >> rest)
     throw InputError(file, place, "expected \"mean flights [deviation]\", got \"" + text + "\"");
+  if (f.mean < 0 || f.mean > most)
+    throw InputError(file, place,
+                     "the mean " + number_text(f.mean) + " is impossible: expected 0 " +
+                         (std::isinf(most) ? "or more" : "to " + number_text(most)));
+  if (spread && f.flights < 2) throw InputError(file, place, "a single flight has no deviation");
+  if (spread && !(f.deviation <= kWidest * most))
+    throw InputError(file, place,
+                     "the deviation " + number_text(f.deviation) + " is impossible of figures in 0 to " +
+                         number_text(most));
   return f;
 }
 
@@ -78,13 +138,14 @@ Fared fared_of(const std::string& text, const std::string& file, const std::stri
 
 Experience read_experience(const std::string& file) {
   const pt::ptree tree = core::read_info(file);
-  if (tree.get("schema", "") != kSchema)
-    throw InputError(file, "schema",
-                     std::string("expected ") + kSchema + ": it is no experience of karst select");
+  check_schema(tree.get("schema", ""), file);
   Experience e;
   e.metrics = learned_metrics();
+  if (tree.count("flown") != 1) throw InputError(file, "flown", "expected one such block");
   for (const auto& [key, child] : tree) {
-    if (key == "cave") {
+    if (key == "flown") {
+      e.flown = conditions_of(child, file);
+    } else if (key == "cave") {
       KnownCave cave = cave_of(child, file);
       refuse_twice(e.caves, cave.name, file);
       e.caves.push_back(std::move(cave));
@@ -94,7 +155,7 @@ Experience read_experience(const std::string& file) {
       e.contestants.push_back({name, required(child, "policy", file, name), child.get("version", ""),
                                child.get_child("parameters", {})});
     } else if (key != "schema" && key != "result") {
-      const std::string near = core::nearest_name(key, {"schema", "cave", "contestant", "result"});
+      const std::string near = core::nearest_name(key, {"schema", "flown", "cave", "contestant", "result"});
       throw InputError(file, key, "no such key" + (near.empty() ? "" : "; did you mean " + near + "?"));
     }
   }
@@ -112,7 +173,8 @@ Experience read_experience(const std::string& file) {
       if (metric == e.metrics.end()) throw InputError(file, "result." + name, "no such figure");
       Fared& there = e.at(k, c, static_cast<std::size_t>(metric - e.metrics.begin()));
       if (there.flights > 0) throw InputError(file, who + " in " + where, name + " is there twice");
-      there = fared_of(value.data(), file, who + " in " + where + ": " + name);
+      there =
+          fared_of(value.data(), most_of(name, e.flown.horizon_s), file, who + " in " + where + ": " + name);
     }
   }
   return e;
@@ -121,9 +183,15 @@ Experience read_experience(const std::string& file) {
 std::string to_info(const Experience& e) {
   pt::ptree tree;
   tree.put("schema", kSchema);
+  Conditions conditions = e.flown;
+  pt::ptree flown = table_of(conditions).resolved(), mission;
+  for (const auto& [key, value] : e.flown.mission) mission.add(key, value);
+  flown.add_child("mission", mission);
+  tree.add_child("flown", flown);
   for (const KnownCave& cave : e.caves) {
     pt::ptree node;
     node.put("name", cave.name);
+    if (!cave.hash.empty()) node.put("hash", cave.hash);
     for (const FigureDefinition& f : figure_definitions())
       if (const double v = cave.figures.*f.value; std::isfinite(v))
         node.put("figures." + std::string(f.name),

@@ -41,7 +41,8 @@ void divide(LeaveOneOut::Shares& s, std::size_t n) {
 
 }  // namespace
 
-LeaveOneOut leave_one_out(const Experience& e, const SelectOptions& options, const std::string& source) {
+LeaveOneOut leave_one_out(const Experience& e, const SelectOptions& options, const std::string& asked) {
+  const std::string source = e.source.empty() ? asked : e.source;
   const auto found = std::find(e.metrics.begin(), e.metrics.end(), options.metric);
   if (found == e.metrics.end())
     throw core::InputError(source, options.metric, "policies are not selected by this figure");

@@ -3,6 +3,8 @@
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "plugins/simulator/cave/cave.h"
+#include "sdk/campaign/hash.h"
 #include "sdk/campaign/store.h"
 #include "sdk/selection/describe.h"
 
@@ -45,7 +47,13 @@ Experience load_experience(const std::vector<std::string>& files,
   if (files.empty()) throw InputError("results", "", "no file is given");
   Experience all = one(files.front(), tell);
   for (std::size_t i = 1; i < files.size(); ++i) all = merged(all, one(files[i], tell), files[i]);
+  for (const std::string& file : files) all.source += (all.source.empty() ? "" : ", ") + file;
   return all;
+}
+
+std::string mesh_hash_of(const std::string& cave_file, const std::string& start) {
+  if (source_of(cave_file) != Source::mesh) return "";
+  return campaign::sha256_of_file(cave::describe_cave(cave_file, start).mesh_path);
 }
 
 }  // namespace karst::selection

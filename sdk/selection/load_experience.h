@@ -14,4 +14,7 @@ namespace karst::selection {
 Experience load_experience(const std::vector<std::string>& files,
                            const std::function<void(const std::string&)>& tell);
 
+/// SHA-256 of a cave's mesh, as campaigns tell caves apart by; "" of what is no mesh. Throws InputError.
+std::string mesh_hash_of(const std::string& cave_file, const std::string& start);
+
 }  // namespace karst::selection

@@ -19,6 +19,7 @@ using core::InputError;
 
 constexpr std::size_t kFewestCaves = 4;  // fewer say nothing of how far an experience carries
 constexpr int kResamples = 1000;
+constexpr int kTellingFigures = 6;  // caves that agree in so many, to the sixth digit, are one
 
 std::size_t metric_of(const Experience& e, const std::string& name, const std::string& source) {
   const auto found = std::find(e.metrics.begin(), e.metrics.end(), name);
@@ -29,6 +30,22 @@ std::size_t metric_of(const Experience& e, const std::string& name, const std::s
                          (near.empty() ? std::string() : "; did you mean " + near + "?"));
   }
   return static_cast<std::size_t>(found - e.metrics.begin());
+}
+
+/// Caves that are this one, and tell contestants apart: several if one was flown from several starts.
+std::vector<std::size_t> this_very_cave(const Experience& e, const Values& v, const CaveFigures& cave,
+                                        const std::string& mesh_hash) {
+  const std::string figures = to_json(cave);
+  const auto known = std::count(figures.begin(), figures.end(), ':');
+  std::vector<std::size_t> same;
+  for (std::size_t c = 0; c < v.caves; ++c) {
+    const bool alike = known >= kTellingFigures && figures == to_json(e.caves[c].figures);
+    if (!alike && (mesh_hash.empty() || mesh_hash != e.caves[c].hash)) continue;
+    int flew = 0;
+    for (std::size_t k = 0; k < v.contestants; ++k) flew += !std::isnan(v.at(k, c));
+    if (flew >= 2) same.push_back(c);
+  }
+  return same;
 }
 
 /// The best first; those that cannot be predicted are left out.
@@ -68,14 +85,36 @@ void give_intervals(const Experience& e, const Values& v, const std::vector<doub
   }
 }
 
-/// How often the first one would have been first with other caves and other seeds: caves drawn with
-/// replacement, and means within their errors.
-double confidence_of(const Values& v, const std::vector<double>& weight, double sign, std::size_t first) {
+/// Of the mean over other seeds in caves that were flown; not known if a cave has fewer than two.
+void give_intervals_there(const Experience& e, std::size_t metric, const std::vector<std::size_t>& there,
+                          double probability, std::vector<Expected>& ranking) {
+  const evaluation::MetricDefinition& figure =
+      evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(e.metrics[metric]))];
+  const auto caves = static_cast<double>(there.size());
+  for (Expected& x : ranking) {
+    double variance = 0;
+    int degrees = 0;
+    for (const std::size_t c : there) {
+      const Fared& f = e.at(x.contestant, c, metric);
+      variance += f.deviation * f.deviation / f.flights / (caves * caves), degrees += f.flights - 1;
+    }
+    if (!std::isfinite(variance)) continue;
+    const boost::math::students_t student(degrees);
+    const double half = boost::math::quantile(student, 0.5 + probability / 2) * std::sqrt(variance);
+    x.low = std::max(figure.least, x.value - half), x.high = std::min(figure.most, x.value + half);
+  }
+}
+
+/// How often the first one would have been first with other seeds, means drawn within their errors, and, if
+/// `other_caves`, with other caves, drawn with replacement.
+double confidence_of(const Values& v, const std::vector<double>& weight, double sign, std::size_t first,
+                     bool other_caves) {
   core::Random random = core::Random::stream(1, "confidence");
   int same = 0;
   for (int i = 0; i < kResamples; ++i) {
-    std::vector<double> drawn(v.caves, 0.0);
-    for (std::size_t c = 0; c < v.caves; ++c) {
+    std::vector<double> drawn = weight;
+    if (other_caves) std::fill(drawn.begin(), drawn.end(), 0.0);
+    for (std::size_t c = 0; other_caves && c < v.caves; ++c) {
       const auto pick = static_cast<std::size_t>(random.uniform() * static_cast<double>(v.caves));
       drawn[pick] += weight[pick];
     }
@@ -90,23 +129,28 @@ double confidence_of(const Values& v, const std::vector<double>& weight, double 
 }  // namespace
 
 Selected select(const Experience& e, const CaveFigures& cave, const SelectOptions& options,
-                const std::string& source) {
-  const std::size_t metric = metric_of(e, options.metric, source);
-  const double sign = evaluation::better_sign(options.metric, source);
+                const std::string& source, const std::string& mesh_hash) {
+  const std::string of = e.source.empty() ? source : e.source;
+  const std::size_t metric = metric_of(e, options.metric, of);
+  const double sign = evaluation::better_sign(options.metric, of);
   if (to_json(cave) == "{}") throw InputError(source, "", "nothing is known of the cave");
   const Values values = values_of(e, metric);
   const std::vector<double> level = levels(values), scales = robust_scales(e.caves);
   const auto known = static_cast<std::size_t>(
       std::count_if(level.begin(), level.end(), [](double l) { return !std::isnan(l); }));
-  if (known < kFewestCaves)
-    throw InputError(source, options.metric,
+  const std::vector<std::size_t> same = this_very_cave(e, values, cave, mesh_hash);
+  if (same.empty() && known < kFewestCaves)
+    throw InputError(of, options.metric,
                      "is known of " + std::to_string(known) + " caves; " + std::to_string(kFewestCaves) +
                          " at least are needed to select a policy");
 
   Selected s;
+  s.flown = !same.empty();
   s.bandwidth = best_bandwidth(e, values, level, scales);
   s.limit = farthest_neighbour(e.caves, scales);
-  const std::vector<double> weight = kernel_weights(e.caves, cave, scales, s.bandwidth);
+  std::vector<double> weight = kernel_weights(e.caves, cave, scales, s.bandwidth);
+  if (s.flown) std::fill(weight.begin(), weight.end(), 0.0);
+  for (const std::size_t c : same) weight[c] = 1;
   double all = 0;
   for (std::size_t c = 0; c < e.caves.size(); ++c) all += std::isnan(level[c]) ? 0 : weight[c];
   for (std::size_t c = 0; c < e.caves.size(); ++c)
@@ -114,16 +158,21 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
         !std::isnan(level[c]) && d.shared > 0)
       s.near.push_back({c, d, weight[c] / all});
   if (s.near.empty())
-    throw InputError(source, "", "no cave that was flown has a figure that this one is described by");
+    throw InputError(of, "", "no cave that was flown has a figure that this one is described by");
   std::stable_sort(s.near.begin(), s.near.end(),
                    [](const NearCave& a, const NearCave& b) { return a.distance.value < b.distance.value; });
   s.ranking = ranking_of(values, level, weight, sign);
   if (s.ranking.empty())
-    throw InputError(source, options.metric, "no policy flew in enough of the caves like this one");
-  give_intervals(e, values, level, scales, s.bandwidth, options.level, s.ranking);
-  s.confidence = confidence_of(values, weight, sign, s.ranking.front().contestant);
-  s.refused = s.near.front().distance.value > s.limit;
-  s.reason = s.refused ? why_far(e, cave, s.near.front(), s.limit) : why_first(e, s, options);
+    throw InputError(of, options.metric, "no policy flew in enough of the caves like this one");
+  if (s.flown)
+    give_intervals_there(e, metric, same, options.level, s.ranking);
+  else
+    give_intervals(e, values, level, scales, s.bandwidth, options.level, s.ranking);
+  s.confidence = confidence_of(values, weight, sign, s.ranking.front().contestant, !s.flown);
+  s.refused = !s.flown && s.near.front().distance.value > s.limit;
+  s.reason = s.refused ? why_far(e, cave, s.near.front(), s.limit)
+             : s.flown ? why_first_there(e, s, options)
+                       : why_first(e, s, options);
   return s;
 }
 

@@ -28,6 +28,7 @@ struct Expected {
 
 struct Selected {
   bool refused = false;
+  bool flown = false;             // this very cave: all rests on the flights there
   std::string reason;             // why this one, or why none
   std::vector<NearCave> near;     // nearest first, all that the metric is known of
   std::vector<Expected> ranking;  // best first
@@ -36,9 +37,12 @@ struct Selected {
   double confidence = 0;          // share of resampled experiences that name the same contestant
 };
 
-/// Throws InputError if the experience knows nothing of the metric, or the description has no figure.
+/// `mesh_hash`: SHA-256 of the cave's mesh, "" if it is not known. A cave that two contestants flew in
+/// already (the same mesh, or the same figures to their sixth digit) is decided by what they found there.
+/// Throws InputError if the experience knows nothing of the metric, or the description, which is of `source`,
+/// has no figure.
 Selected select(const Experience& experience, const CaveFigures& cave, const SelectOptions& options,
-                const std::string& source);
+                const std::string& source, const std::string& mesh_hash = "");
 
 /// The predicted figures of one contestant at the same bandwidth, by metric of the experience.
 std::vector<double> expected_figures(const Experience& experience, const Selected& selected,

@@ -17,6 +17,10 @@ std::string text(const char* format, auto... values) {
   return buffer.data();
 }
 
+std::string how_flown(const Experience& e) {
+  return text("; from flights of at most %g s in profile ", e.flown.horizon_s) + e.flown.profile;
+}
+
 }  // namespace
 
 std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave& nearest, double limit) {
@@ -36,6 +40,25 @@ std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave
       unit.c_str());
 }
 
+std::string why_first_there(const Experience& e, const Selected& s, const SelectOptions& options) {
+  const Expected& first = s.ranking.front();
+  const auto metric = static_cast<std::size_t>(std::find(e.metrics.begin(), e.metrics.end(), options.metric) -
+                                               e.metrics.begin());
+  std::string where;
+  int flights = 0;
+  for (const NearCave& n : s.near)
+    if (n.weight > 0) {
+      where += (where.empty() ? "" : ", ") + e.caves[n.cave].name;
+      flights += e.at(first.contestant, n.cave, metric).flights;
+    }
+  std::string out = "this very cave was flown: " + where + "; of " + std::to_string(s.ranking.size()) +
+                    " contestants there " + e.contestants[first.contestant].name + " did best in " +
+                    text("%s (%.3g over %d flights", options.metric.c_str(), first.value, flights);
+  if (!std::isnan(first.low))
+    out += text(", %.0f %% interval %.3g to %.3g", 100 * options.level, first.low, first.high);
+  return out + text("); confidence %.0f %%", 100 * s.confidence) + how_flown(e);
+}
+
 std::string why_first(const Experience& e, const Selected& s, const SelectOptions& options) {
   const Expected& first = s.ranking.front();
   std::string out = text("%s is expected to do best in %s (%.3g",
@@ -51,7 +74,7 @@ std::string why_first(const Experience& e, const Selected& s, const SelectOption
   for (std::size_t i = 0; i < s.near.size() && i < 3; ++i)
     out += text("%s%s (distance %.2f, weight %.0f %%)", i ? ", " : "", e.caves[s.near[i].cave].name.c_str(),
                 s.near[i].distance.value, 100 * s.near[i].weight);
-  return out + text("; confidence %.0f %%", 100 * s.confidence);
+  return out + text("; confidence %.0f %%", 100 * s.confidence) + how_flown(e);
 }
 
 }  // namespace karst::selection

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace karst::tools {
@@ -10,6 +11,15 @@ namespace karst::tools {
 /// `--policy ""` is a slip, such as a shell variable that is not set, and not the default.
 inline CLI::Validator not_empty() {
   return {[](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); }, ""};
+}
+
+/// A folder that is there, or can be made.
+inline CLI::Validator no_file() {
+  return {[](std::string& path) {
+            const bool other = std::filesystem::exists(path) && !std::filesystem::is_directory(path);
+            return other ? path + " is a file; expected a folder" : std::string();
+          },
+          ""};
 }
 
 /// A whole number that fits into 64 bits without a sign (strtoull would wrap -1 around).

@@ -120,7 +120,9 @@ void settle_policy(Mission& m) {
                      "no experience is installed: name a store or an experience");
   const selection::Experience e = selection::load_experience(
       {results}, [](const std::string& s) { std::fprintf(stderr, "%s\n", s.c_str()); });
-  const selection::Selected s = selection::select(e, figures, o.select, m.file);
+  const selection::Selected s =
+      selection::select(e, figures, o.select, m.file,
+                        o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));
   if (s.refused) {
     if (o.otherwise.empty() || o.otherwise == kAutoPolicy)
       throw InputError(m.file, "policy.auto",

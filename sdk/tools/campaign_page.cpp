@@ -10,9 +10,9 @@ namespace fs = std::filesystem;
 fs::path write_campaign_page(const fs::path& folder_or_store, const std::string& metric,
                              bool mission_reports) {
   campaign::CampaignReportOptions options;
-  options.verdict.metric = metric;
   options.mission_reports = mission_reports;
   const campaign::CampaignResults results = campaign::read_results(folder_or_store);
+  options.verdict.metric = metric.empty() ? results.metric : metric;
   const fs::path page = campaign::store_file(folder_or_store).parent_path() / "report.html";
   campaign::write_campaign_report(page, results, options);
   return page;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
@@ -18,6 +19,7 @@
 #include "sdk/campaign/export.h"
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/campaign/slurm.h"
+#include "sdk/campaign/verdict.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/campaign_page.h"
 #include "sdk/tools/campaign_progress.h"
@@ -37,7 +39,7 @@ void on_signal(int) { interrupted = true; }
 
 struct CompareArguments {
   std::vector<std::string> who, caves, settings, plugins, sbatch;
-  std::string out, profile, mission, executor = "local", keep = "replay", metric = "coverage_auc";
+  std::string out, profile, mission, executor = "local", keep = "replay", metric;
   std::string flight_time, trial_timeout;
   std::int64_t seeds = 0;
   std::size_t batch = 0;
@@ -74,6 +76,7 @@ void refuse_beside_folder(const CompareArguments& args) {
 void apply(const CompareArguments& args, Campaign& c) {
   if (!args.profile.empty()) c.profile = args.profile;
   if (!args.mission.empty()) c.mission = args.mission;
+  if (!args.metric.empty()) c.metric = args.metric;
   if (!args.flight_time.empty()) c.flight_time_s = seconds_of("--time", args.flight_time, 10, 86400);
   if (!args.trial_timeout.empty())
     c.trial_timeout_s = seconds_of("--trial-timeout", args.trial_timeout, 1, 1e7);
@@ -85,7 +88,7 @@ void apply(const CompareArguments& args, Campaign& c) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
       throw InputError("--set", setting, "expected key=value, such as motion.max_speed=1.5");
-    c.settings.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
+    c.overrides.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
 }
 
@@ -120,8 +123,19 @@ campaign::Keep keep_of(const std::string& text) {
   return text == "all" ? campaign::Keep::all : campaign::Keep::replay;
 }
 
+/// Says so before it flies what no flight could show.
+void tell_too_few(const campaign::Plan& plan) {
+  const std::size_t caves = plan.caves.size(), pairs = caves * plan.seeds.size(),
+                    least = campaign::least_pairs(plan.contestants.size(), campaign::VerdictOptions{}.alpha);
+  if (pairs >= least) return;
+  std::fprintf(stderr,
+               "karst: no difference can be shown by this campaign, whatever it finds: the test of %zu "
+               "contestants needs %zu pairs of flights, and these are %zu; fly %zu seeds at least\n",
+               plan.contestants.size(), least, pairs, (least + caves - 1) / caves);
+}
+
 int compare(const CompareArguments& args) {
-  check_metric(args.metric);
+  if (!args.metric.empty()) check_metric(args.metric);
   std::optional<Campaign> c;
   campaign::RunOptions options;
   options.folder = args.out;
@@ -155,7 +169,9 @@ int compare(const CompareArguments& args) {
   bool done = false;
   {
     CampaignProgress progress(args.quiet, args.jobs);
+    bool told = false;
     options.progress = [&](const campaign::Plan& plan, const campaign::Progress& p) {
+      if (!std::exchange(told, true)) tell_too_few(plan);
       progress.show(plan, p);
     };
     done = campaign::run_campaign(c, options);
@@ -210,7 +226,9 @@ void add_compare_command(CLI::App& app) {
   compare_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
       ->allow_extra_args(false)
       ->expected(1);
-  compare_app->add_option("--out", args->out, "the campaign's folder; default runs/NAME")->check(not_empty());
+  compare_app->add_option("--out", args->out, "the campaign's folder; default runs/NAME")
+      ->check(not_empty())
+      ->check(no_file());
   compare_app->add_option("--jobs", args->jobs, "trials flown at once; default: one a core")
       ->check(CLI::Range(1, 4096));
   compare_app->add_option("--executor", args->executor, "where trials fly: local, slurm")
@@ -229,7 +247,7 @@ void add_compare_command(CLI::App& app) {
                    "what stays of a trial: figures; replay (default): all but map.ot and map.ply; all")
       ->check(CLI::IsMember({"figures", "replay", "all"}));
   compare_app->add_option("--metric", args->metric,
-                          "figure that the verdict is about, decided before flying");
+                          "figure that the verdict is about, decided before flying; default coverage_auc");
   compare_app->add_flag("--any-binary", args->any_binary,
                         "go on although karst or a plugin is another one than before");
   compare_app->add_flag("--quiet", args->quiet, "no progress");
@@ -252,7 +270,7 @@ void add_trials_command(CLI::App& app) {
 
 void add_results_command(CLI::App& app) {
   struct Arguments {
-    std::string folder, csv, json, metric = "coverage_auc";
+    std::string folder, csv, json, metric;
   };
   auto args = std::make_shared<Arguments>();
   CLI::App* results_app = app.add_subcommand(
@@ -264,7 +282,8 @@ void add_results_command(CLI::App& app) {
       ->check(not_empty());
   results_app->add_option("--json", args->json, "write everything; - for standard output")
       ->check(not_empty());
-  results_app->add_option("--metric", args->metric, "figure that the verdict is about");
+  results_app->add_option("--metric", args->metric,
+                          "figure that the verdict is about; default: as the campaign declared");
   results_app->callback([args] {
     const campaign::CampaignResults results = campaign::read_results(args->folder);
     const std::vector<campaign::TrialExtras> extras = campaign::read_extras(args->folder);

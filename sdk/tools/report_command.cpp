@@ -9,7 +9,6 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
-#include "sdk/campaign/verdict.h"
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/surface.h"
@@ -96,7 +95,7 @@ nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, cons
 
 void add_report_command(CLI::App& app) {
   struct Arguments {
-    std::string run, metric = campaign::VerdictOptions{}.metric;
+    std::string run, metric;
     bool no_report = false, worst = false;
   };
   auto args = std::make_shared<Arguments>();
@@ -107,7 +106,8 @@ void add_report_command(CLI::App& app) {
       "  karst report runs/demo\n  karst report runs/CAMPAIGN --worst");
   report->add_option("run", args->run, "run directory, or a campaign's folder or store")->required();
   report->add_flag("--no-report", args->no_report, "of a run: metrics only, no report.html");
-  report->add_option("--metric", args->metric, "of a campaign: the figure that its verdict is about");
+  report->add_option("--metric", args->metric,
+                     "of a campaign: the figure that its verdict is about; default: as it declared");
   report->add_flag("--worst", args->worst,
                    "of a campaign: write the mission reports of its worst trials, too");
   report->callback([args] {

@@ -63,8 +63,12 @@ void check_metric(const std::string& metric) {
                          "no such figure" + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
-void print_results(const CampaignResults& results, const std::string& metric) {
+void print_results(const CampaignResults& results, const std::string& asked) {
+  const std::string metric = asked.empty() ? results.metric : asked;
   check_metric(metric);
+  if (metric != results.metric)
+    std::printf("The campaign declared %s before it flew; what follows is about %s.\n",
+                results.metric.c_str(), metric.c_str());
   campaign::VerdictOptions options;
   options.metric = metric;
   const campaign::Verdicts verdicts = campaign::compare_all(results, options);

@@ -23,7 +23,8 @@ using nlohmann::ordered_json;
 using selection::Experience;
 using selection::Selected;
 
-constexpr int kRefused = 3;  // exit code: nothing similar was flown
+constexpr std::size_t kManyCaves = 30;  // a share of fewer caves may be off by 18 points and more
+constexpr int kRefused = 3;             // exit code: nothing similar was flown
 
 struct Arguments {
   std::string cave, start, out, preset;
@@ -55,7 +56,7 @@ std::string interval_text(const selection::Expected& x) {
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
            const Arguments& args) {
   std::printf("The cave:\n%s", selection::to_text(cave).c_str());
-  std::printf("Caves like it:\n");
+  std::printf("%s:\n", s.flown ? "This very cave was flown; all rests on that. Nearest" : "Caves like it");
   for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
     const selection::NearCave& n = s.near[i];
     const auto& far = selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)];
@@ -91,6 +92,7 @@ ordered_json parameters_json(const selection::Preset& preset) {
 ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
                      const Arguments& args) {
   ordered_json j{{"refused", s.refused},
+                 {"flown", s.flown},
                  {"reason", s.reason},
                  {"metric", args.options.metric},
                  {"cave", ordered_json::parse(selection::to_json(cave))}};
@@ -123,7 +125,8 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
 int select_for(const Arguments& args) {
   const selection::Description cave = selection::describe_file(args.cave, args.start);
   const Experience e = experience_of(args);
-  const Selected s = select(e, cave.figures, args.options, args.cave);
+  const Selected s =
+      select(e, cave.figures, args.options, args.cave, selection::mesh_hash_of(args.cave, args.start));
   if (args.json)
     std::printf("%s\n", to_json(e, cave.figures, s, args).dump(2).c_str());
   else
@@ -140,6 +143,13 @@ int select_for(const Arguments& args) {
 
 void print_shares(const char* name, const selection::LeaveOneOut::Shares& s) {
   std::printf("  %-28s %5.0f %% %12.0f %% %12.1f %%\n", name, 100 * s.best, 100 * s.within, 100 * s.regret);
+}
+
+void print_answered(const selection::LeaveOneOut& l) {
+  std::printf("of the %zu caves that would not be refused\n", l.caves.size() - l.refused);
+  print_shares("selected", l.selected_answered);
+  print_shares("always the overall best", l.overall_answered);
+  print_shares("drawn at random", l.chance_answered);
 }
 
 void leave_one_out(const Arguments& args) {
@@ -179,11 +189,15 @@ void leave_one_out(const Arguments& args) {
   print_shares("selected", l.selected);
   print_shares("always the overall best", l.overall);
   print_shares("drawn at random", l.chance);
-  if (l.refused == 0 || l.refused == l.caves.size()) return;
-  std::printf("of the %zu caves that would not be refused\n", l.caves.size() - l.refused);
-  print_shares("selected", l.selected_answered);
-  print_shares("always the overall best", l.overall_answered);
-  print_shares("drawn at random", l.chance_answered);
+  if (l.refused > 0 && l.refused < l.caves.size()) print_answered(l);
+  std::printf(
+      "Within 5 %%: what it found is at least as good as the best there but for 5 %% of that. Lost: the "
+      "share of the best\n"
+      "that was lost. Drawn at random: the mean over all that flew there.\n");
+  if (l.caves.size() < kManyCaves)
+    std::printf(
+        "%zu caves are few: by chance alone a share of 50 %% is off by up to %.0f points, 95 times in 100.\n",
+        l.caves.size(), 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves.size())));
 }
 
 void learn(const Arguments& args) {

@@ -71,13 +71,14 @@ tuning::TuneOptions options_of(const Arguments& args) {
     throw InputError("karst tune", args.policy, "gives every parameter a value: none is left to tune");
   Campaign& c = o.campaign;
   c.source = "karst tune";
+  c.metric = o.metric;
   c.profile = args.profile;
   c.mission = args.mission;
   c.flight_time_s = flight_time_of(args.flight_time);
   for (const std::string& s : args.settings) {
     const auto equals = s.find('=');
     if (equals == std::string::npos) throw InputError("--set", s, "expected key=value");
-    c.settings.emplace_back(s.substr(0, equals), s.substr(equals + 1));
+    c.overrides.emplace_back(s.substr(0, equals), s.substr(equals + 1));
   }
   for (std::int64_t s = 1; s <= args.seeds; ++s) c.seeds.push_back(s);
   for (const std::string& file : args.caves) c.caves.push_back(campaign::parse_cave(file));
@@ -165,7 +166,6 @@ int tune(const Arguments& args) {
     run.keep = campaign::Keep::figures;
     run.any_binary = args.any_binary;
     run.stop = &interrupted;
-    fs::create_directories(args.out);
     if (interrupted || !campaign::run_campaign(c, run)) return std::nullopt;
     return campaign::read_results(run.folder);
   };
@@ -222,7 +222,8 @@ void add_tune_command(CLI::App& app) {
       ->check(not_empty());
   tune_app->add_option("--out", args->out, "folder for the preset, the table and the stores")
       ->required()
-      ->check(not_empty());
+      ->check(not_empty())
+      ->check(no_file());
   tune_app->add_option("--jobs", args->jobs, "flights at once; default: one a core")
       ->check(CLI::Range(1, 4096));
   tune_app->add_flag("--any-binary", args->any_binary,

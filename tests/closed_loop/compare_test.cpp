@@ -144,8 +144,7 @@ TEST(Compare, WhatIsWrongIsSaidBeforeAnythingFlies) {
   refused("nearest_fronteer --caves " + cave,
           {"contestant nearest_fronteer", "did you mean nearest_frontier"});
   refused("nearest_frontier:min_cels=3 --caves " + cave, {"min_cels", "did you mean", "min_cells"});
-  refused("nearest_frontier:min_cells=-3 --caves " + cave,
-          {"policy.parameters.min_cells", "1 to 10000", "-3"});
+  refused("nearest_frontier:min_cells=-3 --caves " + cave, {"parameters.min_cells", "1 to 10000", "-3"});
   refused("nearest_frontier nearest_frontier --caves " + cave, {"two of this name"});
   refused("nearest_frontier --caves " + cave + " --set motion.max_sped=1", {"did you mean motion.max_speed"});
   refused("nearest_frontier --caves " + cave + " --metric coverag", {"coverag", "did you mean coverage"});
@@ -157,6 +156,63 @@ TEST(Compare, WhatIsWrongIsSaidBeforeAnythingFlies) {
   const std::string crashing = std::string(KARST_BINARY_DIR) + "/tests/plugins/crash_at_load.so";
   ASSERT_TRUE(fs::exists(crashing));
   refused("plain --plugin " + crashing + " --caves " + cave, {"crash_at_load.so"});
+}
+
+// As it was: "command line:" and "--set:" were named for what a campaign's file says.
+TEST(Compare, WhatIsWrongInACampaignFileIsSaidOfItsEntry) {
+  const fs::path dir = fresh_folder("compare_bad_file");
+  const std::string cave = generated_cave("small", 3), file = (dir / "c.info").string();
+  const auto complaint = [&](const std::string& contestant, const std::string& start, const std::string& rest,
+                             const std::string& arguments = "") {
+    std::ofstream(file) << "contestant { name near policy nearest_frontier " << contestant << " }\nseeds 2\n"
+                        << "cave { name maze file " << cave << " " << start << " }\n"
+                        << rest;
+    const Output out = run_karst("compare " + file + " --out " + (dir / "c").string() + arguments);
+    EXPECT_EQ(out.code, 1) << out.text;
+    return out.text;
+  };
+  const auto starts = [&](const std::string& text, const std::string& place) {
+    EXPECT_EQ(text.find("karst: " + place), 0u) << text;
+  };
+  starts(complaint("parameters { min_cels 3 }", "", ""),
+         file + ": contestant near: parameters.min_cels: no such key; did you mean parameters.min_cells?");
+  starts(complaint("settings { motion { max_speed \"900 m/s\" } }", "", ""),
+         file + ": contestant near: settings.motion.max_speed: expected");
+  starts(complaint("", "", "settings { motion { max_sped 1 } }"),
+         file + ": settings.motion.max_sped: no such key");
+  starts(complaint("", "", "", " --set motion.max_sped=1"),
+         "command line: --set: motion.max_sped: no such key");
+  starts(complaint("", "start \"1 2\"", ""), file + ": cave maze: start");
+  starts(complaint("", "start \"900 900 900\"", ""), file + ": cave maze: start: ");
+  starts(complaint("", "",
+                   "contestant { policy nearest_frontier settings { simulator { battery_minutes 1 } } }"),
+         file + ": contestant nearest_frontier+battery_minutes=1: may explore for 60.0 s, near for 300.0 s");
+  starts(run_karst("select --leave-one-out --results " + dir.string()).text,
+         dir.string() + ": holds no campaign");
+  starts(run_karst("results " + dir.string()).text, dir.string() + ": holds no campaign");
+  starts(run_karst("select --cave " + dir.string()).text, dir.string() + ": is a directory");
+  const Output tune = run_karst("tune nearest_frontier --caves " + cave + " --out " + file);
+  EXPECT_NE(tune.code, 0);
+  EXPECT_TRUE(tune.says("--out: " + file + " is a file; expected a folder")) << tune.text;
+}
+
+TEST(Compare, WhatCannotShowADifferenceIsSaidBeforeItFliesAndTheDeclaredMetricIsTheVerdicts) {
+  const fs::path dir = fresh_folder("compare_few");
+  const std::string cave = generated_cave("small", 3), out = (dir / "c").string();
+  std::ofstream(dir / "c.info")
+      << "metric path_length_m\nflight_time 12s\nseeds 1\ncave { file " << cave
+      << " }\ncontestant { policy nearest_frontier }\ncontestant { policy highest_frontier }\n";
+  const Output flown = run_karst("compare " + (dir / "c.info").string() + " --out " + out);
+  ASSERT_EQ(flown.code, 0) << flown.text;
+  EXPECT_TRUE(flown.says("no difference can be shown by this campaign")) << flown.text;
+  EXPECT_TRUE(flown.says("needs 6 pairs of flights, and these are 1; fly 6 seeds at least")) << flown.text;
+  EXPECT_TRUE(flown.says("failed | path_length_m |")) << flown.text;
+  const Output declared = run_karst("results " + out),
+               other = run_karst("results " + out + " --metric coverage");
+  EXPECT_TRUE(declared.says("failed | path_length_m |")) << declared.text;
+  EXPECT_TRUE(other.says("declared path_length_m before it flew; what follows is about coverage."))
+      << other.text;
+  EXPECT_TRUE(other.says("failed | coverage |")) << other.text;
 }
 
 TEST(Compare, AnotherCampaignInTheFolderIsRefusedSayingWhatDiffersAndMoreSeedsAreFlown) {

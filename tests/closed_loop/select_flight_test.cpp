@@ -22,7 +22,8 @@ void write(const fs::path& file, const std::string& text) { std::ofstream(file) 
 /// level ones.
 std::string experience() {
   std::string text =
-      "schema karst.experience/1\ncontestant { name near policy nearest_frontier }\n"
+      "schema karst.experience/2\nflown { horizon \"10 s\" profile campaign }\ncontestant { name near policy "
+      "nearest_frontier }\n"
       "contestant { name ratio policy unknown_ratio parameters { goals 4 } }\n";
   for (int c = 0; c < 6; ++c) {
     const std::string name = "c" + std::to_string(c), steep = std::to_string(0.1 + 0.12 * c);

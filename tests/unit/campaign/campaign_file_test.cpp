@@ -23,7 +23,8 @@ const std::string kCave = "cave { file a.ply }\n", kSeeds = "seeds 3\n",
 
 TEST(CampaignFile, ReadsEverythingWithPathsRelativeToIt) {
   const fs::path file = written(
-      "name deeper\nmission base.info\nprofile full\nflight_time 5min\ntrial_timeout 1h\nseed_list \"7 3 "
+      "name deeper\nmission base.info\nprofile full\nmetric depth_m\nflight_time 5min\ntrial_timeout "
+      "1h\nseed_list \"7 3 "
       "5\"\n"
       "settings { motion { max_speed \"1 m/s\" } }\n"
       "contestant { policy near }\n"
@@ -33,6 +34,7 @@ TEST(CampaignFile, ReadsEverythingWithPathsRelativeToIt) {
   const Campaign c = read_campaign(file.string());
   EXPECT_EQ(c.name, "deeper");
   EXPECT_EQ(c.mission, (file.parent_path() / "base.info").string());
+  EXPECT_EQ(c.metric, "depth_m");
   EXPECT_EQ(c.flight_time_s, 300);
   EXPECT_EQ(c.trial_timeout_s, 3600);
   EXPECT_EQ(c.seeds, (std::vector<std::int64_t>{7, 3, 5}));
@@ -94,6 +96,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"AProfileNobodyKnows",
             "profile campain\n" + kWho + kCave + kSeeds,
             {"profile", "did you mean campaign"}},
+        Bad{"AMetricNobodyKnows",
+            "metric coverage_acu\n" + kWho + kCave + kSeeds,
+            {"metric", "did you mean coverage_auc"}},
         Bad{"TooShortAFlight", "flight_time 1s\n" + kWho + kCave + kSeeds, {"flight_time", "10 to 86400 s"}},
         Bad{"AWrongUnit", "flight_time 3kg\n" + kWho + kCave + kSeeds, {"flight_time", "kg"}},
         Bad{"SeedsThatAreNone", "seeds many\n" + kWho + kCave, {"seeds", "many"}},

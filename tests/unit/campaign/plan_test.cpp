@@ -39,6 +39,29 @@ TEST(Plan, ComesBackFromItsDefinition) {
   EXPECT_EQ(mission_text(back, 1, 1), mission_text(plan, 1, 1));
 }
 
+TEST(Plan, KeepsTheMetricThatWasDeclared) {
+  Plan plan = small_plan();
+  plan.metric = "depth_m";
+  std::string text = definition_of(plan);
+  EXPECT_EQ(plan_of(text, "here").metric, "depth_m");
+  text.erase(text.find("metric depth_m\n"), 15);  // as campaigns were before it could be declared
+  EXPECT_EQ(plan_of(text, "here").metric, "coverage_auc");
+}
+
+// As it was: the longest horizon was taken for all.
+TEST(Plan, ContestantsThatMayNotExploreAsLongAreRefused) {
+  std::vector<PlannedContestant> who = small_plan().contestants;
+  for (PlannedContestant& c : who) c.mission.put("mission.max_flight_time", "300 s");
+  EXPECT_EQ(horizon_of(who, "c.info"), 300);
+  who[1].mission.put("simulator.battery_minutes", "10 min");
+  EXPECT_EQ(horizon_of(who, "c.info"), 300);
+  who[1].mission.put("simulator.battery_minutes", "2 min");
+  const std::string e = error_of([&] { horizon_of(who, "c.info"); });
+  EXPECT_TRUE(says(e, "c.info: contestant far: may explore for 120.0 s, near for 300.0 s")) << e;
+  who[0].mission.put("simulator.battery_minutes", "2 min");
+  EXPECT_EQ(horizon_of(who, "c.info"), 120);
+}
+
 TEST(Plan, ADamagedDefinitionIsAnError) {
   for (const std::string& text : {std::string("name x\n"), std::string("name {\n"), std::string()})
     EXPECT_TRUE(says(error_of([&] { plan_of(text, "store"); }), "store: campaign.definition"));
@@ -90,12 +113,27 @@ TEST(Folder, AnotherCampaignsStoreIsRefusedSayingWhatDiffers) {
   { open_for(small_plan(), dir, false); }
   Plan other = small_plan();
   other.contestants[0].mission.put("motion.max_speed", "2 m/s");
-  const std::string e = error_of([&] { open_for(other, dir, false); });
+  const std::string e = error_of([&] { open_for(other, dir, false, "c.info"); });
+  EXPECT_TRUE(says(e, "c.info: is another campaign than the one in")) << e;
   EXPECT_TRUE(says(e, "contestant near: motion.max_speed was \"1 m/s\", is \"2 m/s\"")) << e;
   Plan more = small_plan();
   more.seeds.push_back(4);
   { open_for(more, dir, false); }
   EXPECT_EQ(Store::open(dir / "campaign.sqlite").head().seeds, more.seeds);
+}
+
+TEST(Folder, TheMetricThatWasDeclaredFirstStays) {
+  const fs::path dir = fresh_folder("metric_stays");
+  Plan plan = small_plan();
+  plan.metric = "depth_m";
+  { open_for(plan, dir, false); }
+  plan.metric = "coverage";  // another one after the flights would be a choice by what they found
+  plan.seeds.push_back(4);
+  { open_for(plan, dir, false); }
+  const CampaignResults results = read_results(dir);
+  EXPECT_EQ(results.metric, "depth_m");
+  EXPECT_EQ(results.profile, "full");
+  EXPECT_EQ(Store::open(dir / "campaign.sqlite").head().seeds, plan.seeds);
 }
 
 TEST(Hash, IsWhatSha256sumPrints) {

@@ -110,6 +110,33 @@ TEST(CampaignReport, BandsAreMeansOverCavesWithIntervalsAround) {
   EXPECT_NEAR(curves["bands"][1]["all"]["mean"][k].get<double>(), over_caves, 2e-4);
 }
 
+// As it was: with few seeds the widened percentiles of coverages near 1 came out above it.
+TEST(CampaignReport, NoIntervalOfAMeanLeavesWhatTheFigureCanBe) {
+  CampaignResults results = fake_campaign(1, 2, 3);
+  const double coverage[] = {0.7, 1, 0.995};
+  for (std::size_t i = 0; i < results.trials.size(); ++i) {
+    TrialResult& t = results.trials[i];
+    figure(t, "coverage") = coverage[i % 3];
+    figure(t, "path_length_m") = i % 3 == 0 ? 0.5 : 900;
+    for (CurvePoint& p : t.curve) p.coverage = coverage[i % 3], p.explored_m3 = i % 3 == 0 ? 1 : 400;
+  }
+  const json page = written(results);
+  for (const char* quantity : {"coverage", "explored_m3"})
+    for (const json& band :
+         {page["curves"][quantity]["bands"][0]["all"], page["curves"][quantity]["bands"][0]["caves"][0]})
+      for (std::size_t k = 0; k < band["low"].size(); ++k) {
+        EXPECT_GE(band["low"][k].get<double>(), 0);
+        EXPECT_LE(band["low"][k], band["mean"][k]);
+        EXPECT_GE(band["high"][k], band["mean"][k]);
+        if (quantity == std::string("coverage")) EXPECT_LE(band["high"][k].get<double>(), 1);
+      }
+  const json& shares = page["summaries"][evaluation::metric_index("coverage")][0]["caves"][0]["interval"];
+  EXPECT_EQ(shares[1], 1);  // it was cut
+  const json& ways = page["summaries"][evaluation::metric_index("path_length_m")][0]["caves"][0]["interval"];
+  EXPECT_EQ(ways[0], 0);
+  EXPECT_GT(ways[1].get<double>(), 900);  // a length has no most
+}
+
 TEST(CampaignReport, SaysWhereAnIntervalIsOverCavesForWantOfSeeds) {
   const json one = written(fake_campaign(1, 4, 1)), many = written(fake_campaign(1, 4, 3));
   const int metric = evaluation::metric_index("coverage");

@@ -57,6 +57,33 @@ TEST(Verdict, ComparesTrialsOfTheSameCaveAndSeedAndWeighsCavesTheSame) {
   EXPECT_EQ(c.test.rank_sum_negative, 4.5);
 }
 
+TEST(Verdict, FewerPairsThanTheLeastNeverShowADifferenceThatIsAsPlainAsCanBe) {
+  EXPECT_EQ(least_pairs(1, 0.05), 0u);
+  EXPECT_EQ(least_pairs(2, 0.05), 6u);
+  for (const std::size_t contestants : {2u, 3u, 4u, 7u}) {
+    const std::size_t least = least_pairs(contestants, 0.05);
+    const auto p_of = [&](std::size_t pairs) {  // all to one side, no two equal
+      std::vector<double> differences;
+      for (std::size_t i = 1; i <= pairs; ++i) differences.push_back(static_cast<double>(i));
+      return evaluation::signed_rank(differences).p * static_cast<double>(contestants * (contestants - 1)) /
+             2;
+    };
+    EXPECT_LT(p_of(least), 0.05);
+    EXPECT_GE(p_of(least - 1), 0.05);
+  }
+  const auto shown = [](std::int64_t seeds) {
+    return primary(compare_all(drawn_campaign(
+                       2, 1, seeds,
+                       [](std::size_t c, std::size_t, std::int64_t s) {
+                         return Figures{{"coverage_auc", 0.3 + static_cast<double>(c) *
+                                                                   (0.3 + 0.01 * static_cast<double>(s))}};
+                       })))
+        .shown;
+  };
+  EXPECT_EQ(shown(5), Shown::no_difference);
+  EXPECT_EQ(shown(6), Shown::b_better);
+}
+
 TEST(Verdict, DoesNotCareForTheOrderOfTrials) {
   auto results = coverage_campaign(3, {1.05, 1, 1.1}, 3, 4);
   const Verdicts one = compare_all(results);

@@ -28,6 +28,7 @@ inline selection::CaveFigures cave_figures(double log_size, double steepness) {
 inline selection::Experience experience(int n, double crossing, double noise, std::uint64_t seed) {
   core::Random random(seed);
   selection::Experience e;
+  e.flown = {300, "campaign", {{"vehicle", "lidar_uav"}, {"motion.max_speed", "1.5 m/s"}}};
   for (const char* name : {"steep", "level", "both"}) e.contestants.push_back({name, name, "1.0.0", {}});
   e.contestants[0].parameters.put("reach", "3 m");
   e.metrics = selection::learned_metrics();

@@ -171,6 +171,76 @@ TEST(Select, ContestantThatDidNotFlyNearbyIsNotNamed) {
   EXPECT_NE(name_of_first(e, s), "steep");
 }
 
+TEST(Select, OfACaveThatWasFlownRestsOnWhatWasFoundThere) {
+  Experience e = experience(20, 0.3, 0.02, 3);
+  std::size_t steepest = 0;
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    if (e.caves[c].figures.verticality > e.caves[steepest].figures.verticality) steepest = c;
+  // Against all that caves like it say, "level" was best in the steepest.
+  e.at(0, steepest, 0) = {4, 0.40, 0.02}, e.at(1, steepest, 0) = {4, 0.60, 0.02},
+                    e.at(2, steepest, 0) = {1, 0.5, kUnknown};
+  const CaveFigures cave = e.caves[steepest].figures;
+  const Selected s = select(e, cave, {}, "cave");
+  EXPECT_TRUE(s.flown);
+  EXPECT_FALSE(s.refused);
+  EXPECT_EQ(name_of_first(e, s), "level");
+  EXPECT_NEAR(s.ranking.front().value, 0.60, 1e-12);
+  // Student's quantile of 95 % with 3 degrees of freedom is 2.353.
+  EXPECT_NEAR(s.ranking.front().high - 0.60, 2.353 * 0.02 / 2, 1e-4);
+  EXPECT_TRUE(std::isnan(s.ranking[1].low));  // of a single flight
+  EXPECT_EQ(s.near.front().cave, steepest);
+  EXPECT_EQ(s.near.front().weight, 1);
+  EXPECT_EQ(s.near[1].weight, 0);
+  EXPECT_GT(s.confidence, 0.99);
+  EXPECT_EQ(s.reason.find("this very cave was flown: " + e.caves[steepest].name +
+                          "; of 3 contestants there level did best"),
+            0u)
+      << s.reason;
+  // The mesh tells it, too: from another start, or described by other means.
+  CaveFigures other = cave;
+  other.volume_m3 *= 1.01;
+  EXPECT_FALSE(select(e, other, {}, "cave", "abc").flown);
+  e.caves[steepest].hash = "abc";
+  EXPECT_TRUE(select(e, other, {}, "cave", "abc").flown);
+  EXPECT_FALSE(select(e, other, {}, "cave").flown);
+  // Few figures agree by chance; and one contestant alone tells nothing of the others.
+  CaveFigures little;
+  little.width_m = cave.width_m, little.volume_m3 = cave.volume_m3;
+  EXPECT_FALSE(select(e, little, {}, "cave").flown);
+  e.at(0, steepest, 0) = e.at(2, steepest, 0) = {};
+  EXPECT_FALSE(select(e, cave, {}, "cave", "abc").flown);
+}
+
+TEST(Select, OfACaveThatWasFlownFewOthersAreEnough) {
+  Experience e = experience(6, 0.3, 0.02, 3);
+  while (e.caves.size() > 1) e = without_cave(e, 0);
+  const Selected s = select(e, e.caves[0].figures, {}, "cave");
+  EXPECT_TRUE(s.flown);
+  EXPECT_EQ(s.ranking.size(), 3u);
+  EXPECT_NEAR(s.ranking[0].value, std::max({e.at(0, 0, 0).mean, e.at(1, 0, 0).mean, e.at(2, 0, 0).mean}),
+              1e-12);
+}
+
+// As it was: of too few caves the cave asked about was named.
+TEST(Select, WhatTheResultsLackIsSaidOfThem) {
+  Experience e = experience(6, 0.3, 0.02, 3);
+  e.source = "runs/some";
+  while (e.caves.size() > 3) e = without_cave(e, 0);
+  const auto message = [&](auto action) -> std::string {
+    try {
+      action();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message([&] {
+              select(e, cave_figures(0, 0.4), {}, "new.info");
+            }).find("runs/some: coverage_auc: is known of 3"),
+            0u);
+  EXPECT_EQ(message([&] { leave_one_out(e, {"coverage_acu"}, "karst select"); }).find("runs/some: "), 0u);
+}
+
 TEST(Select, BadInputIsAnError) {
   const Experience e = experience(8, 0.3, 0.02, 3);
   const auto message = [&](const Experience& known, const CaveFigures& cave,
@@ -242,6 +312,8 @@ karst::campaign::CampaignResults results() {
   karst::campaign::CampaignResults r;
   r.name = "test";
   r.horizon_s = 300;
+  r.profile = "campaign";
+  r.shared = {{"vehicle", "lidar_uav"}};
   r.contestants = {
       {"near", "nearest_frontier", "1.0.0", R"({"max_distance":"30 m","goals":8,"keep":true})", "{}"},
       {"windy", "nearest_frontier", "1.0.0", "{}", R"({"simulator.gust":"2 m/s"})"}};
@@ -276,6 +348,9 @@ TEST(Experience, OfACampaignHoldsMeansAndCountsFailures) {
   const auto t90 = static_cast<std::size_t>(
       std::find(e.metrics.begin(), e.metrics.end(), "restricted_t90_s") - e.metrics.begin());
   EXPECT_EQ(e.at(0, 0, t90).mean, 300);
+  EXPECT_EQ(e.flown.horizon_s, 300);
+  EXPECT_EQ(e.flown.profile, "campaign");
+  EXPECT_EQ(e.flown.mission, results().shared);
 }
 
 TEST(Experience, StoreWithoutDescribedCavesIsAnError) {
@@ -287,6 +362,9 @@ TEST(Experience, StoreWithoutDescribedCavesIsAnError) {
   EXPECT_THROW(learn(r, "store"), InputError);
   r = results();
   r.caves[0].description = "{\"volume\": \"large\"}";
+  EXPECT_THROW(learn(r, "store"), InputError);
+  r = results();
+  r.profile.clear();
   EXPECT_THROW(learn(r, "store"), InputError);
 }
 
@@ -309,6 +387,12 @@ TEST(Experience, CavesOfAStoreAreDescribedOnceAndThoseWhoseFileIsGoneAreLeftOut)
                           karst::test::lattice_mesh(cells, 1.0, {0.03, 0.03, 0.03}));
   karst::campaign::StoreHead head;
   head.name = "test";
+  head.definition = R"(profile campaign
+contestant { name windy settings "{\"simulator.gust\":\"2 m/s\"}" mission { simulator { gust 2 } } }
+contestant { name near settings "{}"
+  mission { vehicle lidar_uav  policy { name nearest_frontier }
+            mission { max_flight_time "300 s"  landing_speed "0.4 m/s" } } }
+)";
   head.horizon_s = 300;
   head.contestants = {{"near", "nearest_frontier", "1.0.0", "{}", "{}"}};
   head.caves = {{"box", (dir / "box.ply").string(), "2 2 1.5", "", ""},
@@ -328,6 +412,9 @@ TEST(Experience, CavesOfAStoreAreDescribedOnceAndThoseWhoseFileIsGoneAreLeftOut)
   const Experience e = load_experience({dir.string()}, tell);
   ASSERT_EQ(e.caves.size(), 1u);
   EXPECT_NEAR(e.caves[0].figures.width_m, 3, 0.1);
+  const std::vector<std::pair<std::string, std::string>> shared{{"vehicle", "lidar_uav"},
+                                                                {"mission.landing_speed", "0.4 m/s"}};
+  EXPECT_EQ(e.flown.mission, shared);
   ASSERT_EQ(told.size(), 3u);
   EXPECT_EQ(told[0], "describing box");
   EXPECT_NE(told[2].find("gone.ply"), std::string::npos) << told[2];
@@ -341,19 +428,25 @@ TEST(Experience, SurvivesItsFile) {
   Experience e = experience(6, 0.3, 0.1, 2);
   e.caves[2].name = "a cave; with \"quotes\"";
   e.caves[3].figures.loops = kUnknown;
-  e.at(1, 2, 3) = {1, -0.25, kUnknown};
+  e.caves[1].hash = std::string(64, 'a');
+  e.flown.horizon_s = 1234.56789;
+  e.at(1, 2, 3) = {1, 0.25, kUnknown};
   const std::string text = to_info(e);
   const Experience f = read_experience(written("whole.info", text));
   EXPECT_EQ(to_info(f), text);
   EXPECT_EQ(f.caves[2].name, e.caves[2].name);
   EXPECT_TRUE(std::isnan(f.caves[3].figures.loops));
-  EXPECT_EQ(f.at(1, 2, 3).mean, -0.25);
+  EXPECT_EQ(f.caves[1].hash, e.caves[1].hash);
+  EXPECT_EQ(f.flown.horizon_s, 1234.56789);
+  EXPECT_EQ(difference(e.flown, f.flown), "");
+  EXPECT_EQ(f.at(1, 2, 3).mean, 0.25);
   EXPECT_TRUE(std::isnan(f.at(1, 2, 3).deviation));
   EXPECT_EQ(f.at(0, 0, 1).flights, 0);
 }
 
 TEST(Experience, BadFilesAreErrors) {
-  const std::string head = "schema karst.experience/1\ncave { name a }\ncontestant { name k policy p }\n";
+  const std::string flown = "schema karst.experience/2\nflown { horizon \"300 s\" profile campaign }\n",
+                    head = flown + "cave { name a }\ncontestant { name k policy p }\n";
   const auto message = [&](const std::string& text) -> std::string {
     try {
       read_experience(written("bad.info", text));
@@ -363,8 +456,8 @@ TEST(Experience, BadFilesAreErrors) {
     return "accepted";
   };
   EXPECT_EQ(message(head), "accepted");
-  EXPECT_NE(message("width 4\n").find("expected karst.experience/1"), std::string::npos);
-  EXPECT_NE(message("schema karst.experience/1\n").find("no cave or no contestant"), std::string::npos);
+  EXPECT_NE(message("width 4\n").find("expected karst.experience/2"), std::string::npos);
+  EXPECT_NE(message(flown).find("no cave or no contestant"), std::string::npos);
   EXPECT_NE(message(head + "cave { name a }\n").find("a: is there twice"), std::string::npos);
   EXPECT_NE(message(head + "cavee { name b }\n").find("did you mean cave?"), std::string::npos);
   EXPECT_NE(message(head + "cave { name b figures { widht 4 } }\n").find("did you mean width?"),
@@ -380,6 +473,64 @@ TEST(Experience, BadFilesAreErrors) {
                   .find("expected \"mean flights"),
               std::string::npos)
         << bad;
+}
+
+std::string message_of(const std::string& text) {
+  try {
+    read_experience(written("bad.info", text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// As it was: a file told neither horizon nor profile.
+TEST(Experience, FileThatDoesNotTellHowItWasFlownSaysHowToMakeANewOne) {
+  const std::string old = "schema karst.experience/1\ncave { name a }\ncontestant { name k policy p }\n";
+  EXPECT_NE(message_of(old).find("karst select --learn STORE --out"), std::string::npos) << message_of(old);
+  const std::string rest = "cave { name a }\ncontestant { name k policy p }\n",
+                    head = "schema karst.experience/2\n" + rest;
+  EXPECT_NE(message_of(head).find("flown: expected one such block"), std::string::npos);
+  EXPECT_NE(message_of(head + "flown { profile campaign }\n").find("flown: lacks its horizon"),
+            std::string::npos);
+  EXPECT_NE(message_of(head + "flown { horizon \"5 min\" }\n").find("flown: lacks its profile"),
+            std::string::npos);
+  EXPECT_NE(message_of(head + "flown { horizn 300 }\n").find("did you mean horizon?"), std::string::npos);
+  for (const char* bad : {"-300 s", "0", "nan", "3 m"})
+    EXPECT_NE(message_of(head + "flown { horizon \"" + bad + "\" }\n").find("flown: horizon: expected"),
+              std::string::npos)
+        << bad;
+}
+
+// As it was: a coverage of 7 was believed.
+TEST(Experience, ImpossibleFiguresAreErrors) {
+  const std::string head =
+      "schema karst.experience/2\nflown { horizon \"300 s\" profile campaign }\n"
+      "cave { name a }\ncontestant { name k policy p }\n";
+  const auto result = [&](const std::string& figure) {
+    return message_of(head + "result { contestant k cave a " + figure + " }\n");
+  };
+  for (const char* good : {"coverage \"1 1\"", "coverage \"0 2 0\"", "coverage \"0.5 2 0.707107\"",
+                           "restricted_t90_s \"300 3 0\"", "path_length_m \"900 3 1200\""})
+    EXPECT_EQ(result(good), "accepted") << good;
+  for (const char* bad : {"coverage \"7 3\"", "coverage_auc \"-0.1 3\"", "completed \"1.01 3\"",
+                          "restricted_t90_s \"301 3\"", "path_length_m \"-1 3\"", "contacts \"-2 3\""})
+    EXPECT_NE(
+        result(bad).find("k in a: " + std::string(bad).substr(0, std::string(bad).find(' ')) + ": the mean"),
+        std::string::npos)
+        << result(bad);
+  EXPECT_NE(result("coverage \"0.5 1 0.1\"").find("a single flight has no deviation"), std::string::npos);
+  EXPECT_NE(result("coverage \"0.5 3 0.8\"").find("the deviation 0.8 is impossible"), std::string::npos);
+  for (const char* bad : {"inf 3", "nan 3", "0.5 0", "0.5 3 nan", "0.5 3 inf"})
+    EXPECT_NE(result("coverage \"" + std::string(bad) + "\"").find("expected \"mean flights"),
+              std::string::npos)
+        << bad;
+  for (const char* bad : {"width \"-3 m\"", "width nan", "volume 0", "verticality 2", "loops -1"})
+    EXPECT_NE(message_of(head + "cave { name b figures { " + bad + " } }\n").find("cave b: "),
+              std::string::npos)
+        << bad;
+  EXPECT_NE(message_of(head + "cave { name b hash xyz }\n").find("cave b: hash: expected"),
+            std::string::npos);
 }
 
 TEST(Experience, OfTwoCampaignsIsOneUnlessTheyContradict) {
@@ -398,6 +549,44 @@ TEST(Experience, OfTwoCampaignsIsOneUnlessTheyContradict) {
   other = b;
   other.contestants[0].parameters.put("reach", "5 m");
   EXPECT_THROW(merged(a, other, "other"), InputError);
+}
+
+// As it was: flights of 300 s and of 60 s were averaged.
+TEST(Experience, FlownOtherwiseIsNotMixed) {
+  const Experience a = experience(5, 0.3, 0.1, 2);
+  Experience b = experience(4, 0.3, 0.1, 3);
+  for (KnownCave& c : b.caves) c.name += "b";
+  const auto message = [&](auto change) -> std::string {
+    Experience other = b;
+    change(other);
+    try {
+      merged(a, other, "other");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message([](Experience&) {}), "accepted");
+  EXPECT_NE(message([](Experience& e) { e.flown.horizon_s = 60; }).find("horizon 60.0 s here, 300.0 s there"),
+            std::string::npos);
+  EXPECT_NE(
+      message([](Experience& e) { e.flown.profile = "full"; }).find("profile full here, campaign there"),
+      std::string::npos);
+  EXPECT_NE(message([](Experience& e) {
+              e.flown.mission[1].second = "1 m/s";
+            }).find("motion.max_speed 1 m/s here, 1.5 m/s there"),
+            std::string::npos);
+  EXPECT_NE(
+      message([](Experience& e) { e.contestants[1].version = "1.1.0"; })
+          .find("level: is another contestant than the one of the same name in other results: version 1.1.0 "
+                "here, 1.0.0 there"),
+      std::string::npos);
+  EXPECT_NE(message([](Experience& e) {
+              e.contestants[0].parameters.put("reach", "5 m");
+            }).find("parameters reach=5 m here, reach=3 m there"),
+            std::string::npos);
+  // A setting that one of them does not have yet.
+  EXPECT_EQ(message([](Experience& e) { e.flown.mission.emplace_back("simulator.haze", "0"); }), "accepted");
 }
 
 TEST(Preset, SurvivesItsFileAndRefusesAnythingElse) {
