@@ -23,20 +23,6 @@ std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
   return out;
 }
 
-/// Where the path leads back the way the vehicle came, that part of both is undone: what is left is how the
-/// vehicle comes to where the path leaves the way.
-void undo_way_back(std::vector<Vec3>& before, std::vector<Vec3>& after) {
-  constexpr double kBeside_m = 1.0, kAbove_m = 0.3;  // less than a sweep in a shaft gains
-  for (std::size_t k = after.size(); k-- > 0;)
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      const Vec3 d = after[k] - before[i];
-      if (d.head<2>().norm() > kBeside_m || std::abs(d.z()) > kAbove_m) continue;
-      before.resize(i + 1);
-      after.erase(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-      return;
-    }
-}
-
 }  // namespace
 
 SteepestView steepest_view(const VehicleDescription& vehicle) {
@@ -57,8 +43,7 @@ SteepestView steepest_view(const VehicleDescription& vehicle) {
 
 std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& way_come,
                                        const std::vector<Vec3>& path) {
-  std::vector<Vec3> before = thinned(way_come), after = thinned(path);
-  undo_way_back(before, after);
+  const std::vector<Vec3> before = thinned(way_come), after = thinned(path);
   std::vector<Vec3> way = before;
   way.insert(way.end(), after.begin(), after.end());
   for (std::size_t to = before.size(); to < way.size(); ++to) {

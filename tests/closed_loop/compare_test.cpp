@@ -97,7 +97,11 @@ TEST(Compare, KilledTwiceAndResumedItsStoreIsThatOfAnUndisturbedOne) {
 
   const Output resumed = run_karst("compare " + killed.string());  // the folder says what to fly
   ASSERT_EQ(resumed.code, 0) << resumed.text;
-  EXPECT_TRUE(resumed.says("6 trials, " + std::to_string(second) + " of them flown already")) << resumed.text;
+  // One more may have been flown, and not stored yet, when it was killed.
+  const auto flown = [&](int n) {
+    return resumed.says("6 trials, " + std::to_string(n) + " of them flown already");
+  };
+  EXPECT_TRUE(flown(second) || flown(second + 1)) << resumed.text;
   EXPECT_EQ(rows(killed), rows(whole));
   EXPECT_FALSE(fs::exists(killed / "flying"));
   EXPECT_FALSE(fs::exists(killed / "trials/nearest_frontier/small3/1/map.ot"))
@@ -175,7 +179,7 @@ TEST(Compare, WhatIsWrongInACampaignFileIsSaidOfItsEntry) {
     EXPECT_EQ(text.find("karst: " + place), 0u) << text;
   };
   starts(complaint("parameters { min_cels 3 }", "", ""),
-         file + ": contestant near: parameters.min_cels: no such key; did you mean parameters.min_cells?");
+         file + ": contestant near: parameters.min_cels: no such key; did you mean min_cells?");
   starts(complaint("settings { motion { max_speed \"900 m/s\" } }", "", ""),
          file + ": contestant near: settings.motion.max_speed: expected");
   starts(complaint("", "", "settings { motion { max_sped 1 } }"),

@@ -27,7 +27,7 @@ TEST(Pictures, AreTheSameOnAnyThreadsAndLeaveTheFlightAsItIs) {
     EXPECT_EQ(bytes_of(entry.path()), bytes_of(folder / "more" / "frames" / entry.path().filename()))
         << entry.path();
   }
-  EXPECT_GT(pictures, 40u);
+  EXPECT_GT(pictures, 8u);
   EXPECT_EQ(bytes_of(folder / "one" / "frames.csv"), bytes_of(folder / "more" / "frames.csv"));
   for (const char* same : {"trajectory.tum", "ground_truth.tum", "ground_truth_frames.csv", "events.jsonl"})
     EXPECT_EQ(bytes_of(folder / "one" / same), bytes_of(folder / "none" / same)) << same;
@@ -64,7 +64,7 @@ TEST(Pictures, TheirPosesAreTheCoresAndTheReportShowsThem) {
     exact &= d < 1e-4;
     ++rows;
   }
-  EXPECT_GT(rows, 60u);
+  EXPECT_GT(rows, 25u);  // one a second
   EXPECT_LT(off, 0.5) << "the estimate is near the truth";
   EXPECT_FALSE(exact) << "and is not the truth";
   const std::string page = bytes_of(run / "report.html");

@@ -70,21 +70,5 @@ TEST(BlindClimb, GoesByTheWayComeTooAndIsNotDeceivedBySweeping) {
   EXPECT_TRUE(refused);
 }
 
-TEST(BlindClimb, TheWayComeMayBeFlownBack) {
-  // As it was: a vehicle that had come 3.3 m up within 6.1 m was refused every goal, even those it had come
-  // from.
-  const SteepestView view{28 * kDegree, 28 * kDegree};
-  std::vector<Vec3> come = line({-10, 0, 0}, {0, 0, 0});
-  for (const Vec3& p : line({0, 0, 0}, {5, 0, 3.3})) come.push_back(p);
-  ASSERT_TRUE(blind_climb(view, {}, come)) << "for a climb so steep it was too much";
-  std::vector<Vec3> back = line({5, 0, 3.3}, {0, 0, 0});
-  EXPECT_FALSE(blind_climb(view, come, back));
-  for (const Vec3& p : line({0, 0, 0}, {0, 8, 0})) back.push_back(p);
-  EXPECT_FALSE(blind_climb(view, come, back)) << "and on from there";
-  for (const Vec3& p : line({0, 8, 0}, {0, 8, 4})) back.push_back(p);
-  EXPECT_TRUE(blind_climb(view, come, back)) << "but not up elsewhere";
-  EXPECT_TRUE(blind_climb(view, come, line({5, 0, 3.3}, {5, 0, 4.3}))) << "nor on up from where it is";
-}
-
 }  // namespace
 }  // namespace karst::core
