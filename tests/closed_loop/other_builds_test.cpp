@@ -31,9 +31,11 @@ std::string kept(const std::string& name) { return KARST_SOURCE_DIR "/tests/abi/
 
 /// The flight of the build that the others are compared with, flown once.
 const fs::path& reference(const std::string& policy) {
+  // Tests run side by side: each flies its own.
+  const std::string mine = ::testing::UnitTest::GetInstance()->current_test_suite()->name();
   static const fs::path nearest = flown(
-      "nearest_frontier", KARST_BINARY_DIR "/lib/karst/policies/nearest_frontier.so", "other_builds_nearest");
-  static const fs::path deepest = flown("deepest", built("deepest_gcc_c11"), "other_builds_deepest");
+      "nearest_frontier", KARST_BINARY_DIR "/lib/karst/policies/nearest_frontier.so", mine + "_nearest");
+  static const fs::path deepest = flown("deepest", built("deepest_gcc_c11"), mine + "_deepest");
   return policy == "deepest" ? deepest : nearest;
 }
 
