@@ -16,8 +16,10 @@ namespace karst::campaign {
 
 namespace fs = std::filesystem;
 
+/// Of each test its own: they run side by side.
 inline fs::path fresh_folder(const std::string& name, const fs::path& root = KARST_BINARY_DIR) {
-  const fs::path dir = root / "test_runs" / "campaign" / name;
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const fs::path dir = root / "test_runs" / "campaign" / test->test_suite_name() / test->name() / name;
   fs::remove_all(dir);
   fs::create_directories(dir);
   return dir;
