@@ -35,6 +35,7 @@ void describe(core::OptionTable& t, LidarOptions& o) {
   t.add("unit", o.unit, {"vlp16", "os0_32", "os0_64", "os1_64", "os0_128"},
         "16 channels in 30 deg; 32 in 90; 64 in 90; 64 in 45; 128 in 90");
   t.add("columns", o.columns, 64, 4096, "beams a channel and revolution");
+  t.add("rate", o.rate_hz, "Hz", 1, 20, "revolutions a second, rounded to whole steps of 5 ms");
   t.add("noise", o.noise_m, "m", 0, 1, "standard deviation of a range");
   t.add(
       "dust", o.dust_share, "", 0, 0.9,
@@ -47,6 +48,7 @@ std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o) {
                                    [&](const Unit& u) { return o.unit == u.name; });
   auto model = std::make_shared<core::LidarModel>();
   model->name = unit.name;
+  model->period = core::from_seconds(std::round(200 / o.rate_hz) * 0.005);
   model->columns = static_cast<int>(o.columns);
   for (int i = 0; i < unit.channels; ++i) {
     const double elevation_deg = unit.half_fov_deg * (1 - 2.0 * i / (unit.channels - 1));

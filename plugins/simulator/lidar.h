@@ -11,6 +11,7 @@ namespace karst::sim {
 struct LidarOptions {
   std::string unit = "os0_32";
   std::int64_t columns = 512;
+  double rate_hz = 10;
   double noise_m = 0.02;  // standard deviation of a range
   double dust_share = 0;  // of beams that dust or droplets near the vehicle send back
   double mast_m = 0.1;    // height above the vehicle's centre

@@ -63,8 +63,9 @@ std::string subject(const MetricDefinition& d) {
 
 /// Shares are told in percentage points.
 bool is_share(std::string_view name) {
-  constexpr std::array kShares = {"completed",    "standing_share", "coverage",          "coverage_auc",
-                                  "surface_seen", "surface_imaged", "battery_left",   "data_at_base_share"};
+  constexpr std::array kShares = {"completed",      "standing_share", "coverage",          "coverage_auc",
+                                  "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
+                                  "surface_imaged", "battery_left",   "data_at_base_share"};
   return std::find(kShares.begin(), kShares.end(), name) != kShares.end();
 }
 

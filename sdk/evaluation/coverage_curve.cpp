@@ -37,6 +37,14 @@ std::optional<double> time_of_coverage(const std::vector<CoveragePoint>& curve, 
   return std::nullopt;
 }
 
+std::optional<double> coverage_at(const std::vector<CoveragePoint>& curve, double time_s) {
+  if (curve.empty() || std::isnan(curve.back().coverage)) return std::nullopt;
+  double covered = 0;
+  for (const CoveragePoint& p : curve)
+    if (p.time_s <= time_s) covered = p.coverage;
+  return covered;
+}
+
 std::optional<double> mean_coverage(const std::vector<CoveragePoint>& curve, double horizon_s) {
   if (curve.empty() || !(horizon_s > 0) || std::isnan(curve.back().coverage)) return std::nullopt;
   double area = 0;

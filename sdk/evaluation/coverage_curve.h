@@ -22,6 +22,9 @@ std::vector<CoveragePoint> coverage_curve(const RunRecord& run, std::optional<do
 /// From take-off; none if the curve never reaches the share, or is not known.
 std::optional<double> time_of_coverage(const std::vector<CoveragePoint>& curve, double share);
 
+/// What had been covered by `time_s` after take-off: the coverage of the last point no later.
+std::optional<double> coverage_at(const std::vector<CoveragePoint>& curve, double time_s);
+
 /// Mean over [0, horizon]: a coverage stands until the next, and the last one until the horizon.
 std::optional<double> mean_coverage(const std::vector<CoveragePoint>& curve, double horizon_s);
 

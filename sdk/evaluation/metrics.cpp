@@ -168,6 +168,9 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["coverage"] = value(volume.coverage);
   m["horizon_s"] = value(horizon);
   m["coverage_auc"] = value(horizon ? mean_coverage(curve, *horizon) : std::nullopt);
+  for (const int percent : {25, 50, 75})
+    m["coverage_at_" + std::to_string(percent)] =
+        value(horizon ? coverage_at(curve, *horizon * percent / 100) : std::nullopt);
   m["t50_s"] = value(time_of_coverage(curve, 0.50));
   m["t90_s"] = value(time_of_coverage(curve, 0.90));
   m["t95_s"] = value(time_of_coverage(curve, 0.95));

@@ -57,6 +57,18 @@ TEST(CoverageCurve, ItsMeanIsTheAreaBelowItOverTheHorizon) {
   EXPECT_FALSE(mean_coverage({}, 100));
 }
 
+TEST(CoverageCurve, IsReadAtAnyTime) {
+  TemporaryDirectory dir;
+  const auto curve = coverage_curve(stepwise_run(dir), 0.6);
+  for (const CoveragePoint& p : curve) {
+    EXPECT_EQ(coverage_at(curve, p.time_s), p.coverage);
+    EXPECT_EQ(coverage_at(curve, p.time_s + 1e-6), p.coverage);
+  }
+  EXPECT_EQ(coverage_at(curve, -1), 0);
+  EXPECT_EQ(coverage_at(curve, 1e9), 0.6);
+  EXPECT_FALSE(coverage_at({}, 10));
+}
+
 TEST(CoverageCurve, WithoutACoverageHasAVolumeOnly) {
   TemporaryDirectory dir;
   const auto curve = coverage_curve(stepwise_run(dir), std::nullopt);
