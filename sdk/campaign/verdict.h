@@ -88,6 +88,11 @@ std::size_t least_pairs(std::size_t contestants, double alpha);
 /// Throws InputError if the options name no figure, or a trial is there twice or has not one value a figure.
 Verdicts compare_all(const CampaignResults& results, const VerdictOptions& options = {});
 
+/// Each contestant's mean over caves (which weigh the same), of the caves and seeds that all of them flew, so
+/// that caves that only some flew do not tell them apart; of all that each flew if there are none that they
+/// share. NaN where nothing is known.
+std::vector<double> comparable_means(const CampaignResults& results, int metric);
+
 /// What a trial counts as in a figure: a failed one never is a gap where that can be said
 /// (docs/statistics.md).
 double figure_of(const TrialResult& trial, int metric, double horizon_s);

@@ -14,28 +14,6 @@ using Group = std::vector<std::size_t>;  // places, ascending
 
 using Flown = std::map<std::pair<std::size_t, std::int64_t>, double>;  // by cave and seed
 
-/// The mean over caves of each contestant over what all of them flew, so that caves that only some flew do
-/// not tell them apart; over all that each flew if there is nothing they share.
-std::vector<double> comparable_means(const CampaignResults& results, int metric) {
-  std::vector<Flown> flown(results.contestants.size());
-  std::map<std::pair<std::size_t, std::int64_t>, std::size_t> flown_by;
-  for (const TrialResult& t : results.trials)
-    if (const double f = figure_of(t, metric, results.horizon_s); std::isfinite(f)) {
-      flown[t.contestant][{t.cave, t.seed}] = f;
-      ++flown_by[{t.cave, t.seed}];
-    }
-  const bool any_shared =
-      std::any_of(flown_by.begin(), flown_by.end(), [&](auto& k) { return k.second == flown.size(); });
-  std::vector<double> means;
-  for (const Flown& own : flown) {
-    evaluation::Differences by_cave(results.caves.size());
-    for (const auto& [key, f] : own)
-      if (!any_shared || flown_by[key] == flown.size()) by_cave[key.first].push_back(f);
-    means.push_back(evaluation::mean_difference(by_cave));
-  }
-  return means;
-}
-
 /// 1: a is shown better than b, -1: worse, 0: not shown to differ.
 int shown_better(const Verdicts& verdicts, std::size_t a, std::size_t b) {
   const Comparison* c = verdicts.find(a, b, verdicts.metric);
@@ -70,6 +48,26 @@ std::string letter(std::size_t i) {
 }
 
 }  // namespace
+
+std::vector<double> comparable_means(const CampaignResults& results, int metric) {
+  std::vector<Flown> flown(results.contestants.size());
+  std::map<std::pair<std::size_t, std::int64_t>, std::size_t> flown_by;
+  for (const TrialResult& t : results.trials)
+    if (const double f = figure_of(t, metric, results.horizon_s); std::isfinite(f)) {
+      flown[t.contestant][{t.cave, t.seed}] = f;
+      ++flown_by[{t.cave, t.seed}];
+    }
+  const bool any_shared =
+      std::any_of(flown_by.begin(), flown_by.end(), [&](auto& k) { return k.second == flown.size(); });
+  std::vector<double> means;
+  for (const Flown& own : flown) {
+    evaluation::Differences by_cave(results.caves.size());
+    for (const auto& [key, f] : own)
+      if (!any_shared || flown_by[key] == flown.size()) by_cave[key.first].push_back(f);
+    means.push_back(evaluation::mean_difference(by_cave));
+  }
+  return means;
+}
 
 std::vector<Place> rank_contestants(const Verdicts& verdicts, const CampaignResults& results) {
   const auto better = evaluation::metric_definitions()[static_cast<std::size_t>(verdicts.metric)].better;

@@ -18,19 +18,6 @@ using campaign::CampaignResults;
 constexpr std::array kColumns = {"coverage_auc",     "coverage",      "restricted_t50_s",
                                  "restricted_t90_s", "path_length_m", "contacts"};
 
-/// Over the caves, of the mean over seeds: caves weigh the same.
-double mean_of(const CampaignResults& results, std::size_t contestant, int metric) {
-  std::vector<double> sum(results.caves.size()), count(results.caves.size());
-  for (const campaign::TrialResult& t : results.trials) {
-    const double v = t.contestant == contestant ? campaign::figure_of(t, metric, results.horizon_s) : NAN;
-    if (std::isfinite(v)) sum[t.cave] += v, ++count[t.cave];
-  }
-  double all = 0, caves = 0;
-  for (std::size_t c = 0; c < sum.size(); ++c)
-    if (count[c] > 0) all += sum[c] / count[c], ++caves;
-  return all / caves;  // NaN without any
-}
-
 std::string number(double v) {
   if (!std::isfinite(v)) return "-";
   std::array<char, 32> text;
@@ -38,8 +25,9 @@ std::string number(double v) {
   return text.data();
 }
 
+/// `means`: of each figure, each contestant's.
 void print_row(const CampaignResults& results, const campaign::Place& place,
-               const std::vector<std::string>& figures) {
+               const std::vector<std::vector<double>>& means) {
   int trials = 0, failed = 0;
   for (const campaign::TrialResult& t : results.trials)
     if (t.contestant == place.contestant) ++trials, failed += t.failed;
@@ -47,8 +35,7 @@ void print_row(const CampaignResults& results, const campaign::Place& place,
   std::string line = "| " + (best == worst ? best : best + "-" + worst) + " | " +
                      results.contestants[place.contestant].name + " | " + std::to_string(trials) + " | " +
                      std::to_string(failed) + " |";
-  for (const std::string& f : figures)
-    line += " " + number(mean_of(results, place.contestant, evaluation::metric_index(f))) + " |";
+  for (const std::vector<double>& of_figure : means) line += " " + number(of_figure[place.contestant]) + " |";
   std::printf("%s\n", line.c_str());
 }
 
@@ -76,10 +63,15 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   for (const char* c : kColumns)
     if (c != metric) figures.emplace_back(c);
   std::string head = "| place | contestant | trials | failed |", rule = "|---:|---|---:|---:|";
-  for (const std::string& f : figures) head += " " + f + " |", rule += "---:|";
-  std::printf("%s: means over %zu cave%s\n\n%s\n%s\n", results.name.c_str(), results.caves.size(),
-              results.caves.size() == 1 ? "" : "s", head.c_str(), rule.c_str());
-  for (const campaign::Place& place : verdicts.ranking) print_row(results, place, figures);
+  std::vector<std::vector<double>> means;
+  for (const std::string& f : figures) {
+    head += " " + f + " |", rule += "---:|";
+    means.push_back(campaign::comparable_means(results, evaluation::metric_index(f)));
+  }
+  std::printf("%s: means over %zu cave%s, of the flights that all have flown\n\n%s\n%s\n",
+              results.name.c_str(), results.caves.size(), results.caves.size() == 1 ? "" : "s", head.c_str(),
+              rule.c_str());
+  for (const campaign::Place& place : verdicts.ranking) print_row(results, place, means);
   std::printf("\n");
   for (const campaign::Comparison& c : verdicts.comparisons)
     if (c.metric == verdicts.metric) std::printf("%s\n", c.sentence.c_str());

@@ -258,6 +258,12 @@ TEST(Verdict, RanksByWhatAllContestantsFlew) {
   EXPECT_EQ(v.ranking[2].contestant, 2u);
   EXPECT_EQ(primary(v, 0, 1).caves, 2u);
   EXPECT_EQ(primary(v, 1, 2).caves, 4u);
+  // B's mean is over those two as well, 6 seeds each: not over the four it flew.
+  const int metric = evaluation::metric_index("coverage_auc");
+  double sum = 0;
+  for (auto& t : results.trials)
+    if (t.contestant == 1 && t.cave < 2) sum += figure(t, "coverage_auc");
+  EXPECT_NEAR(comparable_means(results, metric)[1], sum / 12, 1e-12);
 }
 
 TEST(Verdict, GroupsOverlapWhereTheMiddleIsLikeBothEnds) {
