@@ -1,0 +1,55 @@
+// A flight whose requests are recorded, and what a replay of them says.
+#include "tests/closed_loop/command.h"
+
+namespace karst {
+namespace {
+
+std::string fly_recorded(const std::filesystem::path& run, const std::string& more) {
+  const Output out =
+      run_karst("fly --cave " + generated_cave("small", 7) +
+                " --policy nearest_frontier --set mission.max_flight_time=45s --quiet --no-report "
+                "--record-requests --out " +
+                run.string() + more);
+  EXPECT_TRUE(out.code == 0 || out.code == 2) << out.text;
+  return bytes_of(run / "requests.bin");
+}
+
+TEST(RecordRequests, ReplayAnswersAsInFlight) {
+  const auto dir = fresh_folder("record_requests");
+  const std::string first = fly_recorded(dir / "run", "");
+  ASSERT_GT(first.size(), 10'000u);
+  EXPECT_EQ(fly_recorded(dir / "again", " --threads 1"), first)
+      << "the record is the same bytes in every replay";
+
+  const Output same = run_karst("policy replay " + (dir / "run").string() + " --expect-same");
+  EXPECT_EQ(same.code, 0) << same.text;
+  EXPECT_TRUE(same.says(", 0 different")) << same.text;
+  EXPECT_FALSE(same.says("\n0 decisions")) << same.text;
+
+  const Output other =
+      run_karst("policy replay " + (dir / "run/requests.bin").string() + " --expect-same --set turn_cost=60");
+  EXPECT_EQ(other.code, 2) << other.text;
+  EXPECT_TRUE(other.says("DIFFERS") && other.says("recorded: ")) << other.text;
+
+  const Output part = run_karst("policy replay " + (dir / "run").string() + " --from 3 --to 5 --expect-same");
+  EXPECT_EQ(part.code, 0) << part.text;
+  EXPECT_TRUE(part.says("3 decisions of nearest_frontier 1.0.0, 3 as recorded, 0 different")) << part.text;
+
+  EXPECT_TRUE(run_karst("policy replay " + (dir / "run").string() + " --policy highest_frontier")
+                  .says("decisions of highest_frontier"));
+}
+
+TEST(RecordRequests, BadInputIsNamed) {
+  const auto dir = fresh_folder("record_requests_bad");
+  const Output none = run_karst("policy replay " + dir.string());
+  EXPECT_EQ(none.code, 1);
+  EXPECT_TRUE(none.says("fly with --record-requests")) << none.text;
+  std::ofstream(dir / "requests.bin") << "not what it says it is, by far";
+  const Output wrong = run_karst("policy replay " + dir.string());
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_TRUE(wrong.says("requests.bin") && wrong.says("no record of requests")) << wrong.text;
+  EXPECT_EQ(run_karst("policy replay /no/such/run").code, 1);
+}
+
+}  // namespace
+}  // namespace karst
