@@ -26,6 +26,8 @@ class DecisionBox {
   std::string fault() const;
   /// True if the sink refused something: an error that decide() then returns is of its own making.
   bool misused() const { return !fault_.empty(); }
+  /// The goals are stops in order, not choices by score (`karst policy check`). Mission control goes through
+  /// both from the front.
   bool is_tour() const { return tour_; }
   /// The well-formed part of the answer.
   core::Decision decision() const;

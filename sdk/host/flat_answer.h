@@ -69,7 +69,7 @@ Bytes flatten(const core::PolicyEvent& event);
 core::PolicyEvent read_event(std::span<const std::byte> bytes);
 Bytes flatten(const LengthsQuestion& question);
 LengthsQuestion read_lengths_question(std::span<const std::byte> bytes);
-/// None: paths cannot be asked for now.
+/// nullopt: the host has no roadmap for this request.
 Bytes flatten(const std::optional<std::vector<double>>& lengths);
 std::optional<std::vector<double>> read_lengths(std::span<const std::byte> bytes);
 Bytes flatten(const std::string& text);

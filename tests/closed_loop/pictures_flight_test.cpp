@@ -64,7 +64,7 @@ TEST(Pictures, TheirPosesAreTheCoresAndTheReportShowsThem) {
     exact &= d < 1e-4;
     ++rows;
   }
-  EXPECT_GT(rows, 25u);  // one a second
+  EXPECT_GT(rows, 25u);  // two a second
   EXPECT_LT(off, 0.5) << "the estimate is near the truth";
   EXPECT_FALSE(exact) << "and is not the truth";
   const std::string page = bytes_of(run / "report.html");
