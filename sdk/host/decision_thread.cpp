@@ -2,9 +2,7 @@
 
 #include <pthread.h>
 
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <ctime>
 #include <utility>
 
@@ -13,19 +11,7 @@ namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
 
-std::string seconds(double s) {
-  std::array<char, 40> text;
-  std::snprintf(text.data(), text.size(), "%g s", s);
-  return text.data();
-}
-
 }  // namespace
-
-std::string passed(const CallLimits& limits, double wall_s, double cpu_s) {
-  if (cpu_s > limits.cpu_s) return "took more than " + seconds(limits.cpu_s) + " of processor time";
-  if (wall_s > limits.wall_s) return "did not return within " + seconds(limits.wall_s);
-  return "";
-}
 
 DecisionThread::DecisionThread()
     : channel_(std::make_shared<Channel>()), thread_([channel = channel_] { serve(channel); }) {}
