@@ -103,6 +103,8 @@ void Roadmap::update(const VoxelMap& map, std::span<const CellChange> changes) {
   graph_->update(map, changes);
 }
 
+const PlanningOptions& Roadmap::options() const { return graph_->options; }
+
 std::size_t Roadmap::node_count() const {
   std::size_t n = 0;
   for (const RoadmapTile& t : graph_->tiles) n += t.nodes.size();

@@ -50,6 +50,7 @@ class Roadmap {
   bool segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const;
 
   std::size_t node_count() const;
+  const PlanningOptions& options() const;
   const RoadmapGraph& graph() const { return *graph_; }
 
  private:

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "core_stack/mapping/voxel_classes.h"
-#include "core_stack/planning/roadmap_graph.h"
+#include "core_stack/planning/roadmap.h"
 
 namespace karst::host {
 namespace {
@@ -125,7 +125,7 @@ void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t sinc
   }
   out.put(r.roadmap != nullptr);
   if (r.roadmap == nullptr) return;
-  const core::PlanningOptions& planned = r.roadmap->graph().options;
+  const core::PlanningOptions& planned = r.roadmap->options();
   out.put(planned.clearance_m), out.put(planned.search_slack_cells);
 }
 
@@ -209,8 +209,7 @@ void RequestReader::read_vehicle(FlatReader& in) {
     vehicle_.cameras.push_back(std::make_shared<core::CameraModel>(camera(in)));
   if (in.flag()) {
     const core::CameraModel model = camera(in);
-    vehicle_.rgb =
-        std::make_shared<core::RgbCameraModel>(core::RgbCameraModel{model, in.number<double>()});
+    vehicle_.rgb = std::make_shared<core::RgbCameraModel>(core::RgbCameraModel{model, in.number<double>()});
   }
   request_.vehicle = &vehicle_;
 }
@@ -272,8 +271,8 @@ void RequestReader::read_map(FlatReader& in) {
 
 void RequestReader::update_roadmap(const core::PlanningOptions& options,
                                    std::span<const core::CellChange> changes) {
-  const bool same = roadmap_ && roadmap_options_.clearance_m == options.clearance_m &&
-                    roadmap_options_.search_slack_cells == options.search_slack_cells;
+  const bool same = roadmap_ && roadmap_->options().clearance_m == options.clearance_m &&
+                    roadmap_->options().search_slack_cells == options.search_slack_cells;
   if (same) {
     roadmap_->update(*map_, changes);
   } else {
@@ -282,7 +281,6 @@ void RequestReader::update_roadmap(const core::PlanningOptions& options,
       all.push_back({k, core::Cell::unknown, c});
     });
     roadmap_.emplace(options);
-    roadmap_options_ = options;
     roadmap_->update(*map_, all);
   }
   request_.roadmap = &*roadmap_;

@@ -44,7 +44,6 @@ class RequestReader {
   bool with_roadmap_;
   std::optional<core::VoxelMap> map_;
   std::optional<core::Roadmap> roadmap_;
-  core::PlanningOptions roadmap_options_;
   core::VehicleDescription vehicle_;
   core::ImagedSurface imaged_;
   std::vector<core::FrontierCluster> clusters_;
