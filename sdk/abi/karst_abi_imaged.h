@@ -59,8 +59,8 @@ typedef struct karst_imaged_service {
      show; the vehicle level. At most KARST_MAX_GAIN_VIEWPOINTS. */
   int32_t (*newly_imaged)(const karst_host_t*, const karst_viewpoint_t* viewpoints, uint64_t count,
                           uint64_t* out, karst_error_t*) KARST_NOEXCEPT;
-  /* [decision thread] {deciding} Which those are: their centres, for each viewpoint in ascending (z, y, x), one
-     viewpoint after the other; `ends[i]` is how many there are up to viewpoint i's last. Writes at most
+  /* [decision thread] {deciding} Which those are: their centres, for each viewpoint in ascending (z, y, x),
+     one viewpoint after the other; `ends[i]` is how many there are up to viewpoint i's last. Writes at most
      `capacity` of them. */
   int32_t (*newly_imaged_cells)(const karst_host_t*, const karst_viewpoint_t* viewpoints, uint64_t count,
                                 uint64_t* ends, karst_vec3_t* out, uint64_t capacity,

@@ -126,7 +126,7 @@ typedef struct karst_teammate {
 
 typedef uint32_t karst_sensor_kind_t;
 enum {
-  KARST_SENSOR_LIDAR = 1, /* angles are azimuth and elevation: a sector of a sphere */
+  KARST_SENSOR_LIDAR = 1,  /* angles are azimuth and elevation: a sector of a sphere */
   KARST_SENSOR_CAMERA = 2, /* angles bound a pinhole camera's image planes: a pyramid about the x axis */
   KARST_SENSOR_RGB = 3     /* a colour camera, a pyramid as well: it takes pictures, and adds nothing to the
                               map; its range is that in which rock is lit and sharp */

@@ -6,7 +6,8 @@
 namespace karst::tools {
 
 /// Writes report.html beside the store of a campaign, given by its folder or its store, and gives its path.
-/// `metric` is the figure its verdict is about; "": the one that was declared. With `mission_reports` the worst trials get theirs, too.
+/// `metric` is the figure its verdict is about; "": the one that was declared. With `mission_reports` the
+/// worst trials get theirs, too.
 std::filesystem::path write_campaign_page(const std::filesystem::path& folder_or_store,
                                           const std::string& metric, bool mission_reports = false);
 

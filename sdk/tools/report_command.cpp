@@ -9,9 +9,9 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
+#include "sdk/evaluation/imaged_rock.h"
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/report.h"
-#include "sdk/evaluation/imaged_rock.h"
 #include "sdk/evaluation/surface.h"
 #include "sdk/tools/campaign_page.h"
 
@@ -64,8 +64,8 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   std::string kept;
   for (const char* key :
        {"reachable_volume_m3", "coverage", "coverage_auc", "coverage_at_25", "coverage_at_50",
-        "coverage_at_75", "t50_s", "t90_s", "t95_s", "restricted_t50_s",
-        "restricted_t90_s", "restricted_t95_s", "surface_seen", "surface_imaged", "map_error_mean_m", "map_error_std_m"}) {
+        "coverage_at_75", "t50_s", "t90_s", "t95_s", "restricted_t50_s", "restricted_t90_s",
+        "restricted_t95_s", "surface_seen", "surface_imaged", "map_error_mean_m", "map_error_std_m"}) {
     const auto value = before.find(key);
     if (value == before.end() || !value->is_number() || !metrics[key].is_null()) continue;
     metrics[key] = *value;
