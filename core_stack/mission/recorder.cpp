@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/mapping/octomap_io.h"
 
 namespace karst::core {
@@ -49,7 +50,7 @@ Recorder::Recorder(const std::filesystem::path& run_dir) : directory_(run_dir) {
 void Recorder::event(TimeNs t, const std::string& kind, const nlohmann::json& fields) {
   nlohmann::ordered_json line{{"t", seconds(t)}, {"kind", kind}};
   line.update(fields);
-  events_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  events_ << json_text(line) << '\n';
 }
 
 void Recorder::pose(const State& s) {
@@ -108,7 +109,8 @@ void Recorder::final_map(const VoxelMap& map) {
 
 bool Recorder::flush() {
   bool good = true;
-  for (std::ofstream* f : {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_}) {
+  for (std::ofstream* f :
+       {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_}) {
     f->flush();
     good = good && f->good();
   }

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <utility>
 
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/metric_definitions.h"
 
 namespace karst::campaign {
@@ -113,7 +114,7 @@ void write_json(std::ostream& out, const CampaignResults& results, const std::ve
                           {"description", parsed(c.description)}});
   for (std::size_t i = 0; i < results.trials.size(); ++i)
     j["trials"].push_back(trial_json(results, results.trials[i], extras[i]));
-  out << j.dump(1) << '\n';
+  out << core::json_text(j, 1) << '\n';
 }
 
 }  // namespace karst::campaign

@@ -5,6 +5,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_lines.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/campaign/ask_karst.h"
@@ -23,7 +24,7 @@ constexpr double kEndless_s = 1e9;
 std::string json_object(const Settings& settings) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
   for (const auto& [key, value] : settings) object[key] = value;
-  return object.dump();
+  return core::json_text(object);
 }
 
 pt::ptree take(pt::ptree& tree, const std::string& section, const std::string& name) {

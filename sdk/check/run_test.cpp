@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/check/run_check.h"
 
 namespace karst::check {
@@ -49,7 +50,7 @@ void run_test(Context& context, const Test& test, const std::filesystem::path& w
   const nlohmann::ordered_json result{
       {"outcome", name_of(verdict)}, {"reason", reason}, {"figures", context.figures}};
   std::ofstream out(work / "result.json");
-  out << result.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  out << core::json_text(result) << "\n";
   if (!out.flush()) throw core::InputError((work / "result.json").string(), "", "cannot be written");
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/mapping/octomap_io.h"
 #include "sdk/evaluation/coverage_curve.h"
 #include "sdk/evaluation/flight_figures.h"
@@ -213,7 +214,7 @@ ordered_json evaluate_run(const std::filesystem::path& run_dir, const Truth& tru
 }
 
 void write_metrics(const std::filesystem::path& run_dir, const ordered_json& metrics) {
-  write_whole_file(run_dir / "metrics.json", metrics.dump(2) + "\n");
+  write_whole_file(run_dir / "metrics.json", core::json_text(metrics, 2) + "\n");
 }
 
 }  // namespace karst::evaluation

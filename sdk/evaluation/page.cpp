@@ -1,5 +1,7 @@
 #include "sdk/evaluation/page.h"
 
+#include "core_stack/common/json_text.h"
+
 namespace karst::evaluation {
 namespace {
 
@@ -26,7 +28,7 @@ std::string joined_scripts(const std::vector<std::string_view>& scripts) {
 std::string assemble_page(const PageParts& parts, const ordered_json& data) {
   // Invalid UTF-8 in a plugin's text is shown as U+FFFD. As < is not needed outside strings, escaping all of
   // them keeps any text in the data from ending the element.
-  std::string json = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string json = core::json_text(data);
   replace(json, "<", "\\u003c");
   std::string styles;
   for (const std::string_view text : parts.styles) styles.append(text).append("\n");

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/common/json_text.h"
 #include "sdk/host/parameters.h"
 #include "sdk/host/plugin_file.h"
 #include "sdk/host/text.h"
@@ -64,7 +65,7 @@ std::string answer(const std::string& file) {
   } catch (const std::exception& e) {
     std::string reason = e.what();
     if (reason.rfind(file + ": ", 0) == 0) reason.erase(0, file.size() + 2);
-    return json{{"broken", reason}}.dump(-1, ' ', false, json::error_handler_t::replace);
+    return core::json_text(json{{"broken", reason}});
   }
 }
 

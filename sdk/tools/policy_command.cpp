@@ -4,6 +4,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/common/json_text.h"
 #include "sdk/host/discovery.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/check_command.h"
@@ -44,7 +45,7 @@ ordered_json to_json(const PolicyListing& p) {
 void print_json(const std::vector<PolicyListing>& all) {
   ordered_json out{{"policies", ordered_json::array()}, {"broken", ordered_json::array()}};
   for (const PolicyListing& p : all) out[p.broken.empty() ? "policies" : "broken"].push_back(to_json(p));
-  std::cout << out.dump(2) << "\n";
+  std::cout << core::json_text(out, 2) << "\n";
 }
 
 std::string allowed_text(const ParameterListing& p) {

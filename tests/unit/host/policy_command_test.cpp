@@ -40,6 +40,12 @@ TEST(PolicyList, BrokenPluginIsListedWithItsReason) {
   EXPECT_THAT(text, HasSubstr("nearest_frontier 1.0.0"));
 }
 
+TEST(PolicyList, FileWhoseNameIsNoUtf8DoesNotEndTheList) {
+  const nlohmann::json out = nlohmann::json::parse(said("policy list --json --plugin /no/such/\xff.so"));
+  EXPECT_EQ(out.at("broken").at(0).at("file"), "/no/such/\xEF\xBF\xBD.so");
+  EXPECT_GT(out.at("policies").size(), 5u);
+}
+
 TEST(PolicyList, VerboseTellsParametersAndFolders) {
   const std::string text = said("policy list --verbose");
   EXPECT_THAT(text, HasSubstr("min_cells = 10  (1 to 10000)"));
