@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 
 namespace karst::host {
 namespace {
@@ -58,10 +59,6 @@ core::Goal goal_of(const ordered_json& j) {
   return g;
 }
 
-std::string dump(const ordered_json& j) {
-  return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
 RequestLogHeader header_of(const ordered_json& j) {
   if (j.at("schema") != kSchema) throw std::runtime_error("it is of another version");
   RequestLogHeader h;
@@ -86,18 +83,17 @@ core::PolicyEvent event_of(const ordered_json& j) {
 std::string answer_text(const core::Decision& d) {
   ordered_json goals = ordered_json::array();
   for (const core::Goal& g : d.goals) goals.push_back(to_json(g));
-  return dump({{"outcome", kOutcomes.at(static_cast<std::size_t>(d.outcome))},
-               {"reason", d.reason},
-               {"goals", goals}});
+  return core::json_text(ordered_json{{"outcome", kOutcomes.at(static_cast<std::size_t>(d.outcome))},
+                                      {"reason", d.reason},
+                                      {"goals", goals}});
 }
 
-std::string answer_line(const std::string& text) {
-  const ordered_json j = ordered_json::parse(text, nullptr, false);
-  if (!j.is_object()) return text;
-  if (j.contains("failure")) return "failed: " + j.value("failure", "");
-  std::string out = j.value("outcome", "?");
-  if (const std::string reason = j.value("reason", ""); !reason.empty()) out += ": " + reason;
-  const ordered_json goals = j.value("goals", ordered_json::array());
+std::string answer_line(const std::string& text) try {
+  const ordered_json j = ordered_json::parse(text);
+  if (j.contains("failure")) return "failed: " + j.at("failure").get<std::string>();
+  std::string out = j.at("outcome");
+  if (const std::string reason = j.at("reason"); !reason.empty()) out += ": " + reason;
+  const ordered_json& goals = j.at("goals");
   if (goals.empty()) return out;
   const core::Goal g = goal_of(goals.front());
   std::array<char, 160> first;
@@ -105,6 +101,8 @@ std::string answer_line(const std::string& text) {
                 g.position.y(), g.position.z(), g.frontier_id, g.score);
   return out + first.data() + g.why +
          (goals.size() > 1 ? ", and " + std::to_string(goals.size() - 1) + " more" : "");
+} catch (const ordered_json::exception&) {
+  return text;
 }
 
 RecordingPolicy::RecordingPolicy(core::PolicyPort& policy, const std::filesystem::path& file,
@@ -112,11 +110,11 @@ RecordingPolicy::RecordingPolicy(core::PolicyPort& policy, const std::filesystem
     : policy_(policy), file_(file.string()), out_(file, std::ios::binary) {
   ordered_json parameters = ordered_json::object();
   for (const auto& [id, value] : h.parameters) parameters[id] = value.data();
-  write(kHeader, dump({{"schema", kSchema},
-                       {"policy", h.policy},
-                       {"version", h.version},
-                       {"seed", h.seed},
-                       {"parameters", parameters}}));
+  write(kHeader, core::json_text(ordered_json{{"schema", kSchema},
+                                              {"policy", h.policy},
+                                              {"version", h.version},
+                                              {"seed", h.seed},
+                                              {"parameters", parameters}}));
 }
 
 void RecordingPolicy::write(std::uint32_t kind, std::span<const std::byte> payload) {
@@ -137,16 +135,16 @@ core::Decision RecordingPolicy::decide(const core::DecisionRequest& request) {
     write(kAnswer, answer_text(decision));
     return decision;
   } catch (const core::PolicyFailure& failure) {
-    write(kAnswer, dump({{"failure", failure.what()}}));
+    write(kAnswer, core::json_text(ordered_json{{"failure", failure.what()}}));
     throw;
   }
 }
 
 void RecordingPolicy::notify(const core::PolicyEvent& e) {
-  write(kEvent, dump({{"kind", kEvents.at(static_cast<std::size_t>(e.kind))},
-                      {"stamp", e.stamp},
-                      {"goal", to_json(e.goal)},
-                      {"reason", e.reason}}));
+  write(kEvent, core::json_text(ordered_json{{"kind", kEvents.at(static_cast<std::size_t>(e.kind))},
+                                             {"stamp", e.stamp},
+                                             {"goal", to_json(e.goal)},
+                                             {"reason", e.reason}}));
   policy_.notify(e);
 }
 
@@ -173,12 +171,18 @@ void RequestLogReader::fail(const std::string& why) const {
 std::optional<RequestLogReader::Record> RequestLogReader::read() {
   ++record_;
   Frame frame{};
-  if (size_ - at_ < sizeof frame) return std::nullopt;
+  if (size_ - at_ < sizeof frame) {
+    passed_over_ = size_ - at_;
+    return std::nullopt;
+  }
   in_.read(reinterpret_cast<char*>(&frame), sizeof frame);
   at_ += sizeof frame;
   if (!in_ || frame.magic != kMagic) fail("this is no record of requests, or it is damaged");
   if (frame.kind != kRequest && frame.length > kMostText) fail("it is longer than it can be");
-  if (frame.length > size_ - at_) return std::nullopt;  // the flight was killed while it was written
+  if (frame.length > size_ - at_) {  // the flight was killed while it was written
+    passed_over_ = sizeof frame + size_ - at_;
+    return std::nullopt;
+  }
   Record out{frame.kind, Bytes(frame.length)};
   in_.read(reinterpret_cast<char*>(out.payload.data()), static_cast<std::streamsize>(frame.length));
   at_ += frame.length;

@@ -4,7 +4,7 @@
 // Records follow one another: four bytes of magic, kind, length, sum of the payload, payload. First a header,
 // then events and requests as they came, each request followed by its answer. A request is flat_request.h's,
 // its map as what changed since the request before. All other payloads are JSON. What a killed flight leaves
-// ends within a record at most: that last piece is passed over.
+// ends within a record at most: that last piece is passed over, and counted.
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <filesystem>
@@ -27,7 +27,7 @@ struct RequestLogHeader {
 
 /// An answer as JSON, the same text for the same answer: every digit, but neither drawings nor log.
 std::string answer_text(const core::Decision& decision);
-/// An answer in a line for people.
+/// An answer in a line for people; what is none stays as it is.
 std::string answer_line(const std::string& answer_text);
 
 /// Asks another policy, and writes down what went to and fro. A request is in the file before the policy sees
@@ -64,6 +64,8 @@ class RequestLogReader {
   const core::DecisionRequest& request() const { return requests_.request(); }
   const std::string& answer() const { return answer_; }
   const core::PolicyEvent& event() const { return event_; }
+  /// At the end: bytes of a last record that is not whole.
+  std::uint64_t passed_over() const { return passed_over_; }
 
  private:
   struct Record {
@@ -75,7 +77,7 @@ class RequestLogReader {
 
   std::string file_;
   std::ifstream in_;
-  std::uint64_t size_ = 0, at_ = 0, record_ = 0;
+  std::uint64_t size_ = 0, at_ = 0, record_ = 0, passed_over_ = 0;
   RequestLogHeader header_;
   RequestReader requests_{true};
   std::string answer_;

@@ -7,7 +7,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/host/hosted_policy.h"
 #include "sdk/host/request_log.h"
 #include "sdk/tools/arguments.h"
@@ -50,8 +52,7 @@ std::string ask(host::HostedPolicy& policy, const core::DecisionRequest& request
   try {
     return host::answer_text(policy.decide(request));
   } catch (const core::PolicyFailure& failure) {
-    return ordered_json{{"failure", failure.what()}}.dump(-1, ' ', false,
-                                                          ordered_json::error_handler_t::replace);
+    return core::json_text(ordered_json{{"failure", failure.what()}});
   }
 }
 
@@ -66,6 +67,7 @@ int replay(const Arguments& args) {
       fs::is_directory(args.run) ? fs::path(args.run) / host::kRequestLogName : fs::path(args.run);
   if (!fs::exists(file) && fs::is_directory(args.run))
     throw core::InputError(args.run, "", "holds no requests: fly with --record-requests");
+  if (args.from > args.to) throw core::InputError("--from", std::to_string(args.from), "is after --to");
   RequestLogReader log(file);
   const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(choice_of(args, log.header()));
   std::size_t asked = 0, different = 0;
@@ -91,17 +93,22 @@ int replay(const Arguments& args) {
     else
       print(log.request(), log.answer(), now);
   }
+  if (log.passed_over() > 0)
+    std::fprintf(stderr, "karst: %s: its last record is cut short, %llu bytes of it are passed over\n",
+                 file.c_str(), static_cast<unsigned long long>(log.passed_over()));
   if (args.json)
-    std::cout << ordered_json{{"schema", 1},
-                              {"policy", policy->name()},
-                              {"asked", asked},
-                              {"different", different},
-                              {"decisions", decisions}}
-                     .dump(2, ' ', false, ordered_json::error_handler_t::replace)
+    std::cout << core::json_text(ordered_json{{"schema", 1},
+                                              {"policy", policy->name()},
+                                              {"asked", asked},
+                                              {"different", different},
+                                              {"decisions", decisions}},
+                                 2)
               << "\n";
   else
-    std::printf("%zu decisions of %s %s, %zu as recorded, %zu different\n", asked, policy->name().c_str(),
-                policy->version().c_str(), asked - different, different);
+    std::printf("%s of %s %s, %zu as recorded, %zu different\n", core::counted(asked, "decision").c_str(),
+                policy->name().c_str(), policy->version().c_str(), asked - different, different);
+  if (args.expect_same && asked == 0)
+    throw core::InputError(file.string(), "--expect-same", "no decision was compared");
   return args.expect_same && different > 0 ? kDiffers : 0;
 }
 

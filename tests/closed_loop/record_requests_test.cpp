@@ -35,6 +35,15 @@ TEST(RecordRequests, ReplayAnswersAsInFlight) {
   EXPECT_EQ(part.code, 0) << part.text;
   EXPECT_TRUE(part.says("3 decisions of nearest_frontier 1.0.0, 3 as recorded, 0 different")) << part.text;
 
+  EXPECT_EQ(run_karst("policy replay " + (dir / "run").string() + " --from 5 --to 3").code, 1);
+  std::ofstream(dir / "cut.bin", std::ios::binary) << first.substr(0, first.size() / 2);
+  const Output cut = run_karst("policy replay " + (dir / "cut.bin").string());
+  EXPECT_EQ(cut.code, 0) << cut.text;
+  EXPECT_TRUE(cut.says("its last record is cut short")) << cut.text;
+  const Output nothing = run_karst("policy replay " + (dir / "run").string() + " --from 9999 --expect-same");
+  EXPECT_EQ(nothing.code, 1) << "a comparison of nothing is no proof";
+  EXPECT_TRUE(nothing.says("no decision was compared")) << nothing.text;
+
   EXPECT_TRUE(run_karst("policy replay " + (dir / "run").string() + " --policy highest_frontier")
                   .says("decisions of highest_frontier"));
 }

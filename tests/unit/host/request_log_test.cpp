@@ -117,6 +117,26 @@ TEST_F(Recorded, KilledFlightIsReadUpToItsLastRecord) {
   }
 }
 
+TEST_F(Recorded, WhatOfARecordCutShortIsPassedOverIsCounted) {
+  const std::string all = bytes();
+  const auto passed_over = [&](const std::string& text) {
+    rewrite(text);
+    RequestLogReader log(file);
+    while (log.next() != RequestLogReader::Kind::end) continue;
+    return log.passed_over();
+  };
+  EXPECT_EQ(passed_over(all), 0u);
+  EXPECT_EQ(passed_over(all + "half"), 4u);
+  const std::size_t last = all.rfind("krql");  // the last answer
+  EXPECT_EQ(passed_over(all.substr(0, all.size() - 1)), all.size() - 1 - last);
+}
+
+TEST_F(Recorded, AnswerOfAnotherShapeIsShownAsItStands) {
+  for (const char* text :
+       {"{\"goals\": [{\"position\": 5}]}", "{\"goals\": [7]}", "{\"outcome\": 3}", "{\"goals\": \"far\"}"})
+    EXPECT_EQ(answer_line(text), text);
+}
+
 TEST_F(Recorded, DamageNamesFileRecordAndReason) {
   const std::string all = bytes();
   for (std::size_t at = 24; at < all.size(); at += 1 + all.size() / 300) {
