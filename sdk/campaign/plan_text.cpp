@@ -14,6 +14,21 @@ namespace pt = boost::property_tree;
 using core::InputError;
 using nlohmann::json;
 
+namespace {
+
+pt::ptree tree_of(const std::string& definition, const std::string& source) {
+  std::istringstream in(definition);
+  pt::ptree tree;
+  try {
+    pt::read_info(in, tree);
+  } catch (const pt::info_parser_error& e) {
+    throw InputError(source, "campaign.definition, line " + std::to_string(e.line()), e.message());
+  }
+  return tree;
+}
+
+}  // namespace
+
 std::string info_text(const pt::ptree& tree) {
   std::ostringstream out;
   pt::write_info(out, tree);
@@ -56,14 +71,8 @@ std::string definition_of(const Plan& plan) {
   return info_text(tree);
 }
 
-void read_conditions(const std::string& definition, CampaignResults& results) {
-  pt::ptree tree;
-  try {
-    std::istringstream in(definition);
-    pt::read_info(in, tree);
-  } catch (const pt::info_parser_error&) {
-    return;
-  }
+void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results) {
+  const pt::ptree tree = tree_of(definition, source);
   results.profile = tree.get("profile", "");
   results.metric = tree.get("metric", results.metric);
   for (const auto& [key, contestant] : tree) {
@@ -77,10 +86,8 @@ void read_conditions(const std::string& definition, CampaignResults& results) {
 
 Plan plan_of(const std::string& definition, const std::string& source) {
   Plan plan;
+  const pt::ptree tree = tree_of(definition, source);
   try {
-    std::istringstream in(definition);
-    pt::ptree tree;
-    pt::read_info(in, tree);
     plan.name = tree.get<std::string>("name");
     plan.profile = tree.get<std::string>("profile");
     plan.horizon_s = tree.get<double>("horizon_s");

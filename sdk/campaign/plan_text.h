@@ -12,8 +12,8 @@ namespace karst::campaign {
 std::string info_text(const boost::property_tree::ptree& tree);
 std::string seeds_text(const std::vector<std::int64_t>& seeds);
 
-/// What a definition tells of how all flew: fills what it knows of profile, metric and shared settings. A
-/// definition that cannot be read tells nothing.
-void read_conditions(const std::string& definition, CampaignResults& results);
+/// What a definition tells of how all flew: fills what it knows of profile, metric and shared settings.
+/// Throws InputError for one that cannot be read.
+void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results);
 
 }  // namespace karst::campaign

@@ -44,18 +44,24 @@ std::size_t index_of(const fs::path& file, std::int64_t id, std::size_t count) {
 
 }  // namespace
 
-CampaignResults read_results(const fs::path& folder_or_file) {
+ResultsWithExtras read_with_extras(const fs::path& folder_or_file) {
   const fs::path file = store_file(folder_or_file);
   const OpenStore store = open_to_read(file);
   sqlite3* db = store.get();
   const sqlite::Transaction one_moment(file, db, sqlite::Transaction::Kind::read);
   StoreHead head = read_head(file, db);
-  CampaignResults results{head.name, head.horizon_s, std::move(head.contestants), std::move(head.caves), {}};
-  read_conditions(head.definition, results);
+  ResultsWithExtras all{{head.name, head.horizon_s, std::move(head.contestants), std::move(head.caves), {}},
+                        {}};
+  CampaignResults& results = all.results;
+  read_conditions(head.definition, file.string(), results);
   std::map<std::int64_t, std::size_t> place;
-  Statement s(file, db,
-              "SELECT id, contestant, cave, seed, status, outcome, reason, run_dir" +
-                  figures_or_null(file, db) + " FROM trial ORDER BY contestant, cave, seed");
+  Statement s(
+      file, db,
+      "SELECT id, contestant, cave, seed, status, outcome, reason, run_dir, binary_version, mission_hash,"
+      " machine, trial_s, wall_s, simulated_s, decide_mean_ms, decide_p99_ms, decide_max_ms, plan_mean_ms,"
+      " plan_p99_ms, plan_max_ms" +
+          figures_or_null(file, db) +
+          " FROM trial LEFT JOIN timing ON timing.trial = trial.id ORDER BY contestant, cave, seed");
   while (s.step()) {
     TrialResult t;
     place[s.integer(0)] = results.trials.size();
@@ -66,30 +72,20 @@ CampaignResults read_results(const fs::path& folder_or_file) {
     t.outcome = s.text(5);
     t.reason = s.text(6);
     t.run_dir = (fs::absolute(file).parent_path() / s.text(7)).lexically_normal().string();
+    const double wall_s = s.real(12), simulated_s = s.real(13);
+    const evaluation::WallClock flight{wall_s,     simulated_s, simulated_s / wall_s, s.real(14), s.real(15),
+                                       s.real(16), s.real(17),  s.real(18),           s.real(19)};
+    all.extras.push_back({s.text(8), s.text(9), {s.text(10), s.real(11), flight}});
     for (std::size_t i = 0; i < evaluation::metric_definitions().size(); ++i)
-      t.figures.push_back(s.real(static_cast<int>(8 + i)));
+      t.figures.push_back(s.real(static_cast<int>(20 + i)));
     results.trials.push_back(std::move(t));
   }
   read_curves(file, db, place, results.trials);
-  return results;
+  return all;
 }
 
-std::vector<TrialExtras> read_extras(const fs::path& folder_or_file) {
-  const fs::path file = store_file(folder_or_file);
-  const OpenStore store = open_to_read(file);
-  std::vector<TrialExtras> all;
-  Statement s(file, store.get(),
-              "SELECT binary_version, mission_hash, machine, trial_s, wall_s, simulated_s, decide_mean_ms,"
-              " decide_p99_ms, decide_max_ms, plan_mean_ms, plan_p99_ms, plan_max_ms"
-              " FROM trial LEFT JOIN timing ON timing.trial = trial.id"
-              " ORDER BY trial.contestant, trial.cave, trial.seed");
-  while (s.step()) {
-    const double wall_s = s.real(4), simulated_s = s.real(5);
-    const evaluation::WallClock flight{wall_s,    simulated_s, simulated_s / wall_s, s.real(6), s.real(7),
-                                       s.real(8), s.real(9),   s.real(10),           s.real(11)};
-    all.push_back({s.text(0), s.text(1), {s.text(2), s.real(3), flight}});
-  }
-  return all;
+CampaignResults read_results(const fs::path& folder_or_file) {
+  return read_with_extras(folder_or_file).results;
 }
 
 }  // namespace karst::campaign

@@ -18,6 +18,12 @@ using sqlite::Statement;
 // A trial's id in decimal: contestant, three digits of the cave, six of the seed's place, each from 1.
 constexpr std::int64_t kSeedDigits = 1'000'000, kCaveDigits = 1'000;
 
+/// Ids of trials would run into each other.
+void refuse_too_many(const fs::path& file, const StoreHead& head) {
+  if (head.caves.size() >= kCaveDigits || head.seeds.size() >= kSeedDigits)
+    throw InputError(file.string(), "", "at most 999 caves and 999999 seeds fit in a store");
+}
+
 template <class Entry>
 void check_prefix(const fs::path& file, const std::vector<Entry>& now, const std::vector<Entry>& then,
                   const char* what) {
@@ -41,8 +47,7 @@ Store::~Store() = default;
 
 Store Store::create(const fs::path& file, const StoreHead& head) {
   if (fs::exists(file)) throw InputError(file.string(), "", "is there already");
-  if (head.caves.size() >= kCaveDigits || head.seeds.size() >= kSeedDigits)
-    throw InputError(file.string(), "", "at most 999 caves and 999999 seeds fit in a store");
+  refuse_too_many(file, head);
   const fs::path part = file.string() + ".part";  // so that nobody finds half a store
   std::error_code ignored;
   fs::remove(part, ignored);
@@ -79,6 +84,7 @@ StoreHead Store::head() const { return read_head(file_, db_.get()); }
 
 void Store::extend(const StoreHead& wanted) {
   const StoreHead there = head();
+  refuse_too_many(file_, wanted);
   check_prefix(file_, wanted.contestants, there.contestants, "contestants");
   check_prefix(file_, wanted.caves, there.caves, "caves");
   check_prefix(file_, wanted.seeds, there.seeds, "seeds");

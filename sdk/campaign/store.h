@@ -58,7 +58,7 @@ class Store {
   ~Store();
 
   StoreHead head() const;
-  /// Appends contestants and seeds and takes over the definition; what is there already must stand in `head`
+  /// Appends contestants, caves and seeds and takes over the definition; what is there must stand in `head`
   /// unchanged and in the same places.
   void extend(const StoreHead& head);
   /// Replaces the figures that `karst select` compares caves by: a JSON object.
@@ -82,11 +82,16 @@ std::filesystem::path store_file(const std::filesystem::path& folder_or_file);
 /// Everything but timing, while a campaign runs as well as after. Takes a campaign's folder or its file.
 CampaignResults read_results(const std::filesystem::path& folder_or_file);
 
-/// What exports want beside the results, in the order of their trials.
+/// What exports want beside the results.
 struct TrialExtras {
   std::string binary_version, mission_hash;
   TrialTiming timing;
 };
-std::vector<TrialExtras> read_extras(const std::filesystem::path& folder_or_file);
+struct ResultsWithExtras {
+  CampaignResults results;
+  std::vector<TrialExtras> extras;  // in the order of the trials
+};
+/// Both of the same moment: a campaign that flies may add a trial between any two.
+ResultsWithExtras read_with_extras(const std::filesystem::path& folder_or_file);
 
 }  // namespace karst::campaign

@@ -1,5 +1,6 @@
 #include "sdk/campaign/store_schema.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -163,6 +164,9 @@ StoreHead read_head(const fs::path& file, sqlite3* db) {
   } catch (const nlohmann::json::exception& e) {
     throw InputError(file.string(), "campaign", e.what());
   }
+  if (!std::isfinite(head.horizon_s) || head.horizon_s <= 0)
+    throw InputError(file.string(), "campaign.horizon_s",
+                     "expected seconds, got " + value_of(file, db, "horizon_s"));
   head.contestants = read_contestants(file, db);
   head.caves = read_caves(file, db);
   return head;

@@ -8,18 +8,21 @@
 
 namespace karst::evaluation {
 
-void write_whole_file(const std::filesystem::path& file, std::string_view bytes) {
-  const std::filesystem::path part = file.string() + ".part";
+namespace fs = std::filesystem;
+
+void write_whole_file(const fs::path& file, std::string_view bytes) {
+  std::error_code ignored, error;
+  const bool device =
+      fs::exists(file, ignored) && fs::is_other(file, ignored);  // /dev/stdout: nothing to rename onto
+  const fs::path part = device ? file : fs::path(file.string() + ".part");
   errno = 0;
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(part, file, error);
+  if (out && !device) fs::rename(part, file, error);
   if (out && !error) return;
   const std::string reason = error ? error.message() : std::strerror(errno);
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
+  if (!device) fs::remove(part, ignored);
   throw core::InputError(file.string(), "", "cannot be written: " + reason);
 }
 

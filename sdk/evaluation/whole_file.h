@@ -5,7 +5,7 @@
 
 namespace karst::evaluation {
 
-/// Writes beside `file` and renames; throws InputError with the system's reason when the disk refuses.
+/// Writes beside `file` and renames, into a device or pipe at once; InputError says why the system refuses.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace karst::evaluation

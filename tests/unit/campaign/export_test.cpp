@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "sdk/evaluation/whole_file.h"
 #include "sdk/host/process.h"
 #include "tests/unit/campaign/store_fixture.h"
 
@@ -21,10 +22,18 @@ fs::path small_store(const std::string& name) {
   return file;
 }
 
+TEST(Export, IntoADeviceLeavesItADevice) {
+  const std::string error = error_of([] { evaluation::write_whole_file("/dev/full", "a,b\n"); });
+  EXPECT_TRUE(says(error, "/dev/full: cannot be written: No space left on device")) << error;
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+  EXPECT_FALSE(fs::exists("/dev/full.part"));
+}
+
 TEST(Export, AwkReadsEveryCellOfTheCsv) {
   const fs::path store = small_store("csv"), csv = store.parent_path() / "trials.csv";
   std::ofstream out(csv);
-  write_csv(out, read_results(store), read_extras(store));
+  const auto [results, extras] = read_with_extras(store);
+  write_csv(out, results, extras);
   out.close();
   const auto awk = [&](const std::string& program) {
     return run_process({"/usr/bin/awk", "-F,", program, csv.string()}, 100).out;
@@ -44,7 +53,8 @@ TEST(Export, AwkReadsEveryCellOfTheCsv) {
 TEST(Export, TheJsonHoldsEverything) {
   const fs::path store = small_store("json");
   std::ostringstream out;
-  write_json(out, read_results(store), read_extras(store));
+  const auto [results, extras] = read_with_extras(store);
+  write_json(out, results, extras);
   const auto json = nlohmann::json::parse(out.str());
   EXPECT_EQ(json["schema"], "karst.results/1");
   ASSERT_EQ(json["trials"].size(), 3u);

@@ -5,7 +5,9 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
+#include <thread>
 
 #include "tests/unit/campaign/store_fixture.h"
 
@@ -47,7 +49,7 @@ TEST(Store, GivesBackWhatItWasGiven) {
   ASSERT_EQ(r.caves.size(), 2u);
   EXPECT_EQ(r.caves[1].hash, "abc");
   const std::vector<TrialKey> keys = all_trials(small_head());
-  const std::vector<TrialExtras> extras = read_extras(file);
+  const std::vector<TrialExtras> extras = read_with_extras(file).extras;
   ASSERT_EQ(r.trials.size(), keys.size());
   ASSERT_EQ(extras.size(), keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -115,6 +117,14 @@ TEST(Store, RefusesAnythingButAppending) {
   EXPECT_TRUE(says(error_of([&] { store.extend(head); }), "seeds"));
 }
 
+TEST(Store, DoesNotGrowToWhereIdsOfTrialsRunIntoEachOther) {
+  StoreHead head = small_head();
+  Store store = Store::create(quick_folder("caves") / "campaign.sqlite", head);
+  while (head.caves.size() < 1000)
+    head.caves.push_back({"cave" + std::to_string(head.caves.size()), "x.info", "", "", "abc"});
+  EXPECT_TRUE(says(error_of([&] { store.extend(head); }), "at most 999 caves"));
+}
+
 TEST(Store, KeepsADescriptionOfACaveWhenTheCampaignGrows) {
   const fs::path file = full_store(quick_folder("described"));
   Store store = Store::open(file);
@@ -152,6 +162,42 @@ TEST(Store, OfALaterVersionIsRefusedAsSuch) {
   sqlite3_exec(db, "PRAGMA user_version = 7", nullptr, nullptr, nullptr);
   sqlite3_close(db);
   EXPECT_TRUE(says(error_of([&] { read_results(file); }), "version 7, this karst reads version 1"));
+}
+
+TEST(Store, WhoseDefinitionOrHorizonIsDamagedSaysSo) {
+  for (const auto& [change, complaint] :
+       {std::pair("UPDATE campaign SET value = 'x {' WHERE key = 'definition'",
+                  "campaign.definition, line 1: unmatched {"),
+        std::pair("UPDATE campaign SET value = '-5' WHERE key = 'horizon_s'",
+                  "campaign.horizon_s: expected seconds, got -5")}) {
+    const fs::path file = full_store(quick_folder("head"));
+    sqlite3* db = nullptr;
+    sqlite3_open(file.c_str(), &db);
+    ASSERT_EQ(sqlite3_exec(db, change, nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(db);
+    const std::string error = error_of([&] { read_results(file); });
+    EXPECT_TRUE(says(error, complaint) && says(error, file.string())) << error;
+  }
+}
+
+TEST(Store, ReadWhileACampaignFliesGivesEachTrialItsOwnTiming) {
+  const fs::path file = quick_folder("flying") / "campaign.sqlite";
+  Store store = Store::create(file, small_head());
+  std::vector<TrialKey> keys = all_trials(small_head());
+  std::reverse(keys.begin(), keys.end());  // each comes in front of those there are
+  std::thread campaign([&] {
+    for (const TrialKey& key : keys) add(store, key);
+  });
+  for (std::size_t seen = 0; seen < keys.size();) {
+    const auto [results, extras] = read_with_extras(file);
+    seen = results.trials.size();
+    EXPECT_EQ(extras.size(), seen);
+    for (std::size_t i = 0; i < std::min(seen, extras.size()); ++i) {
+      const TrialResult& t = results.trials[i];
+      EXPECT_EQ(extras[i].mission_hash, trial_of(t.contestant, t.cave, t.seed).mission_hash);
+    }
+  }
+  campaign.join();
 }
 
 TEST(Store, ThatLacksAFigureIsReadWithoutAndNotWritten) {
