@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "sdk/evaluation/metric_definitions.h"
 
@@ -47,6 +48,18 @@ LeaveOneOut leave_one_out(const Experience& e, const SelectOptions& options, con
   if (found == e.metrics.end())
     throw core::InputError(source, options.metric, "policies are not selected by this figure");
   const auto metric = static_cast<std::size_t>(found - e.metrics.begin());
+  std::size_t known = 0;
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    for (std::size_t k = 0; k < e.contestants.size(); ++k)
+      if (e.at(k, c, metric).flights > 0) {
+        ++known;
+        break;
+      }
+  if (known < kFewestCaves + 1)
+    throw core::InputError(source, options.metric,
+                           "is known of " + core::counted(known, "cave") + "; " +
+                               std::to_string(kFewestCaves + 1) +
+                               " at least are needed to leave one out and select from the others");
   LeaveOneOut out;
   for (std::size_t c = 0; c < e.caves.size(); ++c) {
     LeftOut l;

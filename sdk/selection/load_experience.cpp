@@ -20,6 +20,8 @@ void describe_caves(campaign::CampaignResults& results, const std::string& store
     if (!cave.description.empty()) continue;
     try {
       tell("describing " + cave.name);
+      if (!cave.hash.empty() && mesh_hash_of(cave.file, cave.start) != cave.hash)
+        throw InputError(cave.file, "", "is not the mesh any more that was flown");
       cave.description = to_json(describe_file(cave.file, cave.start).figures);
     } catch (const InputError& e) {
       tell("left out, it cannot be described: " + std::string(e.what()));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
@@ -17,7 +18,6 @@ namespace {
 
 using core::InputError;
 
-constexpr std::size_t kFewestCaves = 4;  // fewer say nothing of how far an experience carries
 constexpr int kResamples = 1000;
 constexpr int kTellingFigures = 6;  // caves that agree in so many, to the sixth digit, are one
 
@@ -141,7 +141,7 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
   const std::vector<std::size_t> same = this_very_cave(e, values, cave, mesh_hash);
   if (same.empty() && known < kFewestCaves)
     throw InputError(of, options.metric,
-                     "is known of " + std::to_string(known) + " caves; " + std::to_string(kFewestCaves) +
+                     "is known of " + core::counted(known, "cave") + "; " + std::to_string(kFewestCaves) +
                          " at least are needed to select a policy");
 
   Selected s;

@@ -13,6 +13,8 @@ struct SelectOptions {
   double level = 0.9;  // of the intervals
 };
 
+constexpr std::size_t kFewestCaves = 4;  // fewer say nothing of how far an experience carries
+
 struct NearCave {
   std::size_t cave = 0;  // of the experience
   Distance distance;

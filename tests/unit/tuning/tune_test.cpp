@@ -211,6 +211,11 @@ TEST(Tune, BadOptionsAreErrors) {
               o.held_out.push_back({"a", "a", ""});
             }).find("tuned on and held out"),
             std::string::npos);
+  EXPECT_NE(message([](TuneOptions& o) {
+              o.held_out.push_back({"a", "./x/../a", ""});
+            }).find("tuned on and held out"),
+            std::string::npos)
+      << "the same file by another path";
   EXPECT_NE(message([](TuneOptions& o) { o.campaign.seeds.clear(); }).find("needs caves and seeds"),
             std::string::npos);
   EXPECT_EQ(field.flights, 0);
