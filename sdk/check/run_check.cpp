@@ -56,19 +56,25 @@ std::string repeat_command(const CheckOptions& o, const std::string& policy, con
          std::to_string(o.seed) + " --level " + name_of(o.level) + " --test " + test.name;
 }
 
+bool stopped(const CheckOptions& o) { return o.stop != nullptr && *o.stop; }
+
 /// Waits for the child. "" or why it had to be ended.
-std::string wait_for(pid_t child, const Progress& progress, double hang_limit_s, host::ProcessEnd& end) {
+std::string wait_for(pid_t child, const Progress& progress, const CheckOptions& o, host::ProcessEnd& end) {
   const auto begin = Clock::now();
   std::uint64_t count = progress.count();
   auto changed = begin;
   while (!host::has_ended(child, end)) {
     if (progress.count() != count) count = progress.count(), changed = Clock::now();
     const bool inside = count % 2 == 1;
-    const bool hangs = inside && seconds_since(changed) > hang_limit_s;
+    const bool hangs = inside && seconds_since(changed) > o.hang_limit_s;
+    if (stopped(o)) {
+      host::end_process(child);
+      return "it was stopped";
+    }
     if (hangs || seconds_since(begin) > kTestLimit_s) {
       host::end_process(child);
       char limit[32];
-      std::snprintf(limit, sizeof limit, "%g s", hang_limit_s);
+      std::snprintf(limit, sizeof limit, "%g s", o.hang_limit_s);
       return hangs ? progress.what() + " did not return within " + limit
                    : "the test took more than ten minutes";
     }
@@ -90,8 +96,7 @@ TestResult run_in_child(const CheckOptions& o, const std::string& policy, const 
   if (!policy.empty()) argv.insert(argv.end(), {"--policy", policy});
   const auto begin = Clock::now();
   host::ProcessEnd end;
-  const std::string ended =
-      wait_for(host::start_process(argv, folder / "output"), progress, o.hang_limit_s, end);
+  const std::string ended = wait_for(host::start_process(argv, folder / "output"), progress, o, end);
   r.wall_s = seconds_since(begin);
   std::ifstream in(folder / "result.json");
   const ordered_json said = ordered_json::parse(in, nullptr, false);
@@ -134,11 +139,17 @@ void check_names(const CheckOptions& o) {
   }
 }
 
-/// Ids of the policies to be tested; none if the file is broken, which its own tests then say.
+/// Ids of the policies to be tested. Of a broken file the tests of the file say what is wrong with it, if
+/// they are wanted.
 std::vector<std::string> policies_of(const CheckOptions& o) {
   std::vector<std::string> ids;
-  for (const host::PolicyListing& p : host::probe(o.file, o.hang_limit_s))
+  std::string broken;
+  for (const host::PolicyListing& p : host::probe(o.file, o.hang_limit_s)) {
+    broken = p.broken;
     if (p.broken.empty() && (o.policy.empty() || p.id == o.policy)) ids.push_back(p.id);
+  }
+  if (!broken.empty()) throw InputError(o.file, "", broken);
+  if (ids.empty() && !o.policy.empty()) throw InputError(o.file, o.policy, "the file offers no such policy");
   return ids;
 }
 
@@ -165,9 +176,10 @@ std::vector<TestResult> run_check(const CheckOptions& o, const std::function<voi
   std::vector<TestResult> results;
   std::string broken_gate;
   const auto run = [&](const std::string& policy, const Test& test) {
-    if (!wanted(o, test)) return;
+    if (!wanted(o, test) || stopped(o)) return;
     TestResult r{&test, policy, Verdict::not_run, broken_gate + " failed", ordered_json::object(), 0, ""};
     if (broken_gate.empty()) r = run_in_child(o, policy, test);
+    if (stopped(o)) return;
     if (is_gate(test) && r.verdict == Verdict::failed) broken_gate = test.name;
     done(r);
     results.push_back(std::move(r));
@@ -175,9 +187,11 @@ std::vector<TestResult> run_check(const CheckOptions& o, const std::function<voi
   for (const Test& t : all_tests())
     if (of_file(t)) run("", t);
   const std::string file_gate = broken_gate;
-  const std::vector<std::string> ids = file_gate.empty() ? policies_of(o) : std::vector<std::string>{""};
-  if (ids.empty() && !o.policy.empty()) throw InputError(o.file, o.policy, "the file offers no such policy");
-  for (const std::string& id : ids) {
+  const bool of_policies =
+      !stopped(o) && std::any_of(all_tests().begin(), all_tests().end(),
+                                 [&](const Test& t) { return !of_file(t) && wanted(o, t); });
+  if (!of_policies) return results;
+  for (const std::string& id : file_gate.empty() ? policies_of(o) : std::vector<std::string>{""}) {
     broken_gate = file_gate;
     for (const Test& t : all_tests())
       if (!of_file(t)) run(id, t);

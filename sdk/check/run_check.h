@@ -1,5 +1,6 @@
 // Runs the tests of a plugin, one child process each: what it breaks is its own process only.
 #pragma once
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@ struct CheckOptions {
   std::vector<std::string> tests;  // names or groups; empty: all of the level
   double hang_limit_s = 10;        // of one call into the plugin
   std::filesystem::path karst;     // the executable, for the children
+  const std::atomic<bool>* stop = nullptr;
 };
 
 enum class Verdict { passed, failed, not_applicable, not_run };
@@ -33,8 +35,9 @@ struct TestResult {
   std::string repeat;  // the command that runs this test alone, the same way
 };
 
-/// Calls `done` after each test. Throws core::InputError: a file that cannot be read, a policy or a test that
-/// is not there.
+/// Calls `done` after each test; what was under way when it is stopped is ended and left out. Throws
+/// core::InputError: a file that cannot be read, a policy or a test that is not there, tests of policies
+/// where the file offers none.
 std::vector<TestResult> run_check(const CheckOptions& options,
                                   const std::function<void(const TestResult&)>& done);
 

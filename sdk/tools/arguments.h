@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 namespace karst::tools {
@@ -31,6 +32,20 @@ inline CLI::Validator whole_64_bits() {
             return good ? std::string() : "expected a whole number from 0 to 2^64 - 1, got \"" + text + "\"";
           },
           ""};
+}
+
+/// A number of a range. CLI::Range lets "nan" pass.
+inline CLI::Validator number_in(double low, double high) {
+  std::ostringstream range;
+  range << low << " to " << high;
+  return {[low, high, range = range.str()](std::string& text) {
+            double value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool good =
+                error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+            return good ? std::string() : "expected a number in " + range + ", got \"" + text + "\"";
+          },
+          "in " + range.str()};
 }
 
 }  // namespace karst::tools

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "sdk/selection/describe.h"
@@ -157,7 +158,7 @@ void info(const InfoArguments& args) {
     if (!std::filesystem::is_regular_file(args.file)) throw InputError(args.file, "", "no such cave file");
     const MeshFacts facts = mesh_facts(cave::load_mesh(args.file));
     if (args.json) {
-      std::printf("%s\n", json_of(args, facts).dump(2).c_str());
+      std::printf("%s\n", core::json_text(json_of(args, facts), 2).c_str());
     } else {
       print_mesh(args, facts);
       std::printf("  no start pose: give --start \"x y z\" for clearance and volumes\n");
@@ -189,7 +190,7 @@ void info(const InfoArguments& args) {
     j["fly_through_heights_m"] = {lowest, highest};
     j["width_m_p10_p50_p90"] = passages.width_m;
     j["height_m_p10_p50_p90"] = passages.height_m;
-    std::printf("%s\n", j.dump(2).c_str());
+    std::printf("%s\n", core::json_text(j, 2).c_str());
     return;
   }
   print_mesh(args, facts);
@@ -270,10 +271,10 @@ void add_cave_command(CLI::App& app) {
   tell->add_option("--start", i->start, "\"x y z\", for a mesh or instead of the file's own")
       ->check(not_empty());
   tell->add_option("--resolution", i->options.resolution_m, "Edge of the map's cells, m")
-      ->check(CLI::Range(0.05, 1.0))
+      ->check(number_in(0.05, 1.0))
       ->capture_default_str();
   tell->add_option("--clearance", i->options.clearance_m, "Least distance to rock when flying, m")
-      ->check(CLI::Range(0.05, 5.0))
+      ->check(number_in(0.05, 5.0))
       ->capture_default_str();
   tell->add_flag("--json", i->json, "Write JSON");
   tell->footer("Example:\n  karst cave info tunnel.stl --start \"1 2 1.5\"");

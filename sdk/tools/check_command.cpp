@@ -8,8 +8,10 @@
 #include <map>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/check/run_check.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/interrupt.h"
 
 namespace karst::tools {
 namespace {
@@ -30,6 +32,16 @@ struct Arguments {
 
 const std::map<std::string, Level> kLevels = {
     {"basic", Level::basic}, {"strict", Level::strict}, {"pedantic", Level::pedantic}};
+
+CLI::Validator level_by_name() {
+  return {[](std::string& text) {
+            const auto found = kLevels.find(text);
+            if (found == kLevels.end()) return "expected basic, strict or pedantic, got \"" + text + "\"";
+            text = std::to_string(static_cast<int>(found->second));
+            return std::string();
+          },
+          ""};
+}
 
 int list_tests(bool json) {
   ordered_json out = ordered_json::array();
@@ -77,6 +89,8 @@ int check_file(Arguments& args) {
     throw core::InputError("karst policy check", "",
                            "needs a FILE, or --list; see karst policy check --help");
   args.options.karst = std::filesystem::read_symlink("/proc/self/exe");
+  const std::atomic<bool>& interrupted = watch_for_interrupt();
+  args.options.stop = &interrupted;
   std::string policy;
   if (!args.json)
     std::printf("%s, level %s, seed %llu\n", args.options.file.c_str(), name_of(args.options.level),
@@ -86,18 +100,22 @@ int check_file(Arguments& args) {
     if (r.policy != policy) std::printf("%s\n", (policy = r.policy).c_str());
     print(r);
   });
+  if (interrupted) {
+    std::fprintf(stderr, "karst: stopped after %zu tests\n", results.size());
+    return kInterrupted;
+  }
   std::map<Verdict, int> count;
   ordered_json tests = ordered_json::array();
   for (const TestResult& r : results) ++count[r.verdict], tests.push_back(to_json(r));
   const bool passed = count[Verdict::failed] == 0;
   if (args.json)
-    std::cout << ordered_json{{"schema", 1},
-                              {"file", args.options.file},
-                              {"level", name_of(args.options.level)},
-                              {"seed", args.options.seed},
-                              {"passed", passed},
-                              {"tests", tests}}
-                     .dump(2, ' ', false, ordered_json::error_handler_t::replace)
+    std::cout << core::json_text(ordered_json{{"schema", 1},
+                                              {"file", args.options.file},
+                                              {"level", name_of(args.options.level)},
+                                              {"seed", args.options.seed},
+                                              {"passed", passed},
+                                              {"tests", tests}},
+                                 2)
               << "\n";
   else
     std::printf("%d passed, %d failed, %d not applicable, %d not run\n", count[Verdict::passed],
@@ -147,7 +165,7 @@ void add_common(CLI::App& app, Arguments& args) {
       ->type_name("UINT")
       ->check(whole_64_bits());
   app.add_option("--level", args.options.level, "basic, strict (default) or pedantic")
-      ->transform(CLI::CheckedTransformer(kLevels))
+      ->transform(level_by_name())
       ->type_name("LEVEL");
   app.add_option("--test", args.options.tests,
                  "only this test, or this group of tests; may be given several times")
@@ -172,7 +190,7 @@ void add_check_command(CLI::App& policy) {
   check_app
       ->add_option("--hang-limit", args->options.hang_limit_s, "a call that takes longer hangs; default 10 s")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 600.0));
+      ->check(number_in(0.1, 600.0));
   check_app->add_flag("--json", args->json, "write JSON");
   check_app->add_flag("--list", args->list, "list the tests and end");
   check_app->callback([args] {

@@ -1,15 +1,13 @@
 #include "sdk/tools/compare_command.h"
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -20,9 +18,11 @@
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/campaign/slurm.h"
 #include "sdk/campaign/verdict.h"
+#include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/campaign_page.h"
 #include "sdk/tools/campaign_progress.h"
+#include "sdk/tools/interrupt.h"
 #include "sdk/tools/results_text.h"
 
 namespace karst::tools {
@@ -31,11 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using campaign::Campaign;
 using core::InputError;
-
-constexpr int kInterrupted = 130;  // as a shell has it for a program that Ctrl-C ended
-
-std::atomic<bool> interrupted{false};
-void on_signal(int) { interrupted = true; }
 
 struct CompareArguments {
   std::vector<std::string> who, caves, settings, plugins, sbatch;
@@ -161,10 +156,7 @@ int compare(const CompareArguments& args) {
   options.jobs = args.jobs;
   options.keep = keep_of(args.keep);
   options.any_binary = args.any_binary;
-  options.stop = &interrupted;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
-  std::signal(SIGPIPE, SIG_IGN);
+  options.stop = &watch_for_interrupt();
 
   bool done = false;
   {
@@ -190,10 +182,9 @@ int compare(const CompareArguments& args) {
 
 void write_to(const std::string& file, const std::function<void(std::ostream&)>& write) {
   if (file == "-") return write(std::cout);
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  std::ostringstream out;
   write(out);
-  out.close();
-  if (!out) throw InputError(file, "", "cannot be written");
+  evaluation::write_whole_file(file, out.str());
 }
 
 }  // namespace
@@ -263,8 +254,7 @@ void add_trials_command(CLI::App& app) {
   trials_app->group("");  // nobody types it
   trials_app->add_option("batch", *batch, "batch file")->required();
   trials_app->callback([batch] {
-    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
-    if (!campaign::fly_batch(*batch, &interrupted)) throw CLI::RuntimeError(kInterrupted);
+    if (!campaign::fly_batch(*batch, &watch_for_interrupt())) throw CLI::RuntimeError(kInterrupted);
   });
 }
 
@@ -285,13 +275,12 @@ void add_results_command(CLI::App& app) {
   results_app->add_option("--metric", args->metric,
                           "figure that the verdict is about; default: as the campaign declared");
   results_app->callback([args] {
-    const campaign::CampaignResults results = campaign::read_results(args->folder);
-    const std::vector<campaign::TrialExtras> extras = campaign::read_extras(args->folder);
+    const campaign::ResultsWithExtras all = campaign::read_with_extras(args->folder);
     if (!args->csv.empty())
-      write_to(args->csv, [&](std::ostream& out) { campaign::write_csv(out, results, extras); });
+      write_to(args->csv, [&](std::ostream& out) { campaign::write_csv(out, all.results, all.extras); });
     if (!args->json.empty())
-      write_to(args->json, [&](std::ostream& out) { campaign::write_json(out, results, extras); });
-    if (args->csv.empty() && args->json.empty()) print_results(results, args->metric);
+      write_to(args->json, [&](std::ostream& out) { campaign::write_json(out, all.results, all.extras); });
+    if (args->csv.empty() && args->json.empty()) print_results(all.results, args->metric);
   });
 }
 

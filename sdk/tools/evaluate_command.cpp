@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "sdk/evaluation/map_reference.h"
 #include "sdk/evaluation/report.h"
@@ -140,11 +141,11 @@ void evaluate(const EvaluateArguments& args) {
     throw core::InputError(args.run, "", "nothing to compare it with: name a --truth or a --reference");
 
   const fs::path out = is_run ? run / "evaluation.json" : fs::path(args.run + ".evaluation.json");
-  evaluation::write_whole_file(out, result.dump(1) + "\n");
+  evaluation::write_whole_file(out, core::json_text(result, 1) + "\n");
   const bool with_report = is_run && fs::is_regular_file(run / "report.html");
   if (with_report) evaluation::write_report(run);
   if (args.json) {
-    std::cout << without_plots(result).dump(2) << std::endl;
+    std::cout << core::json_text(without_plots(result), 2) << std::endl;
     return;
   }
   if (!result["trajectory"].is_null()) print_trajectory(result["trajectory"]);
@@ -180,17 +181,17 @@ void add_evaluate_command(CLI::App& app) {
   command
       ->add_option("--density", args->density_per_m2, "points a square metre, where the reference is a mesh")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 1e5));
+      ->check(number_in(0.1, 1e5));
   command->add_flag("--no-align", args->no_align, "compare as they are, without a best fit");
   command->add_flag("--scale", args->options.scale, "fit the scale as well");
   command
       ->add_option("--max-difference", args->options.max_difference_s,
                    "seconds between stamps of the same moment")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(number_in(0.0, 10.0));
   command->add_option("--delta", args->options.delta_m, "metres of path for the relative error")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e5));
+      ->check(number_in(1e-3, 1e5));
   command->add_option("--delta-frames", args->options.delta_frames, "poses for the relative error")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));

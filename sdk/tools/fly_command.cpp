@@ -5,7 +5,6 @@
 #include <atomic>
 #include <boost/property_tree/info_parser.hpp>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -13,10 +12,12 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/host/hosted_policy.h"
 #include "sdk/host/request_log.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/auto_policy.h"
+#include "sdk/tools/interrupt.h"
 #include "sdk/tools/mission_file.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
@@ -29,17 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNotLanded = 2;  // exit code of a flight that did not end with the vehicle at its start
-
-std::atomic<bool> interrupted{false};
-void on_signal(int) { interrupted = true; }
-
-/// A terminal that goes away stops a mission like Ctrl-C; a reader of the status lines that does, stops
-/// nothing.
-void catch_signals() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
-  std::signal(SIGPIPE, SIG_IGN);
-}
 
 struct FlyArguments {
   std::string mission_file, out, check;
@@ -153,7 +143,7 @@ int fly(const FlyArguments& args) {
   const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(policy_choice(mission, args));
   if (!args.check.empty()) return check(args.check, mission, *policy);
   const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
-  catch_signals();  // from here on there is something to tidy up
+  const std::atomic<bool>& interrupted = watch_for_interrupt();  // from here on there is something to tidy up
   RunClaim claim(run_dir);
   core::Recorder recorder(run_dir);
   const std::unique_ptr<core::Vehicle> vehicle = make_vehicle(mission, run_dir.string());
@@ -185,7 +175,7 @@ int fly(const FlyArguments& args) {
     write_timing(run_dir, executive, wall.count());
     const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.no_report);
     if (args.json) {
-      std::cout << metrics.dump(2) << std::endl;
+      std::cout << core::json_text(metrics, 2) << std::endl;
     } else {
       print_summary(metrics, run_dir, !args.no_report);
     }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/map_inputs.h"
@@ -166,10 +167,10 @@ int merge(const MergeArguments& args) {
   std::vector<fs::path> files;
   if (all) {
     files = merged.write(stem);
-    evaluation::write_whole_file(stem + ".json", report.dump(2) + "\n");
+    evaluation::write_whole_file(stem + ".json", core::json_text(report, 2) + "\n");
   }
   if (args.json) {
-    std::cout << report.dump(2) << std::endl;
+    std::cout << core::json_text(report, 2) << std::endl;
   } else {
     for (const Placed& p : placed) print(p);
     for (const fs::path& f : files) std::printf("%s\n", f.c_str());
@@ -201,7 +202,7 @@ void add_map_command(CLI::App& app) {
   command->add_flag("--six", args->six, "the maps' z axes need not point up");
   command->add_option("--resolution", args->resolution_m, "metres to which clouds are thinned out")
       ->capture_default_str()
-      ->check(CLI::Range(0.05, 1.0));
+      ->check(number_in(0.05, 1.0));
   command->add_option("--set", args->settings, "limit=value; see docs/map_merge.md")->allow_extra_args(false);
   command->add_flag("--json", args->json, "print the report as JSON");
   command->add_flag("--force", args->force, "overwrite");

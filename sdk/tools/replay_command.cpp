@@ -4,14 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <boost/property_tree/info_parser.hpp>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "plugins/replay/decimal_time.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/interrupt.h"
 #include "sdk/tools/replay_run.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
@@ -27,9 +28,6 @@ struct ReplayArguments {
   std::vector<std::string> settings;
   bool json = false, quiet = false, no_report = false, keys = false;
 };
-
-volatile std::sig_atomic_t interrupted = 0;
-void on_signal(int) { interrupted = 1; }
 
 /// One line that renews itself on a terminal, a line every hundred scans elsewhere.
 class ReplayLine {
@@ -131,8 +129,7 @@ int replay_scans(const ReplayArguments& args) {
   replay::read_sweep(recording, 0);  // what is wrong with all of them shows before anything is written
   replay::open_imu(recording);
 
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  const std::atomic<bool>& interrupted = watch_for_interrupt();
   const fs::path run_dir = args.out;
   RunClaim claim(run_dir);
   std::error_code error;
@@ -149,7 +146,7 @@ int replay_scans(const ReplayArguments& args) {
     summary = replay_recording(recording, options, run_dir,
                                [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
                                  line.show(scan, pose, map);
-                                 return interrupted == 0;
+                                 return !interrupted;
                                });
   } catch (const core::InputError& e) {
     damage = e.what();
@@ -162,11 +159,11 @@ int replay_scans(const ReplayArguments& args) {
     return 1;
   }
   if (args.json) {
-    std::cout << metrics.dump(2) << std::endl;
+    std::cout << core::json_text(metrics, 2) << std::endl;
   } else {
     print_summary(summary, metrics, run_dir, !args.no_report);
   }
-  return interrupted != 0 || summary.lost == summary.scans ? 2 : 0;
+  return interrupted || summary.lost == summary.scans ? 2 : 0;
 }
 
 }  // namespace

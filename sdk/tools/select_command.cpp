@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/leave_one_out.h"
@@ -128,7 +129,7 @@ int select_for(const Arguments& args) {
   const Selected s =
       select(e, cave.figures, args.options, args.cave, selection::mesh_hash_of(args.cave, args.start));
   if (args.json)
-    std::printf("%s\n", to_json(e, cave.figures, s, args).dump(2).c_str());
+    std::printf("%s\n", core::json_text(to_json(e, cave.figures, s, args), 2).c_str());
   else
     print(e, cave.figures, s, args);
   if (s.refused) return kRefused;
@@ -174,7 +175,7 @@ void leave_one_out(const Arguments& args) {
     shares("selected", l.selected), shares("overall_best", l.overall), shares("chance", l.chance);
     shares("selected_answered", l.selected_answered), shares("overall_best_answered", l.overall_answered);
     shares("chance_answered", l.chance_answered);
-    std::printf("%s\n", j.dump(2).c_str());
+    std::printf("%s\n", core::json_text(j, 2).c_str());
     return;
   }
   std::printf("Each cave left out in turn, selected for from the others, by %s:\n",
@@ -248,7 +249,7 @@ void add_select_command(CLI::App& app) {
       ->check(not_empty())
       ->capture_default_str();
   select->add_option("--level", args->options.level, "of the intervals")
-      ->check(CLI::Range(0.5, 0.99))
+      ->check(number_in(0.5, 0.99))
       ->capture_default_str();
   select
       ->add_option("--preset", args->preset,

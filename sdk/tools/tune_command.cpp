@@ -1,19 +1,19 @@
 #include "sdk/tools/tune_command.h"
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <thread>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/selection/preset.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/interrupt.h"
 #include "sdk/tuning/tune.h"
 
 namespace karst::tools {
@@ -23,11 +23,6 @@ namespace fs = std::filesystem;
 using campaign::Campaign;
 using core::InputError;
 using tuning::TuneResult;
-
-constexpr int kStopped = 130;  // as a shell has it for a program that Ctrl-C ended
-
-std::atomic<bool> interrupted{false};
-void on_signal(int) { interrupted = true; }
 
 struct Arguments {
   std::string policy, plugin, out, mission, profile = "campaign", flight_time = "300 s";
@@ -119,9 +114,9 @@ int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult
   const fs::path folder = args.out;
   if (!r.tried.empty()) write_table(folder / "tune.csv", r, o.metric);
   if (r.stopped) {
-    std::fprintf(stderr, "karst: stopped after %zu candidates; the same command goes on where it was\n",
-                 r.tried.size());
-    return kStopped;
+    std::fprintf(stderr, "karst: stopped after %s; the same command goes on where it was\n",
+                 core::counted(r.tried.size(), "candidate").c_str());
+    return kInterrupted;
   }
   if (r.best == 0) {
     std::printf("None of %zu candidates did better than the default; no preset is written.\n",
@@ -150,10 +145,11 @@ int tune(const Arguments& args) {
   const tuning::TuneOptions o = options_of(args);
   const std::size_t candidates = tuning::candidates_of(o);
   if (!args.quiet)
-    std::fprintf(stderr, "%zu parameters, %zu candidates through %zu caves with %zu seeds\n", o.axes.size(),
-                 candidates, o.campaign.caves.size(), o.campaign.seeds.size());
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, on_signal);
-  std::signal(SIGPIPE, SIG_IGN);
+    std::fprintf(stderr, "%s, %s through %s with %s\n", core::counted(o.axes.size(), "parameter").c_str(),
+                 core::counted(candidates, "candidate").c_str(),
+                 core::counted(o.campaign.caves.size(), "cave").c_str(),
+                 core::counted(o.campaign.seeds.size(), "seed").c_str());
+  const std::atomic<bool>& interrupted = watch_for_interrupt();
   const tuning::Fly fly = [&](const Campaign& wanted,
                               const std::string& name) -> std::optional<campaign::CampaignResults> {
     Campaign c = wanted;

@@ -195,6 +195,32 @@ TEST(BadUsage, IsAnErrorAndNotAFailedTest) {
   EXPECT_EQ(check({}).exit_code, 1);
 }
 
+TEST(BadUsage, HangLimitThatIsNoNumberIsRefused) {
+  const Checked c = check({drawer("spoiled"), "--policy", "good", "--test", "goals", "--hang-limit", "nan"});
+  EXPECT_EQ(c.exit_code, 1);
+  EXPECT_THAT(c.text, HasSubstr("expected a number in 0.1 to 600, got \"nan\""));
+}
+
+TEST(BadUsage, ChosenTestsOfABrokenFileDoNotPassUnseen) {
+  const Checked c = check({drawer("no_entry"), "--test", "goals"});
+  EXPECT_EQ(c.exit_code, 1);
+  EXPECT_THAT(c.text, HasSubstr("no_entry.so: exports no karst_plugin_entry"));
+}
+
+TEST(Stopped, LeavesNothingBehind) {
+  const auto folder = std::filesystem::path(KARST_BINARY_DIR) / "test_runs/check_stopped";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const std::string run = "TMPDIR=" + folder.string() + " " + kKarst + " policy check " +
+                          drawer("endless_loop") + " --test lifecycle.order --hang-limit 600 & child=$!; " +
+                          "while [ -z \"$(ls " + folder.string() + ")\" ]; do sleep 0.02; done; " +
+                          "sleep 0.2; kill -TERM $child; wait $child";
+  const host::ProcessOutput out = host::run_process({"/bin/sh", "-c", run}, 300);
+  EXPECT_EQ(out.end.exit_code, 130) << out.out;
+  EXPECT_THAT(out.out, HasSubstr("stopped after 0 tests"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
 // The page lists what there is.
 TEST(Documentation, ListsEveryTestAsTheCommandDoes) {
   std::ifstream in(std::string(KARST_SOURCE_DIR) + "/docs/policy_check.md");

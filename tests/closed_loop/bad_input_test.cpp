@@ -42,6 +42,13 @@ void expect_refused(const Output& out, std::initializer_list<const char*> parts)
   EXPECT_FALSE(out.says("terminate called")) << out.text;
 }
 
+TEST(BadInput, ANumberThatIsNone) {
+  for (const char* arguments : {"select --cave x.info --level nan", "cave info x.info --resolution nan",
+                                "cave info x.info --clearance inf", "evaluate x --density nan",
+                                "evaluate x --delta nan", "map merge a b --out c --resolution nan"})
+    expect_refused(run_karst(arguments), {"expected a number in "});
+}
+
 TEST(BadInput, ATruncatedMesh) {
   const fs::path dir = fresh_folder("bad_truncated");
   std::string binary(80, ' ');
