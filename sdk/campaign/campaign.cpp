@@ -157,7 +157,8 @@ void check_names(const Campaign& c, const std::vector<Named>& all, const std::st
   for (const Named& n : all) {
     if (!good_name(n.name)) throw InputError(c.source, what + ".name", "\"" + n.name + "\": " + kGoodName);
     if (!seen.insert(n.name).second)
-      throw InputError(c.source, what + " " + n.name, "there are two of this name; give one another `name`");
+      throw InputError(c.source, what + " " + n.name,
+                       "there are two of this name; in a campaign file each can be given a `name`");
   }
 }
 

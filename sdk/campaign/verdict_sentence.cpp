@@ -4,11 +4,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core_stack/common/counted.h"
 #include "sdk/campaign/verdict_parts.h"
 #include "sdk/evaluation/metric_definitions.h"
 
 namespace karst::campaign {
 namespace {
+
+using core::counted;
 
 using evaluation::Forecast;
 using evaluation::MetricDefinition;
@@ -90,23 +93,19 @@ std::string p_text(double p) {
   return text.data();
 }
 
-std::string plural(std::size_t n, const std::string& word) {
-  return std::to_string(n) + " " + word + (n == 1 ? "" : "s");
-}
-
 /// "6 caves x 10 seeds", or "57 pairs in 6 caves" where caves differ in their number.
 std::string sample(const Comparison& c) {
   const bool even = std::all_of(c.per_cave.begin(), c.per_cave.end(),
                                 [&](auto& cave) { return cave.pairs == c.per_cave.front().pairs; });
-  if (even) return plural(c.caves, "cave") + " x " + plural(c.per_cave.front().pairs, "seed");
-  return plural(c.pairs, "pair") + " in " + plural(c.caves, "cave");
+  if (even) return counted(c.caves, "cave") + " x " + counted(c.per_cave.front().pairs, "seed");
+  return counted(c.pairs, "pair") + " in " + counted(c.caves, "cave");
 }
 
 std::string failures(const Comparison& c, const CampaignResults& results) {
   std::string text;
   for (const auto& [contestant, failed] : {std::pair(c.a, c.failed_a), std::pair(c.b, c.failed_b)})
     if (failed > 0)
-      text += (text.empty() ? "" : ", ") + plural(failed, "trial") + " of " +
+      text += (text.empty() ? "" : ", ") + counted(failed, "trial") + " of " +
               results.contestants[contestant].name + " failed";
   return text.empty() ? "" : "; " + text;
 }
@@ -132,7 +131,7 @@ std::string why_none(const Comparison& c, const CampaignResults& results, const 
   // All pairs falling one way have p = 2 / 2^pairs, times the pairs of contestants after correction.
   const auto contestants = static_cast<double>(results.contestants.size());
   const double least_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
-  if (least_p >= options.alpha) return "; " + plural(c.pairs, "pair") + " cannot show any";
+  if (least_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
   if (c.interval.excludes(0) && c.p_corrected >= options.alpha)
     return "; the means differ, but pairs fall either way: who is ahead depends on the cave";
   return "";
@@ -178,7 +177,7 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
   if (c.shown == Shown::no_difference) {
     const std::string between = "no difference shown between " + a + " and " + b + " in " + subject(d);
     if (c.difference == 0 && c.test.positive + c.test.negative == 0)
-      return between + ": all " + plural(c.pairs, "pair") + " equal";
+      return between + ": all " + counted(c.pairs, "pair") + " equal";
     const bool primary = d.name == options.metric;
     return between + ": " + a + " " + (a_has_more ? "more" : "less") + " by " + size_of(c, results, options) +
            why_none(c, results, options) + (primary ? seeds_text(c, options) : "");

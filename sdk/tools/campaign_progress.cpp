@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core_stack/common/counted.h"
 #include "sdk/evaluation/metric_definitions.h"
 
 namespace karst::tools {
@@ -29,8 +30,6 @@ std::string duration(double s) {
   if (all < 3600) return text("%ld min", (all + 30) / 60);
   return text("%ld h %02ld min", all / 3600, all % 3600 / 60);
 }
-
-std::string count(std::size_t n, const char* what) { return text("%zu %s%s", n, what, n == 1 ? "" : "s"); }
 
 /// From the pace since the start.
 std::string time_left(const Progress& p) {
@@ -68,9 +67,9 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
   if (quiet_) return;
   if (!begun_)
     std::fprintf(stderr, "%s: %s x %s x %s = %zu trials, %zu of them flown already\n", plan.name.c_str(),
-                 count(plan.contestants.size(), "contestant").c_str(),
-                 count(plan.caves.size(), "cave").c_str(), count(plan.seeds.size(), "seed").c_str(), p.trials,
-                 p.finished);
+                 core::counted(plan.contestants.size(), "contestant").c_str(),
+                 core::counted(plan.caves.size(), "cave").c_str(),
+                 core::counted(plan.seeds.size(), "seed").c_str(), p.trials, p.finished);
   begun_ = true;
   if (p.last) {
     Tally& tally = tallies_[p.last->result.contestant];

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/verdict.h"
@@ -68,9 +69,8 @@ void print_results(const CampaignResults& results, const std::string& asked) {
     head += " " + f + " |", rule += "---:|";
     means.push_back(campaign::comparable_means(results, evaluation::metric_index(f)));
   }
-  std::printf("%s: means over %zu cave%s, of the flights that all have flown\n\n%s\n%s\n",
-              results.name.c_str(), results.caves.size(), results.caves.size() == 1 ? "" : "s", head.c_str(),
-              rule.c_str());
+  std::printf("%s: means over %s, of the flights that all have flown\n\n%s\n%s\n", results.name.c_str(),
+              core::counted(results.caves.size(), "cave").c_str(), head.c_str(), rule.c_str());
   for (const campaign::Place& place : verdicts.ranking) print_row(results, place, means);
   std::printf("\n");
   for (const campaign::Comparison& c : verdicts.comparisons)
