@@ -28,7 +28,7 @@ struct RoundInput {
   Vec3 direction = Vec3::UnitX();
   double seconds_left = 0;     // of flight, by the battery and by the mission's time limit
   double way_come_m = 0;       // length of the way flown so far: the way home where the map shows none
-  std::vector<Vec3> way_come;  // its last stretch, up to `from`
+  std::vector<Vec3> way_come;  // all of it, up to `from`
   GoalFate last_fate = GoalFate::none;
   std::optional<Goal> last_goal;
   bool standing = false;                 // nothing is under way
@@ -119,7 +119,7 @@ class Explorer {
               RoundResult& result);
   Decision ask(const DecisionRequest& request, bool passed_over, RoundResult& result);
   std::optional<std::string> objection(const Reach& reach, const Goal& goal) const;
-  void choose(const Reach& reach, const RoundInput& input, const std::vector<Goal>& goals,
+  bool choose(const Reach& reach, const RoundInput& input, const std::vector<Goal>& goals,
               RoundResult& result);
 
   CoreOptions options_;

@@ -57,11 +57,12 @@ std::optional<std::string> Explorer::objection(const Reach& reach, const Goal& g
   return std::nullopt;
 }
 
-void Explorer::choose(const Reach& reach, const RoundInput& input, const std::vector<Goal>& goals,
+/// False if goals were left that another round will come to, because places before them are closed now.
+bool Explorer::choose(const Reach& reach, const RoundInput& input, const std::vector<Goal>& goals,
                       RoundResult& result) {
-  int plans = 0;
+  int plans = 0, closed = 0;
   for (const Goal& goal : goals) {
-    if (plans == kMostPlans) break;
+    if (plans == kMostPlans) return closed == 0;
     std::string why;
     if (const auto problem = objection(reach, goal)) {
       why = *problem;
@@ -71,7 +72,7 @@ void Explorer::choose(const Reach& reach, const RoundInput& input, const std::ve
       const auto blind = path.found() ? blind_climb(view_, input.way_come, path.points) : std::nullopt;
       if (blind) {
         why = *blind;
-        ledger_.close(map_, goal.position, input.now, why);
+        ledger_.close(map_, goal.position, input.now, why), ++closed;
       } else if (path.found()) {
         const HomeEstimate home = estimate_home(goal.position, input.way_come_m + path.length_m);
         const double there_s = flight_time_s(path.length_m, options_.motion);
@@ -85,16 +86,17 @@ void Explorer::choose(const Reach& reach, const RoundInput& input, const std::ve
                 (!input.last_goal || input.last_goal->frontier_id != goal.frontier_id))
               chosen_[goal.frontier_id] = {cluster->second.cells.size(), cluster->second.centroid};
           }
-          return;
+          return true;
         }
         why = kTooFar;
       } else {
         why = "no path: " + path.reason;
-        ledger_.close(map_, goal.position, input.now, why);
+        ledger_.close(map_, goal.position, input.now, why), ++closed;
       }
     }
     result.rejected.push_back({goal, why});
   }
+  return true;
 }
 
 void Explorer::tell(const std::vector<PolicyEvent>& events, TimeNs now) {
@@ -142,7 +144,7 @@ void Explorer::settle(const Reach& reach, const RoundInput& input, const Decisio
   result.goals_proposed += decision.goals.size();
   if (decision.outcome == Outcome::goals) {
     const std::size_t before = result.rejected.size();
-    choose(reach, input, decision.goals, result);
+    bool all_tried = choose(reach, input, decision.goals, result);
     const std::size_t own = result.rejected.size();
     // Waiting brings no battery back: goals that are all too far are no reason to stand and ask again.
     const bool all_too_far = own > before && std::all_of(result.rejected.begin() + static_cast<long>(before),
@@ -151,16 +153,17 @@ void Explorer::settle(const Reach& reach, const RoundInput& input, const Decisio
                                                          });
     if (!result.goal && all_too_far && result.policy != fallback_.name()) {
       result.policy = fallback_.name();
-      choose(reach, input, fallback_.decide(request).goals, result);
+      all_tried = choose(reach, input, fallback_.decide(request).goals, result);
     }
     if (!result.goal) {
       // The fallback asks for every frontier in reach: if none of those can be flown to, nothing is left to
       // do.
-      const bool last_resort = result.policy == fallback_.name();
+      const bool last_resort = result.policy == fallback_.name() && all_tried;
       result.outcome = last_resort ? Outcome::explored : Outcome::hold;
       result.out_of_time = last_resort && all_too_far;
       result.reason = result.out_of_time ? "what is left is too far for the battery, or for the time allowed"
                       : last_resort      ? "no frontier left that can be accepted"
+                      : !all_tried       ? "none of the goals tried so far could be accepted"
                                          : "no goal of the policy could be accepted";
     }
     if (!policy_failed_)

@@ -14,6 +14,9 @@ constexpr double kBrakingShare = 0.8;
 /// A brake is not followed by anything that could be missed for a delay: it may use nearly all there is.
 constexpr double kEmergencyShare = 0.95;
 
+/// Of the greatest rate of turning, while looking around: what is left makes up for getting up to it.
+constexpr double kTurningShare = 0.9;
+
 /// Trajectories keep below the tracker's limits. Were they sampled at the limits themselves, the virtual
 /// vehicle could never make up for a delay: it would fall ever further behind, and cut the corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits) {
@@ -110,15 +113,15 @@ void Flight::climb(TimeNs now, double height_m, double speed_mps) {
   trajectory_ = sample_trajectory({from, from + Vec3(0, 0, height_m)}, 0, now, slow, keep);
 }
 
-void Flight::look_around(TimeNs now) {
+void Flight::look_around(TimeNs now, double turn_rad) {
   const Vec3 here = reference().position;
   const double heading = reference().heading_rad;
-  const double rate = 0.6 * limits_.max_heading_rate_radps;
+  const double rate = kTurningShare * limits_.max_heading_rate_radps;
   Trajectory turn;
   turn.start = now;
-  const int steps = static_cast<int>(std::ceil(2 * std::numbers::pi / (rate * seconds(turn.period))));
+  const int steps = static_cast<int>(std::ceil(turn_rad / (rate * seconds(turn.period))));
   for (int i = 0; i <= steps; ++i)
-    turn.samples.push_back({here, wrap_angle(heading + 2 * std::numbers::pi * i / steps)});
+    turn.samples.push_back({here, wrap_angle(heading + turn_rad * i / std::max(1, steps))});
   trajectory_ = std::move(turn);
 }
 

@@ -42,8 +42,8 @@ class Flight {
   void cap_speed(TimeNs now, double max_speed_mps);
   /// Straight up or down at `speed_mps` by `height_m` from the present reference.
   void climb(TimeNs now, double height_m, double speed_mps);
-  /// Turns once around on the spot: a camera's first look.
-  void look_around(TimeNs now);
+  /// Turns by `turn_rad` on the spot: a camera's first look.
+  void look_around(TimeNs now, double turn_rad);
   /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
   void brake(TimeNs now);
   /// Motors off: on the ground.

@@ -1,6 +1,8 @@
 #include "core_stack/mission/mission_control.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace karst::core {
 namespace {
@@ -11,6 +13,15 @@ constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
 constexpr double kClimbSpeed_mps = 0.5;
 constexpr double kFlownStep_m = 0.25;
+constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to come in
+
+/// What the widest camera sees without turning need not be turned to; a little is seen twice.
+double turn_to_see_all_around(const VehicleDescription& vehicle) {
+  constexpr double kOverlap_rad = 0.2;
+  double seen_rad = 0;
+  for (const auto& camera : vehicle.cameras) seen_rad = std::max(seen_rad, camera->horizontal_fov_rad);
+  return std::max(0.0, 2 * std::numbers::pi - std::max(0.0, seen_rad - kOverlap_rad));
+}
 
 }  // namespace
 
@@ -126,11 +137,11 @@ void MissionControl::supervise() {
       executive_.job(
           "home", Lane::map, kMappingBudget, [this, home = home_] { explorer_.set_home(home); }, [] {});
       // A vehicle that sees all around already has nothing to look around for.
-      if (!description_.lidar) flight_.look_around(now());
+      if (!description_.lidar) flight_.look_around(now(), turn_to_see_all_around(description_));
       enter(description_.lidar ? Phase::explore : Phase::look, "");
       break;
     case Phase::look:
-      if (flight_.at_rest(now() - kSettling)) enter(Phase::explore, "");
+      if (flight_.at_rest(now() - kLastLook)) enter(Phase::explore, "");
       break;
     case Phase::explore:
       explore();

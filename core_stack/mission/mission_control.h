@@ -108,8 +108,10 @@ class MissionControl final : public VehicleSink {
 
   /// On the map lane: joins a path to its lead, whose end it passes by no more than `most_cut_m`. It will be
   /// followed from `start` on, within `limits`; `narrow_before` are the narrow places the lead may pass.
-  Route route(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal, TimeNs start,
-              double most_cut_m, MotionLimits limits, const std::vector<Vec3>& narrow_before) const;
+  /// `passed` is the goal that the lead ends at, if any.
+  Route route(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal,
+              const std::optional<Goal>& passed, TimeNs start, double most_cut_m, MotionLimits limits,
+              const std::vector<Vec3>& narrow_before) const;
   void follow(const Route& way);
 
   // Going home and landing.

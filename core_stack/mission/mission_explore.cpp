@@ -117,15 +117,9 @@ void MissionControl::explore() {
   }
 }
 
-/// The end of the way flown, and what is left of it until the lead's end.
+/// The way flown, and what is left of it until the lead's end.
 std::vector<Vec3> MissionControl::way_to(const Flight::Onward& lead) const {
-  std::vector<Vec3> way;
-  double length_m = 0;
-  for (std::size_t i = flown_.size(); i-- > 0 && length_m < kClimbWindow_m;) {
-    if (!way.empty()) length_m += (way.back() - flown_[i]).norm();
-    way.push_back(flown_[i]);
-  }
-  std::reverse(way.begin(), way.end());
+  std::vector<Vec3> way = flown_;
   way.insert(way.end(), lead.points.begin(), lead.points.end());
   return way;
 }
@@ -156,14 +150,15 @@ void MissionControl::begin_round(bool appending) {
   auto result = std::make_shared<RoundResult>();
   auto way = std::make_shared<Route>();
   // The lead of an appended path ends at a goal.
-  const double cut_m = appending && goal_ ? std::min(kMostCut_m, goal_->tolerance_m) : kMostCut_m;
+  const std::optional<Goal> passed = appending ? goal_ : std::nullopt;
+  const double cut_m = passed ? std::min(kMostCut_m, passed->tolerance_m) : kMostCut_m;
   executive_.job(
       "decision", Lane::map, budget,
-      [this, input, lead, cut_m, limits = flight_.limits(0), narrow = narrow_places_, result, way] {
+      [this, input, lead, passed, cut_m, limits = flight_.limits(0), narrow = narrow_places_, result, way] {
         try {
           *result = explorer_.decide(input);
           if (result->goal)
-            *way = route(lead, result->path, result->goal, input.deadline, cut_m, limits, narrow);
+            *way = route(lead, result->path, result->goal, passed, input.deadline, cut_m, limits, narrow);
         } catch (const std::exception& e) {  // whatever it is: the way home must not depend on it
           result->goal.reset();
           result->outcome = Outcome::go_home;

@@ -86,7 +86,8 @@ void MissionControl::plan_home_path() {
       [this, way, lead, start, home = home_, limits = flight_.limits(0), narrow = narrow_places_] {
         const Path path = explorer_.plan_to(lead.points.back(), home);
         way->path = path;
-        if (path.found()) *way = route(lead, path, std::nullopt, start, kMostCut_m, limits, narrow);
+        if (path.found())
+          *way = route(lead, path, std::nullopt, std::nullopt, start, kMostCut_m, limits, narrow);
       },
       [this, way, begun = now()] {
         home_planning_ = false;
@@ -116,7 +117,7 @@ void MissionControl::fly_back_as_come() {
        narrow = narrow_places_] {
         Path back;
         back.points = explorer_.way_back(flown);
-        *way = route(lead, back, std::nullopt, 0, kMostCut_m, limits, narrow);
+        *way = route(lead, back, std::nullopt, std::nullopt, 0, kMostCut_m, limits, narrow);
       },
       [this, way, begun = now()] {
         home_planning_ = false;

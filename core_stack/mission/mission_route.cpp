@@ -17,8 +17,9 @@ bool near_line(const std::vector<Vec3>& line, const Vec3& place) {
 }  // namespace
 
 MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
-                                            const std::optional<Goal>& goal, TimeNs start, double most_cut_m,
-                                            MotionLimits limits,
+                                            const std::optional<Goal>& goal,
+                                            const std::optional<Goal>& passed, TimeNs start,
+                                            double most_cut_m, MotionLimits limits,
                                             const std::vector<Vec3>& narrow_before) const {
   Route out;
   out.path = path;
@@ -31,6 +32,9 @@ MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Pa
   out.heading.along_path = !description_.lidar;
   out.heading.start_heading_rad = lead.heading_rad;
   if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
+  // A vehicle that sees all around sees what the passed goal is for anyway.
+  if (out.heading.along_path && passed && std::isfinite(passed->heading_rad))
+    out.heading.passing = {passed->position, passed->heading_rad};
   out.start_speed_mps = lead.speed_mps;
   out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options_.motion.max_speed_mps;
   // The lead may still lead through the narrow places of the path before.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 
 #include "core_stack/mission/viewpoints.h"
@@ -14,6 +15,12 @@ constexpr double kLedge_m = 3.0;
 constexpr double kStep_m = 0.5;  // of the way looked at
 constexpr double kDegree_rad = std::numbers::pi / 180;
 
+/// Levels are not new this near, horizontally, to where the vehicle was as high, or as low.
+constexpr double kBeside_m = 4.0;
+/// A way back is not flown to the centimetre. Only where the vehicle was more than kClimbWindow_m of way ago:
+/// else it could go down a shaft by this much at a time.
+constexpr double kSameLevel_m = 0.5;
+
 /// Points of the polyline about kStep_m apart, its end included.
 std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
   std::vector<Vec3> out;
@@ -21,6 +28,28 @@ std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
     if (out.empty() || i + 1 == points.size() || (points[i] - out.back()).norm() >= kStep_m)
       out.push_back(points[i]);
   return out;
+}
+
+/// The lowest and the highest level flown beside `p`.
+struct Levels {
+  double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+};
+Levels levels_beside(const Vec3& p, const std::vector<Vec3>& flown, std::size_t long_ago) {
+  Levels l;
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    if ((flown[i] - p).head<2>().norm() > kBeside_m) continue;
+    const double same_m = i < long_ago ? kSameLevel_m : 0;
+    l = {std::min(l.low_m, flown[i].z() - same_m), std::max(l.high_m, flown[i].z() + same_m)};
+  }
+  return l;
+}
+
+/// How many of the points lie more than kClimbWindow_m of way before the last one.
+std::size_t before_the_window(const std::vector<Vec3>& way) {
+  double run_m = 0;
+  std::size_t i = way.size();
+  while (i > 1 && run_m <= kClimbWindow_m) --i, run_m += (way[i] - way[i - 1]).norm();
+  return run_m > kClimbWindow_m ? i : 0;
 }
 
 }  // namespace
@@ -46,7 +75,9 @@ std::optional<std::string> blind_climb(const SteepestView& view, const std::vect
   const std::vector<Vec3> before = thinned(way_come), after = thinned(path);
   std::vector<Vec3> way = before;
   way.insert(way.end(), after.begin(), after.end());
+  const std::size_t long_ago = before_the_window(before);
   for (std::size_t to = before.size(); to < way.size(); ++to) {
+    std::optional<Levels> flown;  // beside there, when it is first asked for
     Vec3 low = way[to], high = way[to];
     double run_m = 0;
     for (std::size_t from = to; from-- > 0;) {
@@ -58,6 +89,8 @@ std::optional<std::string> blind_climb(const SteepestView& view, const std::vect
       if (std::abs(rise_m) <= kLedge_m || limit_rad > 89.5 * kDegree_rad ||
           extent_m * std::tan(limit_rad) >= std::abs(rise_m))
         continue;
+      if (!flown) flown = levels_beside(way[to], before, long_ago);
+      if (rise_m > 0 ? flown->high_m >= way[to].z() : flown->low_m <= way[to].z()) continue;
       char text[200];
       std::snprintf(
           text, sizeof text,

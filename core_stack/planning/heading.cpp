@@ -8,6 +8,12 @@ namespace karst::core {
 namespace {
 
 constexpr double kLookahead_m = 0.8;
+/// A bend is turned through over this length before and behind it: a right angle at 2 m/s and 1 rad/s.
+constexpr double kBend_m = 1.5;
+/// But what is flown into stays in a camera's view.
+constexpr double kAside_rad = 0.6;
+/// When passing a place to look from, this near to the heading will do, and this much a metre is turned.
+constexpr double kPassing_rad = 0.3, kPassing_radpm = 0.8;
 /// A vehicle that (nearly) stands turns on the spot first when it would start this far off its heading.
 constexpr double kTurnFirst_rad = 0.7, kStanding_mps = 0.2;
 constexpr double kHeadingReached_rad = 1e-3;
@@ -52,9 +58,51 @@ std::vector<double> headings_along(const std::vector<Vec3>& points, double looka
   return out;
 }
 
+std::vector<double> turned_early(const std::vector<Vec3>& points, const std::vector<double>& headings) {
+  std::vector<double> sum{0}, all;  // unwrapped, and their sums
+  for (const double h : headings) {
+    all.push_back(all.empty() ? h : all.back() + wrap_angle(h - all.back()));
+    sum.push_back(sum.back() + all.back());
+  }
+  double length_m = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
+  const auto reach =
+      static_cast<std::size_t>(kBend_m * static_cast<double>(points.size()) / std::max(length_m, kBend_m));
+  std::vector<double> out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t half = std::min({reach, i, all.size() - 1 - i});
+    const double mean = (sum[i + half + 1] - sum[i - half]) / static_cast<double>(2 * half + 1);
+    out.push_back(wrap_angle(std::clamp(mean, all[i] - kAside_rad, all[i] + kAside_rad)));
+  }
+  return out;
+}
+
+void look_in_passing(const std::vector<Vec3>& points, const PassingLook& look,
+                     std::vector<double>& headings) {
+  const auto nearest = std::min_element(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) {
+    return (a - look.place).squaredNorm() < (b - look.place).squaredNorm();
+  });
+  const auto at = static_cast<std::size_t>(nearest - points.begin());
+  const auto turn_towards = [&](std::size_t i, double away_m) {
+    const double most_rad = kPassing_rad + kPassing_radpm * away_m;
+    const double off_rad = wrap_angle(headings[i] - look.heading_rad);
+    headings[i] = wrap_angle(look.heading_rad + std::clamp(off_rad, -most_rad, most_rad));
+  };
+  double away_m = 0;
+  turn_towards(at, away_m);
+  for (std::size_t i = at + 1; i < points.size(); ++i)
+    turn_towards(i, away_m += (points[i] - points[i - 1]).norm());
+  away_m = 0;
+  for (std::size_t i = at; i-- > 0;) turn_towards(i, away_m += (points[i + 1] - points[i]).norm());
+}
+
 std::vector<double> wanted_headings(const std::vector<Vec3>& points, const HeadingPlan& plan) {
-  if (plan.along_path) return headings_along(points, kLookahead_m, plan.start_heading_rad);
-  return std::vector<double>(points.size(), plan.goal_heading_rad.value_or(plan.start_heading_rad));
+  if (!plan.along_path)
+    return std::vector<double>(points.size(), plan.goal_heading_rad.value_or(plan.start_heading_rad));
+  std::vector<double> headings =
+      turned_early(points, headings_along(points, kLookahead_m, plan.start_heading_rad));
+  if (plan.passing) look_in_passing(points, *plan.passing, headings);
+  return headings;
 }
 
 bool turns_first(const HeadingPlan& plan, double wanted_rad, double speed_mps) {

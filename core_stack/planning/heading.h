@@ -29,6 +29,12 @@ class HeadingCourse {
 std::vector<double> headings_along(const std::vector<Vec3>& points, double lookahead_m,
                                    double start_heading_rad);
 
+/// `headings` at evenly spaced `points`, with bends turned through evenly, from before the bend until behind
+/// it: so the rate of turning limits speed less.
+std::vector<double> turned_early(const std::vector<Vec3>& points, const std::vector<double>& headings);
+/// Turns `headings` towards the look near the place it is for.
+void look_in_passing(const std::vector<Vec3>& points, const PassingLook& look, std::vector<double>& headings);
+
 /// What `plan` wants at each of `points`, but for the goal's heading, which is turned to late.
 std::vector<double> wanted_headings(const std::vector<Vec3>& points, const HeadingPlan& plan);
 /// A vehicle that (nearly) stands turns first when it would start far off its heading.

@@ -153,14 +153,17 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
     const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted, slow);
     const std::vector<double> t = times(v, spacing);
     const double turn_from = turn_from_s(heading, wanted.back(), t.back(), limits);
-    std::size_t i = 0;
+    // A turn begins that much before it is wanted: it takes time to get up to the rate.
+    const double delay_s = 0.5 * limits.max_heading_rate_radps / limits.max_heading_acceleration_radps2;
+    std::size_t i = 0, ahead = 0;
     const auto steps = static_cast<std::size_t>(std::ceil(t.back() / dt - 1e-9));
     for (std::size_t k = 1; k <= steps; ++k) {
       const double now = std::min(static_cast<double>(k) * dt, t.back());
       while (i + 2 < t.size() && t[i + 1] <= now) ++i;
       const double since = now - t[i], a = (v[i + 1] - v[i]) / (t[i + 1] - t[i]);
       const double u = static_cast<double>(i) + (v[i] * since + 0.5 * a * since * since) / spacing;
-      const double look = now >= turn_from ? *heading.goal_heading_rad : wanted[i];
+      while (ahead + 1 < t.size() && t[ahead] < now + delay_s) ++ahead;
+      const double look = now >= turn_from ? *heading.goal_heading_rad : wanted[ahead];
       out.samples.push_back({k == steps ? points.back() : point_at(nodes, u), course.step(look)});
     }
   }

@@ -46,9 +46,16 @@ struct Trajectory {
   }
 };
 
+/// A place on the path, and where to look when passing it.
+struct PassingLook {
+  Vec3 place = Vec3::Zero();
+  double heading_rad = 0;
+};
+
 struct HeadingPlan {
   bool along_path = true;  // look where the vehicle goes
   double start_heading_rad = 0;
+  std::optional<PassingLook> passing;
   std::optional<double> goal_heading_rad;  // turned to over the last stretch and at the goal
 };
 

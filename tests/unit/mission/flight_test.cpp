@@ -119,7 +119,7 @@ TEST(Flight, LooksOnceAround) {
   IdealFlight f;
   f.flight.climb(0, 0.5, 0.5);
   f.advance(4);
-  f.flight.look_around(f.now);
+  f.flight.look_around(f.now, 2 * std::numbers::pi);
   double turned = 0, last = f.flight.reference().heading_rad;
   for (int i = 0; i < 200 && !f.flight.at_rest(f.now); ++i) {
     f.advance(0.1);

@@ -55,6 +55,38 @@ TEST(BlindClimb, NothingIsTooSteepForAVehicleThatLooksUpAndDown) {
   EXPECT_TRUE(blind_climb({90 * kDegree, 0}, {}, line({0, 0, 0}, {0, 0, -30}))) << "it does not look down";
 }
 
+TEST(BlindClimb, NoLevelIsNewBesideWhereTheVehicleWasAsHighOrAsLow) {
+  // As it was: a vehicle that had come up 3.3 m was refused every goal, the way it had come included.
+  const SteepestView view{30 * kDegree, 30 * kDegree};
+  for (const double sign : {1.0, -1.0}) {
+    const Vec3 there(0, 0, 3.3 * sign);
+    const std::vector<Vec3> way = line({0, 0, 0}, there);
+    EXPECT_FALSE(blind_climb(view, way, line(there, {0, 0, 0})));
+    EXPECT_FALSE(blind_climb(view, way, line(there, {3.5, 0, 0}))) << "beside";
+    EXPECT_FALSE(blind_climb(view, way, line(there, {1, 0, 3.2 * sign}))) << "what is done is done";
+    EXPECT_TRUE(blind_climb(view, way, line(there, {0, 0, -0.2 * sign}))) << "farther than it came from";
+    EXPECT_TRUE(blind_climb(view, way, line(there, {0, 0, 3.5 * sign}))) << "farther than it is";
+    EXPECT_TRUE(blind_climb(view, way, line(there, {4.5, 0, 0}))) << "elsewhere";
+  }
+}
+
+TEST(BlindClimb, AWayFlownLongAgoNeedNotBeMetToTheCentimetre) {
+  const SteepestView view{30 * kDegree, 30 * kDegree};
+  std::vector<Vec3> way = line({0, 0, 0}, {0, 0, 3.3});
+  const auto back_to = [&](double z) {
+    return blind_climb(view, way, line({0, 0, 3.3}, {0, 0, z})).has_value();
+  };
+  EXPECT_TRUE(back_to(-0.4));
+  for (int i = 0; i < 25; ++i)  // to and fro, 50 m of way
+    for (const double y : {0.0, 1.0}) way.push_back({0, y, 3.3});
+  EXPECT_FALSE(back_to(-0.4));
+  way.back() = {0, 0, 3.3};
+  way.push_back({0, 0, 0.2});  // the climb down is new: half a metre below it, that is, and no more
+  way.push_back({0, 0, 3.3});
+  EXPECT_FALSE(back_to(-0.4));
+  EXPECT_TRUE(back_to(-0.6));
+}
+
 TEST(BlindClimb, GoesByTheWayComeTooAndIsNotDeceivedBySweeping) {
   const SteepestView view{15 * kDegree, 15 * kDegree};
   // Up a shaft 3 m wide in steps of 0.7 m, to and fro: each step by itself is a ledge.

@@ -134,6 +134,7 @@ TEST(Trajectory, HeadingFollowsThePathWithinItsRate) {
     HeadingPlan plan;
     plan.start_heading_rad = random.uniform(-3, 3);
     if (random.bits() % 2) plan.goal_heading_rad = random.uniform(-3, 3);
+    if (random.bits() % 2) plan.passing = {path[path.size() / 2], random.uniform(-3, 3)};
     const MotionLimits limits;
     const Trajectory t = sample_trajectory(path, 0, 0, limits, plan);
     double rate = 0;
@@ -157,6 +158,21 @@ TEST(Trajectory, TurnsOnTheSpotBeforeFlyingBackwards) {
   for (const TrajectorySample& s : t.samples)
     EXPECT_TRUE(std::abs(wrap_angle(s.heading_rad)) <= 0.7 || s.position == Vec3::Zero());
   EXPECT_NEAR(t.samples.back().heading_rad, 0.0, 1e-2);
+}
+
+TEST(Trajectory, LooksInPassingWhereItIsToldTo) {
+  HeadingPlan plan;
+  plan.passing = {{6, 0, 0}, 1.5};
+  const std::vector<Vec3> path{{0, 0, 0}, {12, 0, 0}};
+  const Trajectory t = sample_trajectory(path, 0, 0, {}, plan);
+  double least_off = 10;
+  for (const TrajectorySample& s : t.samples) {
+    if (std::abs(s.position.x() - 6) < 0.2) least_off = std::min(least_off, std::abs(s.heading_rad - 1.5));
+    EXPECT_TRUE(std::abs(s.position.x() - 6) < 3 || std::abs(s.heading_rad) < 0.1) << s.position.x();
+  }
+  EXPECT_LT(least_off, 0.4);
+  plan.passing.reset();
+  EXPECT_LT(t.end() - sample_trajectory(path, 0, 0, {}, plan).end(), 3 * kSecond) << "without a stop";
 }
 
 TEST(Trajectory, AtInterpolatesAndHoldsTheEnds) {

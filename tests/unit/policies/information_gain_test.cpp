@@ -81,6 +81,21 @@ TEST(InformationGain, ANarrowOpeningIsNotWorthAllTheUnknownBehindIt) {
       << "10 cells of a square metre, 2 m deep";
 }
 
+TEST(InformationGain, AGapBesideTheWayFlownIsWorthLittle) {
+  const DrawnMap map = passage();
+  Bench bench(karst_plugin_entry(), map,
+              {{"gain_depth", "2"}, {"gain_range", "3"}, {"stop_time", "1"}, {"turn_time", "0"}});
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  const karst::Vec3 a = map.place('a');
+  bench.position = a + karst::Vec3(1, 0, 0);
+  bench.offer(1, a, a - karst::Vec3(1, 0, 0), 10);
+  bench.decide();
+  bench.position = map.place('s');  // the way flown has come as near as 2 m
+  bench.frontiers.clear();
+  bench.offer(1, a, a - karst::Vec3(1, 0, 0), 10);
+  EXPECT_NEAR(bench.decide().goals.at(0).score, 20 * (2 - 1.4) / (3 - 1.4) / (1 + 7 / 1.5), 1e-9);
+}
+
 TEST(InformationGain, KeepsItsGoalUnlessAnotherIsBetterByMore) {
   const DrawnMap map(1.0, {"??a......s.....b??"});
   Bench bench(karst_plugin_entry(), map, {{"turn_time", "0"}, {"keep", "0.5"}});
