@@ -65,5 +65,10 @@ function showVerdict() {
     `Ranked by ${metricNames[m]}, ${data.metrics[m].better === "less" ? "less" : "more"} is better. Contestants that share a letter are not shown to differ.`;
   if (data.summaries[m].some((s) => s.all && s.all.over)) element("ranking-note").textContent += " * over caves, for want of seeds in each.";
   const primary = v.comparisons.filter((c) => c.metric === m && c.sentence && c.sentence !== v.sentence);
+  // Of four contestants there are six pairs, of eight 28: a list to open, not to scroll past.
+  element("every-verdict").hidden = primary.length === 0;
+  element("every-verdict").open = primary.length <= 6;
+  element("every-verdict").querySelector("summary").textContent =
+    primary.length === 1 ? "The pair in a sentence" : `The ${primary.length} pairs, a sentence each`;
   element("sentences").append(...primary.map((c) => make("li", {}, asSentence(c.sentence))));
 }
