@@ -47,6 +47,9 @@ std::vector<CellChange> Explorer::take_in(std::vector<CellChange> changes) {
   frontiers_.update(map_, changes);
   wide_.due.insert(wide_.due.end(), changes.begin(), changes.end());
   if (narrow_) narrow_->due.insert(narrow_->due.end(), changes.begin(), changes.end());
+  if (homing_)
+    for (const CellChange& c : changes)
+      if (c.after == Cell::occupied) closed_.push_back(c.key);
   return changes;
 }
 
@@ -101,6 +104,12 @@ double Explorer::narrow_length_m(const Path& way) const {
 }
 
 HomeEstimate Explorer::estimate_home(const Vec3& from, double way_come_m) {
+  const HomeEstimate base = estimate_base(from, way_come_m);
+  const auto spot = homing_ ? homing_->spot_from(map_, wide_.roadmap, from) : std::nullopt;
+  return spot && spot->time_s < base.time_s ? HomeEstimate{spot->length_m, spot->time_s} : base;
+}
+
+HomeEstimate Explorer::estimate_base(const Vec3& from, double way_come_m) {
   const Reach& usual = wide();
   std::optional<double> length_m = usual.way_home.length_m(map_, usual.roadmap, from);
   double narrow_m = 0;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/homing/relay_homing.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mission/fallback_policy.h"
 #include "core_stack/mission/goal_ledger.h"
@@ -99,12 +100,30 @@ class Explorer {
   /// True if the cluster is still open enough to be worth flying to.
   bool cluster_alive(std::uint32_t id) const;
 
+  // In a team.
+  void join(RelayHoming* homing, double claim_radius_m) {
+    homing_ = homing;
+    claim_radius_m_ = claim_radius_m;
+  }
+  /// Takes in what was heard; returns what to tell.
+  TreeFacts share(const Vec3& here, const TeamNews& news);
+  /// Where to land as a relay, if that takes less time than the way to the start.
+  std::optional<LandingSpot> landing_spot(const Vec3& from, double way_come_m);
+  /// It landed below `hover`: what to tell.
+  TreeFacts land(const Vec3& hover, TimeNs team_time);
+  /// The nearest place on the way come where another vehicle gets by one that hovers there, `apart_m` from
+  /// all others.
+  std::optional<Vec3> lay_by(const std::vector<Vec3>& flown, const std::vector<Neighbour>& others,
+                             double apart_m) const;
+
   const VoxelMap& map() const { return map_; }
   const Vec3& home() const { return home_; }
   /// Where the vehicle came to hover, if take-off had to stop lower than planned.
   void set_home(const Vec3& hover_point) { home_ = hover_point; }
 
  private:
+  HomeEstimate estimate_base(const Vec3& from, double way_come_m);
+  bool left_to_others(const Vec3& frontier) const;
   std::vector<CellChange> take_in(std::vector<CellChange> changes);
   Reach& wide();
   Reach* narrow();
@@ -148,6 +167,11 @@ class Explorer {
   };
   std::map<std::uint32_t, Chosen> chosen_;  // clusters as they were when a goal was accepted for them
   Vec3 home_;
+
+  RelayHoming* homing_ = nullptr;  // null: it flies alone
+  double claim_radius_m_ = 0;
+  bool claims_waived_ = false;    // in this round: nothing else is left
+  std::vector<CellKey> closed_;  // cells that became rock since the team was last told
 };
 
 }  // namespace karst::core

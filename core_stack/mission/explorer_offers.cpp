@@ -43,6 +43,7 @@ std::vector<FrontierOffer> Explorer::offers(Reach& reach, const RoundInput& inpu
   std::map<std::uint32_t, KnownViewpoint> kept;
   for (const auto& [id, cluster] : frontiers_.clusters()) {
     if (ledger_.closed(map_, cluster.centroid, closed_at_, by_pause_alone_)) continue;
+    if (left_to_others(cluster.centroid)) continue;
     if (input.appending && input.last_goal && input.last_goal->frontier_id == id) continue;
     const std::uint64_t revision = map_.revision_near(cluster.centroid, kViewpointReach_m);
     const auto known = reach.viewpoints.find(id);
@@ -77,9 +78,14 @@ std::vector<FrontierOffer> Explorer::offers(Reach& reach, const RoundInput& inpu
 
 /// If nothing else is left, there is no need to wait with what was tried a few times.
 std::vector<FrontierOffer> Explorer::offers_now(Reach& reach, const RoundInput& input) {
-  closed_at_ = input.now, by_pause_alone_ = false;
+  closed_at_ = input.now, by_pause_alone_ = false, claims_waived_ = false;
   std::vector<FrontierOffer> open = offers(reach, input);
   if (!open.empty()) return open;
+  if (homing_) {  // rather where another is about to look than nowhere
+    claims_waived_ = true;
+    open = offers(reach, input);
+    if (!open.empty()) return open;
+  }
   by_pause_alone_ = &reach != &wide_;
   closed_at_ += by_pause_alone_ ? kNarrowPauseWaived : kPauseWaived;
   return offers(reach, input);

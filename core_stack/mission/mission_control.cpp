@@ -13,6 +13,7 @@ constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
 constexpr double kClimbSpeed_mps = 0.5;
 constexpr double kFlownStep_m = 0.25;
+constexpr double kOverdue_s = 600;                // beyond the time limit: then it is given up
 constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to come in
 
 /// What the widest camera sees without turning need not be turned to; a little is seen twice.
@@ -46,21 +47,30 @@ const char* name_of(Phase phase) {
 }
 
 MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive,
-                               PolicyPort& policy, Recorder& recorder)
+                               PolicyPort& policy, Recorder& recorder, Teamwork* team)
     : options_(options),
       description_(vehicle.description()),
       vehicle_(vehicle),
       executive_(executive),
       recorder_(recorder),
+      team_(team),
       flight_(options, description_),
       safety_(options.safety),
       explorer_(options, description_, policy) {
   if (description_.lidar && options.localization.source == "lidar")
     loam_.emplace(options.localization.loam, description_.T_world_start);
   battery_.seconds_left = options.mission.max_flight_time_s;
+  if (team_) explorer_.join(team_->homing(), team_->options().claim_radius_m);
 }
 
-MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)>& watch) {
+MissionResult MissionControl::run(const Watch& watch) {
+  begin(watch);
+  advance(from_seconds(options_.mission.max_flight_time_s + kOverdue_s));
+  return end();
+}
+
+void MissionControl::begin(const Watch& watch) {
+  watch_ = watch;
   enter(Phase::standby, "");
   executive_.job(
       "launch site", Lane::map, kMappingBudget, [this] { explorer_.declare_launch_site(explorer_.home()); },
@@ -68,7 +78,7 @@ MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)
   vehicle_.start(executive_, *this);
   executive_.every("control", kControlPeriod, kControlPeriod, [this] { control(); });
   executive_.every("supervise", kSupervisionPeriod, kSupervisionPeriod, [this] { supervise(); });
-  executive_.every("watch", kSecond, kSecond, [this, &watch] {
+  executive_.every("watch", kSecond, kSecond, [this] {
     const MissionStatus status{now(),
                                phase_,
                                battery_.fraction_left,
@@ -80,17 +90,24 @@ MissionResult MissionControl::run(const std::function<bool(const MissionStatus&)
       recorder_.event(now(), "overrun", {{"count", overruns - overruns_}});
       overruns_ = overruns;
     }
-    if (!watch(status)) finish("aborted", "stopped by the operator");
+    if (!watch_(status)) finish("aborted", "stopped by the operator");
   });
-  const TimeNs limit = from_seconds(options_.mission.max_flight_time_s + 600);
+}
+
+bool MissionControl::advance(TimeNs until) {
   try {
-    executive_.run_until(limit, [this] { return result_.has_value(); });
+    if (!result_) executive_.run_until(until, [this] { return result_.has_value(); });
   } catch (const std::exception& e) {
     executive_.drain();  // jobs still running use what unwinding would take away
     finish("aborted", std::string("an error of the core: ") + e.what());
   }
+  return !result_ && now() < from_seconds(options_.mission.max_flight_time_s + kOverdue_s);
+}
+
+MissionResult MissionControl::end() {
   executive_.drain();
   if (!result_) finish("aborted", "the vehicle did not come back within ten minutes after the time limit");
+  if (team_) become_relay();
   vehicle_.finish();
   recorder_.final_map(explorer_.map());
   return *result_;
@@ -118,9 +135,10 @@ void MissionControl::control() { vehicle_.command(flight_.control(now())); }
 void MissionControl::supervise() {
   record();
   keep_safe();
+  if (team_) keep_apart();
   switch (phase_) {
     case Phase::standby:
-      if (now() - phase_since_ < kSettling) break;
+      if (now() - phase_since_ < kSettling || (team_ && !airspace_clear())) break;
       flight_.climb(now(), options_.mission.takeoff_height_m, kClimbSpeed_mps);
       enter(Phase::takeoff, "");
       break;
@@ -169,6 +187,8 @@ void MissionControl::record() {
       flown_.push_back(here);
     }
   }
+  if (team_) report_state();
+  if (team_ && has_taken_off_ && now() % kSecond == 0) share();
   if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
     begin_homing("the run directory cannot be written any more (disk full?)");
 }
@@ -182,9 +202,10 @@ void MissionControl::on_ground(TimeNs stamp, bool standing) {
     finish("contact", std::string("touched the ground in phase ") + name_of(phase_));
     return;
   }
-  const double off_m = (flight_.state().position - description_.T_world_start.position).head<2>().norm();
+  const Vec3& there = landing_ ? landing_->ground : description_.T_world_start.position;
+  const double off_m = (flight_.state().position - there).head<2>().norm();
   if (off_m < 1.0) {
-    finish("landed", "at the start");
+    finish("landed", landing_ ? "as a relay" : "at the start");
   } else {
     finish("stuck", "on the ground " + std::to_string(off_m).substr(0, 5) + " m from the start");
   }

@@ -12,6 +12,7 @@
 #include "core_stack/mission/explorer.h"
 #include "core_stack/mission/flight.h"
 #include "core_stack/mission/recorder.h"
+#include "core_stack/mission/teamwork.h"
 #include "core_stack/planning/polynomial_trajectory.h"
 
 namespace karst::core {
@@ -33,6 +34,9 @@ struct MissionStatus {
   std::string goal;
 };
 
+/// Called every second of flight; returns false to abort.
+using Watch = std::function<bool(const MissionStatus&)>;
+
 struct MissionResult {
   std::string outcome;  // landed | contact | stuck | battery | aborted
   std::string reason;
@@ -41,11 +45,18 @@ struct MissionResult {
 class MissionControl final : public VehicleSink {
  public:
   MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive, PolicyPort& policy,
-                 Recorder& recorder);
+                 Recorder& recorder, Teamwork* team = nullptr);
   ~MissionControl() override { executive_.drain(); }  // no job may outlive what it works on
 
-  /// Flies the mission. `watch` is called every second of flight; it returns false to abort.
-  MissionResult run(const std::function<bool(const MissionStatus&)>& watch);
+  /// Flies the mission.
+  MissionResult run(const Watch& watch);
+
+  // The same in steps, for a team: begin once, advance until it returns false, end once.
+  void begin(const Watch& watch);
+  /// Flies on until `until`; false once the mission is over.
+  bool advance(TimeNs until);
+  MissionResult end();
+  Phase phase() const { return phase_; }
 
   void on_lidar(std::shared_ptr<const LidarScan> scan) override;
   void on_depth(std::shared_ptr<const DepthImage> image) override;
@@ -124,6 +135,20 @@ class MissionControl final : public VehicleSink {
   void land();
   void watch_progress();
 
+  // In a team.
+  void share();
+  void report_state();
+  void choose_landing();
+  void confirm_landing();
+  void give_up_landing(const std::string& reason);
+  void keep_apart();
+  void step_aside(const std::vector<Neighbour>& others);
+  bool airspace_clear() const;
+  void claim_goal(const std::optional<Goal>& goal);
+  void become_relay();
+  /// Where it flies to when it goes home, and comes down.
+  const Vec3& landing_hover() const { return landing_ ? landing_->hover : home_; }
+
   TimeNs now() const { return executive_.now(); }
   std::vector<Vec3> path_ahead() const;
 
@@ -132,6 +157,8 @@ class MissionControl final : public VehicleSink {
   Vehicle& vehicle_;
   Executive& executive_;
   Recorder& recorder_;
+  Teamwork* team_;  // null: it flies alone
+  Watch watch_;
   Flight flight_;
   SafetySupervisor safety_;
   SafetyVerdict verdict_;
@@ -169,6 +196,14 @@ class MissionControl final : public VehicleSink {
   int home_failures_ = 0;
   bool home_planning_ = false;
   bool flying_as_come_ = false;  // back along the poses flown: only what it would touch stops it
+
+  // In a team.
+  std::optional<LandingSpot> landing_;       // where it will be a relay; without, it lands at its start
+  std::optional<TimeNs> unheard_since_;      // it hovers there and hears nobody who reaches the base
+  std::optional<TimeNs> giving_way_since_;   // it holds for another vehicle
+  TimeNs stepped_aside_ = 0;
+  bool stepping_aside_ = false;
+
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;
   int overruns_ = 0;                                     // of the executive, as last noted

@@ -85,6 +85,7 @@ void MissionControl::explore() {
     next_goal_.reset();
     append_tried_ = false;
   }
+  if (giving_way_since_) return;
   watch_progress();
   if (round_running_ || verdict_.action == SafetyAction::brake) return;
   if (detour_due_ && !flight_.at_rest(now())) {
@@ -172,12 +173,13 @@ void MissionControl::on_round(const RoundInput& input, const RoundResult& result
   round_running_ = false;
   record_round(input, result);
   if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
-  if (braked_since(input.now)) return;  // the path begins where the vehicle will not come any more
+  if (braked_since(input.now) || giving_way_since_) return;  // the path begins where the vehicle will not come any more
 
   if (result.goal) {
     const bool same = goal_ && (goal_->position - result.goal->position).norm() < kSameGoal_m;
     if (same && !path_blocked_ && !detour_due_ && !input.appending) return;  // keep to the path under way
     recorder_.event(now(), "goal", to_json(*result.goal, "accepted", ""));
+    if (team_) claim_goal(result.goal);
     if (input.appending && goal_) {
       next_goal_ = result.goal;
     } else {

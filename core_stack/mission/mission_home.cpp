@@ -30,6 +30,8 @@ void MissionControl::begin_homing(const std::string& reason) {
       [this, events = std::exchange(events_, {}), stamp = now()] { explorer_.tell(events, stamp); }, [] {});
   detour_due_ = !path_blocked_;  // whatever is under way leads elsewhere
   enter(Phase::home, reason);
+  if (team_) claim_goal(std::nullopt);
+  if (team_ && team_->lands_as_relay()) choose_landing();
 }
 
 void MissionControl::watch_battery() {
@@ -57,12 +59,19 @@ void MissionControl::watch_battery() {
 
 void MissionControl::go_home() {
   if (home_planning_ || verdict_.action == SafetyAction::brake) return;
-  const bool at_home = (flight_.reference().position - home_).norm() < kAboveHome_m;
+  if (giving_way_since_) {
+    last_landmark_time_ = now();
+    return;
+  }
+  const bool at_home = (flight_.reference().position - landing_hover()).norm() < kAboveHome_m;
   if (at_home && flight_.at_rest(now() - kSecond)) {
+    if (landing_) return confirm_landing();
     enter(Phase::land, "");
   } else if (path_blocked_ || detour_due_ || (!at_home && flight_.at_rest(now()))) {
     if (home_failures_ < kMostHomeFailures) {
       plan_home_path();
+    } else if (landing_) {
+      give_up_landing("there is no way there");
     } else if (flight_.at_rest(now())) {
       fly_back_as_come();
     }
@@ -83,7 +92,7 @@ void MissionControl::plan_home_path() {
   auto way = std::make_shared<Route>();
   executive_.job(
       "home plan", Lane::map, kPlanningBudget,
-      [this, way, lead, start, home = home_, limits = flight_.limits(0), narrow = narrow_places_] {
+      [this, way, lead, start, home = landing_hover(), limits = flight_.limits(0), narrow = narrow_places_] {
         const Path path = explorer_.plan_to(lead.points.back(), home);
         way->path = path;
         if (path.found())

@@ -2,6 +2,7 @@
 #pragma once
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
+#include "core_stack/homing/team_options.h"
 #include "core_stack/localization/localization_options.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mapping/voxel_map.h"
@@ -41,6 +42,8 @@ struct CoreOptions {
   MotionLimits motion;
   MpcOptions tracker;
   Se3Options controller;
+  TeamOptions team;      // described apart: a single vehicle has none
+  HomingOptions homing;
 };
 void describe(OptionTable& t, CoreOptions& o);
 

@@ -1,8 +1,8 @@
-#include "plugins/simulator/simulated_vehicle.h"
+#include "plugins/simulator/simulated_team.h"
 
 namespace {
 
-class SimulatorPlugin final : public karst::core::VehiclePlugin {
+class SimulatorPlugin final : public karst::core::TeamVehiclePlugin {
  public:
   void describe_options(karst::core::OptionTable& table) override {
     options_ = {};  // nothing of a mission read before
@@ -11,9 +11,17 @@ class SimulatorPlugin final : public karst::core::VehiclePlugin {
   std::unique_ptr<karst::core::Vehicle> create(const karst::core::VehicleSetup& setup) override {
     return std::make_unique<karst::sim::SimulatedVehicle>(options_, setup);
   }
+  void describe_radio(karst::core::OptionTable& table) override {
+    radio_ = {};
+    describe(table, radio_);
+  }
+  std::unique_ptr<karst::core::TeamVehicles> create_team(const karst::core::TeamSetup& setup) override {
+    return std::make_unique<karst::sim::SimulatedTeam>(options_, radio_, setup);
+  }
 
  private:
   karst::sim::SimulatorOptions options_;
+  karst::sim::RadioOptions radio_;
 };
 
 }  // namespace

@@ -24,10 +24,9 @@ constexpr TimeNs kBarometerPeriod = 40 * kMillisecond;
 constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond,
                  kPictureBudget = 100 * kMillisecond;
 
-std::shared_ptr<cave::Cave> open_cave(const SimulatorOptions& o, const core::VehicleSetup& setup) {
-  auto cave = std::make_shared<cave::Cave>(cave::load_cave(setup.cave, setup.start));
-  cave::check_start(*cave, o.body.radius_m);
-  return cave;
+std::shared_ptr<cave::Cave> checked(const SimulatorOptions& o, const cave::Cave& cave) {
+  cave::check_start(cave, o.body.radius_m);
+  return std::make_shared<cave::Cave>(cave);
 }
 
 /// Whole ticks nearest to a rate, at least one.
@@ -55,9 +54,14 @@ Vec3 mean_rate_radps(const core::Quat& from, const core::Quat& to, double dt_s) 
 }  // namespace
 
 SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup)
+    : SimulatedVehicle(options, setup, cave::load_cave(setup.cave, setup.start)) {}
+
+SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup,
+                                   const cave::Cave& cave, double cave_ahead_s)
     : options_(options),
       seed_(setup.seed),
-      cave_(open_cave(options, setup)),
+      cave_ahead_s_(cave_ahead_s),
+      cave_(checked(options, cave)),
       rocks_(cave_->description.boulders),
       air_(options.air, cave_->description.clouds, options.body.radius_m),
       faults_(cave_->description.faults),
@@ -72,6 +76,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       barometer_(options.barometer, Random::stream(setup.seed, "barometer")),
       pose_sensor_(options.pose, site_.T_world_start, Random::stream(setup.seed, "pose")),
       log_(setup.run_dir) {
+  renew_sight();
   cave::check_climb(*cave_, site_.T_world_start.position, setup.climb_m, options.body.radius_m);
   description_.name = options.vehicle;
   description_.radius_m = options.body.radius_m;
@@ -204,7 +209,7 @@ SensorFaults::Strike SimulatedVehicle::faults_of(Sensor sensor) {
 Air SimulatedVehicle::air_for(const std::string& beams) {
   const bool airborne = quadrotor_.footing() != Footing::standing;
   return {
-      air_.present(core::seconds(now() - start_time_), quadrotor_.state().T_world_body.position, airborne),
+      air_.present(cave_time_s(), quadrotor_.state().T_world_body.position, airborne),
       measurement_random(beams + " in air")};
 }
 
@@ -214,7 +219,7 @@ void SimulatedVehicle::fire_lidar() {
   auto scan = std::make_shared<core::LidarScan>();
   executive_->job(
       "lidar", Lane::sensing, kLidarBudget,
-      [scan, lidar = lidar_, cave = cave_, track = track_, stamp = now(),
+      [scan, lidar = lidar_, cave = seen_, track = track_, stamp = now(),
        random = measurement_random("lidar"), air = air_for("lidar"), kinds = strike.kinds] {
         *scan = lidar->sweep(*cave, track, stamp, random, air);
         for (const cave::Fault::Kind kind : kinds) spoil(*scan, kind);
@@ -231,7 +236,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
   const std::string& name = camera->model()->name;
   executive_->job(
       "depth camera", Lane::sensing, kCameraBudget,
-      [image, camera, cave = cave_, T = quadrotor_.state().T_world_body, stamp = now(),
+      [image, camera, cave = seen_, T = quadrotor_.state().T_world_body, stamp = now(),
        random = measurement_random(name),
        air = air_for(name)] { *image = camera->image(*cave, T, stamp, random, air); },
       [this, image] {
@@ -248,7 +253,7 @@ void SimulatedVehicle::take_picture() {
   const bool draw = rgb_->takes_pictures();
   executive_->job(
       "rgb camera", Lane::pictures, kPictureBudget,
-      [frame, draw, rgb = rgb_, cave = cave_, T = T_world_body, random = measurement_random("rgb"),
+      [frame, draw, rgb = rgb_, cave = seen_, T = T_world_body, random = measurement_random("rgb"),
        air = draw ? air_for("rgb") : Air{}] {
         if (draw) frame->rgb = rgb->picture(*cave, T, random, air);
       },
@@ -267,18 +272,33 @@ void SimulatedVehicle::report_pose() {
 
 void SimulatedVehicle::stir_air() {
   if (quadrotor_.footing() == Footing::standing) return;
-  air_.stir(core::seconds(now() - start_time_), quadrotor_.state().T_world_body, cave_->scene);
+  air_.stir(cave_time_s(), quadrotor_.state().T_world_body, cave_->scene);
 }
 
 /// Scans and images still being made keep the cave as it was at their stamp.
 void SimulatedVehicle::move_rocks() {
   const std::size_t before = cave_->scene.boulders().size();
-  if (!rocks_.advance(core::seconds(now() - start_time_), quadrotor_.state().T_world_body.position)) return;
+  if (!rocks_.advance(cave_time_s(), quadrotor_.state().T_world_body.position)) return;
   cave_ = std::make_shared<cave::Cave>(
       cave::Cave{cave_->description, cave_->scene.with_boulders(rocks_.present())});
+  renew_sight();
   quadrotor_.put_into(cave_->scene);
   if (const std::size_t there = cave_->scene.boulders().size(); there > before)
     log_.event(now(), "rockfall", quadrotor_.state(), std::to_string(there) + " boulders");
+}
+
+void SimulatedVehicle::see(std::vector<cave::Sphere> others) {
+  others_ = std::move(others);
+  renew_sight();
+}
+
+void SimulatedVehicle::renew_sight() {
+  seen_ = cave_;
+  if (others_.empty()) return;
+  std::vector<cave::Sphere> balls = cave_->scene.boulders();
+  balls.insert(balls.end(), others_.begin(), others_.end());
+  seen_ = std::make_shared<cave::Cave>(
+      cave::Cave{cave_->description, cave_->scene.with_boulders(std::move(balls))});
 }
 
 void SimulatedVehicle::log_truth() {

@@ -20,11 +20,22 @@ class SimulatedVehicle final : public core::Vehicle {
  public:
   /// Throws InputError on a bad cave or start pose.
   SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup);
+  /// The same in a cave that is read already, whose time is ahead of the vehicle's own.
+  SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup, const cave::Cave& cave,
+                   double cave_ahead_s = 0);
 
   core::VehicleDescription description() const override { return description_; }
   void start(core::Executive& executive, core::VehicleSink& sink) override;
   void command(const core::AttitudeRateCommand& c) override { quadrotor_.command = c; }
   void finish() override;
+
+  // Among other vehicles; to be called between two steps of the executive.
+  const core::Vec3& position() const { return quadrotor_.state().T_world_body.position; }
+  bool airborne() const { return quadrotor_.footing() != Footing::standing && !lost_; }
+  /// Where the others are from now on, as its sensors see them. Touching them is not looked for.
+  void see(std::vector<cave::Sphere> others);
+  /// The end of its flight: `outcome` is contact, if it touched another, or lost.
+  void end_flight(const std::string& outcome, const std::string& reason) { lose(outcome, reason); }
 
  private:
   /// Something read once a period; both times are whole ticks.
@@ -43,6 +54,8 @@ class SimulatedVehicle final : public core::Vehicle {
   void report_pose();
   void move_rocks();
   void stir_air();
+  void renew_sight();
+  double cave_time_s() const { return core::seconds(now() - start_time_) + cave_ahead_s_; }
   /// What the sensor's air is like now; `beams` names the random stream of its echoes.
   Air air_for(const std::string& beams);
   SensorFaults::Strike faults_of(cave::Fault::Sensor sensor);
@@ -53,7 +66,10 @@ class SimulatedVehicle final : public core::Vehicle {
 
   SimulatorOptions options_;
   std::uint64_t seed_;
-  std::shared_ptr<cave::Cave> cave_;  // replaced as a whole when boulders come or move
+  double cave_ahead_s_;
+  std::shared_ptr<cave::Cave> cave_;        // replaced as a whole when boulders come or move
+  std::vector<cave::Sphere> others_;        // vehicles
+  std::shared_ptr<const cave::Cave> seen_;  // the cave with them in it
   LooseRocks rocks_;
   CaveAir air_;
   SensorFaults faults_;

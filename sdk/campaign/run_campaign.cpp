@@ -26,6 +26,16 @@ std::vector<std::string> dropped(Keep keep) {
   return files;
 }
 
+/// A run directory, and those of a team's robots in it.
+std::vector<fs::path> run_dirs_in(const fs::path& run_dir) {
+  std::vector<fs::path> all{run_dir};
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(run_dir, ignored))
+    if (entry.is_directory(ignored) && entry.path().filename().string().starts_with("robot_"))
+      all.push_back(entry.path());
+  return all;
+}
+
 Plan plan_for(const std::optional<Campaign>& campaign, const RunOptions& options) {
   if (campaign) return make_plan(*campaign, options.karst);
   const fs::path file = options.folder / "campaign.sqlite";
@@ -128,8 +138,8 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
   const auto take = [&](const TrialKey& key) {
     StoredTrial trial = collect(plan, key, options.folder);
     store.add(trial);
-    for (const std::string& file : dropped(options.keep))
-      fs::remove(options.folder / trial.result.run_dir / file, ignored);
+    for (const fs::path& run_dir : run_dirs_in(options.folder / trial.result.run_dir))
+      for (const std::string& file : dropped(options.keep)) fs::remove(run_dir / file, ignored);
     ++progress.finished;
     progress.failed += trial.result.failed;
     return trial;

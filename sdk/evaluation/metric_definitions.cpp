@@ -65,6 +65,14 @@ constexpr std::array kDefinitions = {
     MetricDefinition{"objects_reported", "", more, nothing, "objects that the base was told of in flight"},
     MetricDefinition{"data_at_base_share", "", more, nothing,
                      "share of the explored volume that the base knew when the flight ended", 0, 1},
+    MetricDefinition{"robots_landed", "", more, nothing, "share of a team's robots that landed", 0, 1},
+    MetricDefinition{"robots_connected", "", more, unknown,
+                     "share of those that reached the base over the relay graph at the end", 0, 1},
+    MetricDefinition{"exploration_time_1_s", "s", more, nothing, "time robot 1 of a team explored before homing"},
+    MetricDefinition{"exploration_time_2_s", "s", more, nothing, "the same of robot 2"},
+    MetricDefinition{"exploration_time_3_s", "s", more, nothing, "the same of robot 3"},
+    MetricDefinition{"exploration_time_4_s", "s", more, nothing, "the same of robot 4"},
+    MetricDefinition{"exploration_time_5_s", "s", more, nothing, "the same of robot 5"},
 };
 
 }  // namespace

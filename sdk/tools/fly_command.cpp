@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
-#include <boost/property_tree/info_parser.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include "sdk/host/request_log.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/auto_policy.h"
+#include "sdk/tools/fly_team.h"
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/mission_file.h"
 #include "sdk/tools/report_command.h"
@@ -29,16 +29,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNotLanded = 2;  // exit code of a flight that did not end with the vehicle at its start
-
 struct FlyArguments {
   std::string mission_file, out, check;
   MissionOverrides overrides;
-  std::vector<std::string> plugins;
   std::optional<std::int64_t> seed;
-  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool json = false, quiet = false, keys = false, no_report = false, real_time = false,
-       record_requests = false;
+  bool keys = false;
+  FlightArguments flight{.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))};
 };
 
 /// runs/POLICY-CAVE-SEED, with a number behind it if that is taken.
@@ -47,14 +43,6 @@ fs::path default_run_dir(const Mission& m) {
   fs::path dir = fs::path("runs") / name;
   for (int i = 2; fs::exists(dir); ++i) dir = fs::path("runs") / (name + "-" + std::to_string(i));
   return dir;
-}
-
-void write_mission(const fs::path& file, const boost::property_tree::ptree& mission) {
-  try {
-    boost::property_tree::write_info(file.string(), mission);
-  } catch (const boost::property_tree::info_parser_error& e) {
-    throw core::InputError(file.string(), "", e.message());
-  }
 }
 
 void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool with_report) {
@@ -105,28 +93,6 @@ int check(const std::string& file, const Mission& mission, const host::HostedPol
   return 0;
 }
 
-/// Which policy, and what it may do to this process.
-host::PolicyChoice policy_choice(const Mission& mission, const FlyArguments& args) {
-  host::PolicyChoice choice;
-  choice.name = mission.policy;
-  choice.plugin_files = args.plugins;
-  choice.parameters = mission.policy_parameters;
-  choice.source = mission.file;
-  choice.seed = policy_seed(mission);
-  const bool own_process = mission.policy_isolation == "process";
-  choice.isolation = own_process ? host::Isolation::process : host::Isolation::in_process;
-  choice.memory_limit_mib = mission.policy_memory_limit_mib;
-  choice.cpu_limit_s = mission.policy_cpu_limit_s;
-  // In lockstep the vehicle's clock stands still meanwhile: a loaded machine must not cost a policy its
-  // flight. On a vehicle nobody waits longer than until the next decision is due, for a policy that can be
-  // started once more.
-  choice.hang_limit_s = mission.policy_hang_limit_s;
-  if (args.real_time)
-    choice.hang_limit_s = std::min(choice.hang_limit_s, own_process ? mission.core.mission.decision_period_s
-                                                                    : mission.policy_cpu_limit_s);
-  return choice;
-}
-
 int fly(const FlyArguments& args) {
   if (args.keys) {
     std::fputs(mission_help("simulator").c_str(), stdout);
@@ -139,8 +105,15 @@ int fly(const FlyArguments& args) {
   Mission mission = read_mission(args.mission_file, overrides);
   settle_policy(mission);
 
+  if (mission.core.team.robots > 1) {
+    FlightArguments flight = args.flight;
+    flight.run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
+    flight.interrupted = &watch_for_interrupt();
+    return fly_team(mission, flight, args.check);
+  }
+
   // Everything that can be wrong is looked at before anything is written.
-  const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(policy_choice(mission, args));
+  const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(policy_choice(mission, args.flight));
   if (!args.check.empty()) return check(args.check, mission, *policy);
   const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();  // from here on there is something to tidy up
@@ -154,17 +127,18 @@ int fly(const FlyArguments& args) {
     recorder.event(0, "selection", {{"policy", mission.policy}, {"reason", mission.policy_selection}});
 
   std::optional<host::RecordingPolicy> recording;
-  if (args.record_requests)
+  if (args.flight.record_requests)
     recording.emplace(*policy, run_dir / host::kRequestLogName,
                       host::RequestLogHeader{policy->name(), policy->version(), policy_seed(mission),
                                              policy->parameters()});
   core::PolicyPort& asked = recording ? static_cast<core::PolicyPort&>(*recording) : *policy;
 
-  core::Executive executive(args.threads, args.real_time ? core::Clock::real_time : core::Clock::lockstep);
+  core::Executive executive(args.flight.threads,
+                            args.flight.real_time ? core::Clock::real_time : core::Clock::lockstep);
   core::MissionControl control(mission.core, *vehicle, executive, asked, recorder);
   int code = kNotLanded;
   try {
-    StatusLine line(args.quiet || args.json);
+    StatusLine line(args.flight.quiet || args.flight.json);
     const auto begin = std::chrono::steady_clock::now();
     const core::MissionResult result = control.run([&](const core::MissionStatus& status) {
       line.show(status);
@@ -173,11 +147,11 @@ int fly(const FlyArguments& args) {
     line.end();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     write_timing(run_dir, executive, wall.count());
-    const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.no_report);
-    if (args.json) {
+    const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.flight.no_report);
+    if (args.flight.json) {
       std::cout << core::json_text(metrics, 2) << std::endl;
     } else {
-      print_summary(metrics, run_dir, !args.no_report);
+      print_summary(metrics, run_dir, !args.flight.no_report);
     }
     if (result.outcome == "landed") code = std::fflush(stdout) == 0 ? 0 : 1;
   } catch (const std::exception& e) {  // a full disk: it flew all the same
@@ -201,7 +175,8 @@ void add_fly_command(CLI::App& app) {
       "  karst fly examples/missions/demo.info\n"
       "  karst fly --cave caves/tunnel.stl --start \"1 2 1.5 90\" --policy highest_frontier\n"
       "  karst fly demo.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
-      "Exit code: 0 landed at the start, 2 flown but not landed there or the record is incomplete, 1 not "
+      "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the record "
+      "is incomplete, 1 not "
       "flown or nothing could be printed.");
   fly_app->add_option("mission", args->mission_file, "mission file (.info)")->check(not_empty());
   fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
@@ -216,31 +191,31 @@ void add_fly_command(CLI::App& app) {
   fly_app
       ->add_option("--preset", args->overrides.preset, "file with a policy and its parameters (docs/tune.md)")
       ->check(not_empty());
-  fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+  fly_app->add_option("--plugin", args->flight.plugins, "policy plugin file (.so) to look in first")
       ->allow_extra_args(false)
       ->check(not_empty());
   fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")->allow_extra_args(false);
   fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
   fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")->check(not_empty());
   fly_app
-      ->add_option("--threads", args->threads,
+      ->add_option("--threads", args->flight.threads,
                    "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "
                    "Results do not depend on it")
       ->check(CLI::Range(1, 256));
   fly_app->add_flag(
-      "--real-time", args->real_time,
+      "--real-time", args->flight.real_time,
       "a second of flight takes a second, as on a vehicle: what is not ready in time counts as an "
       "overrun (timing.json), and no two flights are the same");
-  fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
-  fly_app->add_flag("--quiet", args->quiet, "no status line");
-  fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
+  fly_app->add_flag("--json", args->flight.json, "print metrics.json instead of a summary; no status line");
+  fly_app->add_flag("--quiet", args->flight.quiet, "no status line");
+  fly_app->add_flag("--no-report", args->flight.no_report, "metrics only, no report.html");
   fly_app
       ->add_option("--check", args->check,
                    "do not fly: look at everything that can be wrong and write the mission as resolved to "
                    "this file")
       ->check(not_empty());
   fly_app->add_flag(
-      "--record-requests", args->record_requests,
+      "--record-requests", args->flight.record_requests,
       "write what the policy is asked, and its answers, into requests.bin; see karst policy replay");
   fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
   fly_app->callback([args] {

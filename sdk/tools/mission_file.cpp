@@ -7,6 +7,7 @@
 #include "core_stack/common/info_lines.h"
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
+#include "core_stack/vehicle/team_vehicles.h"
 #include "sdk/selection/preset.h"
 #include "sdk/tools/auto_policy.h"
 #include "sdk/tools/install_place.h"
@@ -49,7 +50,17 @@ void describe_mission(OptionTable& t, Mission& m) {
           "address space of a policy in a process of its own, in MiB");
   });
   describe(t, m.core);
+  t.section("team", m.core.team);
+  t.section("homing", m.core.homing);
 }
+
+void describe_radio(OptionTable& table, core::VehiclePlugin& plugin) {
+  if (auto* teams = dynamic_cast<core::TeamVehiclePlugin*>(&plugin))
+    table.under("radio", [teams](OptionTable& t) { teams->describe_radio(t); });
+}
+
+/// The sections that matter to a team only.
+constexpr const char* kTeamSections[] = {"team", "homing", "radio"};
 
 /// Puts the settings below `prefix` into `tree`, and says whether `key` was one of them.
 bool put_below(const std::string& prefix, const std::string& key, const std::string& value, pt::ptree& tree) {
@@ -126,6 +137,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   OptionTable table;
   describe_mission(table, m);
   table.under(m.vehicle, [&m](OptionTable& t) { m.vehicle_plugin->describe_options(t); });
+  describe_radio(table, *m.vehicle_plugin);
 
   table.read(m.file, tree);
   m.cave = core::beside(file, m.cave);
@@ -152,6 +164,8 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   }
   if (m.policy != recorded_policy) m.policy_selection.clear();
   m.resolved = table.resolved();
+  if (m.core.team.robots == 1)
+    for (const char* section : kTeamSections) m.resolved.erase(section);
   return m;
 }
 
@@ -180,6 +194,7 @@ std::string mission_help(const std::string& vehicle) {
   describe_mission(table, m);
   core::VehiclePlugin& plugin = core::load_vehicle(vehicle, plugin_root() / "vehicles");
   table.under(vehicle, [&plugin](OptionTable& t) { plugin.describe_options(t); });
+  describe_radio(table, plugin);
   return table.help();
 }
 

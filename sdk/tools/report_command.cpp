@@ -127,6 +127,14 @@ void add_report_command(CLI::App& app) {
       throw core::InputError(args->run, "",
                              "no run directory, as it holds no mission.info, nor a campaign's folder");
     const auto info = core::read_info((run / "mission.info").string());
+    if (fs::exists(run / "team.jsonl")) {  // its own figures are those of the flight's end
+      for (int i = 1; fs::exists(run / ("robot_" + std::to_string(i))); ++i) {
+        const fs::path robot = run / ("robot_" + std::to_string(i));
+        finish_run(robot, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
+        std::printf("%s\n", (robot / (args->no_report ? "metrics.json" : "report.html")).c_str());
+      }
+      return;
+    }
     finish_run(run, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
     std::printf("%s\n", (run / (args->no_report ? "metrics.json" : "report.html")).c_str());
   });

@@ -29,7 +29,9 @@ constexpr std::array kRunFiles = {"events.jsonl",
                                   "timing.json",
                                   "metrics.json",
                                   "report.html",
-                                  "evaluation.json"};
+                                  "evaluation.json",
+                                  "team.jsonl",
+                                  "team_truth.jsonl"};
 
 }  // namespace
 

@@ -82,7 +82,14 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "overruns",
                                        "objects_found",
                                        "objects_reported",
-                                       "data_at_base_share"};
+                                       "data_at_base_share",
+                                       "robots_landed",
+                                       "robots_connected",
+                                       "exploration_time_1_s",
+                                       "exploration_time_2_s",
+                                       "exploration_time_3_s",
+                                       "exploration_time_4_s",
+                                       "exploration_time_5_s"};
   std::vector<std::string> found;
   for (const auto& [key, value] : m.items()) {
     found.push_back(key);

@@ -1,0 +1,177 @@
+#include "core_stack/homing/relay_homing.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core_stack/homing/home.h"
+#include "core_stack/homing/map_rays.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kPlaceReach_m = 3.0;     // of a landing place from the pose that it is judged for
+constexpr std::size_t kJudgedBehind = 3;  // poses: by then the ground there has been seen
+constexpr double kRecheckMargin_m = 1.0;
+constexpr double kRockMargin_m = 0.1;     // beyond the vehicle's radius: nearer rock closes a ray
+constexpr double kBesideRoute_m = 4.0;    // landing places so near to the homing route are on it
+/// Kept for hearing whether it is in contact there, and for a step nearer if it is not.
+constexpr double kConfirm_s = 6.0;
+
+void append(TreeFacts& to, const TreeFacts& more) {
+  to.nodes.insert(to.nodes.end(), more.nodes.begin(), more.nodes.end());
+  to.rays.insert(to.rays.end(), more.rays.begin(), more.rays.end());
+  to.lives.insert(to.lives.end(), more.lives.begin(), more.lives.end());
+}
+
+}  // namespace
+
+RelayHoming::RelayHoming(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
+                         const PlanningOptions& planning, const MotionLimits& limits, double vehicle_radius_m)
+    : self_(self),
+      strategy_(team.strategy),
+      options_(homing),
+      planning_(planning),
+      limits_(limits),
+      radius_m_(vehicle_radius_m),
+      keep_apart_m_(homing.landing.keep_apart_m),
+      tree_(homing.tree, cruise_speed_mps(limits)) {
+  const FreeRay unseen = [](const Vec3&, const Vec3&) { return false; };
+  tree_.insert_communication({kBase, 1}, to_centimetres(base), 0, unseen);
+  relays_ = {{kBase, base, base}};
+}
+
+TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here,
+                              const TeamNews& news, std::span<const CellKey> closed) {
+  relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
+  const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
+  const TimeNs stamp = to_milliseconds(news.stamp);
+  TreeFacts out;
+  tree_.apply(news.facts);
+  for (const TreeNode& n : news.facts.nodes) append(out, tree_.look_from(n.id, stamp, free));
+
+  const TreeFacts own = tree_.insert_pose({self_, nodes_made_ + 1}, to_centimetres(here), stamp, free);
+  if (!own.nodes.empty()) {
+    ++nodes_made_;
+    append(out, own);
+    to_judge_.push_back(here);
+  }
+  if (!closed.empty()) {
+    Vec3 low = map.center_of(closed.front()), high = low;
+    for (const CellKey& k : closed) low = low.cwiseMin(map.center_of(k)), high = high.cwiseMax(map.center_of(k));
+    append(out, tree_.recheck(low, high, kRecheckMargin_m, stamp, free, rock_rays(map, radius_m_ + kRockMargin_m)));
+  }
+  while (to_judge_.size() > kJudgedBehind) {
+    judge(map, roadmap, to_judge_.front());
+    to_judge_.erase(to_judge_.begin());
+  }
+  find_links(map);
+  return out;
+}
+
+double RelayHoming::down_s(const Place& place) const {
+  return (place.hover - place.ground).z() / options_.landing.landing_speed_mps;
+}
+
+/// The place near a pose that is reached and landed on soonest.
+void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose) {
+  std::vector<Place> candidates;
+  for (const Vec3& p : roadmap.places_near(pose, kPlaceReach_m)) {
+    const Ground ground = ground_below(map, p, radius_m_, options_.landing.ground);
+    if (ground.verdict == GroundVerdict::good) candidates.push_back({p, ground.ground, std::nullopt});
+  }
+  const auto cost_s = [&](const Place& p) {
+    return (p.hover - pose).norm() / cruise_speed_mps(limits_) + down_s(p);
+  };
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const Place& a, const Place& b) { return cost_s(a) < cost_s(b); });
+  for (const Place& p : candidates) {
+    const Vec3 standing = p.ground + Vec3(0, 0, radius_m_);
+    if (!others_get_by(map, standing, radius_m_, search_clearance_m(planning_, map.resolution_m()),
+                       options_.landing.passage_reach_m))
+      continue;
+    const bool there = std::any_of(places_.begin(), places_.end(), [&](const Place& o) {
+      return (o.ground - p.ground).norm() < options_.tree.least_edge_m / 2;
+    });
+    if (!there) places_.push_back(p);
+    return;
+  }
+}
+
+/// The node of the best link to each place, as far as the map tells.
+void RelayHoming::find_links(const VoxelMap& map) {
+  for (Place& p : places_) {
+    double best_db = 0;
+    p.node.reset();
+    for (const Relay& r : relays_) {
+      if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
+      const double db =
+          expected_margin_db(map, p.ground + Vec3(0, 0, radius_m_), r.antenna, options_.landing.link);
+      if (db >= best_db) best_db = db, p.node = r.robot;
+    }
+  }
+}
+
+bool RelayHoming::free_to_take(const Place& place) const {
+  const auto near = [&](const std::vector<Vec3>& all, const Vec3& p, double within_m) {
+    return std::any_of(all.begin(), all.end(), [&](const Vec3& o) { return (o - p).norm() < within_m; });
+  };
+  return !near(taken_, place.ground, keep_apart_m_) && !near(given_up_, place.hover, 1e-3);
+}
+
+std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const Roadmap& roadmap,
+                                                      const Vec3& from) const {
+  std::vector<const Place*> open;
+  std::vector<Vec3> hovers;
+  for (const Place& p : places_)
+    if (p.node && free_to_take(p)) open.push_back(&p), hovers.push_back(p.hover);
+  if (open.empty()) return std::nullopt;
+  const std::vector<double> lengths = roadmap.distances(map, from, hovers, 0.0);
+  std::optional<LandingSpot> best;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const double time_s = flight_time_s(lengths[i], limits_) + kConfirm_s + down_s(*open[i]);
+    if (std::isfinite(lengths[i]) && (!best || time_s < best->time_s))
+      best = {open[i]->hover, open[i]->ground, *open[i]->node, lengths[i], time_s};
+  }
+  return best;
+}
+
+/// The first place beside the homing route from which the route's own node is in reach.
+std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const Roadmap& roadmap,
+                                                    const Vec3& from) const {
+  const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
+  const auto route = tree_.route(from, free);
+  if (!route || route->nodes.empty()) return std::nullopt;
+  const RobotId node = route->nodes.back().robot;
+  const auto relay = std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == node; });
+  if (relay == relays_.end()) return std::nullopt;
+  double length_m = 0;
+  for (std::size_t i = 0; i < route->points.size(); ++i) {
+    const Vec3& p = route->points[i];
+    if (i > 0) length_m += (p - route->points[i - 1]).norm();
+    const Place* best = nullptr;
+    for (const Place& place : places_)
+      if ((place.hover - p).norm() < kBesideRoute_m && free_to_take(place) &&
+          expected_margin_db(map, place.ground + Vec3(0, 0, radius_m_), relay->antenna, options_.landing.link) >= 0 &&
+          (!best || (place.hover - p).norm() < (best->hover - p).norm()))
+        best = &place;
+    if (!best) continue;
+    const double all_m = length_m + (best->hover - p).norm();
+    return LandingSpot{best->hover, best->ground, node, all_m,
+                       flight_time_s(all_m, limits_) + kConfirm_s + down_s(*best)};
+  }
+  return std::nullopt;
+}
+
+std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roadmap& roadmap,
+                                                  const Vec3& from) const {
+  if (strategy_ == "relay_tree") return up_the_tree(map, roadmap, from);
+  if (strategy_ == "relay_chain") return nearest_place(map, roadmap, from);
+  return std::nullopt;
+}
+
+TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {
+  const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
+  return tree_.insert_communication({self_, ++nodes_made_}, to_centimetres(hover), to_milliseconds(stamp), free);
+}
+
+}  // namespace karst::core

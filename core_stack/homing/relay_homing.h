@@ -1,0 +1,89 @@
+// Where a robot would land as a relay, and how long it takes to come to the ground there: asked every second
+// and for every goal, by the strategy of the mission.
+//
+// relay_tree (the paper): along the homing tree to the nearest communication node, and down where that node
+// comes into reach. relay_chain: to the nearest of all landing places it knows, of whichever node. Places are
+// judged while it flies by: wherever a pose node is made, the ground near it is looked at once.
+//
+// It lives where the map lives, on the map lane.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core_stack/homing/team_options.h"
+#include "core_stack/homing/teammate.h"
+#include "core_stack/planning/roadmap.h"
+#include "core_stack/planning/trajectory.h"
+
+namespace karst::core {
+
+/// Where to come down. `time_s` is flight, a moment to hear whether it is in contact there, and descent.
+struct LandingSpot {
+  Vec3 hover = Vec3::Zero(), ground = Vec3::Zero();  // straight below
+  RobotId node = kBase;                              // that it counts on
+  double length_m = 0, time_s = 0;
+};
+
+/// What a robot heard since the last time.
+struct TeamNews {
+  TimeNs stamp = 0;  // the team's time
+  TreeFacts facts;
+  std::vector<Relay> relays;
+  std::vector<Vec3> taken;  // ground that others stand on or claim
+  std::vector<Vec3> goals;  // that others claim
+};
+
+class RelayHoming {
+ public:
+  /// `base` is the base's antenna. Strategy return_to_base keeps the tree for the others, and knows no places.
+  RelayHoming(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
+              const PlanningOptions& planning, const MotionLimits& limits, double vehicle_radius_m);
+
+  /// Takes in what others told and what it has seen since: a pose node at `here`, rays near cells in `closed`
+  /// that became rock. The roadmap must be up to date. Returns what to tell the others.
+  TreeFacts update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here, const TeamNews& news,
+                   std::span<const CellKey> closed);
+
+  /// The place that takes the least time from `from`, by the strategy; nothing if none is known.
+  std::optional<LandingSpot> spot_from(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
+  /// Never again to this place: it was tried in vain.
+  void give_up(const Vec3& hover) { given_up_.push_back(hover); }
+
+  /// It has landed: its communication node, above where it stands.
+  TreeFacts land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp);
+
+  const HomingTree& tree() const { return tree_; }
+  const std::vector<Vec3>& others_goals() const { return goals_; }
+  std::size_t places() const { return places_.size(); }
+
+ private:
+  struct Place {
+    Vec3 hover, ground;
+    std::optional<RobotId> node;  // in reach by the map
+  };
+
+  void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
+  void find_links(const VoxelMap& map);
+  bool free_to_take(const Place& place) const;
+  std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
+  std::optional<LandingSpot> up_the_tree(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
+  double down_s(const Place& place) const;
+
+  RobotId self_;
+  std::string strategy_;
+  HomingOptions options_;
+  PlanningOptions planning_;
+  MotionLimits limits_;
+  double radius_m_, keep_apart_m_;
+  HomingTree tree_;
+  std::uint32_t nodes_made_ = 0;
+  std::vector<Vec3> to_judge_;  // poses whose ground is yet to be seen from farther on
+  std::vector<Place> places_;
+  std::vector<Vec3> given_up_;
+  std::vector<Relay> relays_;
+  std::vector<Vec3> taken_, goals_;
+};
+
+}  // namespace karst::core

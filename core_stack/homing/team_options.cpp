@@ -1,0 +1,55 @@
+#include "core_stack/homing/team_options.h"
+
+#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
+
+#include "core_stack/common/error.h"
+
+namespace karst::core {
+
+void describe(OptionTable& t, TeamOptions& o) {
+  t.add("robots", o.robots, 1, kMostRobots - 1, "1: one vehicle alone, and no team");
+  t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts");
+  t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
+        "where a robot lands when its battery runs low (docs/homing.md)");
+  t.add("keep_apart", o.keep_apart_m, "m", 1.0, 20,
+        "of two vehicles nearer than this, and what they need to stop, the one of the higher number gives way");
+  t.add("claim_radius", o.claim_radius_m, "m", 0, 50,
+        "frontiers so near to another's goal are left to it");
+  t.add("claim_age", o.claim_age_s, "s", 1, 3600, "a goal claimed longer ago is free again");
+  t.add("linger", o.linger_s, "s", 0, 600, "the radios go on for so long after the last landing");
+  t.add("lost_robot", o.lost_robot, 0, kMostRobots - 1, "for tests: the number of a robot that never comes back");
+  t.add("lost_after", o.lost_after_s, "s", 0, 7200, "of its flight: then it is lost");
+  t.add("silent_relay", o.silent_relay, 0, kMostRobots - 1, "for tests: the number of a robot whose radio fails");
+  t.add("silent_after", o.silent_after_s, "s", 0, 7200, "behind its landing: then it is silent");
+}
+
+void describe(OptionTable& t, HomingOptions& o) {
+  t.add("arrival_probability", o.arrival_probability, "", 0.5, 0.999999,
+        "of reaching the landing place before the reserve is touched");
+  t.add("flown_mean", o.flown_mean, "", 0.1, 3, "mean of flown over estimated time of flights home");
+  t.add("flown_deviation", o.flown_deviation, "", 0, 1, "its standard deviation");
+  t.section("tree", o.tree);
+  t.section("landing", o.landing);
+  t.section("relay", o.relay);
+  t.section("gossip", o.gossip);
+}
+
+void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source) {
+  for (const auto& [key, robot] : {std::pair{"team.lost_robot", team.lost_robot},
+                                   std::pair{"team.silent_relay", team.silent_relay}})
+    if (robot > team.robots)
+      throw InputError(source, key,
+                       "there is no robot " + std::to_string(robot) + ": team.robots is " +
+                           std::to_string(team.robots));
+  if (homing.tree.longest_edge_m <= homing.tree.least_edge_m)
+    throw InputError(source, "homing.tree.longest_edge",
+                     "is no longer than homing.tree.least_edge: no two nodes would be joined");
+}
+
+double homing_margin(const HomingOptions& o) {
+  const double z = std::sqrt(2.0) * boost::math::erf_inv(2 * o.arrival_probability - 1);
+  return o.flown_mean + z * o.flown_deviation - 1;
+}
+
+}  // namespace karst::core

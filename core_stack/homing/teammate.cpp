@@ -1,0 +1,168 @@
+#include "core_stack/homing/teammate.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace karst::core {
+namespace {
+
+constexpr double kGoodQuality = 0.2;               // of a link to land by: gossip copes with losses
+constexpr double kAntenna_m = 0.3;                 // above the ground, of a landed robot
+constexpr TimeNs kStateAge = 3 * kSecond;          // of a position to keep apart from
+constexpr TimeNs kReceiptPeriod = 2 * kSecond;
+
+bool in_the_air(TeamPhase p) {
+  return p == TeamPhase::explore || p == TeamPhase::home || p == TeamPhase::landing;
+}
+
+}  // namespace
+
+Teammate::Teammate(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
+                   std::uint64_t seed)
+    : team_(team),
+      link_age_s_(homing.relay.link_age_s),
+      base_{kBase, base, base},
+      gossip_(self, homing.gossip, seed),
+      graph_(homing.relay) {
+  TeamState waiting;
+  waiting.position = base;
+  gossip_.set_state(waiting);
+}
+
+void Teammate::hear(std::span<const std::uint8_t> bytes, TimeNs now) {
+  gossip_.receive(bytes, now);
+  for (const Delivery& d : gossip_.take_delivered()) take(d);
+  for (const TeamState& s : gossip_.states()) graph_.note(s);
+}
+
+std::vector<Bytes> Teammate::speak(TimeNs now) {
+  watch_relays(now);
+  if (self() == kBase && news_for_receipt_ && now >= receipt_due_) {
+    gossip_.publish(gossip_.receipt());
+    news_for_receipt_ = false;
+    receipt_due_ = now + kReceiptPeriod;
+  }
+  TeamState own = gossip_.told_state();
+  own.stamp = now;
+  gossip_.set_state(own);
+  std::vector<Bytes> frames = gossip_.send(now);
+  own.robot = self();
+  own.heard = gossip_.contacts(now);
+  graph_.note(own);
+  return frames;
+}
+
+void Teammate::publish(const Record& record) {
+  gossip_.publish(record);
+  take({self(), 0, record});
+}
+
+void Teammate::take(const Delivery& d) {
+  const auto newer = [](const auto& known, const auto& told) { return !known || told.stamp > known->stamp; };
+  if (const auto* facts = std::get_if<TreeFacts>(&d.record)) {
+    note_facts(*facts);
+    if (d.author != self()) {
+      facts_.nodes.insert(facts_.nodes.end(), facts->nodes.begin(), facts->nodes.end());
+      facts_.rays.insert(facts_.rays.end(), facts->rays.begin(), facts->rays.end());
+      facts_.lives.insert(facts_.lives.end(), facts->lives.begin(), facts->lives.end());
+    }
+  } else if (const auto* goal = std::get_if<GoalClaim>(&d.record)) {
+    if (newer(goals_[d.author], *goal)) goals_[d.author] = *goal;
+  } else if (const auto* landing = std::get_if<LandingClaim>(&d.record)) {
+    if (newer(landings_[d.author], *landing)) landings_[d.author] = *landing;
+  }
+  if (!std::holds_alternative<Receipt>(d.record)) news_for_receipt_ = true;
+}
+
+void Teammate::note_facts(const TreeFacts& facts) {
+  for (const TreeNode& n : facts.nodes)
+    if (n.kind == NodeKind::communication && n.id.robot < kMostRobots) nodes_[n.id.robot] = n.id;
+  for (const LifeFact& life : facts.lives) {
+    if (life.id.robot >= kMostRobots) continue;
+    auto& known = lives_[life.id.robot];
+    if (!known || life.stamp > known->stamp || (life.stamp == known->stamp && !life.alive)) known = life;
+  }
+}
+
+/// Who stands still tells of a neighbour that stands still and has fallen silent, and of its coming back.
+void Teammate::watch_relays(TimeNs now) {
+  const auto stands = [this](RobotId r) {
+    return r == kBase || (landings_[r] && landings_[r]->state == LandingClaim::State::landed);
+  };
+  if (!stands(self())) return;
+  for (const HeardRobot& h : gossip_.contacts(now))
+    if (stands(h.robot) && h.quality >= kGoodQuality) heard_at_[h.robot] = now;
+  for (RobotId r = 1; r < kMostRobots; ++r) {
+    if (r == self() || !heard_at_[r] || !nodes_[r]) continue;
+    const bool alive = now - *heard_at_[r] <= from_seconds(link_age_s_);
+    if (alive != told_dead(r)) continue;
+    TreeFacts told;
+    told.lives = {{*nodes_[r], alive, to_milliseconds(now)}};
+    publish(told);
+  }
+}
+
+std::vector<Relay> Teammate::relays() const {
+  std::vector<Relay> out{base_};
+  for (RobotId r = 1; r < kMostRobots; ++r) {
+    if (r == self() || !landings_[r] || landings_[r]->state != LandingClaim::State::landed || told_dead(r))
+      continue;
+    // As of when it was last heard of: since then nobody has told otherwise.
+    const auto stamp = graph_.last_heard_of(r);
+    if (stamp && graph_.reaches_base(*stamp, r)) out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
+  }
+  return out;
+}
+
+bool Teammate::hears_base(TimeNs now) const {
+  for (const HeardRobot& h : gossip_.contacts(now))
+    if (h.quality >= kGoodQuality && graph_.reaches_base(now, h.robot) &&
+        (h.robot == kBase || (landings_[h.robot] && landings_[h.robot]->state == LandingClaim::State::landed)))
+      return true;
+  return false;
+}
+
+std::vector<Neighbour> Teammate::neighbours(TimeNs now) const {
+  std::vector<Neighbour> out;
+  for (const TeamState& s : gossip_.states()) {
+    if (s.robot == kBase || s.robot == self() || now - s.stamp > kStateAge || !in_the_air(s.phase)) continue;
+    const double age_s = std::max(0.0, seconds(now - s.stamp));
+    out.push_back({s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase == TeamPhase::landing});
+  }
+  return out;
+}
+
+std::vector<Vec3> Teammate::claimed_goals(TimeNs now) const {
+  std::vector<Vec3> out;
+  for (RobotId r = 1; r < kMostRobots; ++r)
+    if (r != self() && goals_[r] && !goals_[r]->given_up &&
+        now - goals_[r]->stamp < from_seconds(team_.claim_age_s))
+      out.push_back(goals_[r]->position);
+  return out;
+}
+
+std::vector<Vec3> Teammate::taken_ground() const {
+  std::vector<Vec3> out;
+  for (RobotId r = 1; r < kMostRobots; ++r)
+    if (r != self() && landings_[r] && landings_[r]->state != LandingClaim::State::given_up)
+      out.push_back(landings_[r]->ground);
+  return out;
+}
+
+bool Teammate::overruled() const {
+  const auto& own = landings_[self()];
+  if (!own || own->state != LandingClaim::State::claimed) return false;
+  for (RobotId r = 1; r < kMostRobots; ++r) {
+    const auto& other = landings_[r];
+    if (r == self() || !other || other->state == LandingClaim::State::given_up) continue;
+    const bool first = other->state == LandingClaim::State::landed ||
+                       std::tuple(other->stamp, r) < std::tuple(own->stamp, self());
+    if (first && (other->ground - own->ground).norm() < team_.keep_apart_m) return true;
+  }
+  return false;
+}
+
+TreeFacts Teammate::take_facts() { return std::exchange(facts_, {}); }
+
+}  // namespace karst::core

@@ -1,0 +1,76 @@
+// One robot among the others, or the base: what it says over the radio, and what it knows of the team by what
+// it heard. All times are the team's.
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core_stack/homing/keep_apart.h"
+#include "core_stack/homing/team_options.h"
+
+namespace karst::core {
+
+/// A communication node as a robot knows it.
+struct Relay {
+  RobotId robot = 0;
+  Vec3 antenna = Vec3::Zero(), hover = Vec3::Zero();
+};
+
+class Teammate {
+ public:
+  /// `base` is the base's antenna.
+  Teammate(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
+           std::uint64_t seed);
+
+  // The radio.
+  void hear(std::span<const std::uint8_t> bytes, TimeNs now);
+  /// Frames to send now; to be called ten times a second.
+  std::vector<Bytes> speak(TimeNs now);
+
+  // What it has to say.
+  void set_state(const TeamState& state) { gossip_.set_state(state); }
+  void publish(const Record& record);
+
+  // What it knows.
+  /// Communication nodes that reached the base when last heard of, and are not told dead; the base first.
+  std::vector<Relay> relays() const;
+  /// It hears somebody who reaches the base well enough to land by.
+  bool hears_base(TimeNs now) const;
+  /// Vehicles in the air that were heard of in the last seconds, where they should be by now.
+  std::vector<Neighbour> neighbours(TimeNs now) const;
+  /// Others' goals that are still claimed.
+  std::vector<Vec3> claimed_goals(TimeNs now) const;
+  /// Where others stand, or are about to land. Of two that claim one place the earlier claim holds.
+  std::vector<Vec3> taken_ground() const;
+  /// Its own claim was made later than another's of nearly the same place.
+  bool overruled() const;
+  /// Facts of the homing tree that others told since the last call.
+  TreeFacts take_facts();
+
+  const Gossip& gossip() const { return gossip_; }
+  const RelayGraph& graph() const { return graph_; }
+  const std::optional<LandingClaim>& landing_of(RobotId robot) const { return landings_[robot]; }
+  bool told_dead(RobotId robot) const { return lives_[robot] && !lives_[robot]->alive; }
+  RobotId self() const { return gossip_.self(); }
+
+ private:
+  void take(const Delivery& delivery);
+  void note_facts(const TreeFacts& facts);
+  void watch_relays(TimeNs now);
+
+  TeamOptions team_;
+  double link_age_s_;
+  Relay base_;
+  Gossip gossip_;
+  RelayGraph graph_;
+  TreeFacts facts_;
+  std::array<std::optional<GoalClaim>, kMostRobots> goals_;
+  std::array<std::optional<LandingClaim>, kMostRobots> landings_;
+  std::array<std::optional<NodeId>, kMostRobots> nodes_;     // of robots that landed
+  std::array<std::optional<LifeFact>, kMostRobots> lives_;
+  std::array<std::optional<TimeNs>, kMostRobots> heard_at_;  // since it landed itself
+  TimeNs receipt_due_ = 0;
+  bool news_for_receipt_ = false;
+};
+
+}  // namespace karst::core

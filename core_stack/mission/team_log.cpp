@@ -1,0 +1,67 @@
+#include "core_stack/mission/team_log.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core_stack/common/error.h"
+
+namespace karst::core {
+namespace {
+
+double rounded(double v) { return std::round(v * 1000) / 1000; }
+
+nlohmann::json list(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
+
+}  // namespace
+
+TeamLog::TeamLog(const std::filesystem::path& run_dir) : file_(run_dir / "team.jsonl", std::ios::binary) {
+  if (!file_) throw InputError((run_dir / "team.jsonl").string(), "", "cannot be written");
+}
+
+void TeamLog::event(TimeNs t, const std::string& kind, const nlohmann::json& fields) {
+  nlohmann::ordered_json line{{"t", rounded(seconds(t))}, {"kind", kind}};
+  for (const auto& [key, value] : fields.items()) line[key] = value;
+  file_ << line.dump() << '\n';
+}
+
+void TeamLog::base(TimeNs t, const Teammate& base) {
+  nlohmann::json links = nlohmann::json::array(), held = nlohmann::json::array(),
+                 relays = nlohmann::json::array(), dead = nlohmann::json::array();
+  for (const RelayLink& l : base.graph().links(t)) links.push_back({l.a, l.b, rounded(l.transmissions)});
+  for (RobotId r = 1; r < kMostRobots; ++r) {
+    if (const std::uint32_t n = base.gossip().held(r).first(); n > 0) held.push_back({r, n});
+    if (base.told_dead(r)) dead.push_back(r);
+    const auto& landing = base.landing_of(r);
+    if (landing && landing->state == LandingClaim::State::landed) relays.push_back({r, list(landing->ground)});
+  }
+  event(t, "base",
+        {{"connected", base.graph().connected(t)},
+         {"links", links},
+         {"held", held},
+         {"relays", relays},
+         {"dead", dead}});
+}
+
+void TeamLog::traffic(TimeNs t, std::size_t radio, const RadioTraffic& r, const GossipCounts& c) {
+  event(t, "traffic",
+        {{"radio", radio},
+         {"bytes_sent", r.bytes_sent},
+         {"bytes_dropped", r.bytes_dropped},
+         {"bytes_heard", r.bytes_heard},
+         {"bytes_lost", r.bytes_lost},
+         {"bytes_weak", r.bytes_weak},
+         {"packets_sent", r.packets_sent},
+         {"packets_heard", r.packets_heard},
+         {"packets_corrupted", r.packets_corrupted},
+         {"frames_refused", std::accumulate(c.refused.begin(), c.refused.end(), std::uint64_t{0})},
+         {"records_refused", c.records_refused},
+         {"records_taken", c.records_taken}});
+}
+
+bool TeamLog::flush() {
+  file_.flush();
+  return static_cast<bool>(file_);
+}
+
+}  // namespace karst::core

@@ -1,0 +1,31 @@
+// team.jsonl in the team's run directory: what became of the robots, and what the base knew when.
+// docs/run_directory.md describes it.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core_stack/common/time.h"
+#include "core_stack/homing/teammate.h"
+#include "core_stack/vehicle/team_vehicles.h"
+
+namespace karst::core {
+
+class TeamLog {
+ public:
+  /// Throws InputError if the file cannot be made.
+  explicit TeamLog(const std::filesystem::path& run_dir);
+  /// A line {"t": ..., "kind": kind, ...fields}; t is the team's time.
+  void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
+  /// Who reaches the base over which links as it knows, what it holds of whom, and where relays stand.
+  void base(TimeNs t, const Teammate& base);
+  void traffic(TimeNs t, std::size_t radio, const RadioTraffic& traffic, const GossipCounts& counts);
+  /// False once a write has failed.
+  bool flush();
+
+ private:
+  std::ofstream file_;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,41 @@
+// A robot's part in its team, as its mission control sees it. Times here are the vehicle's own; the team's
+// clock is ahead of them by when the vehicle was switched on.
+#pragma once
+#include "core_stack/homing/relay_homing.h"
+
+namespace karst::core {
+
+class Teamwork {
+ public:
+  Teamwork(Teammate& mate, RelayHoming& homing, const TeamOptions& options, TimeNs ahead)
+      : mate_(&mate), homing_(&homing), options_(options), ahead_(ahead) {}
+
+  /// To be touched on the map lane only.
+  RelayHoming* homing() const { return homing_; }
+  const TeamOptions& options() const { return options_; }
+  bool lands_as_relay() const { return options_.strategy != "return_to_base"; }
+  RobotId self() const { return mate_->self(); }
+  TimeNs team_time(TimeNs own) const { return own + ahead_; }
+
+  void report(TeamState state, TimeNs now) {
+    state.stamp = team_time(now);
+    mate_->set_state(state);
+  }
+  /// What was heard since the last call.
+  TeamNews take_news(TimeNs now) {
+    return {team_time(now), mate_->take_facts(), mate_->relays(), mate_->taken_ground(),
+            mate_->claimed_goals(team_time(now))};
+  }
+  void publish(const Record& record) { mate_->publish(record); }
+  bool hears_base(TimeNs now) const { return mate_->hears_base(team_time(now)); }
+  bool overruled() const { return mate_->overruled(); }
+  std::vector<Neighbour> neighbours(TimeNs now) const { return mate_->neighbours(team_time(now)); }
+
+ private:
+  Teammate* mate_;
+  RelayHoming* homing_;
+  TeamOptions options_;
+  TimeNs ahead_;
+};
+
+}  // namespace karst::core

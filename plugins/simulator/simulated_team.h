@@ -1,0 +1,54 @@
+// Several simulated vehicles in one cave: each a sphere in the others' sight, and a radio on each.
+#pragma once
+#include <fstream>
+#include <memory>
+#include <vector>
+
+#include "core_stack/vehicle/team_vehicles.h"
+#include "plugins/simulator/radio.h"
+#include "plugins/simulator/simulated_vehicle.h"
+
+namespace karst::sim {
+
+/// Places around `cave`'s start, itself first, where vehicles can stand side by side and rise by `climb_m`
+/// each: in sight of the start, at least `apart_m` from each other. Throws InputError if there are not `n`.
+std::vector<cave::StartPose> start_places(const cave::Cave& cave, std::size_t n, double radius_m,
+                                          double climb_m, double apart_m = 1.5);
+
+/// Whether two spheres touched while their centres went along straight lines in the same time.
+bool touched(const core::Vec3& a0, const core::Vec3& a1, const core::Vec3& b0, const core::Vec3& b1,
+             double distance_m);
+
+class SimulatedTeam final : public core::TeamVehicles {
+ public:
+  /// Throws InputError on a bad cave or start, or one without room for all.
+  SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio, const core::TeamSetup& setup);
+
+  core::Vehicle& robot(std::size_t i) override { return *robots_.at(i); }
+  std::string start_of(std::size_t i) const override;
+  core::Vec3 base() const override { return cave_.description.start.position; }
+  void meet(core::TimeNs now) override;
+  void silence(std::size_t radio) override { radio_.set_on(static_cast<int>(radio), false); }
+  void wreck(std::size_t robot, const std::string& reason) override;
+  void send(std::size_t radio, std::span<const std::uint8_t> bytes, core::TimeNs now) override {
+    radio_.send(cave_.scene, static_cast<int>(radio), bytes, now);
+  }
+  std::vector<std::vector<std::uint8_t>> receive(std::size_t radio, core::TimeNs until) override;
+  core::RadioTraffic traffic(std::size_t radio) const override;
+  void finish() override;
+
+ private:
+  void count_contacts(core::TimeNs now);
+  void log(core::TimeNs now);
+
+  double radius_m_;
+  cave::Cave cave_;
+  std::vector<cave::StartPose> starts_;
+  std::vector<std::unique_ptr<SimulatedVehicle>> robots_;
+  std::vector<core::Vec3> last_;  // positions at the last meeting
+  Radio radio_;
+  std::ofstream truth_;  // team_truth.jsonl: contacts, and who could hear whom
+  std::string truth_file_;
+};
+
+}  // namespace karst::sim

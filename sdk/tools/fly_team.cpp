@@ -1,0 +1,176 @@
+#include "sdk/tools/fly_team.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
+#include "core_stack/common/random.h"
+#include "core_stack/mission/team_mission.h"
+#include "core_stack/vehicle/team_vehicles.h"
+#include "sdk/evaluation/metrics.h"
+#include "sdk/tools/report_command.h"
+#include "sdk/tools/run_files.h"
+#include "sdk/tools/status_line.h"
+#include "sdk/tools/team_metrics.h"
+#include "sdk/tools/timing.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One robot of the team, as if it flew alone: from its own place, with its own random streams.
+Mission mission_of(const Mission& team, std::size_t robot) {
+  Mission m = team;
+  const auto stream =
+      core::Random::stream(static_cast<std::uint64_t>(team.seed), "robot " + std::to_string(robot + 1))
+          .bits();
+  m.seed = static_cast<std::int64_t>(stream >> 12);  // within what a mission file may say
+  m.resolved.put("seed", m.seed);
+  for (const char* section : {"team", "homing", "radio"}) m.resolved.erase(section);
+  return m;
+}
+
+std::string folder_of(std::size_t robot) { return "robot_" + std::to_string(robot + 1); }
+
+std::unique_ptr<core::TeamVehicles> make_vehicles(const Mission& mission, const std::vector<Mission>& robots,
+                                                  const fs::path& run_dir) {
+  auto* plugin = dynamic_cast<core::TeamVehiclePlugin*>(mission.vehicle_plugin);
+  if (!plugin)
+    throw core::InputError(mission.file, "team.robots", "the vehicle " + mission.vehicle + " knows no teams");
+  core::TeamSetup setup;
+  setup.world.cave = mission.cave;
+  setup.world.start = mission.start;
+  setup.world.run_dir = run_dir.string();
+  setup.world.climb_m = mission.core.mission.takeoff_height_m;
+  setup.world.seed = static_cast<std::uint64_t>(mission.seed);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    setup.run_dirs.push_back(run_dir.empty() ? "" : (run_dir / folder_of(i)).string());
+    setup.seeds.push_back(static_cast<std::uint64_t>(robots[i].seed));
+    setup.starts_after_s.push_back(std::round(mission.core.team.stagger_s) * static_cast<double>(i));
+  }
+  auto vehicles = plugin->create_team(setup);
+  for (std::size_t i = 0; i < robots.size(); ++i) core::check(mission.core, vehicles->robot(i).description());
+  return vehicles;
+}
+
+/// A line every half minute of the mission.
+class TeamStatus {
+ public:
+  explicit TeamStatus(bool quiet) : quiet_(quiet) {}
+  void show(core::TimeNs now, const std::vector<core::MissionStatus>& robots) const {
+    if (quiet_ || now % (30 * core::kSecond) != 0) return;
+    std::string line = std::to_string(now / core::kSecond) + " s:";
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      line += "  " + std::to_string(i + 1) + " " + name_of(robots[i].phase);
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
+
+ private:
+  bool quiet_;
+};
+
+void print_summary(const core::TeamResult& result, const nlohmann::json& metrics, const fs::path& run_dir) {
+  std::printf("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
+              metrics["reason"].get<std::string>().c_str());
+  std::printf("  robot  explored  outcome    at the base\n");
+  for (std::size_t i = 0; i < result.robots.size(); ++i) {
+    const core::RobotResult& r = result.robots[i];
+    std::printf("  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1, r.exploration_time_s,
+                r.mission.outcome.c_str(), r.connected ? "connected" : "cut off", r.records_at_base,
+                r.records, r.mission.reason.c_str());
+  }
+  std::printf("  over the air     %.0f kB in %.0f s\nLook next at:\n",
+              1e-3 * static_cast<double>(result.bytes_on_air), result.duration_s);
+  std::printf(
+      "  %s   what became of the team, and what the base knew when\n  %s   the first robot's own flight\n",
+      (run_dir / "team.jsonl").c_str(), (run_dir / folder_of(0)).c_str());
+}
+
+}  // namespace
+
+int fly_team(const Mission& mission, const FlightArguments& args, const std::string& check) {
+  if (args.real_time)
+    throw core::InputError("karst fly", "--real-time",
+                           "a team flies in lockstep only: its vehicles share a world");
+  if (args.record_requests)
+    throw core::InputError("karst fly", "--record-requests", "of a team no requests are recorded");
+  core::check(mission.core.team, mission.core.homing, mission.file);
+  std::vector<Mission> robots;
+  std::vector<std::unique_ptr<host::HostedPolicy>> policies;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(mission.core.team.robots); ++i) {
+    robots.push_back(mission_of(mission, i));
+    policies.push_back(host::load_policy(policy_choice(robots.back(), args)));
+  }
+  const auto record = [&](const Mission& m, const core::Vehicle& vehicle) {
+    return recorded_mission(m, policies.front()->parameters(),
+                            {policies.front()->version(), vehicle.description().implementation});
+  };
+  if (!check.empty()) {
+    write_mission(check, record(mission, make_vehicles(mission, robots, "")->robot(0)));
+    return 0;
+  }
+
+  const fs::path& run_dir = args.run_dir;
+  RunClaim claim(run_dir);
+  std::vector<std::unique_ptr<RunClaim>> own_claims;
+  std::vector<std::unique_ptr<core::Recorder>> recorders;
+  std::vector<core::TeamSeat> seats;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    own_claims.push_back(std::make_unique<RunClaim>(run_dir / folder_of(i)));
+    recorders.push_back(std::make_unique<core::Recorder>(run_dir / folder_of(i)));
+    seats.push_back({policies[i].get(), recorders.back().get()});
+  }
+  const auto vehicles = make_vehicles(mission, robots, run_dir);
+  write_mission(run_dir / "mission.info", record(mission, vehicles->robot(0)));
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    robots[i].start = vehicles->start_of(i);
+    write_mission(run_dir / folder_of(i) / "mission.info", record(robots[i], vehicles->robot(i)));
+  }
+  claim.keep();
+  for (const auto& own : own_claims) own->keep();
+
+  core::TeamMission team(mission.core, *vehicles, seats, static_cast<std::uint64_t>(mission.seed), run_dir,
+                         args.threads);
+  const TeamStatus status(args.quiet || args.json);
+  const auto begin = std::chrono::steady_clock::now();
+  const core::TeamResult result = team.run([&](core::TimeNs now, const auto& all) {
+    status.show(now, all);
+    return !args.interrupted->load();
+  });
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+
+  int code = kNotLanded;
+  try {
+    std::vector<nlohmann::json> own;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      write_timing(run_dir / folder_of(i), team.executive(i), wall.count());
+      own.push_back(finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report));
+    }
+    const nlohmann::ordered_json metrics = team_metrics(mission, result, own);
+    evaluation::write_metrics(run_dir, metrics);
+    write_team_timing(run_dir, result.duration_s, wall.count(), args.threads);
+    if (args.json)
+      std::cout << core::json_text(metrics, 2) << std::endl;
+    else
+      print_summary(result, metrics, run_dir);
+    if (metrics["outcome"] == "landed") code = std::fflush(stdout) == 0 ? 0 : 1;
+  } catch (const std::exception& e) {  // a full disk: they flew all the same
+    std::fprintf(stderr, "karst: %s\nkarst: the flights' record is incomplete: %s\n", e.what(),
+                 run_dir.c_str());
+  }
+  const bool hangs =
+      std::any_of(policies.begin(), policies.end(), [](const auto& p) { return p->abandoned(); });
+  if (hangs) {  // its thread hangs in the plugin: nothing may be torn down
+    std::fflush(stdout);
+    std::_Exit(code);
+  }
+  return code;
+}
+
+}  // namespace karst::tools

@@ -1,0 +1,87 @@
+#include "sdk/tools/team_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "sdk/evaluation/metric_definitions.h"
+
+namespace karst::tools {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+double rounded(double v) { return std::round(v * 1e6) / 1e6; }
+
+/// Null if any robot's is not known.
+ordered_json sum(const std::vector<json>& robots, const std::string& key) {
+  double all = 0;
+  for (const json& r : robots) {
+    if (!r.contains(key) || !r[key].is_number()) return nullptr;
+    all += r[key].get<double>();
+  }
+  return rounded(all);
+}
+
+}  // namespace
+
+ordered_json team_metrics(const Mission& mission, const core::TeamResult& result,
+                          const std::vector<json>& robots) {
+  const auto count = [&](auto&& holds) {
+    return std::count_if(result.robots.begin(), result.robots.end(), holds);
+  };
+  const auto n = static_cast<long>(result.robots.size());
+  const long landed = count([](const core::RobotResult& r) { return r.mission.outcome == "landed"; });
+  const long connected = count([](const core::RobotResult& r) { return r.mission.outcome == "landed" && r.connected; });
+  double explored_s = 0;
+  for (const core::RobotResult& r : result.robots) explored_s += r.exploration_time_s;
+
+  ordered_json m;
+  m["schema"] = "karst.metrics/1";
+  m["policy"] = mission.policy;
+  m["cave"] = std::filesystem::path(mission.cave).stem().string();
+  m["seed"] = mission.seed;
+  m["outcome"] = landed == n ? "landed" : "incomplete";
+  m["reason"] = std::to_string(landed) + " of " + std::to_string(n) + " robots landed, " +
+                std::to_string(connected) + " of them connected to the base";
+  for (const evaluation::MetricDefinition& d : evaluation::metric_definitions()) m[std::string(d.name)] = nullptr;
+  m["contacts"] = sum(robots, "contacts");
+  m["path_length_m"] = sum(robots, "path_length_m");
+  m["energy_wh"] = sum(robots, "energy_wh");
+  m["flight_time_s"] = sum(robots, "flight_time_s");
+  m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
+  m["robots_landed"] = rounded(static_cast<double>(landed) / static_cast<double>(n));
+  m["robots_connected"] = landed > 0 ? ordered_json(rounded(static_cast<double>(connected) / static_cast<double>(landed)))
+                                     : ordered_json(nullptr);
+  for (std::size_t i = 0; i < result.robots.size(); ++i)
+    if (const std::string key = "exploration_time_" + std::to_string(i + 1) + "_s"; m.contains(key))
+      m[key] = rounded(result.robots[i].exploration_time_s);  // of as many as campaigns compare
+
+  m["strategy"] = mission.core.team.strategy;
+  m["duration_s"] = rounded(result.duration_s);
+  m["bytes_on_air"] = result.bytes_on_air;
+  m["robots"] = ordered_json::array();
+  for (const core::RobotResult& r : result.robots)
+    m["robots"].push_back({{"outcome", r.mission.outcome},
+                           {"reason", r.mission.reason},
+                           {"start_s", rounded(r.start_s)},
+                           {"end_s", rounded(r.end_s)},
+                           {"exploration_time_s", rounded(r.exploration_time_s)},
+                           {"battery_left", rounded(r.battery_left)},
+                           {"connected", r.connected},
+                           {"records", r.records},
+                           {"records_at_base", r.records_at_base}});
+  return m;
+}
+
+void write_team_timing(const std::filesystem::path& run_dir, double simulated_s, double wall_s, int threads) {
+  const ordered_json timing{{"simulated_s", simulated_s},
+                            {"wall_s", wall_s},
+                            {"simulated_s_per_wall_s", simulated_s / wall_s},
+                            {"threads", threads},
+                            {"jobs", ordered_json::object()}};
+  std::ofstream(run_dir / "timing.json") << timing.dump(2) << '\n';
+}
+
+}  // namespace karst::tools

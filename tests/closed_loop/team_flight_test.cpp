@@ -1,0 +1,180 @@
+// Teams flown from beginning to end in a small cave with a short battery.
+#include <nlohmann/json.hpp>
+
+#include "tests/closed_loop/command.h"
+#include "tests/closed_loop/drawn_cave.h"
+
+namespace karst {
+namespace {
+
+using nlohmann::json;
+
+/// A passage of 90 m with a bend and a chamber half way, 4 m wide.
+std::string passage(const std::filesystem::path& folder) {
+  return draw_cave(folder,
+                   {{{-4, -4, 0}, {4, 4, 3}},
+                    {{3, -2, 0}, {40, 2, 3}},
+                    {{32, -5, 0}, {42, 5, 4}},
+                    {{36, 4, 0}, {40, 50, 3}}},
+                   {0, 0, 1});
+}
+
+/// Poses from a sensor, a radio of 15 m by distance alone, a battery for little more than a minute.
+std::string team_of(int robots, const std::string& strategy, const std::string& more = "") {
+  return " --policy nearest_frontier --set team.robots=" + std::to_string(robots) +
+         " --set team.strategy=" + strategy +
+         " --set team.stagger=40s --set team.linger=30s --set simulator.battery_minutes=1.8min"
+         " --set simulator.pose.fitted=always --set localization.source=pose_sensor"
+         " --set radio.propagation=distance --set radio.range=15m --set homing.landing.link.range=15m"
+         " --set homing.landing.link.rock_loss=0 --set homing.landing.link.spare=1 " +
+         more;
+}
+
+struct Flown {
+  Output output;
+  json metrics, robots;
+  std::vector<json> log, truth;
+
+  int count(const std::vector<json>& lines, const std::string& kind) const {
+    return static_cast<int>(
+        std::count_if(lines.begin(), lines.end(), [&](const json& e) { return e["kind"] == kind; }));
+  }
+  json last(const std::string& kind) const {
+    for (auto e = log.rbegin(); e != log.rend(); ++e)
+      if ((*e)["kind"] == kind) return *e;
+    return nullptr;
+  }
+};
+
+std::vector<json> lines_of(const std::filesystem::path& file) {
+  std::vector<json> out;
+  std::istringstream in(bytes_of(file));
+  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line));
+  return out;
+}
+
+Flown fly(const std::string& cave, const std::filesystem::path& run, const std::string& settings) {
+  Flown f;
+  f.output = run_karst("fly --cave " + cave + settings + " --quiet --no-report --out " + run.string());
+  f.metrics = json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  if (!f.metrics.is_object()) {
+    ADD_FAILURE() << f.output.text;
+    return f;
+  }
+  f.robots = f.metrics["robots"];
+  f.log = lines_of(run / "team.jsonl");
+  f.truth = lines_of(run / "team_truth.jsonl");
+  return f;
+}
+
+/// What must hold of every team that nothing befell.
+void expect_all_well(const Flown& f, std::size_t robots) {
+  ASSERT_EQ(f.robots.size(), robots) << f.output.text;
+  EXPECT_EQ(f.output.code, 0) << f.output.text;
+  EXPECT_EQ(f.metrics["outcome"], "landed");
+  EXPECT_EQ(f.metrics["contacts"], 0);
+  EXPECT_EQ(f.metrics["robots_connected"], 1);
+  EXPECT_EQ(f.count(f.truth, "contact"), 0);
+  for (const json& r : f.robots) {
+    EXPECT_EQ(r["outcome"], "landed") << r;
+    EXPECT_TRUE(r["connected"]) << r;
+    EXPECT_GT(r["battery_left"], 0.0) << r;
+    EXPECT_EQ(r["records"], r["records_at_base"]) << r;
+  }
+}
+
+TEST(Team, LandsConnectedAndTheSameWithAnyNumberOfThreads) {
+  const auto folder = fresh_folder("team_chain");
+  const std::string cave = passage(folder);
+  const Flown one = fly(cave, folder / "one", team_of(3, "relay_chain", "--threads 1"));
+  expect_all_well(one, 3);
+  const Flown three = fly(cave, folder / "three", team_of(3, "relay_chain", "--threads 3"));
+  for (const char* file : {"team.jsonl", "team_truth.jsonl", "metrics.json"})
+    EXPECT_EQ(bytes_of(folder / "one" / file), bytes_of(folder / "three" / file)) << file;
+  for (const char* robot : {"robot_1", "robot_2", "robot_3"})
+    for (const char* file : {"events.jsonl", "telemetry.csv", "ground_truth.tum", "map_growth.bin", "map.bt",
+                             "metrics.json", "mission.info"})
+      EXPECT_EQ(bytes_of(folder / "one" / robot / file), bytes_of(folder / "three" / robot / file))
+          << robot << ' ' << file;
+
+  // A robot's folder is a run directory like any other.
+  const Output report = run_karst("report " + (folder / "one" / "robot_2").string());
+  EXPECT_EQ(report.code, 0) << report.text;
+
+  const Flown base = fly(cave, folder / "base", team_of(3, "return_to_base"));
+  expect_all_well(base, 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_LE(base.robots[i]["exploration_time_s"].get<double>(),
+              one.robots[i]["exploration_time_s"].get<double>() + 2)
+        << "robot " << i + 1 << ": the way to a relay is never longer than the way to the base";
+}
+
+TEST(Team, ByThePapersTreeLandsConnected) {
+  const auto folder = fresh_folder("team_tree");
+  expect_all_well(fly(passage(folder), folder / "run", team_of(2, "relay_tree")), 2);
+}
+
+TEST(Team, ThroughRockAndABadRadioStillReports) {
+  const auto folder = fresh_folder("team_lossy");
+  // 30 % lost, and of what arrives half is corrupted: a third of all frames is good.
+  const Flown f = fly(passage(folder), folder / "run",
+                      team_of(2, "relay_chain",
+                              "--set radio.loss=0.3 --set radio.corrupt=0.5 --set team.linger=60s"));
+  ASSERT_EQ(f.robots.size(), 2u);
+  std::uint64_t corrupted = 0, refused = 0;
+  for (const json& e : f.log)
+    if (e["kind"] == "traffic") {
+      corrupted += e["packets_corrupted"].get<std::uint64_t>();
+      refused += e["frames_refused"].get<std::uint64_t>();
+    }
+  EXPECT_GT(corrupted, 50u);
+  EXPECT_GE(refused, corrupted * 9 / 10) << "what is corrupted is dropped, but for what is still readable";
+  for (const json& r : f.robots) {
+    EXPECT_EQ(r["outcome"], "landed") << r;
+    if (r["connected"] == true) EXPECT_EQ(r["records"], r["records_at_base"]) << r;
+  }
+}
+
+TEST(Team, WithoutOneThatNeverComesBackGoesOn) {
+  const auto folder = fresh_folder("team_lost");
+  const Flown f = fly(passage(folder), folder / "run",
+                      team_of(3, "relay_chain", "--set team.lost_robot=1 --set team.lost_after=30s"));
+  ASSERT_EQ(f.robots.size(), 3u);
+  EXPECT_EQ(f.output.code, 2) << "not all came down";
+  EXPECT_EQ(f.robots[0]["outcome"], "lost");
+  EXPECT_EQ(f.count(f.truth, "contact"), 0);
+  for (const int i : {1, 2}) {
+    EXPECT_EQ(f.robots[i]["outcome"], "landed") << f.robots[i];
+    EXPECT_TRUE(f.robots[i]["connected"]) << f.robots[i];
+  }
+}
+
+TEST(Team, TellsOfARelayThatFailsAndTheNextDoNotCountOnIt) {
+  const auto folder = fresh_folder("team_silent");
+  const Flown f = fly(passage(folder), folder / "run",
+                      team_of(3, "relay_chain",
+                              "--set team.stagger=60s --set team.silent_relay=1 --set team.silent_after=20s"));
+  ASSERT_EQ(f.robots.size(), 3u);
+  EXPECT_EQ(f.count(f.log, "silent"), 1);
+  EXPECT_EQ(f.last("base")["dead"], json::array({1})) << "who stood by told that it is dead";
+  for (const json& r : f.robots) EXPECT_EQ(r["outcome"], "landed") << r;
+  EXPECT_FALSE(f.robots[0]["connected"]);
+  EXPECT_TRUE(f.robots[2]["connected"]) << "it turned home when relay 1 was told dead: " << f.robots[2];
+}
+
+TEST(Team, ThatCannotFlyIsRefusedBeforeAnythingIsWritten) {
+  const auto folder = fresh_folder("team_refused");
+  const std::string cave = draw_cave(folder, {{{-1.2, -1.2, 0}, {1.2, 1.2, 3}}}, {0, 0, 1});
+  const auto run = folder / "run";
+  Output out = run_karst("fly --cave " + cave + team_of(6, "relay_chain") + " --out " + run.string());
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("room for")) << out.text;
+  EXPECT_FALSE(std::filesystem::exists(run));
+  out = run_karst("fly --cave " + cave + team_of(2, "relay") + " --out " + run.string());
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("team.strategy") && out.says("relay_chain")) << out.text;
+  EXPECT_FALSE(std::filesystem::exists(run));
+}
+
+}  // namespace
+}  // namespace karst

@@ -1,0 +1,206 @@
+// The rules of a team: when to turn home, who gives way, and what a robot makes of what it heard.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/random.h"
+#include "core_stack/homing/home.h"
+#include "core_stack/homing/teammate.h"
+
+namespace karst::core {
+namespace {
+
+TEST(HomingMargin, IsMeanAndQuantileOfTheNormalDistribution) {
+  HomingOptions o;
+  o.flown_mean = 0.87, o.flown_deviation = 0.04;
+  for (const auto& [p, z] : {std::pair{0.5, 0.0}, {0.8413447460685429, 1.0}, {0.99, 2.3263478740408408}, {0.999, 3.090232306167813}}) {
+    o.arrival_probability = p;
+    EXPECT_NEAR(homing_margin(o), 0.87 + z * 0.04 - 1, 1e-9) << p;
+  }
+}
+
+TEST(HomingMargin, IsKeptByTheShareOfFlightsThatWasAskedFor) {
+  HomingOptions o;
+  o.arrival_probability = 0.9;
+  o.flown_mean = 0.95, o.flown_deviation = 0.1;
+  Random random(5);
+  constexpr int kFlights = 20000;
+  constexpr double kEstimate_s = 80, kReserve_s = 15;
+  // It turns home at the last moment that the rule allows.
+  const double seconds_left = kEstimate_s * (1 + homing_margin(o)) + kReserve_s;
+  EXPECT_NEAR(home_slack_s(seconds_left, kEstimate_s, homing_margin(o), kReserve_s), 0, 1e-9);
+  int arrived = 0;
+  for (int i = 0; i < kFlights; ++i) {
+    const double flown_s = kEstimate_s * (o.flown_mean + o.flown_deviation * random.normal());
+    arrived += flown_s <= seconds_left - kReserve_s;
+  }
+  EXPECT_NEAR(static_cast<double>(arrived) / kFlights, 0.9, 0.01);  // five standard deviations
+}
+
+TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
+  TeamOptions team;
+  HomingOptions homing;
+  team.robots = 3;
+  EXPECT_NO_THROW(check(team, homing, "mission.info"));
+  team.lost_robot = 4;
+  try {
+    check(team, homing, "mission.info");
+    FAIL() << "robot 4 of 3";
+  } catch (const InputError& e) {
+    const std::string text = e.what();
+    for (const char* part : {"mission.info", "team.lost_robot", "4", "3"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  team.lost_robot = 0;
+  homing.tree.longest_edge_m = homing.tree.least_edge_m;
+  EXPECT_THROW(check(team, homing, "mission.info"), InputError);
+}
+
+RC_GTEST_PROP(KeepApart, OfTwoThatAreTooNearOneAtLeastStops, ()) {
+  const auto coordinate = [] { return 0.01 * *rc::gen::inRange(-800, 800); };
+  const auto speed = [] { return 0.01 * *rc::gen::inRange(-200, 200); };
+  const Vec3 p1(coordinate(), coordinate(), coordinate()), p2(coordinate(), coordinate(), coordinate());
+  const Vec3 v1(speed(), speed(), speed()), v2(speed(), speed(), speed());
+  const KeepApart rule;
+  const bool first = !give_way_to(rule, 1, p1, v1, {{2, p2, v2, false}}).empty();
+  const bool second = !give_way_to(rule, 2, p2, v2, {{1, p1, v1, false}}).empty();
+  const bool too_near = (p1 - p2).norm() < least_distance_m(rule, p1, v1, {2, p2, v2, false});
+  RC_ASSERT(second == too_near);          // the higher number always gives way,
+  RC_ASSERT(!first || too_near);          // the lower never without need,
+  RC_ASSERT(!first || (p1 - p2).norm() < rule.distance_m / 2);  // and only when very near
+}
+
+TEST(KeepApart, AllGiveWayToOneThatLands) {
+  const std::vector<Neighbour> landing{{5, {2, 0, 0}, {0, 0, -0.4}, true}};
+  EXPECT_EQ(give_way_to({}, 1, Vec3::Zero(), Vec3::Zero(), landing).size(), 1u);
+  const std::vector<Neighbour> hovering{{5, {2, 0, 0}, Vec3::Zero(), false}};
+  EXPECT_TRUE(give_way_to({}, 1, Vec3::Zero(), Vec3::Zero(), hovering).empty());
+}
+
+TEST(KeepApart, LeavesTheRoomThatBothNeedToStop) {
+  const KeepApart rule{.distance_m = 3, .reaction_s = 1.5, .brake_mps2 = 1};
+  // Head on at 1.2 m/s each: 2.4 m/s for 1.5 s, and 2.4^2 / 2 to brake.
+  EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {1.2, 0, 0}, {1, {9, 0, 0}, {-1.2, 0, 0}, false}),
+              3 + 2.4 * 1.5 + 2.88, 1e-9);
+  EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {-1.2, 0, 0}, {1, {9, 0, 0}, Vec3::Zero(), false}), 3, 1e-9);
+}
+
+/// Teammates that hear each other as `linked` says.
+struct Team {
+  std::vector<Teammate> mates;
+  std::function<bool(RobotId, RobotId)> linked = [](RobotId, RobotId) { return true; };
+  TimeNs now = 0;
+
+  explicit Team(RobotId robots) {
+    for (RobotId r = 0; r <= robots; ++r) mates.emplace_back(r, TeamOptions{}, HomingOptions{}, Vec3(1, 2, 3), 7);
+  }
+  void run(double for_s) {
+    for (const TimeNs end = now + from_seconds(for_s); now < end;) {
+      now += kSecond / 10;
+      for (Teammate& from : mates) {
+        TeamState state = states[from.self()];
+        state.stamp = now;
+        from.set_state(state);
+        for (const Bytes& frame : from.speak(now))
+          for (Teammate& to : mates)
+            if (to.self() != from.self() && linked(from.self(), to.self())) to.hear(frame, now);
+      }
+    }
+  }
+  void land(RobotId r, const Vec3& ground) {
+    TreeFacts node;
+    node.nodes = {{{r, 1}, NodeKind::communication, ground + Vec3(0, 0, 1)}};
+    mates[r].publish(node);
+    mates[r].publish(LandingClaim{now, ground, ground + Vec3(0, 0, 1), LandingClaim::State::landed});
+  }
+  std::vector<RobotId> relays_of(RobotId r) const {
+    std::vector<RobotId> out;
+    for (const Relay& relay : mates[r].relays()) out.push_back(relay.robot);
+    return out;
+  }
+  std::array<TeamState, kMostRobots> states{};
+};
+
+TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
+  Team team(3);
+  // A chain: base - 1 - 2; robot 3 hears robot 2 for half a minute, and then nobody.
+  bool with_3 = true;
+  team.linked = [&](RobotId a, RobotId b) {
+    if (a == 3 || b == 3) return with_3 && a + b == 5;
+    return a + 1 == b || b + 1 == a;
+  };
+  team.land(1, {40, 0, 0});
+  team.land(2, {80, 0, 0});
+  team.run(30);
+  EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2}));
+  EXPECT_TRUE(team.mates[3].hears_base(team.now));
+  with_3 = false;
+  team.run(120);
+  EXPECT_FALSE(team.mates[3].hears_base(team.now)) << "by what is heard now";
+  EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "by older news";
+}
+
+TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
+  Team team(3);
+  bool dead = false;
+  team.linked = [&](RobotId a, RobotId b) { return !dead || (a != 1 && b != 1); };
+  team.land(1, {40, 0, 0});
+  team.run(20);
+  ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1}));
+  dead = true;
+  team.run(30);
+  EXPECT_TRUE(team.mates[3].told_dead(1)) << "the base stood by and told";
+  EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0}));
+  dead = false;
+  team.run(30);
+  EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1}));
+}
+
+TEST(Teammate, WithALandedRelayThatTheBaseCannotHearDoesNotCountOnIt) {
+  Team team(2);
+  team.linked = [](RobotId a, RobotId b) { return a != kBase && b != kBase; };
+  team.land(1, {200, 0, 0});
+  team.run(20);
+  EXPECT_EQ(team.relays_of(2), (std::vector<RobotId>{0}));
+  EXPECT_FALSE(team.mates[2].hears_base(team.now));
+}
+
+TEST(Teammate, OfTwoThatClaimOnePlaceTheLaterIsOverruled) {
+  Team team(2);
+  team.run(1);
+  team.mates[2].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+  team.run(0.1);
+  team.mates[1].publish(LandingClaim{team.now, {41, 0, 0}, {41, 0, 1}, LandingClaim::State::claimed});
+  team.run(5);
+  EXPECT_TRUE(team.mates[1].overruled()) << "its number is lower, but its claim came later";
+  EXPECT_FALSE(team.mates[2].overruled());
+}
+
+TEST(Teammate, ForgetsGoalsThatWereGivenUpOrClaimedLongAgo) {
+  Team team(2);
+  team.mates[1].publish(GoalClaim{team.now, {5, 0, 0}, false});
+  team.run(5);
+  EXPECT_EQ(team.mates[2].claimed_goals(team.now).size(), 1u);
+  EXPECT_TRUE(team.mates[1].claimed_goals(team.now).empty()) << "its own";
+  EXPECT_TRUE(team.mates[2].claimed_goals(team.now + from_seconds(TeamOptions{}.claim_age_s)).empty());
+  team.mates[1].publish(GoalClaim{team.now, {5, 0, 0}, true});
+  team.run(5);
+  EXPECT_TRUE(team.mates[2].claimed_goals(team.now).empty());
+}
+
+TEST(Teammate, SeesVehiclesInTheAirWhereTheyShouldBeByNow) {
+  Team team(3);
+  team.states[1].phase = TeamPhase::home;
+  team.states[1].velocity_mps = {1, 0, 0};
+  team.states[3].phase = TeamPhase::standby;
+  team.run(3);
+  const auto others = team.mates[2].neighbours(team.now + kSecond);
+  ASSERT_EQ(others.size(), 1u) << "robot 3 has not started";
+  EXPECT_EQ(others[0].robot, 1);
+  EXPECT_GE(others[0].position.x(), 1.0);
+  EXPECT_LE(others[0].position.x(), 2.5);  // told at most a period and a half ago
+  EXPECT_TRUE(team.mates[2].neighbours(team.now + 10 * kSecond).empty());
+}
+
+}  // namespace
+}  // namespace karst::core
