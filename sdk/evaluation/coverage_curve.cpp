@@ -21,7 +21,9 @@ std::vector<CoveragePoint> coverage_curve(const RunRecord& run, std::optional<do
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const double m3 = (*explored)[i];
     if (!std::isfinite((*t_s)[i]) || !std::isfinite(m3)) continue;
-    const CoveragePoint p{std::max(0.0, (*t_s)[i] - begin_s), m3, m3 * share_per_m3};
+    // Free cells may turn out to be rock: then less is known free at the end than before.
+    const double share = std::isnan(share_per_m3) ? share_per_m3 : std::min(1.0, m3 * share_per_m3);
+    const CoveragePoint p{std::max(0.0, (*t_s)[i] - begin_s), m3, share};
     if (p.time_s > 0) {
       curve.push_back(p);
     } else {

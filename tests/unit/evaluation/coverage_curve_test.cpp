@@ -57,6 +57,18 @@ TEST(CoverageCurve, ItsMeanIsTheAreaBelowItOverTheHorizon) {
   EXPECT_FALSE(mean_coverage({}, 100));
 }
 
+TEST(CoverageCurve, NeverSaysThatMoreWasCoveredThanThereIs) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", "{\"t\": 1, \"kind\": \"phase\", \"phase\": \"takeoff\"}\n");
+  dir.write("telemetry.csv", "t_s,phase,explored_m3\n2,takeoff,0\n10,explore,101\n20,home,100\n");
+  const auto curve = coverage_curve(read_run(dir.path()), 0.998);
+  ASSERT_FALSE(curve.empty());
+  double most = 0;
+  for (const CoveragePoint& p : curve) most = std::max(most, p.coverage);
+  EXPECT_EQ(most, 1.0);
+  EXPECT_NEAR(curve.back().coverage, 0.998, 1e-12);
+}
+
 TEST(CoverageCurve, IsReadAtAnyTime) {
   TemporaryDirectory dir;
   const auto curve = coverage_curve(stepwise_run(dir), 0.6);
