@@ -11,10 +11,10 @@ namespace {
 constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
-constexpr TimeNs kPatience = 5 * kSecond;   // it stands and waits so long before it steps aside
+constexpr TimeNs kPatience = 5 * kSecond;  // it stands and waits so long before it steps aside
 constexpr TimeNs kAsideAgain = 10 * kSecond;
-constexpr TimeNs kUnheard = 3 * kSecond;    // hovering where it wants to land, and nobody is heard
-constexpr double kGoOn = 1.3;               // times the distance at which it stopped: then it goes on
+constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
+constexpr double kGoOn = 1.3;             // times the distance at which it stopped: then it goes on
 
 nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -180,7 +180,8 @@ void MissionControl::step_aside(const std::vector<Neighbour>& others) {
         const auto place = explorer_.lay_by(flown, others, apart_m);
         if (!place) return;
         way->path = explorer_.plan_to(lead.points.back(), *place);
-        if (way->path.found()) *way = route(lead, way->path, std::nullopt, start, kMostCut_m, limits, narrow);
+        if (way->path.found())
+          *way = route(lead, way->path, std::nullopt, std::nullopt, start, kMostCut_m, limits, narrow);
       },
       [this, way, begun = now()] {
         stepping_aside_ = false;
@@ -203,8 +204,7 @@ void MissionControl::become_relay() {
   const Vec3 above = ground + Vec3(0, 0, options_.mission.takeoff_height_m);
   const Vec3 hover = result_->outcome == "landed" ? landing_hover() : above;
   team_->publish(explorer_.land(hover, team_->team_time(now())));
-  team_->publish(
-      LandingClaim{team_->team_time(now()), ground, hover, LandingClaim::State::landed});
+  team_->publish(LandingClaim{team_->team_time(now()), ground, hover, LandingClaim::State::landed});
 }
 
 }  // namespace karst::core

@@ -1,5 +1,7 @@
 #include "plugins/simulator/simulated_team.h"
 
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
 #include "meshes.h"
