@@ -93,7 +93,8 @@ TuneResult tune(const TuneOptions& o, const Fly& fly, const TuneEvents& events) 
   const std::size_t most = candidates_of(o);
   for (const campaign::CaveSpec& held : o.held_out)
     for (const campaign::CaveSpec& cave : o.campaign.caves)
-      if (std::filesystem::weakly_canonical(held.file) == std::filesystem::weakly_canonical(cave.file) &&
+      if (std::filesystem::weakly_canonical(std::filesystem::absolute(held.file)) ==
+              std::filesystem::weakly_canonical(std::filesystem::absolute(cave.file)) &&
           held.start == cave.start)
         throw InputError("tune", held.file, "is tuned on and held out");
   TuneResult result;
