@@ -113,7 +113,7 @@ TEST(Tune, WritesAPresetThatFliesAndGoesOnWithoutFlyingAgain) {
                            out;
   const Output first = run_karst(tune);
   ASSERT_EQ(first.code, 0) << first.text;
-  EXPECT_TRUE(first.says("4 candidates through 1 caves with 1 seeds")) << first.text;
+  EXPECT_TRUE(first.says("4 candidates through 1 cave with 1 seed")) << first.text;
   const std::string table = bytes_of(dir / "out" / "tune.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
   const auto stored = fs::last_write_time(dir / "out" / "candidate001" / "campaign.sqlite");
