@@ -26,8 +26,7 @@ std::vector<Neighbour> give_way_to(const KeepApart& rule, RobotId self, const Ve
   for (const Neighbour& other : others) {
     const double distance_m = (other.position - position).norm();
     if (distance_m >= least_distance_m(rule, position, velocity_mps, other)) continue;
-    const bool very_near =
-        distance_m < rule.distance_m / 2 && closing_mps(position, velocity_mps, other) > 0;
+    const bool very_near = distance_m < rule.distance_m / 2 && closing_mps(position, velocity_mps, other) > 0;
     if (other.committed || other.robot < self || very_near) out.push_back(other);
   }
   return out;

@@ -12,8 +12,8 @@ namespace {
 constexpr double kPlaceReach_m = 3.0;     // of a landing place from the pose that it is judged for
 constexpr std::size_t kJudgedBehind = 3;  // poses: by then the ground there has been seen
 constexpr double kRecheckMargin_m = 1.0;
-constexpr double kRockMargin_m = 0.1;     // beyond the vehicle's radius: nearer rock closes a ray
-constexpr double kBesideRoute_m = 4.0;    // landing places so near to the homing route are on it
+constexpr double kRockMargin_m = 0.1;   // beyond the vehicle's radius: nearer rock closes a ray
+constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing route are on it
 /// Kept for hearing whether it is in contact there, and for a step nearer if it is not.
 constexpr double kConfirm_s = 6.0;
 
@@ -57,8 +57,10 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
   }
   if (!closed.empty()) {
     Vec3 low = map.center_of(closed.front()), high = low;
-    for (const CellKey& k : closed) low = low.cwiseMin(map.center_of(k)), high = high.cwiseMax(map.center_of(k));
-    append(out, tree_.recheck(low, high, kRecheckMargin_m, stamp, free, rock_rays(map, radius_m_ + kRockMargin_m)));
+    for (const CellKey& k : closed)
+      low = low.cwiseMin(map.center_of(k)), high = high.cwiseMax(map.center_of(k));
+    append(out, tree_.recheck(low, high, kRecheckMargin_m, stamp, free,
+                              rock_rays(map, radius_m_ + kRockMargin_m)));
   }
   while (to_judge_.size() > kJudgedBehind) {
     judge(map, roadmap, to_judge_.front());
@@ -142,7 +144,8 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
   const auto route = tree_.route(from, free);
   if (!route || route->nodes.empty()) return std::nullopt;
   const RobotId node = route->nodes.back().robot;
-  const auto relay = std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == node; });
+  const auto relay =
+      std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == node; });
   if (relay == relays_.end()) return std::nullopt;
   double length_m = 0;
   for (std::size_t i = 0; i < route->points.size(); ++i) {
@@ -151,7 +154,8 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
     const Place* best = nullptr;
     for (const Place& place : places_)
       if ((place.hover - p).norm() < kBesideRoute_m && free_to_take(place) &&
-          expected_margin_db(map, place.ground + Vec3(0, 0, radius_m_), relay->antenna, options_.landing.link) >= 0 &&
+          expected_margin_db(map, place.ground + Vec3(0, 0, radius_m_), relay->antenna,
+                             options_.landing.link) >= 0 &&
           (!best || (place.hover - p).norm() < (best->hover - p).norm()))
         best = &place;
     if (!best) continue;
@@ -171,7 +175,8 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {
   const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
-  return tree_.insert_communication({self_, ++nodes_made_}, to_centimetres(hover), to_milliseconds(stamp), free);
+  return tree_.insert_communication({self_, ++nodes_made_}, to_centimetres(hover), to_milliseconds(stamp),
+                                    free);
 }
 
 }  // namespace karst::core

@@ -37,7 +37,8 @@ struct TeamNews {
 
 class RelayHoming {
  public:
-  /// `base` is the base's antenna. Strategy return_to_base keeps the tree for the others, and knows no places.
+  /// `base` is the base's antenna. Strategy return_to_base keeps the tree for the others, and knows no
+  /// places.
   RelayHoming(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
               const PlanningOptions& planning, const MotionLimits& limits, double vehicle_radius_m);
 
@@ -67,7 +68,8 @@ class RelayHoming {
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
   void find_links(const VoxelMap& map);
   bool free_to_take(const Place& place) const;
-  std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
+  std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap,
+                                           const Vec3& from) const;
   std::optional<LandingSpot> up_the_tree(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
   double down_s(const Place& place) const;
 

@@ -12,15 +12,17 @@ void describe(OptionTable& t, TeamOptions& o) {
   t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts");
   t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
         "where a robot lands when its battery runs low (docs/homing.md)");
-  t.add("keep_apart", o.keep_apart_m, "m", 1.0, 20,
-        "of two vehicles nearer than this, and what they need to stop, the one of the higher number gives way");
-  t.add("claim_radius", o.claim_radius_m, "m", 0, 50,
-        "frontiers so near to another's goal are left to it");
+  t.add(
+      "keep_apart", o.keep_apart_m, "m", 1.0, 20,
+      "of two vehicles nearer than this, and what they need to stop, the one of the higher number gives way");
+  t.add("claim_radius", o.claim_radius_m, "m", 0, 50, "frontiers so near to another's goal are left to it");
   t.add("claim_age", o.claim_age_s, "s", 1, 3600, "a goal claimed longer ago is free again");
   t.add("linger", o.linger_s, "s", 0, 600, "the radios go on for so long after the last landing");
-  t.add("lost_robot", o.lost_robot, 0, kMostRobots - 1, "for tests: the number of a robot that never comes back");
+  t.add("lost_robot", o.lost_robot, 0, kMostRobots - 1,
+        "for tests: the number of a robot that never comes back");
   t.add("lost_after", o.lost_after_s, "s", 0, 7200, "of its flight: then it is lost");
-  t.add("silent_relay", o.silent_relay, 0, kMostRobots - 1, "for tests: the number of a robot whose radio fails");
+  t.add("silent_relay", o.silent_relay, 0, kMostRobots - 1,
+        "for tests: the number of a robot whose radio fails");
   t.add("silent_after", o.silent_after_s, "s", 0, 7200, "behind its landing: then it is silent");
 }
 
@@ -36,12 +38,12 @@ void describe(OptionTable& t, HomingOptions& o) {
 }
 
 void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source) {
-  for (const auto& [key, robot] : {std::pair{"team.lost_robot", team.lost_robot},
-                                   std::pair{"team.silent_relay", team.silent_relay}})
+  for (const auto& [key, robot] :
+       {std::pair{"team.lost_robot", team.lost_robot}, std::pair{"team.silent_relay", team.silent_relay}})
     if (robot > team.robots)
-      throw InputError(source, key,
-                       "there is no robot " + std::to_string(robot) + ": team.robots is " +
-                           std::to_string(team.robots));
+      throw InputError(
+          source, key,
+          "there is no robot " + std::to_string(robot) + ": team.robots is " + std::to_string(team.robots));
   if (homing.tree.longest_edge_m <= homing.tree.least_edge_m)
     throw InputError(source, "homing.tree.longest_edge",
                      "is no longer than homing.tree.least_edge: no two nodes would be joined");

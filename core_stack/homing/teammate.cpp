@@ -7,9 +7,9 @@
 namespace karst::core {
 namespace {
 
-constexpr double kGoodQuality = 0.2;               // of a link to land by: gossip copes with losses
-constexpr double kAntenna_m = 0.3;                 // above the ground, of a landed robot
-constexpr TimeNs kStateAge = 3 * kSecond;          // of a position to keep apart from
+constexpr double kGoodQuality = 0.2;       // of a link to land by: gossip copes with losses
+constexpr double kAntenna_m = 0.3;         // above the ground, of a landed robot
+constexpr TimeNs kStateAge = 3 * kSecond;  // of a position to keep apart from
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
 
 bool in_the_air(TeamPhase p) {
@@ -110,7 +110,8 @@ std::vector<Relay> Teammate::relays() const {
       continue;
     // As of when it was last heard of: since then nobody has told otherwise.
     const auto stamp = graph_.last_heard_of(r);
-    if (stamp && graph_.reaches_base(*stamp, r)) out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
+    if (stamp && graph_.reaches_base(*stamp, r))
+      out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
   }
   return out;
 }
@@ -118,7 +119,8 @@ std::vector<Relay> Teammate::relays() const {
 bool Teammate::hears_base(TimeNs now) const {
   for (const HeardRobot& h : gossip_.contacts(now))
     if (h.quality >= kGoodQuality && graph_.reaches_base(now, h.robot) &&
-        (h.robot == kBase || (landings_[h.robot] && landings_[h.robot]->state == LandingClaim::State::landed)))
+        (h.robot == kBase ||
+         (landings_[h.robot] && landings_[h.robot]->state == LandingClaim::State::landed)))
       return true;
   return false;
 }
@@ -128,7 +130,8 @@ std::vector<Neighbour> Teammate::neighbours(TimeNs now) const {
   for (const TeamState& s : gossip_.states()) {
     if (s.robot == kBase || s.robot == self() || now - s.stamp > kStateAge || !in_the_air(s.phase)) continue;
     const double age_s = std::max(0.0, seconds(now - s.stamp));
-    out.push_back({s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase == TeamPhase::landing});
+    out.push_back(
+        {s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase == TeamPhase::landing});
   }
   return out;
 }

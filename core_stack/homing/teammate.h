@@ -66,7 +66,7 @@ class Teammate {
   TreeFacts facts_;
   std::array<std::optional<GoalClaim>, kMostRobots> goals_;
   std::array<std::optional<LandingClaim>, kMostRobots> landings_;
-  std::array<std::optional<NodeId>, kMostRobots> nodes_;     // of robots that landed
+  std::array<std::optional<NodeId>, kMostRobots> nodes_;  // of robots that landed
   std::array<std::optional<LifeFact>, kMostRobots> lives_;
   std::array<std::optional<TimeNs>, kMostRobots> heard_at_;  // since it landed itself
   TimeNs receipt_due_ = 0;

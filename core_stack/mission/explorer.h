@@ -170,7 +170,7 @@ class Explorer {
 
   RelayHoming* homing_ = nullptr;  // null: it flies alone
   double claim_radius_m_ = 0;
-  bool claims_waived_ = false;    // in this round: nothing else is left
+  bool claims_waived_ = false;   // in this round: nothing else is left
   std::vector<CellKey> closed_;  // cells that became rock since the team was last told
 };
 

@@ -198,9 +198,9 @@ class MissionControl final : public VehicleSink {
   bool flying_as_come_ = false;  // back along the poses flown: only what it would touch stops it
 
   // In a team.
-  std::optional<LandingSpot> landing_;       // where it will be a relay; without, it lands at its start
-  std::optional<TimeNs> unheard_since_;      // it hovers there and hears nobody who reaches the base
-  std::optional<TimeNs> giving_way_since_;   // it holds for another vehicle
+  std::optional<LandingSpot> landing_;      // where it will be a relay; without, it lands at its start
+  std::optional<TimeNs> unheard_since_;     // it hovers there and hears nobody who reaches the base
+  std::optional<TimeNs> giving_way_since_;  // it holds for another vehicle
   TimeNs stepped_aside_ = 0;
   bool stepping_aside_ = false;
 

@@ -173,7 +173,8 @@ void MissionControl::on_round(const RoundInput& input, const RoundResult& result
   round_running_ = false;
   record_round(input, result);
   if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
-  if (braked_since(input.now) || giving_way_since_) return;  // the path begins where the vehicle will not come any more
+  if (braked_since(input.now) || giving_way_since_)
+    return;  // the path begins where the vehicle will not come any more
 
   if (result.goal) {
     const bool same = goal_ && (goal_->position - result.goal->position).norm() < kSameGoal_m;

@@ -42,7 +42,7 @@ struct CoreOptions {
   MotionLimits motion;
   MpcOptions tracker;
   Se3Options controller;
-  TeamOptions team;      // described apart: a single vehicle has none
+  TeamOptions team;  // described apart: a single vehicle has none
   HomingOptions homing;
 };
 void describe(OptionTable& t, CoreOptions& o);

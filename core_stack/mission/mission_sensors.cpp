@@ -100,7 +100,8 @@ void MissionControl::on_rgb(std::shared_ptr<const RgbFrame> frame) {
     file = name.data();
     keep_picture(frame, file);
   } else if (!frame->rgb.empty() && pictures_lost_++ == 0) {
-    recorder_.event(now(), "log", {{"text", "pictures come faster than they can be written: some are not kept"}});
+    recorder_.event(now(), "log",
+                    {{"text", "pictures come faster than they can be written: some are not kept"}});
   }
   recorder_.frame(*frame, T_world_camera, file);
 }
@@ -120,8 +121,7 @@ void MissionControl::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
       },
       [this, problem] {
         --writing_;
-        if (!problem->empty() && pictures_lost_++ == 0)
-          recorder_.event(now(), "log", {{"text", *problem}});
+        if (!problem->empty() && pictures_lost_++ == 0) recorder_.event(now(), "log", {{"text", *problem}});
       });
 }
 

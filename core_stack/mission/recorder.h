@@ -44,7 +44,8 @@ class Recorder {
   void telemetry(const Telemetry& row);
   void located(const Located& row);
   void map_changes(TimeNs t, std::span<const CellChange> changes);
-  /// A line of frames.csv, made with the first; `file` is relative to the directory, "" if no picture is kept.
+  /// A line of frames.csv, made with the first; `file` is relative to the directory, "" if no picture is
+  /// kept.
   void frame(const RgbFrame& frame, const Pose& T_world_camera, const std::string& file);
   /// Wall-clock costs of a decision, apart from what must replay byte for byte.
   void decision_cost(TimeNs t, double decide_ms, double plan_ms);

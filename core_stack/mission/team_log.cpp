@@ -33,7 +33,8 @@ void TeamLog::base(TimeNs t, const Teammate& base) {
     if (const std::uint32_t n = base.gossip().held(r).first(); n > 0) held.push_back({r, n});
     if (base.told_dead(r)) dead.push_back(r);
     const auto& landing = base.landing_of(r);
-    if (landing && landing->state == LandingClaim::State::landed) relays.push_back({r, list(landing->ground)});
+    if (landing && landing->state == LandingClaim::State::landed)
+      relays.push_back({r, list(landing->ground)});
   }
   event(t, "base",
         {{"connected", base.graph().connected(t)},

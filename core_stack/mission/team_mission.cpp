@@ -147,7 +147,8 @@ void TeamMission::note_phases(TimeNs now) {
   for (const auto& robot : robots_) {
     const Phase phase = robot->control ? robot->control->phase() : robot->phase;
     if (robot->phase == Phase::explore) robot->explored_for += kStep;
-    if (phase == robot->phase || (phase == Phase::done && !robot->ended)) continue;  // it ends with its next step
+    if (phase == robot->phase || (phase == Phase::done && !robot->ended))
+      continue;  // it ends with its next step
     robot->phase = phase;
     log_.event(now, "phase", {{"robot", robot->id}, {"phase", name_of(phase)}});
     if (phase != Phase::done) continue;

@@ -6,8 +6,8 @@
 
 namespace karst::core {
 
-/// Where it looks, and what of the rock its pictures show well enough to count as seen: within its range, where
-/// the lamp lights it and it is sharp, and not too much at a slant.
+/// Where it looks, and what of the rock its pictures show well enough to count as seen: within its range,
+/// where the lamp lights it and it is sharp, and not too much at a slant.
 struct RgbCameraModel {
   CameraModel camera;
   double max_incidence_rad = 1.2217;  // between the surface's normal and the way to the camera: 70 degrees

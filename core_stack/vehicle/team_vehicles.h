@@ -27,8 +27,8 @@ class TeamVehicles {
   /// The base's antenna, known to everybody before the mission. World frame.
   virtual Vec3 base() const = 0;
 
-  /// All vehicles have come to `now`, the team's time: from here on each sees where the others are, and radios
-  /// are where their vehicles are. What touched since the last call crashes.
+  /// All vehicles have come to `now`, the team's time: from here on each sees where the others are, and
+  /// radios are where their vehicles are. What touched since the last call crashes.
   virtual void meet(TimeNs now) = 0;
   /// A radio fails: it neither sends nor hears any more.
   virtual void silence(std::size_t radio) = 0;

@@ -21,7 +21,7 @@ struct VehicleDescription {
   std::shared_ptr<const LidarModel> lidar;  // null: none
   std::vector<std::shared_ptr<const CameraModel>> cameras;
   std::shared_ptr<const RgbCameraModel> rgb;  // null: none
-  bool pose_sensor = false;    // its poses come by themselves
+  bool pose_sensor = false;                   // its poses come by themselves
   Pose T_world_start;          // the pose it stands at before take-off, in the mission's world frame
   std::string implementation;  // what else its measurements depend on, for the record: "Embree 3, isa=avx2"
 };

@@ -69,8 +69,8 @@ std::vector<cave::StartPose> start_places(const cave::Cave& cave, std::size_t n,
     }
   if (places.size() < n)
     throw InputError(cave.description.file, "start",
-                     "around it there is room for " + std::to_string(places.size()) + " vehicles side by side, not for " +
-                         std::to_string(n));
+                     "around it there is room for " + std::to_string(places.size()) +
+                         " vehicles side by side, not for " + std::to_string(n));
   return places;
 }
 
@@ -132,7 +132,8 @@ void SimulatedTeam::count_contacts(TimeNs now) {
   for (std::size_t i = 0; i < robots_.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
       const bool a = robots_[i]->airborne(), b = robots_[k]->airborne();
-      if ((!a && !b) || !touched(last_[i], robots_[i]->position(), last_[k], robots_[k]->position(), 2 * radius_m_))
+      if ((!a && !b) ||
+          !touched(last_[i], robots_[i]->position(), last_[k], robots_[k]->position(), 2 * radius_m_))
         continue;
       char text[160];
       std::snprintf(text, sizeof text, "{\"t\":%.1f,\"kind\":\"contact\",\"robots\":[%zu,%zu]}\n",
@@ -180,8 +181,8 @@ std::vector<std::vector<std::uint8_t>> SimulatedTeam::receive(std::size_t radio,
 
 core::RadioTraffic SimulatedTeam::traffic(std::size_t radio) const {
   const RadioCounts& c = radio_.counts(static_cast<int>(radio));
-  return {c.bytes_sent,   c.bytes_dropped, c.bytes_heard,  c.bytes_lost,
-          c.bytes_weak,   c.packets_sent,  c.packets_heard, c.packets_corrupted};
+  return {c.bytes_sent, c.bytes_dropped, c.bytes_heard,   c.bytes_lost,
+          c.bytes_weak, c.packets_sent,  c.packets_heard, c.packets_corrupted};
 }
 
 void SimulatedTeam::finish() {

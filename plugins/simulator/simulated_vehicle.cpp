@@ -208,9 +208,8 @@ SensorFaults::Strike SimulatedVehicle::faults_of(Sensor sensor) {
 
 Air SimulatedVehicle::air_for(const std::string& beams) {
   const bool airborne = quadrotor_.footing() != Footing::standing;
-  return {
-      air_.present(cave_time_s(), quadrotor_.state().T_world_body.position, airborne),
-      measurement_random(beams + " in air")};
+  return {air_.present(cave_time_s(), quadrotor_.state().T_world_body.position, airborne),
+          measurement_random(beams + " in air")};
 }
 
 void SimulatedVehicle::fire_lidar() {

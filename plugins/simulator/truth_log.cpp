@@ -47,11 +47,11 @@ void TruthLog::picture(core::TimeNs stamp, const core::Pose& T, const core::RgbC
   const auto& p = T.position;
   const auto& q = T.orientation;
   const core::CameraModel& c = model.camera;
-  std::snprintf(line, sizeof line,
-                "%.3f,%.6f,%.6f,%.6f,%.8f,%.8f,%.8f,%.8f,%.8f,%.8f,%.4f,%.4f,%.8f\n", core::seconds(stamp),
-                p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), std::tan(c.horizontal_fov_rad / 2),
-                std::tan(c.vertical_fov_rad / 2), static_cast<double>(c.min_range_m),
-                static_cast<double>(c.max_range_m), model.max_incidence_rad);
+  std::snprintf(line, sizeof line, "%.3f,%.6f,%.6f,%.6f,%.8f,%.8f,%.8f,%.8f,%.8f,%.8f,%.4f,%.4f,%.8f\n",
+                core::seconds(stamp), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(),
+                std::tan(c.horizontal_fov_rad / 2), std::tan(c.vertical_fov_rad / 2),
+                static_cast<double>(c.min_range_m), static_cast<double>(c.max_range_m),
+                model.max_incidence_rad);
   pictures_ << line;
 }
 

@@ -23,8 +23,8 @@ class TruthLog {
   /// Throws InputError if the files cannot be made.
   explicit TruthLog(const std::string& run_dir);
   void pose(core::TimeNs stamp, const core::Pose& T_world_body);
-  /// A line of ground_truth_frames.csv, made with the first picture: the camera's pose (x along its axis), the
-  /// tangents of half its fields of view, and what counts as seen.
+  /// A line of ground_truth_frames.csv, made with the first picture: the camera's pose (x along its axis),
+  /// the tangents of half its fields of view, and what counts as seen.
   void picture(core::TimeNs stamp, const core::Pose& T_world_camera, const core::RgbCameraModel& model);
   void row(core::TimeNs stamp, const TruthRow& row);
   /// `what` is one of start, take-off, landed, contact, battery, rockfall, fault.

@@ -29,12 +29,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+FlightArguments on_all_cores() {
+  FlightArguments flight;
+  flight.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return flight;
+}
+
 struct FlyArguments {
   std::string mission_file, out, check;
   MissionOverrides overrides;
   std::optional<std::int64_t> seed;
   bool keys = false;
-  FlightArguments flight{.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))};
+  FlightArguments flight = on_all_cores();
 };
 
 /// runs/POLICY-CAVE-SEED, with a number behind it if that is taken.

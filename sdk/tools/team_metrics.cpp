@@ -33,7 +33,8 @@ ordered_json team_metrics(const Mission& mission, const core::TeamResult& result
   };
   const auto n = static_cast<long>(result.robots.size());
   const long landed = count([](const core::RobotResult& r) { return r.mission.outcome == "landed"; });
-  const long connected = count([](const core::RobotResult& r) { return r.mission.outcome == "landed" && r.connected; });
+  const long connected =
+      count([](const core::RobotResult& r) { return r.mission.outcome == "landed" && r.connected; });
   double explored_s = 0;
   for (const core::RobotResult& r : result.robots) explored_s += r.exploration_time_s;
 
@@ -45,15 +46,17 @@ ordered_json team_metrics(const Mission& mission, const core::TeamResult& result
   m["outcome"] = landed == n ? "landed" : "incomplete";
   m["reason"] = std::to_string(landed) + " of " + std::to_string(n) + " robots landed, " +
                 std::to_string(connected) + " of them connected to the base";
-  for (const evaluation::MetricDefinition& d : evaluation::metric_definitions()) m[std::string(d.name)] = nullptr;
+  for (const evaluation::MetricDefinition& d : evaluation::metric_definitions())
+    m[std::string(d.name)] = nullptr;
   m["contacts"] = sum(robots, "contacts");
   m["path_length_m"] = sum(robots, "path_length_m");
   m["energy_wh"] = sum(robots, "energy_wh");
   m["flight_time_s"] = sum(robots, "flight_time_s");
   m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
   m["robots_landed"] = rounded(static_cast<double>(landed) / static_cast<double>(n));
-  m["robots_connected"] = landed > 0 ? ordered_json(rounded(static_cast<double>(connected) / static_cast<double>(landed)))
-                                     : ordered_json(nullptr);
+  m["robots_connected"] =
+      landed > 0 ? ordered_json(rounded(static_cast<double>(connected) / static_cast<double>(landed)))
+                 : ordered_json(nullptr);
   for (std::size_t i = 0; i < result.robots.size(); ++i)
     if (const std::string key = "exploration_time_" + std::to_string(i + 1) + "_s"; m.contains(key))
       m[key] = rounded(result.robots[i].exploration_time_s);  // of as many as campaigns compare

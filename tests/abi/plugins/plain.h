@@ -113,7 +113,7 @@ static const karst_policy_descriptor_t descriptor = {sizeof(karst_policy_descrip
 #ifndef DECIDE_SLOT
 #define DECIDE_SLOT decide
 #endif
-static const karst_policy_t policy_table = {TABLE_SIZE,  0,        &descriptor, create,  init, activate,
+static const karst_policy_t policy_table = {TABLE_SIZE,  0,        &descriptor, create,  init,     activate,
                                             DECIDE_SLOT, on_event, deactivate,  destroy, EXTENSION};
 
 static const karst_policy_t* policy(uint32_t index) { return index == 0 ? &policy_table : 0; }

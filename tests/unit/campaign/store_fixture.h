@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 /// Of each test its own: they run side by side. (Some ask before any test runs.)
 inline fs::path fresh_folder(const std::string& name, const fs::path& root = KARST_BINARY_DIR) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const fs::path mine = test == nullptr ? fs::path(std::to_string(getpid()))
-                                        : fs::path(test->test_suite_name()) / test->name();
+  const fs::path mine =
+      test == nullptr ? fs::path(std::to_string(getpid())) : fs::path(test->test_suite_name()) / test->name();
   const fs::path dir = root / "test_runs" / "campaign" / mine / name;
   fs::remove_all(dir);
   fs::create_directories(dir);

@@ -13,7 +13,10 @@ namespace {
 TEST(HomingMargin, IsMeanAndQuantileOfTheNormalDistribution) {
   HomingOptions o;
   o.flown_mean = 0.87, o.flown_deviation = 0.04;
-  for (const auto& [p, z] : {std::pair{0.5, 0.0}, {0.8413447460685429, 1.0}, {0.99, 2.3263478740408408}, {0.999, 3.090232306167813}}) {
+  for (const auto& [p, z] : {std::pair{0.5, 0.0},
+                             {0.8413447460685429, 1.0},
+                             {0.99, 2.3263478740408408},
+                             {0.999, 3.090232306167813}}) {
     o.arrival_probability = p;
     EXPECT_NEAR(homing_margin(o), 0.87 + z * 0.04 - 1, 1e-9) << p;
   }
@@ -65,8 +68,8 @@ RC_GTEST_PROP(KeepApart, OfTwoThatAreTooNearOneAtLeastStops, ()) {
   const bool first = !give_way_to(rule, 1, p1, v1, {{2, p2, v2, false}}).empty();
   const bool second = !give_way_to(rule, 2, p2, v2, {{1, p1, v1, false}}).empty();
   const bool too_near = (p1 - p2).norm() < least_distance_m(rule, p1, v1, {2, p2, v2, false});
-  RC_ASSERT(second == too_near);          // the higher number always gives way,
-  RC_ASSERT(!first || too_near);          // the lower never without need,
+  RC_ASSERT(second == too_near);                                // the higher number always gives way,
+  RC_ASSERT(!first || too_near);                                // the lower never without need,
   RC_ASSERT(!first || (p1 - p2).norm() < rule.distance_m / 2);  // and only when very near
 }
 
@@ -82,7 +85,8 @@ TEST(KeepApart, LeavesTheRoomThatBothNeedToStop) {
   // Head on at 1.2 m/s each: 2.4 m/s for 1.5 s, and 2.4^2 / 2 to brake.
   EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {1.2, 0, 0}, {1, {9, 0, 0}, {-1.2, 0, 0}, false}),
               3 + 2.4 * 1.5 + 2.88, 1e-9);
-  EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {-1.2, 0, 0}, {1, {9, 0, 0}, Vec3::Zero(), false}), 3, 1e-9);
+  EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {-1.2, 0, 0}, {1, {9, 0, 0}, Vec3::Zero(), false}), 3,
+              1e-9);
 }
 
 /// Teammates that hear each other as `linked` says.
@@ -92,7 +96,8 @@ struct Team {
   TimeNs now = 0;
 
   explicit Team(RobotId robots) {
-    for (RobotId r = 0; r <= robots; ++r) mates.emplace_back(r, TeamOptions{}, HomingOptions{}, Vec3(1, 2, 3), 7);
+    for (RobotId r = 0; r <= robots; ++r)
+      mates.emplace_back(r, TeamOptions{}, HomingOptions{}, Vec3(1, 2, 3), 7);
   }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end;) {
