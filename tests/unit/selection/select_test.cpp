@@ -383,16 +383,21 @@ std::string written(const std::string& name, const std::string& text) {
   return (dir / name).string();
 }
 
-// As it was: given a campaign's folder, descriptions were not kept.
-TEST(Experience, CavesOfAStoreAreDescribedOnceAndThoseWhoseFileIsGoneAreLeftOut) {
-  namespace fs = std::filesystem;
-  const fs::path dir = fs::path(testing::TempDir()) / "undescribed_store";
-  fs::remove_all(dir);
-  fs::create_directories(dir);
+/// An empty folder but for box.ply, a cave of 12 x 4 x 3 m.
+std::filesystem::path folder_with_box(const std::string& name) {
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
   std::set<std::array<int, 3>> cells;
   karst::test::fill(cells, {0, 0, 0}, {12, 4, 3});
   karst::cave::write_mesh((dir / "box.ply").string(),
                           karst::test::lattice_mesh(cells, 1.0, {0.03, 0.03, 0.03}));
+  return dir;
+}
+
+// As it was: given a campaign's folder, descriptions were not kept.
+TEST(Experience, CavesOfAStoreAreDescribedOnceAndThoseWhoseFileIsGoneAreLeftOut) {
+  const std::filesystem::path dir = folder_with_box("undescribed_store");
   karst::campaign::StoreHead head;
   head.name = "test";
   head.definition = R"(profile campaign
@@ -433,14 +438,7 @@ contestant { name near settings "{}"
 }
 
 TEST(Experience, CaveWhoseMeshIsAnotherThanTheOneFlownIsLeftOut) {
-  namespace fs = std::filesystem;
-  const fs::path dir = fs::path(testing::TempDir()) / "changed_cave_store";
-  fs::remove_all(dir);
-  fs::create_directories(dir);
-  std::set<std::array<int, 3>> cells;
-  karst::test::fill(cells, {0, 0, 0}, {12, 4, 3});
-  karst::cave::write_mesh((dir / "box.ply").string(),
-                          karst::test::lattice_mesh(cells, 1.0, {0.03, 0.03, 0.03}));
+  const std::filesystem::path dir = folder_with_box("changed_cave_store");
   karst::campaign::StoreHead head;
   head.name = "test";
   head.definition = "profile campaign\n";
