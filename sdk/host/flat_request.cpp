@@ -9,7 +9,7 @@ namespace karst::host {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x747365757165726bull;  // "krequest"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeader = 8 + 4 + 4 + 8 + 8;  // magic, version, reserved, length, sum of the body
 constexpr std::uint64_t kMostClusters = 1'000'000, kMostCells = 100'000'000, kMostSensors = 64,
                         kMostChannels = 4096, kLongestName = 1000;
@@ -162,11 +162,14 @@ Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   put_map(out, r, map_since);
   put_imaged(out, r.imaged);
   Bytes bytes = out.take();
-  const std::uint64_t length = bytes.size() - kHeader,
-                      sum = checksum(std::span<const std::byte>(bytes).subspan(kHeader));
-  std::memcpy(bytes.data() + 16, &length, 8);
-  std::memcpy(bytes.data() + 24, &sum, 8);
+  seal(bytes);
   return bytes;
+}
+
+void seal(std::span<std::byte> request) {
+  const std::uint64_t length = request.size() - kHeader, sum = checksum(request.subspan(kHeader));
+  std::memcpy(request.data() + 16, &length, 8);
+  std::memcpy(request.data() + 24, &sum, 8);
 }
 
 const core::DecisionRequest& RequestReader::read(std::span<const std::byte> bytes) {

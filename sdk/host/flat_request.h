@@ -20,6 +20,10 @@ namespace karst::host {
 /// are written. 0: all of it.
 Bytes flatten(const core::DecisionRequest& request, std::uint64_t map_since = 0);
 
+/// Writes length and sum of what follows the header into it: the last step of flatten(), for who changes its
+/// bytes on purpose. `request` has a header's 32 bytes at least.
+void seal(std::span<std::byte> request);
+
 /// Reads requests one after the other, and holds the last.
 class RequestReader {
  public:

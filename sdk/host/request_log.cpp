@@ -16,14 +16,9 @@ using core::InputError;
 using nlohmann::ordered_json;
 
 constexpr std::uint32_t kMagic = 0x6c71726b;  // "krql"
-enum : std::uint32_t { kHeader = 1, kRequest = 2, kAnswer = 3, kEvent = 4 };
+enum : std::uint32_t { kHeader = 1, kRequest = kRequestRecord, kAnswer = 3, kEvent = 4 };
 constexpr int kSchema = 1;
 constexpr std::uint64_t kMostText = 1u << 20;  // bytes of a record that is JSON
-
-struct Frame {
-  std::uint32_t magic, kind;
-  std::uint64_t length, sum;
-};
 
 /// FNV-1a. A request has a sum of its own.
 std::uint64_t sum_of(std::uint32_t kind, std::span<const std::byte> payload) {
@@ -80,6 +75,10 @@ core::PolicyEvent event_of(const ordered_json& j) {
 
 }  // namespace
 
+RecordFrame frame_of(std::uint32_t kind, std::span<const std::byte> payload) {
+  return {kMagic, kind, payload.size(), sum_of(kind, payload)};
+}
+
 std::string answer_text(const core::Decision& d) {
   ordered_json goals = ordered_json::array();
   for (const core::Goal& g : d.goals) goals.push_back(to_json(g));
@@ -118,7 +117,7 @@ RecordingPolicy::RecordingPolicy(core::PolicyPort& policy, const std::filesystem
 }
 
 void RecordingPolicy::write(std::uint32_t kind, std::span<const std::byte> payload) {
-  const Frame frame{kMagic, kind, payload.size(), sum_of(kind, payload)};
+  const RecordFrame frame = frame_of(kind, payload);
   out_.write(reinterpret_cast<const char*>(&frame), sizeof frame);
   out_.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
   if (!out_.flush()) throw InputError(file_, "", "cannot be written");
@@ -170,7 +169,7 @@ void RequestLogReader::fail(const std::string& why) const {
 
 std::optional<RequestLogReader::Record> RequestLogReader::read() {
   ++record_;
-  Frame frame{};
+  RecordFrame frame{};
   if (size_ - at_ < sizeof frame) {
     passed_over_ = size_ - at_;
     return std::nullopt;

@@ -18,6 +18,14 @@ namespace karst::host {
 
 constexpr const char* kRequestLogName = "requests.bin";  // in a run directory
 
+/// Before each record's payload. A request has a sum of its own: `sum` is 0.
+struct RecordFrame {
+  std::uint32_t magic, kind;
+  std::uint64_t length, sum;
+};
+constexpr std::uint32_t kRequestRecord = 2;  // its kind
+RecordFrame frame_of(std::uint32_t kind, std::span<const std::byte> payload);
+
 /// Whom the requests were put to.
 struct RequestLogHeader {
   std::string policy, version;

@@ -1,6 +1,8 @@
 #include "sdk/tools/policy_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -100,6 +102,12 @@ void add_policy_command(CLI::App& app) {
       print_json(all);
     else
       print_text(all, path, args->verbose);
+    const bool asked_for_broken = std::any_of(all.begin(), all.end(), [&](const PolicyListing& p) {
+      return !p.broken.empty() && std::any_of(args->plugins.begin(), args->plugins.end(), [&](const auto& f) {
+        return std::filesystem::weakly_canonical(f) == std::filesystem::weakly_canonical(p.file);
+      });
+    });
+    if (asked_for_broken) throw CLI::RuntimeError(1);
   });
   add_check_command(*policy);
   add_request_replay_command(*policy);

@@ -39,8 +39,8 @@ constexpr std::array kColumns = {
     Column{"heading_error_rad", "heading deg", "%.2f", 180 / std::numbers::pi},
 };
 
-/// A run that is under way, or never flew, has no figures yet; for one that is no run or whose figures are
-/// damaged `problem` says so as well.
+/// A run that is under way has no figures yet; for a folder that is no run or whose figures are damaged
+/// `problem` says so as well.
 nlohmann::json metrics_of(const std::string& run, std::string& problem) {
   namespace fs = std::filesystem;
   const auto row = [&run](const char* outcome) {
@@ -51,7 +51,10 @@ nlohmann::json metrics_of(const std::string& run, std::string& problem) {
     return row("no such run");
   }
   const fs::path file = fs::path(run) / "metrics.json";
-  if (!fs::exists(file)) return row("no metrics.json");
+  if (!fs::exists(file)) {
+    if (!fs::exists(fs::path(run) / "mission.info")) problem = run + ": no run directory";
+    return row("no metrics.json");
+  }
   std::ifstream in(file);
   nlohmann::json metrics;
   if (fs::is_regular_file(file)) metrics = nlohmann::json::parse(in, nullptr, false);

@@ -90,6 +90,10 @@ std::size_t candidates_of(const TuneOptions& o) {
 TuneResult tune(const TuneOptions& o, const Fly& fly, const TuneEvents& events) {
   const double sign = evaluation::better_sign(o.metric, "tune");
   const int metric = evaluation::metric_index(o.metric);
+  if (const std::string whole = "restricted_" + o.metric; evaluation::metric_index(whole) >= 0)
+    throw InputError(
+        "tune", o.metric,
+        "only flights that got there have it, and who got there less often would look better; use " + whole);
   const std::size_t most = candidates_of(o);
   for (const campaign::CaveSpec& held : o.held_out)
     for (const campaign::CaveSpec& cave : o.campaign.caves)

@@ -219,6 +219,7 @@ TEST(BadInput, ATableOfRunsNamesWhatIsNone) {
   written(dir / "cut" / "metrics.json", "{\"cave\": \"c");
   written(dir / "good" / "metrics.json", "{\"cave\": \"lava\", \"outcome\": \"landed\"}");
   expect_refused(run_karst("table " + (dir / "nope").string()), {"nope: no such run"});
+  expect_refused(run_karst("table " + dir.string()), {"bad_table: no run directory"});
   expect_refused(run_karst("table " + (dir / "cut").string() + " " + (dir / "good").string()),
                  {"damaged metrics.json", "| lava |"});
 }

@@ -10,11 +10,18 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string said(const std::string& arguments) {
+/// What it prints; it must end with `code`.
+std::string said(const std::string& arguments, int code = 0) {
   CLI::App app;
   karst::tools::add_policy_command(app);
   ::testing::internal::CaptureStdout();
-  app.parse(arguments);
+  int ended = 0;
+  try {
+    app.parse(arguments);
+  } catch (const CLI::RuntimeError& e) {
+    ended = e.get_exit_code();
+  }
+  EXPECT_EQ(ended, code);
   return ::testing::internal::GetCapturedStdout();
 }
 
@@ -33,15 +40,15 @@ TEST(PolicyList, JsonNamesThePoliciesThatComeWithKarstWithTheirParameters) {
   EXPECT_EQ(side.at("choices").size(), 4u);
 }
 
-TEST(PolicyList, BrokenPluginIsListedWithItsReason) {
-  const std::string text = said("policy list --plugin /no/such/plugin.so");
+TEST(PolicyList, BrokenPluginThatWasAskedForIsListedWithItsReasonAndFails) {
+  const std::string text = said("policy list --plugin /no/such/plugin.so", 1);
   EXPECT_THAT(text, HasSubstr("broken: /no/such/plugin.so"));
   EXPECT_THAT(text, HasSubstr("cannot be opened"));
   EXPECT_THAT(text, HasSubstr("nearest_frontier 1.0.0"));
 }
 
 TEST(PolicyList, FileWhoseNameIsNoUtf8DoesNotEndTheList) {
-  const nlohmann::json out = nlohmann::json::parse(said("policy list --json --plugin /no/such/\xff.so"));
+  const nlohmann::json out = nlohmann::json::parse(said("policy list --json --plugin /no/such/\xff.so", 1));
   EXPECT_EQ(out.at("broken").at(0).at("file"), "/no/such/\xEF\xBF\xBD.so");
   EXPECT_GT(out.at("policies").size(), 5u);
 }

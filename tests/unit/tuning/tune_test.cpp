@@ -203,6 +203,8 @@ TEST(Tune, BadOptionsAreErrors) {
   EXPECT_NE(message([](TuneOptions& o) { o.flights = 23; }).find("two candidates are the least: 24"),
             std::string::npos);
   EXPECT_NE(message([](TuneOptions& o) { o.metric = "coverag"; }).find("no such figure"), std::string::npos);
+  EXPECT_NE(message([](TuneOptions& o) { o.metric = "t90_s"; }).find("use restricted_t90_s"),
+            std::string::npos);
   EXPECT_NE(message([](TuneOptions& o) { o.metric = "path_length_m"; }).find("neither better nor worse"),
             std::string::npos);
   EXPECT_NE(message([](TuneOptions& o) { o.search.method = "bobyq"; }).find("did you mean bobyqa?"),
