@@ -4,6 +4,7 @@
 //   campaign.sqlite                       store.h
 //   missions/CONTESTANT/CAVE.info         flown with `karst fly FILE --seed N`
 //   trials/CONTESTANT/CAVE/SEED/          a run directory, with output.txt and trial.json
+//   caves/                                what evaluations share: sdk/evaluation/reachable_file.h
 //   flying/                               trials under way
 #pragma once
 #include <filesystem>

@@ -58,7 +58,8 @@ std::string identity_of(const Plan& plan, const TrialKey& trial) {
 TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& options) {
   const auto& [contestant, cave, seed] = trial;
   TrialJob job{{options.karst.string(), "fly", (options.folder / mission_file(plan, trial)).string(),
-                "--seed", std::to_string(seed), "--threads", "1", "--quiet", "--no-report"},
+                "--seed", std::to_string(seed), "--threads", "1", "--quiet", "--no-report", "--cave-cache",
+                (options.folder / "caves").string()},
                options.folder / run_dir_of(plan, trial),
                identity_of(plan, trial)};
   if (const std::string& plugin = plan.contestants.at(contestant).plugin; !plugin.empty())

@@ -12,7 +12,7 @@ namespace karst::tools {
 
 /// What the command line says of how to fly, rather than what.
 struct FlightArguments {
-  std::filesystem::path run_dir;
+  std::filesystem::path run_dir, cave_cache;
   std::vector<std::string> plugins;  // policies' files to look in first
   int threads = 1;
   bool json = false, quiet = false, no_report = false, real_time = false, record_requests = false;

@@ -153,7 +153,8 @@ int fly(const FlyArguments& args) {
     line.end();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     write_timing(run_dir, executive, wall.count());
-    const nlohmann::json metrics = finish_run(run_dir, mission.cave, mission.start, !args.flight.no_report);
+    const nlohmann::json metrics =
+        finish_run(run_dir, mission.cave, mission.start, !args.flight.no_report, args.flight.cave_cache);
     if (args.flight.json) {
       std::cout << core::json_text(metrics, 2) << std::endl;
     } else {
@@ -215,6 +216,10 @@ void add_fly_command(CLI::App& app) {
   fly_app->add_flag("--json", args->flight.json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->flight.quiet, "no status line");
   fly_app->add_flag("--no-report", args->flight.no_report, "metrics only, no report.html");
+  fly_app
+      ->add_option("--cave-cache", args->flight.cave_cache,
+                   "folder that keeps what the evaluation works out of a cave, for other flights in it")
+      ->check(not_empty());
   fly_app
       ->add_option("--check", args->check,
                    "do not fly: look at everything that can be wrong and write the mission as resolved to "

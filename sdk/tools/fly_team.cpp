@@ -150,7 +150,8 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
     std::vector<nlohmann::json> own;
     for (std::size_t i = 0; i < robots.size(); ++i) {
       write_timing(run_dir / folder_of(i), team.executive(i), wall.count());
-      own.push_back(finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report));
+      own.push_back(
+          finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report, args.cave_cache));
     }
     const nlohmann::ordered_json metrics = team_metrics(mission, result, own);
     evaluation::write_metrics(run_dir, metrics);

@@ -11,6 +11,7 @@
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/imaged_rock.h"
 #include "sdk/evaluation/metrics.h"
+#include "sdk/evaluation/reachable_file.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/surface.h"
 #include "sdk/tools/campaign_page.h"
@@ -35,12 +36,12 @@ double cell_size_m(const fs::path& run_dir) {
 
 /// What the cave's mesh says. Holds the cave that its functions look into.
 evaluation::Truth truth_of(const std::string& cave_file, const std::string& start, double resolution_m,
-                           const std::vector<evaluation::PicturePose>& pictures) {
+                           const std::vector<evaluation::PicturePose>& pictures, const fs::path& cache) {
   const auto cave = std::make_shared<cave::Cave>(cave::load_cave(cave_file, start));
   evaluation::ReachableOptions options;  // its clearance is not the mission's: coverage compares missions
   options.resolution_m = resolution_m;
-  const auto reachable = std::make_shared<evaluation::Reachable>(
-      evaluation::find_reachable(cave->scene.mesh(), cave->description.start.position, options, cave_file));
+  const auto reachable = std::make_shared<evaluation::Reachable>(evaluation::find_reachable_once(
+      cave->scene.mesh(), cave->description.start.position, options, cave_file, cache));
   evaluation::Truth truth;
   truth.reachable_volume_m3 = reachable->volume_m3();
   truth.is_reachable = [reachable, resolution_m](const core::Vec3& p) {
@@ -77,14 +78,15 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
 }  // namespace
 
 nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, const std::string& start,
-                          bool with_report) {
+                          bool with_report, const fs::path& cave_cache) {
   evaluation::Truth truth;
   std::vector<std::string> problems;
   bool lost_cave = false;
   if (!cave.empty()) {
     try {
-      truth = truth_of(cave, start, cell_size_m(run_dir),
-                       evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems));
+      truth =
+          truth_of(cave, start, cell_size_m(run_dir),
+                   evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems), cave_cache);
     } catch (const core::InputError& e) {
       lost_cave = true;
       std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());

@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
-#include "sdk/evaluation/reachable.h"
-
 namespace CLI {
 class App;
 }
@@ -15,9 +13,10 @@ namespace karst::tools {
 void add_report_command(CLI::App& app);
 
 /// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics. `cave` and
-/// `start` may be
-/// "" when the cave is not known: what needs it is null.
+/// `start` may be "" when the cave is not known: what needs it is null. What is the same for all flights of
+/// a cave is kept in the folder `cave_cache`, if one is named.
 nlohmann::json finish_run(const std::filesystem::path& run_dir, const std::string& cave,
-                          const std::string& start, bool with_report);
+                          const std::string& start, bool with_report,
+                          const std::filesystem::path& cave_cache = {});
 
 }  // namespace karst::tools
