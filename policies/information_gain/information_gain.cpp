@@ -1,6 +1,7 @@
 // The frontier that shows the most unknown space for the time the flight to it takes.
 #include <karst/expected_gain.h>
 #include <karst/ranking.h>
+#include <karst/straight_way.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -18,20 +19,17 @@ class InformationGain : public karst::Policy {
     p.add("stop_time", stop_s_, "s", 0.1, 60, "what a goal takes besides the flight to it");
     p.add("turn_time", turn_s_, "s", 0, 60, "what flying straight back costs; less for smaller turns");
     p.add("cruise", cruise_, "", 0.1, 1, "mean speed of a flight, as a share of the greatest");
+    p.add("passing", passing_m_, "m", 0, 20,
+          "what lies behind openings this near to a straight way is seen on the way");
     p.add("keep", keep_, "", 0, 10, "share by which another goal must be better than the one under way");
     p.add("goals", goals_, 1, 32, "how many goals to propose, best first");
   }
 
   karst::Decision decide(const karst::Request& request) override {
-    std::vector<karst::OpenFrontiers::Candidate> open = open_.of(request);
+    const std::vector<karst::OpenFrontiers::Candidate> open = open_.of(request);
     if (open.empty()) return open_.none_left(request);
     open_.found_some();
-    std::sort(open.begin(), open.end(), [](const auto& a, const auto& b) {
-      return a.frontier->path_length_m != b.frontier->path_length_m
-                 ? a.frontier->path_length_m < b.frontier->path_length_m
-                 : a.frontier->id < b.frontier->id;
-    });
-    return karst::Decision::fly(ranked(request, open));
+    return karst::Decision::fly(ranked(request, candidates_of(request, open)));
   }
 
   void on_event(const karst::Event& event) override { open_.on_event(event); }
@@ -39,28 +37,52 @@ class InformationGain : public karst::Policy {
  private:
   static constexpr std::size_t batch = 8;
 
-  double time_s(const karst::Request& request, const karst::OpenFrontiers::Candidate& c) const {
-    const double length_m = c.frontier->path_length_m + c.reluctance_m;
-    return stop_s_ + length_m / (cruise_ * request.max_speed_mps) +
-           turn_s_ * karst::turn_share(request, *c.frontier);
+  struct Candidate {
+    const karst::Frontier* frontier;
+    double time_s, passed_m3;
+    double most;  // its score cannot be higher
+  };
+
+  /// Those that could be best first.
+  std::vector<Candidate> candidates_of(const karst::Request& request,
+                                       const std::vector<karst::OpenFrontiers::Candidate>& open) const {
+    const bool sees_what_it_passes = karst::sees_all_around(request);
+    std::vector<Candidate> out;
+    for (const auto& [f, reluctance_m] : open) {
+      const double t = stop_s_ + (f->path_length_m + reluctance_m) / (cruise_ * request.max_speed_mps) +
+                       turn_s_ * karst::turn_share(request, *f);
+      const double passed = sees_what_it_passes ? passed_m3(request, *f) : 0;
+      const double keep = karst::under_way(request, *f) ? 1 + keep_ : 1;
+      out.push_back({f, t, passed, keep * (most_volume_m3_ + passed) / t});
+    }
+    std::sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
+      return a.most != b.most ? a.most > b.most : a.frontier->id < b.frontier->id;
+    });
+    return out;
   }
 
-  /// From the nearest on, and no farther than something could still be better: no frontier is worth more than
-  /// most_volume over the time of a flight straight on.
-  std::vector<karst::Goal> ranked(const karst::Request& request,
-                                  const std::vector<karst::OpenFrontiers::Candidate>& open) {
+  /// Behind openings that a flight to the viewpoint passes before those that are seen from there.
+  double passed_m3(const karst::Request& request, const karst::Frontier& f) const {
+    const karst::StraightWay way(request.position(), f.viewpoint, f.path_length_m);
+    double sum_m3 = 0;
+    for (const karst::Frontier& other : request.frontiers)
+      if (other.id != f.id && way.passes(other.centroid, passing_m_, gain_.range_m))
+        sum_m3 += std::min(gain_.behind_m3(request, other), most_volume_m3_);
+    return sum_m3;
+  }
+
+  /// Looks are dear: none is taken from where nothing could be better than what was found.
+  std::vector<karst::Goal> ranked(const karst::Request& request, const std::vector<Candidate>& candidates) {
     std::vector<karst::Goal> goals;
     double best = 0;
-    for (std::size_t begin = 0; begin < open.size(); begin += batch) {
-      const double soonest_s =
-          stop_s_ + open[begin].frontier->path_length_m / (cruise_ * request.max_speed_mps);
-      if (most_volume_m3_ / soonest_s * (1 + keep_) < best || request.should_stop()) break;
+    for (std::size_t begin = 0; begin < candidates.size(); begin += batch) {
+      if (candidates[begin].most < best || request.should_stop()) break;
+      const std::size_t end = std::min(begin + batch, candidates.size());
       std::vector<const karst::Frontier*> some;
-      for (std::size_t i = begin; i < std::min(begin + batch, open.size()); ++i)
-        some.push_back(open[i].frontier);
+      for (std::size_t i = begin; i < end; ++i) some.push_back(candidates[i].frontier);
       const std::vector<double> volumes_m3 = gain_.volumes_m3(request, some);
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        goals.push_back(goal(request, open[begin + i], volumes_m3[i]));
+      for (std::size_t i = begin; i < end; ++i) {
+        goals.push_back(goal(request, candidates[i], volumes_m3[i - begin]));
         best = std::max(best, goals.back().score);
       }
     }
@@ -68,15 +90,14 @@ class InformationGain : public karst::Policy {
     return goals;
   }
 
-  karst::Goal goal(const karst::Request& request, const karst::OpenFrontiers::Candidate& c,
-                   double volume_m3) const {
-    const double t = time_s(request, c);
-    double score = std::min(volume_m3, most_volume_m3_) / t;
-    if (volume_m3 < least_volume_m3_) score *= 1e-3;
+  karst::Goal goal(const karst::Request& request, const Candidate& c, double volume_m3) const {
+    const double shown_m3 = std::min(volume_m3, most_volume_m3_) + c.passed_m3;
+    double score = shown_m3 / c.time_s;
+    if (shown_m3 < least_volume_m3_) score *= 1e-3;
     if (karst::under_way(request, *c.frontier)) score *= 1 + keep_;
     char why[120];
-    std::snprintf(why, sizeof why, "%.1f m^3 to be seen in %.1f s, %.1f m away", volume_m3, t,
-                  c.frontier->path_length_m);
+    std::snprintf(why, sizeof why, "%.1f m^3 to be seen in %.1f s, %.1f of them in passing, %.1f m away",
+                  shown_m3, c.time_s, c.passed_m3, c.frontier->path_length_m);
     return karst::goal_at(*c.frontier, score, why);
   }
 
@@ -88,6 +109,7 @@ class InformationGain : public karst::Policy {
   double turn_s_ = 3.0;
   double cruise_ = 0.75;
   double keep_ = 0.3;
+  double passing_m_ = 3.0;
   int goals_ = 8;
 };
 

@@ -1,6 +1,7 @@
 // A tour over viewpoints of all frontiers, planned anew with each decision: what shows much comes soon.
 #include <karst/expected_gain.h>
 #include <karst/open_frontiers.h>
+#include <karst/straight_way.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ class ViewpointTour : public karst::Policy {
     p.add("stop_time", stop_s_, "s", 0.1, 60, "what a stop takes besides the flight to it");
     p.add("turn_time", turn_s_, "s", 0, 60, "what flying straight back costs; less for smaller turns");
     p.add("cruise", cruise_, "", 0.1, 1, "mean speed of a flight, as a share of the greatest");
+    p.add("passing", passing_m_, "m", 0, 20, "a stop this near to a straight way to the next is left out");
     p.add("keep", keep_, "", 0, 10,
           "share by which a tour must be better than one that keeps the goal under way");
     p.add("stops", stops_, 1, 200,
@@ -34,7 +36,7 @@ class ViewpointTour : public karst::Policy {
     open_.found_some();
     const std::vector<Stop> stops = stops_of(request, open);
     const tour::Problem problem = problem_of(request, stops);
-    const tour::Order order = tour_over(request, stops, problem);
+    const tour::Order order = without_passed(request, stops, tour_over(request, stops, problem));
     return karst::Decision::tour(goals(request, stops, problem, order));
   }
 
@@ -45,6 +47,18 @@ class ViewpointTour : public karst::Policy {
     const karst::Frontier* frontier;
     double weight_m3, first_s, way_m;
   };
+
+  /// Stops that a straight flight to the one after them passes are seen on the way.
+  tour::Order without_passed(const karst::Request& request, const std::vector<Stop>& stops,
+                             tour::Order order) const {
+    const auto passed = [&](const Stop& stop, const Stop& next) {
+      return karst::StraightWay(request.position(), next.frontier->viewpoint, next.way_m)
+          .passes(stop.frontier->viewpoint, passing_m_);
+    };
+    if (!karst::sees_all_around(request)) return order;
+    while (order.size() > 1 && passed(stops[order[0]], stops[order[1]])) order.erase(order.begin());
+    return order;
+  }
 
   double flight_s(const karst::Request& request, double length_m) const {
     return stop_s_ + length_m / (cruise_ * request.max_speed_mps);
@@ -138,6 +152,7 @@ class ViewpointTour : public karst::Policy {
   double stop_s_ = 1.5;
   double turn_s_ = 3.0;
   double cruise_ = 0.75;
+  double passing_m_ = 3.0;
   double keep_ = 0.03;
   int stops_ = 30;
   int goals_ = 16;

@@ -50,26 +50,31 @@ class ExpectedGain {
     look(request, fresh);
     std::vector<double> out;
     for (const Frontier* f : frontiers) {
-      const double behind_m3 = behind_openings_m3(request, *f);
+      const double most_m3 = behind_openings_m3(request, *f);
       const auto found = known_.find(f->id);
-      out.push_back(found == known_.end() ? behind_m3 : std::min(found->second.volume_m3, behind_m3));
+      out.push_back(found == known_.end() ? most_m3 : std::min(found->second.volume_m3, most_m3));
     }
     return out;
+  }
+
+  /// Volume in m^3 expected behind the opening itself, wherever one looks from.
+  double behind_m3(const Request& request, const Frontier& f) const {
+    const double edge_m = request.map.resolution_m();
+    return f.cells * edge_m * edge_m * depth_m * share_of_depth(f);
   }
 
  private:
   /// Of the clusters in range that lie the same way as `f` from its viewpoint.
   double behind_openings_m3(const Request& request, const Frontier& f) const {
     constexpr double same_way = 0.5;  // cosine
-    const double edge_m = request.map.resolution_m();
     const Vec3 there = f.centroid - f.viewpoint;
-    double behind_m3 = 0;
+    double sum_m3 = 0;
     for (const Frontier& other : request.frontiers) {
       const Vec3 d = other.centroid - f.viewpoint;
       if (other.id == f.id || (norm(d) < range_m && dot(d, there) > same_way * norm(d) * norm(there)))
-        behind_m3 += other.cells * edge_m * edge_m * depth_m * share_of_depth(other);
+        sum_m3 += behind_m3(request, other);
     }
-    return behind_m3;
+    return sum_m3;
   }
 
   /// Of what predictions of 3 m deep came to in flight, nothing but the distance from the way flown told: all

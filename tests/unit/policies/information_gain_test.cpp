@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "tests/unit/policies/sphere_sensor.h"
@@ -122,21 +123,43 @@ TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
                  {"turn_time", "0"},
                  {"stop_time", "1.5"},
                  {"most_volume", "20"},
+                 {"passing", std::to_string(round % 2)},
                  {"gain_range", "2"}});
     bench.sensors = {karst::test::sphere_sensor(10)};
     bench.position = map.center_of({60, 0, 0});
-    double best = 0;
+    std::map<int, double> behind_m3;  // by the place along the passage
     std::uint32_t id = 0;
     for (int x = 3; x < 120; x += 4) {
       if (std::abs(x - 60) < 2) continue;
       const auto cells = 10 + static_cast<std::uint32_t>(chance() % 40);
       const karst::Vec3 at = map.center_of({x, 0, 0});
       bench.offer(++id, at, at, cells);
-      const double seen = volume_in_sight(map, at, 2);
-      best = std::max(best, std::min({seen, 0.5 * cells, 20.0}) / (1.5 + std::abs(x - 60) / 1.5));
+      behind_m3[x] = std::min(0.5 * cells, 20.0);
+    }
+    double best = 0;
+    for (const auto& [x, own_m3] : behind_m3) {
+      double shown_m3 = std::min(own_m3, volume_in_sight(map, map.center_of({x, 0, 0}), 2));
+      if (round % 2 == 1)  // what lies between, but for the last 2 m
+        for (const auto& [other, m3] : behind_m3)
+          if ((other > 60) == (x > 60) && std::abs(other - 60) < std::abs(x - 60) - 2) shown_m3 += m3;
+      best = std::max(best, shown_m3 / (1.5 + std::abs(x - 60) / 1.5));
     }
     EXPECT_NEAR(bench.decide().goals.at(0).score, best, 1e-9);
   }
+}
+
+TEST(InformationGain, WhatIsPassedCountsForSensorsThatSeeItOnly) {
+  const DrawnMap map(1.0, {"??s....a.........b??"});
+  Bench bench(karst_plugin_entry(), map,
+              {{"turn_time", "0"}, {"gain_depth", "1"}, {"most_volume", "30"}, {"stop_time", "2"}});
+  bench.position = map.place('s');
+  bench.offer(1, map.place('a'), map.place('a') + karst::Vec3(0, 1, 0), 25);
+  bench.offer(2, map.place('b'), map.place('b'), 25);
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  const double seen_b = goal_of(bench.decide(), 2).score;
+  bench.sensors.front().horizontal_fov_rad = 1.4;
+  const double unseen_b = goal_of(bench.decide(), 2).score;
+  EXPECT_NEAR(seen_b - unseen_b, 25 / (2 + 15 / 1.5), 1e-9) << "what lies behind a, over the time to b";
 }
 
 TEST(InformationGain, WorksWithoutAnyFrontier) {

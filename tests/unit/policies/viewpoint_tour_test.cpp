@@ -146,7 +146,7 @@ karst::Decision decide(const DrawnMap& map, const std::vector<std::pair<char, st
 
 TEST(ViewpointTour, VisitsEveryFrontierOnceInOrder) {
   const karst::Decision d =
-      decide(hairpin(), {{'a', 20}, {'c', 20}, {'d', 20}, {'f', 20}}, {{"turn_time", "0"}});
+      decide(hairpin(), {{'a', 20}, {'c', 20}, {'d', 20}, {'f', 20}}, {{"turn_time", "0"}, {"passing", "0"}});
   EXPECT_TRUE(d.in_order);
   std::set<std::uint32_t> visited;
   for (const karst::Goal& g : d.goals) visited.insert(g.frontier_id);
@@ -156,10 +156,38 @@ TEST(ViewpointTour, VisitsEveryFrontierOnceInOrder) {
 
 TEST(ViewpointTour, GoesByTheWayAndNotByTheCrow) {
   // From f, b lies two metres off through the wall, d ten by the way.
-  const karst::Decision d = decide(hairpin(), {{'b', 20}, {'d', 20}, {'f', 20}}, {{"turn_time", "0"}});
+  const karst::Decision d =
+      decide(hairpin(), {{'b', 20}, {'d', 20}, {'f', 20}}, {{"turn_time", "0"}, {"passing", "0"}});
   ASSERT_EQ(d.goals.size(), 3u);
   EXPECT_EQ(d.goals[0].frontier_id, 3u);
   EXPECT_EQ(d.goals[1].frontier_id, 2u);
+}
+
+TEST(ViewpointTour, WhatAStraightFlightPassesIsNoStop) {
+  const std::vector<std::pair<char, std::uint32_t>> on_the_way = {{'d', 20}, {'e', 20}, {'f', 20}};
+  const karst::Decision straight = decide(hairpin(), on_the_way, {{"turn_time", "0"}});
+  ASSERT_EQ(straight.goals.size(), 1u);
+  EXPECT_EQ(straight.goals[0].frontier_id, 1u);
+  const DrawnMap round_the_end(1.0, {R"(
+    ####################
+    #b......a..........#
+    #################..#
+    #...........s......#
+    ####################)"});
+  EXPECT_EQ(decide(round_the_end, {{'a', 20}, {'b', 20}}, {{"turn_time", "0"}}).goals.size(), 2u);
+}
+
+TEST(ViewpointTour, ACameraThatLooksAheadStopsForWhatItPasses) {
+  const DrawnMap map = hairpin();
+  Bench bench(karst_plugin_entry(), map, {{"turn_time", "0"}});
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  bench.sensors.front().horizontal_fov_rad = 1.4;
+  bench.position = map.place('s');
+  for (std::uint32_t id = 1; id <= 3; ++id) {
+    const karst::Vec3 at = map.place("def"[id - 1]);
+    bench.offer(id, at, at, 20);
+  }
+  EXPECT_EQ(bench.decide().goals.size(), 3u);
 }
 
 TEST(ViewpointTour, ALargeOpeningDoesNotWaitForASmallCornerOutOfTheWay) {
