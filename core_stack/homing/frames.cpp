@@ -30,7 +30,7 @@ TeamState read_state(PartReader& r) {
   s.robot = r.robot(), s.stamp = r.time(), s.position = r.place();
   for (int i = 0; i < 3; ++i) s.velocity_mps[i] = static_cast<double>(r.whole(2)) / 100.0;
   if (s.velocity_mps.cwiseAbs().maxCoeff() > kMostSpeed_cmps / 100) r.refuse(Refusal::range);
-  s.phase = r.one_of<TeamPhase>(7);
+  s.phase = r.one_of<TeamPhase>(9);
   s.seconds_left = static_cast<double>(r.number(2));
   const std::size_t heard = r.count(2);
   if (heard > kMostRobots) r.refuse(Refusal::range);

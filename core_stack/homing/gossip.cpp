@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kBurstFrames = 10;
 constexpr double kLongestWait_s = 0.4;
-constexpr double kHaste = 3;               // times as often while robots in contact do not hold the same
+constexpr double kHaste = 3;  // times as often while robots in contact do not hold the same, or one is near
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
 /// A state from later than that would stand in the way of all that follow. The team's clocks are set
@@ -200,7 +200,7 @@ std::vector<Bytes> Gossip::send(TimeNs now) {
 Frame Gossip::own_news(TimeNs now) {
   // A little off the beat, or two that fall on one moment would do so forever. While something is yet to be
   // passed on, every word of what one holds brings it on.
-  const double period_s = options_.period_s / (unsettled(now) ? kHaste : 1);
+  const double period_s = options_.period_s / (hurried_ || unsettled(now) ? kHaste : 1);
   next_news_ = now + from_seconds(period_s * random_.uniform(0.9, 1.1));
   Frame frame;
   state_.robot = self_;

@@ -2,12 +2,13 @@
 // come and go.
 //
 // Each robot says every period what it holds (a version vector) and how it is; three times as often while
-// those around it do not hold the same. Who hears that the other lacks something it holds itself sends it
-// (anti-entropy; Demers et al., Epidemic Algorithms for Replicated Database Maintenance, 1987). Records are
-// forwarded by whoever first hears them, after a random wait, unless by then another was heard to send it or
-// all in contact are known to hold it: the radio is heard by all around, and one of several neighbours is
-// enough. Nothing is assumed about contact: a robot that was away for an hour is brought up to date by the
-// first it meets. What is heard says how good links are: the gaps in the numbers of a robot's frames.
+// those around it do not hold the same, and while another flies near. Who hears that the other lacks
+// something it holds itself sends it (anti-entropy; Demers et al., Epidemic Algorithms for Replicated
+// Database Maintenance, 1987). Records are forwarded by whoever first hears them, after a random wait, unless
+// by then another was heard to send it or all in contact are known to hold it: the radio is heard by all
+// around, and one of several neighbours is enough. Nothing is assumed about contact: a robot that was away
+// for an hour is brought up to date by the first it meets. What is heard says how good links are: the gaps in
+// the numbers of a robot's frames.
 #pragma once
 #include <array>
 #include <optional>
@@ -51,6 +52,8 @@ class Gossip {
   std::uint32_t publish(const Record& record);
   /// How it is, to be told with the next frame; robot and heard are filled in.
   void set_state(const TeamState& state) { state_ = state; }
+  /// Tells its state more often: another vehicle is near.
+  void hurry(bool near) { hurried_ = near; }
 
   /// Bytes from the radio.
   void receive(std::span<const std::uint8_t> bytes, TimeNs now);
@@ -113,6 +116,7 @@ class Gossip {
   std::uint32_t published_ = 0, known_at_base_ = 0;
   std::uint16_t sequence_ = 0;
   TimeNs next_news_ = 0, last_send_ = 0;
+  bool hurried_ = false;
   double allowance_bytes_;
   RobotId next_told_ = 0;  // whose state is passed on next
   GossipCounts counts_;

@@ -1,33 +1,57 @@
 #include "core_stack/homing/keep_apart.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace karst::core {
 namespace {
 
-/// Speed at which the distance shrinks; 0 if it grows.
-double closing_mps(const Vec3& position, const Vec3& velocity_mps, const Neighbour& other) {
-  const Vec3 apart = other.position - position;
-  if (apart.norm() < 1e-6) return 0;
-  return std::max(0.0, (velocity_mps - other.velocity_mps).dot(apart.normalized()));
+int urgency(TeamPhase phase) {
+  switch (phase) {
+    case TeamPhase::landing:
+      return 0;
+    case TeamPhase::boxed:
+      return 1;
+    case TeamPhase::home:
+      return 2;
+    case TeamPhase::explore:
+      return 3;
+    default:
+      return 4;
+  }
 }
 
 }  // namespace
 
-double least_distance_m(const KeepApart& rule, const Vec3& position, const Vec3& velocity_mps,
-                        const Neighbour& other) {
-  const double v = closing_mps(position, velocity_mps, other);
+double closing_mps(const Neighbour& a, const Neighbour& b) {
+  const Vec3 apart = b.position - a.position;
+  if (apart.norm() < 1e-6) return 0;
+  return (a.velocity_mps - b.velocity_mps).dot(apart.normalized());
+}
+
+double least_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbour& b) {
+  const double v = std::max(0.0, closing_mps(a, b));
   return rule.distance_m + v * rule.reaction_s + v * v / (2 * rule.brake_mps2);
 }
 
-std::vector<Neighbour> give_way_to(const KeepApart& rule, RobotId self, const Vec3& position,
-                                   const Vec3& velocity_mps, const std::vector<Neighbour>& others) {
+double stop_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbour& b) {
+  const double v = std::max(0.0, closing_mps(a, b));
+  return rule.distance_m / 2 + v * rule.own_s + v * v / (2 * rule.brake_mps2);
+}
+
+bool goes_before(const Neighbour& a, const Neighbour& b) {
+  return std::tuple(urgency(a.phase), a.robot) < std::tuple(urgency(b.phase), b.robot);
+}
+
+std::vector<Neighbour> give_way_to(const KeepApart& rule, const Neighbour& self,
+                                   const std::vector<Neighbour>& others) {
   std::vector<Neighbour> out;
   for (const Neighbour& other : others) {
-    const double distance_m = (other.position - position).norm();
-    if (distance_m >= least_distance_m(rule, position, velocity_mps, other)) continue;
-    const bool very_near = distance_m < rule.distance_m / 2 && closing_mps(position, velocity_mps, other) > 0;
-    if (other.committed || other.robot < self || very_near) out.push_back(other);
+    if (other.phase == TeamPhase::aside) continue;
+    const double distance_m = (other.position - self.position).norm();
+    const bool both = closing_mps(self, other) > 0 && distance_m < stop_distance_m(rule, self, other);
+    if (both || (goes_before(other, self) && distance_m < least_distance_m(rule, self, other)))
+      out.push_back(other);
   }
   return out;
 }

@@ -6,28 +6,39 @@
 
 namespace karst::core {
 
-/// Another vehicle in the air, as last heard and brought up to now.
+/// A vehicle in the air; another one as last heard and brought up to now.
 struct Neighbour {
   RobotId robot = 0;
   Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
-  bool committed = false;  // it takes off or lands: it cannot stop for anybody
+  TeamPhase phase = TeamPhase::explore;
+  double age_s = 0;  // since it was told
 };
 
 struct KeepApart {
   double distance_m = 3.0;
   double reaction_s = 1.5;  // news are up to a second old, and a brake takes its time to begin
+  double own_s = 0.3;       // the brake alone
   double brake_mps2 = 1.0;
 };
 
 /// The distance below which one of the two has to stop: what is kept, and what both need to stop if they
 /// approach.
-double least_distance_m(const KeepApart& rule, const Vec3& position, const Vec3& velocity_mps,
-                        const Neighbour& other);
+double least_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbour& b);
+/// The distance below which both stop, whoever goes first.
+double stop_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbour& b);
 
-/// The others that vehicle `self` has to stop for: those too near that it gives way to. Of two robots the
-/// higher number gives way, but to one that takes off or lands everybody does. Nearer than half of the
-/// distance and approaching both stop.
-std::vector<Neighbour> give_way_to(const KeepApart& rule, RobotId self, const Vec3& position,
-                                   const Vec3& velocity_mps, const std::vector<Neighbour>& others);
+/// Speed at which the distance shrinks; negative if it grows.
+double closing_mps(const Neighbour& a, const Neighbour& b);
+
+/// Whether a goes before b: one order of all vehicles, so no two both go first and no three wait in a circle.
+/// First who takes off or lands, and cannot stop; then who has nowhere to make room; who goes home, whose
+/// time is short; who explores; last who waits aside. Of two alike the lower number: it started first, and
+/// has less time left.
+bool goes_before(const Neighbour& a, const Neighbour& b);
+
+/// The others that a vehicle has to stop for: those too near that go before it, and those that both stop for.
+/// Not those that wait aside: they stand still, and are obstacles in the map.
+std::vector<Neighbour> give_way_to(const KeepApart& rule, const Neighbour& self,
+                                   const std::vector<Neighbour>& others);
 
 }  // namespace karst::core

@@ -22,7 +22,8 @@ constexpr RobotId kMostRobots = 16;  // the base among them: what each holds of 
 constexpr double kMostReach_m = 40000;
 constexpr std::uint32_t kMostNumber = 1u << 24;  // of a robot's nodes, records or claims
 
-enum class TeamPhase : std::uint8_t { standby, explore, home, landing, landed, relay, lost };
+/// aside: it hovers where others get by, and waits; boxed: it has no such place, and others make room.
+enum class TeamPhase : std::uint8_t { standby, explore, home, landing, landed, relay, lost, aside, boxed };
 
 /// How well one robot hears another: the share of its frames that arrive.
 struct HeardRobot {

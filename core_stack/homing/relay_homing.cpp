@@ -16,6 +16,9 @@ constexpr double kRockMargin_m = 0.1;   // beyond the vehicle's radius: nearer r
 constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing route are on it
 /// Kept for hearing whether it is in contact there, and for a step nearer if it is not.
 constexpr double kConfirm_s = 6.0;
+/// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
+constexpr double kClaimed_s = 10.0;
+constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
 void append(TreeFacts& to, const TreeFacts& more) {
   to.nodes.insert(to.nodes.end(), more.nodes.begin(), more.nodes.end());
@@ -43,6 +46,9 @@ RelayHoming::RelayHoming(RobotId self, const TeamOptions& team, const HomingOpti
 TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here,
                               const TeamNews& news, std::span<const CellKey> closed) {
   relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
+  std::erase_if(relays_, [&](const Relay& r) {
+    return r.stands_by && (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends);
+  });
   const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
   const TimeNs stamp = to_milliseconds(news.stamp);
   TreeFacts out;
@@ -99,16 +105,18 @@ void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
   }
 }
 
-/// The node of the best link to each place, as far as the map tells.
+/// The node of the best link to each place, as far as the map tells; of those yet to land if there is no
+/// other.
 void RelayHoming::find_links(const VoxelMap& map) {
   for (Place& p : places_) {
     double best_db = 0;
     p.node.reset();
     for (const Relay& r : relays_) {
+      if (r.stands_by && p.node && !p.claimed) break;                                   // these come last
       if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
       const double db =
           expected_margin_db(map, p.ground + Vec3(0, 0, radius_m_), r.antenna, options_.landing.link);
-      if (db >= best_db) best_db = db, p.node = r.robot;
+      if (db >= best_db) best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
     }
   }
 }
@@ -130,9 +138,11 @@ std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const
   const std::vector<double> lengths = roadmap.distances(map, from, hovers, 0.0);
   std::optional<LandingSpot> best;
   for (std::size_t i = 0; i < open.size(); ++i) {
-    const double time_s = flight_time_s(lengths[i], limits_) + kConfirm_s + down_s(*open[i]);
+    const Place& p = *open[i];
+    const double time_s =
+        flight_time_s(lengths[i], limits_) + kConfirm_s + (p.claimed ? kClaimed_s : 0.0) + down_s(p);
     if (std::isfinite(lengths[i]) && (!best || time_s < best->time_s))
-      best = {open[i]->hover, open[i]->ground, *open[i]->node, lengths[i], time_s};
+      best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], time_s};
   }
   return best;
 }
@@ -160,8 +170,8 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
         best = &place;
     if (!best) continue;
     const double all_m = length_m + (best->hover - p).norm();
-    return LandingSpot{best->hover, best->ground, node, all_m,
-                       flight_time_s(all_m, limits_) + kConfirm_s + down_s(*best)};
+    return LandingSpot{best->hover, best->ground, node,
+                       false,       all_m,        flight_time_s(all_m, limits_) + kConfirm_s + down_s(*best)};
   }
   return std::nullopt;
 }

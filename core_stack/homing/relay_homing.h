@@ -3,7 +3,9 @@
 //
 // relay_tree (the paper): along the homing tree to the nearest communication node, and down where that node
 // comes into reach. relay_chain: to the nearest of all landing places it knows, of whichever node. Places are
-// judged while it flies by: wherever a pose node is made, the ground near it is looked at once.
+// judged while it flies by: wherever a pose node is made, the ground near it is looked at once. It also
+// counts on robots that are on their way down and have claimed a place, if their batteries end before its
+// own.
 //
 // It lives where the map lives, on the map lane.
 #pragma once
@@ -23,6 +25,7 @@ namespace karst::core {
 struct LandingSpot {
   Vec3 hover = Vec3::Zero(), ground = Vec3::Zero();  // straight below
   RobotId node = kBase;                              // that it counts on
+  bool claimed = false;                              // the node is yet to land there
   double length_m = 0, time_s = 0;
 };
 
@@ -33,6 +36,7 @@ struct TeamNews {
   std::vector<Relay> relays;
   std::vector<Vec3> taken;  // ground that others stand on or claim
   std::vector<Vec3> goals;  // that others claim
+  TimeNs ends = 0;          // its own battery, by the team's clock
 };
 
 class RelayHoming {
@@ -63,6 +67,7 @@ class RelayHoming {
   struct Place {
     Vec3 hover, ground;
     std::optional<RobotId> node;  // in reach by the map
+    bool claimed = false;
   };
 
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);

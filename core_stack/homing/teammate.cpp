@@ -11,9 +11,11 @@ constexpr double kGoodQuality = 0.2;       // of a link to land by: gossip copes
 constexpr double kAntenna_m = 0.3;         // above the ground, of a landed robot
 constexpr TimeNs kStateAge = 3 * kSecond;  // of a position to keep apart from
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
+constexpr double kNear_m = 20.0;  // another vehicle in the air: positions are told more often
 
 bool in_the_air(TeamPhase p) {
-  return p == TeamPhase::explore || p == TeamPhase::home || p == TeamPhase::landing;
+  return p == TeamPhase::explore || p == TeamPhase::home || p == TeamPhase::landing ||
+         p == TeamPhase::aside || p == TeamPhase::boxed;
 }
 
 }  // namespace
@@ -46,6 +48,10 @@ std::vector<Bytes> Teammate::speak(TimeNs now) {
   TeamState own = gossip_.told_state();
   own.stamp = now;
   gossip_.set_state(own);
+  const std::vector<Neighbour> others = in_the_air(own.phase) ? neighbours(now) : std::vector<Neighbour>{};
+  gossip_.hurry(std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
+    return (o.position - own.position).norm() < kNear_m;
+  }));
   std::vector<Bytes> frames = gossip_.send(now);
   own.robot = self();
   own.heard = gossip_.contacts(now);
@@ -113,6 +119,14 @@ std::vector<Relay> Teammate::relays() const {
     if (stamp && graph_.reaches_base(*stamp, r))
       out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
   }
+  for (const TeamState& s : gossip_.states()) {
+    const auto& claim = landings_[s.robot];
+    if (s.robot == self() || s.robot == kBase || !in_the_air(s.phase) || !claim ||
+        claim->state != LandingClaim::State::claimed)
+      continue;
+    out.push_back({s.robot, claim->ground + Vec3(0, 0, kAntenna_m), claim->hover,
+                   s.stamp + from_seconds(s.seconds_left)});
+  }
   return out;
 }
 
@@ -130,8 +144,7 @@ std::vector<Neighbour> Teammate::neighbours(TimeNs now) const {
   for (const TeamState& s : gossip_.states()) {
     if (s.robot == kBase || s.robot == self() || now - s.stamp > kStateAge || !in_the_air(s.phase)) continue;
     const double age_s = std::max(0.0, seconds(now - s.stamp));
-    out.push_back(
-        {s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase == TeamPhase::landing});
+    out.push_back({s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase, age_s});
   }
   return out;
 }

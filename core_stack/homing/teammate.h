@@ -14,6 +14,7 @@ namespace karst::core {
 struct Relay {
   RobotId robot = 0;
   Vec3 antenna = Vec3::Zero(), hover = Vec3::Zero();
+  std::optional<TimeNs> stands_by{};  // it is yet to land there: then its battery ends
 };
 
 class Teammate {
@@ -32,7 +33,8 @@ class Teammate {
   void publish(const Record& record);
 
   // What it knows.
-  /// Communication nodes that reached the base when last heard of, and are not told dead; the base first.
+  /// Communication nodes that reached the base when last heard of, and are not told dead; the base first, and
+  /// last those that have claimed a place and are on the way there.
   std::vector<Relay> relays() const;
   /// It hears somebody who reaches the base well enough to land by.
   bool hears_base(TimeNs now) const;

@@ -66,6 +66,12 @@ struct RoundResult {
   double decide_ms = 0, plan_ms = 0;       // wall clock, for timing.json only
 };
 
+/// Where a vehicle waits for another.
+struct Refuge {
+  Vec3 place = Vec3::Zero();
+  bool others_get_by = false;
+};
+
 struct HomeEstimate {
   double length_m = 0, time_s = 0;
 };
@@ -111,10 +117,11 @@ class Explorer {
   std::optional<LandingSpot> landing_spot(const Vec3& from, double way_come_m);
   /// It landed below `hover`: what to tell.
   TreeFacts land(const Vec3& hover, TimeNs team_time);
-  /// The nearest place on the way come where another vehicle gets by one that hovers there, `apart_m` from
-  /// all others.
-  std::optional<Vec3> lay_by(const std::vector<Vec3>& flown, const std::vector<Neighbour>& others,
-                             double apart_m) const;
+  /// Where it makes room for another vehicle: the nearest place that it comes to before the other, and where
+  /// the other gets by; else as far back along the way come as it stays ahead of the other. Not near places
+  /// `in_vain`; of these two are enough to look for no further ones.
+  std::optional<Refuge> refuge(const Vec3& from, const std::vector<Vec3>& flown, const Vec3& other,
+                               const std::vector<Vec3>& in_vain);
 
   const VoxelMap& map() const { return map_; }
   const Vec3& home() const { return home_; }

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core_stack/common/executive.h"
+#include "core_stack/homing/encounter.h"
+#include "core_stack/mapping/moving_bodies.h"
 #include "core_stack/mission/explorer.h"
 #include "core_stack/mission/flight.h"
 #include "core_stack/mission/recorder.h"
@@ -57,6 +59,8 @@ class MissionControl final : public VehicleSink {
   bool advance(TimeNs until);
   MissionResult end();
   Phase phase() const { return phase_; }
+  /// Why it went home; empty until then.
+  const std::string& homing_reason() const { return homing_reason_; }
 
   void on_lidar(std::shared_ptr<const LidarScan> scan) override;
   void on_depth(std::shared_ptr<const DepthImage> image) override;
@@ -142,7 +146,9 @@ class MissionControl final : public VehicleSink {
   void confirm_landing();
   void give_up_landing(const std::string& reason);
   void keep_apart();
-  void step_aside(const std::vector<Neighbour>& others);
+  void make_room(const Neighbour& other);
+  std::vector<MovingBody> others_at(TimeNs stamp) const;
+  bool in_company() const;
   bool airspace_clear() const;
   void claim_goal(const std::optional<Goal>& goal);
   void become_relay();
@@ -193,16 +199,19 @@ class MissionControl final : public VehicleSink {
   std::vector<Vec3> flown_;   // the way come, a pose every quarter of a metre
   double flown_m_ = 0;
   double home_distance_m_ = 0;
+  std::string homing_reason_;
   int home_failures_ = 0;
   bool home_planning_ = false;
   bool flying_as_come_ = false;  // back along the poses flown: only what it would touch stops it
 
   // In a team.
-  std::optional<LandingSpot> landing_;      // where it will be a relay; without, it lands at its start
-  std::optional<TimeNs> unheard_since_;     // it hovers there and hears nobody who reaches the base
-  std::optional<TimeNs> giving_way_since_;  // it holds for another vehicle
-  TimeNs stepped_aside_ = 0;
-  bool stepping_aside_ = false;
+  std::optional<LandingSpot> landing_;   // where it will be a relay; without, it lands at its start
+  std::optional<TimeNs> unheard_since_;  // it hovers there and hears nobody who reaches the base
+  Encounter encounter_;                  // with another vehicle
+  Refuge refuge_;                        // where it last made room
+  std::vector<Vec3> refuges_in_vain_;    // the other did not get by there
+  bool planning_aside_ = false;
+  TimeNs home_retry_ = 0;  // no way home, with another vehicle near: it is asked for again then
 
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;

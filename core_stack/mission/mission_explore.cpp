@@ -85,7 +85,7 @@ void MissionControl::explore() {
     next_goal_.reset();
     append_tried_ = false;
   }
-  if (giving_way_since_) return;
+  if (encounter_.holds()) return;
   watch_progress();
   if (round_running_ || verdict_.action == SafetyAction::brake) return;
   if (detour_due_ && !flight_.at_rest(now())) {
@@ -173,7 +173,7 @@ void MissionControl::on_round(const RoundInput& input, const RoundResult& result
   round_running_ = false;
   record_round(input, result);
   if (phase_ != Phase::explore || (path_blocked_ && !flight_.at_rest(now()))) return;
-  if (braked_since(input.now) || giving_way_since_)
+  if (braked_since(input.now) || encounter_.holds())
     return;  // the path begins where the vehicle will not come any more
 
   if (result.goal) {

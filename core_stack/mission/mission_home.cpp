@@ -14,6 +14,7 @@ constexpr int kMostHomeFailures = 3;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 constexpr TimeNs kPatience = 60 * kSecond;
+constexpr TimeNs kAgain = kSecond;
 
 }  // namespace
 
@@ -30,6 +31,7 @@ void MissionControl::begin_homing(const std::string& reason) {
       [this, events = std::exchange(events_, {}), stamp = now()] { explorer_.tell(events, stamp); }, [] {});
   detour_due_ = !path_blocked_;  // whatever is under way leads elsewhere
   enter(Phase::home, reason);
+  homing_reason_ = reason;
   if (team_) claim_goal(std::nullopt);
   if (team_ && team_->lands_as_relay()) choose_landing();
 }
@@ -59,7 +61,7 @@ void MissionControl::watch_battery() {
 
 void MissionControl::go_home() {
   if (home_planning_ || verdict_.action == SafetyAction::brake) return;
-  if (giving_way_since_) {
+  if (encounter_.holds()) {
     last_landmark_time_ = now();
     return;
   }
@@ -69,7 +71,7 @@ void MissionControl::go_home() {
     enter(Phase::land, "");
   } else if (path_blocked_ || detour_due_ || (!at_home && flight_.at_rest(now()))) {
     if (home_failures_ < kMostHomeFailures) {
-      plan_home_path();
+      if (now() >= home_retry_) plan_home_path();
     } else if (landing_) {
       give_up_landing("there is no way there");
     } else if (flight_.at_rest(now())) {
@@ -102,7 +104,10 @@ void MissionControl::plan_home_path() {
         home_planning_ = false;
         if (phase_ != Phase::home || braked_since(begun)) return;
         if (!way->path.found()) {
-          ++home_failures_;
+          if (in_company())
+            home_retry_ = now() + kAgain;  // it makes room
+          else
+            ++home_failures_;
           path_blocked_ = true;
           detour_due_ = false;
           recorder_.event(now(), "log", {{"text", "no path home: " + way->path.reason}});

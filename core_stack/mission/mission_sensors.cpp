@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mapping/rays.h"
+#include "core_stack/mapping/moving_bodies.h"
 #include "core_stack/mission/mission_control.h"
 #include "core_stack/mission/picture_file.h"
 #include "core_stack/perception/intensity_filter.h"
@@ -72,16 +72,21 @@ void MissionControl::note_localization(const LoamPose& pose, bool accepted) {
 
 void MissionControl::map_scan(std::shared_ptr<const LidarScan> scan) {
   integrate([scan, history = flight_.estimator().history(), options = options_,
-             self_m = description_.radius_m + kSelfMargin_m] {
+             others = others_at(scan->stamp), self_m = description_.radius_m + kSelfMargin_m] {
     LidarScan filtered = *scan;
     filter_low_intensity(filtered, options.perception);
-    return to_rays(filtered, history, self_m, options.mission.mapping_range_m);
+    std::vector<Ray> rays = to_rays(filtered, history, self_m, options.mission.mapping_range_m);
+    leave_out(rays, others);
+    return rays;
   });
 }
 
 void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
-  integrate([image, history = flight_.estimator().history(), radius = description_.radius_m] {
-    return to_rays(*image, history, radius + kSelfMargin_m);
+  integrate([image, history = flight_.estimator().history(), others = others_at(image->stamp),
+             radius = description_.radius_m] {
+    std::vector<Ray> rays = to_rays(*image, history, radius + kSelfMargin_m);
+    leave_out(rays, others);
+    return rays;
   });
 }
 

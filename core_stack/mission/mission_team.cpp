@@ -11,10 +11,11 @@ namespace {
 constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
-constexpr TimeNs kPatience = 5 * kSecond;  // it stands and waits so long before it steps aside
-constexpr TimeNs kAsideAgain = 10 * kSecond;
 constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
-constexpr double kGoOn = 1.3;             // times the distance at which it stopped: then it goes on
+constexpr double kAtRefuge_m = 0.5;
+// Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
+// where they are differ by so much, and it may have changed its speed since it told it.
+constexpr double kAboutThere_m = 0.4, kMostStrayed_m = 1.5;
 
 nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -42,7 +43,7 @@ void MissionControl::report_state() {
   TeamState state;
   state.position = flight_.state().position;
   state.velocity_mps = flight_.state().velocity_mps;
-  state.phase = told(phase_);
+  state.phase = encounter_.told(told(phase_), now());
   state.seconds_left = std::max(0.0, seconds_left());
   team_->report(state, now());
 }
@@ -52,7 +53,7 @@ void MissionControl::share() {
   auto facts = std::make_shared<TreeFacts>();
   executive_.job(
       "team", Lane::map, kSharingBudget,
-      [this, facts, here = flight_.reference().position, news = team_->take_news(now())] {
+      [this, facts, here = flight_.reference().position, news = team_->take_news(now(), seconds_left())] {
         *facts = explorer_.share(here, news);
       },
       [this, facts] {
@@ -97,6 +98,7 @@ void MissionControl::choose_landing() {
                          {"ground", list(landing_->ground)},
                          {"hover", list(landing_->hover)},
                          {"node", landing_->node},
+                         {"node_claimed", landing_->claimed},
                          {"distance", landing_->length_m},
                          {"seconds_needed", landing_->time_s},
                          {"seconds_left", seconds_left()}});
@@ -122,7 +124,9 @@ void MissionControl::confirm_landing() {
   }
   if (!unheard_since_) unheard_since_ = now();
   if (now() - *unheard_since_ < kUnheard) return;
-  if (seconds_left() < options_.mission.home_reserve_s) {
+  const bool time_left = seconds_left() > options_.mission.home_reserve_s;
+  if (time_left && landing_->claimed && team_->lands_soon(landing_->node)) return;  // it waits for that one
+  if (!time_left) {
     enter(Phase::land, "out of contact, but there is no time for another place");
     return;
   }
@@ -137,57 +141,99 @@ bool MissionControl::airspace_clear() const {
   });
 }
 
+/// Where the others are that move, at `stamp`: those that stand, aside or landed, are obstacles like any
+/// other.
+std::vector<MovingBody> MissionControl::others_at(TimeNs stamp) const {
+  std::vector<MovingBody> out;
+  if (!team_) return out;
+  for (const Neighbour& o : team_->neighbours(now())) {
+    if (o.phase == TeamPhase::aside) continue;
+    const double strayed_m =
+        std::min(0.5 * options_.motion.max_acceleration_mps2 * o.age_s * o.age_s, kMostStrayed_m);
+    out.push_back({o.position - seconds(now() - stamp) * o.velocity_mps,
+                   description_.radius_m + kAboutThere_m + strayed_m});
+  }
+  return out;
+}
+
+/// Another flies near: what is in the way may be gone in a moment.
+bool MissionControl::in_company() const {
+  if (!team_) return false;
+  const std::vector<Neighbour> others = team_->neighbours(now());
+  return std::any_of(others.begin(), others.end(), [this](const Neighbour& o) {
+    return (o.position - flight_.state().position).norm() < 3 * team_->options().keep_apart_m;
+  });
+}
+
 void MissionControl::keep_apart() {
-  if (phase_ != Phase::explore && phase_ != Phase::home) {
-    giving_way_since_.reset();
-    return;
+  if (phase_ != Phase::explore && phase_ != Phase::home) return encounter_.forget();
+  if (encounter_.on_the_way() && !planning_aside_ && flight_.at_rest(now())) {
+    const bool there = (flight_.reference().position - refuge_.place).norm() < kAtRefuge_m;
+    encounter_.arrived(there && refuge_.others_get_by, now());
+    recorder_.event(now(), "team", {{"action", "wait"}, {"others_get_by", there && refuge_.others_get_by}});
   }
-  KeepApart rule{.distance_m = team_->options().keep_apart_m};
-  if (giving_way_since_) rule.distance_m *= kGoOn;
   const State& s = flight_.state();
-  const std::vector<Neighbour> before =
-      give_way_to(rule, team_->self(), s.position, s.velocity_mps, team_->neighbours(now()));
-  if (before.empty()) {
-    if (!giving_way_since_) return;
-    recorder_.event(now(), "team", {{"action", "go on"}});
-    giving_way_since_.reset();
+  const std::vector<Neighbour> others = team_->neighbours(now());
+  const bool held = encounter_.holds();
+  const RobotId held_for = encounter_.with();
+  const auto action = encounter_.update({.distance_m = team_->options().keep_apart_m},
+                                        {team_->self(), s.position, s.velocity_mps, told(phase_)}, others,
+                                        now(), flight_.at_rest(now()));
+  if (held && (!encounter_.holds() || encounter_.with() != held_for)) {
+    recorder_.event(now(), "team", {{"action", "go on"}, {"robot", held_for}});
+    refuges_in_vain_.clear();
     path_blocked_ = true;  // from wherever that led: a new way is due
-    if (!flight_.at_rest(now())) brake();
-    return;
+    if (!encounter_.holds() && !flight_.at_rest(now())) brake();
   }
-  if (!giving_way_since_) {
-    giving_way_since_ = now();
-    recorder_.event(now(), "team", {{"action", "give way"}, {"robot", before.front().robot}});
+  if (encounter_.holds() && (!held || encounter_.with() != held_for)) {
+    recorder_.event(now(), "team", {{"action", "give way"}, {"robot", encounter_.with()}});
     drop_next_goal(PolicyEvent::Kind::goal_superseded, "another vehicle is in the way");
     path_blocked_ = true;
     if (!flight_.at_rest(now())) brake();
-  } else if (now() - *giving_way_since_ > kPatience && now() - stepped_aside_ > kAsideAgain &&
-             !stepping_aside_ && flight_.at_rest(now())) {
-    step_aside(before);
   }
+  if (action != Encounter::Action::make_room || planning_aside_) return;
+  const auto other = std::find_if(others.begin(), others.end(),
+                                  [this](const Neighbour& o) { return o.robot == encounter_.with(); });
+  if (other != others.end()) make_room(*other);
 }
 
-/// Back along the way come to where another gets by.
-void MissionControl::step_aside(const std::vector<Neighbour>& others) {
-  stepping_aside_ = true;
-  stepped_aside_ = now();
+/// To where the other gets by, or before it back along the way come.
+void MissionControl::make_room(const Neighbour& other) {
+  planning_aside_ = true;
+  if (encounter_.told(TeamPhase::explore, now()) == TeamPhase::aside)
+    refuges_in_vain_.push_back(refuge_.place);  // it waits there, and the other does not get by
   const TimeNs start = now() + kAsideBudget;
   auto way = std::make_shared<Route>();
+  auto refuge = std::make_shared<std::optional<Refuge>>();
   executive_.job(
-      "step aside", Lane::map, kAsideBudget,
-      [this, way, start, others, lead = flight_.until_stop(start), limits = flight_.limits(0), flown = flown_,
-       apart_m = team_->options().keep_apart_m, narrow = narrow_places_] {
-        const auto place = explorer_.lay_by(flown, others, apart_m);
-        if (!place) return;
-        way->path = explorer_.plan_to(lead.points.back(), *place);
+      "make room", Lane::map, kAsideBudget,
+      [this, way, refuge, start, other, lead = flight_.until_stop(start), limits = flight_.limits(0),
+       flown = flown_, in_vain = refuges_in_vain_, narrow = narrow_places_] {
+        const Vec3& from = lead.points.back();
+        *refuge = explorer_.refuge(from, flown, other.position, in_vain);
+        if (!*refuge || ((*refuge)->place - from).norm() < 1e-3) return;
+        way->path = explorer_.plan_to(from, (*refuge)->place);
         if (way->path.found())
           *way = route(lead, way->path, std::nullopt, std::nullopt, start, kMostCut_m, limits, narrow);
+        else
+          refuge->reset();
       },
-      [this, way, begun = now()] {
-        stepping_aside_ = false;
-        if (!giving_way_since_ || !way->path.found() || braked_since(begun)) return;
-        recorder_.event(now(), "team", {{"action", "step aside"}, {"to", list(way->path.points.back())}});
-        follow(*way);
+      [this, way, refuge, begun = now()] {
+        planning_aside_ = false;
+        if (!encounter_.holds() || braked_since(begun)) return;
+        if (!*refuge) {
+          encounter_.no_room(now());
+          recorder_.event(now(), "team", {{"action", "no room"}, {"robot", encounter_.with()}});
+          return;
+        }
+        refuge_ = **refuge;
+        encounter_.set_out();
+        recorder_.event(now(), "team",
+                        {{"action", "make room"},
+                         {"robot", encounter_.with()},
+                         {"to", list(refuge_.place)},
+                         {"others_get_by", refuge_.others_get_by}});
+        if (way->path.found()) follow(*way);
       });
 }
 

@@ -50,6 +50,7 @@ struct TeamMission::Robot {
   std::optional<TimeNs> ended_at;
   Phase phase = Phase::standby;  // as last noted
   TimeNs explored_for = 0;
+  std::string homing_reason;
   bool silent = false;
 };
 
@@ -150,6 +151,7 @@ void TeamMission::note_phases(TimeNs now) {
     if (phase == robot->phase || (phase == Phase::done && !robot->ended))
       continue;  // it ends with its next step
     robot->phase = phase;
+    if (robot->control) robot->homing_reason = robot->control->homing_reason();
     log_.event(now, "phase", {{"robot", robot->id}, {"phase", name_of(phase)}});
     if (phase != Phase::done) continue;
     const auto& claim = robot->mate.landing_of(robot->id);
@@ -212,6 +214,7 @@ TeamResult TeamMission::result(TimeNs now) {
     r.start_s = seconds(robot->starts_at);
     r.end_s = seconds(robot->ended_at.value_or(now));
     r.exploration_time_s = seconds(robot->explored_for);
+    r.homing_reason = robot->homing_reason;
     r.battery_left = robot->status.battery_fraction;
     r.connected = std::find(connected.begin(), connected.end(), robot->id) != connected.end();
     r.records = robot->mate.gossip().held(robot->id).first();

@@ -26,6 +26,7 @@ struct RobotResult {
   MissionResult mission;
   double start_s = 0, end_s = 0;  // team's time
   double exploration_time_s = 0;  // before homing
+  std::string homing_reason;      // why that ended
   double battery_left = 0;        // share
   bool connected = false;         // to the base over the relay graph at the end, as the base knows
   std::uint32_t records = 0, records_at_base = 0;  // that it told; that the base holds

@@ -22,9 +22,18 @@ class Teamwork {
     mate_->set_state(state);
   }
   /// What was heard since the last call.
-  TeamNews take_news(TimeNs now) {
-    return {team_time(now), mate_->take_facts(), mate_->relays(), mate_->taken_ground(),
-            mate_->claimed_goals(team_time(now))};
+  TeamNews take_news(TimeNs now, double seconds_left) {
+    return {team_time(now),
+            mate_->take_facts(),
+            mate_->relays(),
+            mate_->taken_ground(),
+            mate_->claimed_goals(team_time(now)),
+            team_time(now) + from_seconds(seconds_left)};
+  }
+  /// That robot has claimed a landing place, and is not there yet as far as is known.
+  bool lands_soon(RobotId robot) const {
+    const auto& claim = mate_->landing_of(robot);
+    return claim && claim->state == LandingClaim::State::claimed;
   }
   void publish(const Record& record) { mate_->publish(record); }
   bool hears_base(TimeNs now) const { return mate_->hears_base(team_time(now)); }

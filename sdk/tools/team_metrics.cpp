@@ -71,6 +71,7 @@ ordered_json team_metrics(const Mission& mission, const core::TeamResult& result
                            {"start_s", rounded(r.start_s)},
                            {"end_s", rounded(r.end_s)},
                            {"exploration_time_s", rounded(r.exploration_time_s)},
+                           {"homing_reason", r.homing_reason},
                            {"battery_left", rounded(r.battery_left)},
                            {"connected", r.connected},
                            {"records", r.records},

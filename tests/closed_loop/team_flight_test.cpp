@@ -107,6 +107,27 @@ TEST(Team, ReturnsToTheBaseWhereThatIsTheStrategy) {
   expect_all_well(fly(passage(folder), folder / "run", team_of(3, "return_to_base")), 3);
 }
 
+/// Robot 1 goes home while robot 2 comes towards it, where two have no room side by side but near the walls.
+TEST(Team, GetsByEachOtherInANarrowPassage) {
+  const auto folder = fresh_folder("team_narrow");
+  const std::string cave =
+      draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -1.5, 0}, {90, 1.5, 3}}}, {0, 0, 1});
+  const Flown f =
+      fly(cave, folder / "run",
+          team_of(2, "return_to_base", "--set radio.range=30m --set homing.landing.link.range=30m"));
+  expect_all_well(f, 2);
+  double met_m = 1e9;
+  std::array<double, 2> farthest_m{};
+  for (const json& e : f.truth) {
+    if (e["kind"] != "radio") continue;
+    const double x[] = {e["positions"][1][0], e["positions"][2][0]};  // behind the base's
+    for (std::size_t i = 0; i < 2; ++i) farthest_m[i] = std::max(farthest_m[i], x[i]);
+    if (x[0] > 5 && x[1] > 5) met_m = std::min(met_m, std::abs(x[0] - x[1]));
+  }
+  EXPECT_LT(met_m, 8) << "they did not meet in the passage: this shows nothing";
+  EXPECT_GT(farthest_m[1], 25) << "robot 2 did not get on";
+}
+
 TEST(Team, ByThePapersTreeLandsConnected) {
   const auto folder = fresh_folder("team_tree");
   expect_all_well(fly(passage(folder), folder / "run", team_of(2, "relay_tree")), 2);

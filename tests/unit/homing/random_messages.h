@@ -55,7 +55,7 @@ inline TeamState random_state(Random& r) {
   s.robot = static_cast<RobotId>(below(r, kMostRobots));
   s.stamp = random_time(r), s.position = random_place(r), s.velocity_mps = random_place(r) / 1000;
   s.velocity_mps = (s.velocity_mps * 100).array().round() / 100;
-  s.phase = static_cast<TeamPhase>(below(r, 7));
+  s.phase = static_cast<TeamPhase>(below(r, 9));
   s.seconds_left = below(r, 65536);
   for (std::uint32_t n = below(r, 6); n > 0; --n)
     s.heard.push_back({static_cast<RobotId>(below(r, kMostRobots)), below(r, 256) / 255.0});

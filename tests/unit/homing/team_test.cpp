@@ -1,4 +1,4 @@
-// The rules of a team: when to turn home, who gives way, and what a robot makes of what it heard.
+// The rules of a team: when to turn home, and what a robot makes of what it heard.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -57,36 +57,6 @@ TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
   team.lost_robot = 0;
   homing.tree.longest_edge_m = homing.tree.least_edge_m;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError);
-}
-
-RC_GTEST_PROP(KeepApart, OfTwoThatAreTooNearOneAtLeastStops, ()) {
-  const auto coordinate = [] { return 0.01 * *rc::gen::inRange(-800, 800); };
-  const auto speed = [] { return 0.01 * *rc::gen::inRange(-200, 200); };
-  const Vec3 p1(coordinate(), coordinate(), coordinate()), p2(coordinate(), coordinate(), coordinate());
-  const Vec3 v1(speed(), speed(), speed()), v2(speed(), speed(), speed());
-  const KeepApart rule;
-  const bool first = !give_way_to(rule, 1, p1, v1, {{2, p2, v2, false}}).empty();
-  const bool second = !give_way_to(rule, 2, p2, v2, {{1, p1, v1, false}}).empty();
-  const bool too_near = (p1 - p2).norm() < least_distance_m(rule, p1, v1, {2, p2, v2, false});
-  RC_ASSERT(second == too_near);                                // the higher number always gives way,
-  RC_ASSERT(!first || too_near);                                // the lower never without need,
-  RC_ASSERT(!first || (p1 - p2).norm() < rule.distance_m / 2);  // and only when very near
-}
-
-TEST(KeepApart, AllGiveWayToOneThatLands) {
-  const std::vector<Neighbour> landing{{5, {2, 0, 0}, {0, 0, -0.4}, true}};
-  EXPECT_EQ(give_way_to({}, 1, Vec3::Zero(), Vec3::Zero(), landing).size(), 1u);
-  const std::vector<Neighbour> hovering{{5, {2, 0, 0}, Vec3::Zero(), false}};
-  EXPECT_TRUE(give_way_to({}, 1, Vec3::Zero(), Vec3::Zero(), hovering).empty());
-}
-
-TEST(KeepApart, LeavesTheRoomThatBothNeedToStop) {
-  const KeepApart rule{.distance_m = 3, .reaction_s = 1.5, .brake_mps2 = 1};
-  // Head on at 1.2 m/s each: 2.4 m/s for 1.5 s, and 2.4^2 / 2 to brake.
-  EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {1.2, 0, 0}, {1, {9, 0, 0}, {-1.2, 0, 0}, false}),
-              3 + 2.4 * 1.5 + 2.88, 1e-9);
-  EXPECT_NEAR(least_distance_m(rule, Vec3::Zero(), {-1.2, 0, 0}, {1, {9, 0, 0}, Vec3::Zero(), false}), 3,
-              1e-9);
 }
 
 /// Teammates that hear each other as `linked` says.
@@ -170,6 +140,24 @@ TEST(Teammate, WithALandedRelayThatTheBaseCannotHearDoesNotCountOnIt) {
   EXPECT_FALSE(team.mates[2].hears_base(team.now));
 }
 
+TEST(Teammate, CountsLastOnOneThatIsOnItsWayToAClaimedPlace) {
+  Team team(2);
+  team.states[1].phase = TeamPhase::home;
+  team.states[1].seconds_left = 80;
+  team.run(1);
+  team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+  team.run(5);
+  std::vector<Relay> relays = team.mates[2].relays();
+  ASSERT_EQ(relays.size(), 2u);
+  EXPECT_FALSE(relays[0].stands_by);
+  EXPECT_EQ(relays[1].robot, 1);
+  ASSERT_TRUE(relays[1].stands_by);
+  EXPECT_NEAR(seconds(*relays[1].stands_by - team.now), 80, 2);
+  team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::given_up});
+  team.run(5);
+  EXPECT_EQ(team.mates[2].relays().size(), 1u);
+}
+
 TEST(Teammate, OfTwoThatClaimOnePlaceTheLaterIsOverruled) {
   Team team(2);
   team.run(1);
@@ -204,6 +192,7 @@ TEST(Teammate, SeesVehiclesInTheAirWhereTheyShouldBeByNow) {
   EXPECT_EQ(others[0].robot, 1);
   EXPECT_GE(others[0].position.x(), 1.0);
   EXPECT_LE(others[0].position.x(), 2.5);  // told at most a period and a half ago
+  EXPECT_GE(others[0].age_s, 1.0);
   EXPECT_TRUE(team.mates[2].neighbours(team.now + 10 * kSecond).empty());
 }
 
