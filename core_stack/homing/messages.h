@@ -59,9 +59,9 @@ struct LandingClaim {
 struct ObjectSeen {
   TimeNs stamp = 0;
   std::uint32_t object = 0;  // the finder's own number for it
-  std::uint8_t kind = 0;
+  std::uint8_t kind = 0;     // ObjectKind; 0: taken back, it is another one of the finder's numbers
   Vec3 position = Vec3::Zero();
-  double deviation_m = 0;  // standard deviation, 0 to 25.5 m
+  double deviation_m = 0;  // root of the squared distance to be expected, 0 to 25.5 m
 };
 /// "I hold the first `records` records of each of these": said by the base, so that finders know what
 /// arrived.

@@ -59,9 +59,10 @@ std::vector<Bytes> Teammate::speak(TimeNs now) {
   return frames;
 }
 
-void Teammate::publish(const Record& record) {
-  gossip_.publish(record);
+std::uint32_t Teammate::publish(const Record& record) {
+  const std::uint32_t number = gossip_.publish(record);
   take({self(), 0, record});
+  return number;
 }
 
 void Teammate::take(const Delivery& d) {
@@ -77,6 +78,8 @@ void Teammate::take(const Delivery& d) {
     if (newer(goals_[d.author], *goal)) goals_[d.author] = *goal;
   } else if (const auto* landing = std::get_if<LandingClaim>(&d.record)) {
     if (newer(landings_[d.author], *landing)) landings_[d.author] = *landing;
+  } else if (const auto* object = std::get_if<ObjectSeen>(&d.record)) {
+    note(objects_, d.author, *object);
   }
   if (!std::holds_alternative<Receipt>(d.record)) news_for_receipt_ = true;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core_stack/homing/keep_apart.h"
+#include "core_stack/homing/team_objects.h"
 #include "core_stack/homing/team_options.h"
 
 namespace karst::core {
@@ -30,7 +31,8 @@ class Teammate {
 
   // What it has to say.
   void set_state(const TeamState& state) { gossip_.set_state(state); }
-  void publish(const Record& record);
+  /// Returns the record's number, 0 if it could not be written.
+  std::uint32_t publish(const Record& record);
 
   // What it knows.
   /// Communication nodes that reached the base when last heard of, and are not told dead; the base first, and
@@ -48,6 +50,8 @@ class Teammate {
   bool overruled() const;
   /// Facts of the homing tree that others told since the last call.
   TreeFacts take_facts();
+  /// Objects of interest as their finders last told of them, its own among them.
+  const ToldObjects& objects() const { return objects_; }
 
   const Gossip& gossip() const { return gossip_; }
   const RelayGraph& graph() const { return graph_; }
@@ -66,6 +70,7 @@ class Teammate {
   Gossip gossip_;
   RelayGraph graph_;
   TreeFacts facts_;
+  ToldObjects objects_;
   std::array<std::optional<GoalClaim>, kMostRobots> goals_;
   std::array<std::optional<LandingClaim>, kMostRobots> landings_;
   std::array<std::optional<NodeId>, kMostRobots> nodes_;  // of robots that landed

@@ -56,7 +56,8 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       team_(team),
       flight_(options, description_),
       safety_(options.safety),
-      explorer_(options, description_, policy) {
+      explorer_(options, description_, policy),
+      objects_(options.objects) {
   if (description_.lidar && options.localization.source == "lidar")
     loam_.emplace(options.localization.loam, description_.T_world_start);
   battery_.seconds_left = options.mission.max_flight_time_s;
@@ -109,6 +110,7 @@ MissionResult MissionControl::end() {
   if (!result_) finish("aborted", "the vehicle did not come back within ten minutes after the time limit");
   if (team_) become_relay();
   vehicle_.finish();
+  if (description_.detects_objects) write_objects();
   recorder_.final_map(explorer_.map());
   return *result_;
 }
@@ -116,6 +118,7 @@ MissionResult MissionControl::end() {
 void MissionControl::finish(const std::string& outcome, const std::string& reason) {
   if (result_) return;
   enter(Phase::done, reason);
+  settle_objects(outcome == "landed");
   recorder_.event(now(), "outcome",
                   {{"outcome", outcome}, {"reason", reason}, {"mass_kg", flight_.mass_kg()}});
   recorder_.flush();
@@ -189,6 +192,7 @@ void MissionControl::record() {
   }
   if (team_) report_state();
   if (team_ && has_taken_off_ && now() % kSecond == 0) share();
+  if (team_ && now() % kSecond == 0) note_objects_at_base(team_->known_at_base());
   if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
     begin_homing("the run directory cannot be written any more (disk full?)");
 }

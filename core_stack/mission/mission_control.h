@@ -4,6 +4,7 @@
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "core_stack/mission/flight.h"
 #include "core_stack/mission/recorder.h"
 #include "core_stack/mission/teamwork.h"
+#include "core_stack/objects/object_map.h"
 #include "core_stack/planning/polynomial_trajectory.h"
 
 namespace karst::core {
@@ -65,6 +67,7 @@ class MissionControl final : public VehicleSink {
   void on_lidar(std::shared_ptr<const LidarScan> scan) override;
   void on_depth(std::shared_ptr<const DepthImage> image) override;
   void on_rgb(std::shared_ptr<const RgbFrame> frame) override;
+  void on_objects(const ObjectDetections& look) override;
   // What is stamped later than now is of a clock gone wrong: taken in, it would make all that follows look
   // old.
   void on_imu(const ImuSample& s) override {
@@ -110,6 +113,12 @@ class MissionControl final : public VehicleSink {
     SlowPlaces slow;
     std::optional<PolynomialTrajectory> polynomial;  // along the points, if the mission flies those
   };
+
+  // Objects of interest.
+  void tell_objects(bool all);
+  void note_objects_at_base(std::uint32_t records_at_base);
+  void settle_objects(bool landed);
+  void write_objects();
 
   // Exploring.
   void explore();
@@ -203,6 +212,9 @@ class MissionControl final : public VehicleSink {
   int home_failures_ = 0;
   bool home_planning_ = false;
   bool flying_as_come_ = false;  // back along the poses flown: only what it would touch stops it
+
+  ObjectMap objects_;
+  std::map<std::uint32_t, std::uint32_t> records_;  // by object: that told of it first, until the base knows
 
   // In a team.
   std::optional<LandingSpot> landing_;   // where it will be a relay; without, it lands at its start

@@ -35,6 +35,7 @@ void describe(OptionTable& t, CoreOptions& o) {
   t.section("frontiers", o.frontiers);
   t.section("perception", o.perception);
   t.section("localization", o.localization);
+  t.section("objects", o.objects);
   t.section("planning", o.planning);
   t.section("motion", o.motion);
   t.section("tracker", o.tracker);

@@ -7,6 +7,7 @@
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mapping/voxel_map.h"
 #include "core_stack/mission/safety.h"
+#include "core_stack/objects/object_options.h"
 #include "core_stack/perception/intensity_filter.h"
 #include "core_stack/planning/path.h"
 #include "core_stack/planning/trajectory.h"
@@ -38,6 +39,7 @@ struct CoreOptions {
   FrontierOptions frontiers;
   IntensityFilterOptions perception;
   LocalizationOptions localization;
+  ObjectOptions objects;
   PlanningOptions planning;
   MotionLimits motion;
   MpcOptions tracker;

@@ -98,6 +98,10 @@ void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& fi
                        c.height / 2.0 / std::tan(c.vertical_fov_rad / 2), c.width / 2.0, c.height / 2.0);
 }
 
+void Recorder::objects(const nlohmann::ordered_json& objects) {
+  open(directory_ / "objects.json") << json_text(objects, 2) << '\n';
+}
+
 void Recorder::decision_cost(TimeNs t, double decide_ms, double plan_ms) {
   decisions_ << formatted("%.2f,%.3f,%.3f\n", seconds(t), decide_ms, plan_ms);
 }

@@ -47,6 +47,8 @@ class Recorder {
   /// A line of frames.csv, made with the first; `file` is relative to the directory, "" if no picture is
   /// kept.
   void frame(const RgbFrame& frame, const Pose& T_world_camera, const std::string& file);
+  /// objects.json: objects of interest as known at the end.
+  void objects(const nlohmann::ordered_json& objects);
   /// Wall-clock costs of a decision, apart from what must replay byte for byte.
   void decision_cost(TimeNs t, double decide_ms, double plan_ms);
   /// Final map in all its formats.

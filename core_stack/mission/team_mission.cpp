@@ -138,6 +138,8 @@ void TeamMission::talk(TimeNs now) {
   each([&](Teammate& mate, std::size_t radio) {
     for (const auto& bytes : vehicles_.receive(radio, now)) mate.hear(bytes, now);
   });
+  for (const auto& robot : robots_) object_log_.robot(now, robot->mate, log_);
+  object_log_.base(now, base_, log_);
   if (now % kBaseLogPeriod == 0) {
     log_.base(now, base_);
     log_.flush();
@@ -222,6 +224,7 @@ TeamResult TeamMission::result(TimeNs now) {
     out.robots.push_back(r);
   }
   log_.base(now, base_);
+  if (!base_.objects().empty()) log_.event(now, "objects", {{"known", list_of(merged(base_.objects()))}});
   log_.traffic(now, kBase, vehicles_.traffic(kBase), base_.gossip().counts());
   for (const auto& robot : robots_)
     log_.traffic(now, robot->id, vehicles_.traffic(robot->id), robot->mate.gossip().counts());

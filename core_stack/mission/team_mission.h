@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core_stack/mission/mission_control.h"
+#include "core_stack/mission/object_log.h"
 #include "core_stack/mission/team_log.h"
 #include "core_stack/vehicle/team_vehicles.h"
 
@@ -71,6 +72,7 @@ class TeamMission {
   Teammate base_;
   std::vector<std::unique_ptr<Robot>> robots_;
   TeamLog log_;
+  ObjectLog object_log_;
 };
 
 }  // namespace karst::core

@@ -35,7 +35,10 @@ class Teamwork {
     const auto& claim = mate_->landing_of(robot);
     return claim && claim->state == LandingClaim::State::claimed;
   }
-  void publish(const Record& record) { mate_->publish(record); }
+  std::uint32_t publish(const Record& record) { return mate_->publish(record); }
+  /// How many of its own records the base is known to hold.
+  std::uint32_t known_at_base() const { return mate_->gossip().known_at_base(); }
+  std::vector<TeamObject> objects() const { return merged(mate_->objects()); }
   bool hears_base(TimeNs now) const { return mate_->hears_base(team_time(now)); }
   bool overruled() const { return mate_->overruled(); }
   std::vector<Neighbour> neighbours(TimeNs now) const { return mate_->neighbours(team_time(now)); }

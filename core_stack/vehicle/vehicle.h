@@ -7,6 +7,7 @@
 #include "core_stack/common/executive.h"
 #include "core_stack/common/options.h"
 #include "core_stack/vehicle/messages.h"
+#include "core_stack/vehicle/object_detection.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
 
 namespace karst::core {
@@ -22,6 +23,7 @@ struct VehicleDescription {
   std::vector<std::shared_ptr<const CameraModel>> cameras;
   std::shared_ptr<const RgbCameraModel> rgb;  // null: none
   bool pose_sensor = false;                   // its poses come by themselves
+  bool detects_objects = false;               // it looks for objects of interest
   Pose T_world_start;          // the pose it stands at before take-off, in the mission's world frame
   std::string implementation;  // what else its measurements depend on, for the record: "Embree 3, isa=avx2"
 };
@@ -33,6 +35,7 @@ class VehicleSink {
   virtual void on_lidar(std::shared_ptr<const LidarScan>) = 0;
   virtual void on_depth(std::shared_ptr<const DepthImage>) = 0;
   virtual void on_rgb(std::shared_ptr<const RgbFrame>) {}
+  virtual void on_objects(const ObjectDetections&) {}
   virtual void on_imu(const ImuSample&) = 0;
   virtual void on_magnetometer(const MagnetometerSample&) = 0;
   virtual void on_barometer(const BarometerSample&) {}

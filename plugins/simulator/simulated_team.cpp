@@ -7,6 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/preflight.h"
+#include "plugins/simulator/object_placing.h"
 
 namespace karst::sim {
 
@@ -39,13 +40,14 @@ bool in_sight(const cave::RayScene& scene, const Vec3& a, const Vec3& b) {
   return scene.ray_cast(a, b - a, d) >= d;
 }
 
-cave::Cave cave_for_team(const core::VehicleSetup& setup) {
+cave::Cave cave_for_team(const ObjectOptions& objects, const core::VehicleSetup& setup) {
   cave::Cave cave = cave::load_cave(setup.cave, setup.start);
   for (const cave::LooseRock& rock : cave.description.boulders)
     if (rock.within_m > 0)
       throw InputError(cave.description.file, "boulder.within",
                        "a boulder that waits for a vehicle to come near cannot be flown by a team: it would "
                        "fall for each vehicle alone");
+  place_objects(cave, objects, setup.seed);
   return cave;
 }
 
@@ -84,7 +86,7 @@ bool touched(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, dou
 SimulatedTeam::SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio,
                              const core::TeamSetup& setup)
     : radius_m_(options.body.radius_m),
-      cave_(cave_for_team(setup.world)),
+      cave_(cave_for_team(options.objects, setup.world)),
       starts_(start_places(cave_, setup.seeds.size(), radius_m_, setup.world.climb_m)),
       radio_(radio, setup.world.seed) {
   radio_.place(0, base());

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "plugins/simulator/cave/preflight.h"
+#include "plugins/simulator/object_placing.h"
 
 namespace karst::sim {
 
@@ -44,6 +45,12 @@ std::vector<std::shared_ptr<const DepthCamera>> mount_cameras(const SimulatorOpt
   return cameras;
 }
 
+cave::Cave cave_with_objects(const SimulatorOptions& o, const core::VehicleSetup& setup) {
+  cave::Cave cave = cave::load_cave(setup.cave, setup.start);
+  place_objects(cave, o.objects, setup.seed);
+  return cave;
+}
+
 /// Mean rotation rate between two orientations, body frame.
 Vec3 mean_rate_radps(const core::Quat& from, const core::Quat& to, double dt_s) {
   core::Quat turn = from.conjugate() * to;
@@ -54,7 +61,7 @@ Vec3 mean_rate_radps(const core::Quat& from, const core::Quat& to, double dt_s) 
 }  // namespace
 
 SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup)
-    : SimulatedVehicle(options, setup, cave::load_cave(setup.cave, setup.start)) {}
+    : SimulatedVehicle(options, setup, cave_with_objects(options, setup)) {}
 
 SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup,
                                    const cave::Cave& cave, double cave_ahead_s)
@@ -71,6 +78,8 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       lidar_(options.vehicle == "camera_uav" ? nullptr : std::make_shared<const Lidar>(options.lidar)),
       cameras_(mount_cameras(options)),
       rgb_(options.rgb.fitted ? std::make_shared<const RgbCamera>(options.rgb) : nullptr),
+      detector_(options.objects, options.rgb),
+      looks_(cave_->description.objects.size(), 0),
       imu_(options.imu, Random::stream(setup.seed, "imu"), Random::stream(setup.seed, "vibration")),
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
       barometer_(options.barometer, Random::stream(setup.seed, "barometer")),
@@ -88,6 +97,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
   if (rgb_) description_.rgb = rgb_->model();
   description_.pose_sensor =
       options.pose.fitted == "always" || (options.pose.fitted == "without_lidar" && !lidar_);
+  description_.detects_objects = !looks_.empty() && (rgb_ || !cameras_.empty());
   description_.T_world_start = site_.T_world_start;
   description_.implementation = std::string("Embree ") + cave::RayScene::device_config();
 }
@@ -103,6 +113,8 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
     log_.event(
         now(), "start", quadrotor_.state(),
         std::string(site_.pad ? "on a launch pad" : "on the floor") + "; " + description_.implementation);
+    for (std::size_t i = 0; i < looks_.size(); ++i)
+      log_.object(now(), "placed", i + 1, cave_->description.objects[i]);
     log_truth();
     sink_->on_battery(quadrotor_.battery().status(now()));
     sink_->on_ground(now(), true);
@@ -232,6 +244,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
   if (faults_of(Sensor::camera).lost()) return;
   auto image = std::make_shared<core::DepthImage>();
   const auto& camera = cameras_[index];
+  look_for_objects(camera->model(), false);
   const std::string& name = camera->model()->name;
   executive_->job(
       "depth camera", Lane::sensing, kCameraBudget,
@@ -247,6 +260,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
 void SimulatedVehicle::take_picture() {
   if (faults_of(Sensor::camera).lost()) return;
   const core::Pose& T_world_body = quadrotor_.state().T_world_body;
+  look_for_objects({rgb_->model(), &rgb_->model()->camera}, true);
   log_.picture(now(), T_world_body * rgb_->model()->camera.T_body_camera, *rgb_->model());
   auto frame = std::make_shared<core::RgbFrame>(core::RgbFrame{now(), rgb_->model(), {}});
   const bool draw = rgb_->takes_pictures();
@@ -259,6 +273,26 @@ void SimulatedVehicle::take_picture() {
       [this, frame] {
         if (!lost_) sink_->on_rgb(frame);
       });
+}
+
+/// In the image that `camera` takes now. What is in view goes into the truth, what is recognized to the core.
+void SimulatedVehicle::look_for_objects(std::shared_ptr<const core::CameraModel> camera, bool lit) {
+  if (!description_.detects_objects) return;
+  const core::Pose T_world_camera = quadrotor_.state().T_world_body * camera->T_body_camera;
+  const std::string stream = "objects " + camera->name;
+  const std::vector<InView> in_view =
+      detector_.in_view(*seen_, T_world_camera, *camera, lit, air_for(stream).clouds);
+  for (const InView& o : in_view) {
+    const int looks = ++looks_[o.object];
+    if (looks == 1 || looks == kSeenAfter)
+      log_.object(now(), looks == 1 ? "in view" : "seen", o.object + 1, cave_->description.objects[o.object]);
+  }
+  core::ObjectDetections look{now(), camera, {}};
+  look.found = detector_.detect(*seen_, T_world_camera, *camera, lit, in_view, measurement_random(stream));
+  if (look.found.empty()) return;
+  executive_->at(now() + core::from_seconds(options_.objects.delay_s), [this, look] {
+    if (!lost_) sink_->on_objects(look);
+  });
 }
 
 void SimulatedVehicle::report_pose() {

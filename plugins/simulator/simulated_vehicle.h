@@ -9,6 +9,7 @@
 #include "core_stack/vehicle/vehicle.h"
 #include "plugins/simulator/launch_site.h"
 #include "plugins/simulator/loose_rocks.h"
+#include "plugins/simulator/object_detector.h"
 #include "plugins/simulator/quadrotor.h"
 #include "plugins/simulator/sensor_faults.h"
 #include "plugins/simulator/simulator_options.h"
@@ -20,7 +21,8 @@ class SimulatedVehicle final : public core::Vehicle {
  public:
   /// Throws InputError on a bad cave or start pose.
   SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup);
-  /// The same in a cave that is read already, whose time is ahead of the vehicle's own.
+  /// The same in a cave that is read already, with all its objects in it, whose time is ahead of the
+  /// vehicle's own.
   SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup, const cave::Cave& cave,
                    double cave_ahead_s = 0);
 
@@ -51,6 +53,7 @@ class SimulatedVehicle final : public core::Vehicle {
   void fire_lidar();
   void fire_camera(std::size_t index);
   void take_picture();
+  void look_for_objects(std::shared_ptr<const core::CameraModel> camera, bool lit);
   void report_pose();
   void move_rocks();
   void stir_air();
@@ -78,6 +81,8 @@ class SimulatedVehicle final : public core::Vehicle {
   std::shared_ptr<const Lidar> lidar_;
   std::vector<std::shared_ptr<const DepthCamera>> cameras_;
   std::shared_ptr<const RgbCamera> rgb_;
+  ObjectDetector detector_;
+  std::vector<int> looks_;  // for each object of the cave: images it was in view in
   Imu imu_;
   core::Random magnetometer_random_;
   Barometer barometer_;

@@ -13,6 +13,7 @@ void describe(core::OptionTable& t, SimulatorOptions& o) {
   t.section("lidar", o.lidar);
   t.section("camera", o.camera);
   t.section("rgb", o.rgb);
+  t.section("objects", o.objects);
   t.section("imu", o.imu);
   t.section("magnetometer", o.magnetometer);
   t.section("barometer", o.barometer);

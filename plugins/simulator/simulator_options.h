@@ -9,6 +9,7 @@
 #include "plugins/simulator/lidar.h"
 #include "plugins/simulator/magnetometer.h"
 #include "plugins/simulator/motors.h"
+#include "plugins/simulator/object_options.h"
 #include "plugins/simulator/pose_sensor.h"
 #include "plugins/simulator/rgb_camera.h"
 #include "plugins/simulator/wind.h"
@@ -23,6 +24,7 @@ struct SimulatorOptions {
   LidarOptions lidar;
   CameraOptions camera;
   RgbOptions rgb;
+  ObjectOptions objects;
   ImuOptions imu;
   MagnetometerOptions magnetometer;
   BarometerOptions barometer;

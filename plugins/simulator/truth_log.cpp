@@ -77,21 +77,36 @@ void TruthLog::event(core::TimeNs stamp, const std::string& what, const BodyStat
   events_ << line;
 }
 
+void TruthLog::object(core::TimeNs stamp, const char* what, std::size_t number, const cave::CaveObject& o) {
+  if (run_dir_.empty()) return;
+  if (!objects_.is_open()) open(objects_, run_dir_ + "/truth_objects.jsonl");
+  char line[240];
+  const Vec3& p = o.position;
+  std::snprintf(
+      line, sizeof line,
+      "{\"time_s\": %.3f, \"event\": \"%s\", \"number\": %zu, \"what\": \"%s\", \"position\": [%.4f, "
+      "%.4f, %.4f]}\n",
+      core::seconds(stamp), what, number, core::name_of(o.kind), p.x(), p.y(), p.z());
+  objects_ << line;
+}
+
 void TruthLog::flush() {
   tum_.flush();
   csv_.flush();
   events_.flush();
   pictures_.flush();
+  objects_.flush();
 }
 
 void TruthLog::close() {
   if (run_dir_.empty()) return;
   flush();
-  const bool whole = tum_.good() && csv_.good() && events_.good() && pictures_.good();
+  const bool whole = tum_.good() && csv_.good() && events_.good() && pictures_.good() && objects_.good();
   tum_.close();
   csv_.close();
   events_.close();
   pictures_.close();
+  objects_.close();
   if (!whole)
     throw core::InputError(run_dir_, "", "ground truth could not be written completely; is the disk full?");
 }

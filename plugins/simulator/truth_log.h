@@ -6,6 +6,7 @@
 
 #include "core_stack/common/time.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
+#include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/rigid_body.h"
 
 namespace karst::sim {
@@ -16,7 +17,7 @@ struct TruthRow {
 };
 
 /// `ground_truth.tum` (time x y z qx qy qz qw), `truth.csv`, `truth_events.jsonl` and, with a colour camera,
-/// `ground_truth_frames.csv` in a run directory.
+/// `ground_truth_frames.csv`, and with objects of interest `truth_objects.jsonl` in a run directory.
 /// Numbers have fixed digits, so that replays give the same bytes. Without a directory nothing is written.
 class TruthLog {
  public:
@@ -29,6 +30,8 @@ class TruthLog {
   void row(core::TimeNs stamp, const TruthRow& row);
   /// `what` is one of start, take-off, landed, contact, battery, rockfall, fault.
   void event(core::TimeNs stamp, const std::string& what, const BodyState& s, const std::string& detail);
+  /// A line of truth_objects.jsonl, made with the first: placed, in view for the first time, or seen.
+  void object(core::TimeNs stamp, const char* what, std::size_t number, const cave::CaveObject& o);
   /// Hands everything to the operating system, so that a run cut short is complete to the last second.
   void flush();
   /// Throws InputError if anything could not be written, such as on a full disk.
@@ -36,7 +39,7 @@ class TruthLog {
 
  private:
   std::string run_dir_;
-  std::ofstream tum_, csv_, events_, pictures_;
+  std::ofstream tum_, csv_, events_, pictures_, objects_;
 };
 
 }  // namespace karst::sim

@@ -11,6 +11,7 @@
 #include "sdk/evaluation/coverage_curve.h"
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/map_error.h"
+#include "sdk/evaluation/object_figures.h"
 #include "sdk/evaluation/whole_file.h"
 
 namespace karst::evaluation {
@@ -193,10 +194,10 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["goals_accepted"] = has_events ? ordered_json(count_goals(run, "accepted")) : ordered_json(nullptr);
   m["goals_rejected"] = has_events ? ordered_json(count_goals(run, "rejected")) : ordered_json(nullptr);
   m["overruns"] = has_events ? ordered_json(count_events(run, "overrun")) : ordered_json(nullptr);
-  for (const char* key : {"objects_found", "objects_reported", "data_at_base_share"})
-    m[key] = nullptr;  // no mission has objects to look for yet
-  for (const char* key : {"robots_landed", "robots_connected", "exploration_time_1_s", "exploration_time_2_s",
-                          "exploration_time_3_s", "exploration_time_4_s", "exploration_time_5_s"})
+  set_figures(m, object_figures(run));
+  for (const char* key :
+       {"data_at_base_share", "robots_landed", "robots_connected", "exploration_time_1_s",
+        "exploration_time_2_s", "exploration_time_3_s", "exploration_time_4_s", "exploration_time_5_s"})
     m[key] = nullptr;  // of a team: sdk/tools/team_metrics.h
   return m;
 }

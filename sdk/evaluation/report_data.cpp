@@ -99,6 +99,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   d["true_track"] = run.estimate.empty() ? ordered_json(nullptr) : scene_track(run.truth);
   d["frontiers"] = scene_frontiers(run, problems);
   d["plans"] = scene_plans(run, problems);
+  d["objects"] = scene_objects(run);
   d["drawings"] = scene_drawings(run, problems);
   d["pictures"] = report_pictures(run.directory, problems);
   d["problems"] = problems;

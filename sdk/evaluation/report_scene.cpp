@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sdk/evaluation/base64.h"
 #include "sdk/evaluation/cloud.h"
@@ -136,6 +137,29 @@ ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problem
     moments.push_back({e["t"], std::move(points), count});
   }
   return thinned(std::move(moments), "plans", problems);
+}
+
+ordered_json scene_objects(const RunRecord& run) {
+  std::map<double, ordered_json> found;  // by number
+  ordered_json moments = ordered_json::array();
+  for (const json& e : run.events) {
+    const std::string state = event_text(e, "state");
+    if (e["kind"] != "object" || state == "reported") continue;
+    const double number = event_number(e, "number").value_or(-1);
+    json place;
+    place["at"] = json::array({e.value("position", json())});
+    const ordered_json at = rounded_points(place, "at", 3);
+    if (state == "withdrawn" || at.empty()) {
+      found.erase(number);
+    } else {
+      found[number] = at[0];
+      found[number].push_back(event_text(e, "what"));
+    }
+    ordered_json all = ordered_json::array();
+    for (const auto& [n, object] : found) all.push_back(object);
+    moments.push_back({e["t"], all});
+  }
+  return moments;
 }
 
 ordered_json scene_drawings(const RunRecord& run, std::vector<std::string>& problems) {

@@ -30,6 +30,8 @@ nlohmann::ordered_json scene_track(const std::vector<StampedPose>& poses, std::s
 nlohmann::ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& problems);
 /// Paths planned as [[t, [[x, y, z], ...]], ...].
 nlohmann::ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problems);
+/// Objects of interest as found by then: [[t, [[x, y, z, what], ...]], ...], a moment for each change.
+nlohmann::ordered_json scene_objects(const RunRecord& run);
 /// What the policy drew, by decision: [[t, [{shape, points, rgb, text}, ...]], ...].
 nlohmann::ordered_json scene_drawings(const RunRecord& run, std::vector<std::string>& problems);
 

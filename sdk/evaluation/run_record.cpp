@@ -147,6 +147,7 @@ RunRecord read_run(const fs::path& run_dir) {
   run.settings = read_settings(run_dir / "mission.info", problems);
   run.events = read_events(run_dir / "events.jsonl", "t", "kind", problems);
   run.truth_events = read_events(run_dir / "truth_events.jsonl", "time_s", "event", problems);
+  run.truth_objects = read_events(run_dir / "truth_objects.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);
   run.truth = read_tum(run_dir / "ground_truth.tum", problems);
   // A replay keeps its recording's own time there; all else counts from the recording's begin.

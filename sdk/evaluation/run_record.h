@@ -24,9 +24,10 @@ struct Phase {
 
 struct RunRecord {
   std::filesystem::path directory;
-  std::vector<Setting> settings;             // mission.info, in its order
-  std::vector<nlohmann::json> events;        // each an object with "t" and "kind", in the file's order
-  std::vector<nlohmann::json> truth_events;  // the simulator's: each an object with "time_s" and "event"
+  std::vector<Setting> settings;              // mission.info, in its order
+  std::vector<nlohmann::json> events;         // each an object with "t" and "kind", in the file's order
+  std::vector<nlohmann::json> truth_events;   // the simulator's: each an object with "time_s" and "event"
+  std::vector<nlohmann::json> truth_objects;  // likewise, of objects of interest
   std::vector<StampedPose> estimate, truth;
   Table telemetry, truth_table, decisions;
   std::vector<OccupiedSpan> growth;

@@ -67,6 +67,7 @@ void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool 
   if (!metrics["coverage"].is_null())
     std::printf(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
   std::printf("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
+  print_objects(metrics);
   std::printf("Look next at:\n");
   if (with_report)
     std::printf("  %s   the flight in 3D with plots; open it in a browser\n",

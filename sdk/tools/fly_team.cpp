@@ -13,6 +13,7 @@
 #include "core_stack/mission/team_mission.h"
 #include "core_stack/vehicle/team_vehicles.h"
 #include "sdk/evaluation/metrics.h"
+#include "sdk/evaluation/object_figures.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
 #include "sdk/tools/status_line.h"
@@ -85,6 +86,7 @@ void print_summary(const core::TeamResult& result, const nlohmann::json& metrics
                 r.mission.outcome.c_str(), r.connected ? "connected" : "cut off", r.records_at_base,
                 r.records, r.mission.reason.c_str());
   }
+  print_objects(metrics);
   std::printf("  over the air     %.0f kB in %.0f s\nLook next at:\n",
               1e-3 * static_cast<double>(result.bytes_on_air), result.duration_s);
   std::printf(
@@ -153,7 +155,10 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
       own.push_back(
           finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report, args.cave_cache));
     }
-    const nlohmann::ordered_json metrics = team_metrics(mission, result, own);
+    nlohmann::ordered_json metrics = team_metrics(mission, result, own);
+    std::vector<std::string> problems;
+    evaluation::set_figures(metrics, evaluation::team_object_figures(run_dir, problems));
+    for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
     evaluation::write_metrics(run_dir, metrics);
     write_team_timing(run_dir, result.duration_s, wall.count(), args.threads);
     if (args.json)

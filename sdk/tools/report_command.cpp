@@ -102,6 +102,20 @@ nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, cons
   return metrics;
 }
 
+void print_objects(const nlohmann::json& m) {
+  if (!m["objects_placed"].is_number()) return;
+  const auto count = [&](const char* key) { return m[key].get<int>(); };
+  std::printf("  objects          %d placed, %d seen, %d found; %d known at the base",
+              count("objects_placed"), count("objects_seen"), count("objects_found"),
+              count("objects_reported"));
+  if (m["object_error_m"].is_number())
+    std::printf(", %.2f m off, after %.0f s", m["object_error_m"].get<double>(),
+                m["object_report_time_s"].get<double>());
+  std::printf("%s\n", count("objects_false") > 0
+                          ? (", and " + std::to_string(count("objects_false")) + " false").c_str()
+                          : "");
+}
+
 void add_report_command(CLI::App& app) {
   struct Arguments {
     std::string run, metric;

@@ -19,4 +19,7 @@ nlohmann::json finish_run(const std::filesystem::path& run_dir, const std::strin
                           const std::string& start, bool with_report,
                           const std::filesystem::path& cave_cache = {});
 
+/// A line of the summary, if there were objects of interest to find.
+void print_objects(const nlohmann::json& metrics);
+
 }  // namespace karst::tools

@@ -31,7 +31,9 @@ constexpr std::array kRunFiles = {"events.jsonl",
                                   "report.html",
                                   "evaluation.json",
                                   "team.jsonl",
-                                  "team_truth.jsonl"};
+                                  "team_truth.jsonl",
+                                  "objects.json",
+                                  "truth_objects.jsonl"};
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave_blocks.h"
+#include "plugins/simulator/cave/preflight.h"
 
 namespace karst::cave {
 namespace {
@@ -30,6 +31,8 @@ CaveDescription read_cave_file(const std::string& path, const std::string& start
       cave.clouds.push_back(read_cloud(path, child));
     } else if (name == "fault" && !child.empty()) {
       cave.faults.push_back(read_fault(path, child));
+    } else if (name == "object" && !child.empty()) {
+      cave.objects.push_back(read_object(path, child));
     } else {
       plain.push_back({name, child});
     }
@@ -66,7 +69,9 @@ CaveDescription describe_cave(const std::string& path, const std::string& start)
 Cave load_cave(const std::string& path, const std::string& start) {
   CaveDescription description = describe_cave(path, start);
   TriangleMesh mesh = load_mesh(description.mesh_path);
-  return {std::move(description), RayScene(std::move(mesh))};
+  Cave cave{std::move(description), RayScene(std::move(mesh))};
+  settle_objects(cave);
+  return cave;
 }
 
 double reflectivity_at(const CaveDescription& cave, const Vec3& place) {

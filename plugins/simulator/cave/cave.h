@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core_stack/common/geometry.h"
+#include "core_stack/vehicle/object_detection.h"
 #include "plugins/simulator/cave/ray_scene.h"
 
 namespace karst::cave {
@@ -65,6 +66,13 @@ struct Fault {
   double after_s = 0, lasts_s = 0;
 };
 
+/// An object of interest. It is seen, but neither hit by rays nor touched.
+struct CaveObject {
+  core::ObjectKind kind = core::ObjectKind::backpack;
+  core::Vec3 position = core::Vec3::Zero();  // its middle
+  core::Vec3 normal = core::Vec3::Zero();    // unit, of the rock it lies on; 0: seen from all sides
+};
+
 struct CaveDescription {
   std::string file;       // what the user named
   std::string mesh_path;  // the same, or what the .info file names
@@ -75,6 +83,7 @@ struct CaveDescription {
   std::vector<LooseRock> boulders;
   std::vector<Cloud> clouds;
   std::vector<Fault> faults;
+  std::vector<CaveObject> objects;
 };
 
 /// Reads a cave `.info` file, or describes a bare mesh, which needs `start` ("x y z [heading_deg]"; a
@@ -89,6 +98,7 @@ struct CaveDescription {
 ///   cloud { position "12 2 1" radius "2 m" extinction "0.4 1/m" of droplets after "30 s" }
 ///   cloud { position "12 2 1" size "8 4 3" extinction "0.1 1/m" of dust }
 ///   fault { sensor lidar kind lost after "40 s" for "1 s" }
+///   object { kind backpack position "20 3 0.2" }
 CaveDescription describe_cave(const std::string& path, const std::string& start);
 
 struct Cave {
@@ -96,7 +106,7 @@ struct Cave {
   RayScene scene;
 };
 
-/// describe_cave, then its mesh.
+/// describe_cave, then its mesh, on which objects are laid (settle_objects).
 Cave load_cave(const std::string& path, const std::string& start);
 
 /// Reflectivity of the rock at a place: that of the last patch that holds it.

@@ -152,4 +152,15 @@ Fault read_fault(const std::string& source, const pt::ptree& tree) {
   return fault;
 }
 
+CaveObject read_object(const std::string& source, const pt::ptree& tree) {
+  static const std::vector<std::string> kKinds(core::kObjectNames.begin() + 1, core::kObjectNames.end());
+  std::string kind, position;
+  OptionTable table;
+  table.add("object.kind", kind, kKinds, "what it is");
+  table.add("object.position", position, {}, "its middle, a little off the rock it lies on, x y z");
+  read_block(source, "object", tree, table);
+  if (kind.empty()) throw InputError(source, "object.kind", "missing: say what it is, such as backpack");
+  return {core::object_kind(kind), read_vector(source, "object.position", position), Vec3::Zero()};
+}
+
 }  // namespace karst::cave

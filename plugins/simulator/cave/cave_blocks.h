@@ -13,5 +13,6 @@ OreBody read_ore(const std::string& source, const boost::property_tree::ptree& t
 LooseRock read_loose_rock(const std::string& source, const boost::property_tree::ptree& tree);
 Cloud read_cloud(const std::string& source, const boost::property_tree::ptree& tree);
 Fault read_fault(const std::string& source, const boost::property_tree::ptree& tree);
+CaveObject read_object(const std::string& source, const boost::property_tree::ptree& tree);
 
 }  // namespace karst::cave

@@ -64,6 +64,32 @@ void check_start(const Cave& cave, double vehicle_radius_m) {
   }
 }
 
+void settle_objects(Cave& cave) {
+  constexpr double kLeast_m = 0.02, kLiesOn_m = 1;
+  for (CaveObject& o : cave.description.objects) {
+    char text[200];
+    const auto refuse = [&] { throw InputError(cave.description.file, "object.position", text); };
+    const Vec3& p = o.position;
+    const Surroundings s = look_around(cave.scene, p);
+    if (s.odd_share < 0.5) {
+      std::snprintf(
+          text, sizeof text,
+          "the %s at (%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
+          core::name_of(o.kind), p.x(), p.y(), p.z(),
+          s.escape_share > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_share);
+      refuse();
+    }
+    const Nearest rock = cave.scene.nearest(p, kLiesOn_m);
+    if (rock.found && rock.distance_m < kLeast_m) {
+      std::snprintf(text, sizeof text,
+                    "the %s at (%.2f %.2f %.2f) is %.3f m from rock: its middle must be 0.02 m off at least",
+                    core::name_of(o.kind), p.x(), p.y(), p.z(), rock.distance_m);
+      refuse();
+    }
+    o.normal = rock.found ? Vec3((p - rock.point).normalized()) : Vec3(Vec3::Zero());
+  }
+}
+
 void check_climb(const Cave& cave, const Vec3& standing, double climb_m, double vehicle_radius_m) {
   constexpr double kAir_m = 0.1, kStep_m = 0.01;
   constexpr double kRounding_m = 1e-3;  // where it stands it touches the floor

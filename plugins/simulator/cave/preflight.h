@@ -23,6 +23,11 @@ Surroundings look_around(const RayScene& scene, const core::Vec3& place);
 /// shell with thickness, would be refused.
 void check_start(const Cave& cave, double vehicle_radius_m);
 
+/// Finds the rock that each object of the cave lies on: the nearest, if it is within 1 m. Throws InputError
+/// if an object lies in rock or outside the cave, or touches rock: with its middle nearer than 2 cm it could
+/// not be seen.
+void settle_objects(Cave& cave);
+
 /// Throws InputError if the vehicle's sphere, `standing` with its centre there, cannot rise straight up by
 /// `climb_m` and have 0.1 m of air left above: a ceiling or a block is in the way.
 void check_climb(const Cave& cave, const core::Vec3& standing, double climb_m, double vehicle_radius_m);

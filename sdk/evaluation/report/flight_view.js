@@ -52,13 +52,14 @@ function makeFlight(run) {
   let trueLine = null;
   if (truth && truth.count > 1) trueLine = addLine("true path", thickLine(truth.xyz, 1.5, colours.truth), 3);
   const frontiers = add("frontiers", roundMarks(colours.frontier), 5);
+  const objects = add("objects", roundMarks(colours.object), 6);
   const goal = add("goal", goalIcon(), 8);
   const vehicle = add("vehicle", vehicleArrow(), 9);
   layer.plan = new THREE.Group();
   layer.drawings = new THREE.Group();
   object.add(layer.plan, layer.drawings);
 
-  let shownPlan, shownFrontiers, shownDrawings, drawingLabels = [], resolution = [1, 1];
+  let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], resolution = [1, 1];
   const view = { object, layer, labels: [], vehicle, track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 
@@ -99,6 +100,12 @@ function makeFlight(run) {
       setMarks(frontiers, [].concat(...list.map((c) => c.slice(0, 3))),
                list.map((c) => Math.min(11, 3.5 + 0.3 * Math.sqrt(c[3]))));
     }
+    const found = entryAt(run.objects, t);
+    if (found !== shownObjects) {
+      shownObjects = found;
+      const list = found ? found[1] : [];
+      setMarks(objects, [].concat(...list.map((o) => o.slice(0, 3))), list.map(() => 11));
+    }
     const drawings = /^(home|land|done)$/.test(phaseAt(run, t)) ? null : entryAt(run.drawings, t);
     if (drawings !== shownDrawings) {
       shownDrawings = drawings;
@@ -112,6 +119,8 @@ function makeFlight(run) {
     if (track) view.labels.push({ position: new THREE.Vector3(...track.xyz.slice(0, 3)), text: "start" });
     if (goal.visible && layer.goal.visible)
       view.labels.push({ position: goal.position, text: active.why ? "goal: " + active.why : "goal" });
+    if (layer.objects.visible && shownObjects)
+      for (const o of shownObjects[1]) view.labels.push({ position: new THREE.Vector3(...o.slice(0, 3)), text: o[3] });
     if (layer.drawings.visible) view.labels.push(...drawingLabels);
   };
   return view;

@@ -1,0 +1,95 @@
+// Objects of interest: what the detector says goes into the object map, and what that finds is told.
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mission/mission_control.h"
+#include "core_stack/mission/object_log.h"
+
+namespace karst::core {
+namespace {
+
+nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+const char* name_of(ObjectNews::State state) {
+  switch (state) {
+    case ObjectNews::State::found:
+      return "found";
+    case ObjectNews::State::revised:
+      return "revised";
+    case ObjectNews::State::withdrawn:
+      break;
+  }
+  return "withdrawn";
+}
+
+}  // namespace
+
+void MissionControl::on_objects(const ObjectDetections& look) {
+  if (look.stamp > now() || !look.camera) return;
+  const Pose T_world_camera = flight_.estimator().history().pose_at(look.stamp) * look.camera->T_body_camera;
+  objects_.note(look, T_world_camera, flight_.estimator().active().position_sigma_m());
+  tell_objects(false);
+}
+
+/// Into the events, and to the team.
+void MissionControl::tell_objects(bool all) {
+  for (const ObjectNews& news : objects_.take_news(now(), all)) {
+    const FoundObject& o = news.object;
+    const bool withdrawn = news.state == ObjectNews::State::withdrawn;
+    recorder_.event(now(), "object",
+                    {{"number", o.number},
+                     {"state", name_of(news.state)},
+                     {"what", core::name_of(o.kind)},
+                     {"position", list(o.position)},
+                     {"deviation", o.deviation_m},
+                     {"sightings", o.sightings}});
+    if (!team_) continue;
+    const ObjectKind kind = withdrawn ? ObjectKind::none : o.kind;
+    const std::uint32_t record = team_->publish(ObjectSeen{
+        team_->team_time(now()), o.number, static_cast<std::uint8_t>(kind), o.position, o.deviation_m});
+    if (withdrawn)
+      records_.erase(o.number);
+    else
+      records_.try_emplace(o.number, record);  // the first: from then on the base knows of it
+  }
+}
+
+/// Of which it knows that the base knows them, once each.
+void MissionControl::note_objects_at_base(std::uint32_t records_at_base) {
+  for (auto r = records_.begin(); r != records_.end();) {
+    const auto [number, record] = *r;
+    if (record == 0 || record > records_at_base) {
+      ++r;
+      continue;
+    }
+    recorder_.event(now(), "object", {{"number", number}, {"state", "reported"}});
+    r = records_.erase(r);
+  }
+}
+
+/// At the end of the flight. A vehicle that flies alone reports where it landed, at the start; of a team, one
+/// that crashed tells nothing any more.
+void MissionControl::settle_objects(bool landed) {
+  if (team_ && !landed) return;
+  tell_objects(true);
+  if (team_) return note_objects_at_base(team_->known_at_base());
+  if (!landed) return;
+  for (const FoundObject& o : objects_.objects())
+    recorder_.event(now(), "object", {{"number", o.number}, {"state", "reported"}});
+}
+
+void MissionControl::write_objects() {
+  nlohmann::json found = nlohmann::json::array();
+  for (const FoundObject& o : objects_.objects())
+    found.push_back({{"number", o.number},
+                     {"what", core::name_of(o.kind)},
+                     {"position", list(o.position)},
+                     {"deviation", o.deviation_m},
+                     {"sightings", o.sightings},
+                     {"first_seen", seconds(o.first_seen)},
+                     {"last_seen", seconds(o.last_seen)}});
+  nlohmann::ordered_json all{{"schema", "karst.objects/1"}, {"found", found}};
+  if (team_) all["known"] = list_of(team_->objects());
+  recorder_.objects(all);
+}
+
+}  // namespace karst::core

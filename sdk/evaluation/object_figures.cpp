@@ -1,0 +1,205 @@
+#include "sdk/evaluation/object_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "sdk/evaluation/lines.h"
+
+namespace karst::evaluation {
+namespace {
+
+using core::Vec3;
+using nlohmann::json;
+using Key = std::pair<std::int64_t, std::int64_t>;  // robot, and its own number for the object
+
+constexpr double kSameObject_m = 3;
+
+std::optional<Vec3> position_of(const json& e) {
+  const auto p = e.find("position");
+  if (p == e.end() || !p->is_array() || p->size() != 3) return std::nullopt;
+  Vec3 v;
+  for (int i = 0; i < 3; ++i) {
+    if (!(*p)[static_cast<std::size_t>(i)].is_number()) return std::nullopt;
+    v[i] = (*p)[static_cast<std::size_t>(i)].get<double>();
+  }
+  return v;
+}
+
+std::int64_t whole(const json& e, const char* key) {
+  return static_cast<std::int64_t>(event_number(e, key).value_or(-1));
+}
+
+/// By number, as truth_objects.jsonl has them.
+std::map<std::int64_t, TrueObject> true_objects(const std::vector<json>& events) {
+  std::map<std::int64_t, TrueObject> truth;
+  for (const json& e : events) {
+    const auto p = position_of(e);
+    if (!p) continue;
+    TrueObject& o =
+        truth.try_emplace(whole(e, "number"), TrueObject{event_text(e, "what"), *p, false}).first->second;
+    o.seen = o.seen || event_text(e, "event") == "seen";
+  }
+  return truth;
+}
+
+std::vector<TrueObject> listed(const std::map<std::int64_t, TrueObject>& truth) {
+  std::vector<TrueObject> list;
+  for (const auto& [number, o] : truth) list.push_back(o);
+  return list;
+}
+
+/// What events say of objects, as last told; `time` is that of the state that counts as reported.
+void note(std::map<Key, KnownObject>& known, const Key& key, const json& e, const char* reported_by) {
+  const std::string state = event_text(e, "state");
+  if (state == "withdrawn") {
+    known.erase(key);
+    return;
+  }
+  KnownObject& o = known[key];
+  if (const auto p = position_of(e)) o.what = event_text(e, "what"), o.position = *p;
+  if (state == reported_by && !o.reported_s) o.reported_s = event_number(e, "t");
+}
+
+std::vector<KnownObject> listed(const std::map<Key, KnownObject>& known) {
+  std::vector<KnownObject> list;
+  for (const auto& [key, o] : known) list.push_back(o);
+  return list;
+}
+
+/// One JSON object a line; lines that are none are passed over and counted.
+std::vector<json> read_lines_of_json(const std::filesystem::path& file, std::vector<std::string>& problems) {
+  std::vector<json> all;
+  BadLines bad(file);
+  const std::vector<std::string> lines = read_lines(file, problems);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    json line = json::parse(lines[i], nullptr, false);
+    if (line.is_object())
+      all.push_back(std::move(line));
+    else
+      bad.add(i + 1, "is not a JSON object");
+  }
+  bad.report(problems);
+  return all;
+}
+
+std::optional<double> mean(const std::vector<double>& v) {
+  if (v.empty()) return std::nullopt;
+  double sum = 0;
+  for (const double x : v) sum += x;
+  return sum / static_cast<double>(v.size());
+}
+
+}  // namespace
+
+std::vector<std::optional<std::size_t>> match_objects(const std::vector<KnownObject>& known,
+                                                      const std::vector<TrueObject>& truth) {
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t k = 0; k < known.size(); ++k)
+    for (std::size_t t = 0; t < truth.size(); ++t)
+      if (const double d = (known[k].position - truth[t].position).norm();
+          known[k].what == truth[t].what && d <= kSameObject_m)
+        pairs.emplace_back(d, k, t);
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<std::optional<std::size_t>> match(known.size());
+  std::set<std::size_t> taken;
+  for (const auto& [d, k, t] : pairs)
+    if (!match[k] && taken.insert(t).second) match[k] = t;
+  return match;
+}
+
+ObjectFigures object_figures(const std::vector<TrueObject>& truth, const std::vector<KnownObject>& found,
+                             const std::vector<KnownObject>& at_base) {
+  const auto matched = [](const auto& match) {
+    return static_cast<double>(
+        std::count_if(match.begin(), match.end(), [](const auto& m) { return m.has_value(); }));
+  };
+  ObjectFigures f;
+  f.placed = static_cast<double>(truth.size());
+  f.seen = static_cast<double>(
+      std::count_if(truth.begin(), truth.end(), [](const TrueObject& o) { return o.seen; }));
+  f.found = matched(match_objects(found, truth));
+  const auto match = match_objects(at_base, truth);
+  f.reported = matched(match);
+  f.wrong = static_cast<double>(at_base.size()) - *f.reported;
+  std::vector<double> times_s, errors_m;
+  double seen_and_reported = 0;
+  for (std::size_t k = 0; k < at_base.size(); ++k) {
+    if (!match[k]) continue;
+    const TrueObject& o = truth[*match[k]];
+    seen_and_reported += o.seen;
+    errors_m.push_back((at_base[k].position - o.position).norm());
+    if (at_base[k].reported_s) times_s.push_back(*at_base[k].reported_s);
+  }
+  if (*f.seen > 0) f.reported_share = seen_and_reported / *f.seen;
+  f.report_time_s = mean(times_s);
+  f.error_m = mean(errors_m);
+  return f;
+}
+
+ObjectFigures object_figures(const RunRecord& run) {
+  if (run.truth_objects.empty()) return {};
+  std::map<Key, KnownObject> known;
+  for (const json& e : run.events)
+    if (e["kind"] == "object") note(known, {0, whole(e, "number")}, e, "reported");
+  std::vector<KnownObject> found = listed(known), at_base;
+  std::copy_if(found.begin(), found.end(), std::back_inserter(at_base),
+               [](const KnownObject& o) { return o.reported_s.has_value(); });
+  return object_figures(listed(true_objects(run.truth_objects)), found, at_base);
+}
+
+ObjectFigures team_object_figures(const std::filesystem::path& run_dir, std::vector<std::string>& problems) {
+  std::map<std::int64_t, TrueObject> truth;
+  for (int i = 1; std::filesystem::exists(run_dir / ("robot_" + std::to_string(i))); ++i)
+    for (const auto& [number, o] : true_objects(
+             read_lines_of_json(run_dir / ("robot_" + std::to_string(i)) / "truth_objects.jsonl", problems)))
+      truth.try_emplace(number, o).first->second.seen |= o.seen;
+  if (truth.empty()) return {};
+  std::map<Key, KnownObject> told, at_base;
+  std::vector<KnownObject> together;  // what the base makes of all reports, in the end
+  for (const json& e : read_lines_of_json(run_dir / "team.jsonl", problems)) {
+    const std::string kind = event_text(e, "kind");
+    const Key key{whole(e, "robot"), whole(e, "number")};
+    if (kind == "object") note(told, key, e, "");
+    if (kind == "object_known") note(at_base, key, e, "found");
+    if (kind != "objects" || !e.contains("known") || !e["known"].is_array()) continue;
+    for (const json& o : e["known"]) {
+      const auto p = o.is_object() ? position_of(o) : std::nullopt;
+      if (!p) continue;
+      KnownObject one{event_text(o, "what"), *p, std::nullopt};
+      if (const auto by = o.find("told_by"); by != o.end() && by->is_array())
+        for (const json& pair : *by) {
+          if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer() ||
+              !pair[1].is_number_integer())
+            continue;
+          const auto report = at_base.find({pair[0].get<std::int64_t>(), pair[1].get<std::int64_t>()});
+          if (report == at_base.end() || !report->second.reported_s) continue;
+          one.reported_s =
+              std::min(one.reported_s.value_or(*report->second.reported_s), *report->second.reported_s);
+        }
+      together.push_back(one);
+    }
+  }
+  return object_figures(listed(truth), listed(told), together);
+}
+
+void set_figures(nlohmann::ordered_json& m, const ObjectFigures& f) {
+  const std::array<std::pair<const char*, std::optional<double>>, 8> all{
+      {{"objects_placed", f.placed},
+       {"objects_seen", f.seen},
+       {"objects_found", f.found},
+       {"objects_reported", f.reported},
+       {"objects_reported_share", f.reported_share},
+       {"object_report_time_s", f.report_time_s},
+       {"object_error_m", f.error_m},
+       {"objects_false", f.wrong}}};
+  for (const auto& [key, v] : all) {
+    m[key] = nullptr;
+    if (v) m[key] = std::round(*v * 1e6) / 1e6;
+  }
+}
+
+}  // namespace karst::evaluation
