@@ -12,9 +12,9 @@
 
 namespace karst::sim {
 
-/// An object counts as seen when it was in view in so many images: of eight detections at a share of 0.8
-/// fewer than three come off once in 800 times.
-constexpr int kSeenAfter = 8;
+/// An object counts as seen when it was in view in so many images: of six looks at a share of 0.9 fewer than
+/// three come off once in 800 times.
+constexpr int kSeenAfter = 6;
 
 struct InView {
   std::size_t object = 0;                 // index in the cave's list

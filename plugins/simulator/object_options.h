@@ -8,7 +8,7 @@ struct ObjectOptions {
   std::int64_t count = 0;
   std::string on = "floor";
   double range_m = 5, max_incidence_rad = 1.2217305;
-  double detection = 0.8, false_per_min = 1;
+  double detection = 0.9, false_per_min = 1;
   double bearing_noise_rad = 0.0174533, depth_noise = 0.02, size_noise = 0.15;
   double delay_s = 0.15;
 };

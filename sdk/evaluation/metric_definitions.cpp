@@ -63,7 +63,7 @@ constexpr std::array kDefinitions = {
     MetricDefinition{"overruns", "", less, unknown, "jobs that were late"},
     MetricDefinition{"objects_placed", "", neither, unknown, "objects of interest in the cave"},
     MetricDefinition{"objects_seen", "", more, nothing,
-                     "those that were in view of a camera in 8 images at least"},
+                     "those that were in view of a camera in 6 images at least"},
     MetricDefinition{"objects_found", "", more, nothing,
                      "objects found where one of that kind lies within 3 m"},
     MetricDefinition{"objects_reported", "", more, nothing, "those that the base knew in the end"},

@@ -118,7 +118,7 @@ TEST(ObjectMap, MergesWhatComesToLieAtOnePlaceAndTakesOneBack) {
   ObjectMap map({});
   // A camera that knows ranges badly puts one object at two places, 2 m apart along its sight ...
   for (int i = 0; i < 3; ++i) map.note(look(i, {seen(ObjectKind::phone, {4, 0, 0}, {}, 0.05)}), {}, 0);
-  for (int i = 3; i < 6; ++i) map.note(look(i, {seen(ObjectKind::phone, {6, 0, 0}, {}, 0.5)}), {}, 0);
+  for (int i = 3; i < 6; ++i) map.note(look(i, {seen(ObjectKind::phone, {6, 0, 0}, {}, 0.2)}), {}, 0);
   ASSERT_EQ(map.objects().size(), 2u);
   ASSERT_EQ(map.take_news(from_seconds(6)).size(), 2u);
   // ... and from the side the second turns out to lie where the first is.

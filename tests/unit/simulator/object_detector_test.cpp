@@ -116,6 +116,7 @@ TEST(ObjectDetector, MissesAndErrsAsOftenAndAsMuchAsItSays) {
   const core::CameraModel camera = *sim::camera_model({}, sim::Facing::forward);
   const Pose eye{{0, 0, 2}, Quat::Identity()};
   sim::ObjectOptions o;
+  o.detection = 0.8;
   o.false_per_min = 30;  // at 5 images a second: in a tenth of them
   const sim::ObjectDetector detector(o, {});
   const auto in_view = detector.in_view(c, eye, camera, false);
