@@ -1,5 +1,6 @@
 // What the map has to do with a team: the homing tree, landing places, goals that others claimed.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,8 +13,8 @@ namespace {
 // Places to make room: so far around, and so far back along the way come.
 constexpr double kRefugeReach_m = 12.0, kRetreat_m = 60.0, kRefugeStep_m = 1.0;
 constexpr double kGetBy_m = 3.0;
-constexpr double kGapMore_m = 0.2;  // beside one that hovers, more than beside rock
-constexpr double kAhead_m = 1.5;    // it comes there before the other by so much of the way
+constexpr std::array kGaps_m = {0.5, 0.2};  // beside one that hovers, more than beside rock
+constexpr double kAhead_m = 1.5;            // it comes there before the other by so much of the way
 constexpr double kElsewhere_m = 2.0, kRefusedNear_m = 0.5;
 constexpr std::size_t kEnoughInVain = 2, kMostRefused = 40;
 
@@ -58,17 +59,17 @@ std::optional<Refuge> Explorer::refuge(const Vec3& from, const std::vector<Vec3>
   for (std::size_t i = 0; i < places.size(); ++i)
     if (std::isfinite(own_m[i]) && ahead_m(i) > kAhead_m && !near_one_of(in_vain, places[i], kElsewhere_m))
       order.push_back(i);
-  if (in_vain.size() < kEnoughInVain) {
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return own_m[a] < own_m[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return own_m[a] < own_m[b]; });
+  for (const double gap_m : kGaps_m) {
     std::vector<Vec3> refused;
     for (const std::size_t i : order) {
+      if (refused.size() == kMostRefused || in_vain.size() >= kEnoughInVain) break;
       if (near_one_of(refused, places[i], kRefusedNear_m)) continue;
-      if (others_get_by(map_, places[i], vehicle_.radius_m + kGapMore_m,
+      if (others_get_by(map_, places[i], vehicle_.radius_m + gap_m,
                         search_clearance_m(options_.planning, map_.resolution_m()), kGetBy_m))
         return Refuge{places[i], true};
       refused.push_back(places[i]);
-      if (refused.size() == kMostRefused) break;
     }
   }
   std::optional<std::size_t> farthest;
