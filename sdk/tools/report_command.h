@@ -20,4 +20,9 @@ void add_report_command(CLI::App& app);
 nlohmann::json finish_run(const std::filesystem::path& run_dir, const std::string& cave,
                           const std::string& start, bool with_report);
 
+/// The same of a team whose robots' runs are finished: adds to `metrics` what the merged map says, and writes
+/// metrics.json, telemetry.csv (the team's volume over time) and, if asked, report.html.
+void finish_team(const std::filesystem::path& run_dir, const std::string& cave, const std::string& start,
+                 nlohmann::ordered_json& metrics, bool with_report);
+
 }  // namespace karst::tools
