@@ -13,7 +13,8 @@ double thousandths(double v) { return std::round(v * 1000) / 1000; }
 
 }  // namespace
 
-nlohmann::ordered_json report_curve(const std::vector<double>* t_s, const std::vector<double>* y, double scale) {
+nlohmann::ordered_json report_curve(const std::vector<double>* t_s, const std::vector<double>* y,
+                                    double scale) {
   if (!t_s || !y) return nullptr;
   const Curve c = decimate(*t_s, *y, kMaxPlotSamples);
   if (c.x.empty()) return nullptr;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core_stack/common/error.h"
+#include "core_stack/mapping/octomap_io.h"
 #include "sdk/evaluation/coverage_curve.h"
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/lines.h"
@@ -58,7 +59,7 @@ std::vector<OccupiedSpan> united(const std::vector<RunRecord>& robots) {
 }
 
 std::vector<StampedPose> in_order(const std::vector<RunRecord>& robots,
-                                  std::vector<StampedPose> RunRecord::* poses) {
+                                  std::vector<StampedPose> RunRecord::*poses) {
   std::vector<StampedPose> all;
   for (const RunRecord& r : robots) all.insert(all.end(), (r.*poses).begin(), (r.*poses).end());
   std::stable_sort(all.begin(), all.end(),
@@ -76,6 +77,31 @@ void set_horizon(RunRecord& merged, double last_start_s) {
   merged.settings.push_back({"mission.max_flight_time", std::to_string(*own + last_start_s) + " s"});
 }
 
+/// Nothing if any robot has none: half a team's map would pass for the whole.
+std::optional<core::VoxelMap> merged_map(TeamRecord& team) {
+  std::optional<core::VoxelMap> all;
+  for (const RunRecord& robot : team.robots) {
+    const fs::path file = robot.directory / "map.bt";
+    try {
+      if (!fs::is_regular_file(file)) throw core::InputError(file.string(), "", "not there");
+      core::VoxelMap map = core::read_octomap(file.string());
+      if (!all) {
+        all = std::move(map);
+        continue;
+      }
+      if (all->resolution_m() != map.resolution_m())
+        throw core::InputError(file.string(), "", "has cells of another size than robot 1's map");
+      map.for_each_known([&](const core::CellKey& k, core::Cell, float log_odds) {
+        all->assign(k, 1, all->log_odds(k).value_or(0.0f) + log_odds);
+      });
+    } catch (const std::exception& e) {
+      team.problems.push_back(std::string(e.what()) + "; the team's volume is estimated from the telemetry");
+      return std::nullopt;
+    }
+  }
+  return all;
+}
+
 RunRecord merged_record(const TeamRecord& team) {
   RunRecord all;
   all.directory = team.directory;
@@ -87,7 +113,8 @@ RunRecord merged_record(const TeamRecord& team) {
   for (const RunRecord& r : team.robots) begin_s = std::min(begin_s, flight_begin_s(r));
   all.phases = {{"standby", 0, begin_s}, {"flying", begin_s, team.duration_s}};
   set_horizon(all, *std::max_element(team.starts_s.begin(), team.starts_s.end()));
-  const VolumeCurve curve = team_volume_curve(team.robots, all.growth);
+  const VolumeCurve curve = team_volume_curve(
+      team.robots, all.growth, team.map ? std::optional(team.map->free_volume_m3()) : std::nullopt);
   all.telemetry.rows = curve.t_s.size();
   all.telemetry.numbers = {{"t_s", curve.t_s}, {"explored_m3", curve.explored_m3}};
   return all;
@@ -116,6 +143,7 @@ TeamRecord read_team(const fs::path& run_dir) {
   if (team.robots.empty())
     throw core::InputError((run_dir / "robot_1").string(), "", "not there: the team has no robots");
   for (const json& e : team.events) team.duration_s = std::max(team.duration_s, e["t"].get<double>());
+  team.map = merged_map(team);
   team.merged = merged_record(team);
   return team;
 }

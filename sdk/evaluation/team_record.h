@@ -1,5 +1,5 @@
-// A team's run directory read back: every robot's record in the team's time, what the base knew, and all robots
-// as if they had been one. What is missing or damaged stands in `problems`.
+// A team's run directory read back: every robot's record in the team's time, what the base knew, and all
+// robots as if they had been one. What is missing or damaged stands in `problems`.
 #pragma once
 #include "sdk/evaluation/run_record.h"
 
@@ -13,6 +13,7 @@ struct TeamRecord {
   /// Settings, all poses, the union of the maps' growth, and a telemetry of t_s and explored_m3
   /// (team_volume_curve). Flies from the first take-off on, for as long as the last robot could.
   RunRecord merged;
+  std::optional<core::VoxelMap> map;  // the final maps in one, log-odds added; none if any robot has none
   double duration_s = 0;
   std::vector<Setting> settings;  // the team's mission.info
   nlohmann::json timing;          // the team's; null if absent

@@ -143,8 +143,7 @@ void write_team_report(const std::filesystem::path& run_dir) {
   const TeamRecord team = read_team(run_dir);
   std::ifstream in(run_dir / "metrics.json");
   const auto metrics = in ? ordered_json::parse(in, nullptr, false) : ordered_json();
-  const ordered_json data =
-      team_report_data(team, metrics.is_object() ? metrics : ordered_json::object());
+  const ordered_json data = team_report_data(team, metrics.is_object() ? metrics : ordered_json::object());
   write_whole_file(run_dir / "report.html", team_report_page(data));
 }
 

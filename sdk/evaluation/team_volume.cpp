@@ -48,7 +48,8 @@ class Latest {
 
 }  // namespace
 
-VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::vector<OccupiedSpan>& united) {
+VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::vector<OccupiedSpan>& united,
+                              std::optional<double> final_m3) {
   double begin_s = std::numeric_limits<double>::infinity(), end_s = -begin_s;
   std::vector<CellCount> cells;
   std::vector<Latest> volumes;
@@ -61,15 +62,26 @@ VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::v
     end_s = std::max(end_s, t_s->back());
   }
   VolumeCurve curve;
+  std::vector<double> overlap_m3, greatest_m3;
   CellCount all(united);
   for (double t = std::ceil(begin_s); t < end_s + 1 && std::isfinite(t); ++t) {
-    double own_cells = 0, own_m3 = 0;
+    double own_cells = 0, sum_m3 = 0, most_m3 = 0;
     for (CellCount& c : cells) own_cells += c.at(t);
-    for (Latest& v : volumes) own_m3 += v.at(t);
-    const double share = own_cells > 0 ? all.at(t) / own_cells : 1;
+    for (Latest& v : volumes) {
+      const double m3 = v.at(t);
+      sum_m3 += m3;
+      most_m3 = std::max(most_m3, m3);
+    }
     curve.t_s.push_back(t);
-    curve.explored_m3.push_back(own_m3 * share);
+    curve.explored_m3.push_back(sum_m3);
+    overlap_m3.push_back(own_cells > 0 ? sum_m3 * (1 - all.at(t) / own_cells) : 0);
+    greatest_m3.push_back(most_m3);
   }
+  if (curve.t_s.empty()) return curve;
+  const double found_m3 = overlap_m3.back();
+  const double scale = final_m3 && found_m3 > 0 ? (curve.explored_m3.back() - *final_m3) / found_m3 : 1;
+  for (std::size_t i = 0; i < overlap_m3.size(); ++i)
+    curve.explored_m3[i] = std::max(greatest_m3[i], curve.explored_m3[i] - scale * overlap_m3[i]);
   return curve;
 }
 

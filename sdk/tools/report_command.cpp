@@ -100,8 +100,8 @@ void write_team_telemetry(const evaluation::TeamRecord& team) {
   const double begin_s = evaluation::flight_begin_s(team.merged);
   for (std::size_t i = 0; t_s && volume && i < t_s->size(); ++i) {
     char line[64];
-    std::snprintf(line, sizeof line, "%.0f,%s,%.3f\n", (*t_s)[i],
-                  (*t_s)[i] < begin_s ? "standby" : "flying", (*volume)[i]);
+    std::snprintf(line, sizeof line, "%.0f,%s,%.3f\n", (*t_s)[i], (*t_s)[i] < begin_s ? "standby" : "flying",
+                  (*volume)[i]);
     text += line;
   }
   evaluation::write_whole_file(team.directory / "telemetry.csv", text);
@@ -148,7 +148,8 @@ void finish_team(const fs::path& run_dir, const std::string& cave, const std::st
   std::vector<std::string> problems;
   bool lost_cave = false;
   const evaluation::Truth truth = truth_if_known(run_dir, cave, start, problems, lost_cave);
-  metrics.update(evaluation::team_map_figures(team, truth, problems));
+  problems.insert(problems.end(), team.problems.begin(), team.problems.end());
+  metrics.update(evaluation::team_map_figures(team, truth));
   if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);

@@ -30,6 +30,13 @@ function eventText(e) {
   }
 }
 
+/** The same with whose event it is, of a team. */
+function eventLine(e) {
+  if (!data.robots || !e.robot) return eventText(e);
+  const { robot, ...rest } = e;
+  return [`robot ${robot}`, eventText(rest)].filter(Boolean).join(": ");
+}
+
 /** What was flown, and how it ended; `more` stands behind. */
 function showTitle(more = []) {
   const m = data.metrics;
@@ -83,7 +90,7 @@ function showEvents() {
     const shown = data.events.filter((e) => !hidden.has(e.kind)).slice(0, 5000);
     body.replaceChildren(...shown.map((e) => {
       const row = make("tr", { className: isTrouble(e) ? "bad" : "" }, make("td", {}, clockText(e.t)),
-        make("td", {}, e.kind), make("td", {}, eventText(e)));
+        make("td", {}, e.kind), make("td", {}, eventLine(e)));
       row.addEventListener("click", () => setMoment(e.t));
       return row;
     }));
