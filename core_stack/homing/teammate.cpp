@@ -69,7 +69,7 @@ void Teammate::take(const Delivery& d) {
   const auto newer = [](const auto& known, const auto& told) { return !known || told.stamp > known->stamp; };
   if (const auto* facts = std::get_if<TreeFacts>(&d.record)) {
     note_facts(*facts);
-    if (d.author != self()) {
+    if (d.author != self() || self() == kBase) {  // a robot's own are in its tree; the base makes none
       facts_.nodes.insert(facts_.nodes.end(), facts->nodes.begin(), facts->nodes.end());
       facts_.rays.insert(facts_.rays.end(), facts->rays.begin(), facts->rays.end());
       facts_.lives.insert(facts_.lives.end(), facts->lives.begin(), facts->lives.end());

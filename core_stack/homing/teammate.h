@@ -48,7 +48,7 @@ class Teammate {
   std::vector<Vec3> taken_ground() const;
   /// Its own claim was made later than another's of nearly the same place.
   bool overruled() const;
-  /// Facts of the homing tree that others told since the last call.
+  /// Facts of the homing tree that others told since the last call; the base's own too.
   TreeFacts take_facts();
   /// Objects of interest as their finders last told of them, its own among them.
   const ToldObjects& objects() const { return objects_; }

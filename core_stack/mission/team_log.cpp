@@ -44,6 +44,25 @@ void TeamLog::base(TimeNs t, const Teammate& base) {
          {"dead", dead}});
 }
 
+void TeamLog::tree(TimeNs t, const HomingTree& tree) {
+  nlohmann::json changed = nlohmann::json::array();
+  for (const TreeNode& n : tree.nodes()) {
+    const std::optional<NodeId> next = tree.next(n.id);
+    const auto [told, is_new] = next_.try_emplace(n.id, next);
+    if (!is_new && told->second == next) continue;
+    told->second = next;
+    nlohmann::json row{n.id.robot,
+                       n.id.number,
+                       rounded(n.position.x()),
+                       rounded(n.position.y()),
+                       rounded(n.position.z()),
+                       n.kind == NodeKind::communication ? 1 : 0};
+    if (next) row.insert(row.end(), {next->robot, next->number});
+    changed.push_back(std::move(row));
+  }
+  if (!changed.empty()) event(t, "tree", {{"nodes", changed}});
+}
+
 void TeamLog::traffic(TimeNs t, std::size_t radio, const RadioTraffic& r, const GossipCounts& c) {
   event(t, "traffic",
         {{"radio", radio},

@@ -3,10 +3,12 @@
 #pragma once
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core_stack/common/time.h"
+#include "core_stack/homing/homing_tree.h"
 #include "core_stack/homing/teammate.h"
 #include "core_stack/vehicle/team_vehicles.h"
 
@@ -20,12 +22,16 @@ class TeamLog {
   void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
   /// Who reaches the base over which links as it knows, what it holds of whom, and where relays stand.
   void base(TimeNs t, const Teammate& base);
+  /// The homing tree as the base knows it: nodes that are new, or whose way goes on elsewhere, since the last
+  /// call. Writes nothing if there are none.
+  void tree(TimeNs t, const HomingTree& tree);
   void traffic(TimeNs t, std::size_t radio, const RadioTraffic& traffic, const GossipCounts& counts);
   /// False once a write has failed.
   bool flush();
 
  private:
   std::ofstream file_;
+  std::map<NodeId, std::optional<NodeId>> next_;  // of each node, as last written
 };
 
 }  // namespace karst::core

@@ -62,7 +62,15 @@ TeamMission::TeamMission(const CoreOptions& options, TeamVehicles& vehicles,
       seats_(seats),
       threads_(std::max(1, threads)),
       base_(kBase, options_.team, options_.homing, vehicles.base(), seed),
+      base_tree_(options_.homing.tree, cruise_speed_mps(options_.motion)),
       log_(run_dir) {
+  base_tree_.insert_communication({kBase, 1}, to_centimetres(vehicles.base()), 0,
+                                  [](const Vec3&, const Vec3&) { return false; });
+  log_.event(0, "team",
+             {{"robots", seats.size()},
+              {"strategy", options_.team.strategy},
+              {"base", list(vehicles.base())},
+              {"reach", options_.homing.landing.link.range_m}});
   for (std::size_t i = 0; i < seats.size(); ++i)
     robots_.push_back(std::make_unique<Robot>(static_cast<RobotId>(i + 1), options_,
                                               vehicles.robot(i).description(), vehicles.base(), seed));
@@ -141,9 +149,15 @@ void TeamMission::talk(TimeNs now) {
   for (const auto& robot : robots_) object_log_.robot(now, robot->mate, log_);
   object_log_.base(now, base_, log_);
   if (now % kBaseLogPeriod == 0) {
-    log_.base(now, base_);
+    log_base(now);
     log_.flush();
   }
+}
+
+void TeamMission::log_base(TimeNs now) {
+  base_tree_.apply(base_.take_facts());
+  log_.base(now, base_);
+  log_.tree(now, base_tree_);
 }
 
 void TeamMission::note_phases(TimeNs now) {
@@ -223,7 +237,7 @@ TeamResult TeamMission::result(TimeNs now) {
     r.records_at_base = base_.gossip().held(robot->id).first();
     out.robots.push_back(r);
   }
-  log_.base(now, base_);
+  log_base(now);
   if (!base_.objects().empty()) log_.event(now, "objects", {{"known", list_of(merged(base_.objects()))}});
   log_.traffic(now, kBase, vehicles_.traffic(kBase), base_.gossip().counts());
   for (const auto& robot : robots_)

@@ -58,6 +58,7 @@ class TeamMission {
   void start(Robot& robot);
   void fly_all_to(TimeNs time);
   void fly(Robot& robot, TimeNs time);
+  void log_base(TimeNs now);
   void note_phases(TimeNs now);
   void strike(TimeNs now);
   void talk(TimeNs now);
@@ -71,6 +72,7 @@ class TeamMission {
   int threads_;
   Teammate base_;
   std::vector<std::unique_ptr<Robot>> robots_;
+  HomingTree base_tree_;  // as the base was told, for the log
   TeamLog log_;
   ObjectLog object_log_;
 };

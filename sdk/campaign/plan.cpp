@@ -1,6 +1,7 @@
 #include "sdk/campaign/plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -74,8 +75,12 @@ double seconds_of(const pt::ptree& mission, const std::string& key, double other
   return s;
 }
 
+/// Of a team until the last robot's would end, which starts last.
 double horizon_of(const PlannedContestant& c) {
-  return std::min(seconds_of(c.mission, "mission.max_flight_time", kEndless_s),
+  const int robots = std::max(1, c.mission.get("team.robots", 1));
+  const double stagger_s = robots > 1 ? seconds_of(c.mission, "team.stagger", 0) : 0;
+  return (robots - 1) * std::round(stagger_s) +
+         std::min(seconds_of(c.mission, "mission.max_flight_time", kEndless_s),
                   seconds_of(c.mission, "simulator.battery_minutes", kEndless_s));
 }
 

@@ -8,6 +8,7 @@
 #include "sdk/campaign/report_parts.h"
 #include "sdk/evaluation/metric_definitions.h"
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/team_report.h"
 
 namespace karst::campaign {
 namespace {
@@ -87,7 +88,10 @@ ordered_json worst(const CampaignResults& results, int metric, const CampaignRep
         fs::exists(run / "report.html", no_matter))
       continue;
     try {
-      evaluation::write_report(run);
+      if (fs::exists(run / "team.jsonl"))
+        evaluation::write_team_report(run);
+      else
+        evaluation::write_report(run);
     } catch (const core::InputError& e) {
       notes.push_back(std::string("no mission report: ") + e.what());
     }

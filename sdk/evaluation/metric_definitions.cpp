@@ -75,7 +75,7 @@ constexpr std::array kDefinitions = {
                      "mean distance from where the base has an object to where it lies"},
     MetricDefinition{"objects_false", "", less, unknown, "objects the base was told of that are none"},
     MetricDefinition{"data_at_base_share", "", more, nothing,
-                     "share of the explored volume that the base knew when the flight ended", 0, 1},
+                     "share of what a team's robots told that the base held at the end", 0, 1},
     MetricDefinition{"robots_landed", "", more, nothing, "share of a team's robots that landed", 0, 1},
     MetricDefinition{"robots_connected", "", more, unknown,
                      "share of those that reached the base over the relay graph at the end", 0, 1},

@@ -5,6 +5,7 @@
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/page.h"
 #include "sdk/evaluation/report_assets.h"
+#include "sdk/evaluation/team_report.h"
 #include "sdk/evaluation/whole_file.h"
 
 namespace karst::evaluation {
@@ -25,6 +26,14 @@ std::string report_page(const ordered_json& data) {
                         .styles = {page_style()},
                         .libraries = three_library() + chart_library(),
                         .scripts = page_scripts() + report_scripts()},
+                       data);
+}
+
+std::string team_report_page(const ordered_json& data) {
+  return assemble_page({.markup = report_template(),
+                        .styles = {page_style()},
+                        .libraries = three_library() + chart_library(),
+                        .scripts = page_scripts() + team_report_scripts()},
                        data);
 }
 

@@ -14,5 +14,6 @@ std::vector<std::string_view> page_scripts();   // in the order they must run
 std::string_view report_template();
 std::vector<std::string_view> chart_library();  // Chart.js, likewise
 std::vector<std::string_view> report_scripts();
+std::vector<std::string_view> team_report_scripts();  // the same page, of a team
 
 }  // namespace karst::evaluation

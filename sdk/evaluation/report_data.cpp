@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sdk/evaluation/decimate.h"
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/report_curve.h"
 #include "sdk/evaluation/report_goals.h"
 #include "sdk/evaluation/report_pictures.h"
 #include "sdk/evaluation/report_scene.h"
@@ -13,21 +13,6 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-constexpr std::size_t kMaxPlotSamples = 1600;
-
-double thousandths(double v) { return std::round(v * 1000) / 1000; }
-
-/// [[x, y], ...], or null if the record has no such curve.
-ordered_json curve(const std::vector<double>* t_s, const std::vector<double>* y, double scale = 1) {
-  if (!t_s || !y) return nullptr;
-  const Curve c = decimate(*t_s, *y, kMaxPlotSamples);
-  if (c.x.empty()) return nullptr;
-  ordered_json points = ordered_json::array();
-  for (std::size_t i = 0; i < c.x.size(); ++i)
-    points.push_back({thousandths(c.x[i]), thousandths(scale * c.y[i])});
-  return points;
-}
 
 ordered_json curves(const RunRecord& run) {
   const Table& t = run.telemetry;
@@ -46,13 +31,13 @@ ordered_json curves(const RunRecord& run) {
     }
   const auto* truth_s = run.truth_table.times();
   const auto* decision_s = run.decisions.times();
-  return {{"volume", curve(t_s, t.column("explored_m3"))},
-          {"speed", curve(t_s, &speed)},
-          {"battery", curve(t_s, t.column("battery_fraction"), 100)},
-          {"distance", curve(t_s, &distance)},
-          {"clearance", curve(truth_s, run.truth_table.column("clearance_m"))},
-          {"decide", curve(decision_s, run.decisions.column("decide_ms"))},
-          {"plan", curve(decision_s, run.decisions.column("plan_ms"))}};
+  return {{"volume", report_curve(t_s, t.column("explored_m3"))},
+          {"speed", report_curve(t_s, &speed)},
+          {"battery", report_curve(t_s, t.column("battery_fraction"), 100)},
+          {"distance", report_curve(t_s, &distance)},
+          {"clearance", report_curve(truth_s, run.truth_table.column("clearance_m"))},
+          {"decide", report_curve(decision_s, run.decisions.column("decide_ms"))},
+          {"plan", report_curve(decision_s, run.decisions.column("plan_ms"))}};
 }
 
 /// Events for the table: without the bulk that is drawn instead.

@@ -15,49 +15,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::vector<Setting> read_settings(const fs::path& file, std::vector<std::string>& problems) {
-  std::vector<Setting> settings;
-  if (!fs::exists(file)) return settings;
-  try {
-    for (auto& [key, value] : core::leaves_of(core::read_info(file.string())))
-      settings.push_back({std::move(key), std::move(value)});
-  } catch (const core::InputError& e) {
-    problems.push_back(e.what());
-  }
-  return settings;
-}
-
-/// One JSON object a line, each with a number and a text of the given names.
-std::vector<json> read_events(const fs::path& file, const char* time, const char* kind,
-                              std::vector<std::string>& problems) {
-  std::vector<json> events;
-  BadLines bad(file);
-  const std::vector<std::string> lines = read_lines(file, problems);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    json event = json::parse(lines[i], nullptr, false);
-    const bool valid = event.is_object() && event_number(event, time) && !event_text(event, kind).empty();
-    if (valid) events.push_back(std::move(event));
-    if (!valid)
-      bad.add(i + 1,
-              std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind + "\")");
-  }
-  bad.report(problems);
-  return events;
-}
-
-json read_json(const fs::path& file, std::vector<std::string>& problems) {
-  if (!fs::exists(file)) return nullptr;
-  if (fs::is_directory(file)) {
-    problems.push_back(file.filename().string() + ": is a directory, not a file");
-    return nullptr;
-  }
-  std::ifstream in(file);
-  json value = json::parse(in, nullptr, false);
-  if (!value.is_discarded()) return value;
-  problems.push_back(file.filename().string() + ": is not valid JSON; left out");
-  return nullptr;
-}
-
 /// From the phase events, or else from the telemetry's phase column.
 std::vector<Phase> find_phases(const RunRecord& run) {
   std::vector<Phase> phases;
@@ -131,6 +88,48 @@ double RunRecord::last_time_s() const {
     if (const auto* t_s = table->times(); t_s && !t_s->empty()) last = std::max(last, t_s->back());
   if (!estimate.empty()) last = std::max(last, estimate.back().t_s);
   return last;
+}
+
+std::vector<Setting> read_settings(const fs::path& file, std::vector<std::string>& problems) {
+  std::vector<Setting> settings;
+  if (!fs::exists(file)) return settings;
+  try {
+    for (auto& [key, value] : core::leaves_of(core::read_info(file.string())))
+      settings.push_back({std::move(key), std::move(value)});
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
+  }
+  return settings;
+}
+
+json read_json(const fs::path& file, std::vector<std::string>& problems) {
+  if (!fs::exists(file)) return nullptr;
+  if (fs::is_directory(file)) {
+    problems.push_back(file.filename().string() + ": is a directory, not a file");
+    return nullptr;
+  }
+  std::ifstream in(file);
+  json value = json::parse(in, nullptr, false);
+  if (!value.is_discarded()) return value;
+  problems.push_back(file.filename().string() + ": is not valid JSON; left out");
+  return nullptr;
+}
+
+std::vector<json> read_events(const fs::path& file, const char* time, const char* kind,
+                              std::vector<std::string>& problems) {
+  std::vector<json> events;
+  BadLines bad(file);
+  const std::vector<std::string> lines = read_lines(file, problems);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    json event = json::parse(lines[i], nullptr, false);
+    const bool valid = event.is_object() && event_number(event, time) && !event_text(event, kind).empty();
+    if (valid) events.push_back(std::move(event));
+    if (!valid)
+      bad.add(i + 1,
+              std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind + "\")");
+  }
+  bad.report(problems);
+  return events;
 }
 
 RunRecord read_run(const fs::path& run_dir) {

@@ -52,6 +52,15 @@ std::string event_text(const nlohmann::json& event, const char* key);
 /// A number field of an event; none if there is none.
 std::optional<double> event_number(const nlohmann::json& event, const char* key);
 
+/// The leaves of an INFO file, and a JSON file; nothing, and a problem if it is damaged, where it is not to
+/// be had.
+std::vector<Setting> read_settings(const std::filesystem::path& file, std::vector<std::string>& problems);
+nlohmann::json read_json(const std::filesystem::path& file, std::vector<std::string>& problems);
+/// One JSON object a line, each with a number and a text of the given names; other lines are left out and
+/// reported.
+std::vector<nlohmann::json> read_events(const std::filesystem::path& file, const char* time, const char* kind,
+                                        std::vector<std::string>& problems);
+
 /// Throws InputError only if `run_dir` is no directory.
 RunRecord read_run(const std::filesystem::path& run_dir);
 

@@ -12,8 +12,6 @@
 #include "core_stack/common/random.h"
 #include "core_stack/mission/team_mission.h"
 #include "core_stack/vehicle/team_vehicles.h"
-#include "sdk/evaluation/metrics.h"
-#include "sdk/evaluation/object_figures.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
 #include "sdk/tools/status_line.h"
@@ -76,7 +74,8 @@ class TeamStatus {
   bool quiet_;
 };
 
-void print_summary(const core::TeamResult& result, const nlohmann::json& metrics, const fs::path& run_dir) {
+void print_summary(const core::TeamResult& result, const nlohmann::json& metrics, const fs::path& run_dir,
+                   bool with_report) {
   std::printf("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
               metrics["reason"].get<std::string>().c_str());
   std::printf("  robot  explored  outcome    at the base\n");
@@ -89,6 +88,8 @@ void print_summary(const core::TeamResult& result, const nlohmann::json& metrics
   print_objects(metrics);
   std::printf("  over the air     %.0f kB in %.0f s\nLook next at:\n",
               1e-3 * static_cast<double>(result.bytes_on_air), result.duration_s);
+  if (with_report)
+    std::printf("  %s   all robots over time, in a browser\n", (run_dir / "report.html").c_str());
   std::printf(
       "  %s   what became of the team, and what the base knew when\n  %s   the first robot's own flight\n",
       (run_dir / "team.jsonl").c_str(), (run_dir / folder_of(0)).c_str());
@@ -156,15 +157,12 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
           finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report, args.cave_cache));
     }
     nlohmann::ordered_json metrics = team_metrics(mission, result, own);
-    std::vector<std::string> problems;
-    evaluation::set_figures(metrics, evaluation::team_object_figures(run_dir, problems));
-    for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
-    evaluation::write_metrics(run_dir, metrics);
     write_team_timing(run_dir, result.duration_s, wall.count(), args.threads);
+    finish_team(run_dir, mission.cave, mission.start, metrics, !args.no_report, args.cave_cache);
     if (args.json)
       std::cout << core::json_text(metrics, 2) << std::endl;
     else
-      print_summary(result, metrics, run_dir);
+      print_summary(result, metrics, run_dir, !args.no_report);
     if (metrics["outcome"] == "landed") code = std::fflush(stdout) == 0 ? 0 : 1;
   } catch (const std::exception& e) {  // a full disk: they flew all the same
     std::fprintf(stderr, "karst: %s\nkarst: the flights' record is incomplete: %s\n", e.what(),

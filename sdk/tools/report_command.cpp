@@ -9,11 +9,16 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
+#include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/imaged_rock.h"
 #include "sdk/evaluation/metrics.h"
+#include "sdk/evaluation/object_figures.h"
 #include "sdk/evaluation/reachable_file.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/surface.h"
+#include "sdk/evaluation/team_metrics.h"
+#include "sdk/evaluation/team_report.h"
+#include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/campaign_page.h"
 
 namespace karst::tools {
@@ -75,24 +80,61 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   if (!kept.empty()) std::fprintf(stderr, "karst: kept from the metrics.json there was: %s\n", kept.c_str());
 }
 
+/// Says why if the cave cannot be read.
+evaluation::Truth truth_if_known(const fs::path& run_dir, const std::string& cave, const std::string& start,
+                                 std::vector<std::string>& problems, bool& lost_cave, const fs::path& cache) {
+  if (cave.empty()) return {};
+  try {
+    return truth_of(cave, start, cell_size_m(run_dir),
+                    evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems), cache);
+  } catch (const core::InputError& e) {
+    lost_cave = true;
+    std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());
+    return {};
+  }
+}
+
+/// In the columns of a run's, so that what reads how a run's volume grew reads a team's.
+void write_team_telemetry(const evaluation::TeamRecord& team) {
+  std::string text = "t_s,phase,explored_m3\n";
+  const auto* t_s = team.merged.telemetry.times();
+  const auto* volume = team.merged.telemetry.column("explored_m3");
+  const double begin_s = evaluation::flight_begin_s(team.merged);
+  for (std::size_t i = 0; t_s && volume && i < t_s->size(); ++i) {
+    char line[64];
+    std::snprintf(line, sizeof line, "%.0f,%s,%.3f\n", (*t_s)[i], (*t_s)[i] < begin_s ? "standby" : "flying",
+                  (*volume)[i]);
+    text += line;
+  }
+  evaluation::write_whole_file(team.directory / "telemetry.csv", text);
+}
+
+/// Evaluates each robot again, and the team. What only the mission itself knew stays as its end wrote it.
+void report_team(const fs::path& run, const std::string& cave, const std::string& start, bool with_report) {
+  const char* written = with_report ? "report.html" : "metrics.json";
+  for (int i = 1; fs::exists(run / ("robot_" + std::to_string(i))); ++i) {
+    const fs::path robot = run / ("robot_" + std::to_string(i));
+    finish_run(robot, cave, start, with_report);
+    std::printf("%s\n", (robot / written).c_str());
+  }
+  std::ifstream in(run / "metrics.json");
+  auto metrics = in ? nlohmann::ordered_json::parse(in, nullptr, false) : nlohmann::ordered_json();
+  if (!metrics.is_object()) {
+    std::fprintf(stderr, "karst: %s: not there or no JSON object: outcomes of the team are not known\n",
+                 (run / "metrics.json").c_str());
+    metrics = nlohmann::ordered_json::object();
+  }
+  finish_team(run, cave, start, metrics, with_report);
+  std::printf("%s\n", (run / written).c_str());
+}
+
 }  // namespace
 
 nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, const std::string& start,
                           bool with_report, const fs::path& cave_cache) {
-  evaluation::Truth truth;
-  std::vector<std::string> problems;
+  std::vector<std::string> problems, run_problems;
   bool lost_cave = false;
-  if (!cave.empty()) {
-    try {
-      truth =
-          truth_of(cave, start, cell_size_m(run_dir),
-                   evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems), cave_cache);
-    } catch (const core::InputError& e) {
-      lost_cave = true;
-      std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());
-    }
-  }
-  std::vector<std::string> run_problems;
+  const evaluation::Truth truth = truth_if_known(run_dir, cave, start, problems, lost_cave, cave_cache);
   nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &run_problems);
   problems.insert(problems.end(), run_problems.begin(), run_problems.end());
   if (lost_cave) keep_known(metrics, run_dir);
@@ -114,6 +156,22 @@ void print_objects(const nlohmann::json& m) {
   std::printf("%s\n", count("objects_false") > 0
                           ? (", and " + std::to_string(count("objects_false")) + " false").c_str()
                           : "");
+}
+
+void finish_team(const fs::path& run_dir, const std::string& cave, const std::string& start,
+                 nlohmann::ordered_json& metrics, bool with_report, const fs::path& cave_cache) {
+  const evaluation::TeamRecord team = evaluation::read_team(run_dir);
+  std::vector<std::string> problems;
+  bool lost_cave = false;
+  const evaluation::Truth truth = truth_if_known(run_dir, cave, start, problems, lost_cave, cave_cache);
+  problems.insert(problems.end(), team.problems.begin(), team.problems.end());
+  metrics.update(evaluation::team_map_figures(team, truth));
+  evaluation::set_figures(metrics, evaluation::team_object_figures(run_dir, problems));
+  if (lost_cave) keep_known(metrics, run_dir);
+  for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
+  evaluation::write_metrics(run_dir, metrics);
+  write_team_telemetry(team);
+  if (with_report) evaluation::write_team_report(run_dir);
 }
 
 void add_report_command(CLI::App& app) {
@@ -143,12 +201,8 @@ void add_report_command(CLI::App& app) {
       throw core::InputError(args->run, "",
                              "no run directory, as it holds no mission.info, nor a campaign's folder");
     const auto info = core::read_info((run / "mission.info").string());
-    if (fs::exists(run / "team.jsonl")) {  // its own figures are those of the flight's end
-      for (int i = 1; fs::exists(run / ("robot_" + std::to_string(i))); ++i) {
-        const fs::path robot = run / ("robot_" + std::to_string(i));
-        finish_run(robot, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
-        std::printf("%s\n", (robot / (args->no_report ? "metrics.json" : "report.html")).c_str());
-      }
+    if (fs::exists(run / "team.jsonl")) {
+      report_team(run, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
       return;
     }
     finish_run(run, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);

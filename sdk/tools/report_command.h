@@ -22,4 +22,10 @@ nlohmann::json finish_run(const std::filesystem::path& run_dir, const std::strin
 /// A line of the summary, if there were objects of interest to find.
 void print_objects(const nlohmann::json& metrics);
 
+/// The same of a team whose robots' runs are finished: adds to `metrics` what the merged map says, and writes
+/// metrics.json, telemetry.csv (the team's volume over time) and, if asked, report.html.
+void finish_team(const std::filesystem::path& run_dir, const std::string& cave, const std::string& start,
+                 nlohmann::ordered_json& metrics, bool with_report,
+                 const std::filesystem::path& cave_cache = {});
+
 }  // namespace karst::tools

@@ -53,6 +53,9 @@ ordered_json team_metrics(const Mission& mission, const core::TeamResult& result
   m["energy_wh"] = sum(robots, "energy_wh");
   m["flight_time_s"] = sum(robots, "flight_time_s");
   m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
+  std::uint64_t told = 0, at_base = 0;
+  for (const core::RobotResult& r : result.robots) told += r.records, at_base += r.records_at_base;
+  if (told > 0) m["data_at_base_share"] = rounded(static_cast<double>(at_base) / static_cast<double>(told));
   m["robots_landed"] = rounded(static_cast<double>(landed) / static_cast<double>(n));
   m["robots_connected"] =
       landed > 0 ? ordered_json(rounded(static_cast<double>(connected) / static_cast<double>(landed)))

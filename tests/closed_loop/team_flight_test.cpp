@@ -102,6 +102,46 @@ TEST(Team, LandsConnectedAndTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(report.code, 0) << report.text;
 }
 
+TEST(Team, IsComparedByACampaignUnderTwoStrategies) {
+  const auto folder = fresh_folder("team_campaign");
+  passage(folder);
+  std::ofstream(folder / "base.info") << R"(
+team { robots 2  stagger "20 s"  linger "20 s" }
+simulator { battery_minutes "1.2 min"  pose { fitted always } }
+localization { source pose_sensor }
+radio { propagation distance  range "15 m" }
+homing { landing { link { range "15 m"  rock_loss 0  spare 1 } } }
+)";
+  std::ofstream(folder / "c.info") << R"(
+name relays
+mission base.info
+profile full
+seeds 1
+metric exploration_time_s
+cave { file cave.info }
+contestant { name home   policy nearest_frontier  settings { team { strategy return_to_base } } }
+contestant { name relay  policy nearest_frontier  settings { team { strategy relay_chain } } }
+)";
+  const auto out = folder / "out", run = out / "trials" / "home" / "cave" / "1";
+  const Output compared = run_karst("compare " + (folder / "c.info").string() + " --out " + out.string());
+  ASSERT_EQ(compared.code, 0) << compared.text;
+  EXPECT_TRUE(compared.says("between home and relay in exploration_time_s")) << compared.text;
+  const json m = json::parse(bytes_of(run / "metrics.json"));
+  EXPECT_EQ(m["strategy"], "return_to_base");
+  EXPECT_EQ(m["horizon_s"], 92) << "1.2 min of the robot that starts after 20 s";
+  EXPECT_GT(m["exploration_time_2_s"], 0);
+  EXPECT_GT(m["data_at_base_share"], 0.9);
+  EXPECT_GT(m["t50_s"], 0);
+  const json robot = json::parse(bytes_of(run / "robot_1" / "metrics.json"));
+  EXPECT_GE(m["explored_volume_m3"], robot["explored_volume_m3"]);
+
+  EXPECT_EQ(run_karst("report " + run.string()).code, 0);
+  EXPECT_EQ(json::parse(bytes_of(run / "metrics.json")), m) << "evaluated again it is the same";
+  EXPECT_GT(std::filesystem::file_size(run / "report.html"), 100000u);
+  EXPECT_EQ(run_karst("report " + out.string()).code, 0);
+  EXPECT_NE(bytes_of(out / "report.html").find("trials/home/cave/1"), std::string::npos);
+}
+
 TEST(Team, ReturnsToTheBaseWhereThatIsTheStrategy) {
   const auto folder = fresh_folder("team_base");
   expect_all_well(fly(passage(folder), folder / "run", team_of(3, "return_to_base")), 3);

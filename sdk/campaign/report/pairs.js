@@ -60,13 +60,20 @@ function differenceTable(c) {
   return make("div", { className: "card wide" }, table);
 }
 
-const pairHeads = [["a", "name"], ["b", "name"], ["mean a", "number"], ["mean b", "number"], ["a − b", "number"],
+const pairHeads = [["a", "name"], ["b", "name"], ["mean a", "number"], ["mean b", "number"], ["a − b", "number"], ["of b", "number"],
   [`${percentOfIntervals} % interval`, "number"], ["caves like these", "number"], ["p", "number"], ["rank-biserial", "number"], ["d", "number"], ["pairs", "number"], "shown"];
+/** A difference in per cent of what b has, with its interval; b's mean is taken as known. */
+function relativeText(c) {
+  if (!(c.mean_b > 0) || c.difference === null) return "–";
+  const percent = (v) => v === null ? null : 100 * v / c.mean_b;
+  return `${signedText(percent(c.difference))} % ${intervalText(c.interval.map(percent), signedText)}`;
+}
+
 function pairCells(c) {
   const number = (text) => [text, "number"];
   const shown = c.shown === "" ? "no difference" : `${contestantNames[c.shown[0] === "a" ? c.a : c.b]} ${c.shown.slice(2)}`;
   return [[named(c.a), "name"], [named(c.b), "name"], number(numberText(c.mean_a)), number(numberText(c.mean_b)), number(signedText(c.difference)),
-    number(intervalText(c.interval, signedText)), number(intervalText(c.interval_caves, signedText)), number(pText(c.p)),
+    number(relativeText(c)), number(intervalText(c.interval, signedText)), number(intervalText(c.interval_caves, signedText)), number(pText(c.p)),
     number(c.rank_biserial === null ? "–" : signedText(Number(c.rank_biserial.toFixed(2)))), number(c.standardized === null ? "–" : signedText(c.standardized)),
     number(String(c.pairs)), [shown, c.shown ? "shown" : "quiet"]];
 }
@@ -90,7 +97,7 @@ function startPairs() {
   const ranked = data.verdicts.ranking.map((p) => p.contestant);
   fillChoices("pair-a", contestantNames, ranked[0] ?? 0);
   fillChoices("pair-b", contestantNames, ranked[1] ?? 1);
-  element("pair-note").textContent = `Intervals are bootstrapped: over seeds, for these caves; over caves, for caves like these. p: Wilcoxon's signed-rank test, corrected by Holm for the pairs in this figure. Effect sizes: rank-biserial correlation from −1 to 1; d is the difference in standard deviations within caves.`;
+  element("pair-note").textContent = `“of b”: in per cent of b's mean, which is taken as known, with the interval of a − b. Intervals are bootstrapped: over seeds, for these caves; over caves, for caves like these. p: Wilcoxon's signed-rank test, corrected by Holm for the pairs in this figure. Effect sizes: rank-biserial correlation from −1 to 1; d is the difference in standard deviations within caves.`;
   const every = element("every-pair");
   every.addEventListener("toggle", () => {
     const box = every.querySelector("div");

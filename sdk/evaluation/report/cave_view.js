@@ -1,7 +1,7 @@
 // The 3D view of the run, and the controls over it.
 
 /** { setTime(t), setView(name) }; shows what there is, and says so where there is nothing. */
-function startCaveView() {
+function startCaveView(flight) {
   const empty = element("view-empty");
   const refuse = (text) => {
     empty.textContent = text;
@@ -10,13 +10,13 @@ function startCaveView() {
     element("view-controls").style.display = "none";
     return { setTime() {}, setView() {} };
   };
-  if (!data.cloud && !data.track) return refuse("This run recorded neither a map nor a trajectory.");
+  if (!data.cloud && !flight.track) return refuse("This run recorded neither a map nor a trajectory.");
   const buttons = document.querySelectorAll("[data-view]");
   const stage = makeStage(element("view"), element("labels"), () => element("view-controls").offsetWidth + 10, {
     viewed: (name) => { for (const b of buttons) b.classList.toggle("on", b.dataset.view === name); },
   });
   if (!stage) return refuse("This browser cannot draw in 3D (no WebGL). Plots and tables are below.");
-  const cloud = makeCloud(decodeCloud(data.cloud)), flight = makeFlight(data);
+  const cloud = makeCloud(decodeCloud(data.cloud));
   const { grid, step } = stage.show(cloud, flight, samplePoints(cloud, flight));
   for (const b of buttons) b.addEventListener("click", () => stage.setView(b.dataset.view));
   connectControls(cloud, flight, grid, step, stage.redraw);

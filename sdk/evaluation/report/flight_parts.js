@@ -56,9 +56,9 @@ function goalIcon() {
 }
 
 /** A flat arrow that points where the vehicle does. */
-function vehicleArrow() {
+function vehicleArrow(fill = 0xffffff) {
   const group = new THREE.Group();
-  for (const [scale, colour, order] of [[1.35, 0x111111, 20], [1, 0xffffff, 21]]) {
+  for (const [scale, colour, order] of [[1.35, 0x111111, 20], [1, new THREE.Color(fill), 21]]) {
     const shape = new THREE.Shape();
     shape.moveTo(1, 0); shape.lineTo(-0.75, 0.7); shape.lineTo(-0.4, 0); shape.lineTo(-0.75, -0.7);
     const mesh = new THREE.Mesh(new THREE.ShapeBufferGeometry(shape), new THREE.MeshBasicMaterial({

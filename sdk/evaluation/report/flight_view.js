@@ -28,7 +28,7 @@ function makeDrawings(drawings) {
   return { group, labels };
 }
 
-/** { object, layer: {name: object}, setTime(t), setResolution(w, h), labels, vehicle } of a run with phases, goals,
+/** { object, layer: {name: object}, choices: names of layers to be shown or hidden, setTime(t), setResolution(w, h), labels, vehicles } of a run with phases, goals,
  *  plans, frontiers, drawings, and tracks or null. */
 function makeFlight(run) {
   const track = decodeTrack(run.track), truth = decodeTrack(run.true_track);
@@ -60,7 +60,10 @@ function makeFlight(run) {
   object.add(layer.plan, layer.drawings);
 
   let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], resolution = [1, 1];
-  const view = { object, layer, labels: [], vehicle, track, now: { position: new THREE.Vector3(), heading: 0 } };
+  const used = { plan: run.plans.length, goal: run.goals.length, frontiers: run.frontiers.length, objects: run.objects.length,
+                 drawings: run.drawings.some((d) => d[1].length) };
+  const choices = ["path", "true path", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
+  const view = { object, layer, choices, labels: [], vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 
   view.setResolution = (w, h) => {

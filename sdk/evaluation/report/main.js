@@ -1,12 +1,14 @@
 startTheme();
+showHeader();
 startTables();
 setTimeRange(data.begin_s, data.duration_s);
-drawTrack();
+drawPhases(element("phases"), data.phases);
+drawTicks();
 startTimeline();
 startMomentPanel();
-startPlots();
+startCharts(addRunPlots);
 startErrors();
-const caveView = startCaveView();
+const caveView = startCaveView(makeFlight(data));
 moment.listeners.push((t) => caveView.setTime(t));
 startPictures(caveView);
 const asked = new URLSearchParams(location.hash.slice(1));  // report.html#t=63.5&view=top&theme=dark

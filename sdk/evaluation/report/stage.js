@@ -29,7 +29,8 @@ function makeStage(box, labels, beside, { changed = () => {}, viewed = () => {} 
     camera.near = Math.max(0.05, distance / 500);
     camera.far = distance * 6 + 2000;
     camera.updateProjectionMatrix();
-    flight.vehicle.scale.setScalar(Math.max(0.35, camera.position.distanceTo(flight.now.position) * 0.016));
+    for (const vehicle of flight.vehicles)
+      vehicle.scale.setScalar(Math.max(0.35, camera.position.distanceTo(vehicle.position) * 0.016));
     if (cloud) {
       cloud.uniforms.nearFog.value = distance * 0.8;
       cloud.uniforms.farFog.value = distance * 3.2;

@@ -30,14 +30,43 @@ function eventText(e) {
   }
 }
 
-function showHeader() {
+/** The same with whose event it is, of a team. */
+function eventLine(e) {
+  if (!data.robots || !e.robot) return eventText(e);
+  const { robot, ...rest } = e;
+  return [`robot ${robot}`, eventText(rest)].filter(Boolean).join(": ");
+}
+
+/** What was flown, and how it ended; `more` stands behind. */
+function showTitle(more = []) {
   const m = data.metrics;
-  const title = [m.policy || "unknown policy", m.cave || "unknown cave", m.seed === null ? "" : "seed " + m.seed].filter(Boolean);
+  const seed = typeof m.seed === "number" ? "seed " + m.seed : "";
+  const title = [m.policy || "unknown policy", m.cave || "unknown cave", seed, ...more].filter(Boolean);
   element("title").textContent = title.join(" · ");
   document.title = "karst: " + title.join(", ");
-  element("outcome").textContent = (endedWell(m.outcome) ? "✓ " : "✕ ") + m.outcome;
+  element("outcome").textContent = (endedWell(m.outcome) ? "✓ " : "✕ ") + (m.outcome || "not known");
   element("outcome").className = "badge " + (endedWell(m.outcome) ? "landed" : "");
   element("reason").textContent = m.reason || "";
+}
+
+/** [[name, [value, unit]], ...] as cards. */
+function showFigures(figures) {
+  for (const [name, [value, u]] of figures)
+    element("figures").append(make("div", { className: "figure" },
+      make("b", {}, value, u ? make("small", {}, " " + u) : ""), make("span", {}, name)));
+}
+
+function showProblems() {
+  if (!data.problems.length) return;
+  const box = element("problems"), n = data.problems.length;
+  box.hidden = false;
+  box.querySelector("summary").textContent = `${n} ${n === 1 ? "note" : "notes"} on this record: what is missing, damaged or thinned out`;
+  for (const p of data.problems) box.querySelector("ul").append(make("li", {}, p));
+}
+
+function showHeader() {
+  const m = data.metrics;
+  showTitle();
   const share = (v) => typeof v === "number" ? [numberText(100 * v, 3), "%"] : ["–", ""];
   const unit = (v, u, digits) => typeof v === "number" ? [numberText(v, digits), u] : ["–", ""];
   const figures = [
@@ -49,15 +78,8 @@ function showHeader() {
     ["battery left", share(m.battery_left)],
     ["goals (refused)", [`${m.goals_accepted ?? "–"}`, `(${m.goals_rejected ?? "–"})`]],
   ];
-  for (const [name, [value, u]] of figures)
-    element("figures").append(make("div", { className: "figure" },
-      make("b", {}, value, u ? make("small", {}, " " + u) : ""), make("span", {}, name)));
-  if (data.problems.length) {
-    const box = element("problems"), n = data.problems.length;
-    box.hidden = false;
-    box.querySelector("summary").textContent = `${n} ${n === 1 ? "note" : "notes"} on this record: what is missing, damaged or thinned out`;
-    for (const p of data.problems) box.querySelector("ul").append(make("li", {}, p));
-  }
+  showFigures(figures);
+  showProblems();
 }
 
 function showEvents() {
@@ -68,7 +90,7 @@ function showEvents() {
     const shown = data.events.filter((e) => !hidden.has(e.kind)).slice(0, 5000);
     body.replaceChildren(...shown.map((e) => {
       const row = make("tr", { className: isTrouble(e) ? "bad" : "" }, make("td", {}, clockText(e.t)),
-        make("td", {}, e.kind), make("td", {}, eventText(e)));
+        make("td", {}, e.kind), make("td", {}, eventLine(e)));
       row.addEventListener("click", () => setMoment(e.t));
       return row;
     }));
@@ -107,9 +129,8 @@ function showTiming() {
 }
 
 function startTables() {
-  showHeader();
   showEvents();
-  table(element("metrics"), Object.entries(data.metrics).map(([k, v]) =>
+  table(element("metrics"), Object.entries(data.metrics).filter(([, v]) => typeof v !== "object" || v === null).map(([k, v]) =>
     [k, v === null ? "–" : typeof v === "number" ? (Number.isInteger(v) ? String(v) : numberText(v, 4)) : String(v)]));
   table(element("settings"), data.settings.length ? data.settings : [["not recorded", ""]]);
   showTiming();

@@ -18,7 +18,9 @@ function showScale(cloud, step, mode) {
 
 const layerMarks = {
   "map": ["", ""], "path": [colours.explore, ""], "true path": [colours.truth, ""], "plan": [colours.plan, ""],
-  "goal": [colours.goal, "ring"], "frontiers": [colours.frontier, "dot"], "objects": [colours.object, "dot"], "drawings": ["", ""], "grid": ["", ""],
+  "goal": [colours.goal, "ring"], "frontiers": [colours.frontier, "dot"], "drawings": ["", ""], "grid": ["", ""],
+  "paths": ["", ""], "links": ["#009e73", ""], "relays": [colours.goal, "ring"], "reach": [colours.home, "dot"],
+  "homing tree": [colours.truth, ""], "objects": [colours.object, "dot"],
 };
 
 function connectLayers(objects, redraw) {
@@ -47,12 +49,7 @@ function connectLayers(objects, redraw) {
 function connectControls(cloud, flight, grid, step, redraw) {
   const objects = {};
   if (cloud) objects.map = cloud.object;
-  for (const name of ["path", "true path", "plan", "goal", "frontiers", "objects", "drawings"]) {
-    const used = { plan: data.plans.length, goal: data.goals.length, frontiers: data.frontiers.length,
-                   objects: data.objects.length,
-                   drawings: data.drawings.some((d) => d[1].length) }[name];
-    if (flight.layer[name] && used !== 0 && used !== false) objects[name] = flight.layer[name];
-  }
+  for (const name of flight.choices) objects[name] = flight.layer[name];
   objects.grid = grid;
   connectLayers(objects, redraw);
   showScale(cloud, step, 0);

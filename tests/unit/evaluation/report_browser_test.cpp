@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/team_report.h"
 #include "tests/unit/evaluation/browser.h"
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -42,6 +43,38 @@ TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {
   EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << root;
   EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
   EXPECT_NE(dom.find("This run recorded neither a map nor a trajectory."), std::string::npos);
+}
+
+TEST(ReportInBrowser, ShowsATeamWithoutAnErrorEvenIfItsLogIsDamaged) {
+  TemporaryDirectory dir;
+  test::FakeRunOptions small;
+  small.length_m = 36;
+  small.map_resolution_m = 0.5;
+  test::write_fake_run(dir.path() / "robot_1", small);
+  test::write_fake_run(dir.path() / "robot_2", small);
+  dir.write(
+      "team.jsonl",
+      R"({"t":0,"kind":"team","robots":2,"strategy":"relay_chain","base":[0,0,1],"reach":15})"
+      "\n"
+      R"({"t":0,"kind":"start","robot":1})"
+      "\n"
+      R"({"t":20,"kind":"start","robot":2})"
+      "\n"
+      R"({"t":25,"kind":"base","connected":[0,1],"links":[[0,1,1.1]],"held":[[1,7]],"relays":[[1,[9,0,0]]],"dead":[]})"
+      "\n"
+      R"({"t":25,"kind":"tree","nodes":[[0,1,0,0,1,1],[1,1,4,0,1,0,0,1]]})"
+      "\n"
+      R"({"t":30,"kind":"base","connected":"none","links":[[0],[0,1,"bad"]],"held":3})"
+      "\n{cut");
+  write_team_report(dir.path());
+  const std::string dom = test::dom_in_browser(dir.path() / "report.html");
+  if (dom.empty()) GTEST_SKIP() << "skipped: no chromium";
+  const std::string root = dom.substr(0, dom.find("<head>"));
+  EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << root;
+  EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
+  EXPECT_NE(dom.find("team.jsonl: line 7"), std::string::npos) << "the cut line is named";
+  EXPECT_NE(dom.find("fields of what the base knew"), std::string::npos);
+  EXPECT_NE(dom.find("Reach from the base over landed relays"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+// A curve as the report's plots take it.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace karst::evaluation {
+
+/// [[x, y], ...], thinned to what a plot shows, or null if the record has no such curve.
+nlohmann::ordered_json report_curve(const std::vector<double>* t_s, const std::vector<double>* y,
+                                    double scale = 1);
+
+}  // namespace karst::evaluation
