@@ -6,6 +6,7 @@
 
 #include "core_stack/homing/landing_ground.h"
 #include "core_stack/mission/explorer.h"
+#include "core_stack/planning/grid_planner.h"
 
 namespace karst::core {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kRefugeReach_m = 12.0, kRetreat_m = 60.0, kRefugeStep_m = 1.0;
 constexpr double kGetBy_m = 3.0;
 constexpr std::array kGaps_m = {0.5, 0.2};  // beside one that hovers, more than beside rock
-constexpr double kAhead_m = 1.5;            // it comes there before the other by so much of the way
+constexpr double kAhead_m = 0.3;            // it comes there before the other by so much of the way
 constexpr double kElsewhere_m = 2.0, kRefusedNear_m = 0.5;
 constexpr std::size_t kEnoughInVain = 2, kMostRefused = 40;
 
@@ -65,7 +66,9 @@ std::optional<Refuge> Explorer::refuge(const Vec3& from, const std::vector<Vec3>
     std::vector<Vec3> refused;
     for (const std::size_t i : order) {
       if (refused.size() == kMostRefused || in_vain.size() >= kEnoughInVain) break;
-      if (near_one_of(refused, places[i], kRefusedNear_m)) continue;
+      if (near_one_of(refused, places[i], kRefusedNear_m) ||
+          !is_clear(map_, places[i], options_.planning.clearance_m))
+        continue;
       if (others_get_by(map_, places[i], vehicle_.radius_m + gap_m,
                         search_clearance_m(options_.planning, map_.resolution_m()), kGetBy_m))
         return Refuge{places[i], true};

@@ -169,6 +169,24 @@ TEST(Team, GetsByEachOtherInANarrowPassage) {
   EXPECT_GT(farthest_m[1], 25) << "robot 2 did not get on";
 }
 
+/// Where only one has room, the one that explores goes back before the one that comes home.
+TEST(Team, RetreatsBeforeOneThatComesHomeWhereNoneGetsBy) {
+  const auto folder = fresh_folder("team_retreat");
+  const std::string cave =
+      draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -0.9, 0}, {60, 0.9, 1.9}}}, {0, 0, 1});
+  const Flown f =
+      fly(cave, folder / "run",
+          team_of(2, "return_to_base", "--set radio.range=30m --set homing.landing.link.range=30m"));
+  expect_all_well(f, 2);
+  std::vector<double> x;  // of robot 2, every five seconds
+  for (const json& e : f.truth)
+    if (e["kind"] == "radio") x.push_back(e["positions"][2][0]);
+  // It was in the passage, came out, and went in again.
+  const auto inside = std::find_if(x.begin(), x.end(), [](double m) { return m > 6; });
+  const auto out = std::find_if(inside, x.end(), [](double m) { return m < 4.5; });
+  EXPECT_NE(std::find_if(out, x.end(), [](double m) { return m > 6; }), x.end());
+}
+
 TEST(Team, ByThePapersTreeLandsConnected) {
   const auto folder = fresh_folder("team_tree");
   expect_all_well(fly(passage(folder), folder / "run", team_of(2, "relay_tree")), 2);
