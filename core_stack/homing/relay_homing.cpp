@@ -5,6 +5,7 @@
 
 #include "core_stack/homing/home.h"
 #include "core_stack/homing/map_rays.h"
+#include "core_stack/planning/grid_planner.h"
 
 namespace karst::core {
 namespace {
@@ -59,8 +60,12 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
   if (!own.nodes.empty()) {
     ++nodes_made_;
     append(out, own);
-    to_judge_.push_back(here);
   }
+  // Also where others have made nodes: of their ground it knows nothing.
+  const bool judged = std::any_of(passed_.begin(), passed_.end(), [&](const Vec3& p) {
+    return (p - here).norm() < options_.tree.least_edge_m;
+  });
+  if (!judged) passed_.push_back(here), to_judge_.push_back(here);
   if (!closed.empty()) {
     Vec3 low = map.center_of(closed.front()), high = low;
     for (const CellKey& k : closed)
@@ -84,6 +89,7 @@ double RelayHoming::down_s(const Place& place) const {
 void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose) {
   std::vector<Place> candidates;
   for (const Vec3& p : roadmap.places_near(pose, kPlaceReach_m)) {
+    if (!is_clear(map, p, planning_.clearance_m)) continue;  // by the search's alone no way may lead there
     const Ground ground = ground_below(map, p, radius_m_, options_.landing.ground);
     if (ground.verdict == GroundVerdict::good) candidates.push_back({p, ground.ground, std::nullopt});
   }

@@ -3,9 +3,8 @@
 //
 // relay_tree (the paper): along the homing tree to the nearest communication node, and down where that node
 // comes into reach. relay_chain: to the nearest of all landing places it knows, of whichever node. Places are
-// judged while it flies by: wherever a pose node is made, the ground near it is looked at once. It also
-// counts on robots that are on their way down and have claimed a place, if their batteries end before its
-// own.
+// judged while it flies by, every few metres. It also counts on robots that are on their way down and have
+// claimed a place, if their batteries end before its own.
 //
 // It lives where the map lives, on the map lane.
 #pragma once
@@ -86,7 +85,8 @@ class RelayHoming {
   double radius_m_, keep_apart_m_;
   HomingTree tree_;
   std::uint32_t nodes_made_ = 0;
-  std::vector<Vec3> to_judge_;  // poses whose ground is yet to be seen from farther on
+  std::vector<Vec3> passed_;    // poses whose ground is judged, or will be
+  std::vector<Vec3> to_judge_;  // of these, yet to be seen from farther on
   std::vector<Place> places_;
   std::vector<Vec3> given_up_;
   std::vector<Relay> relays_;
