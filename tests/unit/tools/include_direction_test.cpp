@@ -88,7 +88,7 @@ TEST(IncludeDirection, FewSourcesAndNoHeaderIncludePcl) {
 
 TEST(IncludeDirection, CoreModulesUseOnlyThoseAboveThem) {
   const std::vector<std::string> order = {"common",   "vehicle", "perception", "localization", "mapping",
-                                          "planning", "control", "homing",     "mission"};
+                                          "planning", "control", "objects",    "homing",       "mission"};
   std::map<std::string, std::size_t> rank;
   for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
   for (const std::string& module : order)
