@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -106,19 +107,37 @@ void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const Pla
                            "; make a campaign of each, or name what is chosen as contestants");
 }
 
+/// Of how many robots a team must have for its flights to have this figure; 1: any flight may have it.
+int robots_for(const std::string& metric) {
+  if (metric == "robots_landed" || metric == "robots_connected" || metric == "data_at_base_share") return 2;
+  int robot = 1;
+  return std::sscanf(metric.c_str(), "exploration_time_%d_s", &robot) == 1 ? std::max(2, robot) : 1;
+}
+
 }  // namespace
 
 double horizon_of(const std::vector<PlannedContestant>& contestants, const std::string& source) {
   const double horizon_s = contestants.empty() ? 0 : horizon_of(contestants.front());
   for (const PlannedContestant& c : contestants)
     if (const double other_s = horizon_of(c); other_s != horizon_s)
-      throw InputError(
-          source, "contestant " + c.name,
-          "may explore for " + nlohmann::json(other_s).dump() + " s, " + contestants.front().name + " for " +
-              nlohmann::json(horizon_s).dump() +
-              " s (mission.max_flight_time, simulator.battery_minutes): figures of such flights do "
-              "not compare; give both the same flight_time, or fly a campaign of each");
+      throw InputError(source, "contestant " + c.name,
+                       "may explore for " + nlohmann::json(other_s).dump() + " s, " +
+                           contestants.front().name + " for " + nlohmann::json(horizon_s).dump() +
+                           " s (mission.max_flight_time, simulator.battery_minutes, team.robots, "
+                           "team.stagger): figures of such "
+                           "flights do not compare; give both the same, or fly a campaign of each");
   return horizon_s;
+}
+
+void refuse_figure_of_larger_teams(const std::string& metric,
+                                   const std::vector<PlannedContestant>& contestants,
+                                   const std::string& source) {
+  for (const PlannedContestant& c : contestants)
+    if (const int robots = c.mission.get("team.robots", 1); robots < robots_for(metric))
+      throw InputError(source, "metric " + metric,
+                       "only teams of " + std::to_string(robots_for(metric)) +
+                           " robots and more have it; contestant " + c.name + " has " +
+                           std::to_string(robots) + " (team.robots)");
 }
 
 Plan make_plan(const Campaign& c, const fs::path& karst) {
@@ -136,6 +155,7 @@ Plan make_plan(const Campaign& c, const fs::path& karst) {
   }
   for (std::size_t i = 1; i < c.caves.size(); ++i) resolve(c, c.contestants.front(), c.caves[i], karst);
   plan.horizon_s = horizon_of(plan.contestants, c.source);
+  refuse_figure_of_larger_teams(plan.metric, plan.contestants, c.source);
   return plan;
 }
 

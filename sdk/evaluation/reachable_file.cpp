@@ -79,6 +79,8 @@ Bytes bytes_of(const Reachable& r, std::uint64_t key) {
 }
 
 std::optional<Reachable> read(const fs::path& file, std::uint64_t key, const ReachableOptions& options) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   const Bytes bytes{std::istreambuf_iterator<char>(in), {}};
   constexpr std::size_t around = sizeof(Head) + sizeof(std::uint64_t);
@@ -124,6 +126,7 @@ Reachable find_reachable_once(const cave::TriangleMesh& mesh, const core::Vec3& 
   try {
     write_whole_file(own, bytes_of(found, key));
     fs::rename(own, file, ignored);
+    fs::remove(own, ignored);          // it is still there if it could not be renamed
   } catch (const core::InputError&) {  // a full disk: the next flight does the work again
   }
   return found;

@@ -1,5 +1,7 @@
 #include "sdk/tools/fly_command.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
@@ -100,6 +102,16 @@ int check(const std::string& file, const Mission& mission, const host::HostedPol
   return 0;
 }
 
+/// Said now: nothing is lost without it but time, and nobody would notice that.
+void make_cave_cache(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
+    throw core::InputError("karst fly", "--cave-cache " + folder.string(),
+                           "is no folder that can be written" + (error ? ": " + error.message() : ""));
+}
+
 int fly(const FlyArguments& args) {
   if (args.keys) {
     std::fputs(mission_help("simulator").c_str(), stdout);
@@ -111,6 +123,7 @@ int fly(const FlyArguments& args) {
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
   Mission mission = read_mission(args.mission_file, overrides);
   settle_policy(mission);
+  make_cave_cache(args.flight.cave_cache);
 
   if (mission.core.team.robots > 1) {
     FlightArguments flight = args.flight;
@@ -218,8 +231,10 @@ void add_fly_command(CLI::App& app) {
   fly_app->add_flag("--quiet", args->flight.quiet, "no status line");
   fly_app->add_flag("--no-report", args->flight.no_report, "metrics only, no report.html");
   fly_app
-      ->add_option("--cave-cache", args->flight.cave_cache,
-                   "folder that keeps what the evaluation works out of a cave, for other flights in it")
+      ->add_option(
+          "--cave-cache", args->flight.cave_cache,
+          "folder that keeps what the evaluation works out of a cave, for other flights in it; made if "
+          "it is not there")
       ->check(not_empty());
   fly_app
       ->add_option("--check", args->check,

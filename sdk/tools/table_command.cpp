@@ -39,8 +39,7 @@ constexpr std::array kColumns = {
     Column{"heading_error_rad", "heading deg", "%.2f", 180 / std::numbers::pi},
 };
 
-/// A run that is under way has no figures yet; for a folder that is no run or whose figures are damaged
-/// `problem` says so as well.
+/// A run that is under way has no figures yet; of one whose figures are damaged `problem` says so.
 nlohmann::json metrics_of(const std::string& run, std::string& problem) {
   namespace fs = std::filesystem;
   const auto row = [&run](const char* outcome) {
@@ -51,10 +50,7 @@ nlohmann::json metrics_of(const std::string& run, std::string& problem) {
     return row("no such run");
   }
   const fs::path file = fs::path(run) / "metrics.json";
-  if (!fs::exists(file)) {
-    if (!fs::exists(fs::path(run) / "mission.info")) problem = run + ": no run directory";
-    return row("no metrics.json");
-  }
+  if (!fs::exists(file)) return row("no metrics.json");
   std::ifstream in(file);
   nlohmann::json metrics;
   if (fs::is_regular_file(file)) metrics = nlohmann::json::parse(in, nullptr, false);
@@ -90,6 +86,16 @@ std::optional<double> quantile(const std::vector<double>& sorted, double share) 
   if (sorted.empty()) return std::nullopt;
   const double rank = std::ceil(share * static_cast<double>(sorted.size()));
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+/// Of a folder beside the runs, such as a campaign's, what it is; "" for a run.
+std::string no_run(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path path = folder;
+  if (!fs::is_directory(path) || fs::exists(path / "mission.info") || fs::exists(path / "metrics.json"))
+    return "";
+  return folder + (fs::exists(path / "campaign.sqlite") ? ": a campaign; see karst results " + folder
+                                                        : ": no run directory");
 }
 
 /// How the figures of all runs that have some spread, in five lines of the same table.
@@ -131,7 +137,12 @@ void add_table_command(CLI::App& app) {
     std::printf("%s\n%s\n", head.c_str(), rule.c_str());
     std::vector<std::string> problems;
     std::vector<nlohmann::json> all;
+    std::vector<std::string> passed_over;
     for (const std::string& run : *runs) {
+      if (const std::string what = no_run(run); !what.empty()) {
+        passed_over.push_back(what);
+        continue;
+      }
       std::string problem;
       const nlohmann::json m = metrics_of(run, problem);
       if (!problem.empty()) problems.push_back(problem);
@@ -144,7 +155,8 @@ void add_table_command(CLI::App& app) {
     if (all.size() > 1) print_spread(all);
     std::fflush(stdout);
     for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
-    if (!problems.empty()) throw CLI::RuntimeError(1);
+    for (const std::string& p : passed_over) std::fprintf(stderr, "karst: passed over: %s\n", p.c_str());
+    if (!problems.empty() || passed_over.size() == runs->size()) throw CLI::RuntimeError(1);
   });
 }
 

@@ -65,6 +65,15 @@ TEST(BadInput, AMeshWithAHoleAtTheStart) {
   expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {"open.stl", "hole"});
 }
 
+TEST(BadInput, ACaveCacheThatIsNoFolder) {
+  const fs::path dir = fresh_folder("bad_cache");
+  const std::string mesh = written(dir / "box.stl", box_stl(4)), file = written(dir / "taken", "a file");
+  for (const std::string& cache : {file, file + "/below"})
+    expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0' --cave-cache " + cache),
+                   {"--cave-cache", "no folder that can be written"});
+  EXPECT_FALSE(fs::exists(dir / "run"));
+}
+
 TEST(BadInput, AStartInsideRock) {
   const fs::path dir = fresh_folder("bad_start");
   const std::string mesh = written(dir / "box.stl", box_stl(4));
@@ -219,7 +228,7 @@ TEST(BadInput, ATableOfRunsNamesWhatIsNone) {
   written(dir / "cut" / "metrics.json", "{\"cave\": \"c");
   written(dir / "good" / "metrics.json", "{\"cave\": \"lava\", \"outcome\": \"landed\"}");
   expect_refused(run_karst("table " + (dir / "nope").string()), {"nope: no such run"});
-  expect_refused(run_karst("table " + dir.string()), {"bad_table: no run directory"});
+  expect_refused(run_karst("table " + dir.string()), {"passed over", "bad_table: no run directory"});
   expect_refused(run_karst("table " + (dir / "cut").string() + " " + (dir / "good").string()),
                  {"damaged metrics.json", "| lava |"});
 }

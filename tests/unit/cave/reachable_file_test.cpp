@@ -101,6 +101,16 @@ TEST_F(ReachableFile, AnyDamageIsNoticed) {
   }
 }
 
+TEST_F(ReachableFile, AFolderInTheFilesPlaceIsDoneWithout) {
+  const auto mesh = room(5);
+  once(mesh, start);
+  const fs::path file = files().front();
+  fs::remove(file);
+  fs::create_directories(file / "full");
+  expect_same(once(mesh, start), find_reachable(mesh, start, {}, "room"));
+  EXPECT_EQ(files().size(), 1u) << "nothing half done is left";
+}
+
 TEST_F(ReachableFile, AFolderThatCannotBeWrittenIsDoneWithout) {
   std::ofstream(folder.string()) << "a file";
   const auto mesh = room(5);
