@@ -16,8 +16,9 @@ struct Neighbour {
 
 struct KeepApart {
   double distance_m = 3.0;
-  double reaction_s = 1.5;  // news are up to a second old, and a brake takes its time to begin
-  double own_s = 0.3;       // the brake alone
+  double reaction_s =
+      1.5;  // news are a third of a second old and sometimes a second, and a brake takes its time to begin
+  double own_s = 0.3;  // the brake alone
   double brake_mps2 = 1.0;
 };
 

@@ -118,7 +118,7 @@ MissionResult MissionControl::end() {
 void MissionControl::finish(const std::string& outcome, const std::string& reason) {
   if (result_) return;
   enter(Phase::done, reason);
-  settle_objects(outcome == "landed");
+  settle_objects(outcome == "landed" || (team_ && outcome == "stuck"));
   recorder_.event(now(), "outcome",
                   {{"outcome", outcome}, {"reason", reason}, {"mass_kg", flight_.mass_kg()}});
   recorder_.flush();

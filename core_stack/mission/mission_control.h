@@ -214,7 +214,8 @@ class MissionControl final : public VehicleSink {
   bool flying_as_come_ = false;  // back along the poses flown: only what it would touch stops it
 
   ObjectMap objects_;
-  std::map<std::uint32_t, std::uint32_t> records_;  // by object: that told of it first, until the base knows
+  std::map<std::uint32_t, std::uint32_t> records_;  // by object: that told of it first; 0 once the base knows
+  bool late_looks_told_ = false;
 
   // In a team.
   std::optional<LandingSpot> landing_;   // where it will be a relay; without, it lands at its start

@@ -1,11 +1,14 @@
 // Objects of interest: what the detector says goes into the object map, and what that finds is told.
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core_stack/mission/mission_control.h"
 #include "core_stack/mission/object_log.h"
 
 namespace karst::core {
 namespace {
+
+constexpr std::uint32_t kReported = 0;  // in place of a record's number, which is 1 at least
 
 nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -25,6 +28,12 @@ const char* name_of(ObjectNews::State state) {
 
 void MissionControl::on_objects(const ObjectDetections& look) {
   if (look.stamp > now() || !look.camera) return;
+  const auto& known = flight_.estimator().history().states();
+  if (known.empty() || look.stamp < known.front().stamp) {  // where the camera was then is not known any more
+    if (!std::exchange(late_looks_told_, true))
+      recorder_.event(now(), "log", {{"text", "the object detector is too slow: its news is dropped"}});
+    return;
+  }
   const Pose T_world_camera = flight_.estimator().history().pose_at(look.stamp) * look.camera->T_body_camera;
   objects_.note(look, T_world_camera, flight_.estimator().active().position_sigma_m());
   tell_objects(false);
@@ -48,21 +57,17 @@ void MissionControl::tell_objects(bool all) {
         team_->team_time(now()), o.number, static_cast<std::uint8_t>(kind), o.position, o.deviation_m});
     if (withdrawn)
       records_.erase(o.number);
-    else
+    else if (record != 0)
       records_.try_emplace(o.number, record);  // the first: from then on the base knows of it
   }
 }
 
 /// Of which it knows that the base knows them, once each.
 void MissionControl::note_objects_at_base(std::uint32_t records_at_base) {
-  for (auto r = records_.begin(); r != records_.end();) {
-    const auto [number, record] = *r;
-    if (record == 0 || record > records_at_base) {
-      ++r;
-      continue;
-    }
+  for (auto& [number, record] : records_) {
+    if (record == kReported || record > records_at_base) continue;
     recorder_.event(now(), "object", {{"number", number}, {"state", "reported"}});
-    r = records_.erase(r);
+    record = kReported;
   }
 }
 

@@ -125,7 +125,10 @@ void MissionControl::confirm_landing() {
   if (!unheard_since_) unheard_since_ = now();
   if (now() - *unheard_since_ < kUnheard) return;
   const bool time_left = seconds_left() > options_.mission.home_reserve_s;
-  if (time_left && landing_->claimed && team_->lands_soon(landing_->node)) return;  // it waits for that one
+  if (time_left && landing_->claimed && team_->lands_soon(landing_->node, now())) {  // it waits for that one
+    unheard_since_ = now();
+    return;
+  }
   if (!time_left) {
     enter(Phase::land, "out of contact, but there is no time for another place");
     return;

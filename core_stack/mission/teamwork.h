@@ -1,6 +1,8 @@
 // A robot's part in its team, as its mission control sees it. Times here are the vehicle's own; the team's
 // clock is ahead of them by when the vehicle was switched on.
 #pragma once
+#include <algorithm>
+
 #include "core_stack/homing/relay_homing.h"
 
 namespace karst::core {
@@ -30,10 +32,12 @@ class Teamwork {
             mate_->claimed_goals(team_time(now)),
             team_time(now) + from_seconds(seconds_left)};
   }
-  /// That robot has claimed a landing place, and is not there yet as far as is known.
-  bool lands_soon(RobotId robot) const {
-    const auto& claim = mate_->landing_of(robot);
-    return claim && claim->state == LandingClaim::State::claimed;
+  /// That robot is on the way to a landing place that it has claimed, and its battery lasts yet.
+  bool lands_soon(RobotId robot, TimeNs now) const {
+    const std::vector<Relay> relays = mate_->relays();
+    return std::any_of(relays.begin(), relays.end(), [&](const Relay& r) {
+      return r.robot == robot && r.stands_by && *r.stands_by > team_time(now);
+    });
   }
   std::uint32_t publish(const Record& record) { return mate_->publish(record); }
   /// How many of its own records the base is known to hold.

@@ -28,7 +28,7 @@ void describe(core::OptionTable& t, ObjectOptions& o) {
         "deviation of a depth camera's range to it, as a share of it");
   t.add("size_noise", o.size_noise, "", 0, 1,
         "the same of a colour camera, which knows the range by the object's size only");
-  t.add("delay", o.delay_s, "s", 0, 5, "from the image to the detection");
+  t.add("delay", o.delay_s, "s", 0, 1.5, "from the image to the detection");
 }
 
 namespace {

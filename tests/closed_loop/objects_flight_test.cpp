@@ -108,8 +108,12 @@ TEST(Objects, OfATeamAreKnownAtTheBaseInTheEnd) {
   // The same objects for all.
   EXPECT_EQ(lines_of(run / "robot_1" / "truth_objects.jsonl").at(7)["position"],
             lines_of(run / "robot_3" / "truth_objects.jsonl").at(7)["position"]);
-  for (const char* robot : {"robot_1", "robot_2", "robot_3"})
+  for (const char* robot : {"robot_1", "robot_2", "robot_3"}) {
     EXPECT_TRUE(std::filesystem::exists(run / robot / "objects.json")) << robot;
+    std::map<int, int> reported;  // it was told again with every revision
+    for (const json& e : lines_of(run / robot / "events.jsonl"))
+      if (e["kind"] == "object" && e["state"] == "reported") EXPECT_EQ(++reported[e["number"]], 1) << robot;
+  }
 }
 
 TEST(Objects, WhereThereAreNoneLeaveNoTrace) {
@@ -134,6 +138,8 @@ TEST(Objects, ThatCannotBeLaidOutAreRefusedBeforeAnythingIsWritten) {
   };
   EXPECT_TRUE(refused(" --set simulator.objects.count=150").says("room for"));
   EXPECT_TRUE(refused(" --set simulator.objects.count=-1").says("simulator.objects.count"));
+  // Longer than the vehicle remembers where it was: objects came to lie metres off.
+  EXPECT_TRUE(refused(" --set simulator.objects.delay=3s").says("simulator.objects.delay"));
   std::ofstream(cave, std::ios::app) << "object { kind unicorn position \"1 1 0.2\" }\n";
   EXPECT_TRUE(refused("").says("object.kind"));
 }
