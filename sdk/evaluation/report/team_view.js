@@ -27,6 +27,19 @@ function treeAt(t) {
   return nodes;
 }
 
+/** The objects that events of a kind tell of as of t, each as last told and where it then lay, without withdrawn ones:
+    { "robot.number": [x, y, z] }. "object" is what a robot found, "object_known" what the base knows. */
+function objectsAt(kind, t) {
+  const objects = new Map();
+  for (const e of data.events) {
+    if (e.kind !== kind || !(e.t <= t)) continue;
+    const key = `${e.robot}.${e.number}`;
+    if (e.state === "withdrawn") objects.delete(key);
+    else if (Array.isArray(e.position) && e.position.length === 3 && e.position.every(Number.isFinite)) objects.set(key, e.position);
+  }
+  return objects;
+}
+
 function segments(width, opacity = 1) {
   const material = new THREE.LineMaterial({ color: 0xffffff, linewidth: width, depthTest: false, transparent: true,
                                             opacity, vertexColors: THREE.VertexColors });
@@ -52,6 +65,8 @@ function reachSphere() {
   return object;
 }
 
+function objectsTold(kind) { return data.events.some((e) => e.kind === kind); }
+
 /** The team in the manner of makeFlight(); `follow(robot)` chooses whom the camera follows. */
 function makeTeam() {
   const object = new THREE.Group(), layer = {}, lines = [];
@@ -74,13 +89,12 @@ function makeTeam() {
   const links = add("links", segments(2.5), 6), tree = add("homing tree", segments(1.6, 0.75), 4);
   lines.push(links, tree);
   const relays = add("relays", roundMarks(colours.goal), 7), lost = add("relays", roundMarks(colours.other), 7);
-  const objects = data.events.filter((e) => /^object/.test(e.kind) && Array.isArray(e.position));
-  const marks = add("objects", roundMarks(colours.object), 8);
+  const found = add("objects", roundMarks(colours.object), 8), known = add("objects known at the base", roundMarks(colours.home), 9);
   layer.reach = new THREE.Group();
   object.add(layer.reach);
   const whole = tracks.filter(Boolean).flatMap((t) => Array.from(t.xyz));
-  const choices = ["paths", "links", "relays", "reach", "homing tree", "objects"].filter((name) => layer[name] &&
-    !(name === "objects" && !objects.length) && !(name === "reach" && !data.base.reach_m) && !(name === "homing tree" && !data.tree.length));
+  const choices = ["paths", "links", "relays", "reach", "homing tree", "objects", "objects known at the base"].filter((name) => layer[name] &&
+    !(name === "objects" && !objectsTold("object")) && !(name === "objects known at the base" && !objectsTold("object_known")) && !(name === "reach" && !data.base.reach_m) && !(name === "homing tree" && !data.tree.length));
 
   let followed = 1, shownTree, poses = [];
   const view = { object, layer, choices, vehicles, labels: [], now: { position: new THREE.Vector3(), heading: 0 },
@@ -106,6 +120,12 @@ function makeTeam() {
     setSegments(tree, [...nodes.values()].filter((n) => n[3] && nodes.has(n[3]))
       .map((n) => [n.slice(0, 3), nodes.get(n[3]).slice(0, 3), colours.truth]));
   };
+  const showObjects = (t) => {  // what the base knows is smaller and lies upon what was found
+    for (const [points, kind, size] of [[found, "object", 12], [known, "object_known", 7]]) {
+      const places = [...objectsAt(kind, t).values()];
+      setMarks(points, places.flat(), places.map(() => size));
+    }
+  };
   view.setTime = (t) => {
     poses = tracks.map((track) => track && poseAt(track, t));
     poses.forEach((pose, i) => {
@@ -121,8 +141,7 @@ function makeTeam() {
     setSegments(links, (base ? base.links : []).map(([a, b, n]) => [placeOf(a), placeOf(b), linkColour(n)]).filter(([a, b]) => a && b));
     showRelays(base);
     showTree(t);
-    const found = objects.filter((e) => e.t <= t);
-    setMarks(marks, [].concat(...found.map((e) => e.position.slice(0, 3))), found.map(() => 10));
+    showObjects(t);
     view.labels = poses.map((pose, i) => pose && { position: pose.position, text: `${i + 1} ${robotPhase(i + 1, t)}` }).filter(Boolean);
     if (data.base.position) view.labels.unshift({ position: new THREE.Vector3(...data.base.position), text: "base" });
   };

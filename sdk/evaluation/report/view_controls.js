@@ -20,7 +20,7 @@ const layerMarks = {
   "map": ["", ""], "path": [colours.explore, ""], "true path": [colours.truth, ""], "plan": [colours.plan, ""],
   "goal": [colours.goal, "ring"], "frontiers": [colours.frontier, "dot"], "drawings": ["", ""], "grid": ["", ""],
   "paths": ["", ""], "links": ["#009e73", ""], "relays": [colours.goal, "ring"], "reach": [colours.home, "dot"],
-  "homing tree": [colours.truth, ""], "objects": [colours.object, "dot"],
+  "homing tree": [colours.truth, ""], "objects": [colours.object, "dot"], "objects known at the base": [colours.home, "dot"],
 };
 
 function connectLayers(objects, redraw) {

@@ -45,6 +45,33 @@ TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {
   EXPECT_NE(dom.find("This run recorded neither a map nor a trajectory."), std::string::npos);
 }
 
+TEST(ReportInBrowser, OfATeamShowsTheNewestStateOfEachObject) {
+  TemporaryDirectory dir;
+  test::FakeRunOptions small;
+  small.length_m = 36;
+  small.map_resolution_m = 0.5;
+  test::write_fake_run(dir.path() / "robot_1", small);
+  dir.write("team.jsonl",
+            R"({"t":0,"kind":"start","robot":1}
+{"t":5,"kind":"object","robot":1,"number":1,"state":"found","what":"rope","position":[1,0,1]}
+{"t":6,"kind":"object","robot":1,"number":2,"state":"found","what":"rope","position":[3,0,1]}
+{"t":7,"kind":"object_known","robot":1,"number":1,"state":"found","what":"rope","position":[1,0,1]}
+{"t":8,"kind":"object","robot":1,"number":1,"state":"revised","what":"rope","position":[1.2,0,1]}
+{"t":9,"kind":"object","robot":1,"number":2,"state":"withdrawn"}
+{"t":10,"kind":"objects","known":[{"what":"rope","position":[1,0,1],"told_by":[[1,1]]}]}
+)");
+  write_team_report(dir.path());
+  const auto at = [&](const char* moment) {
+    return test::dom_in_browser(dir.path() / "report.html", std::string("t=") + moment);
+  };
+  const std::string before = at("6.5");
+  if (before.empty()) GTEST_SKIP() << "skipped: no chromium";
+  EXPECT_NE(before.find("2 found, 0 known at the base"), std::string::npos);
+  const std::string after = at("12");
+  EXPECT_EQ(after.substr(0, after.find("<head>")).find("data-errors"), std::string::npos);
+  EXPECT_NE(after.find("1 found, 1 known at the base"), std::string::npos);
+}
+
 TEST(ReportInBrowser, ShowsATeamWithoutAnErrorEvenIfItsLogIsDamaged) {
   TemporaryDirectory dir;
   test::FakeRunOptions small;
