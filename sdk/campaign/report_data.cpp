@@ -8,6 +8,7 @@
 #include "sdk/campaign/report_parts.h"
 #include "sdk/evaluation/metric_definitions.h"
 #include "sdk/evaluation/report.h"
+#include "sdk/evaluation/team_folders.h"
 #include "sdk/evaluation/team_report.h"
 
 namespace karst::campaign {
@@ -88,11 +89,11 @@ ordered_json worst(const CampaignResults& results, int metric, const CampaignRep
         fs::exists(run / "report.html", no_matter))
       continue;
     try {
-      if (fs::exists(run / "team.jsonl"))
+      if (evaluation::is_team(run))
         evaluation::write_team_report(run);
       else
         evaluation::write_report(run);
-    } catch (const core::InputError& e) {
+    } catch (const std::exception& e) {  // one damaged trial must not cost the others
       notes.push_back(std::string("no mission report: ") + e.what());
     }
   }

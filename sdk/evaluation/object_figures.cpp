@@ -7,8 +7,6 @@
 #include <set>
 #include <tuple>
 
-#include "sdk/evaluation/lines.h"
-
 namespace karst::evaluation {
 namespace {
 
@@ -17,6 +15,7 @@ using nlohmann::json;
 using Key = std::pair<std::int64_t, std::int64_t>;  // robot, and its own number for the object
 
 constexpr double kSameObject_m = 3;
+constexpr double kFarthest_m = 1e6;  // what lies farther is damaged
 
 std::optional<Vec3> position_of(const json& e) {
   const auto p = e.find("position");
@@ -25,12 +24,15 @@ std::optional<Vec3> position_of(const json& e) {
   for (int i = 0; i < 3; ++i) {
     if (!(*p)[static_cast<std::size_t>(i)].is_number()) return std::nullopt;
     v[i] = (*p)[static_cast<std::size_t>(i)].get<double>();
+    if (!(std::abs(v[i]) < kFarthest_m)) return std::nullopt;
   }
   return v;
 }
 
+/// -1 if it is none.
 std::int64_t whole(const json& e, const char* key) {
-  return static_cast<std::int64_t>(event_number(e, key).value_or(-1));
+  const double v = event_number(e, key).value_or(-1);
+  return v >= 0 && v <= UINT32_MAX ? static_cast<std::int64_t>(v) : -1;
 }
 
 /// By number, as truth_objects.jsonl has them.
@@ -38,7 +40,7 @@ std::map<std::int64_t, TrueObject> true_objects(const std::vector<json>& events)
   std::map<std::int64_t, TrueObject> truth;
   for (const json& e : events) {
     const auto p = position_of(e);
-    if (!p) continue;
+    if (!p || whole(e, "number") < 0) continue;
     TrueObject& o =
         truth.try_emplace(whole(e, "number"), TrueObject{event_text(e, "what"), *p, false}).first->second;
     o.seen = o.seen || event_text(e, "event") == "seen";
@@ -70,19 +72,39 @@ std::vector<KnownObject> listed(const std::map<Key, KnownObject>& known) {
   return list;
 }
 
-/// One JSON object a line; lines that are none are passed over and counted.
-std::vector<json> read_lines_of_json(const std::filesystem::path& file, std::vector<std::string>& problems) {
-  std::vector<json> all;
-  BadLines bad(file);
-  const std::vector<std::string> lines = read_lines(file, problems);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    json line = json::parse(lines[i], nullptr, false);
-    if (line.is_object())
-      all.push_back(std::move(line));
-    else
-      bad.add(i + 1, "is not a JSON object");
+/// Whether a team's log says whose object it is, which, and, unless it is withdrawn, what and where.
+bool is_whole_report(const json& e) {
+  if (whole(e, "robot") < 0 || whole(e, "number") < 0 || event_text(e, "state").empty()) return false;
+  return event_text(e, "state") == "withdrawn" || (position_of(e) && !event_text(e, "what").empty());
+}
+
+/// What the base makes of all reports; `at_base` says when each report came. Counts what is damaged.
+std::vector<KnownObject> together(const json& e, const std::map<Key, KnownObject>& at_base,
+                                  std::size_t& damaged) {
+  std::vector<KnownObject> all;
+  const auto known = e.find("known");
+  if (known == e.end() || !known->is_array()) return ++damaged, all;
+  for (const json& o : *known) {
+    const auto p = o.is_object() ? position_of(o) : std::nullopt;
+    if (!p || event_text(o, "what").empty()) {
+      ++damaged;
+      continue;
+    }
+    KnownObject one{event_text(o, "what"), *p, std::nullopt};
+    if (const auto by = o.find("told_by"); by != o.end() && by->is_array())
+      for (const json& pair : *by) {
+        if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer() ||
+            !pair[1].is_number_integer()) {
+          ++damaged;
+          continue;
+        }
+        const auto report = at_base.find({pair[0].get<std::int64_t>(), pair[1].get<std::int64_t>()});
+        if (report == at_base.end() || !report->second.reported_s) continue;
+        one.reported_s =
+            std::min(one.reported_s.value_or(*report->second.reported_s), *report->second.reported_s);
+      }
+    all.push_back(one);
   }
-  bad.report(problems);
   return all;
 }
 
@@ -144,46 +166,37 @@ ObjectFigures object_figures(const RunRecord& run) {
   if (run.truth_objects.empty()) return {};
   std::map<Key, KnownObject> known;
   for (const json& e : run.events)
-    if (e["kind"] == "object") note(known, {0, whole(e, "number")}, e, "reported");
+    if (e["kind"] == "object" && whole(e, "number") >= 0) note(known, {0, whole(e, "number")}, e, "reported");
   std::vector<KnownObject> found = listed(known), at_base;
   std::copy_if(found.begin(), found.end(), std::back_inserter(at_base),
                [](const KnownObject& o) { return o.reported_s.has_value(); });
   return object_figures(listed(true_objects(run.truth_objects)), found, at_base);
 }
 
-ObjectFigures team_object_figures(const std::filesystem::path& run_dir, std::vector<std::string>& problems) {
+ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::string>& problems) {
   std::map<std::int64_t, TrueObject> truth;
-  for (int i = 1; std::filesystem::exists(run_dir / ("robot_" + std::to_string(i))); ++i)
-    for (const auto& [number, o] : true_objects(
-             read_lines_of_json(run_dir / ("robot_" + std::to_string(i)) / "truth_objects.jsonl", problems)))
+  for (const RunRecord& robot : team.robots)
+    for (const auto& [number, o] : true_objects(robot.truth_objects))
       truth.try_emplace(number, o).first->second.seen |= o.seen;
-  if (truth.empty()) return {};
   std::map<Key, KnownObject> told, at_base;
-  std::vector<KnownObject> together;  // what the base makes of all reports, in the end
-  for (const json& e : read_lines_of_json(run_dir / "team.jsonl", problems)) {
+  std::vector<KnownObject> merged;
+  std::size_t damaged = 0;
+  for (const json& e : team.events) {
     const std::string kind = event_text(e, "kind");
-    const Key key{whole(e, "robot"), whole(e, "number")};
-    if (kind == "object") note(told, key, e, "");
-    if (kind == "object_known") note(at_base, key, e, "found");
-    if (kind != "objects" || !e.contains("known") || !e["known"].is_array()) continue;
-    for (const json& o : e["known"]) {
-      const auto p = o.is_object() ? position_of(o) : std::nullopt;
-      if (!p) continue;
-      KnownObject one{event_text(o, "what"), *p, std::nullopt};
-      if (const auto by = o.find("told_by"); by != o.end() && by->is_array())
-        for (const json& pair : *by) {
-          if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer() ||
-              !pair[1].is_number_integer())
-            continue;
-          const auto report = at_base.find({pair[0].get<std::int64_t>(), pair[1].get<std::int64_t>()});
-          if (report == at_base.end() || !report->second.reported_s) continue;
-          one.reported_s =
-              std::min(one.reported_s.value_or(*report->second.reported_s), *report->second.reported_s);
-        }
-      together.push_back(one);
-    }
+    const bool one = kind == "object" || kind == "object_known";
+    if (one && !is_whole_report(e))
+      ++damaged;
+    else if (one)
+      note(kind == "object" ? told : at_base, {whole(e, "robot"), whole(e, "number")}, e,
+           kind == "object" ? "" : "found");
+    else if (kind == "objects")
+      merged = together(e, at_base, damaged);
   }
-  return object_figures(listed(truth), listed(told), together);
+  if (damaged > 0)
+    problems.push_back("team.jsonl: " + std::to_string(damaged) +
+                       " reports of objects are damaged; left out");
+  if (truth.empty()) return {};
+  return object_figures(listed(truth), listed(told), merged);
 }
 
 void set_figures(nlohmann::ordered_json& m, const ObjectFigures& f) {

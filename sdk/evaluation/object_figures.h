@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core_stack/common/geometry.h"
-#include "sdk/evaluation/run_record.h"
+#include "sdk/evaluation/team_record.h"
 
 namespace karst::evaluation {
 
@@ -40,8 +40,8 @@ ObjectFigures object_figures(const std::vector<TrueObject>& truth, const std::ve
 
 /// Of one vehicle's flight.
 ObjectFigures object_figures(const RunRecord& run);
-/// Of a team's run directory, from team.jsonl and its robots' truth. What is damaged stands in `problems`.
-ObjectFigures team_object_figures(const std::filesystem::path& run_dir, std::vector<std::string>& problems);
+/// Of a team, from its log and its robots' truth. What is damaged is added to `problems`.
+ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::string>& problems);
 
 /// Sets objects_* and object_* of metrics.json, null for what is not known.
 void set_figures(nlohmann::ordered_json& metrics, const ObjectFigures& figures);

@@ -123,10 +123,13 @@ std::vector<json> read_events(const fs::path& file, const char* time, const char
   for (std::size_t i = 0; i < lines.size(); ++i) {
     json event = json::parse(lines[i], nullptr, false);
     const bool valid = event.is_object() && event_number(event, time) && !event_text(event, kind).empty();
-    if (valid) events.push_back(std::move(event));
     if (!valid)
       bad.add(i + 1,
               std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind + "\")");
+    else if (std::abs(*event_number(event, time)) > kLongestRun_s)
+      bad.add(i + 1, std::string("its \"") + time + "\" is longer than a mission can last");
+    else
+      events.push_back(std::move(event));
   }
   bad.report(problems);
   return events;

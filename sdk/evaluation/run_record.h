@@ -13,6 +13,10 @@
 
 namespace karst::evaluation {
 
+/// No mission lasts longer: a day's flight, and a day to start late and to come home. Later times are
+/// damaged.
+constexpr double kLongestRun_s = 2 * 86400.0;
+
 struct Setting {
   std::string key, value;  // "map.resolution", "0.2 m"
 };

@@ -7,7 +7,7 @@
 #include "core_stack/mapping/octomap_io.h"
 #include "sdk/evaluation/coverage_curve.h"
 #include "sdk/evaluation/flight_figures.h"
-#include "sdk/evaluation/lines.h"
+#include "sdk/evaluation/team_folders.h"
 #include "sdk/evaluation/team_volume.h"
 
 namespace karst::evaluation {
@@ -18,13 +18,16 @@ using nlohmann::json;
 
 /// All times of a record later by `s`.
 void delay(RunRecord& run, double s) {
-  const auto ms = static_cast<std::int32_t>(std::lround(1000 * s));
+  const auto ms = std::llround(1000 * s);
+  const auto later = [ms](std::int32_t& t_ms) {  // where a damaged time would not fit: as late as can be
+    t_ms = static_cast<std::int32_t>(std::clamp<long long>(t_ms + ms, INT32_MIN, OccupiedSpan::kNever - 1));
+  };
   for (json& e : run.events) e["t"] = e["t"].get<double>() + s;
   for (auto* poses : {&run.estimate, &run.truth})
     for (StampedPose& p : *poses) p.t_s += s;
   for (OccupiedSpan& o : run.growth) {
-    o.from_ms += ms;
-    if (o.until_ms != OccupiedSpan::kNever) o.until_ms += ms;
+    later(o.from_ms);
+    if (o.until_ms != OccupiedSpan::kNever) later(o.until_ms);
   }
   for (Table* table : {&run.telemetry, &run.truth_table, &run.decisions})
     for (const char* key : {"t_s", "time_s"})
@@ -123,25 +126,19 @@ RunRecord merged_record(const TeamRecord& team) {
 }  // namespace
 
 TeamRecord read_team(const fs::path& run_dir) {
-  if (!fs::is_directory(run_dir)) throw core::InputError(run_dir.string(), "", "no such run directory");
-  if (!fs::is_regular_file(run_dir / "team.jsonl"))
-    throw core::InputError((run_dir / "team.jsonl").string(), "", "not there: no team's run directory");
+  const std::vector<fs::path> folders = robot_folders(run_dir);
   TeamRecord team;
   team.directory = run_dir;
   team.events = read_events(run_dir / "team.jsonl", "t", "kind", team.problems);
-  for (int i = 1; fs::is_directory(run_dir / ("robot_" + std::to_string(i))); ++i) {
-    const std::string name = "robot_" + std::to_string(i);
-    RunRecord robot = read_run(run_dir / name);
-    team.starts_s.push_back(start_of(team.events, static_cast<std::size_t>(i), team.problems));
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    RunRecord robot = read_run(folders[i]);
+    team.starts_s.push_back(start_of(team.events, i + 1, team.problems));
     delay(robot, team.starts_s.back());
-    for (const std::string& p : robot.problems) team.problems.push_back(name + "/" + p);
     team.duration_s = std::max(team.duration_s, robot.last_time_s());
     team.robots.push_back(std::move(robot));
   }
   team.settings = read_settings(run_dir / "mission.info", team.problems);
   team.timing = read_json(run_dir / "timing.json", team.problems);
-  if (team.robots.empty())
-    throw core::InputError((run_dir / "robot_1").string(), "", "not there: the team has no robots");
   for (const json& e : team.events) team.duration_s = std::max(team.duration_s, e["t"].get<double>());
   team.map = merged_map(team);
   team.merged = merged_record(team);

@@ -1,5 +1,5 @@
 // A team's run directory read back: every robot's record in the team's time, what the base knew, and all
-// robots as if they had been one. What is missing or damaged stands in `problems`.
+// robots as if they had been one. What is missing or damaged stands in `problems`, each robot's in its own.
 #pragma once
 #include "sdk/evaluation/run_record.h"
 
@@ -20,7 +20,7 @@ struct TeamRecord {
   std::vector<std::string> problems;
 };
 
-/// Throws InputError if `run_dir` is no directory, or holds no team.jsonl or no robot's folder.
+/// Throws InputError if `run_dir` is no directory, or lacks team.jsonl or a robot's folder.
 TeamRecord read_team(const std::filesystem::path& run_dir);
 
 }  // namespace karst::evaluation

@@ -122,6 +122,8 @@ ordered_json event_rows(const TeamRecord& team) {
 ordered_json team_report_data(const TeamRecord& team, const ordered_json& metrics) {
   const double duration_s = std::max(1.0, team.duration_s);
   std::vector<std::string> problems = team.problems;
+  for (const RunRecord& r : team.robots)
+    for (const std::string& p : r.problems) problems.push_back(r.directory.filename().string() + "/" + p);
   ordered_json d;
   d["metrics"] = metrics;
   d["duration_s"] = duration_s;
@@ -139,12 +141,15 @@ ordered_json team_report_data(const TeamRecord& team, const ordered_json& metric
   return d;
 }
 
+void write_team_report(const TeamRecord& team, const ordered_json& metrics) {
+  write_whole_file(team.directory / "report.html", team_report_page(team_report_data(team, metrics)));
+}
+
 void write_team_report(const std::filesystem::path& run_dir) {
   const TeamRecord team = read_team(run_dir);
   std::ifstream in(run_dir / "metrics.json");
   const auto metrics = in ? ordered_json::parse(in, nullptr, false) : ordered_json();
-  const ordered_json data = team_report_data(team, metrics.is_object() ? metrics : ordered_json::object());
-  write_whole_file(run_dir / "report.html", team_report_page(data));
+  write_team_report(team, metrics.is_object() ? metrics : ordered_json::object());
 }
 
 }  // namespace karst::evaluation

@@ -64,6 +64,7 @@ VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::v
   VolumeCurve curve;
   std::vector<double> overlap_m3, greatest_m3;
   CellCount all(united);
+  end_s = std::min(end_s, begin_s + kLongestRun_s);  // a damaged time must not make it endless
   for (double t = std::ceil(begin_s); t < end_s + 1 && std::isfinite(t); ++t) {
     double own_cells = 0, sum_m3 = 0, most_m3 = 0;
     for (CellCount& c : cells) own_cells += c.at(t);

@@ -12,6 +12,7 @@
 #include "core_stack/common/random.h"
 #include "core_stack/mission/team_mission.h"
 #include "core_stack/vehicle/team_vehicles.h"
+#include "sdk/evaluation/metrics.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
 #include "sdk/tools/status_line.h"
@@ -150,13 +151,17 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
 
   int code = kNotLanded;
   try {
-    std::vector<nlohmann::json> own;
+    // First what the flight itself knows: should the evaluation be killed, as for want of memory, it is not
+    // lost.
+    std::vector<nlohmann::json> own(robots.size());
+    evaluation::write_metrics(run_dir, team_metrics(mission, result, own));
     for (std::size_t i = 0; i < robots.size(); ++i) {
       write_timing(run_dir / folder_of(i), team.executive(i), wall.count());
-      own.push_back(
-          finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report, args.cave_cache));
+      own[i] =
+          finish_run(run_dir / folder_of(i), mission.cave, mission.start, !args.no_report, args.cave_cache);
     }
     nlohmann::ordered_json metrics = team_metrics(mission, result, own);
+    evaluation::write_metrics(run_dir, metrics);
     write_team_timing(run_dir, result.duration_s, wall.count(), args.threads);
     finish_team(run_dir, mission.cave, mission.start, metrics, !args.no_report, args.cave_cache);
     if (args.json)

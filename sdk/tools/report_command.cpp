@@ -16,10 +16,12 @@
 #include "sdk/evaluation/reachable_file.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/surface.h"
+#include "sdk/evaluation/team_folders.h"
 #include "sdk/evaluation/team_metrics.h"
 #include "sdk/evaluation/team_report.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/campaign_page.h"
+#include "sdk/tools/team_metrics.h"
 
 namespace karst::tools {
 namespace {
@@ -109,12 +111,21 @@ void write_team_telemetry(const evaluation::TeamRecord& team) {
   evaluation::write_whole_file(team.directory / "telemetry.csv", text);
 }
 
+/// Of a flight that was killed: it wrote no metrics.json.
+nlohmann::ordered_json metrics_of_cut_team(const fs::path& run, const std::string& cave,
+                                           const std::vector<nlohmann::json>& robots) {
+  const auto info = core::read_info((run / "mission.info").string());
+  return begin_team_metrics({info.get("policy.name", ""), cave, info.get("seed", std::int64_t{0}), "aborted",
+                             "the record ends without an outcome"},
+                            robots);
+}
+
 /// Evaluates each robot again, and the team. What only the mission itself knew stays as its end wrote it.
 void report_team(const fs::path& run, const std::string& cave, const std::string& start, bool with_report) {
   const char* written = with_report ? "report.html" : "metrics.json";
-  for (int i = 1; fs::exists(run / ("robot_" + std::to_string(i))); ++i) {
-    const fs::path robot = run / ("robot_" + std::to_string(i));
-    finish_run(robot, cave, start, with_report);
+  std::vector<nlohmann::json> own;
+  for (const fs::path& robot : evaluation::robot_folders(run)) {
+    own.push_back(finish_run(robot, cave, start, with_report));
     std::printf("%s\n", (robot / written).c_str());
   }
   std::ifstream in(run / "metrics.json");
@@ -122,8 +133,9 @@ void report_team(const fs::path& run, const std::string& cave, const std::string
   if (!metrics.is_object()) {
     std::fprintf(stderr, "karst: %s: not there or no JSON object: outcomes of the team are not known\n",
                  (run / "metrics.json").c_str());
-    metrics = nlohmann::ordered_json::object();
+    metrics = metrics_of_cut_team(run, cave, own);
   }
+  add_sums(metrics, own);
   finish_team(run, cave, start, metrics, with_report);
   std::printf("%s\n", (run / written).c_str());
 }
@@ -160,18 +172,18 @@ void print_objects(const nlohmann::json& m) {
 
 void finish_team(const fs::path& run_dir, const std::string& cave, const std::string& start,
                  nlohmann::ordered_json& metrics, bool with_report, const fs::path& cave_cache) {
-  const evaluation::TeamRecord team = evaluation::read_team(run_dir);
+  evaluation::TeamRecord team = evaluation::read_team(run_dir);
   std::vector<std::string> problems;
   bool lost_cave = false;
   const evaluation::Truth truth = truth_if_known(run_dir, cave, start, problems, lost_cave, cave_cache);
-  problems.insert(problems.end(), team.problems.begin(), team.problems.end());
   metrics.update(evaluation::team_map_figures(team, truth));
-  evaluation::set_figures(metrics, evaluation::team_object_figures(run_dir, problems));
+  evaluation::set_figures(metrics, evaluation::team_object_figures(team, team.problems));
+  problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are told already
   if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
   write_team_telemetry(team);
-  if (with_report) evaluation::write_team_report(run_dir);
+  if (with_report) evaluation::write_team_report(team, metrics);
 }
 
 void add_report_command(CLI::App& app) {
@@ -201,7 +213,7 @@ void add_report_command(CLI::App& app) {
       throw core::InputError(args->run, "",
                              "no run directory, as it holds no mission.info, nor a campaign's folder");
     const auto info = core::read_info((run / "mission.info").string());
-    if (fs::exists(run / "team.jsonl")) {
+    if (evaluation::is_team(run)) {
       report_team(run, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
       return;
     }

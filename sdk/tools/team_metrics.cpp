@@ -14,6 +14,10 @@ using nlohmann::ordered_json;
 
 double rounded(double v) { return std::round(v * 1e6) / 1e6; }
 
+ordered_json text_or_null(const std::string& text) {
+  return text.empty() ? ordered_json() : ordered_json(text);
+}
+
 /// Null if any robot's is not known.
 ordered_json sum(const std::vector<json>& robots, const std::string& key) {
   double all = 0;
@@ -25,6 +29,25 @@ ordered_json sum(const std::vector<json>& robots, const std::string& key) {
 }
 
 }  // namespace
+
+void add_sums(ordered_json& metrics, const std::vector<json>& robots) {
+  for (const char* key : {"contacts", "path_length_m", "energy_wh", "flight_time_s"})
+    if (metrics[key].is_null()) metrics[key] = sum(robots, key);
+}
+
+ordered_json begin_team_metrics(const TeamFlight& flight, const std::vector<json>& robots) {
+  ordered_json m;
+  m["schema"] = "karst.metrics/1";
+  m["policy"] = text_or_null(flight.policy);
+  m["cave"] = text_or_null(std::filesystem::path(flight.cave).stem().string());
+  m["seed"] = flight.seed;
+  m["outcome"] = flight.outcome;
+  m["reason"] = flight.reason;
+  for (const evaluation::MetricDefinition& d : evaluation::metric_definitions())
+    m[std::string(d.name)] = nullptr;
+  add_sums(m, robots);
+  return m;
+}
 
 ordered_json team_metrics(const Mission& mission, const core::TeamResult& result,
                           const std::vector<json>& robots) {
@@ -38,20 +61,10 @@ ordered_json team_metrics(const Mission& mission, const core::TeamResult& result
   double explored_s = 0;
   for (const core::RobotResult& r : result.robots) explored_s += r.exploration_time_s;
 
-  ordered_json m;
-  m["schema"] = "karst.metrics/1";
-  m["policy"] = mission.policy;
-  m["cave"] = std::filesystem::path(mission.cave).stem().string();
-  m["seed"] = mission.seed;
-  m["outcome"] = landed == n ? "landed" : "incomplete";
-  m["reason"] = std::to_string(landed) + " of " + std::to_string(n) + " robots landed, " +
-                std::to_string(connected) + " of them connected to the base";
-  for (const evaluation::MetricDefinition& d : evaluation::metric_definitions())
-    m[std::string(d.name)] = nullptr;
-  m["contacts"] = sum(robots, "contacts");
-  m["path_length_m"] = sum(robots, "path_length_m");
-  m["energy_wh"] = sum(robots, "energy_wh");
-  m["flight_time_s"] = sum(robots, "flight_time_s");
+  const std::string reason = std::to_string(landed) + " of " + std::to_string(n) + " robots landed, " +
+                             std::to_string(connected) + " of them connected to the base";
+  ordered_json m = begin_team_metrics(
+      {mission.policy, mission.cave, mission.seed, landed == n ? "landed" : "incomplete", reason}, robots);
   m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
   std::uint64_t told = 0, at_base = 0;
   for (const core::RobotResult& r : result.robots) told += r.records, at_base += r.records_at_base;

@@ -314,6 +314,19 @@ TEST(CampaignReport, WritesTheMissionReportsOfTheWorstWhenAsked) {
   EXPECT_TRUE(fs::exists(report));
 }
 
+TEST(CampaignReport, OneTrialThatCannotBeReadCostsNoOtherItsMissionReport) {
+  TemporaryDirectory dir;
+  CampaignResults results = flown_campaign(dir.path(), 2);
+  for (const std::size_t trial : {0, 1}) results.trials[trial].outcome = "contact";
+  const fs::path bad = results.trials[0].run_dir, good = results.trials[1].run_dir;
+  fs::create_symlink("team.jsonl", bad / "team.jsonl");  // a loop: no InputError, but one of the file system
+  const json d =
+      campaign_report_data(results, dir.path(), {.verdict = {}, .worst = 4, .mission_reports = true});
+  EXPECT_FALSE(fs::exists(bad / "report.html"));
+  EXPECT_TRUE(fs::exists(good / "report.html"));
+  EXPECT_NE(d["notes"].dump().find("no mission report"), std::string::npos);
+}
+
 TEST(CampaignReport, IsOneFileThatLoadsNothingAndComesOutTheSame) {
   TemporaryDirectory dir;
   const CampaignResults results = flown_campaign(dir.path(), 2);

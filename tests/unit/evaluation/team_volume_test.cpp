@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core_stack/common/error.h"
+#include "sdk/evaluation/team_folders.h"
 #include "sdk/evaluation/team_record.h"
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -51,6 +52,62 @@ TEST(TeamRecord, IsRefusedWithoutLogOrRobots) {
   EXPECT_THROW(read_team(dir.path()), core::InputError);
   dir.write("team.jsonl", "");
   EXPECT_THROW(read_team(dir.path()), core::InputError);
+}
+
+std::string refusal(const std::filesystem::path& run_dir) {
+  try {
+    read_team(run_dir);
+  } catch (const core::InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(TeamRecord, NamesTheRobotWhoseFolderIsMissing) {
+  test::TemporaryDirectory dir;
+  for (const char* robot : {"robot_1", "robot_3"}) std::filesystem::create_directories(dir.path() / robot);
+  dir.write("team.jsonl", "{\"t\":0,\"kind\":\"team\",\"robots\":3}\n");
+  EXPECT_NE(refusal(dir.path()).find("robot_2: not there, though team.jsonl says that the team had 3 robots"),
+            std::string::npos)
+      << refusal(dir.path());
+  std::filesystem::create_directories(dir.path() / "robot_2");
+  EXPECT_EQ(refusal(dir.path()), "");
+  dir.write("team.jsonl", "damaged\n");
+  dir.write("mission.info", "team\n{\n robots 4\n}\n");
+  EXPECT_NE(refusal(dir.path()).find("robot_4: not there, though mission.info"), std::string::npos);
+}
+
+TEST(TeamRecord, IsKnownForATeamsByAnyTrace) {
+  test::TemporaryDirectory by_log, by_robot, by_mission, alone;
+  by_log.write("team.jsonl", "");
+  std::filesystem::create_directories(by_robot.path() / "robot_1");
+  by_mission.write("mission.info", "team\n{\n robots 2\n}\n");
+  alone.write("mission.info", "team\n{\n robots 1\n}\n");
+  for (const auto* dir : {&by_log, &by_robot, &by_mission}) EXPECT_TRUE(is_team(dir->path()));
+  EXPECT_FALSE(is_team(alone.path()));
+}
+
+TEST(TeamRecord, LeavesOutTimesThatNoMissionLasts) {
+  test::TemporaryDirectory dir;
+  test::write_fake_run(dir.path() / "robot_1");
+  dir.write("team.jsonl", "{\"t\":5,\"kind\":\"start\",\"robot\":1}\n");
+  const TeamRecord sound = read_team(dir.path());
+  for (const char* bad : {"1e9", "1e300", "-1e9"}) {
+    dir.write("team.jsonl", std::string("{\"t\":5,\"kind\":\"start\",\"robot\":1}\n{\"t\":") + bad +
+                                ",\"kind\":\"start\",\"robot\":1}\n");
+    const TeamRecord team = read_team(dir.path());
+    EXPECT_EQ(team.duration_s, sound.duration_s);
+    EXPECT_EQ(team.merged.telemetry.rows, sound.merged.telemetry.rows);
+    ASSERT_EQ(team.problems.size(), sound.problems.size() + 1);
+    EXPECT_EQ(team.problems.front(),
+              "team.jsonl: line 2: its \"t\" is longer than a mission can last; left out");
+  }
+}
+
+TEST(TeamVolume, OfATelemetryWithADamagedTimeEnds) {
+  RunRecord damaged = robot(0, 0);
+  damaged.telemetry.numbers["t_s"].back() = 1e12;
+  EXPECT_LE(team_volume_curve({damaged}, {}, std::nullopt).t_s.size(), kLongestRun_s + 2);
 }
 
 TEST(TeamRecord, PutsARobotsTimesIntoTheTeams) {
