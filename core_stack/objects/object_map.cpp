@@ -78,6 +78,8 @@ void ObjectMap::note(const ObjectDetections& look, const Pose& T_world_camera, d
             std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& o) { return o.id == id; });
         t != tracks_.end())
       merge_into(*t);
+  const auto gone = [this](std::uint32_t id) { return !std::ranges::binary_search(tracks_, id, {}, &Track::id); };
+  std::erase_if(apart_, [&](const auto& pair) { return gone(pair.first) || gone(pair.second); });
 }
 
 /// Takes over what other tracks hold if they are the same object. The lower number stays, as it may have been

@@ -1,6 +1,7 @@
 #include "plugins/simulator/object_placing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -33,21 +34,9 @@ void describe(core::OptionTable& t, ObjectOptions& o) {
 
 namespace {
 
-constexpr double kCube_m = 2.0, kStep_m = 0.3, kFarthest_m = 4.0, kApart_m = 4.0;
+constexpr double kStep_m = 0.3, kFarthest_m = 4.0, kApart_m = 4.0;
 constexpr double kOffRock_m = 0.15;  // of an object's middle
-constexpr std::size_t kMostPlaces = 20000;
-
-std::array<int, 3> cube_of(const Vec3& p) {
-  const Vec3 k = (p / kCube_m).array().floor();
-  return {static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())};
-}
-
-/// Evenly over the sphere (Fibonacci lattice).
-Vec3 direction(int i, int n) {
-  const double z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z),
-               a = 2 * std::numbers::pi * i / std::numbers::phi;
-  return {r * std::cos(a), r * std::sin(a), z};
-}
+constexpr std::size_t kMostPlaces = 500000;
 
 Vec3 any_direction(Random& random) {
   const double z = random.uniform(-1, 1), r = std::sqrt(1 - z * z),
@@ -58,21 +47,23 @@ Vec3 any_direction(Random& random) {
 }  // namespace
 
 std::vector<Vec3> flyable_places(const cave::Cave& cave, double clearance_m) {
-  constexpr int kDirections = 48;
-  std::vector<Vec3> places{cave.description.start.position};
-  std::set<std::array<int, 3>> cubes{cube_of(places.front())};
-  for (std::size_t next = 0; next < places.size(); ++next) {
-    const Vec3 from = places[next];
-    for (int i = 0; i < kDirections; ++i) {
-      const Vec3 d = direction(i, kDirections);
-      const double free_m = std::min(cave.scene.ray_cast(from, d, kFarthest_m), kFarthest_m);
-      for (double s = kStep_m; s < free_m && places.size() < kMostPlaces; s += kStep_m) {
-        const Vec3 p = from + s * d;
-        if (cave.scene.distance_to_rock(p, clearance_m) < clearance_m) break;
-        if (cubes.insert(cube_of(p)).second) places.push_back(p);
-      }
+  using Step = std::array<int, 3>;
+  // Balls of the clearance around two neighbours cover the way between them.
+  const double step_m = std::min(kStep_m, clearance_m);
+  const Vec3& start = cave.description.start.position;
+  std::vector<Vec3> places{start};
+  std::vector<Step> steps{{0, 0, 0}};
+  std::set<Step> known{steps.front()};
+  for (std::size_t next = 0; next < places.size() && places.size() < kMostPlaces; ++next)
+    for (int i = 0; i < 6; ++i) {
+      Step there = steps[next];
+      there[static_cast<std::size_t>(i / 2)] += i % 2 == 0 ? 1 : -1;
+      if (!known.insert(there).second) continue;
+      const Vec3 p = start + step_m * Vec3(there[0], there[1], there[2]);
+      if (cave.scene.distance_to_rock(p, clearance_m) < clearance_m) continue;
+      places.push_back(p);
+      steps.push_back(there);
     }
-  }
   return places;
 }
 

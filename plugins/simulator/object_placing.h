@@ -5,9 +5,10 @@
 
 namespace karst::sim {
 
-/// Places in the air at least `clearance_m` from rock, no more than one in each cube of 2 m, that straight
-/// flights with that clearance lead to, one after another, from the start.
-std::vector<core::Vec3> flyable_places(const cave::Cave& cave, double clearance_m = 0.6);
+/// Places in the air at least `clearance_m` from rock, on a grid of 0.3 m (or the clearance if that is less),
+/// that a way with nearly that clearance leads to from the start: the nearest half million by steps of the
+/// grid.
+std::vector<core::Vec3> flyable_places(const cave::Cave& cave, double clearance_m = 0.4);
 
 /// Adds `o.count` objects to the cave's own: each on rock in sight of a flyable place, within 4 m of it, seen
 /// from it at no more than 60 degrees off the rock's normal; 4 m at least from each other and from the start.

@@ -1,5 +1,6 @@
 #include "sdk/host/gain.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,43 +19,53 @@ class Window {
  public:
   Window(const core::VoxelMap& map, const CellKey& center, std::int32_t reach)
       : corner_{center.x - reach, center.y - reach, center.z - reach},
-        edge_(static_cast<std::size_t>(2 * reach + 1)),
-        cells_(edge_ * edge_ * edge_, Cell::unknown) {
+        edge_(2 * reach + 1),
+        cells_(static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_) *
+                   static_cast<std::size_t>(edge_),
+               Cell::unknown) {
     const CellKey high{center.x + reach, center.y + reach, center.z + reach};
-    map.for_each_in_box(corner_, high, [&](const CellKey& k, Cell c) { at(k) = c; });
+    map.for_each_in_box(corner_, high, [&](const CellKey& k, Cell c) { *at(k) = c; });
   }
 
-  Cell& at(const CellKey& k) {
-    const auto from = [](std::int32_t v, std::int32_t low) { return static_cast<std::size_t>(v - low); };
-    return cells_[(from(k.z, corner_.z) * edge_ + from(k.y, corner_.y)) * edge_ + from(k.x, corner_.x)];
+  Cell* at(const CellKey& k) {
+    return cells_.data() + (k.x - corner_.x) + stride(1) * (k.y - corner_.y) + stride(2) * (k.z - corner_.z);
+  }
+  /// From a cell to its neighbour along an axis.
+  std::ptrdiff_t stride(int axis) const {
+    const std::ptrdiff_t edge = edge_;
+    return axis == 0 ? 1 : axis == 1 ? edge : edge * edge;
   }
 
  private:
   CellKey corner_;
-  std::size_t edge_;
+  std::int32_t edge_;
   std::vector<Cell> cells_;
 };
 
-/// Calls visit(cell) for the cells a ray passes (Amanatides and Woo, 1987) until it returns false. All
-/// lengths in cells; `direction` is unit.
+/// Calls visit(cell, key) for the window's cells that a ray passes (Amanatides and Woo, 1987) until it returns
+/// false. All lengths in cells; `direction` is unit.
 template <class Visit>
-void walk(const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit) {
-  CellKey k{};
-  std::int32_t* const cell[3] = {&k.x, &k.y, &k.z};
-  std::int32_t step[3];
-  double next[3], period[3];  // length along the ray to the next border of each axis, and between borders
-  for (int a = 0; a < 3; ++a) {
-    const double floor = std::floor(eye[a]);
-    *cell[a] = static_cast<std::int32_t>(floor);
-    step[a] = direction[a] < 0 ? -1 : 1;
-    period[a] = direction[a] == 0 ? std::numeric_limits<double>::infinity() : std::abs(1.0 / direction[a]);
-    next[a] = direction[a] == 0 ? period[a]
-                                : period[a] * (direction[a] < 0 ? eye[a] - floor : floor + 1.0 - eye[a]);
+void walk(Window& window, const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit) {
+  std::array<std::int32_t, 3> key{}, step{};
+  std::array<std::ptrdiff_t, 3> stride{};
+  std::array<double, 3> next{}, period{};  // length to the next border of each axis, and between borders
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double along = direction[axis], floor = std::floor(eye[axis]);
+    key[a] = static_cast<std::int32_t>(floor);
+    step[a] = along < 0 ? -1 : 1;
+    stride[a] = step[a] * window.stride(axis);
+    period[a] = along == 0 ? std::numeric_limits<double>::infinity() : std::abs(1.0 / along);
+    next[a] = along == 0 ? period[a] : period[a] * (along < 0 ? eye[axis] - floor : floor + 1.0 - eye[axis]);
   }
-  while (visit(k)) {
-    const int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+  Cell* cell = window.at({key[0], key[1], key[2]});
+  while (visit(*cell, key)) {
+    // Without a branch: which border comes next cannot be foretold.
+    const std::size_t y_or_z = next[1] < next[2] ? 1 : 2;
+    const std::size_t a = next[0] < next[y_or_z] ? 0 : y_or_z;
     if (next[a] > furthest) return;
-    *cell[a] += step[a];
+    cell += stride[a];
+    key[a] += step[a];
     next[a] += period[a];
   }
 }
@@ -142,14 +153,14 @@ std::uint64_t SensorRays::newly_seen(const core::VoxelMap& map, const karst_view
   Window window(map, map.key_of(T_world_sensor.position), static_cast<std::int32_t>(furthest) + 2);
   std::uint64_t count = 0;
   for (const Vec3& direction : directions_) {
-    walk(eye, T_world_sensor.orientation * direction, furthest, [&](const CellKey& k) {
-      Cell& c = window.at(k);
-      if (c != Cell::unknown) return c == Cell::free;
-      c = Cell::free;  // counted once; as transparent as before
-      const double away = (Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) - eye).norm();
-      if (away >= nearest && away <= furthest) ++count;
-      return true;
-    });
+    walk(window, eye, T_world_sensor.orientation * direction, furthest,
+         [&](Cell& c, const std::array<std::int32_t, 3>& k) {
+           if (c != Cell::unknown) return c == Cell::free;
+           c = Cell::free;  // counted once; as transparent as before
+           const double away = (Vec3(k[0] + 0.5, k[1] + 0.5, k[2] + 0.5) - eye).norm();
+           if (away >= nearest && away <= furthest) ++count;
+           return true;
+         });
   }
   return count;
 }

@@ -159,7 +159,7 @@ nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, cons
 void print_objects(const nlohmann::json& m) {
   if (!m["objects_placed"].is_number()) return;
   const auto count = [&](const char* key) { return m[key].get<int>(); };
-  std::printf("  objects          %d placed, %d seen, %d found; %d known at the base",
+  std::printf("  objects          %d placed, %d in view in six images, %d found; %d known at the base",
               count("objects_placed"), count("objects_seen"), count("objects_found"),
               count("objects_reported"));
   if (m["object_error_m"].is_number())

@@ -19,9 +19,22 @@ TEST(FlyablePlaces, ReachTheFarEndAndKeepTheirDistance) {
   double farthest = 0;
   for (const Vec3& p : places) {
     farthest = std::max(farthest, p.x());
-    EXPECT_GE(c.scene.distance_to_rock(p, 1), 0.6 - 1e-9);
+    EXPECT_GE(c.scene.distance_to_rock(p, 1), 0.4 - 1e-9);
   }
   EXPECT_GT(farthest, 37.5);
+}
+
+// Asked for 0.6 m to rock and straight flights from cube to cube of 2 m, few places were found in caves that
+// vehicles flew.
+TEST(FlyablePlaces, LeadRoundTheBendsOfANarrowPassage) {
+  // Three stretches of 1.2 m width: along x, then y, then x again. The last is open towards the second.
+  cave::TriangleMesh m = box_mesh({-2, -0.6, -0.6}, {8, 0.6, 0.6}, 0b111101);
+  append(m, box_mesh({8, 0.6, -0.6}, {9.2, 4.8, 0.6}, 0b110011));
+  append(m, box_mesh({8, -0.6, -0.6}, {9.2, 0.6, 0.6}, 0b110110));
+  append(m, box_mesh({8, 4.8, -0.6}, {9.2, 6, 0.6}, 0b111001));
+  append(m, box_mesh({9.2, 4.8, -0.6}, {20, 6, 0.6}, 0b111110));
+  const auto places = sim::flyable_places(make_cave(m));
+  EXPECT_TRUE(std::any_of(places.begin(), places.end(), [](const Vec3& p) { return p.x() > 18; }));
 }
 
 TEST(PlaceObjects, OnTheFloorApartInSightAndTheSameForTheSameSeed) {
