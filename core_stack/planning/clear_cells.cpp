@@ -2,6 +2,7 @@
 // bits.
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "core_stack/common/error.h"
 #include "core_stack/planning/free_tiles.h"
@@ -62,15 +63,20 @@ std::vector<WideRows> eroded_along_x(WideRows free, int most) {
   return out;
 }
 
-/// Cells of the row (y, z) around which the ball is free.
-std::uint64_t fitting(const std::vector<WideRows>& eroded, const Ball& ball, int y, int z) {
-  std::uint64_t fits = ~std::uint64_t{0};
+/// Of the `wanted` cells of the row (y, z), those around which the ball is free.
+std::uint64_t fitting(const std::vector<WideRows>& eroded, const Ball& ball, int y, int z,
+                      std::uint64_t wanted) {
   for (const Ball::Row& r : ball.rows()) {
     const std::uint64_t row = eroded[static_cast<std::size_t>(r.half_width)].at(y + r.dy, z + r.dz);
-    fits &= ball.shift() & 1 ? row & row >> 1 : row;
+    wanted &= ball.shift() & 1 ? row & row >> 1 : row;
+    if (wanted == 0) break;
   }
-  return fits;
+  return wanted;
 }
+
+/// A tile's row as bits of a wide one, and back.
+std::uint64_t widened(std::uint32_t row) { return std::uint64_t{row} << 16; }
+std::uint32_t narrowed(std::uint64_t row) { return static_cast<std::uint32_t>(row >> 16); }
 
 }  // namespace
 
@@ -135,30 +141,31 @@ TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) con
   };
   for_each_row([&](int y, int z) {
     std::uint32_t& result = out[row_of(y, z)];
-    if (result != 0) result = static_cast<std::uint32_t>(fitting(eroded, rule.moves(), y, z) >> 16);
+    result = narrowed(fitting(eroded, rule.moves(), y, z, widened(result)));
   });
   if (rule.points().empty()) return out;
 
   TileBits with_point{};  // cells with a clear point in them
-  bool any_without = false;
   for_each_row([&](int y, int z) {
-    std::uint32_t& row = with_point[row_of(y, z)];
-    if (out[row_of(y, z)] != 0)
-      row = static_cast<std::uint32_t>(fitting(eroded, rule.points()[0], y, z) >> 16);
-    any_without |= (out[row_of(y, z)] & ~row) != 0;
+    with_point[row_of(y, z)] = narrowed(fitting(eroded, rule.points()[0], y, z, widened(out[row_of(y, z)])));
   });
-  if (!any_without) return out;
   // The point half a cell up from k is half a cell down from the next cell: each counts for both, in each
-  // axis.
-  for (const Ball& ball : rule.points())
+  // axis. Only those that lack a point are looked at.
+  for (const Ball& ball : rule.points() | std::views::drop(1))
     for (int z = ball.shift() & 4 ? -1 : 0; z < 8; ++z)
       for (int y = ball.shift() & 2 ? -1 : 0; y < 8; ++y) {
-        std::uint64_t fits = fitting(eroded, ball, y, z);
+        const auto for_each_above = [&](const auto& f) {
+          for (int up_z = 0; up_z <= (ball.shift() >> 2 & 1); ++up_z)
+            for (int up_y = 0; up_y <= (ball.shift() >> 1 & 1); ++up_y)
+              if (y + up_y >= 0 && y + up_y < 8 && z + up_z >= 0 && z + up_z < 8)
+                f(row_of(y + up_y, z + up_z));
+        };
+        std::uint64_t wanted = 0;
+        for_each_above([&](std::size_t row) { wanted |= widened(out[row] & ~with_point[row]); });
+        if (ball.shift() & 1) wanted |= wanted >> 1;
+        std::uint64_t fits = fitting(eroded, ball, y, z, wanted);
         if (ball.shift() & 1) fits |= fits << 1;
-        for (int up_z = 0; up_z <= (ball.shift() >> 2 & 1); ++up_z)
-          for (int up_y = 0; up_y <= (ball.shift() >> 1 & 1); ++up_y)
-            if (y + up_y >= 0 && y + up_y < 8 && z + up_z >= 0 && z + up_z < 8)
-              with_point[row_of(y + up_y, z + up_z)] |= static_cast<std::uint32_t>(fits >> 16);
+        for_each_above([&](std::size_t row) { with_point[row] |= narrowed(fits); });
       }
   for_each_row([&](int y, int z) { out[row_of(y, z)] &= with_point[row_of(y, z)]; });
   return out;
