@@ -19,6 +19,7 @@ constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing 
 constexpr double kConfirm_s = 6.0;
 /// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
 constexpr double kClaimed_s = 10.0;
+constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
 void append(TreeFacts& to, const TreeFacts& more) {
@@ -134,21 +135,35 @@ bool RelayHoming::free_to_take(const Place& place) const {
   return !near(taken_, place.ground, keep_apart_m_) && !near(given_up_, place.hover, 1e-3);
 }
 
+/// Nearest first by the straight line, which no way is shorter than: most places are never asked for a way.
 std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const Roadmap& roadmap,
-                                                      const Vec3& from) const {
-  std::vector<const Place*> open;
-  std::vector<Vec3> hovers;
+                                                      const Vec3& from, double sooner_than_s) const {
+  struct Candidate {
+    const Place* place;
+    double least_s;
+  };
+  const auto time_s = [this](const Place& p, double length_m) {
+    return flight_time_s(length_m, limits_) + kConfirm_s + (p.claimed ? kClaimed_s : 0.0) + down_s(p);
+  };
+  std::vector<Candidate> open;
   for (const Place& p : places_)
-    if (p.node && free_to_take(p)) open.push_back(&p), hovers.push_back(p.hover);
-  if (open.empty()) return std::nullopt;
-  const std::vector<double> lengths = roadmap.distances(map, from, hovers, 0.0);
+    if (p.node && free_to_take(p)) open.push_back({&p, time_s(p, (p.hover - from).norm())});
+  std::stable_sort(open.begin(), open.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.least_s < b.least_s; });
   std::optional<LandingSpot> best;
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    const Place& p = *open[i];
-    const double time_s =
-        flight_time_s(lengths[i], limits_) + kConfirm_s + (p.claimed ? kClaimed_s : 0.0) + down_s(p);
-    if (std::isfinite(lengths[i]) && (!best || time_s < best->time_s))
-      best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], time_s};
+  double best_s = sooner_than_s;
+  for (std::size_t first = 0, round = kFirstRound; first < open.size(); first += round, round = open.size()) {
+    std::vector<Vec3> hovers;
+    for (std::size_t i = first; i < std::min(first + round, open.size()) && open[i].least_s < best_s; ++i)
+      hovers.push_back(open[i].place->hover);
+    if (hovers.empty()) break;
+    const std::vector<double> lengths =
+        roadmap.distances(map, from, hovers, 0.0, best_s * cruise_speed_mps(limits_));
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      const Place& p = *open[first + i].place;
+      const double s = time_s(p, lengths[i]);
+      if (s < best_s) best_s = s, best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], s};
+    }
   }
   return best;
 }
@@ -183,10 +198,10 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
 }
 
 std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roadmap& roadmap,
-                                                  const Vec3& from) const {
-  if (strategy_ == "relay_tree") return up_the_tree(map, roadmap, from);
-  if (strategy_ == "relay_chain") return nearest_place(map, roadmap, from);
-  return std::nullopt;
+                                                  const Vec3& from, double sooner_than_s) const {
+  if (strategy_ == "relay_chain") return nearest_place(map, roadmap, from, sooner_than_s);
+  const auto spot = strategy_ == "relay_tree" ? up_the_tree(map, roadmap, from) : std::nullopt;
+  return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

@@ -50,8 +50,9 @@ class RelayHoming {
   TreeFacts update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here, const TeamNews& news,
                    std::span<const CellKey> closed);
 
-  /// The place that takes the least time from `from`, by the strategy; nothing if none is known.
-  std::optional<LandingSpot> spot_from(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
+  /// The place by the strategy that takes the least time from `from`, if that is less than `sooner_than_s`.
+  std::optional<LandingSpot> spot_from(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
+                                       double sooner_than_s) const;
   /// Never again to this place: it was tried in vain.
   void give_up(const Vec3& hover) { given_up_.push_back(hover); }
 
@@ -72,8 +73,8 @@ class RelayHoming {
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
   void find_links(const VoxelMap& map);
   bool free_to_take(const Place& place) const;
-  std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap,
-                                           const Vec3& from) const;
+  std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
+                                           double sooner_than_s) const;
   std::optional<LandingSpot> up_the_tree(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
   double down_s(const Place& place) const;
 

@@ -41,7 +41,9 @@ void describe(OptionTable& t, HomingOptions& o) {
 void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source) {
   for (const auto& [key, robot] :
        {std::pair{"team.lost_robot", team.lost_robot}, std::pair{"team.silent_relay", team.silent_relay}})
-    if (robot > team.robots)
+    if (robot > 0 && team.robots == 1)
+      throw InputError(source, key, "a vehicle alone is no team: team.robots is 1");
+    else if (robot > team.robots)
       throw InputError(
           source, key,
           "there is no robot " + std::to_string(robot) + ": team.robots is " + std::to_string(team.robots));

@@ -105,8 +105,8 @@ double Explorer::narrow_length_m(const Path& way) const {
 
 HomeEstimate Explorer::estimate_home(const Vec3& from, double way_come_m) {
   const HomeEstimate base = estimate_base(from, way_come_m);
-  const auto spot = homing_ ? homing_->spot_from(map_, wide_.roadmap, from) : std::nullopt;
-  return spot && spot->time_s < base.time_s ? HomeEstimate{spot->length_m, spot->time_s} : base;
+  const auto spot = homing_ ? homing_->spot_from(map_, wide_.roadmap, from, base.time_s) : std::nullopt;
+  return spot ? HomeEstimate{spot->length_m, spot->time_s} : base;
 }
 
 HomeEstimate Explorer::estimate_base(const Vec3& from, double way_come_m) {

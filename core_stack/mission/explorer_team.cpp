@@ -26,9 +26,7 @@ TreeFacts Explorer::share(const Vec3& here, const TeamNews& news) {
 }
 
 std::optional<LandingSpot> Explorer::landing_spot(const Vec3& from, double way_come_m) {
-  const HomeEstimate base = estimate_base(from, way_come_m);
-  const auto spot = homing_->spot_from(map_, wide_.roadmap, from);
-  return spot && spot->time_s < base.time_s ? spot : std::nullopt;
+  return homing_->spot_from(map_, wide_.roadmap, from, estimate_base(from, way_come_m).time_s);
 }
 
 TreeFacts Explorer::land(const Vec3& hover, TimeNs team_time) {

@@ -142,7 +142,7 @@ std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, dou
 }
 
 std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
-                                       double goal_tolerance_m) const {
+                                       double goal_tolerance_m, double most_m) const {
   const RoadmapGraph& g = *graph_;
   std::vector<double> out(goals.size(), kInf);
   if (!g.rule) return out;
@@ -169,12 +169,13 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::size_t left = wanted.size();
   if (left > 0)
-    search.run(g.joins(start), std::nullopt, [&](std::uint32_t node, double) {
-      return std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0;
+    search.run(g.joins(start), std::nullopt, [&](std::uint32_t node, double length_m) {
+      return length_m > most_m || (std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0);
     });
   for (std::size_t i = 0; i < goals.size(); ++i)
     for (const Join& j : goal_joins[i])
-      out[i] = std::min(out[i], escape_m + search.length(search.index_of(j.node)) + j.length_m);
+      if (const double length_m = search.length(search.index_of(j.node)); length_m <= most_m)
+        out[i] = std::min(out[i], escape_m + length_m + j.length_m);
   return out;
 }
 

@@ -8,6 +8,7 @@
 // narrow passages included; it is wholly determined by the clear cells, and an update looks only at tiles
 // near a change.
 #pragma once
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,9 +34,11 @@ class Roadmap {
 
   /// Path lengths in metres from `from` to each goal through the graph (one Dijkstra run); +inf where there
   /// is no way. The graph's ways zigzag a little: some per cent longer than the path flown. A goal is joined
-  /// to nodes it sees along a clear line, or, if itself not clear, to `approach(goal)`.
+  /// to nodes it sees along a clear line, or, if itself not clear, to `approach(goal)`. Ways through the
+  /// graph longer than `most_m` are not looked for: +inf as well.
   std::vector<double> distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
-                                double goal_tolerance_m) const;
+                                double goal_tolerance_m,
+                                double most_m = std::numeric_limits<double>::infinity()) const;
   /// A path of the search's clearance (search_clearance_m); raw: pass it to refine_path.
   Path find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const;
   /// `goal` if it is clear, else the nearest node within `tolerance_m` that sees it through free cells.

@@ -115,5 +115,5 @@ class InformationGain : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(InformationGain, "information_gain", "1.0.0",
+KARST_POLICY(InformationGain, "information_gain", "1.1.0",
              "Flies to the frontier that shows the most unknown space for the time it takes.")

@@ -123,6 +123,7 @@ int fly(const FlyArguments& args) {
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
   Mission mission = read_mission(args.mission_file, overrides);
   settle_policy(mission);
+  core::check(mission.core.team, mission.core.homing, mission.file);
   make_cave_cache(args.flight.cave_cache);
 
   if (mission.core.team.robots > 1) {

@@ -104,7 +104,6 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
                            "a team flies in lockstep only: its vehicles share a world");
   if (args.record_requests)
     throw core::InputError("karst fly", "--record-requests", "of a team no requests are recorded");
-  core::check(mission.core.team, mission.core.homing, mission.file);
   std::vector<Mission> robots;
   std::vector<std::unique_ptr<host::HostedPolicy>> policies;
   for (std::size_t i = 0; i < static_cast<std::size_t>(mission.core.team.robots); ++i) {

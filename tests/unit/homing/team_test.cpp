@@ -54,6 +54,8 @@ TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
     for (const char* part : {"mission.info", "team.lost_robot", "4", "3"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
+  team.robots = team.lost_robot = 1;
+  EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "nobody would be lost";
   team.lost_robot = 0;
   homing.tree.longest_edge_m = homing.tree.least_edge_m;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError);
