@@ -2,7 +2,6 @@
 // bits.
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "core_stack/common/error.h"
 #include "core_stack/planning/free_tiles.h"
@@ -151,7 +150,8 @@ TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) con
   });
   // The point half a cell up from k is half a cell down from the next cell: each counts for both, in each
   // axis. Only those that lack a point are looked at.
-  for (const Ball& ball : rule.points() | std::views::drop(1))
+  for (std::size_t shift = 1; shift < rule.points().size(); ++shift) {
+    const Ball& ball = rule.points()[shift];
     for (int z = ball.shift() & 4 ? -1 : 0; z < 8; ++z)
       for (int y = ball.shift() & 2 ? -1 : 0; y < 8; ++y) {
         const auto for_each_above = [&](const auto& f) {
@@ -167,6 +167,7 @@ TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) con
         if (ball.shift() & 1) fits |= fits << 1;
         for_each_above([&](std::size_t row) { with_point[row] |= narrowed(fits); });
       }
+  }
   for_each_row([&](int y, int z) { out[row_of(y, z)] &= with_point[row_of(y, z)]; });
   return out;
 }
