@@ -27,6 +27,10 @@ struct Ground {
 Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radius_m,
                     const GroundOptions& options);
 
+/// A landed vehicle reaches so much farther in another's map than its radius: whole cells are occupied, and
+/// it does not stand to the centimetre where it meant to.
+constexpr double kAsMapped_m = 0.3;
+
 /// Whether another vehicle can still fly from everywhere to everywhere within the cube of half edge `reach_m`
 /// around a landed one whose centre is at `standing`: what was connected within the cube by places clear by
 /// `clearance_m`, from one of its faces to another, still is when places within `clearance_m` of the landed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core_stack/homing/home.h"
 #include "core_stack/homing/map_rays.h"
@@ -86,6 +87,12 @@ double RelayHoming::down_s(const Place& place) const {
   return (place.hover - place.ground).z() / options_.landing.landing_speed_mps;
 }
 
+void RelayHoming::look_around(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here) {
+  to_judge_.push_back(here);
+  for (const Vec3& pose : std::exchange(to_judge_, {})) judge(map, roadmap, pose);
+  find_links(map);
+}
+
 /// The place near a pose that is reached and landed on soonest.
 void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose) {
   std::vector<Place> candidates;
@@ -101,8 +108,8 @@ void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
                    [&](const Place& a, const Place& b) { return cost_s(a) < cost_s(b); });
   for (const Place& p : candidates) {
     const Vec3 standing = p.ground + Vec3(0, 0, radius_m_);
-    if (!others_get_by(map, standing, radius_m_, search_clearance_m(planning_, map.resolution_m()),
-                       options_.landing.passage_reach_m))
+    if (!others_get_by(map, standing, radius_m_ + kAsMapped_m,
+                       search_clearance_m(planning_, map.resolution_m()), options_.landing.passage_reach_m))
       continue;
     const bool there = std::any_of(places_.begin(), places_.end(), [&](const Place& o) {
       return (o.ground - p.ground).norm() < options_.tree.least_edge_m / 2;

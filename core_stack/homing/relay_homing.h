@@ -50,6 +50,9 @@ class RelayHoming {
   TreeFacts update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here, const TeamNews& news,
                    std::span<const CellKey> closed);
 
+  /// Judges the ground of the last poses and of `here` too, as far as it has been seen: when a place is
+  /// needed now.
+  void look_around(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here);
   /// The place by the strategy that takes the least time from `from`, if that is less than `sooner_than_s`.
   std::optional<LandingSpot> spot_from(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
                                        double sooner_than_s) const;

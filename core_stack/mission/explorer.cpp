@@ -103,9 +103,11 @@ double Explorer::narrow_length_m(const Path& way) const {
   return narrow_m;
 }
 
+double Explorer::slow_mps() const { return options_.safety.slow_share * options_.motion.max_speed_mps; }
+
 HomeEstimate Explorer::estimate_home(const Vec3& from, double way_come_m) {
   const HomeEstimate base = estimate_base(from, way_come_m);
-  const auto spot = homing_ ? homing_->spot_from(map_, wide_.roadmap, from, base.time_s) : std::nullopt;
+  const std::optional<LandingSpot> spot = nearest_spot(from, base.time_s);
   return spot ? HomeEstimate{spot->length_m, spot->time_s} : base;
 }
 
@@ -119,9 +121,8 @@ HomeEstimate Explorer::estimate_base(const Vec3& from, double way_come_m) {
     if (length_m) narrow_m = narrow_length_m(tight.way_home.find(map_, tight.roadmap, from));
   }
   const double all_m = length_m.value_or(way_come_m);
-  const double slow_mps = options_.safety.slow_share * options_.motion.max_speed_mps;
-  return {all_m, narrow_m / slow_mps + home_time_s(all_m, vehicle_.T_world_start.position.z(), home_.z(),
-                                                   options_.motion, options_.mission.landing_speed_mps)};
+  return {all_m, narrow_m / slow_mps() + home_time_s(all_m, vehicle_.T_world_start.position.z(), home_.z(),
+                                                     options_.motion, options_.mission.landing_speed_mps)};
 }
 
 std::vector<Vec3> Explorer::way_back(const std::vector<Vec3>& flown) const {

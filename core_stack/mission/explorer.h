@@ -130,6 +130,8 @@ class Explorer {
 
  private:
   HomeEstimate estimate_base(const Vec3& from, double way_come_m);
+  std::optional<LandingSpot> nearest_spot(const Vec3& from, double sooner_than_s);
+  double slow_mps() const;  // in narrow passages
   bool left_to_others(const Vec3& frontier) const;
   std::vector<CellChange> take_in(std::vector<CellChange> changes);
   Reach& wide();

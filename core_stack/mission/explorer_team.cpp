@@ -25,8 +25,22 @@ TreeFacts Explorer::share(const Vec3& here, const TeamNews& news) {
   return homing_->update(map_, wide().roadmap, here, news, std::exchange(closed_, {}));
 }
 
+/// Through narrow passages only where there is no other way home: what was passed may look narrower later,
+/// and another may have landed in it.
+std::optional<LandingSpot> Explorer::nearest_spot(const Vec3& from, double sooner_than_s) {
+  if (!homing_) return std::nullopt;
+  const auto spot = homing_->spot_from(map_, wide_.roadmap, from, sooner_than_s);
+  if (spot || !narrow_ || wide_.way_home.length_m(map_, wide_.roadmap, from)) return spot;
+  const Reach& tight = *narrow();
+  auto beyond = homing_->spot_from(map_, tight.roadmap, from, sooner_than_s);
+  if (!beyond) return std::nullopt;
+  beyond->time_s += narrow_length_m(tight.roadmap.find(map_, from, beyond->hover)) / slow_mps();
+  return beyond->time_s < sooner_than_s ? beyond : std::nullopt;
+}
+
 std::optional<LandingSpot> Explorer::landing_spot(const Vec3& from, double way_come_m) {
-  return homing_->spot_from(map_, wide_.roadmap, from, estimate_base(from, way_come_m).time_s);
+  homing_->look_around(map_, wide().roadmap, from);
+  return nearest_spot(from, estimate_base(from, way_come_m).time_s);
 }
 
 TreeFacts Explorer::land(const Vec3& hover, TimeNs team_time) {

@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <numbers>
 
+#include "core_stack/common/random.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "tests/benchmark/cave_map.h"
 #include "tests/unit/planning/test_maps.h"
@@ -128,6 +129,35 @@ TEST(OthersGetBy, OverItBesideItOrNotAtAll) {
   EXPECT_TRUE(others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRadius, 0.55, 3));  // on one side of it
   // At the end of a blind passage nobody is held up.
   EXPECT_TRUE(others_get_by(passage(2, 1.6), {9, 0.1, 0.3}, kRadius, 0.55, 3));
+}
+
+// A relay landed where others got by by its radius; in their maps it filled cells, and closed the passage.
+TEST(OthersGetBy, StillWhenTheyHaveMappedIt) {
+  const PlanningOptions planning;
+  Random random = Random::stream(5, "landed");
+  int allowed = 0, closed_without = 0;
+  for (int n = 0; n < 200; ++n) {
+    std::vector<CellChange> changes;
+    VoxelMap map = passage(random.uniform(2, 4), random.uniform(1.3, 1.9), 8, &changes);
+    const Vec3 standing(random.uniform(-0.5, 0.5), random.uniform(-1, 1), kRadius);
+    const double clearance_m = search_clearance_m(planning, map.resolution_m());
+    const bool by_radius = others_get_by(map, standing, kRadius, clearance_m, 3),
+               as_mapped = others_get_by(map, standing, kRadius + kAsMapped_m, clearance_m, 3);
+    const Vec3 landed = standing + 0.1 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 p = landed + kRadius * Vec3(random.normal(), random.normal(), random.normal()).normalized();
+      map.assign(map.key_of(p), 1, 2.0f);
+    }
+    Roadmap roadmap(planning);
+    roadmap.update(map, changes);
+    const bool open =
+        std::isfinite(roadmap.distances(map, {-3, 0.1, 0.8}, std::vector{Vec3(3, 0.1, 0.8)}, 0.6).front());
+    if (as_mapped) EXPECT_TRUE(open) << n;
+    allowed += as_mapped;
+    closed_without += by_radius && !open;
+  }
+  EXPECT_GT(allowed, 10);
+  EXPECT_GT(closed_without, 0) << "or the margin does nothing";
 }
 
 TEST(OthersGetBy, AWallBesideThatWasClosedBeforeIsNoMatter) {
