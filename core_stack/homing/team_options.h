@@ -3,7 +3,7 @@
 #include "core_stack/common/options.h"
 #include "core_stack/homing/gossip.h"
 #include "core_stack/homing/homing_tree.h"
-#include "core_stack/homing/landing_place.h"
+#include "core_stack/homing/landing_options.h"
 #include "core_stack/homing/relay_graph.h"
 
 namespace karst::core {

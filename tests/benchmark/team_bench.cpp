@@ -1,8 +1,9 @@
 // What a team's radio traffic costs, and how long choosing a landing place takes. Times are processor times.
 #include <cstdio>
+#include <limits>
 
-#include "core_stack/homing/landing_place.h"
 #include "core_stack/homing/relay_graph.h"
+#include "core_stack/homing/relay_homing.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/homing/lossy_network.h"
 #include "tests/unit/planning/test_maps.h"
@@ -55,29 +56,32 @@ void messages() {
       record.size(), frame.size(), 1e3 * read_ms / kTimes, 1e3 * record_ms / kTimes, sum);
 }
 
+/// A robot flies away from the base, which hears it over the whole way.
 void landing() {
   const testing::WindingCave cave = testing::WindingCave::of_length(200, 3, 2.2);
   std::vector<CellChange> changes;
   const VoxelMap map = cave.map(&changes);
   const PlanningOptions planning;
+  const MotionLimits limits;
   Roadmap roadmap{planning};
   roadmap.update(map, changes);
-  bench::Times all, gets_by;
-  LandingSearch last;
-  for (std::size_t i = 60; i + 60 < cave.line.size(); i += 8) {
-    LandingRequest request;
-    request.from = cave.line[i];
-    for (std::size_t k = i - 50; k <= i; k += 6) request.around.push_back(cave.line[k]);
-    request.nodes = {cave.line[i - 50]};
-    all.ms.push_back(cpu_ms([&] { last = find_landing_places(map, roadmap, request, {}, planning, {}); }));
-    gets_by.ms.push_back(cpu_ms([&] { others_get_by(map, cave.line[i], 0.3, 0.55, 3); }));
+  HomingOptions options;
+  options.landing.link.range_m = 1000, options.landing.link.rock_db_per_m = 0;
+  const Vec3 base = cave.line.front();
+  RelayHoming homing(1, {}, options, base, planning, limits, 0.3);
+  TeamNews news;
+  news.relays = {{kBase, base, base}};
+  bench::Times update, nearest, gets_by;
+  for (const Vec3& p : cave.line) {
+    update.ms.push_back(cpu_ms([&] { homing.update(map, roadmap, p, news, {}); }));
+    nearest.ms.push_back(
+        cpu_ms([&] { homing.spot_from(map, roadmap, p, std::numeric_limits<double>::infinity()); }));
+    gets_by.ms.push_back(cpu_ms([&] { others_get_by(map, p, 0.3 + kAsMapped_m, 0.55, 3); }));
   }
-  std::printf("landing places along 25 m of a winding passage (%zu candidates, %zu places in the last)\n",
-              last.candidates, last.places.size());
-  for (std::size_t r = 0; r < kLandingRefusals; ++r)
-    std::printf("    %3zu %s\n", last.refused[r], landing_refusal_text(static_cast<LandingRefusal>(r)));
-  all.print("find_landing_places");
-  gets_by.print("of it: do others get by one place");
+  std::printf("landing places along 200 m of a winding passage, each second\n");
+  update.print("what is new is taken in, ground judged, links asked for");
+  nearest.print("the nearest place");
+  gets_by.print("do others get by one place");
 }
 
 void run() {
