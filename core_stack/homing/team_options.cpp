@@ -13,9 +13,9 @@ void describe(OptionTable& t, TeamOptions& o) {
   t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
         "where a robot lands when its battery runs low (docs/homing.md)");
   t.add("keep_apart", o.keep_apart_m, "m", 1.0, 20,
-        "of two vehicles nearer than this, and what they need to stop, one gives way: to who lands, then to "
-        "who goes "
-        "home, else the higher number");
+        "of two vehicles nearer than this, and what they need to stop, one gives way: to who lands or has no "
+        "room, "
+        "then to who goes home, else the higher number");
   t.add("claim_radius", o.claim_radius_m, "m", 0, 50, "frontiers so near to another's goal are left to it");
   t.add("claim_age", o.claim_age_s, "s", 1, 3600, "a goal claimed longer ago is free again");
   t.add("linger", o.linger_s, "s", 0, 600, "the radios go on for so long after the last landing");

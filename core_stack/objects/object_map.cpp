@@ -54,7 +54,8 @@ void ObjectMap::note(const ObjectDetections& look, const Pose& T_world_camera, d
   std::set<std::uint32_t> seen;  // in this image: each detection is of another object
   for (const ObjectDetection& d : look.found) {
     if (d.kind == ObjectKind::none || d.confidence < options_.least_confidence || !d.direction.allFinite() ||
-        !(d.range_m > 0) || !std::isfinite(d.range_m))
+        !(d.range_m > 0) || !std::isfinite(d.range_m) || !std::isfinite(d.range_sigma_m) ||
+        !std::isfinite(d.bearing_sigma_rad))
       continue;
     const Sighting s = locate(d, T_world_camera);
     const double own_m2 = position_sigma_m * position_sigma_m;
@@ -78,7 +79,9 @@ void ObjectMap::note(const ObjectDetections& look, const Pose& T_world_camera, d
             std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& o) { return o.id == id; });
         t != tracks_.end())
       merge_into(*t);
-  const auto gone = [this](std::uint32_t id) { return !std::ranges::binary_search(tracks_, id, {}, &Track::id); };
+  const auto gone = [this](std::uint32_t id) {
+    return !std::ranges::binary_search(tracks_, id, {}, &Track::id);
+  };
   std::erase_if(apart_, [&](const auto& pair) { return gone(pair.first) || gone(pair.second); });
 }
 

@@ -83,6 +83,10 @@ VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::v
   const double scale = final_m3 && found_m3 > 0 ? (curve.explored_m3.back() - *final_m3) / found_m3 : 1;
   for (std::size_t i = 0; i < overlap_m3.size(); ++i)
     curve.explored_m3[i] = std::max(greatest_m3[i], curve.explored_m3[i] - scale * overlap_m3[i]);
+  // What is known stays known: where the overlap is found too small, as when a robot has just started and few
+  // of its rock cells stand, what the team knew later is more than it can have known.
+  for (std::size_t i = curve.explored_m3.size() - 1; i > 0; --i)
+    curve.explored_m3[i - 1] = std::min(curve.explored_m3[i - 1], curve.explored_m3[i]);
   return curve;
 }
 

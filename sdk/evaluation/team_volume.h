@@ -13,7 +13,8 @@ struct VolumeCurve {
 /// rock cells, whose times are recorded: the sum of the robots' volumes times (cells of the united map) /
 /// (sum of the robots' cells), both as of then. Maps that are off by a cell share fewer cells than they share
 /// space: the overlap so found is scaled such that at the end it is exact, if `final_m3` is known, the united
-/// map's volume. Never less than any robot's own. Of one robot it is its own volume. Empty without telemetry.
+/// map's volume. No less than any robot's own, and never more than later. Of one robot it is its own volume.
+/// Empty without telemetry.
 VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::vector<OccupiedSpan>& united,
                               std::optional<double> final_m3);
 

@@ -24,6 +24,7 @@
 #include "sdk/tools/campaign_progress.h"
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/results_text.h"
+#include "sdk/tools/run_files.h"
 
 namespace karst::tools {
 namespace {
@@ -149,6 +150,7 @@ int compare(const CompareArguments& args) {
     c = from_file(args);
   }
   if (options.folder.empty()) options.folder = fs::path("runs") / c->name;
+  refuse_run(options.folder);
   options.karst = fs::read_symlink("/proc/self/exe");
   options.executor = args.executor;
   options.sbatch = args.sbatch;

@@ -128,7 +128,7 @@ int fly(const FlyArguments& args) {
 
   if (mission.core.team.robots > 1) {
     FlightArguments flight = args.flight;
-    flight.run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
+    flight.run_dir = args.out.empty() ? default_run_dir(mission) : run_dir_of(args.out);
     flight.interrupted = &watch_for_interrupt();
     return fly_team(mission, flight, args.check);
   }
@@ -136,7 +136,7 @@ int fly(const FlyArguments& args) {
   // Everything that can be wrong is looked at before anything is written.
   const std::unique_ptr<host::HostedPolicy> policy = host::load_policy(policy_choice(mission, args.flight));
   if (!args.check.empty()) return check(args.check, mission, *policy);
-  const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : fs::path(args.out);
+  const fs::path run_dir = args.out.empty() ? default_run_dir(mission) : run_dir_of(args.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();  // from here on there is something to tidy up
   RunClaim claim(run_dir);
   core::Recorder recorder(run_dir);

@@ -130,7 +130,7 @@ int replay_scans(const ReplayArguments& args) {
   replay::open_imu(recording);
 
   const std::atomic<bool>& interrupted = watch_for_interrupt();
-  const fs::path run_dir = args.out;
+  const fs::path run_dir = run_dir_of(args.out);
   RunClaim claim(run_dir);
   std::error_code error;
   fs::create_directories(run_dir, error);

@@ -2,8 +2,15 @@
 // none stays if nothing flew.
 #pragma once
 #include <filesystem>
+#include <string>
 
 namespace karst::tools {
+
+/// As given, without `x/..`: a path is looked at before what it leads through is made.
+std::filesystem::path run_dir_of(const std::string& out);
+
+/// Throws core::InputError if a flight's run directory, alone or of a team, is there: no other results go in.
+void refuse_run(const std::filesystem::path& folder);
 
 /// Throws core::InputError naming a file of these that is there.
 void refuse_taken(const std::filesystem::path& run_dir);
@@ -11,7 +18,7 @@ void refuse_taken(const std::filesystem::path& run_dir);
 /// A run directory's claim on its name: unless kept, everything written since is taken away again.
 class RunClaim {
  public:
-  /// Refuses a directory that is taken.
+  /// Makes the directory and locks it. Refuses one that is taken or locked, and leaves it as it is.
   explicit RunClaim(std::filesystem::path run_dir);
   ~RunClaim();
   RunClaim(const RunClaim&) = delete;

@@ -14,6 +14,7 @@
 #include "sdk/selection/preset.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
+#include "sdk/tools/run_files.h"
 #include "sdk/tuning/tune.h"
 
 namespace karst::tools {
@@ -142,6 +143,9 @@ int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult
 }
 
 int tune(const Arguments& args) {
+  refuse_run(args.out);
+  if (fs::exists(fs::path(args.out) / "campaign.sqlite"))
+    throw InputError(args.out, "campaign.sqlite", "is that of a campaign; choose another --out");
   const tuning::TuneOptions o = options_of(args);
   const std::size_t candidates = tuning::candidates_of(o);
   if (!args.quiet)

@@ -40,6 +40,14 @@ TEST(TeamVolume, CountsOnceWhatTwoRobotsKnow) {
   EXPECT_DOUBLE_EQ(exact.explored_m3.back(), 12);
 }
 
+// A robot that has just started knows room, but hardly any rock yet: its overlap was found too small.
+TEST(TeamVolume, IsNeverMoreThanLaterAndEndsWithTheMap) {
+  RunRecord late = robot(30, 0);
+  for (OccupiedSpan& s : late.growth) s.from_ms = 40000;
+  const auto curve = team_volume_curve({robot(0, 0), late}, cells(0, 10, 0), 10.0);
+  for (std::size_t i = 0; i < curve.t_s.size(); ++i) EXPECT_DOUBLE_EQ(curve.explored_m3[i], 10) << i;
+}
+
 TEST(TeamVolume, OfOneRobotIsItsOwn) {
   const auto curve = team_volume_curve({robot(0, 0)}, cells(0, 10, 0), std::nullopt);
   EXPECT_DOUBLE_EQ(curve.explored_m3.front(), 10);

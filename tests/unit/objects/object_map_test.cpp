@@ -158,13 +158,15 @@ TEST(ObjectMap, IsNotSpoiledByNonsense) {
   ObjectMap map({});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 5; ++i) {
-    std::vector<ObjectDetection> bad(6, seen(ObjectKind::rope, {3, 0, 0}, {}));
+    std::vector<ObjectDetection> bad(8, seen(ObjectKind::rope, {3, 0, 0}, {}));
     bad[0].range_m = nan;
     bad[1].range_m = -1;
     bad[2].direction.x() = nan;
     bad[3].kind = ObjectKind::none;
     bad[4].confidence = 0.1;
     bad[5].range_m = std::numeric_limits<double>::infinity();
+    bad[6].range_sigma_m = nan;
+    bad[7].bearing_sigma_rad = nan;
     map.note(look(i, bad), {}, 0);
   }
   EXPECT_TRUE(map.objects().empty());
