@@ -42,8 +42,8 @@ class Window {
   std::vector<Cell> cells_;
 };
 
-/// Calls visit(cell, key) for the window's cells that a ray passes (Amanatides and Woo, 1987) until it returns
-/// false. All lengths in cells; `direction` is unit.
+/// Calls visit(cell, key) for the window's cells that a ray passes (Amanatides and Woo, 1987) until it
+/// returns false. All lengths in cells; `direction` is unit.
 template <class Visit>
 void walk(Window& window, const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit) {
   std::array<std::int32_t, 3> key{}, step{};
