@@ -31,7 +31,7 @@ double coming_mps(const Neighbour& self, const Neighbour& other) {
 
 TeamPhase Encounter::told(TeamPhase phase, TimeNs now) const {
   if (phase != TeamPhase::explore && phase != TeamPhase::home) return phase;
-  if (with_ && aside_) return TeamPhase::aside;
+  if (stands_aside()) return TeamPhase::aside;
   return now < boxed_until_ ? TeamPhase::boxed : phase;
 }
 

@@ -28,6 +28,8 @@ class Encounter {
   void forget() { *this = {}; }
 
   bool holds() const { return with_.has_value(); }
+  /// It waits where the other gets by.
+  bool stands_aside() const { return with_ && aside_; }
   bool on_the_way() const { return on_the_way_; }
   RobotId with() const { return with_.value_or(kBase); }
   /// What to tell of itself instead of `phase`.

@@ -169,7 +169,10 @@ bool MissionControl::in_company() const {
 }
 
 void MissionControl::keep_apart() {
-  if (phase_ != Phase::explore && phase_ != Phase::home) return encounter_.forget();
+  if (phase_ != Phase::explore && phase_ != Phase::home) {
+    refuges_in_vain_.clear();
+    return encounter_.forget();
+  }
   if (encounter_.on_the_way() && !planning_aside_ && flight_.at_rest(now())) {
     const bool there = (flight_.reference().position - refuge_.place).norm() < kAtRefuge_m;
     encounter_.arrived(there && refuge_.others_get_by, now());
@@ -203,7 +206,7 @@ void MissionControl::keep_apart() {
 /// To where the other gets by, or before it back along the way come.
 void MissionControl::make_room(const Neighbour& other) {
   planning_aside_ = true;
-  if (encounter_.told(TeamPhase::explore, now()) == TeamPhase::aside)
+  if (encounter_.stands_aside())
     refuges_in_vain_.push_back(refuge_.place);  // it waits there, and the other does not get by
   const TimeNs start = now() + kAsideBudget;
   auto way = std::make_shared<Route>();

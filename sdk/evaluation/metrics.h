@@ -1,5 +1,6 @@
 // The figures of one run, as metrics.json holds them. Definitions: docs/metrics.md.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -32,5 +33,23 @@ nlohmann::ordered_json evaluate_run(const std::filesystem::path& run_dir, const 
 
 /// Writes `metrics` as run_dir/metrics.json, whole or not at all; throws InputError when the disk refuses.
 void write_metrics(const std::filesystem::path& run_dir, const nlohmann::ordered_json& metrics);
+
+/// Figures of a map that only the cave itself tells: null without it.
+constexpr std::array kCaveFigures = {"reachable_volume_m3",
+                                     "coverage",
+                                     "coverage_auc",
+                                     "coverage_at_25",
+                                     "coverage_at_50",
+                                     "coverage_at_75",
+                                     "t50_s",
+                                     "t90_s",
+                                     "t95_s",
+                                     "restricted_t50_s",
+                                     "restricted_t90_s",
+                                     "restricted_t95_s",
+                                     "surface_seen",
+                                     "surface_imaged",
+                                     "map_error_mean_m",
+                                     "map_error_std_m"};
 
 }  // namespace karst::evaluation

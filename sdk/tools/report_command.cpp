@@ -70,10 +70,7 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   const auto before = nlohmann::ordered_json::parse(in, nullptr, false);
   if (!before.is_object()) return;
   std::string kept;
-  for (const char* key :
-       {"reachable_volume_m3", "coverage", "coverage_auc", "coverage_at_25", "coverage_at_50",
-        "coverage_at_75", "t50_s", "t90_s", "t95_s", "restricted_t50_s", "restricted_t90_s",
-        "restricted_t95_s", "surface_seen", "surface_imaged", "map_error_mean_m", "map_error_std_m"}) {
+  for (const char* key : evaluation::kCaveFigures) {
     const auto value = before.find(key);
     if (value == before.end() || !value->is_number() || !metrics[key].is_null()) continue;
     metrics[key] = *value;

@@ -7,8 +7,11 @@
 
 namespace karst::test {
 
-std::string dom_in_browser(const std::filesystem::path& page, const std::string& hash) {
-  if (std::system("command -v chromium >/dev/null 2>&1") != 0) return "";
+void InBrowser::SetUp() {
+  if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no chromium";
+}
+
+ShownPage show_page(const std::filesystem::path& page, const std::string& hash) {
   TemporaryDirectory profile;
   const std::string command =
       "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
@@ -21,7 +24,11 @@ std::string dom_in_browser(const std::filesystem::path& page, const std::string&
   char buffer[65536];
   while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) dom.append(buffer, n);
   pclose(pipe);
-  return dom;
+  const std::string root = dom.substr(0, dom.find("<head>"));
+  EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << "chromium showed: " << root.substr(0, 500);
+  EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
+  const std::size_t body = dom.find("<body>");
+  return {dom, body == std::string::npos ? "" : dom.substr(body, dom.find("id=\"data\"") - body)};
 }
 
 }  // namespace karst::test

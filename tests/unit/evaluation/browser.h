@@ -1,12 +1,22 @@
 // A page in a real browser.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <string>
 
 namespace karst::test {
 
-/// The page's DOM after its scripts ran in headless chromium, or "" if there is none. `hash` is what follows
-/// # in its address.
-std::string dom_in_browser(const std::filesystem::path& page, const std::string& hash = "");
+/// Tests of pages: skipped where there is no chromium, and only there.
+struct InBrowser : ::testing::Test {
+  void SetUp() override;
+};
+
+/// The page after its scripts ran in headless chromium. Fails if chromium did not show it, or if the page had
+/// an error or did not come to its end. `hash` is what follows # in its address.
+struct ShownPage {
+  std::string dom, body;  // whole, and the body up to the data
+};
+ShownPage show_page(const std::filesystem::path& page, const std::string& hash = "");
 
 }  // namespace karst::test
