@@ -11,6 +11,10 @@ namespace {
 /// speed.
 constexpr double kCruiseShare = 0.8;
 
+/// Flying straight away from home at the greatest speed takes less than 3 s of slack a second.
+constexpr double kAtOnce_s = 5.0;
+constexpr int kDoubtedTimes = 3;
+
 }  // namespace
 
 void WayHome::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& home,
@@ -51,6 +55,14 @@ double home_time_s(double length_m, double ground_z_m, double home_z_m, const Mo
 
 double home_slack_s(double seconds_left, double home_time, double margin, double reserve_s) {
   return seconds_left - home_time * (1 + margin) - reserve_s;
+}
+
+bool TurnBack::due(double slack_s) {
+  if (slack_s > 0) {
+    before_s_ = slack_s, doubted_ = 0;
+    return false;
+  }
+  return before_s_ - slack_s <= kAtOnce_s || ++doubted_ > kDoubtedTimes;
 }
 
 }  // namespace karst::core

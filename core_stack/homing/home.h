@@ -42,4 +42,16 @@ double home_time_s(double length_m, double ground_z_m, double home_z_m, const Mo
 /// its time) and a fixed reserve. Negative: too late.
 double home_slack_s(double seconds_left, double home_time_s, double margin, double reserve_s);
 
+/// When to turn back, asked once a second: as soon as there is no slack. Slack that goes at once, and not as
+/// one flies on, must be gone for three seconds more: noise shuts a passage in the map for a moment, and then
+/// the way home seems to lead around half the cave.
+class TurnBack {
+ public:
+  bool due(double slack_s);
+
+ private:
+  double before_s_ = 0;  // when there was some
+  int doubted_ = 0;
+};
+
 }  // namespace karst::core

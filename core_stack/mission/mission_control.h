@@ -11,6 +11,7 @@
 
 #include "core_stack/common/executive.h"
 #include "core_stack/homing/encounter.h"
+#include "core_stack/homing/home.h"
 #include "core_stack/mapping/moving_bodies.h"
 #include "core_stack/mission/explorer.h"
 #include "core_stack/mission/flight.h"
@@ -208,6 +209,7 @@ class MissionControl final : public VehicleSink {
   std::vector<Vec3> flown_;   // the way come, a pose every quarter of a metre
   double flown_m_ = 0;
   double home_distance_m_ = 0;
+  TurnBack turn_back_;
   std::string homing_reason_;
   int home_failures_ = 0;
   bool home_planning_ = false;

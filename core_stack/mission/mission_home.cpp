@@ -49,7 +49,7 @@ void MissionControl::watch_battery() {
         home_distance_m_ = estimate->length_m;
         const double slack_s = home_slack_s(seconds_left(), estimate->time_s, options_.mission.home_margin,
                                             options_.mission.home_reserve_s);
-        if (slack_s > 0) return;
+        if (!turn_back_.due(slack_s)) return;
         recorder_.event(now(), "homing",
                         {{"reason", seconds_left() < battery_.seconds_left ? "time limit" : "battery"},
                          {"distance", home_distance_m_},

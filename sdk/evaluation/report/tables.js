@@ -21,6 +21,7 @@ function eventText(e) {
     case "homing": return `flies home${because(e.reason)} (${numberText(e.distance)} m, ${numberText(e.seconds_left)} s left)`;
     case "frontier": return `${e.state} ${place(e.position)}${because(e.reason)}`;
     case "safety": return `${e.action}${because(e.reason)}`;
+    case "object": case "object_known": return `${e.what || "object"} ${e.number} ${e.state || ""} ${place(e.position)}`;
     case "outcome": return `${e.outcome}${because(e.reason)}`;
     case "log": case "truth": return e.text || "";
     default: {

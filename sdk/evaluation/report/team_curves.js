@@ -36,7 +36,7 @@ function startTeamPanel() {
       make("td", { className: "number" }, base ? String(heldOf(base, i + 1)) : "–")));
     element("moment").replaceChildren(make("h3", {}, "Now"), make("table", {}, head, ...list),
       make("h3", {}, "Team"), rows([["explored", withUnit(curveAt(data.volume, t), "m³", 4)],
-        ...(objectsTold("object") ? [["objects", `${objectsAt("object", t).size} found, ${objectsAt("object_known", t).size} known at the base`]] : [])]),
+        ...(objectsTold("object") ? [["finds, robot by robot", String(objectsAt("object", t).size)], ["known at the base", String(objectsAt("object_known", t).size)]] : [])]),
       make("h3", {}, "The base knows"),
       base ? rows([["reach it", base.connected.filter((r) => r > 0).join(", ") || "none"],
                    ["stand as relays", base.relays.map((r) => r[0]).join(", ") || "none"],

@@ -59,9 +59,11 @@ TEST_F(ReportInBrowser, OfATeamShowsTheNewestStateOfEachObject) {
     return show_page(dir.path() / "report.html", std::string("t=") + moment).body;
   };
   const std::string before = at("6.5");
-  EXPECT_NE(before.find("2 found, 0 known at the base"), std::string::npos);
+  EXPECT_NE(before.find("<dt>finds, robot by robot</dt><dd>2</dd><dt>known at the base</dt><dd>0</dd>"),
+            std::string::npos);
   const std::string after = at("12");
-  EXPECT_NE(after.find("1 found, 1 known at the base"), std::string::npos);
+  EXPECT_NE(after.find("<dt>finds, robot by robot</dt><dd>1</dd><dt>known at the base</dt><dd>1</dd>"),
+            std::string::npos);
 }
 
 TEST_F(ReportInBrowser, ShowsATeamWithoutAnErrorEvenIfItsLogIsDamaged) {

@@ -61,5 +61,18 @@ TEST(Home, SlackIsWhatTheBatteryLeavesAfterTheWayHomeAndTheReserve) {
   EXPECT_LT(home_slack_s(100, 60, 0.25, 30), 0);
 }
 
+TEST(Home, TurnsBackAtOnceWhereTheSlackIsUsedUpInFlight) {
+  TurnBack turn_back;
+  for (double slack_s = 20; slack_s > 0; slack_s -= 2.5) EXPECT_FALSE(turn_back.due(slack_s));
+  EXPECT_TRUE(turn_back.due(-2.0));
+}
+
+TEST(Home, AWayHomeThatTheMapShutsForAMomentIsNotBelieved) {
+  TurnBack turn_back;
+  for (const double slack_s : {100.0, -120.0, -121.0, -122.0, 97.0, -120.0, -121.0, -122.0})
+    EXPECT_FALSE(turn_back.due(slack_s)) << slack_s;
+  EXPECT_TRUE(turn_back.due(-123.0)) << "shut for longer than a moment";
+}
+
 }  // namespace
 }  // namespace karst::core
