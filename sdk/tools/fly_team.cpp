@@ -59,6 +59,17 @@ std::unique_ptr<core::TeamVehicles> make_vehicles(const Mission& mission, const 
   return vehicles;
 }
 
+/// Whoever sets one of the two easily forgets the other, and lands out of reach, or nearer than need be.
+void compare_radio_with_belief(const Mission& mission) {
+  const std::string believed = mission.resolved.get("homing.landing.link.range", "");
+  const std::string real = mission.resolved.get("radio.range", believed);
+  if (believed != real)
+    std::fprintf(stderr,
+                 "karst: note: the radio reaches %s (radio.range), and the robots land as if it were %s "
+                 "(homing.landing.link.range)\n",
+                 real.c_str(), believed.c_str());
+}
+
 /// A line every half minute of the mission.
 class TeamStatus {
  public:
@@ -119,6 +130,7 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
     return 0;
   }
 
+  if (!args.quiet) compare_radio_with_belief(mission);
   const fs::path& run_dir = args.run_dir;
   RunClaim claim(run_dir);
   std::vector<std::unique_ptr<RunClaim>> own_claims;

@@ -247,8 +247,11 @@ TEST(Team, ThatCannotFlyIsRefusedBeforeAnythingIsWritten) {
   const auto folder = fresh_folder("team_refused");
   const std::string cave = draw_cave(folder, {{{-1.2, -1.2, 0}, {1.2, 1.2, 3}}}, {0, 0, 1});
   const auto run = folder / "run";
-  Output out = run_karst("fly --cave " + cave + team_of(6, "relay_chain") + " --out " + run.string());
+  Output out = run_karst("fly --cave " + cave + team_of(6, "relay_chain", "--set radio.range=20m") +
+                         " --out " + run.string());
   EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("reaches 20 m (radio.range)") && out.says("15 m (homing.landing.link.range)"))
+      << out.text;
   EXPECT_TRUE(out.says("room for")) << out.text;
   EXPECT_FALSE(std::filesystem::exists(run));
   out = run_karst("fly --cave " + cave + team_of(2, "relay") + " --out " + run.string());
