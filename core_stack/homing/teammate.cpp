@@ -152,12 +152,28 @@ std::vector<Neighbour> Teammate::neighbours(TimeNs now) const {
   return out;
 }
 
+std::vector<HeardMate> Teammate::mates(TimeNs now) const {
+  std::vector<HeardMate> out;
+  for (const TeamState& s : gossip_.states()) {
+    if (s.robot == kBase || s.robot == self() || s.phase == TeamPhase::standby) continue;
+    const bool explores =
+        s.phase == TeamPhase::explore || s.phase == TeamPhase::aside || s.phase == TeamPhase::boxed;
+    out.push_back({s.robot, s.stamp, s.position, s.velocity_mps, std::nullopt, explores,
+                   std::max(0.0, s.seconds_left)});
+    if (explores && claims_goal(s.robot, now)) out.back().goal = goals_[s.robot]->position;
+  }
+  return out;
+}
+
+bool Teammate::claims_goal(RobotId robot, TimeNs now) const {
+  const auto& goal = goals_[robot];
+  return goal && !goal->given_up && now - goal->stamp < from_seconds(team_.claim_age_s);
+}
+
 std::vector<Vec3> Teammate::claimed_goals(TimeNs now) const {
   std::vector<Vec3> out;
   for (RobotId r = 1; r < kMostRobots; ++r)
-    if (r != self() && goals_[r] && !goals_[r]->given_up &&
-        now - goals_[r]->stamp < from_seconds(team_.claim_age_s))
-      out.push_back(goals_[r]->position);
+    if (r != self() && claims_goal(r, now)) out.push_back(goals_[r]->position);
   return out;
 }
 

@@ -18,6 +18,16 @@ struct Relay {
   std::optional<TimeNs> stands_by{};  // it is yet to land there: then its battery ends
 };
 
+/// Another robot as it was last heard of.
+struct HeardMate {
+  RobotId robot = 0;
+  TimeNs heard = 0;  // when this was true
+  Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
+  std::optional<Vec3> goal;  // claimed, if it explores
+  bool explores = false;
+  double seconds_left = 0;  // of its battery, then
+};
+
 class Teammate {
  public:
   /// `base` is the base's antenna.
@@ -42,6 +52,8 @@ class Teammate {
   bool hears_base(TimeNs now) const;
   /// Vehicles in the air that were heard of in the last seconds, where they should be by now.
   std::vector<Neighbour> neighbours(TimeNs now) const;
+  /// All that have started and were ever heard of, by robot.
+  std::vector<HeardMate> mates(TimeNs now) const;
   /// Others' goals that are still claimed.
   std::vector<Vec3> claimed_goals(TimeNs now) const;
   /// Where others stand, or are about to land. Of two that claim one place the earlier claim holds.
@@ -60,6 +72,7 @@ class Teammate {
   RobotId self() const { return gossip_.self(); }
 
  private:
+  bool claims_goal(RobotId robot, TimeNs now) const;
   void take(const Delivery& delivery);
   void note_facts(const TreeFacts& facts);
   void watch_relays(TimeNs now);

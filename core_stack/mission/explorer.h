@@ -35,6 +35,7 @@ struct RoundInput {
   bool standing = false;                 // nothing is under way
   bool appending = false;                // the last goal will be reached before the new one is flown to
   std::vector<PolicyEvent> events;       // since the last round
+  std::vector<HeardMate> mates;          // the others of a team
   std::vector<std::uint32_t> looked_at;  // frontiers reached, or seen on the way, since the last round
 };
 
@@ -133,6 +134,7 @@ class Explorer {
   std::optional<LandingSpot> nearest_spot(const Vec3& from, double sooner_than_s);
   double slow_mps() const;  // in narrow passages
   bool left_to_others(const Vec3& frontier) const;
+  OtherVehicle seen_by_policy(const HeardMate& mate, TimeNs now) const;
   std::vector<CellChange> take_in(std::vector<CellChange> changes);
   Reach& wide();
   Reach* narrow();

@@ -126,6 +126,7 @@ DecisionRequest Explorer::request(const Reach& reach, const RoundInput& input) {
   request.map = &map_;
   request.roadmap = &reach.roadmap;
   if (vehicle_.rgb) request.imaged = &imaged_;
+  for (const HeardMate& mate : input.mates) request.teammates.push_back(seen_by_policy(mate, input.now));
   request.vehicle = &vehicle_;
   return request;
 }

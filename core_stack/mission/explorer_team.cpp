@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "core_stack/homing/home.h"
 #include "core_stack/homing/landing_ground.h"
 #include "core_stack/mission/explorer.h"
 #include "core_stack/planning/grid_planner.h"
@@ -41,6 +43,26 @@ std::optional<LandingSpot> Explorer::nearest_spot(const Vec3& from, double soone
 std::optional<LandingSpot> Explorer::landing_spot(const Vec3& from, double way_come_m) {
   homing_->look_around(map_, wide().roadmap, from);
   return nearest_spot(from, estimate_base(from, way_come_m).time_s);
+}
+
+/// It told of its battery, not of its plans: when it must turn home is worked out by one's own map, as for
+/// oneself.
+OtherVehicle Explorer::seen_by_policy(const HeardMate& mate, TimeNs now) const {
+  OtherVehicle out{mate.robot, mate.heard, mate.position, mate.velocity_mps, mate.goal, 0};
+  if (!mate.explores) return out;
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const double length_m = wide_.way_home.length_m(map_, wide_.roadmap, mate.position).value_or(inf);
+  double home_s = home_time_s(length_m, vehicle_.T_world_start.position.z(), home_.z(), options_.motion,
+                              options_.mission.landing_speed_mps);
+  if (homing_)
+    if (const auto spot = homing_->spot_from(map_, wide_.roadmap, mate.position, home_s))
+      home_s = spot->time_s;
+  const double left_s = mate.seconds_left - seconds(now - mate.heard);
+  out.seconds_before_homing =
+      std::isfinite(home_s)
+          ? home_slack_s(left_s, home_s, options_.mission.home_margin, options_.mission.home_reserve_s)
+          : std::numeric_limits<double>::quiet_NaN();
+  return out;
 }
 
 TreeFacts Explorer::land(const Vec3& hover, TimeNs team_time) {

@@ -148,6 +148,7 @@ void MissionControl::begin_round(bool appending) {
   input.appending = appending;
   input.events = std::exchange(events_, {});
   input.looked_at = std::exchange(looked_at_, {});
+  if (team_) input.mates = team_->mates(now());
   auto result = std::make_shared<RoundResult>();
   auto way = std::make_shared<Route>();
   // The lead of an appended path ends at a goal.

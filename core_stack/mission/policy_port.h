@@ -2,6 +2,7 @@
 // a test implements it in five lines.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,15 @@ struct FrontierOffer {
   double path_length_m = 0;  // from where a new path would begin to the viewpoint; +inf if no way is known
 };
 
+/// Another vehicle of the team, as last heard.
+struct OtherVehicle {
+  std::uint32_t id = 0;  // 1, 2, ...
+  TimeNs heard = 0;      // when this was true, by one's own clock: negative before one's own start
+  Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
+  std::optional<Vec3> goal;          // that it has claimed
+  double seconds_before_homing = 0;  // about; 0: it explores no more; NaN: no way home from there is known
+};
+
 enum class GoalFate { none, under_way, reached, rejected, unreachable, abandoned, superseded };
 
 struct DecisionRequest {
@@ -41,6 +51,7 @@ struct DecisionRequest {
   const ImagedSurface* imaged = nullptr;  // by the colour camera; null if there is none
   const VehicleDescription* vehicle = nullptr;
   std::vector<FrontierOffer> frontiers;  // by id
+  std::vector<OtherVehicle> teammates;   // by id
 };
 
 struct Goal {

@@ -45,6 +45,12 @@ class Teamwork {
   std::vector<TeamObject> objects() const { return merged(mate_->objects()); }
   bool hears_base(TimeNs now) const { return mate_->hears_base(team_time(now)); }
   bool overruled() const { return mate_->overruled(); }
+  /// The others as last heard of, by this vehicle's own clock.
+  std::vector<HeardMate> mates(TimeNs now) const {
+    std::vector<HeardMate> all = mate_->mates(team_time(now));
+    for (HeardMate& m : all) m.heard -= ahead_;
+    return all;
+  }
   std::vector<Neighbour> neighbours(TimeNs now) const { return mate_->neighbours(team_time(now)); }
 
  private:

@@ -125,6 +125,10 @@ void extremes(Context& c) {
       [&](core::DecisionRequest& r) {
         for (core::FrontierOffer& f : r.frontiers) f.path_length_m = inf;
       },
+      [&](core::DecisionRequest& r) {
+        r.teammates = {{1, -r.stamp, r.state.position, {0, 0, 0}, {}, 0},
+                       {2, r.stamp, core::Vec3::Constant(6500), {40, 0, 0}, core::Vec3::Constant(nan), nan}};
+      },
   };
   ask_changed(c, flight, static_cast<int>(changes.size()),
               [&](core::DecisionRequest& r, int i) { changes[static_cast<std::size_t>(i)](r); });

@@ -35,7 +35,7 @@ nlohmann::ordered_json evaluate_run(const std::filesystem::path& run_dir, const 
 void write_metrics(const std::filesystem::path& run_dir, const nlohmann::ordered_json& metrics);
 
 /// Figures of a map that only the cave itself tells: null without it.
-constexpr std::array kCaveFigures = {"reachable_volume_m3",
+inline constexpr std::array kCaveFigures = {"reachable_volume_m3",
                                      "coverage",
                                      "coverage_auc",
                                      "coverage_at_25",

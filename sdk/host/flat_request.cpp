@@ -9,11 +9,11 @@ namespace karst::host {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x747365757165726bull;  // "krequest"
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::size_t kHeader = 8 + 4 + 4 + 8 + 8;  // magic, version, reserved, length, sum of the body
 constexpr std::uint64_t kMostClusters = 1'000'000, kMostCells = 100'000'000, kMostSensors = 64,
-                        kMostChannels = 4096, kLongestName = 1000;
-constexpr std::size_t kKeyBytes = 12, kClusterBytes = 160;
+                        kMostChannels = 4096, kLongestName = 1000, kMostTeammates = 1000;
+constexpr std::size_t kKeyBytes = 12, kClusterBytes = 160, kTeammateBytes = 69;
 constexpr std::size_t kBlockBytes = kKeyBytes + sizeof(core::ClassBlock::classes);
 
 /// Finds damage, not malice. Four lanes keep the multiplier busy: a snapshot of megabytes costs little.
@@ -112,6 +112,16 @@ void put_frontiers(FlatWriter& out, const std::vector<core::FrontierOffer>& offe
   }
 }
 
+void put_teammates(FlatWriter& out, const std::vector<core::OtherVehicle>& teammates) {
+  out.put<std::uint64_t>(teammates.size());
+  for (const core::OtherVehicle& v : teammates) {
+    out.put(v.id), out.put(v.heard), out.put(v.position), out.put(v.velocity_mps);
+    out.put(v.goal.has_value());
+    if (v.goal) out.put(*v.goal);
+    out.put(v.seconds_before_homing);
+  }
+}
+
 void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t since) {
   out.put(r.map != nullptr);
   if (r.map == nullptr) return;
@@ -159,6 +169,7 @@ Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   out.put(static_cast<std::uint32_t>(r.last_fate)), out.put(r.last_goal);
   put_vehicle(out, r.vehicle);
   put_frontiers(out, r.frontiers);
+  put_teammates(out, r.teammates);
   put_map(out, r, map_since);
   put_imaged(out, r.imaged);
   Bytes bytes = out.take();
@@ -191,6 +202,7 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     r.last_goal = in.vec3();
     read_vehicle(in);
     read_frontiers(in);
+    read_teammates(in);
     read_map(in);
     read_imaged(in);
     in.demand_end();
@@ -241,6 +253,16 @@ void RequestReader::read_frontiers(FlatReader& in) {
     c.cells.resize(in.count(kKeyBytes, kMostCells, "cells in a cluster"));
     for (core::CellKey& k : c.cells) k = key(in);
     request_.frontiers.push_back(offer);
+  }
+}
+
+void RequestReader::read_teammates(FlatReader& in) {
+  request_.teammates.assign(in.count(kTeammateBytes, kMostTeammates, "teammates"), {});
+  for (core::OtherVehicle& v : request_.teammates) {
+    v.id = in.number<std::uint32_t>(), v.heard = in.number<core::TimeNs>();
+    v.position = in.vec3(), v.velocity_mps = in.vec3();
+    if (in.flag()) v.goal = in.vec3();
+    v.seconds_before_homing = in.number<double>();
   }
 }
 

@@ -41,6 +41,7 @@ class RequestReader {
  private:
   void read_vehicle(FlatReader& in);
   void read_frontiers(FlatReader& in);
+  void read_teammates(FlatReader& in);
   void read_map(FlatReader& in);
   void read_imaged(FlatReader& in);
   void update_roadmap(const core::PlanningOptions& options, std::span<const core::CellChange> changes);

@@ -1,5 +1,6 @@
 #include "sdk/host/translation.h"
 
+#include <limits>
 #include <numbers>
 
 #include "sdk/host/snapshot.h"
@@ -53,6 +54,17 @@ karst_sensor_t to_abi(const core::CameraModel& c) {
   out.low_elevation_rad = -0.5 * c.vertical_fov_rad;
   out.high_elevation_rad = 0.5 * c.vertical_fov_rad;
   return out;
+}
+
+karst_teammate_t to_abi(const core::OtherVehicle& v) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  return {v.id,
+          0,
+          v.heard,
+          host::to_abi(v.position),
+          host::to_abi(v.velocity_mps),
+          host::to_abi(v.goal.value_or(core::Vec3::Constant(nan))),
+          v.seconds_before_homing};
 }
 
 karst_goal_fate_t to_abi(core::GoalFate fate) {
@@ -131,6 +143,9 @@ RequestPack::RequestPack(const core::DecisionRequest& r, const karst_map_t* map)
   request_.map = map;
   request_.frontiers = frontiers_.data();
   request_.frontier_count = frontiers_.size();
+  for (const core::OtherVehicle& v : r.teammates) teammates_.push_back(to_abi(v));
+  request_.teammates = teammates_.data();
+  request_.teammate_count = teammates_.size();
 }
 
 karst_event_t to_abi(const core::PolicyEvent& event) {

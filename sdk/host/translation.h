@@ -19,6 +19,7 @@ class RequestPack {
   std::vector<karst_frontier_cluster_t> frontiers_;
   std::vector<std::string> sensor_names_;
   std::vector<karst_sensor_t> sensors_;
+  std::vector<karst_teammate_t> teammates_;
   karst_request_t request_{};
 };
 

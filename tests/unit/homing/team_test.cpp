@@ -183,6 +183,34 @@ TEST(Teammate, ForgetsGoalsThatWereGivenUpOrClaimedLongAgo) {
   EXPECT_TRUE(team.mates[2].claimed_goals(team.now).empty());
 }
 
+TEST(Teammate, KnowsAllThatHaveStartedAsTheyWereLastHeardOf) {
+  Team team(4);
+  team.states[1].phase = TeamPhase::explore;
+  team.states[1].seconds_left = 120;
+  team.states[1].position = {9, 0, 0};
+  team.states[3].phase = TeamPhase::standby;
+  team.states[4].phase = TeamPhase::landed;
+  team.mates[1].publish(GoalClaim{team.now, {12, 0, 0}, false});
+  team.mates[4].publish(GoalClaim{team.now, {5, 0, 0}, false});
+  team.run(3);
+  const TimeNs last_heard = team.now;
+  team.linked = [](RobotId, RobotId) { return false; };
+  team.run(30);
+  const std::vector<HeardMate> mates = team.mates[2].mates(team.now);
+  ASSERT_EQ(mates.size(), 2u) << "robot 3 has not started";
+  EXPECT_EQ(mates[0].robot, 1);
+  EXPECT_TRUE(mates[0].explores);
+  EXPECT_NEAR(seconds(last_heard - mates[0].heard), 0.5, 1.0);
+  EXPECT_EQ(mates[0].position, Vec3(9, 0, 0)) << "where it was, not where it may be by now";
+  EXPECT_EQ(mates[0].goal, Vec3(12, 0, 0));
+  EXPECT_EQ(mates[0].seconds_left, 120);
+  EXPECT_EQ(mates[1].robot, 4);
+  EXPECT_FALSE(mates[1].explores);
+  EXPECT_FALSE(mates[1].goal) << "it flies nowhere any more";
+  const auto later = team.mates[2].mates(team.now + from_seconds(TeamOptions{}.claim_age_s));
+  EXPECT_FALSE(later[0].goal) << "claimed long ago";
+}
+
 TEST(Teammate, SeesVehiclesInTheAirWhereTheyShouldBeByNow) {
   Team team(3);
   team.states[1].phase = TeamPhase::home;

@@ -55,6 +55,8 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
   room.request.last_goal = {1, 2, 3};
   room.request.state.orientation = core::Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
   room.request.frontiers[0].path_length_m = std::numeric_limits<double>::infinity();
+  room.request.teammates = {{1, -5, {1, 2, 3}, {0.1, 0, 0}, Vec3(7, 8, 9), 12.5},
+                            {4, 6, {-1, 0, 2}, {0, 0, 0}, std::nullopt, 0}};
   RequestReader reader(false);
   const core::DecisionRequest& read = reader.read(flatten(room.request));
   expect_same_cells(*read.map, room.map);
@@ -76,6 +78,13 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
     s.name = t.name = {};
     EXPECT_EQ(std::memcmp(&s, &t, sizeof s), 0);
   }
+  ASSERT_EQ(x.teammate_count, 2u);
+  ASSERT_EQ(y.teammate_count, 2u);
+  EXPECT_EQ(std::memcmp(x.teammates, y.teammates, 2 * sizeof *x.teammates), 0);
+  EXPECT_EQ(y.teammates[0].heard_ns, -5);
+  EXPECT_EQ(y.teammates[0].goal.y, 8);
+  EXPECT_TRUE(std::isnan(y.teammates[1].goal.x)) << "it has none";
+  x.teammates = y.teammates = nullptr;
   x.sensors = y.sensors = nullptr;
   x.frontiers = y.frontiers = nullptr;
   EXPECT_EQ(std::memcmp(&x, &y, sizeof x), 0);
@@ -174,7 +183,7 @@ TEST(FlatRequest, OtherVersionIsNamed) {
   Room room;
   host::Bytes bytes = flatten(room.request);
   bytes[8] = std::byte{7};
-  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 2"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 3"));
 }
 
 TEST(FlatRequest, BlocksAreSoundOnlyInTheWorldAndInPlace) {

@@ -244,6 +244,36 @@ TEST(Explorer, TheWayBackLeavesOutLoopsAndCutsNoCorner) {
                 !room.explorer->map().first_not_free(back[i - 1], back[i]));
 }
 
+TEST(Explorer, ThePolicyIsToldOfTeammatesAndWhatTimeTheyHaveLeft) {
+  Room room;
+  room.input.now = 50 * kSecond;
+  const TimeNs heard = 40 * kSecond;
+  room.input.mates = {{1, heard, {6, 4, 2}, {0.5, 0, 0}, Vec3(6.5, 3, 2), true, 300},
+                      {2, heard, {6, 4, 2}, {0, 0, 0}, std::nullopt, false, 300},
+                      {3, heard, {90, 4, 2}, {0, 0, 0}, std::nullopt, true, 300}};
+  std::vector<OtherVehicle> told;
+  double own_s = 0;
+  const auto ask = [&](const DecisionRequest& r) {
+    told = r.teammates, own_s = r.seconds_before_homing;
+    return Decision{};
+  };
+  room.decide(ask);
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[0].id, 1u);
+  EXPECT_EQ(told[0].heard, heard);
+  EXPECT_EQ(told[0].position, Vec3(6, 4, 2));
+  EXPECT_EQ(told[0].goal, Vec3(6.5, 3, 2));
+  EXPECT_EQ(told[1].seconds_before_homing, 0) << "it explores no more";
+  EXPECT_FALSE(told[1].goal);
+  EXPECT_TRUE(std::isnan(told[2].seconds_before_homing)) << "it is where this map ends";
+  // As for oneself, were one there with as much of the battery left: ten seconds have passed.
+  room.input.from = room.input.state.position = Vec3(6, 4, 2);
+  room.input.seconds_left = 290;
+  room.decide(ask);
+  EXPECT_NEAR(told[0].seconds_before_homing, own_s, 1e-9);
+  EXPECT_LT(own_s, 290);
+}
+
 TEST(Explorer, WhenTheBatteryAllowsNoGoalTheFlightIsOver) {
   // As it was: the policy proposed, the core refused, and the vehicle hovered until the battery called it
   // home.

@@ -41,6 +41,7 @@ class Bench {
   Vec3 last_goal;
   std::vector<Sensor> sensors;
   std::vector<Frontier> frontiers;
+  std::vector<Teammate> teammates;
 
   const DrawnHost& host() const { return host_; }
 
@@ -123,6 +124,8 @@ class Bench {
     r.map = host_.map_handle();
     r.frontiers = clusters.data();
     r.frontier_count = clusters.size();
+    r.teammates = teammates.data();
+    r.teammate_count = teammates.size();
     Decision answer;
     karst_decision_sink_t sink{sizeof(karst_decision_sink_t), 64, &answer, &add_goals, &set_outcome};
     karst_error_t e{};
