@@ -120,17 +120,21 @@ void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
 }
 
 /// The node of the best link to each place, as far as the map tells; of those yet to land if there is no
-/// other.
+/// other. A link that was counted on stands while half of what is to spare is left: otherwise a relay that
+/// came down a few centimetres from where it meant to takes a place away from who is far out, and relies on
+/// it.
 void RelayHoming::find_links(const VoxelMap& map) {
   for (Place& p : places_) {
-    double best_db = 0;
-    p.node.reset();
+    double best_db = -std::numeric_limits<double>::infinity();
+    const std::optional<RobotId> before = std::exchange(p.node, std::nullopt);
     for (const Relay& r : relays_) {
       if (r.stands_by && p.node && !p.claimed) break;                                   // these come last
       if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
       const double db =
           expected_margin_db(map, p.ground + Vec3(0, 0, radius_m_), r.antenna, options_.landing.link);
-      if (db >= best_db) best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
+      const double least_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
+      if (db >= least_db && db >= best_db)
+        best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
     }
   }
 }

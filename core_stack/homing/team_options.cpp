@@ -9,7 +9,7 @@ namespace karst::core {
 
 void describe(OptionTable& t, TeamOptions& o) {
   t.add("robots", o.robots, 1, kMostRobots - 1, "1: one vehicle alone, and no team");
-  t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts");
+  t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts; whole seconds");
   t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
         "where a robot lands when its battery runs low (docs/homing.md)");
   t.add("keep_apart", o.keep_apart_m, "m", 1.0, 20,
@@ -21,7 +21,8 @@ void describe(OptionTable& t, TeamOptions& o) {
   t.add("linger", o.linger_s, "s", 0, 600, "the radios go on for so long after the last landing");
   t.add("lost_robot", o.lost_robot, 0, kMostRobots - 1,
         "for tests: the number of a robot that never comes back");
-  t.add("lost_after", o.lost_after_s, "s", 0, 7200, "of its flight: then it is lost");
+  t.add("lost_after", o.lost_after_s, "s", 0, 7200,
+        "from its start: then it is lost, if it is in the air by then");
   t.add("silent_relay", o.silent_relay, 0, kMostRobots - 1,
         "for tests: the number of a robot whose radio fails");
   t.add("silent_after", o.silent_after_s, "s", 0, 7200, "behind its landing: then it is silent");

@@ -11,7 +11,8 @@ constexpr double kGoodQuality = 0.2;       // of a link to land by: gossip copes
 constexpr double kAntenna_m = 0.3;         // above the ground, of a landed robot
 constexpr TimeNs kStateAge = 3 * kSecond;  // of a position to keep apart from
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
-constexpr double kNear_m = 20.0;  // another vehicle in the air: positions are told more often
+constexpr double kHeardNow = 1.0 / 3;  // of link_age: it is alive, whoever told it dead
+constexpr double kNear_m = 20.0;       // another vehicle in the air: positions are told more often
 
 bool in_the_air(TeamPhase p) {
   return p == TeamPhase::explore || p == TeamPhase::home || p == TeamPhase::landing ||
@@ -24,6 +25,7 @@ Teammate::Teammate(RobotId self, const TeamOptions& team, const HomingOptions& h
                    std::uint64_t seed)
     : team_(team),
       link_age_s_(homing.relay.link_age_s),
+      landings_apart_m_(homing.landing.keep_apart_m),
       base_{kBase, base, base},
       gossip_(self, homing.gossip, seed),
       graph_(homing.relay) {
@@ -94,7 +96,8 @@ void Teammate::note_facts(const TreeFacts& facts) {
   }
 }
 
-/// Who stands still tells of a neighbour that stands still and has fallen silent, and of its coming back.
+/// Who stands still tells of a neighbour that stands still and has fallen silent: once, for others may hear
+/// it yet. Who hears one that is told dead tells that it is alive: as often as it is told dead.
 void Teammate::watch_relays(TimeNs now) {
   const auto stands = [this](RobotId r) {
     return r == kBase || (landings_[r] && landings_[r]->state == LandingClaim::State::landed);
@@ -104,24 +107,53 @@ void Teammate::watch_relays(TimeNs now) {
     if (stands(h.robot) && h.quality >= kGoodQuality) heard_at_[h.robot] = now;
   for (RobotId r = 1; r < kMostRobots; ++r) {
     if (r == self() || !heard_at_[r] || !nodes_[r]) continue;
-    const bool alive = now - *heard_at_[r] <= from_seconds(link_age_s_);
-    if (alive != told_dead(r)) continue;
+    const double silent_s = seconds(now - *heard_at_[r]);
+    const bool silent = silent_s > link_age_s_, fell_silent = silent && !silent_[r];
+    silent_[r] = silent;
+    const bool dead = fell_silent && !told_dead(r);
+    const bool alive = silent_s < kHeardNow * link_age_s_ && told_dead(r);
+    if (!dead && !alive) continue;
     TreeFacts told;
     told.lives = {{*nodes_[r], alive, to_milliseconds(now)}};
     publish(told);
   }
 }
 
+/// As of when each was last heard of: since then nobody has told otherwise. News come in pieces: who has
+/// heard of a landing may have yet to hear of those between there and the base, so a robot's own word, that
+/// it hears one that counts, is enough.
+std::array<bool, kMostRobots> Teammate::landed_in_reach() const {
+  std::array<bool, kMostRobots> counts{};
+  counts[kBase] = true;
+  const std::vector<TeamState> states = gossip_.states();
+  std::array<bool, kMostRobots>
+      stands{};  // by its own word: where it claimed, until the record of that comes
+  for (const TeamState& told : states) stands[told.robot] = told.phase == TeamPhase::relay;
+  const auto may = [&](RobotId r) {
+    if (r == self() || r == kBase || !landings_[r] || told_dead(r)) return false;
+    return landings_[r]->state == LandingClaim::State::landed ||
+           (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
+  };
+  for (RobotId r = 1; r < kMostRobots; ++r) {
+    const auto stamp = graph_.last_heard_of(r);
+    counts[r] = may(r) && stamp && graph_.reaches_base(*stamp, r);
+  }
+  for (bool more = true; more;) {
+    more = false;
+    for (const TeamState& s : states)
+      if (may(s.robot) && !counts[s.robot])
+        more |= counts[s.robot] = std::any_of(s.heard.begin(), s.heard.end(), [&](const HeardRobot& h) {
+          return h.robot < kMostRobots && counts[h.robot] && h.quality >= kGoodQuality;
+        });
+  }
+  return counts;
+}
+
 std::vector<Relay> Teammate::relays() const {
   std::vector<Relay> out{base_};
-  for (RobotId r = 1; r < kMostRobots; ++r) {
-    if (r == self() || !landings_[r] || landings_[r]->state != LandingClaim::State::landed || told_dead(r))
-      continue;
-    // As of when it was last heard of: since then nobody has told otherwise.
-    const auto stamp = graph_.last_heard_of(r);
-    if (stamp && graph_.reaches_base(*stamp, r))
-      out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
-  }
+  const std::array<bool, kMostRobots> counts = landed_in_reach();
+  for (RobotId r = 1; r < kMostRobots; ++r)
+    if (counts[r]) out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
   for (const TeamState& s : gossip_.states()) {
     const auto& claim = landings_[s.robot];
     if (s.robot == self() || s.robot == kBase || !in_the_air(s.phase) || !claim ||
@@ -193,7 +225,7 @@ bool Teammate::overruled() const {
     if (r == self() || !other || other->state == LandingClaim::State::given_up) continue;
     const bool first = other->state == LandingClaim::State::landed ||
                        std::tuple(other->stamp, r) < std::tuple(own->stamp, self());
-    if (first && (other->ground - own->ground).norm() < team_.keep_apart_m) return true;
+    if (first && (other->ground - own->ground).norm() < landings_apart_m_) return true;
   }
   return false;
 }

@@ -72,13 +72,14 @@ class Teammate {
   RobotId self() const { return gossip_.self(); }
 
  private:
+  std::array<bool, kMostRobots> landed_in_reach() const;
   bool claims_goal(RobotId robot, TimeNs now) const;
   void take(const Delivery& delivery);
   void note_facts(const TreeFacts& facts);
   void watch_relays(TimeNs now);
 
   TeamOptions team_;
-  double link_age_s_;
+  double link_age_s_, landings_apart_m_;
   Relay base_;
   Gossip gossip_;
   RelayGraph graph_;
@@ -89,6 +90,7 @@ class Teammate {
   std::array<std::optional<NodeId>, kMostRobots> nodes_;  // of robots that landed
   std::array<std::optional<LifeFact>, kMostRobots> lives_;
   std::array<std::optional<TimeNs>, kMostRobots> heard_at_;  // since it landed itself
+  std::array<bool, kMostRobots> silent_{};                   // since then
   TimeNs receipt_due_ = 0;
   bool news_for_receipt_ = false;
 };

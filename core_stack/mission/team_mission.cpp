@@ -82,7 +82,7 @@ TeamResult TeamMission::run(const TeamWatch& watch) {
   TimeNs now = 0;
   for (bool go_on = true; !over(now); now += kStep) {
     for (const auto& robot : robots_)
-      if (now == robot->starts_at) start(*robot);
+      if (now == robot->starts_at && go_on) start(*robot);
     fly_all_to(now + kStep);
     vehicles_.meet(now + kStep);
     talk(now + kStep);
@@ -186,7 +186,8 @@ void TeamMission::note_phases(TimeNs now) {
 void TeamMission::strike(TimeNs now) {
   const TeamOptions& o = options_.team;
   for (const auto& robot : robots_) {
-    if (robot->id == o.lost_robot && robot->control && !robot->silent &&
+    const bool flies = robot->phase != Phase::standby && robot->phase != Phase::takeoff;
+    if (robot->id == o.lost_robot && robot->control && !robot->silent && flies &&
         now - robot->starts_at >= from_seconds(o.lost_after_s)) {
       robot->silent = true;
       vehicles_.wreck(robot->id - 1u, "lost, as team.lost_robot has it");

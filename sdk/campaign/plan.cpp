@@ -1,6 +1,7 @@
 #include "sdk/campaign/plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -107,6 +108,13 @@ void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const Pla
                            "; make a campaign of each, or name what is chosen as contestants");
 }
 
+/// What is told of each robot of a team (robot_N/metrics.json), and not of the team.
+constexpr std::array kOfOneVehicle = {
+    "completed",     "mean_speed_mps",    "exploring_speed_mps", "standing_share",  "longest_stall_s",
+    "depth_m",       "vertical_reach_m",  "min_clearance_m",     "landing_error_m", "battery_left",
+    "drift_percent", "heading_error_rad", "tracking_rms_m",      "goals_accepted",  "goals_rejected",
+    "overruns",      "surface_imaged"};
+
 /// Of how many robots a team must have for its flights to have this figure; 1: any flight may have it.
 int robots_for(const std::string& metric) {
   if (metric == "robots_landed" || metric == "robots_connected" || metric == "data_at_base_share") return 2;
@@ -129,15 +137,20 @@ double horizon_of(const std::vector<PlannedContestant>& contestants, const std::
   return horizon_s;
 }
 
-void refuse_figure_of_larger_teams(const std::string& metric,
-                                   const std::vector<PlannedContestant>& contestants,
-                                   const std::string& source) {
-  for (const PlannedContestant& c : contestants)
-    if (const int robots = c.mission.get("team.robots", 1); robots < robots_for(metric))
+void refuse_figure_of_others(const std::string& metric, const std::vector<PlannedContestant>& contestants,
+                             const std::string& source) {
+  for (const PlannedContestant& c : contestants) {
+    const int robots = c.mission.get("team.robots", 1);
+    if (robots > 1 && std::find(kOfOneVehicle.begin(), kOfOneVehicle.end(), metric) != kOfOneVehicle.end())
+      throw InputError(source, "metric " + metric,
+                       "teams have no such figure, their robots have; contestant " + c.name +
+                           " is a team of " + std::to_string(robots) + " (team.robots)");
+    if (robots < robots_for(metric))
       throw InputError(source, "metric " + metric,
                        "only teams of " + std::to_string(robots_for(metric)) +
                            " robots and more have it; contestant " + c.name + " has " +
                            std::to_string(robots) + " (team.robots)");
+  }
 }
 
 Plan make_plan(const Campaign& c, const fs::path& karst) {
@@ -155,7 +168,7 @@ Plan make_plan(const Campaign& c, const fs::path& karst) {
   }
   for (std::size_t i = 1; i < c.caves.size(); ++i) resolve(c, c.contestants.front(), c.caves[i], karst);
   plan.horizon_s = horizon_of(plan.contestants, c.source);
-  refuse_figure_of_larger_teams(plan.metric, plan.contestants, c.source);
+  refuse_figure_of_others(plan.metric, plan.contestants, c.source);
   return plan;
 }
 

@@ -44,11 +44,10 @@ Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
 /// naming `source` if one may longer than another: their figures would not compare.
 double horizon_of(const std::vector<PlannedContestant>& contestants, const std::string& source);
 
-/// Throws core::InputError naming `source` if the figure is one of teams with more robots than a contestant
-/// has: better now than after hours of flight.
-void refuse_figure_of_larger_teams(const std::string& metric,
-                                   const std::vector<PlannedContestant>& contestants,
-                                   const std::string& source);
+/// Throws core::InputError naming `source` if the figure is one that a contestant's flights never have: of
+/// larger teams than it is, or of a vehicle alone where it is a team. Better now than after hours of flight.
+void refuse_figure_of_others(const std::string& metric, const std::vector<PlannedContestant>& contestants,
+                             const std::string& source);
 
 /// The same with the hashes of the caves and binaries as they are now. Throws core::InputError if one is
 /// gone.

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/page.h"
 #include "sdk/evaluation/report_assets.h"
@@ -40,7 +41,7 @@ std::string team_report_page(const ordered_json& data) {
 void write_report(const std::filesystem::path& run_dir) {
   const RunRecord run = read_run(run_dir);
   std::ifstream in(run_dir / "metrics.json");
-  ordered_json metrics = in ? ordered_json::parse(in, nullptr, false) : ordered_json();
+  ordered_json metrics = in ? core::json_of<nlohmann::ordered_json>(in) : ordered_json();
   if (!metrics.is_object()) metrics = evaluate_run(run_dir, {});
   write_whole_file(run_dir / "report.html", report_page(report_data(run, metrics)));
 }

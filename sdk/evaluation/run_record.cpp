@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "sdk/evaluation/lines.h"
 
@@ -109,7 +110,7 @@ json read_json(const fs::path& file, std::vector<std::string>& problems) {
     return nullptr;
   }
   std::ifstream in(file);
-  json value = json::parse(in, nullptr, false);
+  json value = core::json_of(in);
   if (!value.is_discarded()) return value;
   problems.push_back(file.filename().string() + ": is not valid JSON; left out");
   return nullptr;
@@ -121,7 +122,7 @@ std::vector<json> read_events(const fs::path& file, const char* time, const char
   BadLines bad(file);
   const std::vector<std::string> lines = read_lines(file, problems);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    json event = json::parse(lines[i], nullptr, false);
+    json event = core::json_of(lines[i]);
     const bool valid = event.is_object() && event_number(event, time) && !event_text(event, kind).empty();
     if (!valid)
       bad.add(i + 1,

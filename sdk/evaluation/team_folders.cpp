@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/run_record.h"
 
 namespace karst::evaluation {
@@ -28,7 +29,7 @@ std::optional<TeamSize> size_in_log(const fs::path& log) {
   std::ifstream in(log);
   std::string line;
   std::getline(in, line);
-  const json first = json::parse(line, nullptr, false);
+  const json first = core::json_of(line);
   if (!first.is_object() || event_text(first, "kind") != "team") return std::nullopt;
   return told_size(event_number(first, "robots"), log);
 }

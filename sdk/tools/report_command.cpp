@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/flight_figures.h"
@@ -67,7 +68,7 @@ evaluation::Truth truth_of(const std::string& cave_file, const std::string& star
 void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   std::ifstream in(run_dir / "metrics.json");
   if (!in || !fs::is_regular_file(run_dir / "metrics.json")) return;
-  const auto before = nlohmann::ordered_json::parse(in, nullptr, false);
+  const auto before = core::json_of<nlohmann::ordered_json>(in);
   if (!before.is_object()) return;
   std::string kept;
   for (const char* key : evaluation::kCaveFigures) {
@@ -126,7 +127,7 @@ void report_team(const fs::path& run, const std::string& cave, const std::string
     std::printf("%s\n", (robot / written).c_str());
   }
   std::ifstream in(run / "metrics.json");
-  auto metrics = in ? nlohmann::ordered_json::parse(in, nullptr, false) : nlohmann::ordered_json();
+  auto metrics = in ? core::json_of<nlohmann::ordered_json>(in) : nlohmann::ordered_json();
   if (!metrics.is_object()) {
     std::fprintf(stderr, "karst: %s: not there or no JSON object: outcomes of the team are not known\n",
                  (run / "metrics.json").c_str());

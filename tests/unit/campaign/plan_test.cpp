@@ -66,13 +66,14 @@ TEST(Plan, ContestantsThatMayNotExploreAsLongAreRefused) {
 TEST(Plan, AFigureThatATeamOfThatSizeCannotHaveIsRefused) {
   std::vector<PlannedContestant> who = small_plan().contestants;
   const auto refused = [&](const std::string& metric) {
-    return error_of([&] { refuse_figure_of_larger_teams(metric, who, "c.info"); });
+    return error_of([&] { refuse_figure_of_others(metric, who, "c.info"); });
   };
   EXPECT_EQ(refused("coverage_auc"), "");
   EXPECT_TRUE(says(refused("robots_connected"), "only teams of 2 robots and more have it"));
   for (PlannedContestant& c : who) c.mission.put("team.robots", 3);
   EXPECT_EQ(refused("robots_connected") + refused("exploration_time_3_s") + refused("exploration_time_s"),
             "");
+  EXPECT_TRUE(says(refused("min_clearance_m"), "teams have no such figure, their robots have"));
   const std::string e = refused("exploration_time_4_s");
   EXPECT_TRUE(says(e, "c.info: metric exploration_time_4_s: only teams of 4 robots")) << e;
 }

@@ -127,6 +127,19 @@ TEST(Report, OfDamagedFilesNamesThem) {
   EXPECT_NO_THROW(write_report(dir.path()));
 }
 
+// As it was: a crash for want of stack.
+TEST(Report, OfAnEventAHundredThousandLevelsDeepLeavesOutItsDepth) {
+  TemporaryDirectory dir;
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  dir.write("events.jsonl", R"({"t": 1, "kind": "phase", "phase": "explore", "more": )" + deep + "}\n");
+  dir.write("timing.json", deep);
+  dir.write("metrics.json", "{\"a\": " + deep + "}");
+  write_report(dir.path());
+  const std::string page = bytes_of(dir.path() / "report.html");
+  EXPECT_NE(page.find("\"phase\":\"explore\""), std::string::npos);
+  EXPECT_EQ(page.find(std::string(200, '[')), std::string::npos);
+}
+
 TEST(Report, OfEmptyFilesOrDirectoriesInTheirPlaceNamesThem) {
   TemporaryDirectory dir;
   test::write_fake_run(dir.path());

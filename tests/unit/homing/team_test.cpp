@@ -133,6 +133,49 @@ TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1}));
 }
 
+// As it was: who met one that had passed the relay knew of its landing at once, of its links six seconds
+// later, and turned home in between for want of any relay.
+TEST(Teammate, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPieces) {
+  Team team(4);
+  team.states[2].phase = team.states[3].phase = team.states[4].phase = TeamPhase::explore;
+  team.states[2].seconds_left = 60;
+  team.land(1, {40, 0, 0});
+  team.run(20);
+  team.mates[2].publish(LandingClaim{team.now, {80, 0, 0}, {80, 0, 1}, LandingClaim::State::claimed});
+  team.run(5);
+  ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "the last is on its way down";
+  team.linked = [](RobotId a, RobotId b) { return a != 3 && b != 3 && (a + 1 == b || b + 1 == a); };
+  team.states[2].phase = TeamPhase::relay;
+  team.land(2, {80, 0, 0});
+  team.run(60);
+  team.linked = [](RobotId a, RobotId b) { return a != 4 && b != 4 && (a + 1 == b || b + 1 == a); };
+  for (int i = 0; i < 150; ++i) {
+    team.run(0.1);
+    ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << i;
+  }
+  EXPECT_EQ(team.mates[3].landing_of(2)->state, LandingClaim::State::landed) << "it has heard of it";
+}
+
+// As it was: ten records a second, for as long as they went on.
+TEST(Teammate, RelaysThatHearAnotherAndThatDoNotDoNotArgueAboutIt) {
+  Team team(3);
+  bool lost = false;  // by robot 1 alone
+  team.linked = [&](RobotId a, RobotId b) { return !lost || a + b != 4 || a == b; };
+  for (const RobotId r : {1, 2, 3}) team.land(r, {10.0 * r, 0, 0});
+  team.run(20);
+  lost = true;
+  const auto told = [&] {
+    std::uint32_t all = 0;
+    for (const RobotId r : {0, 1, 2}) all += team.mates[r].gossip().held(r).first();
+    return all;
+  };
+  const std::uint32_t before = told();
+  team.run(120);
+  EXPECT_FALSE(team.mates[1].told_dead(3)) << "robot 2 and the base hear it";
+  EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0, 2, 3}));
+  EXPECT_LE(told() - before, 60u + 4u) << "a receipt every two seconds, and once dead and alive";
+}
+
 TEST(Teammate, WithALandedRelayThatTheBaseCannotHearDoesNotCountOnIt) {
   Team team(2);
   team.linked = [](RobotId a, RobotId b) { return a != kBase && b != kBase; };
@@ -168,6 +211,19 @@ TEST(Teammate, OfTwoThatClaimOnePlaceTheLaterIsOverruled) {
   team.mates[1].publish(LandingClaim{team.now, {41, 0, 0}, {41, 0, 1}, LandingClaim::State::claimed});
   team.run(5);
   EXPECT_TRUE(team.mates[1].overruled()) << "its number is lower, but its claim came later";
+  EXPECT_FALSE(team.mates[2].overruled());
+}
+
+// As it was: places were chosen 2 m apart, and given up if they were nearer than 3 m.
+TEST(Teammate, AClaimAsFarFromAnothersAsPlacesAreChosenIsNotOverruled) {
+  Team team(2);
+  team.run(1);
+  const double apart_m = HomingOptions{}.landing.keep_apart_m + 0.02;
+  ASSERT_LT(apart_m, TeamOptions{}.keep_apart_m);
+  team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+  team.mates[2].publish(LandingClaim{
+      team.now + kSecond, {40 + apart_m, 0, 0}, {40 + apart_m, 0, 1}, LandingClaim::State::claimed});
+  team.run(5);
   EXPECT_FALSE(team.mates[2].overruled());
 }
 
