@@ -119,32 +119,34 @@ void Teammate::watch_relays(TimeNs now) {
   }
 }
 
-/// As of when each was last heard of: since then nobody has told otherwise. News come in pieces: who has
-/// heard of a landing may have yet to hear of those between there and the base, so a robot's own word, that
-/// it hears one that counts, is enough.
+/// As of when each was last heard of: since then nobody has told otherwise. News come in pieces, and who was
+/// counted on while it was on its way down is not dropped for that: of whom the landing is known, but nothing
+/// since, counts; and so does one that by its own word hears one that counts, whether or not the rest of the
+/// way to the base is known to be up as of the same time.
 std::array<bool, kMostRobots> Teammate::landed_in_reach() const {
-  std::array<bool, kMostRobots> counts{};
-  counts[kBase] = true;
   const std::vector<TeamState> states = gossip_.states();
-  std::array<bool, kMostRobots>
-      stands{};  // by its own word: where it claimed, until the record of that comes
+  std::array<bool, kMostRobots> stands{}, counts{};
   for (const TeamState& told : states) stands[told.robot] = told.phase == TeamPhase::relay;
-  const auto may = [&](RobotId r) {
-    if (r == self() || r == kBase || !landings_[r] || told_dead(r)) return false;
-    return landings_[r]->state == LandingClaim::State::landed ||
-           (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
-  };
+  const auto may =
+      [&](RobotId r) {  // by its own word it stands where it claimed: the record of that will come
+        if (r == self() || r == kBase || !landings_[r] || told_dead(r)) return false;
+        return landings_[r]->state == LandingClaim::State::landed ||
+               (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
+      };
+  counts[kBase] = true;
   for (RobotId r = 1; r < kMostRobots; ++r) {
-    const auto stamp = graph_.last_heard_of(r);
-    counts[r] = may(r) && stamp && graph_.reaches_base(*stamp, r);
+    if (!may(r)) continue;
+    const std::optional<TimeNs> heard = graph_.last_heard_of(r);
+    counts[r] = !heard || *heard < landings_[r]->stamp || graph_.reaches_base(*heard, r);
   }
   for (bool more = true; more;) {
     more = false;
-    for (const TeamState& s : states)
-      if (may(s.robot) && !counts[s.robot])
-        more |= counts[s.robot] = std::any_of(s.heard.begin(), s.heard.end(), [&](const HeardRobot& h) {
-          return h.robot < kMostRobots && counts[h.robot] && h.quality >= kGoodQuality;
-        });
+    for (const TeamState& told : states)
+      if (may(told.robot) && !counts[told.robot])
+        more |= counts[told.robot] =
+            std::any_of(told.heard.begin(), told.heard.end(), [&](const HeardRobot& h) {
+              return h.robot < kMostRobots && counts[h.robot] && h.quality >= kGoodQuality;
+            });
   }
   return counts;
 }

@@ -149,6 +149,15 @@ TEST(Teammate, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPiece
   team.land(2, {80, 0, 0});
   team.run(60);
   team.linked = [](RobotId a, RobotId b) { return a != 4 && b != 4 && (a + 1 == b || b + 1 == a); };
+  // The record of the landing before all else: what is known of robot 2 else dates from when it flew.
+  Frame first{.sender = 2};
+  const LandingClaim landed{team.now - 60 * kSecond, {80, 0, 0}, {80, 0, 1}, LandingClaim::State::landed};
+  first.records = {{2, team.mates[3].gossip().held(2).first() + 1, *write_record(landed)}};
+  Teammate with_record = team.mates[3];
+  with_record.hear(*write_frame(first), team.now);
+  ASSERT_EQ(with_record.landing_of(2)->state, LandingClaim::State::landed);
+  EXPECT_EQ(with_record.relays().size(), 3u);
+  EXPECT_FALSE(with_record.relays().back().stands_by) << "it stands";
   for (int i = 0; i < 150; ++i) {
     team.run(0.1);
     ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << i;
