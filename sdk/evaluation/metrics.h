@@ -36,20 +36,20 @@ void write_metrics(const std::filesystem::path& run_dir, const nlohmann::ordered
 
 /// Figures of a map that only the cave itself tells: null without it.
 inline constexpr std::array kCaveFigures = {"reachable_volume_m3",
-                                     "coverage",
-                                     "coverage_auc",
-                                     "coverage_at_25",
-                                     "coverage_at_50",
-                                     "coverage_at_75",
-                                     "t50_s",
-                                     "t90_s",
-                                     "t95_s",
-                                     "restricted_t50_s",
-                                     "restricted_t90_s",
-                                     "restricted_t95_s",
-                                     "surface_seen",
-                                     "surface_imaged",
-                                     "map_error_mean_m",
-                                     "map_error_std_m"};
+                                            "coverage",
+                                            "coverage_auc",
+                                            "coverage_at_25",
+                                            "coverage_at_50",
+                                            "coverage_at_75",
+                                            "t50_s",
+                                            "t90_s",
+                                            "t95_s",
+                                            "restricted_t50_s",
+                                            "restricted_t90_s",
+                                            "restricted_t95_s",
+                                            "surface_seen",
+                                            "surface_imaged",
+                                            "map_error_mean_m",
+                                            "map_error_std_m"};
 
 }  // namespace karst::evaluation
