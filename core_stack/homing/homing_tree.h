@@ -72,13 +72,10 @@ class HomingTree {
   double cost_s(const NodeId& id) const;
   /// The next node on that way; nothing for a living communication node or without a way.
   std::optional<NodeId> next(const NodeId& id) const;
-  /// The communication node that the way leads to.
-  std::optional<NodeId> root(const NodeId& id) const;
 
   std::vector<TreeNode> nodes() const;  // sorted by id
   bool alive(const NodeId& id) const;   // a living communication node
   std::size_t node_count() const { return known_; }
-  std::size_t touched() const { return ways_.touched(); }
 
  private:
   struct Ray {

@@ -46,14 +46,6 @@ std::optional<NodeId> HomingTree::next(const NodeId& id) const {
   return entries_[ways_.next(*i)].node.id;
 }
 
-std::optional<NodeId> HomingTree::root(const NodeId& id) const {
-  auto i = find(id);
-  if (!i || ways_.cost(*i) == ShortestWays::unreachable) return std::nullopt;
-  std::uint32_t k = *i;
-  while (ways_.next(k) != ShortestWays::none) k = ways_.next(k);
-  return entries_[k].node.id;
-}
-
 bool HomingTree::alive(const NodeId& id) const {
   const auto i = find(id);
   return i && ways_.is_source(*i);

@@ -10,7 +10,6 @@ void describe(OptionTable& t, LandingOptions& o) {
   t.section("link", o.link);
   t.add("keep_apart", o.keep_apart_m, "m", 0.5, 50, "from places of other vehicles");
   t.add("passage_reach", o.passage_reach_m, "m", 1, 10, "others must get by within that of a landed one");
-  t.add("landing_speed", o.landing_speed_mps, "m/s", 0.05, 2, "of the descent");
 }
 
 }  // namespace karst::core

@@ -110,17 +110,6 @@ Record read_body(Kind kind, PartReader& r) {
 
 }  // namespace
 
-const char* refusal_text(Refusal r) {
-  constexpr std::array<const char*, kRefusals> texts = {"shorter or longer than a frame can be",
-                                                        "not a frame",
-                                                        "of another version",
-                                                        "its checksum is wrong",
-                                                        "its parts do not fill it",
-                                                        "of a kind that there is not",
-                                                        "a number is out of range"};
-  return texts[static_cast<std::size_t>(r)];
-}
-
 std::optional<Bytes> write_record(const Record& record) {
   Bytes out;
   PartWriter w(out);

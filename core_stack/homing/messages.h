@@ -86,7 +86,6 @@ enum class Refusal : std::uint8_t {
   range       // ids, counts, places, times beyond what can be
 };
 constexpr std::size_t kRefusals = 7;
-const char* refusal_text(Refusal r);
 
 /// How a record is written. Nothing if it cannot be: a number that is not finite or out of range, or longer
 /// than most_record_bytes(); split tree facts first.

@@ -1,7 +1,6 @@
 #include "core_stack/homing/relay_graph.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace karst::core {
 
@@ -43,14 +42,11 @@ std::vector<RelayLink> RelayGraph::links(TimeNs now) const {
   return out;
 }
 
-std::vector<RobotId> RelayGraph::connected(TimeNs now, RobotId from,
-                                           const std::vector<RobotId>& without) const {
+std::vector<RobotId> RelayGraph::connected(TimeNs now) const {
   const auto cost = costs(now);
   std::array<bool, kMostRobots> seen{};
-  for (const RobotId r : without) seen[r] = true;
-  if (seen[from]) return {};
-  seen[from] = true;
-  std::vector<RobotId> out{from};
+  seen[kBase] = true;
+  std::vector<RobotId> out{kBase};
   for (std::size_t i = 0; i < out.size(); ++i)
     for (RobotId to = 0; to < kMostRobots; ++to)
       if (!seen[to] && cost[out[i]][to] > 0) seen[to] = true, out.push_back(to);
@@ -61,57 +57,6 @@ std::vector<RobotId> RelayGraph::connected(TimeNs now, RobotId from,
 bool RelayGraph::reaches_base(TimeNs now, RobotId robot) const {
   const std::vector<RobotId> all = connected(now);
   return std::find(all.begin(), all.end(), robot) != all.end();
-}
-
-std::optional<RobotId> RelayGraph::next_hop(TimeNs now, RobotId from) const {
-  const auto cost = costs(now);
-  // Dijkstra's algorithm from the base; with sixteen nodes a heap would be slower.
-  Row to_base;
-  to_base.fill(std::numeric_limits<double>::infinity());
-  to_base[kBase] = 0;
-  std::array<bool, kMostRobots> done{};
-  for (RobotId round = 0; round < kMostRobots; ++round) {
-    RobotId best = kMostRobots;
-    for (RobotId i = 0; i < kMostRobots; ++i)
-      if (!done[i] && (best == kMostRobots || to_base[i] < to_base[best])) best = i;
-    done[best] = true;
-    for (RobotId i = 0; i < kMostRobots; ++i)
-      if (cost[best][i] > 0) to_base[i] = std::min(to_base[i], to_base[best] + cost[best][i]);
-  }
-  if (from == kBase || to_base[from] == std::numeric_limits<double>::infinity()) return std::nullopt;
-  RobotId hop = kMostRobots;
-  for (RobotId i = 0; i < kMostRobots; ++i)
-    if (cost[from][i] > 0 &&
-        (hop == kMostRobots || cost[from][i] + to_base[i] < cost[from][hop] + to_base[hop]))
-      hop = i;
-  return hop;
-}
-
-std::vector<RobotId> RelayGraph::lost_without(TimeNs now, RobotId relay) const {
-  const std::vector<RobotId> with = connected(now), left = connected(now, kBase, {relay});
-  std::vector<RobotId> out;
-  for (const RobotId r : with)
-    if (r != relay && std::find(left.begin(), left.end(), r) == left.end()) out.push_back(r);
-  return out;
-}
-
-std::vector<RobotId> RelayGraph::indispensable(TimeNs now) const {
-  std::vector<RobotId> out;
-  for (const RobotId r : connected(now))
-    if (r != kBase && !lost_without(now, r).empty()) out.push_back(r);
-  return out;
-}
-
-bool RelayGraph::survives_any_loss(TimeNs now, const std::vector<RobotId>& neighbours) const {
-  const auto reached_without = [&](const std::vector<RobotId>& lost) {
-    const std::vector<RobotId> left = connected(now, kBase, lost);
-    return std::any_of(neighbours.begin(), neighbours.end(),
-                       [&left](RobotId r) { return std::find(left.begin(), left.end(), r) != left.end(); });
-  };
-  if (!reached_without({})) return false;
-  for (RobotId r = 1; r < kMostRobots; ++r)
-    if (!reached_without({r})) return false;
-  return true;
 }
 
 }  // namespace karst::core

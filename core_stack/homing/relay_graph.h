@@ -1,10 +1,9 @@
-// Who can talk to whom, as one robot knows it, and what that means for a message to the base: the connected
-// part, the next hop, and what a relay's loss would cut off.
+// Who can talk to whom, as one robot knows it, and so who reaches the base.
 //
 // A link is known by what both ends say they hear of the other (TeamState::heard), each with the time it was
 // said. It stands while both are fresh: a word that is not heard back is no link, for what arrives must be
-// confirmed. Ways are the cheapest in expected transmissions (ETX; De Couto et al., A High-Throughput Path
-// Metric for Multi-Hop Wireless Routing, 2003): a link costs 1 / (quality there * quality back).
+// confirmed. It costs 1 / (quality there * quality back) transmissions (ETX; De Couto et al., A
+// High-Throughput Path Metric for Multi-Hop Wireless Routing, 2003).
 #pragma once
 #include <array>
 #include <optional>
@@ -37,19 +36,9 @@ class RelayGraph {
   std::optional<TimeNs> last_heard_of(RobotId robot) const { return stamps_[robot]; }
 
   std::vector<RelayLink> links(TimeNs now) const;
-  /// Robots that reach `from` over links, itself first, the rest in order; `without` are taken out.
-  std::vector<RobotId> connected(TimeNs now, RobotId from = kBase,
-                                 const std::vector<RobotId>& without = {}) const;
+  /// Robots that reach the base over links, itself first, the rest in order.
+  std::vector<RobotId> connected(TimeNs now) const;
   bool reaches_base(TimeNs now, RobotId robot) const;
-  /// Whom to send to on the cheapest way to the base; nothing if there is none, or for the base.
-  std::optional<RobotId> next_hop(TimeNs now, RobotId from) const;
-  /// Robots that would no longer reach the base without this one, it not counted.
-  std::vector<RobotId> lost_without(TimeNs now, RobotId relay) const;
-  /// All whose loss would cut somebody off: the articulation points on ways to the base, by number.
-  std::vector<RobotId> indispensable(TimeNs now) const;
-  /// Whether one that hears and is heard by these would still reach the base if any one of them, or any one
-  /// farther on, were lost: two ways to the base that share no relay.
-  bool survives_any_loss(TimeNs now, const std::vector<RobotId>& neighbours) const;
 
  private:
   using Row = std::array<double, kMostRobots>;

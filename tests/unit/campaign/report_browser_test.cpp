@@ -13,8 +13,6 @@ namespace fs = std::filesystem;
 using test::fake_campaign;
 using test::TemporaryDirectory;
 
-using CampaignReportInBrowser = test::InBrowser;
-
 /// The page's body up to the data.
 std::string show(const CampaignResults& results, const fs::path& dir, const std::string& hash = "") {
   write_campaign_report(dir / "report.html", results);
@@ -27,7 +25,7 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
-TEST_F(CampaignReportInBrowser, DrawsEverySectionWithoutAnError) {
+TEST(CampaignReportInBrowser, DrawsEverySectionWithoutAnError) {
   TemporaryDirectory dir;
   CampaignResults results = fake_campaign(3, 2, 4);
   test::FakeRunOptions small;
@@ -51,7 +49,7 @@ TEST_F(CampaignReportInBrowser, DrawsEverySectionWithoutAnError) {
   EXPECT_EQ(shown.find("undefined"), std::string::npos);
 }
 
-TEST_F(CampaignReportInBrowser, OfNextToNothingSaysWhatThereIs) {
+TEST(CampaignReportInBrowser, OfNextToNothingSaysWhatThereIs) {
   for (const auto& [contestants, caves, seeds] : {std::tuple{0, 0, 0}, {2, 1, 0}, {1, 1, 1}, {2, 2, 1}}) {
     TemporaryDirectory dir;
     const std::string shown = show(fake_campaign(contestants, caves, seeds), dir.path());
@@ -62,7 +60,7 @@ TEST_F(CampaignReportInBrowser, OfNextToNothingSaysWhatThereIs) {
   }
 }
 
-TEST_F(CampaignReportInBrowser, OfTrialsThatAllFailedShowsThem) {
+TEST(CampaignReportInBrowser, OfTrialsThatAllFailedShowsThem) {
   TemporaryDirectory dir;
   CampaignResults results = fake_campaign(2, 2, 2);
   for (TrialResult& t : results.trials) {
@@ -74,7 +72,7 @@ TEST_F(CampaignReportInBrowser, OfTrialsThatAllFailedShowsThem) {
   EXPECT_EQ(shown.find("NaN"), std::string::npos);
 }
 
-TEST_F(CampaignReportInBrowser, ShowsHostileNamesAsText) {
+TEST(CampaignReportInBrowser, ShowsHostileNamesAsText) {
   TemporaryDirectory dir;
   const std::string hostile = "<img src=x onerror=alert(1)></script><script>throw 1</script>";
   CampaignResults results = fake_campaign(2, 1, 3);

@@ -1,15 +1,12 @@
 #include "tests/unit/evaluation/browser.h"
 
+#include <gtest/gtest.h>
+
 #include <cstdio>
-#include <cstdlib>
 
 #include "tests/unit/evaluation/fake_run.h"
 
 namespace karst::test {
-
-void InBrowser::SetUp() {
-  if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no chromium";
-}
 
 ShownPage show_page(const std::filesystem::path& page, const std::string& hash) {
   TemporaryDirectory profile;
@@ -25,7 +22,8 @@ ShownPage show_page(const std::filesystem::path& page, const std::string& hash) 
   while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) dom.append(buffer, n);
   pclose(pipe);
   const std::string root = dom.substr(0, dom.find("<head>"));
-  EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos) << "chromium showed: " << root.substr(0, 500);
+  EXPECT_NE(root.find("data-ready=\"yes\""), std::string::npos)
+      << "chromium (.ci/packages-test) showed: " << root.substr(0, 500);
   EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
   const std::size_t body = dom.find("<body>");
   return {dom, body == std::string::npos ? "" : dom.substr(body, dom.find("id=\"data\"") - body)};

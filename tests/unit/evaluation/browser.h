@@ -1,16 +1,9 @@
 // A page in a real browser.
 #pragma once
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <string>
 
 namespace karst::test {
-
-/// Tests of pages: skipped where there is no chromium, and only there.
-struct InBrowser : ::testing::Test {
-  void SetUp() override;
-};
 
 /// The page after its scripts ran in headless chromium. Fails if chromium did not show it, or if the page had
 /// an error or did not come to its end. `hash` is what follows # in its address.

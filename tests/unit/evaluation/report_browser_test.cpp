@@ -12,7 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using test::show_page;
 using test::TemporaryDirectory;
-using ReportInBrowser = test::InBrowser;
 
 void write_small_run(const fs::path& run_dir) {
   test::FakeRunOptions small;
@@ -21,7 +20,7 @@ void write_small_run(const fs::path& run_dir) {
   test::write_fake_run(run_dir, small);
 }
 
-TEST_F(ReportInBrowser, ShowsTheFlightWithoutAnError) {
+TEST(ReportInBrowser, ShowsTheFlightWithoutAnError) {
   TemporaryDirectory dir;
   write_small_run(dir.path());
   write_report(dir.path());
@@ -35,14 +34,14 @@ TEST_F(ReportInBrowser, ShowsTheFlightWithoutAnError) {
   EXPECT_EQ(canvases, 7u);  // the view and six plots
 }
 
-TEST_F(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {
+TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {
   TemporaryDirectory dir;
   write_report(dir.path());
   const std::string dom = show_page(dir.path() / "report.html").dom;
   EXPECT_NE(dom.find("This run recorded neither a map nor a trajectory."), std::string::npos);
 }
 
-TEST_F(ReportInBrowser, OfATeamShowsTheNewestStateOfEachObject) {
+TEST(ReportInBrowser, OfATeamShowsTheNewestStateOfEachObject) {
   TemporaryDirectory dir;
   write_small_run(dir.path() / "robot_1");
   dir.write("team.jsonl",
@@ -66,7 +65,7 @@ TEST_F(ReportInBrowser, OfATeamShowsTheNewestStateOfEachObject) {
             std::string::npos);
 }
 
-TEST_F(ReportInBrowser, ShowsATeamWithoutAnErrorEvenIfItsLogIsDamaged) {
+TEST(ReportInBrowser, ShowsATeamWithoutAnErrorEvenIfItsLogIsDamaged) {
   TemporaryDirectory dir;
   write_small_run(dir.path() / "robot_1");
   write_small_run(dir.path() / "robot_2");

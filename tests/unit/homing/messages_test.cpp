@@ -163,7 +163,6 @@ TEST(Messages, HostileFramesAreRefusedByReason) {
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);   // record 0
   Bytes sender = {0x4b, 0x72, kWireVersion, 99, 0, 0, 0, 0, 0};
   EXPECT_EQ(why_of(sealed(sender)), Refusal::range);
-  for (std::size_t r = 0; r < kRefusals; ++r) EXPECT_NE(refusal_text(static_cast<Refusal>(r)), nullptr);
 }
 
 TEST(Messages, HostileRecordsAreRefusedByReason) {

@@ -170,12 +170,12 @@ TEST(Teammate, RelaysThatHearAnotherAndThatDoNotDoNotArgueAboutIt) {
   Team team(3);
   bool lost = false;  // by robot 1 alone
   team.linked = [&](RobotId a, RobotId b) { return !lost || a + b != 4 || a == b; };
-  for (const RobotId r : {1, 2, 3}) team.land(r, {10.0 * r, 0, 0});
+  for (RobotId r = 1; r <= 3; ++r) team.land(r, {10.0 * r, 0, 0});
   team.run(20);
   lost = true;
   const auto told = [&] {
     std::uint32_t all = 0;
-    for (const RobotId r : {0, 1, 2}) all += team.mates[r].gossip().held(r).first();
+    for (RobotId r = 0; r <= 2; ++r) all += team.mates[r].gossip().held(r).first();
     return all;
   };
   const std::uint32_t before = told();
