@@ -11,9 +11,22 @@ constexpr double kLongestWait_s = 0.4;
 constexpr double kHaste = 3;  // times as often while robots in contact do not hold the same, or one is near
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
-/// A state from later than that would stand in the way of all that follow. The team's clocks are set
-/// together.
+/// What is said of a later time would stand in the way of all that follows. The team's clocks are set together.
 constexpr TimeNs kMostAhead = 5 * kSecond;
+
+/// The latest time that a record speaks of; 0 if it speaks of none.
+TimeNs latest_stamp(const Record& record) {
+  if (const auto* facts = std::get_if<TreeFacts>(&record)) {
+    TimeNs latest = 0;
+    for (const RayFact& f : facts->rays) latest = std::max(latest, f.stamp);
+    for (const LifeFact& f : facts->lives) latest = std::max(latest, f.stamp);
+    return latest;
+  }
+  if (const auto* goal = std::get_if<GoalClaim>(&record)) return goal->stamp;
+  if (const auto* landing = std::get_if<LandingClaim>(&record)) return landing->stamp;
+  if (const auto* object = std::get_if<ObjectSeen>(&record)) return object->stamp;
+  return 0;  // a receipt
+}
 
 }  // namespace
 
@@ -102,7 +115,7 @@ void Gossip::take_state(const TeamState& s, TimeNs now) {
 void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
   Refusal why{};
   std::optional<Record> record = read_record(r.bytes, why);
-  if (!record) {
+  if (!record || latest_stamp(*record) > now + kMostAhead) {
     ++counts_.records_refused;
     return;
   }

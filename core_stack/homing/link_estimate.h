@@ -12,7 +12,7 @@ struct LinkEstimateOptions {
   double range_m = 50;  // in free air
   double path_loss_exponent = 2.0;
   double rock_db_per_m = 3.0;  // 0: distance alone decides
-  double spare_db = 6.0;       // a link is counted on only with that much to spare
+  double spare_db = 2.0;       // a link is counted on only with that much to spare
 };
 void describe(OptionTable& t, LinkEstimateOptions& o);
 

@@ -105,6 +105,9 @@ void evaluate(const EvaluateArguments& args) {
   const bool is_run = fs::is_directory(run);
   if (!is_run && !fs::is_regular_file(run))
     throw core::InputError(args.run, "", "no such run directory or trajectory");
+  if (fs::is_regular_file(run / "team.jsonl"))
+    throw core::InputError(args.run, "", "the run directory of a team: evaluate its robots', " +
+                                             (run / "robot_1").string() + " and so on");
   std::vector<std::string> problems;
   evaluation::EvaluateOptions options = args.options;
   options.align = !args.no_align;

@@ -138,6 +138,10 @@ contestant { name relay  policy nearest_frontier  settings { team { strategy rel
 
   EXPECT_EQ(run_karst("report " + run.string()).code, 0);
   EXPECT_EQ(json::parse(bytes_of(run / "metrics.json")), m) << "evaluated again it is the same";
+  const Output whole = run_karst("evaluate " + run.string());
+  EXPECT_EQ(whole.code, 1);
+  EXPECT_TRUE(whole.says("robot_1 and so on")) << whole.text;
+  EXPECT_EQ(run_karst("evaluate " + (run / "robot_1").string()).code, 0);
   EXPECT_GT(std::filesystem::file_size(run / "report.html"), 100000u);
   EXPECT_EQ(run_karst("report " + out.string()).code, 0);
   EXPECT_NE(bytes_of(out / "report.html").find("trials/home/cave/1"), std::string::npos);

@@ -16,7 +16,7 @@ const Heard kChain = [](RobotId a, RobotId b, TimeNs) { return a + 1 == b || b +
 const Heard kAll = [](RobotId, RobotId, TimeNs) { return true; };
 
 /// What robot `by` publishes as its `n`-th.
-Record object(RobotId by, std::uint32_t n) { return ObjectSeen{n * kSecond, n, by, {1.0 * n, 2, 3}, 0.5}; }
+Record object(RobotId by, std::uint32_t n) { return ObjectSeen{n * kMillisecond, n, by, {1.0 * n, 2, 3}, 0.5}; }
 
 void expect_each_once_and_whole(const Network& net, std::uint32_t records) {
   for (std::size_t to = 0; to < net.robots.size(); ++to) {
@@ -153,6 +153,27 @@ TEST(Gossip, HostileFramesLeaveItAsItWas) {
   }
   EXPECT_EQ(robot.counts().records_taken, 1u);
   EXPECT_EQ(robot.counts().frames_heard, 2005u);
+}
+
+TEST(Gossip, RecordsFromTheFutureAreRefusedAndTheGenuineOnesUnderTheirNumbersTaken) {
+  constexpr TimeNs future = 1000 * kSecond;
+  const std::vector<Record> forged = {
+      GoalClaim{.stamp = future},
+      LandingClaim{.stamp = future, .hover = {0, 0, 1}},
+      ObjectSeen{.stamp = future, .object = 1, .kind = 1},
+      TreeFacts{.rays = {{{2, 1}, {2, 2}, true, future}}},
+      TreeFacts{.lives = {{{2, 1}, false, future}}},
+  };
+  Gossip robot(1, {}, 1);
+  const auto hear = [&](std::uint32_t number, const Record& r) {
+    robot.receive(*write_frame({.sender = 2, .records = {{2, number, *write_record(r)}}}), kSecond);
+  };
+  for (std::uint32_t i = 0; i < forged.size(); ++i) hear(i + 1, forged[i]);
+  EXPECT_EQ(robot.counts().records_refused, forged.size());
+  EXPECT_TRUE(robot.take_delivered().empty());
+  for (std::uint32_t i = 0; i < forged.size(); ++i) hear(i + 1, object(2, i + 1));
+  EXPECT_EQ(robot.take_delivered().size(), forged.size());
+  EXPECT_EQ(robot.counts().contradictions, 0u);
 }
 
 TEST(Gossip, AStateThatCannotBeToldDoesNotSilenceTheRobot) {

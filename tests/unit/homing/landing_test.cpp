@@ -157,7 +157,8 @@ TEST(OthersGetBy, AWallBesideThatWasClosedBeforeIsNoMatter) {
 
 TEST(LinkEstimate, UnknownAndRockTakeTheirDecibels) {
   const VoxelMap map = passage(2, 2, 20);
-  const LinkEstimateOptions o;
+  LinkEstimateOptions o;
+  o.spare_db = 6;
   EXPECT_EQ(not_free_m(map, {-9, 0, 1}, {9, 0, 1}), 0);
   EXPECT_NEAR(not_free_m(map, {0, 0, 1}, {0, 5, 1}), 4, 0.03);
   EXPECT_NEAR(expected_margin_db(map, {0, 0, 1}, {5, 0, 1}, o), 20 - 6, 1e-9);

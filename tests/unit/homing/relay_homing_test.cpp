@@ -40,7 +40,7 @@ struct Flown : ::testing::Test {
   const Vec3 base{-28, 0.1, 1}, far{25, 0.1, 1};
   TeamNews news = hearing(base);
 
-  Flown() { roadmap.update(map, changes); }
+  Flown() { roadmap.update(map, changes), options.landing.link.spare_db = 6; }
   RelayHoming homing(const std::string& strategy) const {
     return {1, team_with(strategy), options, base, planning, limits, kRadius};
   }
