@@ -119,6 +119,10 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
   if (row == rows_.end()) {
     std::vector<std::string> keys;
     for (const Row& r : rows_) keys.push_back(r.key);
+    const auto within =
+        std::find_if(keys.begin(), keys.end(), [&](const auto& k) { return k.starts_with(key + "."); });
+    if (within != keys.end())
+      throw InputError(source, key, "a section of keys (" + *within + " and so on), not one that has a value");
     const std::string near = nearest_name(key, keys);
     throw InputError(source, key, "no such key" + (near.empty() ? "" : "; did you mean " + near + "?"));
   }

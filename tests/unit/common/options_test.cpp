@@ -158,6 +158,8 @@ TEST(Options, ASectionWhereAValueBelongsIsAnError) {
   Table x;
   EXPECT_NE(error_of([&] { x.t.read("a.info", parsed("count { deep 1 }\n")); }), "no error");
   EXPECT_NE(error_of([&] { x.t.read("a.info", parsed("camera 7\n")); }), "no error");
+  const std::string e = error_of_setting("camera", "7");
+  EXPECT_TRUE(contains(e, "a.info: camera: a section of keys (camera.")) << e;
 }
 
 TEST(Options, SyntaxErrorsNameTheLine) {
