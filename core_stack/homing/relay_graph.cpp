@@ -43,19 +43,27 @@ std::vector<RelayLink> RelayGraph::links(TimeNs now) const {
 }
 
 std::vector<RobotId> RelayGraph::connected(TimeNs now) const {
+  Robots all;
+  all.fill(true);
+  return connected(now, all);
+}
+
+std::vector<RobotId> RelayGraph::connected(TimeNs now, const Robots& relays) const {
   const auto cost = costs(now);
-  std::array<bool, kMostRobots> seen{};
+  Robots seen{};
   seen[kBase] = true;
   std::vector<RobotId> out{kBase};
-  for (std::size_t i = 0; i < out.size(); ++i)
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i] != kBase && !relays[out[i]]) continue;
     for (RobotId to = 0; to < kMostRobots; ++to)
       if (!seen[to] && cost[out[i]][to] > 0) seen[to] = true, out.push_back(to);
+  }
   std::sort(out.begin() + 1, out.end());
   return out;
 }
 
-bool RelayGraph::reaches_base(TimeNs now, RobotId robot) const {
-  const std::vector<RobotId> all = connected(now);
+bool RelayGraph::reaches_base(TimeNs now, RobotId robot, const Robots& relays) const {
+  const std::vector<RobotId> all = connected(now, relays);
   return std::find(all.begin(), all.end(), robot) != all.end();
 }
 

@@ -36,14 +36,17 @@ class RelayGraph {
   std::optional<TimeNs> last_heard_of(RobotId robot) const { return stamps_[robot]; }
 
   std::vector<RelayLink> links(TimeNs now) const;
+  using Robots = std::array<bool, kMostRobots>;
   /// Robots that reach the base over links, itself first, the rest in order.
   std::vector<RobotId> connected(TimeNs now) const;
-  bool reaches_base(TimeNs now, RobotId robot) const;
+  /// Whether a robot does over others that are among `relays` only; the base need not be.
+  bool reaches_base(TimeNs now, RobotId robot, const Robots& relays) const;
 
  private:
   using Row = std::array<double, kMostRobots>;
   /// Cost of each link in transmissions; 0: none.
   std::array<Row, kMostRobots> costs(TimeNs now) const;
+  std::vector<RobotId> connected(TimeNs now, const Robots& relays) const;
   bool fresh(RobotId robot, TimeNs now) const;
 
   RelayOptions options_;

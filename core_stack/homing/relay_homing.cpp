@@ -20,6 +20,7 @@ constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing 
 constexpr double kConfirm_s = 6.0;
 /// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
 constexpr double kClaimed_s = 10.0;
+constexpr double kMostFall_m = 5.0;     // of a node that is dropped
 constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
@@ -213,6 +214,22 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
   if (strategy_ == "relay_chain") return nearest_place(map, roadmap, from, sooner_than_s);
   const auto spot = strategy_ == "relay_tree" ? up_the_tree(map, roadmap, from) : std::nullopt;
   return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
+}
+
+std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const {
+  // A node may come to lie on a slope or among stones.
+  const Ground below = ground_below(map, here, 0, {.margin_m = 0, .most_drop_m = kMostFall_m});
+  if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
+    return std::nullopt;
+  const Vec3 antenna = below.ground + Vec3(0, 0, radius_m_);
+  const LinkEstimateOptions& link = options_.landing.link;
+  const auto in_reach = [&](const Vec3& place, double least_db) {
+    return std::any_of(relays_.begin(), relays_.end(), [&](const Relay& r) {
+      return !r.stands_by && expected_margin_db(map, place, r.antenna, link) >= least_db;
+    });
+  };
+  if (!in_reach(antenna, -link.spare_db / 2) || in_reach(antenna + ahead - here, 0)) return std::nullopt;
+  return below.ground;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

@@ -9,6 +9,8 @@ namespace karst::core {
 
 void describe(OptionTable& t, TeamOptions& o) {
   t.add("robots", o.robots, 1, kMostRobots - 1, "1: one vehicle alone, and no team");
+  t.add("nodes", o.nodes, 0, kMostRobots - 2,
+        "communication nodes that each robot carries, and drops where it comes out of reach");
   t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts; whole seconds");
   t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
         "where a robot lands when its battery runs low (docs/homing.md)");
@@ -48,6 +50,13 @@ void check(const TeamOptions& team, const HomingOptions& homing, const std::stri
       throw InputError(
           source, key,
           "there is no robot " + std::to_string(robot) + ": team.robots is " + std::to_string(team.robots));
+  if (team.nodes > 0 && team.robots == 1)
+    throw InputError(source, "team.nodes", "a vehicle alone is no team: team.robots is 1");
+  if (team.robots * (1 + team.nodes) >= kMostRobots)
+    throw InputError(source, "team.nodes",
+                     std::to_string(team.robots) + " robots with " + std::to_string(team.nodes) +
+                         " nodes each are more than the " + std::to_string(kMostRobots - 1) +
+                         " radios that messages can name beside the base's");
   if (homing.tree.longest_edge_m <= homing.tree.least_edge_m)
     throw InputError(source, "homing.tree.longest_edge",
                      "is no longer than homing.tree.least_edge: no two nodes would be joined");

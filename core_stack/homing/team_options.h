@@ -10,6 +10,7 @@ namespace karst::core {
 
 struct TeamOptions {
   std::int64_t robots = 1;
+  std::int64_t nodes = 0;  // that each carries
   double stagger_s = 60;
   std::string strategy = "relay_chain";
   double keep_apart_m = 3.0;

@@ -119,25 +119,34 @@ void Teammate::watch_relays(TimeNs now) {
   }
 }
 
+RelayGraph::Robots Teammate::landed() const {
+  RelayGraph::Robots out{};
+  for (RobotId r = 1; r < kMostRobots; ++r)
+    out[r] = landings_[r] && landings_[r]->state == LandingClaim::State::landed;
+  return out;
+}
+
+/// Who reaches the base over others that have landed: who is in the air passes on what it hears, and flies away.
 /// As of when each was last heard of: since then nobody has told otherwise. News come in pieces, and who was
 /// counted on while it was on its way down is not dropped for that: of whom the landing is known, but nothing
 /// since, counts; and so does one that by its own word hears one that counts, whether or not the rest of the
 /// way to the base is known to be up as of the same time.
-std::array<bool, kMostRobots> Teammate::landed_in_reach() const {
+RelayGraph::Robots Teammate::landed_in_reach() const {
   const std::vector<TeamState> states = gossip_.states();
-  std::array<bool, kMostRobots> stands{}, counts{};
+  const RelayGraph::Robots landed = this->landed();
+  RelayGraph::Robots stands{}, counts{};
   for (const TeamState& told : states) stands[told.robot] = told.phase == TeamPhase::relay;
   const auto may =
       [&](RobotId r) {  // by its own word it stands where it claimed: the record of that will come
         if (r == self() || r == kBase || !landings_[r] || told_dead(r)) return false;
-        return landings_[r]->state == LandingClaim::State::landed ||
+        return landed[r] ||
                (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
       };
   counts[kBase] = true;
   for (RobotId r = 1; r < kMostRobots; ++r) {
     if (!may(r)) continue;
     const std::optional<TimeNs> heard = graph_.last_heard_of(r);
-    counts[r] = !heard || *heard < landings_[r]->stamp || graph_.reaches_base(*heard, r);
+    counts[r] = !heard || *heard < landings_[r]->stamp || graph_.reaches_base(*heard, r, landed);
   }
   for (bool more = true; more;) {
     more = false;
@@ -153,7 +162,7 @@ std::array<bool, kMostRobots> Teammate::landed_in_reach() const {
 
 std::vector<Relay> Teammate::relays() const {
   std::vector<Relay> out{base_};
-  const std::array<bool, kMostRobots> counts = landed_in_reach();
+  const RelayGraph::Robots counts = landed_in_reach();
   for (RobotId r = 1; r < kMostRobots; ++r)
     if (counts[r]) out.push_back({r, landings_[r]->ground + Vec3(0, 0, kAntenna_m), landings_[r]->hover});
   for (const TeamState& s : gossip_.states()) {
@@ -168,10 +177,10 @@ std::vector<Relay> Teammate::relays() const {
 }
 
 bool Teammate::hears_base(TimeNs now) const {
+  const RelayGraph::Robots landed = this->landed();
   for (const HeardRobot& h : gossip_.contacts(now))
-    if (h.quality >= kGoodQuality && graph_.reaches_base(now, h.robot) &&
-        (h.robot == kBase ||
-         (landings_[h.robot] && landings_[h.robot]->state == LandingClaim::State::landed)))
+    if (h.quality >= kGoodQuality && (h.robot == kBase || landed[h.robot]) &&
+        graph_.reaches_base(now, h.robot, landed))
       return true;
   return false;
 }
@@ -189,7 +198,8 @@ std::vector<Neighbour> Teammate::neighbours(TimeNs now) const {
 std::vector<HeardMate> Teammate::mates(TimeNs now) const {
   std::vector<HeardMate> out;
   for (const TeamState& s : gossip_.states()) {
-    if (s.robot == kBase || s.robot == self() || s.phase == TeamPhase::standby) continue;
+    if (s.robot == kBase || s.robot == self() || s.robot > team_.robots || s.phase == TeamPhase::standby)
+      continue;
     const bool explores =
         s.phase == TeamPhase::explore || s.phase == TeamPhase::aside || s.phase == TeamPhase::boxed;
     out.push_back({s.robot, s.stamp, s.position, s.velocity_mps, std::nullopt, explores,

@@ -52,7 +52,7 @@ class Teammate {
   bool hears_base(TimeNs now) const;
   /// Vehicles in the air that were heard of in the last seconds, where they should be by now.
   std::vector<Neighbour> neighbours(TimeNs now) const;
-  /// All that have started and were ever heard of, by robot.
+  /// All robots that have started and were ever heard of, by number.
   std::vector<HeardMate> mates(TimeNs now) const;
   /// Others' goals that are still claimed.
   std::vector<Vec3> claimed_goals(TimeNs now) const;
@@ -72,7 +72,8 @@ class Teammate {
   RobotId self() const { return gossip_.self(); }
 
  private:
-  std::array<bool, kMostRobots> landed_in_reach() const;
+  RelayGraph::Robots landed() const;
+  RelayGraph::Robots landed_in_reach() const;
   bool claims_goal(RobotId robot, TimeNs now) const;
   void take(const Delivery& delivery);
   void note_facts(const TreeFacts& facts);

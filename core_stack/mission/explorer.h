@@ -114,6 +114,10 @@ class Explorer {
   }
   /// Takes in what was heard; returns what to tell.
   TreeFacts share(const Vec3& here, const TeamNews& news);
+  /// See RelayHoming::reach_ends.
+  std::optional<Vec3> reach_ends(const Vec3& here, const Vec3& ahead) const {
+    return homing_->reach_ends(map_, here, ahead);
+  }
   /// Where to land as a relay, if that takes less time than the way to the start.
   std::optional<LandingSpot> landing_spot(const Vec3& from, double way_come_m);
   /// It landed below `hover`: what to tell.

@@ -61,7 +61,9 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
   if (description_.lidar && options.localization.source == "lidar")
     loam_.emplace(options.localization.loam, description_.T_world_start);
   battery_.seconds_left = options.mission.max_flight_time_s;
-  if (team_) explorer_.join(team_->homing(), team_->options().claim_radius_m);
+  if (!team_) return;
+  explorer_.join(team_->homing(), team_->options().claim_radius_m);
+  nodes_left_ = team_->options().nodes;
 }
 
 MissionResult MissionControl::run(const Watch& watch) {

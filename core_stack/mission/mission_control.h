@@ -151,6 +151,7 @@ class MissionControl final : public VehicleSink {
 
   // In a team.
   void share();
+  void drop_node(const NodeDrop& drop);
   void report_state();
   void choose_landing();
   void confirm_landing();
@@ -221,6 +222,8 @@ class MissionControl final : public VehicleSink {
 
   // In a team.
   std::optional<LandingSpot> landing_;   // where it will be a relay; without, it lands at its start
+  std::int64_t nodes_left_ = 0;  // that it carries
+  std::optional<TimeNs> dropped_at_;
   std::optional<TimeNs> unheard_since_;  // it hovers there and hears nobody who reaches the base
   Encounter encounter_;                  // with another vehicle
   Refuge refuge_;                        // where it last made room

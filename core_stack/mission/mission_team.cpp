@@ -11,6 +11,8 @@ namespace {
 constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
+constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
+constexpr TimeNs kFall = 600 * kMillisecond;  // of a node, and of deciding: it keeps the vehicle's speed
 constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
 constexpr double kAtRefuge_m = 0.5;
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
@@ -51,15 +53,32 @@ void MissionControl::report_state() {
 /// Takes in what was heard, and tells what was found since.
 void MissionControl::share() {
   auto facts = std::make_shared<TreeFacts>();
+  auto end = std::make_shared<std::optional<Vec3>>();
+  const Vec3 here = flight_.reference().position;
+  const Vec3 drop_at = flight_.expected(now() + kFall).position,
+             ahead = flight_.expected(now() + kFall + kSecond).position;  // when this is asked the next time
+  const bool may_drop =
+      nodes_left_ > 0 && phase_ == Phase::explore && (!dropped_at_ || now() - *dropped_at_ > kBetweenDrops);
   executive_.job(
       "team", Lane::map, kSharingBudget,
-      [this, facts, here = flight_.reference().position, news = team_->take_news(now(), seconds_left())] {
+      [this, facts, end, here, drop_at, ahead, may_drop, news = team_->take_news(now(), seconds_left())] {
         *facts = explorer_.share(here, news);
+        if (may_drop) *end = explorer_.reach_ends(drop_at, ahead);
       },
-      [this, facts] {
+      [this, facts, end, drop_at] {
         if (!facts->empty()) team_->publish(*facts);
+        if (*end) drop_node({drop_at, **end});
       });
   if (landing_ && phase_ == Phase::home && team_->overruled()) give_up_landing("another claimed it before");
+}
+
+/// A relay is heard yet, and by the map none will be in reach when this is asked the next time.
+void MissionControl::drop_node(const NodeDrop& drop) {
+  if (phase_ != Phase::explore || !team_->hears_base(now())) return;
+  --nodes_left_;
+  dropped_at_ = now();
+  team_->drop_node(drop);
+  recorder_.event(now(), "drop", {{"ground", list(drop.ground)}, {"left", nodes_left_}});
 }
 
 void MissionControl::claim_goal(const std::optional<Goal>& goal) {

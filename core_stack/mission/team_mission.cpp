@@ -50,6 +50,7 @@ struct TeamMission::Robot {
   std::optional<TimeNs> ended_at;
   Phase phase = Phase::standby;  // as last noted
   TimeNs explored_for = 0;
+  RobotId nodes_dropped = 0;
   std::string homing_reason;
   bool silent = false;
 };
@@ -60,6 +61,7 @@ TeamMission::TeamMission(const CoreOptions& options, TeamVehicles& vehicles,
     : options_(for_team(options)),
       vehicles_(vehicles),
       seats_(seats),
+      seed_(seed),
       threads_(std::max(1, threads)),
       base_(kBase, options_.team, options_.homing, vehicles.base(), seed),
       base_tree_(options_.homing.tree, cruise_speed_mps(options_.motion)),
@@ -84,6 +86,7 @@ TeamResult TeamMission::run(const TeamWatch& watch) {
     for (const auto& robot : robots_)
       if (now == robot->starts_at && go_on) start(*robot);
     fly_all_to(now + kStep);
+    place_nodes(now + kStep);
     vehicles_.meet(now + kStep);
     talk(now + kStep);
     note_phases(now + kStep);
@@ -134,11 +137,32 @@ void TeamMission::fly(Robot& robot, TimeNs time) {
   robot.ended_at = time;
 }
 
+/// A node that was dropped is a teammate that stands where it lies, and as any that landed says so.
+void TeamMission::place_nodes(TimeNs now) {
+  for (const auto& robot : robots_) {
+    const std::optional<NodeDrop> drop = robot->teamwork.take_drop();
+    if (!drop) continue;
+    const auto id = static_cast<RobotId>(static_cast<std::int64_t>(robots_.size()) +
+                                         (robot->id - 1) * options_.team.nodes + ++robot->nodes_dropped);
+    vehicles_.drop_node(robot->id - 1u, id);
+    auto node = std::make_unique<Teammate>(id, options_.team, options_.homing, vehicles_.base(), seed_);
+    TeamState lies;
+    lies.position = drop->ground;
+    lies.phase = TeamPhase::relay;
+    node->set_state(lies);
+    node->publish(TreeFacts{.nodes = {{{id, 1}, NodeKind::communication, to_centimetres(drop->from)}}});
+    node->publish(LandingClaim{now, drop->ground, drop->from, LandingClaim::State::landed});
+    nodes_.push_back(std::move(node));
+    log_.event(now, "drop", {{"robot", robot->id}, {"node", id}, {"ground", list(drop->ground)}});
+  }
+}
+
 /// What all say is on the air before anybody listens.
 void TeamMission::talk(TimeNs now) {
   const auto each = [this](auto&& f) {
     f(base_, std::size_t{0});
     for (const auto& robot : robots_) f(robot->mate, std::size_t{robot->id});
+    for (const auto& node : nodes_) f(*node, std::size_t{node->self()});
   };
   each([&](Teammate& mate, std::size_t radio) {
     for (const Bytes& frame : mate.speak(now)) vehicles_.send(radio, frame, now);
@@ -243,8 +267,11 @@ TeamResult TeamMission::result(TimeNs now) {
   log_.traffic(now, kBase, vehicles_.traffic(kBase), base_.gossip().counts());
   for (const auto& robot : robots_)
     log_.traffic(now, robot->id, vehicles_.traffic(robot->id), robot->mate.gossip().counts());
+  for (const auto& node : nodes_)
+    log_.traffic(now, node->self(), vehicles_.traffic(node->self()), node->gossip().counts());
   for (std::size_t radio = 0; radio <= robots_.size(); ++radio)
     out.bytes_on_air += vehicles_.traffic(radio).bytes_sent;
+  for (const auto& node : nodes_) out.bytes_on_air += vehicles_.traffic(node->self()).bytes_sent;
   log_.flush();
   vehicles_.finish();
   return out;

@@ -58,6 +58,7 @@ class TeamMission {
   void start(Robot& robot);
   void fly_all_to(TimeNs time);
   void fly(Robot& robot, TimeNs time);
+  void place_nodes(TimeNs now);
   void log_base(TimeNs now);
   void note_phases(TimeNs now);
   void strike(TimeNs now);
@@ -69,9 +70,11 @@ class TeamMission {
   CoreOptions options_;
   TeamVehicles& vehicles_;
   std::vector<TeamSeat> seats_;
+  std::uint64_t seed_;
   int threads_;
   Teammate base_;
   std::vector<std::unique_ptr<Robot>> robots_;
+  std::vector<std::unique_ptr<Teammate>> nodes_;  // dropped, in that order
   HomingTree base_tree_;  // as the base was told, for the log
   TeamLog log_;
   ObjectLog object_log_;

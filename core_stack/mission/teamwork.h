@@ -2,10 +2,17 @@
 // clock is ahead of them by when the vehicle was switched on.
 #pragma once
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "core_stack/homing/relay_homing.h"
 
 namespace karst::core {
+
+/// A communication node leaves the vehicle at `from` and should come to lie on `ground`.
+struct NodeDrop {
+  Vec3 from = Vec3::Zero(), ground = Vec3::Zero();
+};
 
 class Teamwork {
  public:
@@ -44,6 +51,9 @@ class Teamwork {
   std::uint32_t known_at_base() const { return mate_->gossip().known_at_base(); }
   std::vector<TeamObject> objects() const { return merged(mate_->objects()); }
   bool hears_base(TimeNs now) const { return mate_->hears_base(team_time(now)); }
+  void drop_node(const NodeDrop& drop) { drop_ = drop; }
+  /// What was dropped since the last call.
+  std::optional<NodeDrop> take_drop() { return std::exchange(drop_, std::nullopt); }
   bool overruled() const { return mate_->overruled(); }
   /// The others as last heard of, by this vehicle's own clock.
   std::vector<HeardMate> mates(TimeNs now) const {
@@ -58,6 +68,7 @@ class Teamwork {
   RelayHoming* homing_;
   TeamOptions options_;
   TimeNs ahead_;
+  std::optional<NodeDrop> drop_;
 };
 
 }  // namespace karst::core

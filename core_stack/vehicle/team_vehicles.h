@@ -35,7 +35,10 @@ class TeamVehicles {
   /// A robot is lost where it is, its radio with it.
   virtual void wreck(std::size_t robot, const std::string& reason) = 0;
 
-  /// Radios are numbered: 0 is the base, i + 1 robot i.
+  /// A robot drops a communication node: from now on there is a radio of that number where it comes to lie.
+  virtual void drop_node(std::size_t robot, std::size_t radio) = 0;
+
+  /// Radios are numbered: 0 is the base, i + 1 robot i, dropped nodes as drop_node() was told.
   virtual void send(std::size_t radio, std::span<const std::uint8_t> bytes, TimeNs now) = 0;
   virtual std::vector<std::vector<std::uint8_t>> receive(std::size_t radio, TimeNs until) = 0;
   virtual RadioTraffic traffic(std::size_t radio) const = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/preflight.h"
@@ -83,6 +84,19 @@ bool touched(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, dou
   return (from + t * way).norm() < distance_m;
 }
 
+std::optional<Vec3> fallen(const cave::RayScene& scene, const Vec3& from, const Vec3& velocity_mps) {
+  constexpr double kStep_s = 0.02, kLongest_s = 20.0, kAbove_m = 0.1, kMast_m = 0.2;
+  Vec3 at = from, velocity = velocity_mps;
+  for (double t = 0; t < kLongest_s; t += kStep_s) {
+    velocity.z() -= kGravity_mps2 * kStep_s;
+    const Vec3 step = velocity * kStep_s;
+    const double length_m = step.norm(), free_m = scene.ray_cast(at, step / length_m, length_m + kAbove_m);
+    if (free_m < length_m + kAbove_m) return Vec3(at + step / length_m * (free_m - kAbove_m) + Vec3(0, 0, kMast_m));
+    at += step;
+  }
+  return std::nullopt;
+}
+
 SimulatedTeam::SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio,
                              const core::TeamSetup& setup)
     : radius_m_(options.body.radius_m),
@@ -146,6 +160,15 @@ void SimulatedTeam::count_contacts(TimeNs now) {
     }
 }
 
+/// One that falls for ever, through a hole in the mesh, is never heard.
+void SimulatedTeam::drop_node(std::size_t robot, std::size_t radio) {
+  const SimulatedVehicle& from = *robots_.at(robot);
+  const std::optional<Vec3> place = fallen(cave_.scene, from.position(), from.velocity_mps());
+  radio_.place(static_cast<int>(radio), place.value_or(from.position()));
+  if (!place) return silence(radio);
+  nodes_.push_back({static_cast<int>(radio), *place});
+}
+
 /// Positions, and the pairs that could hear each other but for chance.
 void SimulatedTeam::log(TimeNs now) {
   if (!truth_.is_open()) return;
@@ -159,14 +182,23 @@ void SimulatedTeam::log(TimeNs now) {
   place(base(), "");
   for (const Vec3& p : last_) place(p, ",");
   truth_ << "],\"links\":[";
+  std::vector<int> radios(robots_.size() + 1);
+  std::iota(radios.begin(), radios.end(), 0);
+  for (const Node& n : nodes_) radios.push_back(n.radio);
   const char* before = "";
-  for (int a = 0; a <= static_cast<int>(robots_.size()); ++a)
-    for (int b = a + 1; b <= static_cast<int>(robots_.size()); ++b)
-      if (radio_.margin_db(cave_.scene, a, b) >= 0) {
-        truth_ << before << '[' << a << ',' << b << ']';
+  for (std::size_t a = 0; a < radios.size(); ++a)
+    for (std::size_t b = a + 1; b < radios.size(); ++b)
+      if (radio_.margin_db(cave_.scene, radios[a], radios[b]) >= 0) {
+        truth_ << before << '[' << radios[a] << ',' << radios[b] << ']';
         before = ",";
       }
-  truth_ << "]}\n";
+  truth_ << ']';
+  for (const Node& n : nodes_) {
+    truth_ << (&n == &nodes_.front() ? ",\"nodes\":[[" : ",[") << n.radio;
+    place(n.position, ",");
+    truth_ << ']';
+  }
+  truth_ << (nodes_.empty() ? "}\n" : "]}\n");
   truth_.flush();
 }
 

@@ -19,6 +19,11 @@ std::vector<cave::StartPose> start_places(const cave::Cave& cave, std::size_t n,
 bool touched(const core::Vec3& a0, const core::Vec3& a1, const core::Vec3& b0, const core::Vec3& b1,
              double distance_m);
 
+/// Where the antenna of a node that leaves `from` with `velocity_mps` comes to be: 0.3 m above the rock that it falls
+/// onto. Nothing if it meets none within 20 s.
+std::optional<core::Vec3> fallen(const cave::RayScene& scene, const core::Vec3& from,
+                                 const core::Vec3& velocity_mps);
+
 class SimulatedTeam final : public core::TeamVehicles {
  public:
   /// Throws InputError on a bad cave or start, or one without room for all.
@@ -30,6 +35,7 @@ class SimulatedTeam final : public core::TeamVehicles {
   void meet(core::TimeNs now) override;
   void silence(std::size_t radio) override { radio_.set_on(static_cast<int>(radio), false); }
   void wreck(std::size_t robot, const std::string& reason) override;
+  void drop_node(std::size_t robot, std::size_t radio) override;
   void send(std::size_t radio, std::span<const std::uint8_t> bytes, core::TimeNs now) override {
     radio_.send(cave_.scene, static_cast<int>(radio), bytes, now);
   }
@@ -38,6 +44,11 @@ class SimulatedTeam final : public core::TeamVehicles {
   void finish() override;
 
  private:
+  struct Node {  // that was dropped
+    int radio;
+    core::Vec3 position;
+  };
+
   void count_contacts(core::TimeNs now);
   void log(core::TimeNs now);
 
@@ -47,6 +58,7 @@ class SimulatedTeam final : public core::TeamVehicles {
   std::vector<std::unique_ptr<SimulatedVehicle>> robots_;
   std::vector<core::Vec3> last_;  // positions at the last meeting
   Radio radio_;
+  std::vector<Node> nodes_;
   std::ofstream truth_;  // team_truth.jsonl: contacts, and who could hear whom
   std::string truth_file_;
 };

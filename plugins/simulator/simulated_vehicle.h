@@ -33,6 +33,7 @@ class SimulatedVehicle final : public core::Vehicle {
 
   // Among other vehicles; to be called between two steps of the executive.
   const core::Vec3& position() const { return quadrotor_.state().T_world_body.position; }
+  const core::Vec3& velocity_mps() const { return quadrotor_.state().velocity_mps; }
   bool airborne() const { return quadrotor_.footing() != Footing::standing && !lost_; }
   /// Where the others are from now on, as its sensors see them. Touching them is not looked for.
   void see(std::vector<cave::Sphere> others);

@@ -25,6 +25,12 @@ struct Link {
   double expected_db, real_db;
 };
 
+/// Where a vehicle that comes down there by its own map really stands: on the rock, not on the map's cells.
+core::Vec3 standing(const cave::Cave& cave, const core::Vec3& place) {
+  constexpr double kDown_m = 2.0;
+  return place + core::Vec3(0, 0, kRadius_m - cave.scene.ray_cast(place, {0, 0, -1}, kDown_m));
+}
+
 /// Where it could have landed, a vehicle's radius above the ground, at least 2 m apart.
 std::vector<core::Vec3> landing_places(const core::VoxelMap& map, const std::filesystem::path& run) {
   std::vector<std::string> problems;
@@ -50,7 +56,8 @@ void add_links(const cave::Cave& cave, const std::filesystem::path& run, std::ve
     for (std::size_t j = 0; j < i; ++j)
       if ((places[i] - places[j]).norm() < radio.range_m)
         links.push_back({core::expected_margin_db(map, places[i], places[j], estimate),
-                         sim::link_margin_db(radio, cave.scene, places[i], places[j])});
+                         sim::link_margin_db(radio, cave.scene, standing(cave, places[i]),
+                                              standing(cave, places[j]))});
   std::printf("%s: %zu places\n", run.c_str(), places.size());
 }
 

@@ -102,6 +102,35 @@ TEST(Team, LandsConnectedAndTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(report.code, 0) << report.text;
 }
 
+TEST(Team, DropsNodesWhereTheReachEndsAndLandsByThem) {
+  const auto folder = fresh_folder("team_nodes");
+  const Flown f = fly(passage(folder), folder / "run", team_of(2, "relay_chain", "--set team.nodes=2"));
+  expect_all_well(f, 2);
+  const auto distance_m = [](const json& a, const json& b) {
+    return std::hypot(a[0].get<double>() - b[0].get<double>(), a[1].get<double>() - b[1].get<double>(),
+                      a[2].get<double>() - b[2].get<double>());
+  };
+  const json connected = f.last("base")["connected"];
+  const auto truth = std::find_if(f.truth.rbegin(), f.truth.rend(), [](const json& e) { return e["kind"] == "radio"; });
+  json relays = json::array({f.log.front()["base"]});
+  std::size_t dropped = 0;
+  for (const json& e : f.log) {
+    if (e["kind"] == "end") relays.push_back(e["ground"]);
+    if (e["kind"] != "drop") continue;
+    const json& ground = e["ground"];
+    double nearest_m = 1e9;
+    for (const json& r : relays) nearest_m = std::min(nearest_m, distance_m(ground, r));
+    EXPECT_LT(nearest_m, 15) << e;
+    EXPECT_GT(nearest_m, 10) << e << ": they count on 13 m";
+    EXPECT_NE(std::find(connected.begin(), connected.end(), e["node"]), connected.end()) << connected;
+    const json node = (*truth)["nodes"].at(dropped++);
+    EXPECT_EQ(node[0], e["node"]);
+    EXPECT_LT(distance_m(node[1], ground), 1) << "where it lies, and where the robot believes it does";
+    relays.push_back(ground);
+  }
+  EXPECT_GE(dropped, 2u);
+}
+
 TEST(Team, IsComparedByACampaignUnderTwoStrategies) {
   const auto folder = fresh_folder("team_campaign");
   passage(folder);

@@ -1,5 +1,8 @@
 // The plots of a team, and what the base knew at the chosen moment.
 
+/** Robots that reach the base; dropped nodes have higher numbers. */
+function robotsOf(radios) { return radios.filter((r) => r > 0 && r <= data.robots.length); }
+
 function heldOf(base, robot) { const row = base.held.find((h) => h[0] === robot); return row ? row[1] : 0; }
 
 function distance(a, b) { return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
@@ -24,7 +27,7 @@ function addTeamPlots() {
   addPlot({ title: "Reach from the base over landed relays, m (straight)", unit: "m",
             sets: data.base.position && data.base.reach_m ? [{ label: "reach", colour: colours.home, points: over(reachOf) }] : [] });
   addPlot({ title: "Robots that reach the base, as it knows", unit: "robots", max: data.robots.length,
-            sets: [{ label: "connected", colour: colours.plan, points: over((base) => base.connected.filter((r) => r > 0).length) }] });
+            sets: [{ label: "connected", colour: colours.plan, points: over((base) => robotsOf(base.connected).length) }] });
 }
 
 function startTeamPanel() {
@@ -36,10 +39,11 @@ function startTeamPanel() {
       make("td", { className: "number" }, base ? String(heldOf(base, i + 1)) : "–")));
     element("moment").replaceChildren(make("h3", {}, "Now"), make("table", {}, head, ...list),
       make("h3", {}, "Team"), rows([["explored", withUnit(curveAt(data.volume, t), "m³", 4)],
-        ...(objectsTold("object") ? [["finds, robot by robot", String(objectsAt("object", t).size)], ["known at the base", String(objectsAt("object_known", t).size)]] : [])]),
+        ...(happened("object") ? [["finds, robot by robot", String(objectsAt("object", t).size)], ["known at the base", String(objectsAt("object_known", t).size)]] : [])]),
       make("h3", {}, "The base knows"),
-      base ? rows([["reach it", base.connected.filter((r) => r > 0).join(", ") || "none"],
-                   ["stand as relays", base.relays.map((r) => r[0]).join(", ") || "none"],
+      base ? rows([["reach it", robotsOf(base.connected).join(", ") || "none"],
+                   ["stand as relays", robotsOf(base.relays.map((r) => r[0])).join(", ") || "none"],
+                   ...(happened("drop") ? [["dropped nodes that reach it", String(base.connected.filter((r) => r > data.robots.length).length)]] : []),
                    ["told dead", base.dead.join(", ") || "none"], ["links", String(base.links.length)],
                    ["reach", data.base.position ? withUnit(reachOf(base), "m", 3) : null]])
         : make("div", { className: "quiet" }, "nothing yet"));

@@ -65,7 +65,7 @@ function reachSphere() {
   return object;
 }
 
-function objectsTold(kind) { return data.events.some((e) => e.kind === kind); }
+function happened(kind) { return data.events.some((e) => e.kind === kind); }
 
 /** The team in the manner of makeFlight(); `follow(robot)` chooses whom the camera follows. */
 function makeTeam() {
@@ -94,7 +94,7 @@ function makeTeam() {
   object.add(layer.reach);
   const whole = tracks.filter(Boolean).flatMap((t) => Array.from(t.xyz));
   const choices = ["paths", "links", "relays", "reach", "homing tree", "objects", "objects known at the base"].filter((name) => layer[name] &&
-    !(name === "objects" && !objectsTold("object")) && !(name === "objects known at the base" && !objectsTold("object_known")) && !(name === "reach" && !data.base.reach_m) && !(name === "homing tree" && !data.tree.length));
+    !(name === "objects" && !happened("object")) && !(name === "objects known at the base" && !happened("object_known")) && !(name === "reach" && !data.base.reach_m) && !(name === "homing tree" && !data.tree.length));
 
   let followed = 1, shownTree, poses = [];
   const view = { object, layer, choices, vehicles, labels: [], now: { position: new THREE.Vector3(), heading: 0 },
@@ -102,7 +102,12 @@ function makeTeam() {
   view.follow = (robot) => { followed = robot; };
   view.setResolution = (w, h) => { for (const line of lines) line.material.resolution.set(w, h); };
 
-  const placeOf = (radio) => radio === 0 ? data.base.position : poses[radio - 1] ? poses[radio - 1].position.toArray() : null;
+  const placeOf = (radio, base) => {
+    if (radio === 0) return data.base.position;
+    if (radio <= poses.length) return poses[radio - 1] ? poses[radio - 1].position.toArray() : null;
+    const node = base.relays.find((r) => r[0] === radio);  // dropped
+    return node ? node.slice(1, 4) : null;
+  };
   const showRelays = (base) => {
     const standing = base ? base.relays : [], fine = (r) => base.connected.includes(r[0]) && !base.dead.includes(r[0]);
     const put = (points, list) => setMarks(points, [].concat(...list.map((r) => r.slice(1, 4))), list.map(() => 13));
@@ -138,7 +143,7 @@ function makeTeam() {
     });
     view.now = poses[followed - 1] || poses.find(Boolean) || view.now;
     const base = baseAt(t);
-    setSegments(links, (base ? base.links : []).map(([a, b, n]) => [placeOf(a), placeOf(b), linkColour(n)]).filter(([a, b]) => a && b));
+    setSegments(links, (base ? base.links : []).map(([a, b, n]) => [placeOf(a, base), placeOf(b, base), linkColour(n)]).filter(([a, b]) => a && b));
     showRelays(base);
     showTree(t);
     showObjects(t);

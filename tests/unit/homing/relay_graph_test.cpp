@@ -30,13 +30,21 @@ std::vector<std::vector<double>> random_table(Random& random, std::size_t n, dou
   return q;
 }
 
-/// Paths tried one by one, no robot twice: slow and certain.
-void walk(const std::vector<std::vector<double>>& q, RobotId at, std::vector<RobotId>& path, bool& arrived) {
+RelayGraph::Robots all_robots() {
+  RelayGraph::Robots all;
+  all.fill(true);
+  return all;
+}
+
+/// Paths over relays tried one by one, no robot twice: slow and certain.
+void walk(const std::vector<std::vector<double>>& q, const RelayGraph::Robots& relays, RobotId at,
+          std::vector<RobotId>& path, bool& arrived) {
   arrived = arrived || at == kBase;
   path.push_back(at);
   for (RobotId to = 0; to < q.size() && !arrived; ++to)
-    if (std::min(q[at][to], q[to][at]) >= 0.1 && std::find(path.begin(), path.end(), to) == path.end())
-      walk(q, to, path, arrived);
+    if (std::min(q[at][to], q[to][at]) >= 0.1 && (to == kBase || relays[to]) &&
+        std::find(path.begin(), path.end(), to) == path.end())
+      walk(q, relays, to, path, arrived);
   path.pop_back();
 }
 
@@ -46,11 +54,16 @@ TEST(RelayGraph, AgreesWithAllPathsTriedOneByOne) {
     const std::size_t n = 2 + random.bits() % 5;
     const auto q = random_table(random, n, 0.6);
     const RelayGraph g = graph_of(q);
+    RelayGraph::Robots relays{};
+    for (RobotId r = 1; r < n; ++r) relays[r] = random.uniform() < 0.6;
     for (RobotId r = 1; r < n; ++r) {
-      bool any_way = false;
+      bool any_way = false, over_relays = false;
       std::vector<RobotId> path;
-      walk(q, r, path, any_way);
-      RC_ASSERT(g.reaches_base(0, r) == any_way);
+      walk(q, all_robots(), r, path, any_way);
+      walk(q, relays, r, path, over_relays);
+      const std::vector<RobotId> connected = g.connected(0);
+      RC_ASSERT((std::find(connected.begin(), connected.end(), r) != connected.end()) == any_way);
+      RC_ASSERT(g.reaches_base(0, r, relays) == over_relays);
     }
   });
 }
@@ -67,21 +80,21 @@ TEST(RelayGraph, AChainLosesAllBehindABrokenLinkAndARingNothing) {
 }
 
 TEST(RelayGraph, ALinkHeardOneWayOnlyIsNone) {
-  EXPECT_FALSE(graph_of({{0, 0.9}, {0, 0}}).reaches_base(0, 1));
-  EXPECT_TRUE(graph_of({{0, 0.9}, {0.9, 0}}).reaches_base(0, 1));
+  EXPECT_FALSE(graph_of({{0, 0.9}, {0, 0}}).reaches_base(0, 1, all_robots()));
+  EXPECT_TRUE(graph_of({{0, 0.9}, {0.9, 0}}).reaches_base(0, 1, all_robots()));
 }
 
 TEST(RelayGraph, OldNewsFadesAndNeverOverrulesNewer) {
   RelayGraph g = graph_of({{0, 0.9}, {0.9, 0}}, 10 * kSecond);
-  EXPECT_TRUE(g.reaches_base(25 * kSecond, 1));
-  EXPECT_FALSE(g.reaches_base(26 * kSecond, 1));
+  EXPECT_TRUE(g.reaches_base(25 * kSecond, 1, all_robots()));
+  EXPECT_FALSE(g.reaches_base(26 * kSecond, 1, all_robots()));
   TeamState old;
   old.robot = 1, old.stamp = 9 * kSecond;  // heard nobody then
   g.note(old);
-  EXPECT_TRUE(g.reaches_base(20 * kSecond, 1));
+  EXPECT_TRUE(g.reaches_base(20 * kSecond, 1, all_robots()));
   old.stamp = 11 * kSecond;
   g.note(old);
-  EXPECT_FALSE(g.reaches_base(20 * kSecond, 1));
+  EXPECT_FALSE(g.reaches_base(20 * kSecond, 1, all_robots()));
   EXPECT_EQ(g.last_heard_of(1), 11 * kSecond);
 }
 

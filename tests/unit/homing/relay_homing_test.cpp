@@ -111,6 +111,27 @@ TEST_F(Flown, KeepsApartFromTakenPlacesAndFromWhereItWasInVain) {
   }
 }
 
+TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
+  // 50 m less 6 dB to spare: 25 m from the base, which is at -28; half of the spare is left as far as 35 m.
+  RelayHoming homing = flown("return_to_base");
+  const auto ends = [&](double x, double ahead) {
+    return homing.reach_ends(map, {x, 0.1, 1}, {ahead, 0.1, 1});
+  };
+  ASSERT_TRUE(ends(-4, -2));
+  EXPECT_LT((*ends(-4, -2) - Vec3(-4, 0.1, 0)).norm(), 0.2) << "straight below";
+  EXPECT_FALSE(ends(-10, -8)) << "in reach yet";
+  EXPECT_TRUE(ends(2, 4)) << "a little behind the end";
+  EXPECT_FALSE(ends(12, 14)) << "far behind";
+  news.relays.push_back({2, {0, 0.1, 0.3}, {0, 0.1, 1}});
+  fly(homing, 24, 24);
+  EXPECT_FALSE(ends(-4, -2)) << "in reach of the relay";
+  EXPECT_TRUE(ends(24, 26));
+  news.relays.back().stands_by = 500 * kSecond;
+  fly(homing, 24, 24);
+  EXPECT_TRUE(ends(-4, -2)) << "the relay is yet to land";
+  EXPECT_FALSE(homing.reach_ends(map, {-4, 0.1, 60}, {-2, 0.1, 60})) << "unknown, and no ground";
+}
+
 TEST_F(Flown, CountsOnARelayAndOnOneThatWillStandInTime) {
   RelayHoming homing = flown("relay_chain");
   const double alone_m = spot(homing)->length_m;

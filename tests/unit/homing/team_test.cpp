@@ -57,6 +57,13 @@ TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
   team.robots = team.lost_robot = 1;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "nobody would be lost";
   team.lost_robot = 0;
+  team.nodes = 1;
+  EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "no team";
+  team.robots = 5, team.nodes = 2;  // 15 radios and the base
+  EXPECT_NO_THROW(check(team, homing, "mission.info"));
+  team.nodes = 3;
+  EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "20 radios";
+  team.nodes = 0;
   homing.tree.longest_edge_m = homing.tree.least_edge_m;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError);
 }
@@ -68,8 +75,10 @@ struct Team {
   TimeNs now = 0;
 
   explicit Team(RobotId robots) {
+    TeamOptions options;
+    options.robots = robots;
     for (RobotId r = 0; r <= robots; ++r)
-      mates.emplace_back(r, TeamOptions{}, HomingOptions{}, Vec3(1, 2, 3), 7);
+      mates.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7);
   }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end;) {
@@ -115,6 +124,29 @@ TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
   team.run(120);
   EXPECT_FALSE(team.mates[3].hears_base(team.now)) << "by what is heard now";
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "by older news";
+}
+
+// As it was: a node that its robot had dropped too far out reached the base over that robot, which flew on and
+// believed so ever after.
+TEST(Teammate, WhoReachesTheBaseOverOneInTheAirOnlyIsNotCountedOn) {
+  Team team(3);
+  bool landed_in_reach = false;
+  using Pair = std::pair<RobotId, RobotId>;
+  team.linked = [&](RobotId a, RobotId b) {  // base - 3, in the air - 2, landed - 1
+    const Pair pair(std::min(a, b), std::max(a, b));
+    return pair == Pair(0, 3) || pair == Pair(2, 3) || pair == Pair(1, 2) ||
+           (landed_in_reach && pair == Pair(0, 2));
+  };
+  team.states[3].phase = TeamPhase::explore;
+  team.land(2, {80, 0, 0});
+  team.run(30);
+  EXPECT_TRUE(team.mates[1].landing_of(2)) << "news pass";
+  EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0}));
+  EXPECT_FALSE(team.mates[1].hears_base(team.now));
+  landed_in_reach = true;
+  team.run(30);
+  EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0, 2}));
+  EXPECT_TRUE(team.mates[1].hears_base(team.now));
 }
 
 TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {

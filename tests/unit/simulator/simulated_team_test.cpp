@@ -31,6 +31,19 @@ TEST(StartPlaces, WhereThereIsNoRoomSaySo) {
   }
 }
 
+TEST(Fallen, ANodeFliesOnAsItFalls) {
+  const cave::Cave c = make_cave(box_mesh({-4, -4, 0}, {4, 4, 3}), {0, 0, 1});
+  const auto antenna = sim::fallen(c.scene, {0, 0, 2}, {1.5, 0, 0});
+  ASSERT_TRUE(antenna);
+  EXPECT_NEAR(antenna->x(), 1.5 * std::sqrt(2 * 2 / 9.81), 0.06);
+  EXPECT_NEAR(antenna->y(), 0, 1e-9);
+  EXPECT_NEAR(antenna->z(), 0.3, 0.03);
+  const auto at_the_wall = sim::fallen(c.scene, {3.8, 0, 2}, {1.5, 0, 0});
+  ASSERT_TRUE(at_the_wall);
+  EXPECT_LT(at_the_wall->x(), 4);
+  EXPECT_FALSE(sim::fallen(c.scene, {0, 0, -1}, {0, 0, 0})) << "below the cave there is nothing";
+}
+
 RC_GTEST_PROP(Touched, IsWhatSmallStepsFind, ()) {
   const auto place = [] {
     const auto c = [] { return 0.01 * *rc::gen::inRange(-200, 200); };
