@@ -122,7 +122,8 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
     const auto within =
         std::find_if(keys.begin(), keys.end(), [&](const auto& k) { return k.starts_with(key + "."); });
     if (within != keys.end())
-      throw InputError(source, key, "a section of keys (" + *within + " and so on), not one that has a value");
+      throw InputError(source, key,
+                       "a section of keys (" + *within + " and so on), not one that has a value");
     const std::string near = nearest_name(key, keys);
     throw InputError(source, key, "no such key" + (near.empty() ? "" : "; did you mean " + near + "?"));
   }

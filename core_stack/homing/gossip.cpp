@@ -11,7 +11,8 @@ constexpr double kLongestWait_s = 0.4;
 constexpr double kHaste = 3;  // times as often while robots in contact do not hold the same, or one is near
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
-/// What is said of a later time would stand in the way of all that follows. The team's clocks are set together.
+/// What is said of a later time would stand in the way of all that follows. The team's clocks are set
+/// together.
 constexpr TimeNs kMostAhead = 5 * kSecond;
 
 /// The latest time that a record speaks of; 0 if it speaks of none.

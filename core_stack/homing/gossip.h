@@ -30,9 +30,10 @@ void describe(OptionTable& t, GossipOptions& o);
 struct GossipCounts {
   std::uint64_t frames_sent = 0, bytes_sent = 0, frames_heard = 0, bytes_heard = 0;
   std::array<std::uint64_t, kRefusals> refused{};  // frames, by Refusal
-  std::uint64_t records_refused = 0;  // within good frames: no record, from the future, too far ahead, too many
-  std::uint64_t states_refused = 0;   // from the future
-  std::uint64_t contradictions = 0;   // another text under a number that is known
+  std::uint64_t records_refused =
+      0;  // within good frames: no record, from the future, too far ahead, too many
+  std::uint64_t states_refused = 0;  // from the future
+  std::uint64_t contradictions = 0;  // another text under a number that is known
   std::uint64_t records_taken = 0, records_again = 0;
 };
 

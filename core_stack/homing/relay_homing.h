@@ -59,8 +59,8 @@ class RelayHoming {
   /// Never again to this place: it was tried in vain.
   void give_up(const Vec3& hover) { given_up_.push_back(hover); }
 
-  /// Where a communication node that is dropped at `here` would come to lie, if by the map a relay is in reach of
-  /// it there, and none would be of one dropped `ahead`.
+  /// Where a communication node that is dropped at `here` would come to lie, if by the map a relay is in
+  /// reach of it there, and none would be of one dropped `ahead`.
   std::optional<Vec3> reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const;
 
   /// It has landed: its communication node, above where it stands.

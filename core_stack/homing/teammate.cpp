@@ -126,11 +126,11 @@ RelayGraph::Robots Teammate::landed() const {
   return out;
 }
 
-/// Who reaches the base over others that have landed: who is in the air passes on what it hears, and flies away.
-/// As of when each was last heard of: since then nobody has told otherwise. News come in pieces, and who was
-/// counted on while it was on its way down is not dropped for that: of whom the landing is known, but nothing
-/// since, counts; and so does one that by its own word hears one that counts, whether or not the rest of the
-/// way to the base is known to be up as of the same time.
+/// Who reaches the base over others that have landed: who is in the air passes on what it hears, and flies
+/// away. As of when each was last heard of: since then nobody has told otherwise. News come in pieces, and
+/// who was counted on while it was on its way down is not dropped for that: of whom the landing is known, but
+/// nothing since, counts; and so does one that by its own word hears one that counts, whether or not the rest
+/// of the way to the base is known to be up as of the same time.
 RelayGraph::Robots Teammate::landed_in_reach() const {
   const std::vector<TeamState> states = gossip_.states();
   const RelayGraph::Robots landed = this->landed();
@@ -139,8 +139,7 @@ RelayGraph::Robots Teammate::landed_in_reach() const {
   const auto may =
       [&](RobotId r) {  // by its own word it stands where it claimed: the record of that will come
         if (r == self() || r == kBase || !landings_[r] || told_dead(r)) return false;
-        return landed[r] ||
-               (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
+        return landed[r] || (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
       };
   counts[kBase] = true;
   for (RobotId r = 1; r < kMostRobots; ++r) {

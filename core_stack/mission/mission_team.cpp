@@ -12,8 +12,8 @@ constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
-constexpr TimeNs kFall = 600 * kMillisecond;  // of a node, and of deciding: it keeps the vehicle's speed
-constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
+constexpr TimeNs kFall = 600 * kMillisecond;   // of a node, and of deciding: it keeps the vehicle's speed
+constexpr TimeNs kUnheard = 3 * kSecond;       // hovering where it wants to land, and nobody is heard
 constexpr double kAtRefuge_m = 0.5;
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.

@@ -75,7 +75,7 @@ class TeamMission {
   Teammate base_;
   std::vector<std::unique_ptr<Robot>> robots_;
   std::vector<std::unique_ptr<Teammate>> nodes_;  // dropped, in that order
-  HomingTree base_tree_;  // as the base was told, for the log
+  HomingTree base_tree_;                          // as the base was told, for the log
   TeamLog log_;
   ObjectLog object_log_;
 };

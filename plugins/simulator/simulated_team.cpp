@@ -91,7 +91,8 @@ std::optional<Vec3> fallen(const cave::RayScene& scene, const Vec3& from, const 
     velocity.z() -= kGravity_mps2 * kStep_s;
     const Vec3 step = velocity * kStep_s;
     const double length_m = step.norm(), free_m = scene.ray_cast(at, step / length_m, length_m + kAbove_m);
-    if (free_m < length_m + kAbove_m) return Vec3(at + step / length_m * (free_m - kAbove_m) + Vec3(0, 0, kMast_m));
+    if (free_m < length_m + kAbove_m)
+      return Vec3(at + step / length_m * (free_m - kAbove_m) + Vec3(0, 0, kMast_m));
     at += step;
   }
   return std::nullopt;

@@ -106,8 +106,9 @@ void evaluate(const EvaluateArguments& args) {
   if (!is_run && !fs::is_regular_file(run))
     throw core::InputError(args.run, "", "no such run directory or trajectory");
   if (fs::is_regular_file(run / "team.jsonl"))
-    throw core::InputError(args.run, "", "the run directory of a team: evaluate its robots', " +
-                                             (run / "robot_1").string() + " and so on");
+    throw core::InputError(
+        args.run, "",
+        "the run directory of a team: evaluate its robots', " + (run / "robot_1").string() + " and so on");
   std::vector<std::string> problems;
   evaluation::EvaluateOptions options = args.options;
   options.align = !args.no_align;

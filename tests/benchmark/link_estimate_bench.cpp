@@ -1,7 +1,8 @@
-// How far the estimate of a link by the map is to be believed, by what it keeps to spare: of the links between
-// landing places that a vehicle flew past, how many of those counted on stand, and how many of those that stand
-// are counted on. `link_estimate_bench CAVE.info RUN...`, runs being folders with map.bt and trajectory.tum.
-// A link stands where half of the packets get through, which is where the margin without fading is 0.
+// How far the estimate of a link by the map is to be believed, by what it keeps to spare: of the links
+// between landing places that a vehicle flew past, how many of those counted on stand, and how many of those
+// that stand are counted on. `link_estimate_bench CAVE.info RUN...`, runs being folders with map.bt and
+// trajectory.tum. A link stands where half of the packets get through, which is where the margin without
+// fading is 0.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -55,9 +56,9 @@ void add_links(const cave::Cave& cave, const std::filesystem::path& run, std::ve
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if ((places[i] - places[j]).norm() < radio.range_m)
-        links.push_back({core::expected_margin_db(map, places[i], places[j], estimate),
-                         sim::link_margin_db(radio, cave.scene, standing(cave, places[i]),
-                                              standing(cave, places[j]))});
+        links.push_back(
+            {core::expected_margin_db(map, places[i], places[j], estimate),
+             sim::link_margin_db(radio, cave.scene, standing(cave, places[i]), standing(cave, places[j]))});
   std::printf("%s: %zu places\n", run.c_str(), places.size());
 }
 

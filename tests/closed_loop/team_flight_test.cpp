@@ -111,7 +111,8 @@ TEST(Team, DropsNodesWhereTheReachEndsAndLandsByThem) {
                       a[2].get<double>() - b[2].get<double>());
   };
   const json connected = f.last("base")["connected"];
-  const auto truth = std::find_if(f.truth.rbegin(), f.truth.rend(), [](const json& e) { return e["kind"] == "radio"; });
+  const auto truth =
+      std::find_if(f.truth.rbegin(), f.truth.rend(), [](const json& e) { return e["kind"] == "radio"; });
   json relays = json::array({f.log.front()["base"]});
   std::size_t dropped = 0;
   for (const json& e : f.log) {

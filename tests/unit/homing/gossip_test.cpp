@@ -16,7 +16,9 @@ const Heard kChain = [](RobotId a, RobotId b, TimeNs) { return a + 1 == b || b +
 const Heard kAll = [](RobotId, RobotId, TimeNs) { return true; };
 
 /// What robot `by` publishes as its `n`-th.
-Record object(RobotId by, std::uint32_t n) { return ObjectSeen{n * kMillisecond, n, by, {1.0 * n, 2, 3}, 0.5}; }
+Record object(RobotId by, std::uint32_t n) {
+  return ObjectSeen{n * kMillisecond, n, by, {1.0 * n, 2, 3}, 0.5};
+}
 
 void expect_each_once_and_whole(const Network& net, std::uint32_t records) {
   for (std::size_t to = 0; to < net.robots.size(); ++to) {

@@ -77,8 +77,7 @@ struct Team {
   explicit Team(RobotId robots) {
     TeamOptions options;
     options.robots = robots;
-    for (RobotId r = 0; r <= robots; ++r)
-      mates.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7);
+    for (RobotId r = 0; r <= robots; ++r) mates.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7);
   }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end;) {
@@ -126,8 +125,8 @@ TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "by older news";
 }
 
-// As it was: a node that its robot had dropped too far out reached the base over that robot, which flew on and
-// believed so ever after.
+// As it was: a node that its robot had dropped too far out reached the base over that robot, which flew on
+// and believed so ever after.
 TEST(Teammate, WhoReachesTheBaseOverOneInTheAirOnlyIsNotCountedOn) {
   Team team(3);
   bool landed_in_reach = false;
