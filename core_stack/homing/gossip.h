@@ -101,7 +101,8 @@ class Gossip {
   bool wanted(const Waiting& w, TimeNs now) const;
   bool unsettled(TimeNs now) const;
   Frame own_news(TimeNs now);
-  void add_states(Frame& frame, std::size_t& room);
+  std::size_t add_states(Frame& frame, std::size_t& room);
+  void tell_more_states(std::size_t told, std::vector<Bytes>& out);
   void finish(Frame& frame, std::vector<Bytes>& out);
   TimeNs wait();
 

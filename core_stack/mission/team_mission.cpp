@@ -150,7 +150,9 @@ void TeamMission::place_nodes(TimeNs now) {
     lies.position = drop->ground;
     lies.phase = TeamPhase::relay;
     node->set_state(lies);
-    node->publish(TreeFacts{.nodes = {{{id, 1}, NodeKind::communication, to_centimetres(drop->from)}}});
+    TreeFacts above;
+    above.nodes = {{{id, 1}, NodeKind::communication, to_centimetres(drop->from)}};
+    node->publish(above);
     node->publish(LandingClaim{now, drop->ground, drop->from, LandingClaim::State::landed});
     nodes_.push_back(std::move(node));
     log_.event(now, "drop", {{"robot", robot->id}, {"node", id}, {"ground", list(drop->ground)}});

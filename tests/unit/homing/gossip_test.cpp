@@ -57,6 +57,23 @@ TEST(Gossip, EverybodyComesToHoldEverythingWith30PerCentLostAndHalfCorrupted) {
   EXPECT_EQ(net.robots[7].known_at_base(), 20u);
 }
 
+// As it was: of sixteen radios two states fitted a frame, and over ten hops they were a minute old: the base
+// took half the chain for cut off.
+TEST(Gossip, OfSixteenRadiosInAChainTheBaseKnowsHowAllAreNow) {
+  Network net(kMostRobots, kChain, 0.1, 0, 5);
+  for (RobotId r = 0; r < kMostRobots; ++r)
+    net.robots[r].publish(object(r, 1));  // what is held takes room, too
+  net.run(60);
+  double oldest_s = 0;
+  for (int i = 0; i < 60; ++i) {
+    net.run(1);
+    ASSERT_EQ(net.robots[0].states().size(), kMostRobots - 1u);
+    for (const TeamState& s : net.robots[0].states())
+      oldest_s = std::max(oldest_s, seconds(net.now - s.stamp));
+  }
+  EXPECT_LT(oldest_s, 30) << "fifteen hops away";
+}
+
 TEST(Gossip, ConvergesOnAnyNetworkThatIsConnectedNowAndThen) {
   rc::check("random networks", [] {
     Random random(*rc::gen::inRange<std::uint64_t>(1, 1u << 30));
@@ -159,12 +176,15 @@ TEST(Gossip, HostileFramesLeaveItAsItWas) {
 
 TEST(Gossip, RecordsFromTheFutureAreRefusedAndTheGenuineOnesUnderTheirNumbersTaken) {
   constexpr TimeNs future = 1000 * kSecond;
+  TreeFacts ray, life;
+  ray.rays = {{{2, 1}, {2, 2}, true, future}};
+  life.lives = {{{2, 1}, false, future}};
   const std::vector<Record> forged = {
       GoalClaim{.stamp = future},
       LandingClaim{.stamp = future, .hover = {0, 0, 1}},
       ObjectSeen{.stamp = future, .object = 1, .kind = 1},
-      TreeFacts{.rays = {{{2, 1}, {2, 2}, true, future}}},
-      TreeFacts{.lives = {{{2, 1}, false, future}}},
+      ray,
+      life,
   };
   Gossip robot(1, {}, 1);
   const auto hear = [&](std::uint32_t number, const Record& r) {
