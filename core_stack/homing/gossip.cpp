@@ -208,18 +208,19 @@ std::vector<Bytes> Gossip::send(TimeNs now) {
     });
     const std::size_t told = news ? add_states(frame, room) : 0;
     finish(frame, out);
-    if (news) tell_more_states(told, out);
+    if (news) tell_more_states(told, now, out);
   }
   return out;
 }
 
 /// Of many radios few states fit into one's own frame; over a chain of them they would be old when they
-/// arrive.
-void Gossip::tell_more_states(std::size_t told, std::vector<Bytes>& out) {
+/// arrive. So once a period all are told.
+void Gossip::tell_more_states(std::size_t told, TimeNs now, std::vector<Bytes>& out) {
   const auto known = static_cast<std::size_t>(
       std::count_if(states_.begin(), states_.end(), [](const auto& s) { return s.has_value(); }));
-  if (known <= kFewRadios) return;
-  while (2 * told < known && allowance_bytes_ >= kFrameBytes) {
+  if (known <= kFewRadios || now < all_states_due_) return;
+  all_states_due_ = now + from_seconds(0.8 * options_.period_s);  // frames are not quite on the beat
+  while (told < known && allowance_bytes_ >= kFrameBytes) {
     Frame frame;
     std::size_t room = kFrameBytes - kEmptyFrameBytes;
     told += add_states(frame, room);

@@ -102,7 +102,7 @@ class Gossip {
   bool unsettled(TimeNs now) const;
   Frame own_news(TimeNs now);
   std::size_t add_states(Frame& frame, std::size_t& room);
-  void tell_more_states(std::size_t told, std::vector<Bytes>& out);
+  void tell_more_states(std::size_t told, TimeNs now, std::vector<Bytes>& out);
   void finish(Frame& frame, std::vector<Bytes>& out);
   TimeNs wait();
 
@@ -117,7 +117,7 @@ class Gossip {
   std::vector<Delivery> delivered_;
   std::uint32_t published_ = 0, known_at_base_ = 0;
   std::uint16_t sequence_ = 0;
-  TimeNs next_news_ = 0, last_send_ = 0;
+  TimeNs next_news_ = 0, all_states_due_ = 0, last_send_ = 0;
   bool hurried_ = false;
   double allowance_bytes_;
   RobotId next_told_ = 0;  // whose state is passed on next

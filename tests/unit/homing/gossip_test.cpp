@@ -71,7 +71,7 @@ TEST(Gossip, OfSixteenRadiosInAChainTheBaseKnowsHowAllAreNow) {
     for (const TeamState& s : net.robots[0].states())
       oldest_s = std::max(oldest_s, seconds(net.now - s.stamp));
   }
-  EXPECT_LT(oldest_s, 30) << "fifteen hops away";
+  EXPECT_LT(oldest_s, 20) << "fifteen hops away";
 }
 
 TEST(Gossip, ConvergesOnAnyNetworkThatIsConnectedNowAndThen) {

@@ -132,6 +132,21 @@ TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
   EXPECT_FALSE(homing.reach_ends(map, {-4, 0.1, 60}, {-2, 0.1, 60})) << "unknown, and no ground";
 }
 
+// As it was: a node rolled three quarters of a metre, over a ledge and out of reach.
+TEST_F(Flown, DropsNoNodeWhereItMayRollOutOfReach) {
+  RelayHoming homing = flown("return_to_base");
+  const auto ends = [&](double x, double ahead) {
+    return homing.reach_ends(map, {x, 0.1, 1}, {ahead, 0.1, 1});
+  };
+  ASSERT_TRUE(ends(-4, -3));
+  ASSERT_FALSE(ends(-5, -4)) << "in reach yet";
+  for (int x = -18; x < 10; ++x)  // a pit from -3.6 on, two metres deep
+    for (int y = -10; y < 10; ++y)
+      for (int z = -11; z < 0; ++z) map.assign({x, y, z}, 1, z > -11 ? -2.0f : 2.0f);
+  EXPECT_FALSE(ends(-4, -3)) << "the edge is half a metre ahead";
+  EXPECT_TRUE(ends(-5, -4)) << "so that is the last place";
+}
+
 TEST_F(Flown, CountsOnARelayAndOnOneThatWillStandInTime) {
   RelayHoming homing = flown("relay_chain");
   const double alone_m = spot(homing)->length_m;
