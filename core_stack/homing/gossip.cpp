@@ -294,10 +294,10 @@ std::vector<TeamState> Gossip::states() const {
   return out;
 }
 
-std::vector<HeardRobot> Gossip::contacts(TimeNs now) const {
+std::vector<HeardRobot> Gossip::contacts(TimeNs now, TimeNs since) const {
   std::vector<HeardRobot> out;
   for (RobotId i = 0; i < kMostRobots; ++i)
-    if (in_contact(peers_[i], now)) out.push_back({i, peers_[i].quality});
+    if (in_contact(peers_[i], now) && *peers_[i].heard_at >= since) out.push_back({i, peers_[i].quality});
   return out;
 }
 

@@ -67,8 +67,8 @@ class Gossip {
   std::vector<TeamState> states() const;
   /// Its own as last told, with whom it heard: what a relay graph is to note beside the others'.
   const TeamState& told_state() const { return state_; }
-  /// Robots heard of late, with the share of frames that arrived.
-  std::vector<HeardRobot> contacts(TimeNs now) const;
+  /// Robots heard of late, and not before `since`, with the share of frames that arrived.
+  std::vector<HeardRobot> contacts(TimeNs now, TimeNs since = 0) const;
 
   /// What it holds, to be published: by the base, whenever something arrived that its finder waits for.
   Receipt receipt() const;

@@ -20,8 +20,11 @@ constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing 
 constexpr double kConfirm_s = 6.0;
 /// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
 constexpr double kClaimed_s = 10.0;
-constexpr double kMostFall_m = 5.0;     // of a node that is dropped
-constexpr double kRolls_m = 0.7;        // and so far from where it should fall it may come to lie
+constexpr double kMostFall_m = 5.0;  // of a node that is dropped
+constexpr double kRolls_m = 0.7;     // and so far past where it should fall it may come to lie
+/// Of a dropped node's link, on top of what any must have to spare: all links of a chain are made where the
+/// reach ends, and it hangs on each.
+constexpr double kNodeSpare_db = 4.0;
 constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
@@ -225,31 +228,18 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
   return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
 }
 
-/// Whether by the map a relay is in reach wherever a node that is dropped at `from` may come to lie: a link
-/// that is made where the reach ends is of the weakest of those that are counted on, and a chain hangs on it.
-bool RelayHoming::node_in_reach(const VoxelMap& map, const Vec3& from, double least_db) const {
-  bool lies = false;
-  for (const Vec3& strayed : {Vec3(0, 0, 0), Vec3(kRolls_m, 0, 0), Vec3(-kRolls_m, 0, 0),
-                              Vec3(0, kRolls_m, 0), Vec3(0, -kRolls_m, 0)}) {
-    const std::optional<Vec3> ground = ground_of_node(map, from + strayed);
-    if (!ground) continue;  // a wall, which it does not roll into
-    lies = true;
-    const Vec3 antenna = *ground + Vec3(0, 0, radius_m_);
-    if (std::none_of(relays_.begin(), relays_.end(), [&](const Relay& r) {
-          return !r.stands_by &&
-                 expected_margin_db(map, antenna, r.antenna, options_.landing.link) >= least_db;
-        }))
-      return false;
-  }
-  return lies;
-}
-
 std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const {
+  const auto antenna = [&](const Vec3& ground) { return Vec3(ground + Vec3(0, 0, radius_m_)); };
+  const auto in_reach = [&](const Vec3& place, double least_db) {
+    return std::any_of(relays_.begin(), relays_.end(), [&](const Relay& r) {
+      return !r.stands_by && expected_margin_db(map, place, r.antenna, options_.landing.link) >= least_db;
+    });
+  };
   const std::optional<Vec3> ground = ground_of_node(map, here);
-  if (!ground || !node_in_reach(map, here, -options_.landing.link.spare_db / 2) ||
-      node_in_reach(map, ahead, 0))
-    return std::nullopt;
-  return ground;
+  if (!ground || !in_reach(antenna(*ground), 0)) return std::nullopt;
+  if (in_reach(antenna(*ground) + ahead - here, kNodeSpare_db)) return std::nullopt;
+  const std::optional<Vec3> rolled = ground_of_node(map, here + kRolls_m * (ahead - here).stableNormalized());
+  return rolled && !in_reach(antenna(*rolled), 0) ? std::nullopt : ground;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

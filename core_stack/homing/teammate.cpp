@@ -175,9 +175,9 @@ std::vector<Relay> Teammate::relays() const {
   return out;
 }
 
-bool Teammate::hears_base(TimeNs now) const {
+bool Teammate::hears_base(TimeNs now, TimeNs since) const {
   const RelayGraph::Robots landed = this->landed();
-  for (const HeardRobot& h : gossip_.contacts(now))
+  for (const HeardRobot& h : gossip_.contacts(now, since))
     if (h.quality >= kGoodQuality && (h.robot == kBase || landed[h.robot]) &&
         graph_.reaches_base(now, h.robot, landed))
       return true;

@@ -13,6 +13,7 @@ constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
 constexpr TimeNs kFall = 600 * kMillisecond;   // of a node, and of deciding: it keeps the vehicle's speed
+constexpr TimeNs kHeardHere = kSecond;         // what was heard longer ago was heard where it came by
 constexpr TimeNs kUnheard = 3 * kSecond;       // hovering where it wants to land, and nobody is heard
 constexpr double kAtRefuge_m = 0.5;
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
@@ -74,7 +75,7 @@ void MissionControl::share() {
 
 /// A relay is heard yet, and by the map none will be in reach when this is asked the next time.
 void MissionControl::drop_node(const NodeDrop& drop) {
-  if (phase_ != Phase::explore || !team_->hears_base(now())) return;
+  if (phase_ != Phase::explore || !team_->hears_base(now(), now() - kHeardHere)) return;
   --nodes_left_;
   dropped_at_ = now();
   team_->drop_node(drop);
@@ -137,11 +138,11 @@ void MissionControl::give_up_landing(const std::string& reason) {
 /// The map's guess of a link decided where to fly; what is heard there decides whether to land. Time for
 /// another place was not kept for ever: with what is left of it the vehicle lands all the same.
 void MissionControl::confirm_landing() {
-  if (team_->hears_base(now())) {
+  if (!unheard_since_) unheard_since_ = now();
+  if (team_->hears_base(now(), *unheard_since_ - kHeardHere)) {
     enter(Phase::land, "in contact");
     return;
   }
-  if (!unheard_since_) unheard_since_ = now();
   if (now() - *unheard_since_ < kUnheard) return;
   const bool time_left = seconds_left() > options_.mission.home_reserve_s;
   if (time_left && landing_->claimed && team_->lands_soon(landing_->node, now())) {  // it waits for that one

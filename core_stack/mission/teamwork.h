@@ -50,7 +50,9 @@ class Teamwork {
   /// How many of its own records the base is known to hold.
   std::uint32_t known_at_base() const { return mate_->gossip().known_at_base(); }
   std::vector<TeamObject> objects() const { return merged(mate_->objects()); }
-  bool hears_base(TimeNs now) const { return mate_->hears_base(team_time(now)); }
+  bool hears_base(TimeNs now, TimeNs since) const {
+    return mate_->hears_base(team_time(now), team_time(since));
+  }
   void drop_node(const NodeDrop& drop) { drop_ = drop; }
   /// What was dropped since the last call.
   std::optional<NodeDrop> take_drop() { return std::exchange(drop_, std::nullopt); }

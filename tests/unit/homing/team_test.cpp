@@ -120,7 +120,10 @@ TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2}));
   EXPECT_TRUE(team.mates[3].hears_base(team.now));
   with_3 = false;
-  team.run(120);
+  team.run(3);
+  EXPECT_TRUE(team.mates[3].hears_base(team.now)) << "some seconds of silence are chance";
+  EXPECT_FALSE(team.mates[3].hears_base(team.now, team.now - kSecond)) << "but not heard where it is now";
+  team.run(117);
   EXPECT_FALSE(team.mates[3].hears_base(team.now)) << "by what is heard now";
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "by older news";
 }
