@@ -20,11 +20,8 @@ constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing 
 constexpr double kConfirm_s = 6.0;
 /// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
 constexpr double kClaimed_s = 10.0;
-constexpr double kMostFall_m = 5.0;  // of a node that is dropped
-constexpr double kRolls_m = 0.7;     // and so far past where it should fall it may come to lie
-/// Of a dropped node's link, on top of what any must have to spare: all links of a chain are made where the
-/// reach ends, and it hangs on each.
-constexpr double kNodeSpare_db = 4.0;
+constexpr double kMostFall_m = 5.0;     // of a node that is dropped
+constexpr double kRolls_m = 0.7;        // and so far past where it should fall it may come to lie
 constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
@@ -228,18 +225,25 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
   return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
 }
 
-std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const {
-  const auto antenna = [&](const Vec3& ground) { return Vec3(ground + Vec3(0, 0, radius_m_)); };
-  const auto in_reach = [&](const Vec3& place, double least_db) {
+/// By the map, of a node that comes to lie on `ground`, or rolls on along `way`.
+bool RelayHoming::node_in_reach(const VoxelMap& map, const Vec3& ground, const Vec3& way,
+                                double least_db) const {
+  const auto in_reach = [&](const Vec3& lies) {
+    const Vec3 antenna = lies + Vec3(0, 0, radius_m_);
     return std::any_of(relays_.begin(), relays_.end(), [&](const Relay& r) {
-      return !r.stands_by && expected_margin_db(map, place, r.antenna, options_.landing.link) >= least_db;
+      return !r.stands_by && expected_margin_db(map, antenna, r.antenna, options_.landing.link) >= least_db;
     });
   };
+  const auto rolled = ground_of_node(map, ground + Vec3(0, 0, radius_m_) + kRolls_m * way.stableNormalized());
+  return in_reach(ground) && (!rolled || in_reach(*rolled));
+}
+
+std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const {
+  const Vec3 way = ahead - here;
   const std::optional<Vec3> ground = ground_of_node(map, here);
-  if (!ground || !in_reach(antenna(*ground), 0)) return std::nullopt;
-  if (in_reach(antenna(*ground) + ahead - here, kNodeSpare_db)) return std::nullopt;
-  const std::optional<Vec3> rolled = ground_of_node(map, here + kRolls_m * (ahead - here).stableNormalized());
-  return rolled && !in_reach(antenna(*rolled), 0) ? std::nullopt : ground;
+  if (!ground || !node_in_reach(map, *ground, way, -options_.landing.link.spare_db / 2)) return std::nullopt;
+  const Vec3 next = ground_of_node(map, ahead).value_or(*ground + way);
+  return node_in_reach(map, next, way, 0) ? std::nullopt : ground;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

@@ -60,8 +60,7 @@ class RelayHoming {
   void give_up(const Vec3& hover) { given_up_.push_back(hover); }
 
   /// Where a communication node that is dropped at `here` would come to lie, if by the map a relay is in
-  /// reach of it there, though it roll on a little, and none would be of one dropped `ahead`, with some dB
-  /// more to spare.
+  /// reach of it there, though it roll on a little, and none would be of one dropped `ahead`.
   std::optional<Vec3> reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const;
 
   /// It has landed: its communication node, above where it stands.
@@ -80,6 +79,7 @@ class RelayHoming {
 
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
   void find_links(const VoxelMap& map);
+  bool node_in_reach(const VoxelMap& map, const Vec3& ground, const Vec3& way, double least_db) const;
   bool free_to_take(const Place& place) const;
   std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
                                            double sooner_than_s) const;

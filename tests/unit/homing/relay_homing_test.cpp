@@ -112,16 +112,16 @@ TEST_F(Flown, KeepsApartFromTakenPlacesAndFromWhereItWasInVain) {
 }
 
 TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
-  // 50 m less 6 dB to spare: 25 m from the base, which is at -28; less the 4 dB more of a node, 16 m.
+  // 50 m less 6 dB to spare: 25 m from the base, which is at -28; half of the spare is left as far as 35 m.
   RelayHoming homing = flown("return_to_base");
   const auto ends = [&](double x, double ahead) {
     return homing.reach_ends(map, {x, 0.1, 1}, {ahead, 0.1, 1});
   };
-  ASSERT_TRUE(ends(-13, -11));
-  EXPECT_LT((*ends(-13, -11) - Vec3(-13, 0.1, 0)).norm(), 0.2) << "straight below";
-  EXPECT_FALSE(ends(-16, -14)) << "in reach yet";
-  EXPECT_TRUE(ends(-4, -2)) << "a little behind the end";
-  EXPECT_FALSE(ends(-2, 0)) << "behind it";
+  ASSERT_TRUE(ends(-4, -2));
+  EXPECT_LT((*ends(-4, -2) - Vec3(-4, 0.1, 0)).norm(), 0.2) << "straight below";
+  EXPECT_FALSE(ends(-10, -8)) << "in reach yet";
+  EXPECT_TRUE(ends(2, 4)) << "a little behind the end";
+  EXPECT_FALSE(ends(12, 14)) << "far behind";
   news.relays.push_back({2, {0, 0.1, 0.3}, {0, 0.1, 1}});
   fly(homing, 24, 24);
   EXPECT_FALSE(ends(-4, -2)) << "in reach of the relay";
@@ -139,11 +139,12 @@ TEST_F(Flown, DropsNoNodeWhereItMayRollOutOfReach) {
     return homing.reach_ends(map, {x, 0.1, 1}, {ahead, 0.1, 1});
   };
   ASSERT_TRUE(ends(-4, -3));
-  for (int x = -18; x < 10; ++x)  // a pit from -3.6 on, two metres deep
+  ASSERT_FALSE(ends(-6, -5)) << "in reach yet";
+  for (int x = -22; x < 10; ++x)  // a pit from -4.4 on, two metres deep
     for (int y = -10; y < 10; ++y)
       for (int z = -11; z < 0; ++z) map.assign({x, y, z}, 1, z > -11 ? -2.0f : 2.0f);
-  EXPECT_FALSE(ends(-4, -3)) << "the edge is half a metre ahead";
-  EXPECT_TRUE(ends(-5, -4)) << "a metre before it does not fall in";
+  EXPECT_FALSE(ends(-4.8, -3.8)) << "0.4 m before the edge";
+  EXPECT_TRUE(ends(-6, -5)) << "a second on it may fall in, and what is dropped here does not";
 }
 
 TEST_F(Flown, CountsOnARelayAndOnOneThatWillStandInTime) {
