@@ -13,8 +13,8 @@ constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
 constexpr TimeNs kFall = 600 * kMillisecond;   // of a node, and of deciding: it keeps the vehicle's speed
-constexpr TimeNs kHeardHere = kSecond;         // what was heard longer ago was heard where it came by
-constexpr TimeNs kUnheard = 3 * kSecond;       // hovering where it wants to land, and nobody is heard
+constexpr TimeNs kHeardHere = kSecond;    // of who speaks once a second: longer ago, it was somewhere else
+constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
 constexpr double kAtRefuge_m = 0.5;
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
@@ -75,7 +75,7 @@ void MissionControl::share() {
 
 /// A relay is heard yet, and by the map none will be in reach when this is asked the next time.
 void MissionControl::drop_node(const NodeDrop& drop) {
-  if (phase_ != Phase::explore || !team_->hears_base(now(), now() - kHeardHere)) return;
+  if (phase_ != Phase::explore || !team_->hears_base(now(), now() - 2 * kHeardHere)) return;
   --nodes_left_;
   dropped_at_ = now();
   team_->drop_node(drop);
