@@ -20,6 +20,9 @@ constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing 
 constexpr double kConfirm_s = 6.0;
 /// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
 constexpr double kClaimed_s = 10.0;
+/// With each place where a node was not heard the next must have so much more to spare of it: those beside it
+/// would be in vain, too.
+constexpr double kDoubt_db = 3.0;
 constexpr double kMostFall_m = 5.0;     // of a node that is dropped
 constexpr double kRolls_m = 0.7;        // and so far past where it should fall it may come to lie
 constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
@@ -60,7 +63,8 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
                               const TeamNews& news, std::span<const CellKey> closed) {
   relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
   std::erase_if(relays_, [&](const Relay& r) {
-    return r.stands_by && (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends);
+    return r.stands_by &&
+           (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends || in_vain(r));
   });
   const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
   const TimeNs stamp = to_milliseconds(news.stamp);
@@ -91,6 +95,11 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
   }
   find_links(map);
   return out;
+}
+
+double RelayHoming::margin_db(const VoxelMap& map, const Vec3& ground, const Relay& to) const {
+  return expected_margin_db(map, ground + Vec3(0, 0, radius_m_), to.antenna, options_.landing.link) -
+         doubt_db_[to.robot];
 }
 
 double RelayHoming::down_s(const Place& place) const {
@@ -140,13 +149,27 @@ void RelayHoming::find_links(const VoxelMap& map) {
     for (const Relay& r : relays_) {
       if (r.stands_by && p.node && !p.claimed) break;                                   // these come last
       if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
-      const double db =
-          expected_margin_db(map, p.ground + Vec3(0, 0, radius_m_), r.antenna, options_.landing.link);
+      const double db = margin_db(map, p.ground, r);
       const double least_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
       if (db >= least_db && db >= best_db)
         best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
     }
   }
+}
+
+void RelayHoming::not_heard(const LandingSpot& spot) {
+  give_up(spot.hover);
+  if (!spot.claimed) doubt_db_[spot.node] += kDoubt_db;
+  for (const Relay& r : relays_)
+    if (spot.claimed && r.robot == spot.node) awaited_in_vain_[spot.node] = r.antenna;
+  std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && in_vain(r); });
+  for (Place& p : places_)
+    if (p.node == spot.node) p.node.reset();  // no link is counted on because it was before
+}
+
+bool RelayHoming::in_vain(const Relay& relay) const {
+  const auto& antenna = awaited_in_vain_[relay.robot];
+  return antenna && (*antenna - relay.antenna).norm() < 1e-3;
 }
 
 bool RelayHoming::free_to_take(const Place& place) const {
@@ -206,8 +229,7 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
     const Place* best = nullptr;
     for (const Place& place : places_)
       if ((place.hover - p).norm() < kBesideRoute_m && free_to_take(place) &&
-          expected_margin_db(map, place.ground + Vec3(0, 0, radius_m_), relay->antenna,
-                             options_.landing.link) >= 0 &&
+          margin_db(map, place.ground, *relay) >= 0 &&
           (!best || (place.hover - p).norm() < (best->hover - p).norm()))
         best = &place;
     if (!best) continue;
@@ -229,10 +251,8 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
 bool RelayHoming::node_in_reach(const VoxelMap& map, const Vec3& ground, const Vec3& way,
                                 double least_db) const {
   const auto in_reach = [&](const Vec3& lies) {
-    const Vec3 antenna = lies + Vec3(0, 0, radius_m_);
-    return std::any_of(relays_.begin(), relays_.end(), [&](const Relay& r) {
-      return !r.stands_by && expected_margin_db(map, antenna, r.antenna, options_.landing.link) >= least_db;
-    });
+    return std::any_of(relays_.begin(), relays_.end(),
+                       [&](const Relay& r) { return !r.stands_by && margin_db(map, lies, r) >= least_db; });
   };
   const auto rolled = ground_of_node(map, ground + Vec3(0, 0, radius_m_) + kRolls_m * way.stableNormalized());
   return in_reach(ground) && (!rolled || in_reach(*rolled));

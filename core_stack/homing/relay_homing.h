@@ -8,6 +8,7 @@
 //
 // It lives where the map lives, on the map lane.
 #pragma once
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,6 +59,9 @@ class RelayHoming {
                                        double sooner_than_s) const;
   /// Never again to this place: it was tried in vain.
   void give_up(const Vec3& hover) { given_up_.push_back(hover); }
+  /// Nobody was heard there. The map promises more of that node's link than there is; and one that should
+  /// have landed by now has not, or not there. Links are to be found anew: update() or look_around().
+  void not_heard(const LandingSpot& spot);
 
   /// Where a communication node that is dropped at `here` would come to lie, if by the map a relay is in
   /// reach of it there, though it roll on a little, and none would be of one dropped `ahead`.
@@ -80,11 +84,14 @@ class RelayHoming {
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
   void find_links(const VoxelMap& map);
   bool node_in_reach(const VoxelMap& map, const Vec3& ground, const Vec3& way, double least_db) const;
+  bool in_vain(const Relay& relay) const;
   bool free_to_take(const Place& place) const;
   std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
                                            double sooner_than_s) const;
   std::optional<LandingSpot> up_the_tree(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
   double down_s(const Place& place) const;
+  /// To spare of the link between who stands on `ground` and a relay, as far as the map tells.
+  double margin_db(const VoxelMap& map, const Vec3& ground, const Relay& to) const;
 
   RobotId self_;
   std::string strategy_;
@@ -98,6 +105,8 @@ class RelayHoming {
   std::vector<Vec3> to_judge_;  // of these, yet to be seen from farther on
   std::vector<Place> places_;
   std::vector<Vec3> given_up_;
+  std::array<double, kMostRobots> doubt_db_{};                      // of each node's links
+  std::array<std::optional<Vec3>, kMostRobots> awaited_in_vain_{};  // antennas, where they were to stand
   std::vector<Relay> relays_;
   std::vector<Vec3> taken_, goals_;
 };

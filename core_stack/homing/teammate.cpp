@@ -176,10 +176,10 @@ std::vector<Relay> Teammate::relays() const {
 }
 
 bool Teammate::hears_base(TimeNs now, TimeNs since) const {
-  const RelayGraph::Robots landed = this->landed();
+  const RelayGraph::Robots landed = this->landed(), counts = landed_in_reach();
   for (const HeardRobot& h : gossip_.contacts(now, since))
     if (h.quality >= kGoodQuality && (h.robot == kBase || landed[h.robot]) &&
-        graph_.reaches_base(now, h.robot, landed))
+        (counts[h.robot] || graph_.reaches_base(now, h.robot, landed)))
       return true;
   return false;
 }

@@ -155,7 +155,7 @@ class MissionControl final : public VehicleSink {
   void report_state();
   void choose_landing();
   void confirm_landing();
-  void give_up_landing(const std::string& reason);
+  void give_up_landing(const std::string& reason, bool unheard = false);
   void keep_apart();
   void make_room(const Neighbour& other);
   std::vector<MovingBody> others_at(TimeNs stamp) const;

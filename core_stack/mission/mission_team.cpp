@@ -125,13 +125,16 @@ void MissionControl::choose_landing() {
       });
 }
 
-void MissionControl::give_up_landing(const std::string& reason) {
+void MissionControl::give_up_landing(const std::string& reason, bool unheard) {
   recorder_.event(now(), "landing", {{"state", "given up"}, {"reason", reason}});
   team_->publish(LandingClaim{team_->team_time(now()), landing_->ground, landing_->hover,
                               LandingClaim::State::given_up});
   executive_.job(
       "give up", Lane::map, kChoiceBudget,
-      [homing = team_->homing(), hover = landing_->hover] { homing->give_up(hover); }, [] {});
+      [homing = team_->homing(), spot = *landing_, unheard] {
+        unheard ? homing->not_heard(spot) : homing->give_up(spot.hover);
+      },
+      [] {});
   choose_landing();
 }
 
@@ -153,7 +156,7 @@ void MissionControl::confirm_landing() {
     enter(Phase::land, "out of contact, but there is no time for another place");
     return;
   }
-  give_up_landing("nobody who reaches the base is heard there");
+  give_up_landing("nobody who reaches the base is heard there", true);
 }
 
 bool MissionControl::airspace_clear() const {

@@ -1,5 +1,6 @@
 #include "core_stack/homing/relay_homing.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -109,6 +110,38 @@ TEST_F(Flown, KeepsApartFromTakenPlacesAndFromWhereItWasInVain) {
     EXPECT_GE((third.ground - second.ground).norm(), options.landing.keep_apart_m);
     EXPECT_GT((third.hover - first.hover).norm(), 0.5);
   }
+}
+
+// As it was: robot 3 of a team tried seven places one beside the other, ten seconds each, of all of which the
+// map promised the same link.
+TEST_F(Flown, WhereNobodyIsHeardTheNextPlaceHasMoreToSpare) {
+  for (const char* strategy : {"relay_chain", "relay_tree"}) {
+    RelayHoming homing = flown(strategy);
+    const LandingSpot first = *spot(homing);
+    homing.not_heard(first);
+    fly(homing, 25, 25);
+    const LandingSpot second = *spot(homing);
+    EXPECT_LE((second.ground - base).norm(), 25.1 / std::pow(10, 3.0 / 20)) << strategy << ": 3 dB";
+  }
+}
+
+// As it was: of a claim that it had waited for in vain it tried four places more.
+TEST_F(Flown, WhoIsAwaitedInVainIsNotCountedOnBeforeItIsKnownToStandSomewhere) {
+  RelayHoming homing = flown("relay_chain");
+  const Vec3 claimed(-5, 0.1, 0.3), elsewhere(-8, 0.1, 0.3);
+  news.relays.push_back({2, claimed, claimed + Vec3(0, 0, 1), 500 * kSecond});
+  fly(homing, 25, 25);
+  ASSERT_TRUE(spot(homing)->claimed);
+  homing.not_heard(*spot(homing));
+  fly(homing, 25, 25);
+  EXPECT_EQ(spot(homing)->node, kBase);
+  news.relays.back() = {2, elsewhere, elsewhere + Vec3(0, 0, 1), 500 * kSecond};
+  fly(homing, 25, 25);
+  EXPECT_EQ(spot(homing)->node, 2) << "it claims another place";
+  homing.not_heard(*spot(homing));
+  news.relays.back().stands_by.reset();
+  fly(homing, 25, 25);
+  EXPECT_EQ(spot(homing)->node, 2) << "it stands there";
 }
 
 TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
