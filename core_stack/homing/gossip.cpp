@@ -12,6 +12,8 @@ constexpr double kHaste = 3;  // times as often while robots in contact do not h
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
 constexpr std::size_t kFewRadios = 8;  // whose states one frame a period tells often enough
+constexpr int kTimesTold = 2;  // each of these states, or too many are lost on their way along a chain
+constexpr TimeNs kSteady = 4 * kSecond;  // of many, who stands is told of again when there is so much news
 /// What is said of a later time would stand in the way of all that follows. The team's clocks are set
 /// together.
 constexpr TimeNs kMostAhead = 5 * kSecond;
@@ -206,32 +208,36 @@ std::vector<Bytes> Gossip::send(TimeNs now) {
       room -= bytes;
       return true;
     });
-    const std::size_t told = news ? add_states(frame, room) : 0;
+    const std::size_t passed = news ? add_states(frame, room) : 0;
     finish(frame, out);
-    if (news) tell_more_states(told, now, out);
+    if (news) tell_more_states(passed, now, out);
   }
   return out;
 }
 
+bool Gossip::of_many() const {
+  const auto known =
+      std::count_if(states_.begin(), states_.end(), [](const auto& s) { return s.has_value(); });
+  return static_cast<std::size_t>(known) > kFewRadios;
+}
+
 /// Of many radios few states fit into one's own frame; over a chain of them they would be old when they
-/// arrive. So once a period all are told.
-void Gossip::tell_more_states(std::size_t told, TimeNs now, std::vector<Bytes>& out) {
-  const auto known = static_cast<std::size_t>(
-      std::count_if(states_.begin(), states_.end(), [](const auto& s) { return s.has_value(); }));
-  if (known <= kFewRadios || now < all_states_due_) return;
+/// arrive. So once a period all that are news are told, whatever else there is to say: records wait.
+void Gossip::tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out) {
+  if (!of_many() || now < all_states_due_) return;
   all_states_due_ = now + from_seconds(0.8 * options_.period_s);  // frames are not quite on the beat
-  while (told < known && allowance_bytes_ >= kFrameBytes) {
+  while (passed < kMostRobots) {
     Frame frame;
     std::size_t room = kFrameBytes - kEmptyFrameBytes;
-    told += add_states(frame, room);
-    finish(frame, out);
+    passed += add_states(frame, room);
+    if (!frame.states.empty()) finish(frame, out);
   }
 }
 
 Frame Gossip::own_news(TimeNs now) {
   // A little off the beat, or two that fall on one moment would do so forever. While something is yet to be
-  // passed on, every word of what one holds brings it on.
-  const double period_s = options_.period_s / (hurried_ || unsettled(now) ? kHaste : 1);
+  // passed on, every word of what one holds brings it on; of many radios something always is.
+  const double period_s = options_.period_s / (hurried_ || (!of_many() && unsettled(now)) ? kHaste : 1);
   next_news_ = now + from_seconds(period_s * random_.uniform(0.9, 1.1));
   Frame frame;
   state_.robot = self_;
@@ -244,22 +250,33 @@ Frame Gossip::own_news(TimeNs now) {
     frame.held.push_back(h);
     bytes += held_bytes(h);
   }
-  state_.heard = contacts(now);
+  if (bytes > kFrameBytes)  // what is held beyond the first one lacking is said when there is room again
+    for (Held& h : frame.held) bytes -= held_bytes(h), h.beyond = 0, bytes += held_bytes(h);
+  state_.heard = contacts(now, 0);
   state_.heard.resize(std::min(state_.heard.size(), (kFrameBytes - bytes) / 2));
   frame.states = {state_};
   return frame;
 }
 
-/// Others' states where there is room, each in its turn.
+/// Others' states where there is room, each in its turn; returns how many radios' turn it was. Of many, only
+/// those that are news.
 std::size_t Gossip::add_states(Frame& frame, std::size_t& room) {
-  std::size_t added = 0;
-  for (RobotId i = 0; i < kMostRobots; ++i) {
-    const auto& s = states_[next_told_ % kMostRobots];
-    if (s && state_bytes(*s) > room) break;
-    if (s) frame.states.push_back(*s), room -= state_bytes(*s), ++added;
+  const bool many = of_many();
+  std::size_t passed = 0;
+  for (; passed < kMostRobots; ++passed) {
+    const RobotId i = next_told_;
+    const auto& s = states_[i];
+    const bool stands = s && (s->phase == TeamPhase::landed || s->phase == TeamPhase::relay);
+    const bool is_new = s && (!told_[i].stamp || s->stamp > *told_[i].stamp + (stands ? kSteady : 0));
+    if (s && (!many || is_new || told_[i].times < kTimesTold)) {
+      if (state_bytes(*s) > room) break;
+      frame.states.push_back(*s), room -= state_bytes(*s);
+      if (is_new) told_[i] = {s->stamp, 0};
+      ++told_[i].times;
+    }
     next_told_ = static_cast<RobotId>((next_told_ + 1) % kMostRobots);
   }
-  return added;
+  return passed;
 }
 
 void Gossip::finish(Frame& frame, std::vector<Bytes>& out) {

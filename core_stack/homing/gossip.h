@@ -30,10 +30,9 @@ void describe(OptionTable& t, GossipOptions& o);
 struct GossipCounts {
   std::uint64_t frames_sent = 0, bytes_sent = 0, frames_heard = 0, bytes_heard = 0;
   std::array<std::uint64_t, kRefusals> refused{};  // frames, by Refusal
-  std::uint64_t records_refused =
-      0;  // within good frames: no record, from the future, too far ahead, too many
-  std::uint64_t states_refused = 0;  // from the future
-  std::uint64_t contradictions = 0;  // another text under a number that is known
+  std::uint64_t records_refused = 0;  // in good frames: no record, from the future, too far ahead, too many
+  std::uint64_t states_refused = 0;   // from the future
+  std::uint64_t contradictions = 0;   // another text under a number that is known
   std::uint64_t records_taken = 0, records_again = 0;
 };
 
@@ -68,7 +67,7 @@ class Gossip {
   /// Its own as last told, with whom it heard: what a relay graph is to note beside the others'.
   const TeamState& told_state() const { return state_; }
   /// Robots heard of late, and not before `since`, with the share of frames that arrived.
-  std::vector<HeardRobot> contacts(TimeNs now, TimeNs since = 0) const;
+  std::vector<HeardRobot> contacts(TimeNs now, TimeNs since) const;
 
   /// What it holds, to be published: by the base, whenever something arrived that its finder waits for.
   Receipt receipt() const;
@@ -86,6 +85,10 @@ class Gossip {
     double quality = 1;
     std::array<HeldNumbers, kMostRobots> held{};
   };
+  struct Told {
+    std::optional<TimeNs> stamp;
+    int times = 0;
+  };
   struct Waiting {
     TimeNs due;
     RobotId author;
@@ -102,7 +105,8 @@ class Gossip {
   bool unsettled(TimeNs now) const;
   Frame own_news(TimeNs now);
   std::size_t add_states(Frame& frame, std::size_t& room);
-  void tell_more_states(std::size_t told, TimeNs now, std::vector<Bytes>& out);
+  bool of_many() const;
+  void tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out);
   void finish(Frame& frame, std::vector<Bytes>& out);
   TimeNs wait();
 
@@ -113,6 +117,7 @@ class Gossip {
   TeamState state_;
   std::array<Peer, kMostRobots> peers_;
   std::array<std::optional<TeamState>, kMostRobots> states_;
+  std::array<Told, kMostRobots> told_;  // of states
   std::vector<Waiting> waiting_;
   std::vector<Delivery> delivered_;
   std::uint32_t published_ = 0, known_at_base_ = 0;

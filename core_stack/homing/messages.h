@@ -18,7 +18,7 @@ namespace karst::core {
 
 constexpr std::size_t kFrameBytes = 200;
 constexpr std::uint8_t kWireVersion = 1;
-constexpr RobotId kMostRobots = 16;  // the base among them: what each holds of all the others fits a frame
+constexpr RobotId kMostRobots = 32;  // radios, the base's among them: what each holds of all fits a frame
 constexpr double kMostReach_m = 40000;
 constexpr std::uint32_t kMostNumber = 1u << 24;  // of a robot's nodes, records or claims
 

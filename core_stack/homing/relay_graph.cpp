@@ -5,7 +5,8 @@
 namespace karst::core {
 
 void describe(OptionTable& t, RelayOptions& o) {
-  t.add("link_age", o.link_age_s, "s", 1, 600, "what was said of a link longer ago no longer counts");
+  t.add("link_age", o.link_age_s, "s", 1, 600,
+        "what was said of a link longer ago, or 1.6 s a radio of the team, no longer counts");
   t.add("least_quality", o.least_quality, "", 0.01, 1,
         "share of frames that arrive, of what counts as a link");
 }

@@ -15,7 +15,7 @@
 namespace karst::core {
 
 struct RelayOptions {
-  double link_age_s = 15.0;    // what was said longer ago no longer counts
+  double link_age_s = 15.0;    // what was said longer ago no longer counts; longer in a team of many radios
   double least_quality = 0.1;  // of a link, each way
 };
 void describe(OptionTable& t, RelayOptions& o);

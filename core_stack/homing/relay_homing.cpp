@@ -1,6 +1,7 @@
 #include "core_stack/homing/relay_homing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -24,7 +25,6 @@ constexpr double kClaimed_s = 10.0;
 /// would be in vain, too.
 constexpr double kDoubt_db = 3.0;
 constexpr double kMostFall_m = 5.0;     // of a node that is dropped
-constexpr double kRolls_m = 0.7;        // and so far past where it should fall it may come to lie
 constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
@@ -34,11 +34,19 @@ void append(TreeFacts& to, const TreeFacts& more) {
   to.lives.insert(to.lives.end(), more.lives.begin(), more.lives.end());
 }
 
-/// Where a node that is dropped at `from` falls to: it may come to lie on a slope or among stones.
-std::optional<Vec3> ground_of_node(const VoxelMap& map, const Vec3& from) {
-  const Ground below = ground_below(map, from, 0, {.margin_m = 0, .most_drop_m = kMostFall_m});
-  if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
-    return std::nullopt;
+/// Where a node that is dropped falls to: on with the vehicle's speed for as long as it takes. It may come to
+/// lie on a slope or among stones.
+std::optional<Vec3> ground_of_node(const VoxelMap& map, const Release& release) {
+  constexpr double kGravity_mps2 = 9.81;
+  Vec3 at = release.position;
+  Ground below;
+  for (int i = 0; i < 3; ++i) {  // the ground there may be lower than the ground below the vehicle
+    below = ground_below(map, at, 0, {.margin_m = 0, .most_drop_m = kMostFall_m});
+    if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
+      return std::nullopt;
+    const double fall_s = std::sqrt(2 * (at.z() - below.ground.z()) / kGravity_mps2);
+    at.head<2>() = (release.position + fall_s * release.velocity_mps).head<2>();
+  }
   return below.ground;
 }
 
@@ -159,9 +167,13 @@ void RelayHoming::find_links(const VoxelMap& map) {
 
 void RelayHoming::not_heard(const LandingSpot& spot) {
   give_up(spot.hover);
-  if (!spot.claimed) doubt_db_[spot.node] += kDoubt_db;
-  for (const Relay& r : relays_)
-    if (spot.claimed && r.robot == spot.node) awaited_in_vain_[spot.node] = r.antenna;
+  for (const Relay& r : relays_) {
+    if (r.robot != spot.node) continue;
+    if (r.stands_by)
+      awaited_in_vain_[r.robot] = r.antenna;
+    else
+      doubt_db_[r.robot] += kDoubt_db;
+  }
   std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && in_vain(r); });
   for (Place& p : places_)
     if (p.node == spot.node) p.node.reset();  // no link is counted on because it was before
@@ -247,23 +259,16 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
   return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
 }
 
-/// By the map, of a node that comes to lie on `ground`, or rolls on along `way`.
-bool RelayHoming::node_in_reach(const VoxelMap& map, const Vec3& ground, const Vec3& way,
-                                double least_db) const {
-  const auto in_reach = [&](const Vec3& lies) {
+std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Release& here,
+                                            const Release& ahead) const {
+  const auto in_reach = [&](const Vec3& ground, double least_db) {
     return std::any_of(relays_.begin(), relays_.end(),
-                       [&](const Relay& r) { return !r.stands_by && margin_db(map, lies, r) >= least_db; });
+                       [&](const Relay& r) { return !r.stands_by && margin_db(map, ground, r) >= least_db; });
   };
-  const auto rolled = ground_of_node(map, ground + Vec3(0, 0, radius_m_) + kRolls_m * way.stableNormalized());
-  return in_reach(ground) && (!rolled || in_reach(*rolled));
-}
-
-std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const {
-  const Vec3 way = ahead - here;
   const std::optional<Vec3> ground = ground_of_node(map, here);
-  if (!ground || !node_in_reach(map, *ground, way, -options_.landing.link.spare_db / 2)) return std::nullopt;
-  const Vec3 next = ground_of_node(map, ahead).value_or(*ground + way);
-  return node_in_reach(map, next, way, 0) ? std::nullopt : ground;
+  if (!ground || !in_reach(*ground, -options_.landing.link.spare_db / 2)) return std::nullopt;
+  const Vec3 next = ground_of_node(map, ahead).value_or(*ground + ahead.position - here.position);
+  return in_reach(next, 0) ? std::nullopt : ground;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

@@ -29,6 +29,11 @@ struct LandingSpot {
   double length_m = 0, time_s = 0;
 };
 
+/// Of a node that is dropped: it goes on with the vehicle's speed.
+struct Release {
+  Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
+};
+
 /// What a robot heard since the last time.
 struct TeamNews {
   TimeNs stamp = 0;  // the team's time
@@ -63,9 +68,9 @@ class RelayHoming {
   /// have landed by now has not, or not there. Links are to be found anew: update() or look_around().
   void not_heard(const LandingSpot& spot);
 
-  /// Where a communication node that is dropped at `here` would come to lie, if by the map a relay is in
-  /// reach of it there, though it roll on a little, and none would be of one dropped `ahead`.
-  std::optional<Vec3> reach_ends(const VoxelMap& map, const Vec3& here, const Vec3& ahead) const;
+  /// Where a communication node that is dropped `here` would come to lie, if by the map a relay is in reach
+  /// of it there, and none would be of one dropped `ahead`.
+  std::optional<Vec3> reach_ends(const VoxelMap& map, const Release& here, const Release& ahead) const;
 
   /// It has landed: its communication node, above where it stands.
   TreeFacts land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp);
@@ -83,7 +88,6 @@ class RelayHoming {
 
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
   void find_links(const VoxelMap& map);
-  bool node_in_reach(const VoxelMap& map, const Vec3& ground, const Vec3& way, double least_db) const;
   bool in_vain(const Relay& relay) const;
   bool free_to_take(const Place& place) const;
   std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,

@@ -9,7 +9,7 @@ namespace karst::core {
 
 void describe(OptionTable& t, TeamOptions& o) {
   t.add("robots", o.robots, 1, kMostRobots - 1, "1: one vehicle alone, and no team");
-  t.add("nodes", o.nodes, 0, kMostRobots - 2,
+  t.add("nodes", o.nodes, 0, kMostRobots / 2 - 2,
         "communication nodes that each robot carries, and drops where it comes out of reach");
   t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts; whole seconds");
   t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
@@ -54,9 +54,11 @@ void check(const TeamOptions& team, const HomingOptions& homing, const std::stri
     throw InputError(source, "team.nodes", "a vehicle alone is no team: team.robots is 1");
   if (team.robots * (1 + team.nodes) >= kMostRobots)
     throw InputError(source, "team.nodes",
-                     std::to_string(team.robots) + " robots with " + std::to_string(team.nodes) +
-                         " nodes each are more than the " + std::to_string(kMostRobots - 1) +
-                         " radios that messages can name beside the base's");
+                     std::to_string(team.robots) + " robots that carry " + std::to_string(team.nodes) +
+                         " each are " + std::to_string(team.robots * (1 + team.nodes)) +
+                         " radios, and messages can name " + std::to_string(kMostRobots - 1) +
+                         " beside the base's: " + std::to_string((kMostRobots - 1) / team.robots - 1) +
+                         " each at most");
   if (homing.tree.longest_edge_m <= homing.tree.least_edge_m)
     throw InputError(source, "homing.tree.longest_edge",
                      "is no longer than homing.tree.least_edge: no two nodes would be joined");

@@ -19,6 +19,14 @@ bool in_the_air(TeamPhase p) {
          p == TeamPhase::aside || p == TeamPhase::boxed;
 }
 
+/// Over a chain of all radios what the far end says is older than link_age.
+RelayOptions for_chain_of_all(RelayOptions relay, const TeamOptions& team) {
+  constexpr double kAgePerRadio_s = 1.6;  // oldest states in chains of 16 to 32: 0.9 to 1.6 s a radio
+  const auto radios = static_cast<double>(1 + team.robots * (1 + team.nodes));
+  relay.link_age_s = std::max(relay.link_age_s, kAgePerRadio_s * radios);
+  return relay;
+}
+
 }  // namespace
 
 Teammate::Teammate(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
@@ -28,7 +36,7 @@ Teammate::Teammate(RobotId self, const TeamOptions& team, const HomingOptions& h
       landings_apart_m_(homing.landing.keep_apart_m),
       base_{kBase, base, base},
       gossip_(self, homing.gossip, seed),
-      graph_(homing.relay) {
+      graph_(for_chain_of_all(homing.relay, team)) {
   TeamState waiting;
   waiting.position = base;
   gossip_.set_state(waiting);
@@ -56,7 +64,7 @@ std::vector<Bytes> Teammate::speak(TimeNs now) {
   }));
   std::vector<Bytes> frames = gossip_.send(now);
   own.robot = self();
-  own.heard = gossip_.contacts(now);
+  own.heard = gossip_.contacts(now, 0);
   graph_.note(own);
   return frames;
 }
@@ -103,7 +111,7 @@ void Teammate::watch_relays(TimeNs now) {
     return r == kBase || (landings_[r] && landings_[r]->state == LandingClaim::State::landed);
   };
   if (!stands(self())) return;
-  for (const HeardRobot& h : gossip_.contacts(now))
+  for (const HeardRobot& h : gossip_.contacts(now, 0))
     if (stands(h.robot) && h.quality >= kGoodQuality) heard_at_[h.robot] = now;
   for (RobotId r = 1; r < kMostRobots; ++r) {
     if (r == self() || !heard_at_[r] || !nodes_[r]) continue;
@@ -178,8 +186,8 @@ std::vector<Relay> Teammate::relays() const {
 bool Teammate::hears_base(TimeNs now, TimeNs since) const {
   const RelayGraph::Robots landed = this->landed(), counts = landed_in_reach();
   for (const HeardRobot& h : gossip_.contacts(now, since))
-    if (h.quality >= kGoodQuality && (h.robot == kBase || landed[h.robot]) &&
-        (counts[h.robot] || graph_.reaches_base(now, h.robot, landed)))
+    if (h.quality >= kGoodQuality &&
+        (counts[h.robot] || (landed[h.robot] && graph_.reaches_base(now, h.robot, landed))))
       return true;
   return false;
 }

@@ -49,7 +49,7 @@ class Teammate {
   /// last those that have claimed a place and are on the way there.
   std::vector<Relay> relays() const;
   /// It hears somebody who reaches the base well enough to land by; not before `since` the last time.
-  bool hears_base(TimeNs now, TimeNs since = 0) const;
+  bool hears_base(TimeNs now, TimeNs since) const;
   /// Vehicles in the air that were heard of in the last seconds, where they should be by now.
   std::vector<Neighbour> neighbours(TimeNs now) const;
   /// All robots that have started and were ever heard of, by number.

@@ -115,7 +115,7 @@ class Explorer {
   /// Takes in what was heard; returns what to tell.
   TreeFacts share(const Vec3& here, const TeamNews& news);
   /// See RelayHoming::reach_ends.
-  std::optional<Vec3> reach_ends(const Vec3& here, const Vec3& ahead) const {
+  std::optional<Vec3> reach_ends(const Release& here, const Release& ahead) const {
     return homing_->reach_ends(map_, here, ahead);
   }
   /// Where to land as a relay, if that takes less time than the way to the start.

@@ -63,6 +63,7 @@ void MissionControl::go_home() {
   if (home_planning_ || verdict_.action == SafetyAction::brake) return;
   if (encounter_.holds()) {
     last_landmark_time_ = now();
+    unheard_since_.reset();
     return;
   }
   const bool at_home = (flight_.reference().position - landing_hover()).norm() < kAboveHome_m;

@@ -12,7 +12,6 @@ constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
-constexpr TimeNs kFall = 600 * kMillisecond;   // of a node, and of deciding: it keeps the vehicle's speed
 constexpr TimeNs kHeardHere = kSecond;    // of who speaks once a second: longer ago, it was somewhere else
 constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
 constexpr double kAtRefuge_m = 0.5;
@@ -56,8 +55,12 @@ void MissionControl::share() {
   auto facts = std::make_shared<TreeFacts>();
   auto end = std::make_shared<std::optional<Vec3>>();
   const Vec3 here = flight_.reference().position;
-  const Vec3 drop_at = flight_.expected(now() + kFall).position,
-             ahead = flight_.expected(now() + kFall + kSecond).position;  // when this is asked the next time
+  const auto release = [this](TimeNs at) {
+    const State s = flight_.expected(at);
+    return Release{s.position, s.velocity_mps};
+  };
+  const Release drop_at = release(now() + kSharingBudget),
+                ahead = release(now() + kSharingBudget + kSecond);  // when this is asked the next time
   const bool may_drop =
       nodes_left_ > 0 && phase_ == Phase::explore && (!dropped_at_ || now() - *dropped_at_ > kBetweenDrops);
   executive_.job(
@@ -66,9 +69,9 @@ void MissionControl::share() {
         *facts = explorer_.share(here, news);
         if (may_drop) *end = explorer_.reach_ends(drop_at, ahead);
       },
-      [this, facts, end, drop_at] {
+      [this, facts, end, drop_at, begun = now()] {
         if (!facts->empty()) team_->publish(*facts);
-        if (*end) drop_node({drop_at, **end});
+        if (*end && !braked_since(begun)) drop_node({drop_at.position, **end});
       });
   if (landing_ && phase_ == Phase::home && team_->overruled()) give_up_landing("another claimed it before");
 }

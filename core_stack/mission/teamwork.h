@@ -9,7 +9,7 @@
 
 namespace karst::core {
 
-/// A communication node leaves the vehicle at `from` and should come to lie on `ground`.
+/// A communication node leaves the vehicle about `from` and should come to lie on `ground`.
 struct NodeDrop {
   Vec3 from = Vec3::Zero(), ground = Vec3::Zero();
 };

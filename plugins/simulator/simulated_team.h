@@ -20,7 +20,7 @@ bool touched(const core::Vec3& a0, const core::Vec3& a1, const core::Vec3& b0, c
              double distance_m);
 
 /// Where the antenna of a node that leaves `from` with `velocity_mps` comes to be: 0.3 m above the rock that
-/// it falls onto. Nothing if it meets none within 20 s.
+/// it falls onto. There it stays, though the rock be steep. Nothing if it meets none within 20 s.
 std::optional<core::Vec3> fallen(const cave::RayScene& scene, const core::Vec3& from,
                                  const core::Vec3& velocity_mps);
 

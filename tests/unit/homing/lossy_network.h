@@ -16,6 +16,7 @@ struct Network {
   std::vector<std::vector<Delivery>> delivered;
   TimeNs now = 0;
   std::uint64_t bytes = 0;
+  TeamPhase phase = TeamPhase::explore;
 
   Network(RobotId n, Heard l, double lose, double corrupt, std::uint64_t seed)
       : linked(std::move(l)), loss(lose), corruption(corrupt), random(seed), delivered(n) {
@@ -28,6 +29,7 @@ struct Network {
         TeamState state;
         state.stamp = now;
         state.seconds_left = 100;
+        state.phase = phase;
         r.set_state(state);
         for (Bytes& b : r.send(now)) air.push_back({r.self(), std::move(b)});
       }

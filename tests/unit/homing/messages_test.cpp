@@ -101,7 +101,8 @@ TEST(Messages, WhatOtherRobotsSentStaysWithinTheFrameAtItsLongest) {
   TeamState s;
   s.position = {-40000, 40000, -40000};
   frame.states = {s};
-  for (RobotId i = 0; i < kMostRobots; ++i) frame.held.push_back({i, kMostNumber - 1, ~0u});
+  constexpr std::uint32_t most_records = 1000000;  // gossip.most_records at its most
+  for (RobotId i = 0; i < kMostRobots; ++i) frame.held.push_back({i, most_records, 0});
   frame.tells_held = true;
   ASSERT_TRUE(write_frame(frame));
   Bytes longest(most_record_bytes());
@@ -158,9 +159,9 @@ TEST(Messages, HostileFramesAreRefusedByReason) {
   EXPECT_EQ(why_of({0x4b, 0x72, 1, 2, 0, 0, 0, 0, 0, 1, 2, 3, 4}), Refusal::checksum);
   EXPECT_EQ(why_of(with({255, 0, 0})), Refusal::truncated);  // says it holds 255 states
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 1, 250})), Refusal::truncated);
-  EXPECT_EQ(why_of(with({0, 0, 0, 9})), Refusal::truncated);     // a byte too many
-  EXPECT_EQ(why_of(with({0, 1, 16, 0, 0, 0})), Refusal::range);  // robot 16
-  EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);   // record 0
+  EXPECT_EQ(why_of(with({0, 0, 0, 9})), Refusal::truncated);  // a byte too many
+  EXPECT_EQ(why_of(with({0, 1, kMostRobots, 0, 0, 0})), Refusal::range);
+  EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);  // record 0
   Bytes sender = {0x4b, 0x72, kWireVersion, 99, 0, 0, 0, 0, 0};
   EXPECT_EQ(why_of(sealed(sender)), Refusal::range);
 }

@@ -59,10 +59,10 @@ TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
   team.lost_robot = 0;
   team.nodes = 1;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "no team";
-  team.robots = 5, team.nodes = 2;  // 15 radios and the base
+  team.robots = 5, team.nodes = 5;  // 30 radios and the base's
   EXPECT_NO_THROW(check(team, homing, "mission.info"));
-  team.nodes = 3;
-  EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "20 radios";
+  team.nodes = 6;
+  EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "35 radios";
   team.nodes = 0;
   homing.tree.longest_edge_m = homing.tree.least_edge_m;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError);
@@ -118,13 +118,13 @@ TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
   team.land(2, {80, 0, 0});
   team.run(30);
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2}));
-  EXPECT_TRUE(team.mates[3].hears_base(team.now));
+  EXPECT_TRUE(team.mates[3].hears_base(team.now, 0));
   with_3 = false;
   team.run(3);
-  EXPECT_TRUE(team.mates[3].hears_base(team.now)) << "some seconds of silence are chance";
+  EXPECT_TRUE(team.mates[3].hears_base(team.now, 0)) << "some seconds of silence are chance";
   EXPECT_FALSE(team.mates[3].hears_base(team.now, team.now - kSecond)) << "but not heard where it is now";
   team.run(117);
-  EXPECT_FALSE(team.mates[3].hears_base(team.now)) << "by what is heard now";
+  EXPECT_FALSE(team.mates[3].hears_base(team.now, 0)) << "by what is heard now";
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "by older news";
 }
 
@@ -144,11 +144,11 @@ TEST(Teammate, WhoReachesTheBaseOverOneInTheAirOnlyIsNotCountedOn) {
   team.run(30);
   EXPECT_TRUE(team.mates[1].landing_of(2)) << "news pass";
   EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0}));
-  EXPECT_FALSE(team.mates[1].hears_base(team.now));
+  EXPECT_FALSE(team.mates[1].hears_base(team.now, 0));
   landed_in_reach = true;
   team.run(30);
   EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0, 2}));
-  EXPECT_TRUE(team.mates[1].hears_base(team.now));
+  EXPECT_TRUE(team.mates[1].hears_base(team.now, 0));
 }
 
 TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
@@ -225,7 +225,7 @@ TEST(Teammate, WithALandedRelayThatTheBaseCannotHearDoesNotCountOnIt) {
   team.land(1, {200, 0, 0});
   team.run(20);
   EXPECT_EQ(team.relays_of(2), (std::vector<RobotId>{0}));
-  EXPECT_FALSE(team.mates[2].hears_base(team.now));
+  EXPECT_FALSE(team.mates[2].hears_base(team.now, 0));
 }
 
 TEST(Teammate, CountsLastOnOneThatIsOnItsWayToAClaimedPlace) {
