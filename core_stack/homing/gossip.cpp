@@ -11,7 +11,6 @@ constexpr double kLongestWait_s = 0.4;
 constexpr double kHaste = 3;  // times as often while robots in contact do not hold the same, or one is near
 constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
 constexpr std::size_t kMostWaiting = 400;
-constexpr std::size_t kFewRadios = 8;  // whose states one frame a period tells often enough
 constexpr int kTimesTold = 2;  // each of these states, or too many are lost on their way along a chain
 constexpr TimeNs kSteady = 4 * kSecond;  // of many, who stands is told of again when there is so much news
 /// What is said of a later time would stand in the way of all that follows. The team's clocks are set
@@ -94,7 +93,8 @@ void Gossip::hear(const Frame& frame, TimeNs now) {
     for (int lost = std::min<int>(gap, 20); lost > 1; --lost) peer.quality -= kShare * peer.quality;
     peer.quality += kShare * (1 - peer.quality);
   } else {
-    peer.quality = 0.5;  // nothing is known yet
+    peer.quality = 0.5;                 // nothing is known yet
+    for (Told& t : told_) t.times = 0;  // nor does it know what was told before
   }
   peer.sequence = frame.sequence;
   peer.heard_at = now;
@@ -222,11 +222,13 @@ bool Gossip::of_many() const {
 }
 
 /// Of many radios few states fit into one's own frame; over a chain of them they would be old when they
-/// arrive. So once a period all that are news are told, whatever else there is to say: records wait.
+/// arrive. So once a period all that are news are told before any records, as far as there is room beside
+/// what it says of itself: that must stay on the beat, others keep apart by it.
 void Gossip::tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out) {
   if (!of_many() || now < all_states_due_) return;
   all_states_due_ = now + from_seconds(0.8 * options_.period_s);  // frames are not quite on the beat
-  while (passed < kMostRobots) {
+  const double left_bytes = hurried_ ? kHaste * kFrameBytes : -1.0 * kFrameBytes;
+  while (passed < kMostRobots && allowance_bytes_ > left_bytes) {
     Frame frame;
     std::size_t room = kFrameBytes - kEmptyFrameBytes;
     passed += add_states(frame, room);
@@ -250,10 +252,14 @@ Frame Gossip::own_news(TimeNs now) {
     frame.held.push_back(h);
     bytes += held_bytes(h);
   }
-  if (bytes > kFrameBytes)  // what is held beyond the first one lacking is said when there is room again
-    for (Held& h : frame.held) bytes -= held_bytes(h), h.beyond = 0, bytes += held_bytes(h);
   state_.heard = contacts(now, 0);
-  state_.heard.resize(std::min(state_.heard.size(), (kFrameBytes - bytes) / 2));
+  if (bytes + 2 * state_.heard.size() > kFrameBytes)  // what is held beyond the first one lacking can wait
+    for (Held& h : frame.held) bytes -= held_bytes(h), h.beyond = 0, bytes += held_bytes(h);
+  if (const std::size_t room = (kFrameBytes - bytes) / 2; state_.heard.size() > room) {
+    std::stable_sort(state_.heard.begin(), state_.heard.end(),
+                     [](const HeardRobot& a, const HeardRobot& b) { return a.quality > b.quality; });
+    state_.heard.resize(room);
+  }
   frame.states = {state_};
   return frame;
 }
@@ -266,8 +272,8 @@ std::size_t Gossip::add_states(Frame& frame, std::size_t& room) {
   for (; passed < kMostRobots; ++passed) {
     const RobotId i = next_told_;
     const auto& s = states_[i];
-    const bool stands = s && (s->phase == TeamPhase::landed || s->phase == TeamPhase::relay);
-    const bool is_new = s && (!told_[i].stamp || s->stamp > *told_[i].stamp + (stands ? kSteady : 0));
+    const TimeNs newer_by = s && in_the_air(s->phase) ? 0 : kSteady;
+    const bool is_new = s && (!told_[i].stamp || s->stamp > *told_[i].stamp + newer_by);
     if (s && (!many || is_new || told_[i].times < kTimesTold)) {
       if (state_bytes(*s) > room) break;
       frame.states.push_back(*s), room -= state_bytes(*s);

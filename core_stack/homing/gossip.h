@@ -19,6 +19,10 @@
 
 namespace karst::core {
 
+constexpr std::size_t kFewRadios = 8;  // others whose states one frame a period tells often enough
+/// Of many in a chain the oldest state was 0.9 to 1.7 periods a radio old.
+constexpr double kPeriodsPerRadio = 1.8;
+
 struct GossipOptions {
   double period_s = 1.0;              // of telling its state and what it holds
   double bytes_per_s = 1000;          // of its own frames, as a mean; a burst may be ten frames

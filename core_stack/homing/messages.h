@@ -25,6 +25,11 @@ constexpr std::uint32_t kMostNumber = 1u << 24;  // of a robot's nodes, records 
 /// aside: it hovers where others get by, and waits; boxed: it has no such place, and others make room.
 enum class TeamPhase : std::uint8_t { standby, explore, home, landing, landed, relay, lost, aside, boxed };
 
+constexpr bool in_the_air(TeamPhase p) {
+  return p == TeamPhase::explore || p == TeamPhase::home || p == TeamPhase::landing ||
+         p == TeamPhase::aside || p == TeamPhase::boxed;
+}
+
 /// How well one robot hears another: the share of its frames that arrive.
 struct HeardRobot {
   RobotId robot = 0;

@@ -6,7 +6,8 @@ namespace karst::core {
 
 void describe(OptionTable& t, RelayOptions& o) {
   t.add("link_age", o.link_age_s, "s", 1, 600,
-        "what was said of a link longer ago, or 1.6 s a radio of the team, no longer counts");
+        "what was said of a link longer ago no longer counts; in a team of more than nine radios 1.8 "
+        "periods of gossip a radio, if that is longer");
   t.add("least_quality", o.least_quality, "", 0.01, 1,
         "share of frames that arrive, of what counts as a link");
 }
@@ -23,19 +24,19 @@ bool RelayGraph::fresh(RobotId robot, TimeNs now) const {
   return stamps_[robot] && now - *stamps_[robot] <= from_seconds(options_.link_age_s);
 }
 
-std::array<RelayGraph::Row, kMostRobots> RelayGraph::costs(TimeNs now) const {
+std::array<RelayGraph::Row, kMostRobots> RelayGraph::costs(TimeNs now, double least_quality) const {
   std::array<Row, kMostRobots> out{};
   for (RobotId a = 0; a < kMostRobots; ++a)
     for (RobotId b = 0; b < a; ++b) {
       if (!fresh(a, now) || !fresh(b, now)) continue;
       const double there = heard_[a][b], back = heard_[b][a];
-      if (std::min(there, back) >= options_.least_quality) out[a][b] = out[b][a] = 1 / (there * back);
+      if (std::min(there, back) >= least_quality) out[a][b] = out[b][a] = 1 / (there * back);
     }
   return out;
 }
 
 std::vector<RelayLink> RelayGraph::links(TimeNs now) const {
-  const auto cost = costs(now);
+  const auto cost = costs(now, options_.least_quality);
   std::vector<RelayLink> out;
   for (RobotId a = 0; a < kMostRobots; ++a)
     for (RobotId b = a; b < kMostRobots; ++b)
@@ -46,11 +47,11 @@ std::vector<RelayLink> RelayGraph::links(TimeNs now) const {
 std::vector<RobotId> RelayGraph::connected(TimeNs now) const {
   Robots all;
   all.fill(true);
-  return connected(now, all);
+  return connected(now, all, options_.least_quality);
 }
 
-std::vector<RobotId> RelayGraph::connected(TimeNs now, const Robots& relays) const {
-  const auto cost = costs(now);
+std::vector<RobotId> RelayGraph::connected(TimeNs now, const Robots& relays, double least_quality) const {
+  const auto cost = costs(now, least_quality);
   Robots seen{};
   seen[kBase] = true;
   std::vector<RobotId> out{kBase};
@@ -63,8 +64,8 @@ std::vector<RobotId> RelayGraph::connected(TimeNs now, const Robots& relays) con
   return out;
 }
 
-bool RelayGraph::reaches_base(TimeNs now, RobotId robot, const Robots& relays) const {
-  const std::vector<RobotId> all = connected(now, relays);
+bool RelayGraph::reaches_base(TimeNs now, RobotId robot, const Robots& relays, double least_quality) const {
+  const std::vector<RobotId> all = connected(now, relays, least_quality);
   return std::find(all.begin(), all.end(), robot) != all.end();
 }
 

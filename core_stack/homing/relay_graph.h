@@ -40,13 +40,17 @@ class RelayGraph {
   /// Robots that reach the base over links, itself first, the rest in order.
   std::vector<RobotId> connected(TimeNs now) const;
   /// Whether a robot does over others that are among `relays` only; the base need not be.
-  bool reaches_base(TimeNs now, RobotId robot, const Robots& relays) const;
+  bool reaches_base(TimeNs now, RobotId robot, const Robots& relays) const {
+    return reaches_base(now, robot, relays, options_.least_quality);
+  }
+  /// And over links of at least that quality each way.
+  bool reaches_base(TimeNs now, RobotId robot, const Robots& relays, double least_quality) const;
 
  private:
   using Row = std::array<double, kMostRobots>;
   /// Cost of each link in transmissions; 0: none.
-  std::array<Row, kMostRobots> costs(TimeNs now) const;
-  std::vector<RobotId> connected(TimeNs now, const Robots& relays) const;
+  std::array<Row, kMostRobots> costs(TimeNs now, double least_quality) const;
+  std::vector<RobotId> connected(TimeNs now, const Robots& relays, double least_quality) const;
   bool fresh(RobotId robot, TimeNs now) const;
 
   RelayOptions options_;

@@ -24,7 +24,10 @@ constexpr double kClaimed_s = 10.0;
 /// With each place where a node was not heard the next must have so much more to spare of it: those beside it
 /// would be in vain, too.
 constexpr double kDoubt_db = 3.0;
-constexpr double kMostFall_m = 5.0;     // of a node that is dropped
+constexpr double kMostFall_m = 5.0;  // of a node that is dropped
+/// It is dropped with less than that to spare a second on: nobody looks whether it is heard before it lies
+/// there.
+constexpr double kNodeSpare_db = 1.0;
 constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
@@ -44,7 +47,9 @@ std::optional<Vec3> ground_of_node(const VoxelMap& map, const Release& release) 
     below = ground_below(map, at, 0, {.margin_m = 0, .most_drop_m = kMostFall_m});
     if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
       return std::nullopt;
-    const double fall_s = std::sqrt(2 * (at.z() - below.ground.z()) / kGravity_mps2);
+    const double up_mps = release.velocity_mps.z(), height_m = at.z() - below.ground.z();
+    const double fall_s =
+        (up_mps + std::sqrt(up_mps * up_mps + 2 * kGravity_mps2 * height_m)) / kGravity_mps2;
     at.head<2>() = (release.position + fall_s * release.velocity_mps).head<2>();
   }
   return below.ground;
@@ -167,13 +172,12 @@ void RelayHoming::find_links(const VoxelMap& map) {
 
 void RelayHoming::not_heard(const LandingSpot& spot) {
   give_up(spot.hover);
-  for (const Relay& r : relays_) {
-    if (r.robot != spot.node) continue;
-    if (r.stands_by)
-      awaited_in_vain_[r.robot] = r.antenna;
-    else
-      doubt_db_[r.robot] += kDoubt_db;
-  }
+  const auto relay =
+      std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == spot.node; });
+  if (relay != relays_.end() && relay->stands_by)
+    awaited_in_vain_[spot.node] = relay->antenna;
+  else if (relay != relays_.end() || !spot.claimed)
+    doubt_db_[spot.node] += kDoubt_db;
   std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && in_vain(r); });
   for (Place& p : places_)
     if (p.node == spot.node) p.node.reset();  // no link is counted on because it was before
@@ -266,9 +270,9 @@ std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Release& 
                        [&](const Relay& r) { return !r.stands_by && margin_db(map, ground, r) >= least_db; });
   };
   const std::optional<Vec3> ground = ground_of_node(map, here);
-  if (!ground || !in_reach(*ground, -options_.landing.link.spare_db / 2)) return std::nullopt;
+  if (!ground || !in_reach(*ground, 0)) return std::nullopt;
   const Vec3 next = ground_of_node(map, ahead).value_or(*ground + ahead.position - here.position);
-  return in_reach(next, 0) ? std::nullopt : ground;
+  return in_reach(next, kNodeSpare_db) ? std::nullopt : ground;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

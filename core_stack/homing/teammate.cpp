@@ -7,24 +7,24 @@
 namespace karst::core {
 namespace {
 
-constexpr double kGoodQuality = 0.2;       // of a link to land by: gossip copes with losses
+constexpr double kGoodQuality = 0.2;  // of a link to land by: gossip copes with losses
+/// Each way, of links that a dropped node is counted on over: nobody looked whether it is heard where it
+/// lies, and what is just in reach comes and goes.
+constexpr double kNodeQuality = 0.45;
 constexpr double kAntenna_m = 0.3;         // above the ground, of a landed robot
 constexpr TimeNs kStateAge = 3 * kSecond;  // of a position to keep apart from
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
 constexpr double kHeardNow = 1.0 / 3;  // of link_age: it is alive, whoever told it dead
 constexpr double kNear_m = 20.0;       // another vehicle in the air: positions are told more often
 
-bool in_the_air(TeamPhase p) {
-  return p == TeamPhase::explore || p == TeamPhase::home || p == TeamPhase::landing ||
-         p == TeamPhase::aside || p == TeamPhase::boxed;
-}
-
-/// Over a chain of all radios what the far end says is older than link_age.
-RelayOptions for_chain_of_all(RelayOptions relay, const TeamOptions& team) {
-  constexpr double kAgePerRadio_s = 1.6;  // oldest states in chains of 16 to 32: 0.9 to 1.6 s a radio
-  const auto radios = static_cast<double>(1 + team.robots * (1 + team.nodes));
-  relay.link_age_s = std::max(relay.link_age_s, kAgePerRadio_s * radios);
-  return relay;
+/// Over a chain of many radios what the far end says is older than link_age (gossip.h).
+RelayOptions for_chain_of_all(const HomingOptions& homing, const TeamOptions& team) {
+  RelayOptions out = homing.relay;
+  const auto radios = static_cast<std::size_t>(1 + team.robots * (1 + team.nodes));
+  if (radios > kFewRadios + 1)
+    out.link_age_s =
+        std::max(out.link_age_s, kPeriodsPerRadio * homing.gossip.period_s * static_cast<double>(radios));
+  return out;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ Teammate::Teammate(RobotId self, const TeamOptions& team, const HomingOptions& h
       landings_apart_m_(homing.landing.keep_apart_m),
       base_{kBase, base, base},
       gossip_(self, homing.gossip, seed),
-      graph_(for_chain_of_all(homing.relay, team)) {
+      graph_(for_chain_of_all(homing, team)) {
   TeamState waiting;
   waiting.position = base;
   gossip_.set_state(waiting);
@@ -153,7 +153,9 @@ RelayGraph::Robots Teammate::landed_in_reach() const {
   for (RobotId r = 1; r < kMostRobots; ++r) {
     if (!may(r)) continue;
     const std::optional<TimeNs> heard = graph_.last_heard_of(r);
-    counts[r] = !heard || *heard < landings_[r]->stamp || graph_.reaches_base(*heard, r, landed);
+    counts[r] = r > team_.robots
+                    ? heard && graph_.reaches_base(*heard, r, landed, kNodeQuality)
+                    : !heard || *heard < landings_[r]->stamp || graph_.reaches_base(*heard, r, landed);
   }
   for (bool more = true; more;) {
     more = false;
@@ -161,7 +163,8 @@ RelayGraph::Robots Teammate::landed_in_reach() const {
       if (may(told.robot) && !counts[told.robot])
         more |= counts[told.robot] =
             std::any_of(told.heard.begin(), told.heard.end(), [&](const HeardRobot& h) {
-              return h.robot < kMostRobots && counts[h.robot] && h.quality >= kGoodQuality;
+              return h.robot < kMostRobots && counts[h.robot] &&
+                     h.quality >= (told.robot > team_.robots ? kNodeQuality : kGoodQuality);
             });
   }
   return counts;

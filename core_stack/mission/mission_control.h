@@ -221,8 +221,9 @@ class MissionControl final : public VehicleSink {
   bool late_looks_told_ = false;
 
   // In a team.
-  std::optional<LandingSpot> landing_;  // where it will be a relay; without, it lands at its start
-  std::int64_t nodes_left_ = 0;         // that it carries
+  std::optional<LandingSpot> landing_;   // where it will be a relay; without, it lands at its start
+  std::optional<TimeNs> landing_again_;  // it comes to that place too late: when to look for another
+  std::int64_t nodes_left_ = 0;          // that it carries
   std::optional<TimeNs> dropped_at_;
   std::optional<TimeNs> unheard_since_;  // it hovers there and hears nobody who reaches the base
   Encounter encounter_;                  // with another vehicle

@@ -67,6 +67,7 @@ void MissionControl::go_home() {
     return;
   }
   const bool at_home = (flight_.reference().position - landing_hover()).norm() < kAboveHome_m;
+  if (!at_home && landing_again_ && now() >= *landing_again_) return choose_landing();
   if (at_home && flight_.at_rest(now() - kSecond)) {
     if (landing_) return confirm_landing();
     enter(Phase::land, "");

@@ -14,6 +14,7 @@ constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
 constexpr TimeNs kHeardHere = kSecond;    // of who speaks once a second: longer ago, it was somewhere else
 constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
+constexpr TimeNs kLandingAgain = 2 * kSecond;
 constexpr double kAtRefuge_m = 0.5;
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
@@ -93,10 +94,12 @@ void MissionControl::claim_goal(const std::optional<Goal>& goal) {
   team_->publish(claim);
 }
 
-/// Where it will be a relay, or, if nothing is nearer in time, its start.
+/// Where it will be a relay, or, if nothing is nearer in time, its start. For a place that it comes to too
+/// late it flies, and looks again: who took the place before is a relay as soon as the rest of that news is
+/// there.
 void MissionControl::choose_landing() {
   home_planning_ = true;
-  landing_.reset();
+  const std::optional<LandingSpot> before = std::exchange(landing_, std::nullopt);
   unheard_since_.reset();
   auto spot = std::make_shared<std::optional<LandingSpot>>();
   executive_.job(
@@ -104,10 +107,13 @@ void MissionControl::choose_landing() {
       [this, spot, from = flight_.reference().position, come_m = flown_m_] {
         *spot = explorer_.landing_spot(from, come_m);
       },
-      [this, spot] {
+      [this, spot, before] {
         home_planning_ = false;
         if (phase_ != Phase::home) return;
         landing_ = *spot;
+        landing_again_.reset();
+        if (landing_ && landing_->time_s > seconds_left()) landing_again_ = now() + kLandingAgain;
+        if (landing_ && before && landing_->hover == before->hover) return;
         home_failures_ = 0;
         detour_due_ = !path_blocked_;
         if (!landing_) {

@@ -82,7 +82,8 @@ TEST(Gossip, OfManyRadiosInAChainTheBaseKnowsHowAllAreNow) {
   for (const RobotId n : {16, 26, 32})
     for (const TeamPhase phase : {TeamPhase::explore, TeamPhase::relay})
       for (const std::uint32_t backlog : {0, 3})  // 3: more records to pass on than links carry
-        EXPECT_LT(oldest_state_s(n, phase, backlog), 1.6 * n) << int{n} << " radios, " << backlog;
+        EXPECT_LT(oldest_state_s(n, phase, backlog), kPeriodsPerRadio * n)
+            << int{n} << " radios, " << backlog;
 }
 
 // As it was: of 26 radios everybody's states and what each held took all that a radio may send, and of five
@@ -99,6 +100,39 @@ TEST(Gossip, OfManyRadiosInAChainTheBaseGetsTheRecordsOfTheFarEnd) {
   }
   net.run(60);
   for (RobotId r = n - authors; r < n; ++r) EXPECT_EQ(net.robots[0].held(r).first(), records) << int{r};
+}
+
+// As it was: states of 24 explorers took what a hurried robot needs to say where it is three times a second.
+TEST(Gossip, AmongManyAHurriedRobotStaysOnTheBeat) {
+  Network net(24, kAll, 0, 0, 5);
+  std::map<RobotId, TimeNs> told;
+  TimeNs longest = 0;
+  for (Gossip& r : net.robots) r.hurry(true);
+  net.run(20);
+  for (int i = 0; i < 200; ++i) {
+    net.run(0.1);
+    const std::vector<TeamState> states = net.robots[0].states();
+    for (const TeamState& s : states)
+      if (const auto [at, is_new] = told.try_emplace(s.robot, s.stamp); !is_new && s.stamp > at->second)
+        longest = std::max(longest, s.stamp - at->second), at->second = s.stamp;
+  }
+  EXPECT_EQ(told.size(), 23u);
+  EXPECT_LE(seconds(longest), 0.65);
+}
+
+TEST(Gossip, WhoComesIntoContactAmongManyIsToldOfOneThatFellSilent) {
+  constexpr RobotId n = 12, silent = 11, late = 10;
+  Network net(
+      n,
+      [](RobotId from, RobotId to, TimeNs now) {
+        const bool there = now > 90 * kSecond, spoke = now < 60 * kSecond;
+        return (there || (from != late && to != late)) && (spoke || (from != silent && to != silent));
+      },
+      0, 0, 5);
+  net.run(85);
+  EXPECT_EQ(net.robots[late].states().size(), 0u);
+  net.run(15);
+  EXPECT_EQ(net.robots[late].states().size(), n - 1u);
 }
 
 TEST(Gossip, WhatIsHeldOfAllFitsAFrameThoughOfEachThereIsAGap) {

@@ -144,8 +144,26 @@ TEST_F(Flown, WhoIsAwaitedInVainIsNotCountedOnBeforeItIsKnownToStandSomewhere) {
   EXPECT_EQ(spot(homing)->node, 2) << "it stands there";
 }
 
+// As it was: who had landed by then, where it had been counted on while on its way, was taken for one awaited
+// in vain, and the places beside were tried.
+TEST_F(Flown, OfARelayThatLandedMeanwhileAndIsNotHeardTheNextPlaceHasMoreToSpare) {
+  RelayHoming homing = flown("relay_chain");
+  const Vec3 ground(-5, 0.1, 0.3);
+  news.relays.push_back({2, ground, ground + Vec3(0, 0, 1), 500 * kSecond});
+  fly(homing, 25, 25);
+  const LandingSpot first = *spot(homing);
+  ASSERT_TRUE(first.claimed);
+  news.relays.back().stands_by.reset();
+  fly(homing, 25, 25);
+  homing.not_heard(first);
+  fly(homing, 25, 25);
+  const LandingSpot second = *spot(homing);
+  EXPECT_EQ(second.node, 2);
+  EXPECT_LE((second.ground - ground).norm(), 25.1 / std::pow(10, 3.0 / 20)) << "3 dB";
+}
+
 TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
-  // 50 m less 6 dB to spare: 25 m from the base, which is at -28; half of the spare is left as far as 35 m.
+  // 50 m less 6 dB to spare: 25 m from the base, which is at -28; 22 m with one more.
   RelayHoming homing = flown("return_to_base");
   const auto ends = [&](double x, double ahead) {
     return homing.reach_ends(map, {{x, 0.1, 1}}, {{ahead, 0.1, 1}});
@@ -153,8 +171,8 @@ TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
   ASSERT_TRUE(ends(-4, -2));
   EXPECT_LT((*ends(-4, -2) - Vec3(-4, 0.1, 0)).norm(), 0.2) << "straight below";
   EXPECT_FALSE(ends(-10, -8)) << "in reach yet";
-  EXPECT_TRUE(ends(2, 4)) << "a little behind the end";
-  EXPECT_FALSE(ends(12, 14)) << "far behind";
+  EXPECT_TRUE(ends(-7, -5)) << "a second on there is little to spare";
+  EXPECT_FALSE(ends(-2, 0)) << "behind the end";
   news.relays.push_back({2, {0, 0.1, 0.3}, {0, 0.1, 1}});
   fly(homing, 24, 24);
   EXPECT_FALSE(ends(-4, -2)) << "in reach of the relay";
