@@ -144,8 +144,7 @@ TEST_F(Flown, WhoIsAwaitedInVainIsNotCountedOnBeforeItIsKnownToStandSomewhere) {
   EXPECT_EQ(spot(homing)->node, 2) << "it stands there";
 }
 
-// As it was: who had landed by then, where it had been counted on while on its way, was taken for one awaited
-// in vain, and the places beside were tried.
+// It is not taken for one awaited in vain: it stands there, and a place nearer to it may be in contact.
 TEST_F(Flown, OfARelayThatLandedMeanwhileAndIsNotHeardTheNextPlaceHasMoreToSpare) {
   RelayHoming homing = flown("relay_chain");
   const Vec3 ground(-5, 0.1, 0.3);
