@@ -4,11 +4,12 @@ JOBS ?= $(shell nproc)
 CMAKE_FLAGS ?=
 DEMO_RUN ?= runs/demo
 
-.PHONY: help demo test build bench format lint asan tsan fuzz install clean
+.PHONY: help demo test build bench faults format lint asan tsan fuzz install clean
 help:
 	@echo "make demo     install, build, generate a cave, fly a mission through it, write the report"
 	@echo "make test     install, build, run every test"
 	@echo "make bench    benchmarks: ratios against stock OctoMap, NLopt and the naive way"
+	@echo "make faults   FAULT_TRIALS=1000 short flights with one fault each, resumable (docs/fault_campaign.md)"
 	@echo "make format   clang-format on every source file;  make lint  checks format, tidiness, layering"
 	@echo "make asan     unit tests under AddressSanitizer and UBSan;  make tsan  under ThreadSanitizer"
 	@echo "make fuzz     every reader of files under libFuzzer, FUZZ_SECONDS=30 each"
@@ -36,6 +37,15 @@ bench:
 	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target benchmarks
 	@.ci/bench $(BUILD)
+
+FAULT_TRIALS ?= 1000
+FAULT_RUNS ?= runs/faults
+faults:
+	@.ci/install test
+	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target fault_campaign
+	@$(BUILD)/bin/fault_campaign --out $(FAULT_RUNS) --trials $(FAULT_TRIALS) --jobs $(JOBS) \
+	  --build $$(git rev-parse --short HEAD)
 
 SOURCES = $$(git ls-files '*.h' '*.hpp' '*.c' '*.cpp')
 format:

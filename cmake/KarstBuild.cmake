@@ -50,7 +50,8 @@ function(karst_test name)
   endif()
   add_executable(${name} ${A_UNPARSED_ARGUMENTS})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_compile_options(${name} PRIVATE ${KARST_WARNINGS})
+  # Compiled a quarter sooner than with -O2; what is tested is in libraries that have it.
+  target_compile_options(${name} PRIVATE ${KARST_WARNINGS} $<$<CONFIG:Release>:-O1>)
   target_compile_definitions(${name} PRIVATE KARST_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KARST_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest_main)

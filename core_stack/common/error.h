@@ -5,7 +5,8 @@
 
 namespace karst::core {
 
-/// Thrown while setting up; in flight it ends the mission as aborted. `what()` reads "file: place: reason".
+/// Thrown while setting up; in flight it has the vehicle land where it is. `what()` reads "file: place:
+/// reason".
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& file, const std::string& place, const std::string& reason)

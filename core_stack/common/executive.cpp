@@ -6,14 +6,22 @@
 #include <deque>
 #include <future>
 #include <mutex>
+#include <new>
 #include <thread>
 
 namespace karst::core {
+
+struct Executive::Periodic {
+  std::string name;
+  TimeNs period;
+  std::function<void()> step;
+};
 
 struct Executive::Event {
   TimeNs time;
   std::uint64_t sequence;
   std::function<void()> step;
+  const Periodic* periodic = nullptr;  // set: that is to be run, and `step` is empty
   // std::push_heap keeps the greatest in front: order by later-is-less.
   bool operator<(const Event& o) const { return time != o.time ? time > o.time : sequence > o.sequence; }
 };
@@ -64,6 +72,8 @@ struct Executive::Job {
   bool ready() const { return cost.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 };
 
+const std::string Executive::kNoName;
+
 Executive::Executive(int threads, Clock clock) : clock_(clock) {
   if (threads <= 1 && clock == Clock::lockstep) return;
   for (auto& w : workers_) w = std::make_unique<Worker>();
@@ -73,31 +83,47 @@ Executive::~Executive() = default;
 
 int Executive::threads() const { return workers_[0] ? static_cast<int>(workers_.size()) : 1; }
 
-void Executive::push(TimeNs time, std::uint64_t sequence, std::function<void()> step) {
-  queue_.push_back({std::max(time, now_), sequence, std::move(step)});
+void Executive::push(Event event) {
+  event.time = std::max(event.time, now_);
+  queue_.push_back(std::move(event));
   std::push_heap(queue_.begin(), queue_.end());
 }
 
-void Executive::timed(const std::string& name, const std::function<void()>& f) {
-  costs_[name].milliseconds.push_back(static_cast<float>(run_timed_ms(f)));
+/// Out of memory it is a figure less, not a step less.
+void Executive::note_cost(const std::string& name, double milliseconds) {
+  try {
+    costs_[name].milliseconds.push_back(static_cast<float>(milliseconds));
+  } catch (const std::bad_alloc&) {
+  }
 }
 
-void Executive::at(TimeNs time, std::function<void()> step) { push(time, next_sequence_++, std::move(step)); }
+void Executive::at(TimeNs time, std::function<void()> step) {
+  push({time, next_sequence_++, std::move(step)});
+}
 
 void Executive::every(std::string name, TimeNs first, TimeNs period, std::function<void()> step) {
-  repeat(next_sequence_++, std::move(name), first, period, std::move(step));
+  periodic_.push_back(std::make_unique<Periodic>(Periodic{std::move(name), period, std::move(step)}));
+  push({first, next_sequence_++, {}, periodic_.back().get()});
 }
 
-/// Keeps its sequence number: a new one each time would let a slow step overtake a faster one registered
-/// earlier.
-void Executive::repeat(std::uint64_t sequence, std::string name, TimeNs time, TimeNs period,
-                       std::function<void()> step) {
-  push(time, sequence,
-       [this, sequence, name = std::move(name), time, period, step = std::move(step)]() mutable {
-         if (clock_ == Clock::real_time && wall() - time >= period) ++costs_[name].overruns;
-         timed(name, step);
-         repeat(sequence, std::move(name), time + period, period, std::move(step));
-       });
+void Executive::run_periodic(const Periodic& periodic, TimeNs due) {
+  if (clock_ == Clock::real_time && wall() - due >= periodic.period) ++costs_[periodic.name].overruns;
+  note_cost(periodic.name, run_timed_ms(periodic.step));
+}
+
+void Executive::run(Event event) {
+  ++events_;
+  running_ = event.periodic ? &event.periodic->name : &kNoName;
+  if (!event.periodic) return event.step();
+  // It is due again whatever becomes of it now. It keeps its sequence number: a new one each time would let a
+  // slow step overtake a faster one registered earlier. The queue has room: this event was just taken out.
+  push({event.time + event.periodic->period, event.sequence, {}, event.periodic});
+  run_periodic(*event.periodic, event.time);
+}
+
+int Executive::under_way(const std::string& name) const {
+  const auto found = under_way_.find(name);
+  return found == under_way_.end() ? 0 : found->second;
 }
 
 void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
@@ -113,7 +139,8 @@ void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<vo
   } else {
     task();
   }
-  push(now_ + budget, next_sequence_++, [this, job] {
+  int& under_way = under_way_[job->name];  // may need memory: before anything is in the queue
+  Executive::at(now_ + budget, [this, job] {
     if (clock_ == Clock::real_time && !job->ready()) {
       ++costs_[job->name].overruns;
       late_.push_back(job);
@@ -121,10 +148,14 @@ void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<vo
       finish(job);
     }
   });
+  ++under_way;
 }
 
 void Executive::finish(const std::shared_ptr<Job>& job) {
-  costs_[job->name].milliseconds.push_back(static_cast<float>(job->cost.get()));  // waits, rethrows
+  const auto counted = under_way_.find(job->name);
+  --counted->second;
+  running_ = &counted->first;
+  note_cost(job->name, job->cost.get());  // waits, rethrows
   job->publish();
 }
 
@@ -174,18 +205,17 @@ void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
     Event event = std::move(queue_.back());
     queue_.pop_back();
     now_ = std::max(now_, event.time);
-    event.step();
+    run(std::move(event));
     if (done()) return;
   }
   now_ = std::max(now_, limit);
 }
 
 void Executive::drain() {
-  for (auto& w : workers_) {
-    if (!w) continue;
-    w.reset();
-    w = std::make_unique<Worker>();
-  }
+  const bool threaded = workers_[0] != nullptr;
+  for (auto& w : workers_) w.reset();  // all of them, before any is made anew: that may fail
+  if (threaded)
+    for (auto& w : workers_) w = std::make_unique<Worker>();
   late_.clear();
 }
 

@@ -7,8 +7,12 @@
 // due or as soon after as it can, a late job's result appears when it is ready, and the delay is counted.
 // Jobs of one lane run one after another in the order submitted, so whatever a lane owns (the map, the sensor
 // models) needs no lock.
+//
+// An exception in a step or a job leaves run_until(), which may be called again: periodic steps come all the
+// same, and no memory is allocated to repeat them.
 #pragma once
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -37,7 +41,7 @@ class Executive {
   /// thread, and no more than that.
   /// In real time there is always a thread a lane.
   explicit Executive(int threads, Clock clock = Clock::lockstep);
-  ~Executive();
+  virtual ~Executive();  // virtual, as what registers work: a test has single steps and jobs fail
   Executive(const Executive&) = delete;
   Executive& operator=(const Executive&) = delete;
 
@@ -47,18 +51,26 @@ class Executive {
 
   /// Runs `step` at `first`, `first + period`, ... Whatever is due at one time runs in the order of
   /// registration, a periodic step by its first.
-  void every(std::string name, TimeNs first, TimeNs period, std::function<void()> step);
+  virtual void every(std::string name, TimeNs first, TimeNs period, std::function<void()> step);
   /// Runs `step` once at `time` (not before now).
-  void at(TimeNs time, std::function<void()> step);
+  virtual void at(TimeNs time, std::function<void()> step);
   /// Runs `work` on `lane`, then `publish` on the loop's thread at now + budget. An exception in `work`
   /// is rethrown from run_until() at that time.
-  void job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
-           std::function<void()> publish);
+  virtual void job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
+                   std::function<void()> publish);
+  /// Jobs of that name which are neither published nor failed.
+  int under_way(const std::string& name) const;
 
   /// Advances the clock event by event until `done()` holds after an event or `limit` is passed.
   void run_until(TimeNs limit, const std::function<bool()>& done);
   /// Waits for jobs still running; their results are not published.
   void drain();
+
+  /// Of steps and results so far. May be read from any thread: where it stays as it is, the loop hangs.
+  std::uint64_t events() const { return events_; }
+  /// Name of the step or job that the loop runs, publishes or waits for; "" for one without a name. From any
+  /// thread.
+  std::string running() const { return running_.load()->c_str(); }
 
   /// In all; 0 in lockstep.
   int overruns() const;
@@ -68,10 +80,11 @@ class Executive {
   struct Event;
   struct Worker;
   struct Job;
-  void push(TimeNs time, std::uint64_t sequence, std::function<void()> step);
-  void repeat(std::uint64_t sequence, std::string name, TimeNs time, TimeNs period,
-              std::function<void()> step);
-  void timed(const std::string& name, const std::function<void()>& f);
+  struct Periodic;
+  void push(Event event);
+  void run(Event event);
+  void run_periodic(const Periodic& step, TimeNs due);
+  void note_cost(const std::string& name, double milliseconds);
   void finish(const std::shared_ptr<Job>& job);
   bool finish_late_job();
   TimeNs wall() const;
@@ -84,6 +97,11 @@ class Executive {
   std::uint64_t next_sequence_ = 0;
   std::vector<Event> queue_;                        // heap on (time, sequence)
   std::array<std::unique_ptr<Worker>, 4> workers_;  // by lane; all or none
+  std::vector<std::unique_ptr<Periodic>> periodic_;
+  std::map<std::string, int> under_way_;  // an entry for every job's name that ever was
+  static const std::string kNoName;
+  std::atomic<std::uint64_t> events_ = 0;
+  std::atomic<const std::string*> running_ = &kNoName;  // to what is never taken away
   std::map<std::string, Cost> costs_;
 };
 

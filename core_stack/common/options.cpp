@@ -1,7 +1,6 @@
 #include "core_stack/common/options.h"
 
 #include <algorithm>
-#include <boost/property_tree/info_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
 #include <charconv>
 #include <cmath>
@@ -9,7 +8,6 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/info_lines.h"
 #include "core_stack/common/units.h"
 
 namespace karst::core {
@@ -191,22 +189,6 @@ std::vector<std::pair<std::string, std::string>> leaves_of(const pt::ptree& tree
   std::vector<std::pair<std::string, std::string>> leaves;
   collect_leaves(tree, "", leaves);
   return leaves;
-}
-
-pt::ptree read_info(const std::string& path) {
-  const std::vector<InfoLine> lines = info_lines(path);
-  check_depth(lines);
-  std::stringstream text;
-  for (const InfoLine& line : lines) text << line.text << '\n';
-  pt::ptree tree;
-  try {
-    pt::read_info(text, tree);
-  } catch (const pt::info_parser_error& e) {
-    if (e.line() == 0 || lines.empty()) throw InputError(path, "", e.message());
-    const InfoLine& line = lines[std::min<std::size_t>(e.line(), lines.size()) - 1];
-    throw InputError(line.file, line.place(), e.message());
-  }
-  return tree;
 }
 
 }  // namespace karst::core

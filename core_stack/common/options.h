@@ -74,8 +74,8 @@ std::string nearest_name(const std::string& key, const std::vector<std::string>&
 /// own counts as a leaf, too.
 std::vector<std::pair<std::string, std::string>> leaves_of(const boost::property_tree::ptree& tree);
 
-/// Reads an INFO file with what it includes, whose paths are relative to it; throws InputError with the line
-/// on a syntax error.
+/// Reads an INFO file, whoever wrote it; throws InputError ("FILE: line N: reason") on what is no INFO, has
+/// an #include, or goes beyond the bounds of info_lines.h. See info_reader.h.
 boost::property_tree::ptree read_info(const std::string& path);
 
 }  // namespace karst::core

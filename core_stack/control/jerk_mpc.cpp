@@ -64,6 +64,7 @@ Eigen::Matrix3d terminal_weight(const JerkMpcSetup& s) {
 
 JerkMpc::JerkMpc(const JerkMpcSetup& setup)
     : setup_(setup), terminal_(terminal_weight(setup)), stages_(static_cast<std::size_t>(setup.steps)) {
+  shifted_.reserve(stages_.size());
   plan_.jerk_mps3.assign(stages_.size(), Vec3::Zero());
   plan_.motion.resize(stages_.size());
 }
@@ -279,13 +280,12 @@ const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget
   plan_.iterations = 0;
   softness_ = kHard;
   const bool warm = elapsed_s >= 0;
-  std::vector<Vec3> shifted;
   double shifted_excess = 0;
   bool solved = false;
   if (warm) {
     shift(elapsed_s, start);
     roll_out(start);
-    shifted = plan_.jerk_mps3;
+    shifted_ = plan_.jerk_mps3;
     shifted_excess = excess();
     start_multipliers(plan_.converged, targets);
     solved = iterate(start, targets, false);
@@ -303,7 +303,7 @@ const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget
   if (solved) return plan_;
   roll_out(start);
   if (warm && excess() > std::max(shifted_excess, kGoodExcess)) {
-    plan_.jerk_mps3 = shifted;  // going on as planned keeps the limits; the next solution may do better
+    plan_.jerk_mps3 = shifted_;  // going on as planned keeps the limits; the next solution may do better
     roll_out(start);
   }
   return plan_;

@@ -91,8 +91,9 @@ class JerkMpc {
   JerkMpcSetup setup_;
   Eigen::Matrix3d terminal_;
   std::vector<Stage> stages_;
-  double cost_ = 0;      // of the plan at the last Newton step
-  double softness_ = 0;  // of all limits
+  std::vector<Vec3> shifted_;  // the last plan, as the present one began
+  double cost_ = 0;            // of the plan at the last Newton step
+  double softness_ = 0;        // of all limits
   JerkPlan plan_;
 };
 

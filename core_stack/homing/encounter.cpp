@@ -15,7 +15,7 @@ constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
 constexpr TimeNs kSeen = kSecond;            // one that stands aside is in the map by then
 constexpr TimeNs kFirst = 15 * kSecond;      // who goes before waits no longer for room
 constexpr TimeNs kAskAgain = 2 * kSecond;
-constexpr int kMostInVain = 2;
+constexpr int kMostInVain = 2, kMostInVainOfCrowd = 8;
 constexpr TimeNs kBoxed = 30 * kSecond;
 
 double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
@@ -72,6 +72,13 @@ Encounter::Action Encounter::update(const KeepApart& rule, Neighbour self,
     begin(self, near.front(), now);
     return Action::hold;
   }
+  // Who makes room for one must not fly into another: nobody else is looked at where it flies then.
+  if (on_the_way_ && std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
+        return stops_on_the_way(rule, self, o, o.robot == *with_);
+      })) {
+    arrived(false, now);
+    return Action::stop;
+  }
   const double d = distance_m(self, *other);
   if (!at_rest || on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain)
     return Action::hold;
@@ -91,9 +98,9 @@ void Encounter::arrived(bool others_get_by, TimeNs now) {
   nearest_m_ = 1e9;  // from here on it counts anew how near the other comes
 }
 
-void Encounter::no_room(TimeNs now) {
+void Encounter::no_room(TimeNs now, bool crowd) {
   aside_ = false;
-  if (++in_vain_ >= kMostInVain) boxed_until_ = now + kBoxed, in_vain_ = 0;
+  if (++in_vain_ >= (crowd ? kMostInVainOfCrowd : kMostInVain)) boxed_until_ = now + kBoxed, in_vain_ = 0;
 }
 
 }  // namespace karst::core

@@ -12,6 +12,7 @@ class Encounter {
   enum class Action {
     go_on,      // nobody is in the way
     hold,       // stop, or stay where it is
+    stop,       // on its way to make room it comes too near to somebody: brake, and look for another place
     make_room,  // it stands in another's way: to be answered by set_out() or no_room()
   };
 
@@ -23,8 +24,9 @@ class Encounter {
   void set_out() { on_the_way_ = true, aside_ = false; }
   /// It is at rest again: where others get by it, or not there.
   void arrived(bool others_get_by, TimeNs now);
-  /// There is no place to make room.
-  void no_room(TimeNs now);
+  /// There is no place to make room; of a `crowd`, further vehicles may be in the way, which make room
+  /// themselves.
+  void no_room(TimeNs now, bool crowd);
   void forget() { *this = {}; }
 
   bool holds() const { return with_.has_value(); }
@@ -44,7 +46,7 @@ class Encounter {
   double nearest_m_ = 0;
   std::optional<TimeNs> aside_since_;  // of the other
   bool on_the_way_ = false, aside_ = false;
-  int in_vain_ = 0;
+  int in_vain_ = 0;  // places asked for
   TimeNs boxed_until_ = 0;
 };
 

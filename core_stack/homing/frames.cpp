@@ -7,7 +7,6 @@ namespace karst::core {
 namespace {
 
 constexpr std::uint16_t kMark = 0x724b;  // "Kr"
-constexpr std::size_t kChecksumBytes = 4;
 constexpr double kMostSpeed_cmps = 10000;
 
 void write(PartWriter& w, const TeamState& s) {
@@ -62,58 +61,46 @@ std::size_t bytes_of(const Part& part) {
 
 }  // namespace
 
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  static constexpr auto table = [] {
-    std::array<std::uint32_t, 256> t{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      t[i] = i;
-      for (int k = 0; k < 8; ++k) t[i] = t[i] & 1 ? t[i] >> 1 ^ 0xedb88320u : t[i] >> 1;
-    }
-    return t;
-  }();
-  std::uint32_t c = ~0u;
-  for (const std::uint8_t b : bytes) c = table[(c ^ b) & 0xff] ^ c >> 8;
-  return ~c;
-}
-
 std::size_t state_bytes(const TeamState& s) { return bytes_of(s); }
 std::size_t held_bytes(const Held& h) { return bytes_of(h); }
 std::size_t record_bytes(const SentRecord& r) { return bytes_of(r); }
 
-std::optional<Bytes> write_frame(const Frame& frame) {
+std::optional<Bytes> write_frame(const Frame& frame, const MissionKey& key) {
   Bytes out;
   PartWriter w(out);
   w.number(kMark, 2), w.byte(kWireVersion),
       w.byte(static_cast<std::uint8_t>(frame.sender | frame.tells_held << 7));
   if (frame.sender >= kMostRobots) w.refuse();
-  w.number(frame.sequence, 2);
+  w.time(frame.sent), w.number(frame.sequence, 2);
   const auto parts = [&w](const auto& list) {
     w.count(list.size());
     for (const auto& part : list) write(w, part);
   };
   parts(frame.states), parts(frame.held), parts(frame.records);
-  if (!w.fine() || out.size() + kChecksumBytes > kFrameBytes) return std::nullopt;
-  w.number(crc32(out), 4);
+  if (!w.fine() || out.size() + kTagBytes > kFrameBytes) return std::nullopt;
+  const Tag tag = tag_of(out, key);
+  out.insert(out.end(), tag.begin(), tag.end());
   return out;
 }
 
-std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, Refusal& why) {
+std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, const MissionKey& key, Refusal& why) {
   const auto refuse = [&why](Refusal r) {
     why = r;
     return std::nullopt;
   };
   if (bytes.size() < kEmptyFrameBytes || bytes.size() > kFrameBytes) return refuse(Refusal::too_short);
-  PartReader r(bytes.first(bytes.size() - kChecksumBytes));
+  const auto said = bytes.first(bytes.size() - kTagBytes);
+  PartReader r(said);
   if (r.number(2) != kMark) return refuse(Refusal::no_frame);
-  // Said before the checksum is looked at: another version may have another one.
+  // Said before the tag is looked at: another version may have another one.
   if (r.byte() != kWireVersion) return refuse(Refusal::version);
-  if (WireReader(bytes.last(kChecksumBytes)).number(4) != crc32(bytes.first(bytes.size() - kChecksumBytes)))
-    return refuse(Refusal::checksum);
+  if (!has_tag(said, bytes.last(kTagBytes), key)) return refuse(Refusal::forged);
   Frame frame;
   const std::uint8_t sender = r.byte();
   frame.tells_held = sender & 0x80;
   frame.sender = sender & 0x7f;
   if (frame.sender >= kMostRobots) return refuse(Refusal::range);
+  frame.sent = r.time();
   frame.sequence = static_cast<std::uint16_t>(r.number(2));
   for (std::size_t n = r.count(24); n > 0 && r.fine(); --n) frame.states.push_back(read_state(r));
   for (std::size_t n = r.count(3); n > 0 && r.fine(); --n) {

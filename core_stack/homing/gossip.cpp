@@ -1,6 +1,7 @@
 #include "core_stack/homing/gossip.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace karst::core {
@@ -13,37 +14,23 @@ constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks 
 constexpr std::size_t kMostWaiting = 400;
 constexpr int kTimesTold = 2;  // each of these states, or too many are lost on their way along a chain
 constexpr TimeNs kSteady = 4 * kSecond;  // of many, who stands is told of again when there is so much news
-/// What is said of a later time would stand in the way of all that follows. The team's clocks are set
-/// together.
-constexpr TimeNs kMostAhead = 5 * kSecond;
-
-/// The latest time that a record speaks of; 0 if it speaks of none.
-TimeNs latest_stamp(const Record& record) {
-  if (const auto* facts = std::get_if<TreeFacts>(&record)) {
-    TimeNs latest = 0;
-    for (const RayFact& f : facts->rays) latest = std::max(latest, f.stamp);
-    for (const LifeFact& f : facts->lives) latest = std::max(latest, f.stamp);
-    return latest;
-  }
-  if (const auto* goal = std::get_if<GoalClaim>(&record)) return goal->stamp;
-  if (const auto* landing = std::get_if<LandingClaim>(&record)) return landing->stamp;
-  if (const auto* object = std::get_if<ObjectSeen>(&record)) return object->stamp;
-  return 0;  // a receipt
-}
+/// So long after it was switched on others may remind a robot of records that it wrote before.
+constexpr TimeNs kReminded = 10 * kSecond;
 
 }  // namespace
 
 void describe(OptionTable& t, GossipOptions& o) {
   t.add("period", o.period_s, "s", 0.1, 60, "every robot tells its state and what it holds so often");
   t.add("bytes_per_second", o.bytes_per_s, "", 50, 1e6, "a robot sends no more than that, as a mean");
-  t.add("contact_age", o.contact_age_s, "s", 0.5, 600, "a robot not heard for longer is out of contact");
+  t.add("contact_age", o.contact_age_s, "s", 0.5, 600,
+        "a robot not heard for longer is out of contact; a frame sent longer ago is refused");
   t.add("most_records", o.most_records, 100, 1e6, "of one robot; more are refused");
 }
 
-Gossip::Gossip(RobotId self, const GossipOptions& options, std::uint64_t seed)
-    : self_(self),
+Gossip::Gossip(const TeamRadio& radio, const GossipOptions& options, std::uint64_t seed)
+    : radio_(radio),
       options_(options),
-      random_(Random::stream(seed, "gossip " + std::to_string(self))),
+      random_(Random::stream(seed, "gossip " + std::to_string(radio.self))),
       store_(static_cast<std::uint32_t>(options.most_records)),
       allowance_bytes_(kBurstFrames * kFrameBytes) {
   next_news_ = from_seconds(options_.period_s * random_.uniform());
@@ -61,9 +48,12 @@ std::uint32_t Gossip::publish(const Record& record) {
   for (const Record& piece : pieces) {
     const auto bytes = write_record(piece);
     if (!bytes) return 0;
-    if (store_.take({self_, published_ + 1, *bytes}) != RecordStore::Taken::fresh) return 0;
-    last = ++published_;
-    queue(self_, last, last_send_);
+    // The first that it lacks, whatever others say that it wrote: so its own word always has a number.
+    const std::uint32_t number = store_.held(self()).first() + 1;
+    if (store_.take({self(), number, *bytes}) != RecordStore::Taken::fresh) return 0;
+    last = number;
+    published_ = true;
+    queue(self(), last, last_send_);
   }
   return last;
 }
@@ -73,18 +63,46 @@ bool Gossip::in_contact(const Peer& p, TimeNs now) const {
 }
 
 void Gossip::receive(std::span<const std::uint8_t> bytes, TimeNs now) {
+  if (!began_) began_ = now;
   ++counts_.frames_heard;
   counts_.bytes_heard += bytes.size();
   Refusal why{};
-  const std::optional<Frame> frame = read_frame(bytes, why);
+  const std::optional<Frame> frame = read_frame(bytes, radio_.key, why);
   if (!frame) {
     ++counts_.refused[static_cast<std::size_t>(why)];
-  } else if (frame->sender != self_) {  // its own voice, thrown back or feigned
+  } else if (frame->sender != self()) {  // its own voice, thrown back or feigned
     hear(*frame, now);
   }
 }
 
+/// What the tag does not show.
+std::optional<Refusal> Gossip::refused(const Frame& frame, TimeNs now) const {
+  if (!radio_.is_member(frame.sender)) return Refusal::stranger;
+  if (frame.sent > now + kClockTolerance || now - frame.sent > from_seconds(options_.contact_age_s))
+    return Refusal::stale;
+  return std::nullopt;
+}
+
 void Gossip::hear(const Frame& frame, TimeNs now) {
+  std::optional<Refusal> why = refused(frame, now);
+  ReplayWindow::Verdict verdict{};
+  if (!why) {
+    verdict = peers_[frame.sender].replays.take(frame.sent, frame.sequence);
+    if (verdict == ReplayWindow::Verdict::refused) why = Refusal::replayed;
+  }
+  if (why) {
+    ++counts_.refused[static_cast<std::size_t>(*why)];
+    return;
+  }
+  const bool newest = verdict == ReplayWindow::Verdict::newest;
+  if (newest) hear_from(frame, now);
+  for (const TeamState& s : frame.states) take_state(s, now);
+  for (const SentRecord& r : frame.records) take_record(r, frame.sender, now);
+  if (newest && frame.tells_held) take_held(frame, now);
+}
+
+/// The sender is in contact.
+void Gossip::hear_from(const Frame& frame, TimeNs now) {
   Peer& peer = peers_[frame.sender];
   if (in_contact(peer, now)) {
     // A mean over the last ten frames or so; each gap counts as that many lost.
@@ -98,28 +116,50 @@ void Gossip::hear(const Frame& frame, TimeNs now) {
   }
   peer.sequence = frame.sequence;
   peer.heard_at = now;
-  for (const TeamState& s : frame.states) take_state(s, now);
-  for (const SentRecord& r : frame.records) take_record(r, frame.sender, now);
-  if (!frame.tells_held) return;
+}
+
+void Gossip::take_held(const Frame& frame, TimeNs now) {
+  Peer& peer = peers_[frame.sender];
   peer.held.fill({});
-  for (const Held& h : frame.held) peer.held[h.author].set(h);
-  if (frame.sender == kBase) known_at_base_ = std::max(known_at_base_, peer.held[self_].first());
+  const HeldNumbers& own = store_.held(self());
+  for (const Held& h : frame.held) {
+    const std::uint64_t highest = std::uint64_t{h.first} + (h.beyond ? 1 + std::bit_width(h.beyond) : 0);
+    if (h.author == self() && highest > own.first()) {
+      ++counts_.claims_refused;  // more than it wrote: then nothing of that is believed
+      continue;
+    }
+    peer.held[h.author].set(h);
+  }
+  if (frame.sender == kBase) known_to_hold(peer.held[self()].first());
   answer(frame.sender, now);
 }
 
+/// By the base's word; of more than there are nothing is believed.
+void Gossip::known_to_hold(std::uint32_t own_records) {
+  if (own_records <= store_.held(self()).first())
+    known_at_base_ = std::max(known_at_base_, own_records);
+  else
+    ++counts_.claims_refused;
+}
+
 void Gossip::take_state(const TeamState& s, TimeNs now) {
-  if (s.stamp > now + kMostAhead) {
+  if (!plausible(radio_, s, now)) {
     ++counts_.states_refused;
     return;
   }
   auto& known = states_[s.robot];
-  if (s.robot != self_ && (!known || s.stamp > known->stamp)) known = s;
+  if (s.robot != self() && (!known || s.stamp > known->stamp)) known = s;
 }
+
+/// A robot that started anew with an empty memory goes on behind what it wrote before. Later nobody else can
+/// know what it wrote.
+bool Gossip::may_be_reminded(TimeNs now) const { return !published_ && began_ && now - *began_ <= kReminded; }
 
 void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
   Refusal why{};
   std::optional<Record> record = read_record(r.bytes, why);
-  if (!record || latest_stamp(*record) > now + kMostAhead) {
+  const bool unheard_of = r.author == self() && !store_.held(self()).holds(r.number) && !may_be_reminded(now);
+  if (!record || unheard_of || !plausible(radio_, r.author, *record, now)) {
     ++counts_.records_refused;
     return;
   }
@@ -143,11 +183,9 @@ void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
       break;
   }
   ++counts_.records_taken;
-  // A robot that started anew goes on behind what it is reminded of.
-  if (r.author == self_) published_ = std::max(published_, r.number);
   if (const auto* receipt = std::get_if<Receipt>(&*record); receipt && r.author == kBase)
     for (const Receipt::Row& row : receipt->rows)
-      if (row.robot == self_) known_at_base_ = std::max(known_at_base_, row.records);
+      if (row.robot == self()) known_to_hold(row.records);
   delivered_.push_back({r.author, r.number, std::move(*record)});
   queue(r.author, r.number, now + wait());
 }
@@ -187,6 +225,7 @@ bool Gossip::unsettled(TimeNs now) const {
 }
 
 std::vector<Bytes> Gossip::send(TimeNs now) {
+  if (!began_) began_ = now;
   allowance_bytes_ = std::min(allowance_bytes_ + options_.bytes_per_s * seconds(now - last_send_),
                               kBurstFrames * kFrameBytes);
   last_send_ = now;
@@ -209,7 +248,7 @@ std::vector<Bytes> Gossip::send(TimeNs now) {
       return true;
     });
     const std::size_t passed = news ? add_states(frame, room) : 0;
-    finish(frame, out);
+    finish(frame, now, out);
     if (news) tell_more_states(passed, now, out);
   }
   return out;
@@ -232,7 +271,7 @@ void Gossip::tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>
     Frame frame;
     std::size_t room = kFrameBytes - kEmptyFrameBytes;
     passed += add_states(frame, room);
-    if (!frame.states.empty()) finish(frame, out);
+    if (!frame.states.empty()) finish(frame, now, out);
   }
 }
 
@@ -242,7 +281,7 @@ Frame Gossip::own_news(TimeNs now) {
   const double period_s = options_.period_s / (hurried_ || (!of_many() && unsettled(now)) ? kHaste : 1);
   next_news_ = now + from_seconds(period_s * random_.uniform(0.9, 1.1));
   Frame frame;
-  state_.robot = self_;
+  state_.robot = self();
   state_.heard.clear();
   frame.tells_held = true;
   std::size_t bytes = kEmptyFrameBytes + state_bytes(state_);
@@ -285,14 +324,15 @@ std::size_t Gossip::add_states(Frame& frame, std::size_t& room) {
   return passed;
 }
 
-void Gossip::finish(Frame& frame, std::vector<Bytes>& out) {
-  frame.sender = self_;
+void Gossip::finish(Frame& frame, TimeNs now, std::vector<Bytes>& out) {
+  frame.sender = self();
+  frame.sent = now;
   frame.sequence = sequence_++;
-  std::optional<Bytes> bytes = write_frame(frame);
+  std::optional<Bytes> bytes = write_frame(frame, radio_.key);
   if (!bytes && !frame.states.empty()) {
     // Its own state cannot be told (not finite, say): the rest is told all the same.
     frame.states.clear();
-    bytes = write_frame(frame);
+    bytes = write_frame(frame, radio_.key);
   }
   if (!bytes) return;
   ++counts_.frames_sent;

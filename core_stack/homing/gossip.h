@@ -8,14 +8,17 @@
 // by then another was heard to send it or all in contact are known to hold it: the radio is heard by all
 // around, and one of several neighbours is enough. Nothing is assumed about contact: a robot that was away
 // for an hour is brought up to date by the first it meets. What is heard says how good links are: the gaps in
-// the numbers of a robot's frames.
+// the numbers of a robot's frames. A frame counts once, and soon after it was sent (replay_window.h); what it
+// says counts if it can be true (plausible.h).
 #pragma once
 #include <array>
 #include <optional>
 
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
+#include "core_stack/homing/plausible.h"
 #include "core_stack/homing/record_store.h"
+#include "core_stack/homing/replay_window.h"
 
 namespace karst::core {
 
@@ -24,9 +27,10 @@ constexpr std::size_t kFewRadios = 8;  // others whose states one frame a period
 constexpr double kPeriodsPerRadio = 1.8;
 
 struct GossipOptions {
-  double period_s = 1.0;              // of telling its state and what it holds
-  double bytes_per_s = 1000;          // of its own frames, as a mean; a burst may be ten frames
-  double contact_age_s = 5.0;         // a robot not heard for longer is out of contact
+  double period_s = 1.0;      // of telling its state and what it holds
+  double bytes_per_s = 1120;  // of its own frames, as a mean; a burst may be ten frames
+  double contact_age_s =
+      5.0;  // a robot not heard for longer is out of contact, a frame older than that stale
   std::int64_t most_records = 20000;  // of one robot
 };
 void describe(OptionTable& t, GossipOptions& o);
@@ -34,8 +38,9 @@ void describe(OptionTable& t, GossipOptions& o);
 struct GossipCounts {
   std::uint64_t frames_sent = 0, bytes_sent = 0, frames_heard = 0, bytes_heard = 0;
   std::array<std::uint64_t, kRefusals> refused{};  // frames, by Refusal
-  std::uint64_t records_refused = 0;  // in good frames: no record, from the future, too far ahead, too many
-  std::uint64_t states_refused = 0;   // from the future
+  std::uint64_t records_refused = 0;  // in good frames: no record, not plausible, too far ahead, too many
+  std::uint64_t states_refused = 0;   // not plausible
+  std::uint64_t claims_refused = 0;   // that somebody holds more of its records than there are
   std::uint64_t contradictions = 0;   // another text under a number that is known
   std::uint64_t records_taken = 0, records_again = 0;
 };
@@ -49,7 +54,7 @@ struct Delivery {
 class Gossip {
  public:
   /// `seed` is for waits only.
-  Gossip(RobotId self, const GossipOptions& options, std::uint64_t seed);
+  Gossip(const TeamRadio& radio, const GossipOptions& options, std::uint64_t seed);
 
   /// A new record of its own; tree facts are split. Returns the number of the last record made of it, 0 if it
   /// cannot be written or there is no room for it.
@@ -80,11 +85,12 @@ class Gossip {
   /// said when heard or by its receipts.
   std::uint32_t known_at_base() const { return known_at_base_; }
   const GossipCounts& counts() const { return counts_; }
-  RobotId self() const { return self_; }
+  RobotId self() const { return radio_.self; }
 
  private:
   struct Peer {
     std::optional<TimeNs> heard_at;
+    ReplayWindow replays;
     std::uint16_t sequence = 0;
     double quality = 1;
     std::array<HeldNumbers, kMostRobots> held{};
@@ -100,9 +106,14 @@ class Gossip {
   };
 
   bool in_contact(const Peer& p, TimeNs now) const;
+  std::optional<Refusal> refused(const Frame& frame, TimeNs now) const;
   void hear(const Frame& frame, TimeNs now);
+  void hear_from(const Frame& frame, TimeNs now);
+  void take_held(const Frame& frame, TimeNs now);
   void take_state(const TeamState& s, TimeNs now);
   void take_record(const SentRecord& r, RobotId from, TimeNs now);
+  bool may_be_reminded(TimeNs now) const;
+  void known_to_hold(std::uint32_t own_records);
   void answer(RobotId peer, TimeNs now);
   void queue(RobotId author, std::uint32_t number, TimeNs due);
   bool wanted(const Waiting& w, TimeNs now) const;
@@ -111,10 +122,10 @@ class Gossip {
   std::size_t add_states(Frame& frame, std::size_t& room);
   bool of_many() const;
   void tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out);
-  void finish(Frame& frame, std::vector<Bytes>& out);
+  void finish(Frame& frame, TimeNs now, std::vector<Bytes>& out);
   TimeNs wait();
 
-  RobotId self_;
+  TeamRadio radio_;
   GossipOptions options_;
   Random random_;
   RecordStore store_;
@@ -124,7 +135,9 @@ class Gossip {
   std::array<Told, kMostRobots> told_;  // of states
   std::vector<Waiting> waiting_;
   std::vector<Delivery> delivered_;
-  std::uint32_t published_ = 0, known_at_base_ = 0;
+  bool published_ = false;
+  std::optional<TimeNs> began_;
+  std::uint32_t known_at_base_ = 0;
   std::uint16_t sequence_ = 0;
   TimeNs next_news_ = 0, all_states_due_ = 0, last_send_ = 0;
   bool hurried_ = false;

@@ -21,6 +21,12 @@ int urgency(TeamPhase phase) {
   }
 }
 
+constexpr double kComes_mps = 0.15;  // slower it does not fly towards another
+
+double braking_room_m(const KeepApart& rule, double speed_mps) {
+  return rule.distance_m / 2 + speed_mps * rule.own_s + speed_mps * speed_mps / (2 * rule.brake_mps2);
+}
+
 }  // namespace
 
 double closing_mps(const Neighbour& a, const Neighbour& b) {
@@ -35,8 +41,17 @@ double least_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbo
 }
 
 double stop_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbour& b) {
-  const double v = std::max(0.0, closing_mps(a, b));
-  return rule.distance_m / 2 + v * rule.own_s + v * v / (2 * rule.brake_mps2);
+  return braking_room_m(rule, std::max(0.0, closing_mps(a, b)));
+}
+
+bool stops_on_the_way(const KeepApart& rule, const Neighbour& self, const Neighbour& other,
+                      bool makes_room_for_it) {
+  if (other.phase == TeamPhase::aside) return false;
+  Neighbour standing = other;
+  standing.velocity_mps.setZero();
+  const double own_mps = closing_mps(self, standing);
+  const double v = makes_room_for_it ? own_mps : std::max(own_mps, closing_mps(self, other));
+  return own_mps > kComes_mps && (other.position - self.position).norm() < braking_room_m(rule, v);
 }
 
 bool goes_before(const Neighbour& a, const Neighbour& b) {

@@ -28,6 +28,12 @@ double least_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbo
 /// The distance below which both stop, whoever goes first.
 double stop_distance_m(const KeepApart& rule, const Neighbour& a, const Neighbour& b);
 
+/// Whether `self` on its way to make room has to stop for this one: it flies towards it, and what both need
+/// to stop would leave less than half the distance that is kept; of one that it makes room for, and that
+/// stops for it, what it needs itself. Not for one that waits aside, and is an obstacle in the map.
+bool stops_on_the_way(const KeepApart& rule, const Neighbour& self, const Neighbour& other,
+                      bool makes_room_for_it);
+
 /// Speed at which the distance shrinks; negative if it grows.
 double closing_mps(const Neighbour& a, const Neighbour& b);
 

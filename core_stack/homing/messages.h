@@ -3,21 +3,22 @@
 // A robot's *records* are what the others must come to know for good: nodes and rays of the homing tree,
 // claims, landings, objects of interest. They are numbered, each stands by itself, and gossip.h sees to it
 // that they arrive. Its *state* is only of interest while it is new. A *frame* is what is sent at once: at
-// most kFrameBytes, with a version and a checksum. Nothing is longer than a frame; what is, is said in
-// several records.
+// most kFrameBytes, with a version and a tag that only who holds the mission's key can make. Nothing is
+// longer than a frame; what is, is said in several records.
 #pragma once
 #include <array>
 #include <optional>
 #include <string>
 #include <variant>
 
+#include "core_stack/homing/mission_key.h"
 #include "core_stack/homing/tree_facts.h"
 #include "core_stack/homing/wire.h"
 
 namespace karst::core {
 
-constexpr std::size_t kFrameBytes = 200;
-constexpr std::uint8_t kWireVersion = 1;
+constexpr std::size_t kFrameBytes = 208;
+constexpr std::uint8_t kWireVersion = 2;
 constexpr RobotId kMostRobots = 32;  // radios, the base's among them: what each holds of all fits a frame
 constexpr double kMostReach_m = 40000;
 constexpr std::uint32_t kMostNumber = 1u << 24;  // of a robot's nodes, records or claims
@@ -85,17 +86,20 @@ enum class Refusal : std::uint8_t {
   too_short,  // or longer than a frame
   no_frame,   // of another kind of sender
   version,
-  checksum,
+  forged,     // or damaged: the tag is not that of the mission's key
   truncated,  // says it holds more than it does, or holds more than it says
   kind,       // of frame, record, node, phase
-  range       // ids, counts, places, times beyond what can be
+  range,      // ids, counts, places, times beyond what can be
+  stranger,   // the sender is not in the team
+  replayed,   // it was heard before
+  stale       // sent too long ago, or later than now
 };
-constexpr std::size_t kRefusals = 7;
+constexpr std::size_t kRefusals = 10;
 
 /// How a record is written. Nothing if it cannot be: a number that is not finite or out of range, or longer
 /// than most_record_bytes(); split tree facts first.
 std::optional<Bytes> write_record(const Record& record);
-constexpr std::size_t most_record_bytes() { return kFrameBytes - 24; }
+constexpr std::size_t most_record_bytes() { return kFrameBytes - 32; }
 /// Reads exactly one record; on refusal `why` says so.
 std::optional<Record> read_record(std::span<const std::uint8_t> bytes, Refusal& why);
 
@@ -121,20 +125,21 @@ struct Held {
 struct Frame {
   RobotId sender = 0;
   bool tells_held = false;          // `held` is the whole of what it holds
+  TimeNs sent = 0;                  // in whole milliseconds
   std::uint16_t sequence = 0;       // of the sender's frames: gaps show what was lost
   std::vector<TeamState> states{};  // its own first, others' as it knows them
   std::vector<Held> held{};
   std::vector<SentRecord> records{};
 };
 /// Nothing if it would be longer than kFrameBytes or holds what cannot be written.
-std::optional<Bytes> write_frame(const Frame& frame);
+std::optional<Bytes> write_frame(const Frame& frame, const MissionKey& key);
 /// Never takes more memory than a small multiple of the bytes given.
-std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, Refusal& why);
+std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, const MissionKey& key, Refusal& why);
 
 /// Bytes each part takes, to fill a frame.
 std::size_t state_bytes(const TeamState& s);
 std::size_t held_bytes(const Held& h);
 std::size_t record_bytes(const SentRecord& r);
-constexpr std::size_t kEmptyFrameBytes = 2 + 1 + 1 + 2 + 3 + 4;
+constexpr std::size_t kEmptyFrameBytes = 2 + 1 + 1 + 4 + 2 + 3 + kTagBytes;
 
 }  // namespace karst::core

@@ -21,6 +21,10 @@ void describe(OptionTable& t, TeamOptions& o) {
   t.add("claim_radius", o.claim_radius_m, "m", 0, 50, "frontiers so near to another's goal are left to it");
   t.add("claim_age", o.claim_age_s, "s", 1, 3600, "a goal claimed longer ago is free again");
   t.add("linger", o.linger_s, "s", 0, 600, "the radios go on for so long after the last landing");
+  t.add("key_file", o.key_file, {},
+        "64 hexadecimal digits, as from openssl rand -hex 32: the key that frames on the radio are "
+        "authenticated "
+        "with, one for each mission; none: a key of the seed, which is for simulation only");
   t.add("lost_robot", o.lost_robot, 0, kMostRobots - 1,
         "for tests: the number of a robot that never comes back");
   t.add("lost_after", o.lost_after_s, "s", 0, 7200,

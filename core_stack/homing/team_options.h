@@ -17,6 +17,7 @@ struct TeamOptions {
   double claim_radius_m = 4.0;
   double claim_age_s = 60;
   double linger_s = 60;
+  std::string key_file;  // of the radio; none: a key of the mission's seed
   // What a test of the team does to it; 0: nobody.
   std::int64_t lost_robot = 0, silent_relay = 0;
   double lost_after_s = 60, silent_after_s = 30;

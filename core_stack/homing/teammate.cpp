@@ -30,12 +30,13 @@ RelayOptions for_chain_of_all(const HomingOptions& homing, const TeamOptions& te
 }  // namespace
 
 Teammate::Teammate(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
-                   std::uint64_t seed)
+                   std::uint64_t seed, const MissionKey& key)
     : team_(team),
       link_age_s_(homing.relay.link_age_s),
       landings_apart_m_(homing.landing.keep_apart_m),
       base_{kBase, base, base},
-      gossip_(self, homing.gossip, seed),
+      gossip_({self, static_cast<RobotId>(team.robots), static_cast<RobotId>(team.nodes), key}, homing.gossip,
+              seed),
       graph_(for_chain_of_all(homing, team)) {
   TeamState waiting;
   waiting.position = base;

@@ -30,9 +30,9 @@ struct HeardMate {
 
 class Teammate {
  public:
-  /// `base` is the base's antenna.
+  /// `base` is the base's antenna; the seed is for waits only.
   Teammate(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
-           std::uint64_t seed);
+           std::uint64_t seed, const MissionKey& key);
 
   // The radio.
   void hear(std::span<const std::uint8_t> bytes, TimeNs now);

@@ -78,7 +78,4 @@ class WireReader {
   bool bad_ = false;
 };
 
-/// CRC-32 of IEEE 802.3 (polynomial 0x04c11db7 reflected), as zlib and PNG have it.
-std::uint32_t crc32(std::span<const std::uint8_t> bytes);
-
 }  // namespace karst::core

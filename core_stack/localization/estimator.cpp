@@ -21,8 +21,11 @@ constexpr double kCompassTrusted_s = 2;
 constexpr double kHeightKnown_m = 0.03;
 /// Headings and heights count as of now: older ones than this say nothing.
 constexpr TimeNs kStale = 200 * kMillisecond;
-/// A made-up sample is that much noisier.
-constexpr double kBridgeNoise = 5;
+/// A made-up sample is that much noisier. It knows neither the wind (0.75 m/s^2 in a gust of 5 m/s, by drag)
+/// nor how far the rates lag behind the command (0.25 rad/s while a turn begins), and both last from one pose
+/// to the next: 0.07 m/s and 0.025 rad in 0.1 s, which by this noise are 0.2 m/s and 0.01 rad. With less,
+/// what was made up would overrule the LiDAR.
+constexpr double kBridgeNoise = 60;
 
 // Spreads at which health degrades, and at which it is lost.
 constexpr double kPositionDegraded_m = 0.4, kPositionLost_m = 1.5, kHeadingDegraded_rad = 0.25;

@@ -31,6 +31,7 @@ Pose extrapolated(const State& s, double dt_s) {
 }  // namespace
 
 InertialFilter::InertialFilter(const InertialNoise& noise, const Pose& T_world_start) : noise_(noise) {
+  later_.reserve(kUsual);
   state_.position = T_world_start.position;
   state_.orientation = T_world_start.orientation;
   Vector15 sigma;
@@ -82,6 +83,7 @@ void InertialFilter::propagate(const ImuSample& before, const ImuSample& after, 
 }
 
 void InertialFilter::note(const ImuSample& imu, double noise_scale) {
+  if (steps_.full()) steps_.set_capacity(2 * steps_.capacity());
   steps_.push_back({imu, noise_scale, state_, accel_bias_mps2_, gyro_bias_radps_, covariance_, {}});
   history_.push(state_);
 }
@@ -114,14 +116,14 @@ void InertialFilter::go_back_to(std::size_t step) {
 }
 
 void InertialFilter::replay_after(std::size_t step) {
-  std::vector<Step> later(steps_.begin() + static_cast<std::ptrdiff_t>(step), steps_.end());
-  steps_.resize(step);
-  note(later.front().imu, later.front().noise_scale);
+  later_.assign(steps_.begin() + static_cast<std::ptrdiff_t>(step), steps_.end());
+  steps_.erase_end(steps_.size() - step);
+  note(later_.front().imu, later_.front().noise_scale);
   for (std::size_t i = 0;; ++i) {
-    for (const Scalar& measured : later[i].scalars) on_scalar(measured);
-    if (i + 1 == later.size()) return;
-    propagate(later[i].imu, later[i + 1].imu, later[i + 1].noise_scale);
-    note(later[i + 1].imu, later[i + 1].noise_scale);
+    for (const Scalar& measured : later_[i].scalars) on_scalar(measured);
+    if (i + 1 == later_.size()) return;
+    propagate(later_[i].imu, later_[i + 1].imu, later_[i + 1].noise_scale);
+    note(later_[i + 1].imu, later_[i + 1].noise_scale);
   }
 }
 

@@ -6,8 +6,9 @@
 // pose is taken in at its stamp, in a buffer of the past second; what came since, samples and headings, is
 // replayed.
 #pragma once
+#include <boost/circular_buffer.hpp>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -77,7 +78,7 @@ class InertialFilter {
     State state;
     Vec3 accel_bias_mps2, gyro_bias_radps;
     Matrix15 covariance;
-    std::vector<Scalar> scalars;  // taken in since
+    boost::container::small_vector<Scalar, 4> scalars;  // taken in since
   };
   void propagate(const ImuSample& before, const ImuSample& after, double noise_scale);
   void correct(const Scalar& measured);
@@ -91,7 +92,10 @@ class InertialFilter {
   State state_;
   Vec3 accel_bias_mps2_ = Vec3::Zero(), gyro_bias_radps_ = Vec3::Zero();  // body frame
   Matrix15 covariance_;
-  std::deque<Step> steps_;
+  // They take memory only where samples come faster than ever before.
+  static constexpr std::size_t kUsual = 256;  // 1 s at 200 Hz, and some
+  boost::circular_buffer<Step> steps_{kUsual};
+  std::vector<Step> later_;  // while they are replayed
   StateHistory history_;
   TimeNs last_pose_ = std::numeric_limits<TimeNs>::min();
 };

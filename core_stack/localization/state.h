@@ -1,6 +1,6 @@
 // The state estimate, and its recent past: scans and poses arrive late and are matched at their stamp.
 #pragma once
-#include <deque>
+#include <boost/circular_buffer.hpp>
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
@@ -21,20 +21,22 @@ struct State {
 
 enum class Health { good, degraded, lost };
 
-/// The last seconds of states, oldest first, stamps strictly increasing.
+/// The last seconds of states, oldest first, stamps strictly increasing. Takes memory only for more states
+/// than it ever held.
 class StateHistory {
  public:
-  explicit StateHistory(TimeNs length = 2 * kSecond) : length_(length) {}
+  explicit StateHistory(TimeNs length = 2 * kSecond) : states_(kUsual), length_(length) {}
   /// Appends `s`. States at its stamp or later are forgotten first: a correction in the past pushes the
   /// replayed states over the ones they replace.
   void push(const State& s);
   /// Pose at `t`: linear in position, spherical in rotation; the nearest end outside the range. The identity
   /// while the history is empty.
   Pose pose_at(TimeNs t) const;
-  const std::deque<State>& states() const { return states_; }
+  const boost::circular_buffer<State>& states() const { return states_; }
 
  private:
-  std::deque<State> states_;
+  static constexpr std::size_t kUsual = 512;  // 2 s at 200 Hz, and some
+  boost::circular_buffer<State> states_;
   TimeNs length_;
 };
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "core_stack/mapping/octomap_io.h"
 
 namespace karst::core {
@@ -24,9 +25,7 @@ struct Header {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), in_(path, std::ios::binary) {
-    if (!in_) fail("", "cannot be opened");
-  }
+  explicit Reader(const std::string& path) : path_(path), in_(open_input(path, kMaxDataFileBytes)) {}
 
   VoxelMap read() {
     const Header header = read_header();

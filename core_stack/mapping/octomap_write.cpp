@@ -22,6 +22,7 @@ void write_whole(const std::string& path, Write&& write) {
     std::remove(temporary.c_str());
     throw InputError(path, "", what + ": " + reason);
   };
+  std::remove(temporary.c_str());  // what a killed flight left, or a FIFO that would block
   errno = 0;
   std::ofstream out(temporary, std::ios::binary);
   if (!out) fail("cannot be created");

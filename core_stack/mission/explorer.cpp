@@ -86,6 +86,22 @@ std::optional<double> Explorer::hull_clearance_m(const Vec3& p) const {
   return distance_m - vehicle_.radius_m;
 }
 
+Vec3 Explorer::hover_below(const Vec3& highest) const {
+  constexpr double kStep_m = 0.05;
+  const double enough_m = options_.planning.clearance_m - vehicle_.radius_m;
+  Vec3 best = highest;
+  double most_m = -1;
+  for (Vec3 p = highest; most_m < enough_m; p.z() -= kStep_m) {
+    const double above_ground_m = p.z() - vehicle_.T_world_start.position.z();  // the hull touched it there
+    if (above_ground_m <= most_m) break;
+    const double room_m = std::min(above_ground_m, hull_clearance_m(p).value_or(above_ground_m));
+    if (room_m <= most_m) continue;
+    most_m = room_m;
+    best = p;
+  }
+  return best;
+}
+
 bool Explorer::cluster_alive(std::uint32_t id) const {
   const auto it = frontiers_.clusters().find(id);
   if (it == frontiers_.clusters().end()) return false;

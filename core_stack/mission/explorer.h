@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "core_stack/homing/relay_homing.h"
+#include "core_stack/homing/waiting_place.h"
 #include "core_stack/mapping/frontiers.h"
 #include "core_stack/mission/fallback_policy.h"
 #include "core_stack/mission/goal_ledger.h"
 #include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/output_budget.h"
 #include "core_stack/mission/policy_port.h"
 #include "core_stack/mission/reach.h"
 #include "core_stack/mission/visibility.h"
@@ -60,17 +62,12 @@ struct RoundResult {
   std::vector<RejectedGoal> rejected;
   std::vector<UnseenFrontier> unseen;  // for the first time in this round
   std::vector<Drawing> drawings;
+  std::vector<std::string> drawing_texts;  // the same as fields of events, made by mission control
   std::vector<std::string> log;
   std::string policy_failure;  // if it failed in this round: the fallback takes over
   std::size_t goals_proposed = 0;
   std::vector<FrontierCluster> frontiers;  // as offered, without their cells: for the report
   double decide_ms = 0, plan_ms = 0;       // wall clock, for timing.json only
-};
-
-/// Where a vehicle waits for another.
-struct Refuge {
-  Vec3 place = Vec3::Zero();
-  bool others_get_by = false;
 };
 
 struct HomeEstimate {
@@ -104,6 +101,9 @@ class Explorer {
   int blocked_segment(const std::vector<Vec3>& points, const std::vector<Vec3>& narrow_places) const;
   /// Distance of the vehicle's hull at `p` from the nearest obstacle's cell; nothing if that is far.
   std::optional<double> hull_clearance_m(const Vec3& p) const;
+  /// Where to hover between the place it stood at and `highest`, straight above: as high as the usual
+  /// clearance allows, and without so much room where there is most of it above and below.
+  Vec3 hover_below(const Vec3& highest) const;
   /// True if the cluster is still open enough to be worth flying to.
   bool cluster_alive(std::uint32_t id) const;
 
@@ -122,11 +122,8 @@ class Explorer {
   std::optional<LandingSpot> landing_spot(const Vec3& from, double way_come_m);
   /// It landed below `hover`: what to tell.
   TreeFacts land(const Vec3& hover, TimeNs team_time);
-  /// Where it makes room for another vehicle: the nearest place that it comes to before the other, and where
-  /// the other gets by; else as far back along the way come as it stays ahead of the other. Not near places
-  /// `in_vain`; of these two are enough to look for no further ones.
-  std::optional<Refuge> refuge(const Vec3& from, const std::vector<Vec3>& flown, const Vec3& other,
-                               const std::vector<Vec3>& in_vain);
+  /// Where it makes room for another vehicle; the vehicle's radius is filled in.
+  std::optional<Refuge> refuge(RoomQuery query);
 
   const VoxelMap& map() const { return map_; }
   const Vec3& home() const { return home_; }
@@ -164,6 +161,7 @@ class Explorer {
   bool policy_failed_ = false;
   std::optional<TimeNs> idle_since_;  // standing, and no goal of the policy could be accepted
   std::uint32_t sequence_ = 0;
+  OutputBudget output_budget_;
 
   VoxelMap map_;
   Frontiers frontiers_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "core_stack/homing/home.h"
@@ -22,6 +23,16 @@ constexpr const char* kTooFar = "the battery, or the time allowed, does not last
 
 double elapsed_ms(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
+}
+
+/// A path flown at next to no speed would hold the vehicle until the battery calls it home.
+std::optional<std::string> too_slow(const Goal& goal, const MotionLimits& limits) {
+  const double least_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  if (goal.max_speed_mps == 0 || goal.max_speed_mps >= least_mps) return std::nullopt;
+  char text[96];
+  std::snprintf(text, sizeof text, "its speed limit of %.2g m/s is below motion.min_speed, %g m/s",
+                goal.max_speed_mps, least_mps);
+  return text;
 }
 
 bool any_in_reach(const std::vector<FrontierOffer>& offers) {
@@ -49,6 +60,7 @@ std::optional<std::string> Explorer::objection(const Reach& reach, const Goal& g
   const Vec3& p = goal.position;
   if (!p.allFinite()) return "its position is not finite";
   if (std::isinf(goal.heading_rad)) return "its heading is not finite";
+  if (const auto why = too_slow(goal, options_.motion)) return why;
   if (map_.at(p) != Cell::free)
     return map_.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
   if (!is_clear(map_, p, reach.planning.clearance_m)) return "it is too near to rock or unknown space";
@@ -137,6 +149,7 @@ void Explorer::settle(const Reach& reach, const RoundInput& input, const Decisio
   const auto begin = std::chrono::steady_clock::now();
   Decision decision = ask(request, passed_over, result);
   const double asked_ms = elapsed_ms(begin);
+  output_budget_.trim(decision);
   result.decide_ms += asked_ms;
   result.outcome = decision.outcome;
   result.reason = decision.reason;

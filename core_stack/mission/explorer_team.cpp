@@ -1,28 +1,13 @@
 // What the map has to do with a team: the homing tree, landing places, goals that others claimed.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core_stack/homing/home.h"
-#include "core_stack/homing/landing_ground.h"
 #include "core_stack/mission/explorer.h"
-#include "core_stack/planning/grid_planner.h"
 
 namespace karst::core {
-namespace {
-
-// Places to make room: so far around, and so far back along the way come.
-constexpr double kRefugeReach_m = 12.0, kRetreat_m = 60.0, kRefugeStep_m = 1.0;
-constexpr double kGetBy_m = 3.0;
-constexpr std::array kGaps_m = {0.5, 0.2};  // beside one that hovers, more than beside rock
-constexpr double kAhead_m = 0.3;            // it comes there before the other by so much of the way
-constexpr double kElsewhere_m = 2.0, kRefusedNear_m = 0.5;
-constexpr std::size_t kEnoughInVain = 2, kMostRefused = 40;
-
-}  // namespace
-
 TreeFacts Explorer::share(const Vec3& here, const TeamNews& news) {
   return homing_->update(map_, wide().roadmap, here, news, std::exchange(closed_, {}));
 }
@@ -69,52 +54,9 @@ TreeFacts Explorer::land(const Vec3& hover, TimeNs team_time) {
   return homing_->land(map_, wide().roadmap, hover, team_time);
 }
 
-std::optional<Refuge> Explorer::refuge(const Vec3& from, const std::vector<Vec3>& flown, const Vec3& other,
-                                       const std::vector<Vec3>& in_vain) {
-  const Roadmap& roadmap = wide().roadmap;
-  std::vector<Vec3> places{from}, back;
-  for (const Vec3& p : roadmap.places_near(from, kRefugeReach_m)) places.push_back(p);
-  double back_m = 0;
-  for (std::size_t i = flown.size(); i-- > 0 && back_m < kRetreat_m;) {
-    if (i + 1 < flown.size()) back_m += (flown[i + 1] - flown[i]).norm();
-    if (back.empty() || (back.back() - flown[i]).norm() > kRefugeStep_m) back.push_back(flown[i]);
-  }
-  places.insert(places.end(), back.begin(), back.end());
-  std::vector<double> own_m = roadmap.distances(map_, from, places, map_.resolution_m());
-  own_m.front() = 0;
-  const std::vector<double> others_m = roadmap.distances(map_, other, places, map_.resolution_m());
-  const auto ahead_m = [&](std::size_t i) {
-    return (std::isfinite(others_m[i]) ? others_m[i] : (places[i] - other).norm()) - own_m[i];
-  };
-  const auto near_one_of = [](const std::vector<Vec3>& all, const Vec3& p, double within_m) {
-    return std::any_of(all.begin(), all.end(), [&](const Vec3& o) { return (o - p).norm() < within_m; });
-  };
-
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (std::isfinite(own_m[i]) && ahead_m(i) > kAhead_m && !near_one_of(in_vain, places[i], kElsewhere_m))
-      order.push_back(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return own_m[a] < own_m[b]; });
-  for (const double gap_m : kGaps_m) {
-    std::vector<Vec3> refused;
-    for (const std::size_t i : order) {
-      if (refused.size() == kMostRefused || in_vain.size() >= kEnoughInVain) break;
-      if (near_one_of(refused, places[i], kRefusedNear_m) ||
-          !is_clear(map_, places[i], options_.planning.clearance_m))
-        continue;
-      if (others_get_by(map_, places[i], vehicle_.radius_m + gap_m,
-                        search_clearance_m(options_.planning, map_.resolution_m()), kGetBy_m))
-        return Refuge{places[i], true};
-      refused.push_back(places[i]);
-    }
-  }
-  std::optional<std::size_t> farthest;
-  for (const std::size_t i : order)
-    if (i >= places.size() - back.size() && own_m[i] > kElsewhere_m &&
-        (!farthest || own_m[i] > own_m[*farthest]))
-      farthest = i;
-  return farthest ? std::optional(Refuge{places[*farthest], false}) : std::nullopt;
+std::optional<Refuge> Explorer::refuge(RoomQuery query) {
+  query.vehicle_radius_m = vehicle_.radius_m;
+  return waiting_place(map_, wide().roadmap, query);
 }
 
 bool Explorer::left_to_others(const Vec3& frontier) const {

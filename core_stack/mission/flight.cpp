@@ -28,13 +28,20 @@ MotionLimits with_room_to_catch_up(MotionLimits limits) {
 
 }  // namespace
 
+MotionLimits slowed(MotionLimits limits, double max_speed_mps) {
+  if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
+  limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  return limits;
+}
+
 Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
     : limits_(with_room_to_catch_up(options.motion)),
       emergency_(limits_),
       estimator_(options.localization.estimator, vehicle.T_world_start),
       tracker_(options.tracker, options.motion),
       controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps),
-      mass_(vehicle.mass_kg) {
+      mass_(vehicle.mass_kg),
+      emergency_landing_(options.motion, options.mission.landing_speed_mps) {
   emergency_.max_acceleration_mps2 = kEmergencyShare * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   trajectory_.samples = {{start.position, heading_of(start.orientation)}};
@@ -42,11 +49,12 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
 }
 
 AttitudeRateCommand Flight::control(TimeNs now) {
-  if (!armed_) return {};
+  if (motors_ != Motors::armed) return {};
   if (now - estimator_.last_imu() > kImuMissed) estimator_.bridge(expected_imu(now));
   mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
   controller_.set_mass_kg(mass_.mass_kg());
-  command_ = controller_.update(state(), tracker_.step(trajectory_, now), kControlPeriod_s);
+  const Trajectory& wanted = emergency_landing_.begun() ? emergency_landing_.trajectory(now) : trajectory_;
+  command_ = controller_.update(state(), tracker_.step(wanted, now), kControlPeriod_s);
   command_.armed = true;
   return command_;
 }
@@ -71,9 +79,7 @@ void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, Tim
 MotionLimits Flight::limits(double max_speed_mps) const {
   MotionLimits limits = limits_;
   limits.max_speed_mps = std::min(limits.max_speed_mps, speed_cap_mps_);
-  if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
-  limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
-  return limits;
+  return slowed(limits, max_speed_mps);
 }
 
 void Flight::cap_speed(TimeNs now, double max_speed_mps) {
@@ -95,13 +101,14 @@ TimeNs Flight::time_nearest(const Vec3& p) const {
 }
 
 void Flight::climb(TimeNs now, double height_m, double speed_mps) {
-  if (!armed_) {
+  if (motors_ == Motors::off) return;
+  if (motors_ == Motors::idle) {
     // The estimate has settled while standing: begin from it, not from the pose that was declared.
     tracker_.reset(now, state().position, heading_of(state().orientation));
     controller_.reset();
     mass_.reset();
     ground_m_ = state().position.z();
-    armed_ = true;
+    motors_ = Motors::armed;
   }
   const Vec3 from = reference().position;
   MotionLimits slow = limits_;
@@ -135,8 +142,10 @@ void Flight::brake(TimeNs now) {
   braking_ = true;
 }
 
-void Flight::disarm() {
-  armed_ = false;
+void Flight::land_now(TimeNs now) noexcept { emergency_landing_.begin(trajectory_, now); }
+
+void Flight::disarm() noexcept {
+  motors_ = Motors::off;
   trajectory_.samples.resize(1);
 }
 

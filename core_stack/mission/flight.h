@@ -7,11 +7,15 @@
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
 #include "core_stack/localization/estimator.h"
+#include "core_stack/mission/emergency_landing.h"
 #include "core_stack/mission/mission_options.h"
 #include "core_stack/planning/minimum_snap.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {
+
+/// The limits of a path with a speed limit of its own; 0: none.
+MotionLimits slowed(MotionLimits limits, double max_speed_mps);
 
 class Flight {
  public:
@@ -46,8 +50,10 @@ class Flight {
   void look_around(TimeNs now, double turn_rad);
   /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
   void brake(TimeNs now);
-  /// Motors off: on the ground.
-  void disarm();
+  /// Brakes and comes straight down, whatever else it is told from now on. Needs no memory.
+  void land_now(TimeNs now) noexcept;
+  /// Motors off, for good: on the ground.
+  void disarm() noexcept;
 
   /// The trajectory's course from `t` on, for planning ahead.
   struct Onward {
@@ -61,7 +67,7 @@ class Flight {
   /// Up to the trajectory's end.
   Onward until_end(TimeNs t) const;
 
-  bool airborne() const { return armed_; }
+  bool airborne() const { return motors_ == Motors::armed; }
   bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
   /// The state in which the trajectory will be at `t`, level.
   State expected(TimeNs t) const;
@@ -91,8 +97,9 @@ class Flight {
   SlowPlaces slow_;
   double path_speed_mps_ = 0;  // 0: none
   double speed_cap_mps_ = std::numeric_limits<double>::infinity();
-  bool armed_ = false;
-  bool braking_ = false;  // a brake is not slowed down any further
+  EmergencyLanding emergency_landing_;
+  enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: they never run again
+  bool braking_ = false;                                          // a brake is not slowed down any further
 };
 
 }  // namespace karst::core

@@ -10,6 +10,9 @@ namespace {
 constexpr TimeNs kControlPeriod = 10 * kMillisecond;
 constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 
+// A step that has not come for so long does not come any more.
+constexpr TimeNs kControlMissed = 100 * kMillisecond, kSupervisionMissed = 500 * kMillisecond;
+
 constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
 constexpr double kClimbSpeed_mps = 0.5;
 constexpr double kFlownStep_m = 0.25;
@@ -55,6 +58,8 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       recorder_(recorder),
       team_(team),
       flight_(options, description_),
+      control_watch_(kControlMissed),
+      supervision_watch_(kSupervisionMissed),
       safety_(options.safety),
       explorer_(options, description_, policy),
       objects_(options.objects) {
@@ -67,13 +72,19 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
 }
 
 MissionResult MissionControl::run(const Watch& watch) {
+  fly(watch);
+  return end();
+}
+
+void MissionControl::fly(const Watch& watch) {
   begin(watch);
   advance(from_seconds(options_.mission.max_flight_time_s + kOverdue_s));
-  return end();
 }
 
 void MissionControl::begin(const Watch& watch) {
   watch_ = watch;
+  control_watch_.came(now());
+  supervision_watch_.came(now());
   enter(Phase::standby, "");
   executive_.job(
       "launch site", Lane::map, kMappingBudget, [this] { explorer_.declare_launch_site(explorer_.home()); },
@@ -93,38 +104,79 @@ void MissionControl::begin(const Watch& watch) {
       recorder_.event(now(), "overrun", {{"count", overruns - overruns_}});
       overruns_ = overruns;
     }
-    if (!watch_(status)) finish("aborted", "stopped by the operator");
+    if (!watch_(status)) land_now("stopped by the operator");
   });
 }
 
+/// Whatever fails, the steps go on: the vehicle has to come down.
 bool MissionControl::advance(TimeNs until) {
-  try {
-    if (!result_) executive_.run_until(until, [this] { return result_.has_value(); });
-  } catch (const std::exception& e) {
-    executive_.drain();  // jobs still running use what unwinding would take away
-    finish("aborted", std::string("an error of the core: ") + e.what());
+  while (!result_) {
+    try {
+      executive_.run_until(until, [this] { return result_.has_value(); });
+      break;
+    } catch (const std::exception& e) {
+      land_now(e.what());
+    } catch (...) {
+      land_now("an unknown exception");
+    }
   }
   return !result_ && now() < from_seconds(options_.mission.max_flight_time_s + kOverdue_s);
 }
 
+/// What cannot be written does not keep the rest from being written.
 MissionResult MissionControl::end() {
-  executive_.drain();
-  if (!result_) finish("aborted", "the vehicle did not come back within ten minutes after the time limit");
-  if (team_) become_relay();
-  vehicle_.finish();
-  if (description_.detects_objects) write_objects();
-  recorder_.final_map(explorer_.map());
+  std::string problem;
+  const auto attempt = [&problem](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception& e) {
+      if (problem.empty()) problem = e.what();
+    } catch (...) {
+      if (problem.empty()) problem = "an unknown exception";
+    }
+  };
+  attempt([this] { executive_.drain(); });
+  attempt([this] {
+    finish("aborted", emergency_ ? *emergency_ + ": it did not come down"
+                                 : "the vehicle did not come back within ten minutes after the time limit");
+  });
+  attempt([this] {
+    if (team_) become_relay();
+  });
+  attempt([this] { vehicle_.finish(); });
+  attempt([this] {
+    if (description_.detects_objects) write_objects();
+  });
+  attempt([this] { recorder_.final_map(explorer_.map()); });
+  if (!result_) result_ = MissionResult{"aborted", "", standing_, ""};
+  result_->record_problem = problem;
   return *result_;
 }
 
+void MissionControl::land_now(const char* reason) noexcept {
+  if (emergency_ || result_) return;
+  emergency_.emplace();
+  flight_.land_now(now());
+  phase_ = Phase::land;
+  try {  // telling of it may fail, too
+    *emergency_ = reason;
+    enter(Phase::land, reason);
+    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", reason}});
+  } catch (...) {
+  }
+}
+
+/// It is over, even if that cannot be told any more.
 void MissionControl::finish(const std::string& outcome, const std::string& reason) {
   if (result_) return;
+  result_ = MissionResult{"aborted", "", standing_ && outcome != "contact" && outcome != "battery", ""};
+  result_->outcome = outcome;
+  result_->reason = reason;
   enter(Phase::done, reason);
-  settle_objects(outcome == "landed" || (team_ && outcome == "stuck"));
+  settle_objects(outcome == "landed" || (team_ && result_->stands));
   recorder_.event(now(), "outcome",
                   {{"outcome", outcome}, {"reason", reason}, {"mass_kg", flight_.mass_kg()}});
   recorder_.flush();
-  result_ = MissionResult{outcome, reason};
 }
 
 void MissionControl::enter(Phase phase, const std::string& reason) {
@@ -135,10 +187,29 @@ void MissionControl::enter(Phase phase, const std::string& reason) {
   recorder_.event(now(), "phase", {{"phase", name_of(phase)}, {"reason", reason}});
 }
 
-void MissionControl::control() { vehicle_.command(flight_.control(now())); }
+void MissionControl::on_imu(const ImuSample& s) {
+  if (s.stamp > now()) return;
+  flight_.on_imu(s);
+  watch_steps();
+}
+
+/// The vehicle's messages are a clock of their own: if the control step does not come, they take its place.
+void MissionControl::watch_steps() {
+  if (supervision_watch_.missing(now())) land_now("supervision does not come any more");
+  if (control_watch_.missing(now())) land_now("control does not come any more");
+  if (emergency_ && !result_ && control_watch_.since(now()) > kControlPeriod) control();
+}
+
+void MissionControl::control() {
+  control_watch_.came(now());
+  if (emergency_ && standing_) return touch_down(now());
+  vehicle_.command(flight_.control(now()));
+}
 
 void MissionControl::supervise() {
+  supervision_watch_.came(now());
   record();
+  if (emergency_) return;
   keep_safe();
   if (team_) keep_apart();
   switch (phase_) {
@@ -148,20 +219,7 @@ void MissionControl::supervise() {
       enter(Phase::takeoff, "");
       break;
     case Phase::takeoff:
-      if (!flight_.at_rest(now() - kSettling)) break;
-      if (standing_) {
-        flight_.disarm();
-        finish("stuck", "it does not lift off: too heavy for its motors?");
-        break;
-      }
-      has_taken_off_ = true;
-      home_ = flight_.reference().position;
-      flown_ = {home_};
-      executive_.job(
-          "home", Lane::map, kMappingBudget, [this, home = home_] { explorer_.set_home(home); }, [] {});
-      // A vehicle that sees all around already has nothing to look around for.
-      if (!description_.lidar) flight_.look_around(now(), turn_to_see_all_around(description_));
-      enter(description_.lidar ? Phase::explore : Phase::look, "");
+      if (flight_.at_rest(now() - kSettling)) end_take_off();
       break;
     case Phase::look:
       if (flight_.at_rest(now() - kLastLook)) enter(Phase::explore, "");
@@ -181,6 +239,41 @@ void MissionControl::supervise() {
   }
 }
 
+void MissionControl::end_take_off() {
+  if (standing_) {
+    flight_.disarm();
+    return finish("stuck", "it does not lift off: too heavy for its motors?");
+  }
+  if (braked_at_ && !hover_chosen_) return choose_hover();
+  if (executive_.under_way("hover") > 0) return;
+  has_taken_off_ = true;
+  home_ = flight_.reference().position;
+  flown_ = {home_};
+  executive_.job(
+      "home", Lane::map, kMappingBudget, [this, home = home_] { explorer_.set_home(home); }, [] {});
+  // A vehicle that sees all around already has nothing to look around for.
+  if (!description_.lidar) flight_.look_around(now(), turn_to_see_all_around(description_));
+  enter(description_.lidar ? Phase::explore : Phase::look, "");
+}
+
+/// A roof stopped the take-off. To this place it comes back at the end: it had better have room there.
+void MissionControl::choose_hover() {
+  hover_chosen_ = true;
+  auto hover = std::make_shared<Vec3>();
+  executive_.job(
+      "hover", Lane::map, kMappingBudget,
+      [this, hover, highest = flight_.reference().position] { *hover = explorer_.hover_below(highest); },
+      [this, hover] {
+        if (phase_ != Phase::takeoff) return;
+        const double up_m = hover->z() - description_.T_world_start.position.z();
+        recorder_.event(
+            now(), "log",
+            {{"text", "a low roof: it hovers " + std::to_string(up_m).substr(0, 4) + " m up, not " +
+                          std::to_string(options_.mission.takeoff_height_m).substr(0, 4) + " m"}});
+        flight_.climb(now(), hover->z() - flight_.reference().position.z(), kClimbSpeed_mps);
+      });
+}
+
 void MissionControl::record() {
   recorder_.pose(flight_.state());
   recorder_.telemetry({now(), name_of(phase_), flight_.state(), flight_.reference().position,
@@ -193,28 +286,44 @@ void MissionControl::record() {
     }
   }
   if (team_) report_state();
-  if (team_ && has_taken_off_ && now() % kSecond == 0) share();
-  if (team_ && now() % kSecond == 0) note_objects_at_base(team_->known_at_base());
+  if (team_ && !emergency_ && now() % kSecond == 0) {
+    if (has_taken_off_) share();
+    note_objects_at_base(team_->known_at_base());
+  }
   if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
     begin_homing("the run directory cannot be written any more (disk full?)");
 }
 
 void MissionControl::on_ground(TimeNs stamp, bool standing) {
   standing_ = standing;
-  if (!standing || !has_taken_off_ || phase_ == Phase::done) return;
+  const bool takes_off = !has_taken_off_ && phase_ != Phase::land;  // it may touch once more
+  if (standing && !takes_off && phase_ != Phase::done) touch_down(stamp);
+}
+
+/// Motors off, before anything else: who has lost the pose would never come down again.
+void MissionControl::touch_down(TimeNs stamp) {
   flight_.disarm();
   vehicle_.command(flight_.control(stamp));
-  if (phase_ != Phase::land) {
-    finish("contact", std::string("touched the ground in phase ") + name_of(phase_));
-    return;
+  try {
+    finish_on_ground();
+  } catch (...) {  // it stands, even if that cannot be told
+    if (!result_) result_ = MissionResult{"aborted", "", true, ""};
+    throw;
   }
+}
+
+void MissionControl::finish_on_ground() {
   const Vec3& there = landing_ ? landing_->ground : description_.T_world_start.position;
   const double off_m = (flight_.state().position - there).head<2>().norm();
-  if (off_m < 1.0) {
+  const std::string place = std::to_string(off_m).substr(0, 5) + " m from the start";
+  if (emergency_)
+    finish("aborted", *emergency_ + ": on the ground " + place);
+  else if (phase_ != Phase::land)
+    finish("contact", std::string("touched the ground in phase ") + name_of(phase_));
+  else if (off_m < 1.0)
     finish("landed", landing_ ? "as a relay" : "at the start");
-  } else {
-    finish("stuck", "on the ground " + std::to_string(off_m).substr(0, 5) + " m from the start");
-  }
+  else
+    finish("stuck", "on the ground " + place);
 }
 
 void MissionControl::on_lost(TimeNs, const std::string& outcome, const std::string& reason) {

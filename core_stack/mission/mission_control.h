@@ -16,6 +16,7 @@
 #include "core_stack/mission/explorer.h"
 #include "core_stack/mission/flight.h"
 #include "core_stack/mission/recorder.h"
+#include "core_stack/mission/step_watch.h"
 #include "core_stack/mission/teamwork.h"
 #include "core_stack/objects/object_map.h"
 #include "core_stack/planning/polynomial_trajectory.h"
@@ -39,12 +40,14 @@ struct MissionStatus {
   std::string goal;
 };
 
-/// Called every second of flight; returns false to abort.
+/// Called every second of flight; returns false to have the vehicle land where it is.
 using Watch = std::function<bool(const MissionStatus&)>;
 
 struct MissionResult {
   std::string outcome;  // landed | contact | stuck | battery | aborted
   std::string reason;
+  bool stands = false;              // whole, on the ground
+  std::string record_problem = {};  // why the run directory is not complete; empty if it is
 };
 
 class MissionControl final : public VehicleSink {
@@ -55,6 +58,8 @@ class MissionControl final : public VehicleSink {
 
   /// Flies the mission.
   MissionResult run(const Watch& watch);
+  /// The same but for end().
+  void fly(const Watch& watch);
 
   // The same in steps, for a team: begin once, advance until it returns false, end once.
   void begin(const Watch& watch);
@@ -62,6 +67,9 @@ class MissionControl final : public VehicleSink {
   bool advance(TimeNs until);
   MissionResult end();
   Phase phase() const { return phase_; }
+  /// For what failed, or at the operator's wish: it brakes and lands where it is, and does nothing else any
+  /// more. Needs no memory.
+  void land_now(const char* reason) noexcept;
   /// Why it went home; empty until then.
   const std::string& homing_reason() const { return homing_reason_; }
 
@@ -71,9 +79,7 @@ class MissionControl final : public VehicleSink {
   void on_objects(const ObjectDetections& look) override;
   // What is stamped later than now is of a clock gone wrong: taken in, it would make all that follows look
   // old.
-  void on_imu(const ImuSample& s) override {
-    if (s.stamp <= now()) flight_.on_imu(s);
-  }
+  void on_imu(const ImuSample& s) override;
   void on_magnetometer(const MagnetometerSample& s) override {
     if (s.stamp <= now()) flight_.on_magnetometer(s);
   }
@@ -89,12 +95,17 @@ class MissionControl final : public VehicleSink {
 
  private:
   void control();
+  void watch_steps();
   void supervise();
   void keep_safe();
+  void end_take_off();
+  void choose_hover();
   void brake();
   bool braked_since(TimeNs t) const;
   void record();
   void enter(Phase phase, const std::string& reason);
+  void touch_down(TimeNs stamp);
+  void finish_on_ground();
   void finish(const std::string& outcome, const std::string& reason);
 
   // Localization and mapping.
@@ -113,6 +124,8 @@ class MissionControl final : public VehicleSink {
     double start_speed_mps = 0, max_speed_mps = 0;
     SlowPlaces slow;
     std::optional<PolynomialTrajectory> polynomial;  // along the points, if the mission flies those
+    Trajectory sampled;  // along the points, within `limits`; its start is not set
+    MotionLimits limits;
   };
 
   // Objects of interest.
@@ -132,10 +145,10 @@ class MissionControl final : public VehicleSink {
   void record_round(const RoundInput& input, const RoundResult& result);
 
   /// On the map lane: joins a path to its lead, whose end it passes by no more than `most_cut_m`. It will be
-  /// followed from `start` on, within `limits`; `narrow_before` are the narrow places the lead may pass.
+  /// followed from `start` on, within `within`; `narrow_before` are the narrow places the lead may pass.
   /// `passed` is the goal that the lead ends at, if any.
   Route route(const Flight::Onward& lead, const Path& path, const std::optional<Goal>& goal,
-              const std::optional<Goal>& passed, TimeNs start, double most_cut_m, MotionLimits limits,
+              const std::optional<Goal>& passed, TimeNs start, double most_cut_m, const MotionLimits& within,
               const std::vector<Vec3>& narrow_before) const;
   void follow(const Route& way);
 
@@ -157,7 +170,7 @@ class MissionControl final : public VehicleSink {
   void confirm_landing();
   void give_up_landing(const std::string& reason, bool unheard = false);
   void keep_apart();
-  void make_room(const Neighbour& other);
+  void make_room(const std::vector<Neighbour>& others);
   std::vector<MovingBody> others_at(TimeNs stamp) const;
   bool in_company() const;
   bool airspace_clear() const;
@@ -177,6 +190,7 @@ class MissionControl final : public VehicleSink {
   Teamwork* team_;  // null: it flies alone
   Watch watch_;
   Flight flight_;
+  StepWatch control_watch_, supervision_watch_;
   SafetySupervisor safety_;
   SafetyVerdict verdict_;
   std::optional<Loam> loam_;  // on vehicles with a LiDAR; touched by jobs on the localization lane only
@@ -187,6 +201,8 @@ class MissionControl final : public VehicleSink {
   std::optional<MissionResult> result_;
   BatteryStatus battery_;
   bool has_taken_off_ = false, standing_ = true;
+  bool hover_chosen_ = false;             // below a roof that stopped the take-off
+  std::optional<std::string> emergency_;  // why it lands at once, if it does
 
   // The goal under way, and what the policy has yet to be told.
   std::optional<Goal> goal_;
@@ -236,9 +252,7 @@ class MissionControl final : public VehicleSink {
   std::optional<double> hull_clearance_m_;
   int overruns_ = 0;                                     // of the executive, as last noted
   TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
-  int locating_ = 0;                                     // scans on their way through localization
-  int writing_ = 0, pictures_lost_ = 0;                  // pictures on their way to the disk, and not kept
-  int mapping_ = 0;                                      // scans and depth images on their way into the map
+  int pictures_lost_ = 0;                                // not kept
   std::string localization_state_, believed_ = "lidar";  // as last noted in the events
 };
 

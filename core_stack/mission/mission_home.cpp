@@ -13,7 +13,9 @@ constexpr double kAboveHome_m = 0.4;
 constexpr int kMostHomeFailures = 3;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
-constexpr TimeNs kPatience = 60 * kSecond;
+// Without progress, it lands where it is. A cave that shuts it in does not open again while it hovers, and
+// the dust under a hovering vehicle does not settle; another vehicle goes away.
+constexpr TimeNs kPatience = 12 * kSecond, kPatienceInCompany = 60 * kSecond;
 constexpr TimeNs kAgain = kSecond;
 
 }  // namespace
@@ -60,7 +62,11 @@ void MissionControl::watch_battery() {
 }
 
 void MissionControl::go_home() {
-  if (home_planning_ || verdict_.action == SafetyAction::brake) return;
+  if (verdict_.action == SafetyAction::brake) {
+    last_landmark_time_ = now();  // it does not wait for a way, but for what it is to see or to follow
+    return;
+  }
+  if (home_planning_) return;
   if (encounter_.holds()) {
     last_landmark_time_ = now();
     unheard_since_.reset();
@@ -83,9 +89,10 @@ void MissionControl::go_home() {
   if ((flight_.reference().position - last_landmark_).norm() > 0.5) {
     last_landmark_ = flight_.reference().position;
     last_landmark_time_ = now();
-  } else if (!at_home && now() - last_landmark_time_ > kPatience) {
-    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", "no way home for a minute"}});
-    enter(Phase::land, "no way home for a minute");
+  } else if (!at_home && now() - last_landmark_time_ > (in_company() ? kPatienceInCompany : kPatience)) {
+    constexpr const char* kReason = "no way home, and waiting does not help";
+    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", kReason}});
+    enter(Phase::land, kReason);
   }
 }
 
@@ -104,7 +111,7 @@ void MissionControl::plan_home_path() {
       },
       [this, way, begun = now()] {
         home_planning_ = false;
-        if (phase_ != Phase::home || braked_since(begun)) return;
+        if (phase_ != Phase::home || braked_since(begun) || encounter_.holds()) return;
         if (!way->path.found()) {
           if (in_company())
             home_retry_ = now() + kAgain;  // it makes room
@@ -137,7 +144,7 @@ void MissionControl::fly_back_as_come() {
       },
       [this, way, begun = now()] {
         home_planning_ = false;
-        if (phase_ != Phase::home || braked_since(begun)) return;
+        if (phase_ != Phase::home || braked_since(begun) || encounter_.holds()) return;
         recorder_.event(now(), "safety",
                         {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
         follow(*way);
@@ -147,6 +154,7 @@ void MissionControl::fly_back_as_come() {
 }
 
 void MissionControl::land() {
+  if (standing_) return touch_down(now());  // it had not left the ground yet
   if (!flight_.at_rest(now())) return;
   // Down until the ground is felt; the height above it is not known to better than the map.
   flight_.climb(now(), -(options_.mission.takeoff_height_m + 0.5), options_.mission.landing_speed_mps);

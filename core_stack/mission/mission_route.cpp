@@ -19,7 +19,7 @@ bool near_line(const std::vector<Vec3>& line, const Vec3& place) {
 MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Path& path,
                                             const std::optional<Goal>& goal,
                                             const std::optional<Goal>& passed, TimeNs start,
-                                            double most_cut_m, MotionLimits limits,
+                                            double most_cut_m, const MotionLimits& within,
                                             const std::vector<Vec3>& narrow_before) const {
   Route out;
   out.path = path;
@@ -43,9 +43,13 @@ MissionControl::Route MissionControl::route(const Flight::Onward& lead, const Pa
     if (near_line(lead.points, place)) out.slow.places.push_back(place);
   if (options_.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0 &&
       out.slow.places.empty()) {
+    MotionLimits limits = within;
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
     out.polynomial = polynomial_trajectory(out.points, lead.departure, start, limits, out.heading, clear);
   }
+  out.limits = slowed(within, out.max_speed_mps);
+  if (!out.polynomial || !out.polynomial->fell_back.empty())
+    out.sampled = sample_trajectory(out.points, out.start_speed_mps, 0, out.limits, out.heading, out.slow);
   return out;
 }
 
@@ -72,8 +76,15 @@ void MissionControl::follow(const Route& way) {
                                                          : "the motion has changed since it was made";
   }
   recorder_.event(now(), "plan", plan);
-  flight_.follow(way.points, flight_.at_rest(now()) ? 0.0 : way.start_speed_mps, now(), way.heading,
-                 way.max_speed_mps, way.slow, fits ? &polynomial->trajectory : nullptr);
+  const double start_speed_mps = flight_.at_rest(now()) ? 0.0 : way.start_speed_mps;
+  const bool still_so = !way.sampled.samples.empty() && start_speed_mps == way.start_speed_mps &&
+                        flight_.limits(way.max_speed_mps) == way.limits;
+  Trajectory sampled = way.sampled;
+  sampled.start = now();
+  flight_.follow(way.points, start_speed_mps, now(), way.heading, way.max_speed_mps, way.slow,
+                 fits       ? &polynomial->trajectory
+                 : still_so ? &sampled
+                            : nullptr);
   narrow_places_ = way.slow.places;
   path_limited_ = way.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = way.path;

@@ -38,6 +38,7 @@ void MissionControl::on_map_update(const std::vector<CellChange>& changes,
   recorder_.map_changes(now(), changes);
   goal_alive_ = goal_alive;
   if (!blocked_after_m || path_blocked_ || flight_.at_rest(now())) return;
+  if (phase_ == Phase::takeoff && hover_chosen_) return;  // down again from below a roof
   const std::string reason = "the map now forbids the path ahead";
   drop_next_goal(PolicyEvent::Kind::goal_unreachable, reason);
   // What a decision and its plan take in flight, and then the stretch to stop in.

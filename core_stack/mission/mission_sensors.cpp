@@ -25,9 +25,8 @@ constexpr double kSelfMargin_m = 0.05;
 void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
   if (scan->stamp > now()) return;  // of a clock gone wrong
   if (!loam_) return map_scan(std::move(scan));
-  if (locating_ > 1)
+  if (executive_.under_way("localization") > 1)
     return;  // in real time, where it falls behind: the newest scans are of no use if they are late
-  ++locating_;
   auto pose = std::make_shared<LoamPose>();
   executive_.job(
       "localization", Lane::localization, kLocalizationBudget,
@@ -40,7 +39,6 @@ void MissionControl::on_lidar(std::shared_ptr<const LidarScan> scan) {
         *pose = loam_->process(to_sweep(filtered, self_m), history);
       },
       [this, scan, pose] {
-        --locating_;
         const bool accepted =
             pose->valid && flight_.on_lidar_pose({pose->stamp, pose->T_world_body, pose->covariance});
         note_localization(*pose, accepted);
@@ -92,14 +90,14 @@ void MissionControl::on_depth(std::shared_ptr<const DepthImage> image) {
 
 /// Where it was taken is known as well as it can be: scans of that moment have been located since.
 void MissionControl::on_rgb(std::shared_ptr<const RgbFrame> frame) {
-  if (frame->stamp > now() || !frame->model) return;
+  if (frame->stamp > now() || !frame->model || emergency_) return;
   const Pose T_world_camera =
       flight_.estimator().history().pose_at(frame->stamp) * frame->model->camera.T_body_camera;
   executive_.job(
       "imaged surface", Lane::map, kMappingBudget,
       [this, T_world_camera] { explorer_.note_picture(T_world_camera); }, [] {});
   std::string file;
-  if (!frame->rgb.empty() && writing_ < kMostWaiting) {
+  if (!frame->rgb.empty() && executive_.under_way("picture file") < kMostWaiting) {
     std::array<char, 40> name;
     std::snprintf(name.data(), name.size(), "frames/%09.3f.jpg", seconds(frame->stamp));
     file = name.data();
@@ -113,7 +111,6 @@ void MissionControl::on_rgb(std::shared_ptr<const RgbFrame> frame) {
 
 /// Nothing waits for it; a disk that refuses costs the picture and a warning, not the flight.
 void MissionControl::keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file) {
-  ++writing_;
   auto problem = std::make_shared<std::string>();
   executive_.job(
       "picture file", Lane::pictures, kSecond / 2,
@@ -125,14 +122,12 @@ void MissionControl::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
         }
       },
       [this, problem] {
-        --writing_;
         if (!problem->empty() && pictures_lost_++ == 0) recorder_.event(now(), "log", {{"text", *problem}});
       });
 }
 
 void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
-  if (mapping_ >= kMostWaiting) return;
-  ++mapping_;
+  if (emergency_ || executive_.under_way("mapping") >= kMostWaiting) return;
   struct Result {
     std::vector<CellChange> changes;
     double explored_m3 = 0;
@@ -158,7 +153,6 @@ void MissionControl::integrate(std::function<std::vector<Ray>()> make_rays) {
         if (frontier != 0) result->goal_alive = explorer_.cluster_alive(frontier);
       },
       [this, result, frontier] {
-        --mapping_;
         explored_m3_ = result->explored_m3;
         hull_clearance_m_ = result->hull_clearance_m;
         last_seen_ = now();

@@ -229,26 +229,37 @@ void MissionControl::keep_apart() {
     path_blocked_ = true;
     if (!flight_.at_rest(now())) brake();
   }
-  if (action != Encounter::Action::make_room || planning_aside_) return;
-  const auto other = std::find_if(others.begin(), others.end(),
-                                  [this](const Neighbour& o) { return o.robot == encounter_.with(); });
-  if (other != others.end()) make_room(*other);
+  if (action == Encounter::Action::stop) {
+    recorder_.event(now(), "team", {{"action", "stop"}, {"robot", encounter_.with()}});
+    if (!flight_.at_rest(now())) brake();
+  }
+  if (action == Encounter::Action::make_room && !planning_aside_) make_room(others);
 }
 
-/// To where the other gets by, or before it back along the way come.
-void MissionControl::make_room(const Neighbour& other) {
+/// To where the one that it gives way to gets by, or before it back along the way come; clear of all others.
+void MissionControl::make_room(const std::vector<Neighbour>& others) {
+  RoomQuery query;
+  bool there = false;
+  for (const Neighbour& o : others)
+    if (o.robot == encounter_.with())
+      query.other = o.position, there = true;
+    else
+      (o.phase == TeamPhase::aside ? query.standing : query.moving).push_back(o.position);
+  if (!there) return;
   planning_aside_ = true;
   if (encounter_.stands_aside())
     refuges_in_vain_.push_back(refuge_.place);  // it waits there, and the other does not get by
+  query.flown = flown_, query.in_vain = refuges_in_vain_;
+  query.apart_m = team_->options().keep_apart_m / 2;
   const TimeNs start = now() + kAsideBudget;
   auto way = std::make_shared<Route>();
   auto refuge = std::make_shared<std::optional<Refuge>>();
   executive_.job(
       "make room", Lane::map, kAsideBudget,
-      [this, way, refuge, start, other, lead = flight_.until_stop(start), limits = flight_.limits(0),
-       flown = flown_, in_vain = refuges_in_vain_, narrow = narrow_places_] {
-        const Vec3& from = lead.points.back();
-        *refuge = explorer_.refuge(from, flown, other.position, in_vain);
+      [this, way, refuge, start, query, lead = flight_.until_stop(start), limits = flight_.limits(0),
+       narrow = narrow_places_]() mutable {
+        const Vec3& from = query.from = lead.points.back();
+        *refuge = explorer_.refuge(query);
         if (!*refuge || ((*refuge)->place - from).norm() < 1e-3) return;
         way->path = explorer_.plan_to(from, (*refuge)->place);
         if (way->path.found())
@@ -256,11 +267,11 @@ void MissionControl::make_room(const Neighbour& other) {
         else
           refuge->reset();
       },
-      [this, way, refuge, begun = now()] {
+      [this, way, refuge, begun = now(), crowd = !query.moving.empty()] {
         planning_aside_ = false;
         if (!encounter_.holds() || braked_since(begun)) return;
         if (!*refuge) {
-          encounter_.no_room(now());
+          encounter_.no_room(now(), crowd);
           recorder_.event(now(), "team", {{"action", "no room"}, {"robot", encounter_.with()}});
           return;
         }
@@ -277,7 +288,7 @@ void MissionControl::make_room(const Neighbour& other) {
 
 /// On the ground for good. Called when nothing runs on the map lane any more.
 void MissionControl::become_relay() {
-  const bool landed = result_->outcome == "landed" || result_->outcome == "stuck";
+  const bool landed = result_->stands;
   TeamState state;
   state.position = flight_.state().position;
   state.phase = landed ? TeamPhase::relay : TeamPhase::lost;

@@ -53,6 +53,12 @@ void Recorder::event(TimeNs t, const std::string& kind, const nlohmann::json& fi
   events_ << json_text(line) << '\n';
 }
 
+void Recorder::event_of_text(TimeNs t, const std::string& kind, const std::string& fields) {
+  std::string head = json_text(nlohmann::ordered_json{{"t", seconds(t)}, {"kind", kind}});
+  head.back() = ',';
+  events_ << head << std::string_view(fields).substr(1) << '\n';
+}
+
 void Recorder::pose(const State& s) {
   const Quat& q = s.orientation;
   trajectory_ << formatted("%.4f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", seconds(s.stamp), s.position.x(),
@@ -86,7 +92,7 @@ void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
 
 void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& file) {
   if (!frames_.is_open()) {
-    frames_ = open(directory_ / "frames.csv");
+    frames_.open(directory_ / "frames.csv", std::ios::binary | std::ios::trunc);  // flush() tells if it fails
     frames_ << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n";
   }
   const CameraModel& c = frame.model->camera;

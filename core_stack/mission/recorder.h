@@ -40,6 +40,8 @@ class Recorder {
 
   /// A line of events.jsonl: {"t": ..., "kind": kind, ...fields}.
   void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
+  /// The same of fields that were made into text elsewhere, where there is time for it: a JSON object.
+  void event_of_text(TimeNs t, const std::string& kind, const std::string& fields);
   void pose(const State& state);
   void telemetry(const Telemetry& row);
   void located(const Located& row);

@@ -25,11 +25,11 @@ nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 struct TeamMission::Robot {
   Robot(RobotId number, const CoreOptions& options, const VehicleDescription& vehicle, const Vec3& base,
-        std::uint64_t seed)
+        std::uint64_t seed, const MissionKey& key)
       : id(number),
         starts_at(from_seconds(std::round(options.team.stagger_s)) * (number - 1)),
         executive(1),
-        mate(id, options.team, options.homing, base, seed),
+        mate(id, options.team, options.homing, base, seed, key),
         homing(id, options.team, options.homing, base, options.planning, options.motion, vehicle.radius_m),
         teamwork(mate, homing, options.team, starts_at) {
     TeamState waiting;
@@ -56,14 +56,15 @@ struct TeamMission::Robot {
 };
 
 TeamMission::TeamMission(const CoreOptions& options, TeamVehicles& vehicles,
-                         const std::vector<TeamSeat>& seats, std::uint64_t seed,
+                         const std::vector<TeamSeat>& seats, std::uint64_t seed, const MissionKey& key,
                          const std::filesystem::path& run_dir, int threads)
     : options_(for_team(options)),
       vehicles_(vehicles),
       seats_(seats),
       seed_(seed),
+      key_(key),
       threads_(std::max(1, threads)),
-      base_(kBase, options_.team, options_.homing, vehicles.base(), seed),
+      base_(kBase, options_.team, options_.homing, vehicles.base(), seed, key),
       base_tree_(options_.homing.tree, cruise_speed_mps(options_.motion)),
       log_(run_dir) {
   base_tree_.insert_communication({kBase, 1}, to_centimetres(vehicles.base()), 0,
@@ -75,25 +76,52 @@ TeamMission::TeamMission(const CoreOptions& options, TeamVehicles& vehicles,
               {"reach", options_.homing.landing.link.range_m}});
   for (std::size_t i = 0; i < seats.size(); ++i)
     robots_.push_back(std::make_unique<Robot>(static_cast<RobotId>(i + 1), options_,
-                                              vehicles.robot(i).description(), vehicles.base(), seed));
+                                              vehicles.robot(i).description(), vehicles.base(), seed, key));
 }
 
 TeamMission::~TeamMission() = default;
 
 TeamResult TeamMission::run(const TeamWatch& watch) {
   TimeNs now = 0;
-  for (bool go_on = true; !over(now); now += kStep) {
-    for (const auto& robot : robots_)
-      if (now == robot->starts_at && go_on) start(*robot);
-    fly_all_to(now + kStep);
-    place_nodes(now + kStep);
-    vehicles_.meet(now + kStep);
-    talk(now + kStep);
-    note_phases(now + kStep);
-    strike(now + kStep);
-    if (now % kSecond == 0 && go_on) go_on = ask(watch, now);
+  bool go_on = true;
+  const auto end_in_order = [&](const char* reason) {
+    go_on = false;
+    for (const auto& robot : robots_) land(*robot, reason);
+  };
+  const auto attempt = [&](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception& e) {  // none of them may be left in the air
+      end_in_order(e.what());
+    } catch (...) {
+      end_in_order("an unknown exception");
+    }
+  };
+  for (; !over(now); now += kStep) {
+    attempt([&] { advance(now, go_on); });
+    attempt([&] { note_phases(now + kStep); });  // whatever else fails: it finds out who has come down
+    attempt([&] { strike(now + kStep); });
+    attempt([&] {
+      if (now % kSecond == 0 && go_on) go_on = ask(watch, now);
+    });
   }
   return result(now);
+}
+
+/// By one step; `starting`: robots whose time has come take off.
+void TeamMission::advance(TimeNs now, bool starting) {
+  for (const auto& robot : robots_)
+    if (now == robot->starts_at && starting && !robot->stopped) start(*robot);
+  fly_all_to(now + kStep);
+  place_nodes(now + kStep);
+  vehicles_.meet(now + kStep);
+  talk(now + kStep);
+}
+
+/// At once, or it does not start.
+void TeamMission::land(Robot& robot, const char* reason) {
+  robot.stopped = true;
+  if (robot.control) robot.control->land_now(reason);
 }
 
 void TeamMission::start(Robot& robot) {
@@ -145,7 +173,7 @@ void TeamMission::place_nodes(TimeNs now) {
     const auto id = static_cast<RobotId>(static_cast<std::int64_t>(robots_.size()) +
                                          (robot->id - 1) * options_.team.nodes + ++robot->nodes_dropped);
     vehicles_.drop_node(robot->id - 1u, id);
-    auto node = std::make_unique<Teammate>(id, options_.team, options_.homing, vehicles_.base(), seed_);
+    auto node = std::make_unique<Teammate>(id, options_.team, options_.homing, vehicles_.base(), seed_, key_);
     TeamState lies;
     lies.position = drop->ground;
     lies.phase = TeamPhase::relay;
@@ -159,12 +187,20 @@ void TeamMission::place_nodes(TimeNs now) {
   }
 }
 
-/// What all say is on the air before anybody listens.
+/// What all say is on the air before anybody listens. Whose radio fails, lands; the others go on.
 void TeamMission::talk(TimeNs now) {
-  const auto each = [this](auto&& f) {
-    f(base_, std::size_t{0});
-    for (const auto& robot : robots_) f(robot->mate, std::size_t{robot->id});
-    for (const auto& node : nodes_) f(*node, std::size_t{node->self()});
+  const auto each = [&](const auto& f) {
+    const auto attempt = [&](Teammate& mate, std::size_t radio, Robot* robot) {
+      try {
+        f(mate, radio);
+      } catch (const std::exception& e) {
+        if (robot) land(*robot, e.what());
+        log_.event(now, "error", {{"robot", radio}, {"reason", e.what()}});
+      }
+    };
+    attempt(base_, 0, nullptr);
+    for (const auto& robot : robots_) attempt(robot->mate, robot->id, robot.get());
+    for (const auto& node : nodes_) attempt(*node, node->self(), nullptr);
   };
   each([&](Teammate& mate, std::size_t radio) {
     for (const Bytes& frame : mate.speak(now)) vehicles_.send(radio, frame, now);
@@ -194,17 +230,17 @@ void TeamMission::note_phases(TimeNs now) {
       continue;  // it ends with its next step
     robot->phase = phase;
     if (robot->control) robot->homing_reason = robot->control->homing_reason();
+    if (phase == Phase::done && !robot->ended->stands)
+      vehicles_.wreck(robot->id - 1u, robot->ended->reason);  // what is left of it sends nothing
     log_.event(now, "phase", {{"robot", robot->id}, {"phase", name_of(phase)}});
     if (phase != Phase::done) continue;
+    robot->control.reset();
     const auto& claim = robot->mate.landing_of(robot->id);
     log_.event(now, "end",
                {{"robot", robot->id},
                 {"outcome", robot->ended->outcome},
                 {"reason", robot->ended->reason},
                 {"ground", claim ? list(claim->ground) : nlohmann::json()}});
-    const bool stands = robot->ended->outcome == "landed" || robot->ended->outcome == "stuck";
-    if (!stands) vehicles_.wreck(robot->id - 1u, robot->ended->reason);  // what is left of it sends nothing
-    robot->control.reset();
   }
 }
 
@@ -232,7 +268,7 @@ bool TeamMission::ask(const TeamWatch& watch, TimeNs now) {
   std::vector<MissionStatus> all;
   for (const auto& robot : robots_) all.push_back(robot->status);
   const bool go_on = watch(now, all);
-  for (const auto& robot : robots_) robot->stopped = !go_on;
+  for (const auto& robot : robots_) robot->stopped |= !go_on;
   return go_on;
 }
 
@@ -249,6 +285,8 @@ bool TeamMission::over(TimeNs now) const {
 
 TeamResult TeamMission::result(TimeNs now) {
   TeamResult out;
+  for (const auto& robot : robots_)
+    if (robot->ended && out.record_problem.empty()) out.record_problem = robot->ended->record_problem;
   out.duration_s = seconds(now);
   const std::vector<RobotId> connected = base_.graph().connected(now);
   for (const auto& robot : robots_) {
@@ -275,7 +313,11 @@ TeamResult TeamMission::result(TimeNs now) {
     out.bytes_on_air += vehicles_.traffic(radio).bytes_sent;
   for (const auto& node : nodes_) out.bytes_on_air += vehicles_.traffic(node->self()).bytes_sent;
   log_.flush();
-  vehicles_.finish();
+  try {
+    vehicles_.finish();
+  } catch (const std::exception& e) {  // a full disk: they flew all the same
+    if (out.record_problem.empty()) out.record_problem = e.what();
+  }
   return out;
 }
 

@@ -37,16 +37,17 @@ struct TeamResult {
   std::vector<RobotResult> robots;
   double duration_s = 0;
   std::uint64_t bytes_on_air = 0;
+  std::string record_problem;  // why a run directory is not complete; empty if all are
 };
 
-/// Called every second of the team's time with every robot's status; returns false to abort.
+/// Called every second of the team's time with every robot's status; returns false to have them all land.
 using TeamWatch = std::function<bool(TimeNs now, const std::vector<MissionStatus>&)>;
 
 class TeamMission {
  public:
-  /// One seat a robot, robot 1 first. Writes team.jsonl into `run_dir`.
+  /// One seat a robot, robot 1 first. Writes team.jsonl into `run_dir`, but never the radio's key.
   TeamMission(const CoreOptions& options, TeamVehicles& vehicles, const std::vector<TeamSeat>& seats,
-              std::uint64_t seed, const std::filesystem::path& run_dir, int threads);
+              std::uint64_t seed, const MissionKey& key, const std::filesystem::path& run_dir, int threads);
   ~TeamMission();
 
   TeamResult run(const TeamWatch& watch);
@@ -55,7 +56,9 @@ class TeamMission {
 
  private:
   struct Robot;
+  void advance(TimeNs now, bool starting);
   void start(Robot& robot);
+  void land(Robot& robot, const char* reason);
   void fly_all_to(TimeNs time);
   void fly(Robot& robot, TimeNs time);
   void place_nodes(TimeNs now);
@@ -71,6 +74,7 @@ class TeamMission {
   TeamVehicles& vehicles_;
   std::vector<TeamSeat> seats_;
   std::uint64_t seed_;
+  MissionKey key_;
   int threads_;
   Teammate base_;
   std::vector<std::unique_ptr<Robot>> robots_;

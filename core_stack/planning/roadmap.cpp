@@ -1,6 +1,7 @@
 #include "core_stack/planning/roadmap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,14 @@ constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 /// Goals as near as this are looked at directly: the graph's zigzag would matter there.
 constexpr double kDirect_m = 5.0;
+
+/// A place to stand near a goal that is not clear is looked for this far first.
+constexpr double kFirstShell_m = 1.6;
+
+/// Of 4 x 4 x 4 cells, in the cube around a ball.
+double blocks_within(double reach_m, double resolution_m) {
+  return std::pow(2 * reach_m / (4 * resolution_m) + 2, 3);
+}
 
 /// One run over the graph from several joins, by least length plus least possible rest.
 class GraphSearch {
@@ -121,28 +130,69 @@ std::vector<Vec3> Roadmap::places_near(const Vec3& p, double reach_m) const {
   if (!g.rule || !(p.cwiseAbs().maxCoeff() < 1e6) || !(reach_m > 0)) return out;
   const Vec3 reach = Vec3::Constant(reach_m);
   const CellKey low = g.free.key_of(p - reach), high = g.free.key_of(p + reach);
-  for (std::int32_t z = low.z & ~3; z <= high.z; z += 4)
-    for (std::int32_t y = low.y & ~3; y <= high.y; y += 4)
-      for (std::int32_t x = low.x & ~3; x <= high.x; x += 4)
-        g.for_each_node_in_block({x, y, z}, [&](const NodeRef& n, const RoadmapNode&) {
-          if ((g.position_of(n) - p).norm() <= reach_m) out.push_back(g.position_of(n));
-        });
+  const auto near = [&](const NodeRef& n) { return (g.position_of(n) - p).norm() <= reach_m; };
+  if (blocks_within(reach_m, g.free.resolution_m()) <= static_cast<double>(g.tiles.size())) {
+    for (std::int32_t z = low.z & ~3; z <= high.z; z += 4)
+      for (std::int32_t y = low.y & ~3; y <= high.y; y += 4)
+        for (std::int32_t x = low.x & ~3; x <= high.x; x += 4)
+          g.for_each_node_in_block({x, y, z}, [&](const NodeRef& n, const RoadmapNode&) {
+            if (near(n)) out.push_back(g.position_of(n));
+          });
+    return out;
+  }
+  // Wider than all that is known: the tiles that there are, in the order of the loops above.
+  std::vector<NodeRef> found;
+  const TileKey first = tile_of(low), last = tile_of(high);
+  for (std::uint32_t i = 0; i < g.tiles.size(); ++i) {
+    const TileKey& t = g.table.keys()[i];
+    if (t.x < first.x || t.y < first.y || t.z < first.z || t.x > last.x || t.y > last.y || t.z > last.z)
+      continue;
+    for (std::uint32_t n = 0; n < g.tiles[i].nodes.size(); ++n)
+      if (near({i, n})) found.push_back({i, n});
+  }
+  const auto block = [&g](const NodeRef& n) {
+    const CellKey& k = g.cell_of(n);
+    return std::array{k.z >> 2, k.y >> 2, k.x >> 2};
+  };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const NodeRef& a, const NodeRef& b) { return block(a) < block(b); });
+  for (const NodeRef& n : found) out.push_back(g.position_of(n));
   return out;
 }
 
-std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m) const {
+std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m,
+                                      WorkBudget* work) const {
   const RoadmapGraph& g = *graph_;
   if (!g.rule) return std::nullopt;
   if (g.free.is_clear(goal, g.clearance_m)) return goal;
-  std::optional<Vec3> best;
-  double least = tolerance_m + 1e-9;
-  for (const Vec3& p : places_near(goal, tolerance_m))
-    if (const double d = (p - goal).norm(); d < least && !map.first_not_free(p, goal)) best = p, least = d;
-  return best;
+  if (map.at(goal) != Cell::free) return std::nullopt;  // nothing sees it through free cells
+  struct Place {
+    Vec3 position;
+    double away_m;
+  };
+  // Shell by shell, the nearest first: where there is one, it is mostly near.
+  double beyond_m = -1;
+  for (double reach_m = std::min(kFirstShell_m, tolerance_m);; reach_m = std::min(2 * reach_m, tolerance_m)) {
+    std::vector<Place> shell;
+    for (const Vec3& p : places_near(goal, reach_m))
+      if (const double away_m = (p - goal).norm(); away_m > beyond_m) shell.push_back({p, away_m});
+    std::stable_sort(shell.begin(), shell.end(),
+                     [](const Place& a, const Place& b) { return a.away_m < b.away_m; });
+    const double looked_at = std::min(blocks_within(reach_m, g.free.resolution_m()),
+                                      static_cast<double>(g.tiles.size() + node_count()));
+    if (work && !work->spend(static_cast<std::uint64_t>(looked_at))) return std::nullopt;
+    for (const Place& place : shell) {
+      const double cells = 1 + 2 * place.away_m / g.free.resolution_m();  // of the line, about
+      if (work && !work->spend(static_cast<std::uint64_t>(cells))) return std::nullopt;
+      if (!map.first_not_free(place.position, goal)) return place.position;
+    }
+    if (!(reach_m < tolerance_m)) return std::nullopt;
+    beyond_m = reach_m;
+  }
 }
 
 std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
-                                       double goal_tolerance_m, double most_m) const {
+                                       double goal_tolerance_m, double most_m, WorkBudget* work) const {
   const RoadmapGraph& g = *graph_;
   std::vector<double> out(goals.size(), kInf);
   if (!g.rule) return out;
@@ -155,7 +205,8 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
   std::vector<std::vector<Join>> goal_joins(goals.size());
   std::vector<std::uint32_t> wanted;
   for (std::size_t i = 0; i < goals.size(); ++i) {
-    const std::optional<Vec3> goal = approach(map, goals[i], goal_tolerance_m);
+    const std::optional<Vec3> goal = approach(map, goals[i], goal_tolerance_m, work);
+    if (work && work->exhausted()) return out;
     if (!goal) continue;
     const double straight = (*goal - start).norm();
     if (straight <= kDirect_m && g.free.segment_clear(start, *goal, g.clearance_m)) {

@@ -11,6 +11,8 @@ namespace {
 constexpr TimeNs kPeriod = 100 * kMillisecond;
 /// Spacing of the path's nodes; with the period it bounds how much a bend is rounded (by a quarter of it).
 constexpr double kMostSpacing_m = 0.1;
+/// Of a trajectory: longer than any battery lasts, and 72,000 samples.
+constexpr double kLongest_s = 7200;
 
 /// Points at equal distances along the polyline; the ends stay.
 std::vector<Vec3> evenly_spaced(const std::vector<Vec3>& points, double most_spacing_m) {
@@ -101,6 +103,13 @@ std::vector<double> times(const std::vector<double>& v, double spacing_m) {
   return t;
 }
 
+/// The nodes that are passed within the longest time, in order; at least the first.
+std::vector<Vec3> passed_in_time(const std::vector<Vec3>& nodes, const std::vector<double>& t) {
+  std::size_t n = 1;
+  while (n < nodes.size() && t[n] <= kLongest_s) ++n;
+  return {nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(n)};
+}
+
 }  // namespace
 
 void describe(OptionTable& t, MotionLimits& o) {
@@ -152,6 +161,9 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
     }
     const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted, slow);
     const std::vector<double> t = times(v, spacing);
+    // Too slow to arrive: flown as far as it gets, to rest there. Fewer nodes each time, so this ends.
+    if (!(t.back() <= kLongest_s))
+      return sample_trajectory(passed_in_time(nodes, t), start_speed_mps, start, limits, heading, slow);
     const double turn_from = turn_from_s(heading, wanted.back(), t.back(), limits);
     // A turn begins that much before it is wanted: it takes time to get up to the rate.
     const double delay_s = 0.5 * limits.max_heading_rate_radps / limits.max_heading_acceleration_radps2;

@@ -19,6 +19,7 @@ struct MotionLimits {
   double max_heading_rate_radps = 1.0;
   double max_heading_acceleration_radps2 = 2.0;
   std::string trajectory = "sampled";  // or "polynomial": see polynomial_trajectory.h
+  bool operator==(const MotionLimits&) const = default;
 };
 void describe(OptionTable& t, MotionLimits& o);
 
@@ -61,7 +62,8 @@ struct HeadingPlan {
 
 /// Samples `points` from `start_speed_mps` along the path to rest at its end. Accelerations along and across
 /// the path stay within the limits (up to the sampling); turning on the spot comes first where heading must
-/// lead and the path turns by more than the rate allows.
+/// lead and the path turns by more than the rate allows. A path that would take longer than two hours is
+/// flown in part: the trajectory ends at rest, on the path, before two hours are over.
 Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
                              const MotionLimits& limits, const HeadingPlan& heading,
                              const SlowPlaces& slow = {});

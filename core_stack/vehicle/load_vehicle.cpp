@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 
 namespace karst::core {
 namespace {
@@ -32,6 +33,7 @@ VehiclePlugin& load_vehicle(const std::string& name, const std::filesystem::path
     for (const std::string& v : vehicles_in(folder)) have += " " + v;
     throw InputError(folder.string(), "", have);
   }
+  check_input(file.string(), kMaxPluginBytes);
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw InputError(file.string(), "", dlerror());
   const auto entry = reinterpret_cast<karst_vehicle_plugin_fn>(dlsym(library, "karst_vehicle_plugin"));

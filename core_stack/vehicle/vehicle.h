@@ -24,8 +24,7 @@ struct VehicleDescription {
   std::shared_ptr<const RgbCameraModel> rgb;  // null: none
   bool pose_sensor = false;                   // its poses come by themselves
   bool detects_objects = false;               // it looks for objects of interest
-  Pose T_world_start;          // the pose it stands at before take-off, in the mission's world frame
-  std::string implementation;  // what else its measurements depend on, for the record: "Embree 3, isa=avx2"
+  Pose T_world_start;  // the pose it stands at before take-off, in the mission's world frame
 };
 
 /// Where a vehicle delivers its messages. All calls come on the executive's loop thread.
@@ -46,6 +45,10 @@ class VehicleSink {
   /// Nothing more will come from this vehicle (crash, empty battery, end of a recording).
   virtual void on_lost(TimeNs stamp, const std::string& outcome, const std::string& reason) = 0;
 };
+
+/// A vehicle that has been given no command for so long levels itself and comes down by itself, as autopilots
+/// do: the core may hang, or its process may be gone.
+constexpr TimeNs kCommandTimeout = 500 * kMillisecond;
 
 class Vehicle {
  public:

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "plugins/replay/decimal_time.h"
 #include "plugins/replay/text_numbers.h"
 
@@ -13,8 +14,10 @@ using core::InputError;
 
 ImuFile::ImuFile(const std::string& path, const std::string& columns, core::TimeNs unit_ns,
                  const core::Quat& R_body_imu)
-    : path_(path), in_(path), unit_ns_(unit_ns), R_body_imu_(R_body_imu) {
-  if (!in_) throw InputError(path, "", "cannot be opened");
+    : path_(path),
+      in_(core::open_input(path, core::kMaxDataFileBytes)),
+      unit_ns_(unit_ns),
+      R_body_imu_(R_body_imu) {
   constexpr std::array kNames = {"t", "ax", "ay", "az", "wx", "wy", "wz"};
   std::array<bool, 7> found{};
   std::string_view rest = columns;

@@ -1,29 +1,15 @@
 #include "plugins/replay/scan_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 
 namespace karst::replay {
 
 using core::InputError;
 
-std::string file_bytes(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw InputError(path, "", "is a folder, not a file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw InputError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  const std::streamoff size = in.tellg();
-  if (size < 0) throw InputError(path, "", "cannot be read");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  in.seekg(0);
-  if (!in.read(bytes.data(), size)) throw InputError(path, "", "cannot be read to its end");
-  return bytes;
-}
+std::string file_bytes(const std::string& path) { return core::read_input(path, core::kMaxScanFileBytes); }
 
 bool is_scan_file(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();

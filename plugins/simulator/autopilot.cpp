@@ -25,4 +25,15 @@ Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
   return {std::max(command.thrust_n, 0.0), J.cwiseProduct(acceleration) + w.cross(J.cwiseProduct(w))};
 }
 
+core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n) {
+  constexpr double kSink_mps = 0.5, kLevelling_1ps = 6, kClimbRateGain_1ps = 3;
+  const Vec3 up_body = s.T_world_body.orientation.conjugate() * Vec3::UnitZ();
+  const double force = 1 + kClimbRateGain_1ps * (-kSink_mps - s.velocity_mps.z()) / kGravity_mps2;
+  core::AttitudeRateCommand out;
+  out.body_rate_radps = kLevelling_1ps * Vec3::UnitZ().cross(up_body);  // turns the body's z axis upwards
+  out.thrust_n = weight_n * std::clamp(force, 0.3, 1.5) / std::clamp(up_body.z(), 0.5, 1.0);
+  out.armed = true;
+  return out;
+}
+
 }  // namespace karst::sim

@@ -18,4 +18,9 @@ void describe(core::OptionTable& t, AutopilotOptions& o);
 Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
                     const core::AttitudeRateCommand& command, const core::Vec3& measured_rate_radps);
 
+/// What an autopilot does by itself when no more commands come: it levels the vehicle and sinks at 0.5 m/s.
+/// It does not know where it is, so it drifts on. Attitude and climb rate are its own to know, and the thrust
+/// of a hover, `weight_n`, it has learned.
+core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n);
+
 }  // namespace karst::sim

@@ -47,7 +47,7 @@ float tof_range(const PixelLight& rock, std::span<const PixelLight> veil, float 
   for (const PixelLight& v : veil) sum += phasor(v), lengths += v.strength;
   if (std::abs(sum) < least_strength) return kInf;
   if (std::abs(sum) < kLeastAgreement * lengths) return kNan;
-  const double turned = std::arg(sum) / (2 * std::numbers::pi);
+  const double turned = std::atan2(sum.imag(), sum.real()) / (2 * std::numbers::pi);
   const double mixed_m = kWave_m * (turned < 0 ? turned + 1 : turned);
   return std::isfinite(range_m) ? range_m + static_cast<float>(mixed_m - rock.range_m)
                                 : static_cast<float>(mixed_m);

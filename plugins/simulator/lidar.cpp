@@ -27,7 +27,8 @@ constexpr Unit kUnits[] = {{"vlp16", 16, 15, 100},
                            {"os1_64", 64, 22.5, 120},
                            {"os0_128", 128, 45, 50}};
 
-constexpr double kPulse_m = 0.75;  // c t / 2 of a pulse of 5 ns: what is nearer together is one echo
+constexpr float kRangeStep_m = 0.001f;  // as the units report ranges
+constexpr double kPulse_m = 0.75;       // c t / 2 of a pulse of 5 ns: what is nearer together is one echo
 
 }  // namespace
 
@@ -143,6 +144,7 @@ core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_bo
           range = r.range_m, intensity = r.intensity;
         }
       }
+      range = kRangeStep_m * std::round(range / kRangeStep_m);
       if (range < model_->min_range_m) range = std::numeric_limits<float>::quiet_NaN(), intensity = 0;
       scan.range_m[first + j] = range;
       scan.intensity[first + j] = intensity;

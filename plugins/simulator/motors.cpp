@@ -17,6 +17,10 @@ void describe(core::OptionTable& t, MotorModel& m) {
   t.add("arm", m.arm_m, "m", 0.03, 2, "from the vehicle's centre to each motor");
   t.add("yaw_moment", m.yaw_moment_m, "m", 0.001, 0.2, "a motor's reaction torque over its thrust");
   t.add("time_constant", m.time_constant_s, "s", 0.001, 0.5, "first-order lag of the thrust");
+  t.add("weak", m.weak, 0, 4,
+        "number of a worn motor: 1 front left, 2 front right, 3 rear left, 4 rear right; 0: none");
+  t.add("weak_share", m.weak_share, "", 0, 1, "of the thrust asked of it that a worn motor exerts");
+  t.add("weak_after", m.weak_after_s, "s", 0, 86400, "when it begins to be worn");
 }
 
 double max_motor_thrust_n(const MotorModel& motors, const BodyModel& body) {
@@ -45,6 +49,12 @@ MotorThrusts mix(const MotorModel& model, double max_n, const Wrench& wanted) {
     if (yaw[i] < 0) share = std::min(share, f[i] / -yaw[i]);
   }
   return (f + std::max(share, 0.0) * yaw).cwiseMax(0.0).cwiseMin(max_n);
+}
+
+MotorThrusts exerted(const MotorModel& model, const MotorThrusts& f, double t_s) {
+  MotorThrusts out = f;
+  if (model.weak > 0 && t_s >= model.weak_after_s) out[model.weak - 1] *= model.weak_share;
+  return out;
 }
 
 MotorThrusts follow(const MotorModel& model, const MotorThrusts& f, const MotorThrusts& commanded,

@@ -41,7 +41,8 @@ QuadrotorEvent Quadrotor::step() {
   const MotorThrusts commanded =
       command.armed ? mix(model_.motors, max_motor_thrust_n_, wanted) : MotorThrusts(MotorThrusts::Zero());
   motors_ = follow(model_.motors, motors_, commanded, kStep_s);
-  const Wrench wrench = wrench_of(model_.motors, motors_);
+  const double t_s = static_cast<double>(all_steps_++) * kStep_s;
+  const Wrench wrench = wrench_of(model_.motors, exerted(model_.motors, motors_, t_s));
   const double lift_n = wrench.thrust_n * (state_.T_world_body.orientation * Vec3::UnitZ()).z();
 
   QuadrotorEvent event = QuadrotorEvent::none;

@@ -57,6 +57,7 @@ class Quadrotor {
   ContactWatch contact_;
   std::optional<Touch> last_touch_;
   int steps_done_ = 0;
+  long all_steps_ = 0;
 };
 
 }  // namespace karst::sim

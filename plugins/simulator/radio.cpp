@@ -20,6 +20,11 @@ Random fate_of(std::uint64_t seed, int from, std::uint64_t number, int to) {
   return Random(h);
 }
 
+bool silent(const RadioOptions& o, TimeNs t) {
+  const double since_s = core::seconds(t) - o.silent_after_s;
+  return since_s >= 0 && since_s < o.silent_for_s;
+}
+
 /// One to four bits turned over; of some, the end is missing.
 void corrupt(std::vector<std::uint8_t>& bytes, Random& random) {
   if (bytes.empty()) return;
@@ -38,6 +43,8 @@ void describe(core::OptionTable& t, RadioOptions& o) {
   t.add("loss", o.loss, "", 0, 1, "share of packets lost at random");
   t.add("corrupt", o.corrupt, "", 0, 1, "share of packets that arrive corrupted");
   t.add("queue", o.queue_bytes, "", 100, 1e9, "bytes a sender holds back while the channel is busy");
+  t.add("silent_after", o.silent_after_s, "s", 0, 86400, "for tests: when all radios fall silent");
+  t.add("silent_for", o.silent_for_s, "s", 0, 86400, "and for how long; 0: they never do");
 }
 
 void Radio::send(const cave::RayScene& scene, int from, std::span<const std::uint8_t> bytes, TimeNs stamp) {
@@ -71,7 +78,7 @@ void Radio::arrive(const cave::RayScene& scene, int from, int to, std::span<cons
   const double fading_db = options_.link.fading_db * random.normal();
   const double margin_db =
       link_margin_db(options_.link, scene, radios_.at(from).position, receiver.position) + fading_db;
-  const bool lost = random.uniform() < options_.loss;
+  const bool lost = random.uniform() < options_.loss || silent(options_, end);
   if (!(margin_db >= 0)) {
     counts.bytes_weak += bytes.size();
     return;

@@ -22,10 +22,11 @@ namespace karst::sim {
 struct RadioOptions {
   LinkOptions link;
   double bandwidth_kbps = 64;
-  double latency_ms = 5, jitter_ms = 5;  // behind the time on the air; jitter is uniform
-  double loss = 0;                       // share of packets lost for no reason of distance
-  double corrupt = 0;                    // share of packets that arrive with wrong or missing bytes
-  double queue_bytes = 8000;             // what a sender holds back; beyond that packets are dropped
+  double latency_ms = 5, jitter_ms = 5;         // behind the time on the air; jitter is uniform
+  double loss = 0;                              // share of packets lost for no reason of distance
+  double corrupt = 0;                           // share of packets that arrive with wrong or missing bytes
+  double queue_bytes = 8000;                    // what a sender holds back; beyond that packets are dropped
+  double silent_after_s = 0, silent_for_s = 0;  // nothing arrives that was sent then
 };
 void describe(core::OptionTable& t, RadioOptions& o);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 #include "plugins/simulator/cave/preflight.h"
 #include "plugins/simulator/object_placing.h"
@@ -99,7 +100,6 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       options.pose.fitted == "always" || (options.pose.fitted == "without_lidar" && !lidar_);
   description_.detects_objects = !looks_.empty() && (rgb_ || !cameras_.empty());
   description_.T_world_start = site_.T_world_start;
-  description_.implementation = std::string("Embree ") + cave::RayScene::device_config();
 }
 
 void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
@@ -110,15 +110,20 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
   append(track_, {now(), quadrotor_.state().T_world_body}, now());
   schedule_sensors();
   executive.at(now(), [this] {
-    log_.event(
-        now(), "start", quadrotor_.state(),
-        std::string(site_.pad ? "on a launch pad" : "on the floor") + "; " + description_.implementation);
+    log_.event(now(), "start", quadrotor_.state(), site_.pad ? "on a launch pad" : "on the floor");
     for (std::size_t i = 0; i < looks_.size(); ++i)
       log_.object(now(), "placed", i + 1, cave_->description.objects[i]);
     log_truth();
     sink_->on_battery(quadrotor_.battery().status(now()));
     sink_->on_ground(now(), true);
   });
+  if (options_.motors.weak > 0)
+    executive.at(now() + core::from_seconds(options_.motors.weak_after_s), [this] {
+      char text[60];
+      std::snprintf(text, sizeof text, "motor %d at %.0f %%", static_cast<int>(options_.motors.weak),
+                    100 * options_.motors.weak_share);
+      log_.event(now(), "fault", quadrotor_.state(), text);
+    });
   executive.every("vehicle", now() + kTick, kTick, [this] {
     if (!lost_) tick();
   });
@@ -154,7 +159,23 @@ void SimulatedVehicle::schedule_sensors() {
   every(10 * kMillisecond, 0, [this] { log_truth(); });
 }
 
+void SimulatedVehicle::command(const core::AttitudeRateCommand& c) {
+  quadrotor_.command = c;
+  commanded_at_ = executive_ ? now() : 0;
+  taken_over_ = false;
+}
+
+/// On its legs it switches the motors off.
+void SimulatedVehicle::take_over() {
+  if (!std::exchange(taken_over_, true))
+    log_.event(now(), "autopilot", quadrotor_.state(), "no command: level, and down");
+  quadrotor_.command = quadrotor_.footing() == Footing::standing
+                           ? core::AttitudeRateCommand{}
+                           : level_descent(quadrotor_.state(), options_.body.total_weight_n());
+}
+
 void SimulatedVehicle::tick() {
+  if (quadrotor_.command.armed && now() - commanded_at_ > core::kCommandTimeout) take_over();
   quadrotor_.gyroscope_bias_radps = imu_.gyroscope_bias_radps();
   for (int left = kStepsPerTick; left > 0 && !lost_; left -= quadrotor_.steps_done())
     react(quadrotor_.advance(left));

@@ -28,7 +28,7 @@ class SimulatedVehicle final : public core::Vehicle {
 
   core::VehicleDescription description() const override { return description_; }
   void start(core::Executive& executive, core::VehicleSink& sink) override;
-  void command(const core::AttitudeRateCommand& c) override { quadrotor_.command = c; }
+  void command(const core::AttitudeRateCommand& c) override;
   void finish() override;
 
   // Among other vehicles; to be called between two steps of the executive.
@@ -49,6 +49,7 @@ class SimulatedVehicle final : public core::Vehicle {
 
   void schedule_sensors();
   void tick();
+  void take_over();
   void react(QuadrotorEvent event);
   void lose(const std::string& outcome, const std::string& reason);
   void fire_lidar();
@@ -96,7 +97,9 @@ class SimulatedVehicle final : public core::Vehicle {
   core::TimeNs start_time_ = 0;
   std::vector<Reading> schedule_;
   bool lost_ = false;
-  PoseTrack track_;  // of the last sweep
+  core::TimeNs commanded_at_ = 0;
+  bool taken_over_ = false;  // by its autopilot, since then
+  PoseTrack track_;          // of the last sweep
   core::Vec3 last_velocity_mps_ = core::Vec3::Zero();
   core::Quat last_orientation_ = core::Quat::Identity();
 };

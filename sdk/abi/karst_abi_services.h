@@ -93,7 +93,7 @@ typedef struct karst_path_service {
   uint32_t size;
   uint32_t reserved;
   /* [any thread] {deciding} Length of a clear path from `from` to within `tolerance_m` of each goal, in
-     metres; +infinity if no way is known. One search answers for all the goals. */
+     metres; +infinity if no way is known. (Very many goals far from clear ones: KARST_ERROR_LIMIT.) */
   int32_t (*lengths)(const karst_host_t*, karst_vec3_t from, const karst_vec3_t* goals, uint64_t count,
                      double tolerance_m, double* out, karst_error_t*) KARST_NOEXCEPT;
 } karst_path_service_t;

@@ -149,7 +149,7 @@ typedef struct karst_goal {
   karst_vec3_t position; /* world, finite */
   double heading_rad;    /* NaN: any */
   double tolerance_m;    /* > 0: reached when nearer than this */
-  double max_speed_mps;  /* 0: the mission's; more than the mission's is cut to it */
+  double max_speed_mps;  /* 0: the mission's; more is cut to it; not below its min_speed */
   uint32_t frontier_id;  /* 0: none */
   uint32_t reserved;
   double score;     /* in the policy's own unit, higher is better; finite */

@@ -7,6 +7,8 @@
 #include <optional>
 #include <tuple>
 
+#include "core_stack/common/input_file.h"
+#include "core_stack/common/json_file.h"
 #include "sdk/campaign/executor.h"
 #include "sdk/evaluation/coverage_curve.h"
 #include "sdk/evaluation/metric_definitions.h"
@@ -21,10 +23,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCurveStep_s = 2;  // between points of a curve: 150 for five minutes
 constexpr std::size_t kLongestReason = 500;
 
-json read_json(const fs::path& file) {
-  std::ifstream in(file);
-  return fs::is_regular_file(file) ? json::parse(in, nullptr, false) : json();
-}
+json read_json(const fs::path& file) { return fs::exists(file) ? core::json_of_file(file) : json(); }
 
 std::string text_of(const json& object, const char* key) {
   const auto found = object.find(key);
@@ -38,7 +37,8 @@ double number_of(const json& object, std::string_view key) {
 
 /// The last thing a trial said, which for one that could not fly is why.
 std::string last_words(const fs::path& run_dir) {
-  std::ifstream in(run_dir / kLogFile);
+  if (!fs::is_regular_file(run_dir / kLogFile)) return "";
+  std::ifstream in = core::open_input(run_dir / kLogFile, core::kMaxDataFileBytes);
   std::string last;
   for (std::string line; std::getline(in, line);)
     if (!line.empty()) last = line;

@@ -13,6 +13,8 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/whole_file.h"
 
 namespace karst::campaign {
@@ -54,10 +56,9 @@ void refuse_full_disk(const fs::path& folder) {
 
 /// A trial that failed for want of space says nothing about its policy.
 void refuse_starved(const fs::path& folder) {
-  std::ifstream in(folder / kLogFile);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (text.str().find(std::strerror(ENOSPC)) != std::string::npos) {
+  std::string said;
+  if (fs::exists(folder / kLogFile)) said = core::read_input(folder / kLogFile, core::kMaxRecordFileBytes);
+  if (said.find(std::strerror(ENOSPC)) != std::string::npos) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
     throw InputError(
@@ -167,9 +168,7 @@ void write_note(const fs::path& run_dir, const TrialNote& note) {
 
 TrialNote read_note(const fs::path& run_dir) {
   const fs::path file = run_dir / kNoteFile;
-  std::ifstream in(file);
-  const auto json = nlohmann::json::parse(in, nullptr, false);
-  if (!in && !in.eof()) throw InputError(file.string(), "", "cannot be read");
+  const auto json = core::json_of(core::read_input(file, core::kMaxTextFileBytes));
   try {
     return {{json.at("exit_code"), json.at("signal"), json.at("hung"), json.at("wall_s")},
             json.at("machine"),

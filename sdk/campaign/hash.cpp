@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 
 namespace karst::campaign {
 namespace {
@@ -29,8 +30,7 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) throw core::InputError(file.string(), "", "cannot be read");
+  std::ifstream in = core::open_input(file, core::kMaxDataFileBytes);
   SHA2_CTX context;
   SHA256Init(&context);
   std::vector<char> block(1 << 20);

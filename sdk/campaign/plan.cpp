@@ -45,7 +45,6 @@ PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs
   PlannedContestant out{who.name, policy, who.plugin, {}, {}, {}, json_object(who.settings), {}};
   out.version = take(mission, "policy", "version").data();
   const std::string karst_version = take(mission, "karst", "version").data();
-  take(mission, "vehicle", "implementation");
   if (const auto parameters = mission.get_child_optional("policy.parameters"))
     out.parameters = json_object(core::leaves_of(*parameters));
   if (out.parameters.empty()) out.parameters = "{}";
@@ -62,7 +61,8 @@ PlannedCave planned(const CaveSpec& cave) {
   PlannedCave out{cave.name, cave.file, cave.start, sha256_of_file(description.mesh_path), {}};
   std::string said;
   if (fs::path(description.mesh_path).lexically_normal() != fs::path(cave.file).lexically_normal())
-    for (const core::InfoLine& line : core::info_lines(cave.file)) said += line.text + "\n";
+    for (const core::InfoLine& line : core::info_lines(cave.file, core::Includes::refuse))
+      said += line.text + "\n";
   out.hash = sha256(out.mesh_hash + "\n" + said);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_reader.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/plan.h"
 
@@ -17,14 +18,7 @@ using nlohmann::json;
 namespace {
 
 pt::ptree tree_of(const std::string& definition, const std::string& source) {
-  std::istringstream in(definition);
-  pt::ptree tree;
-  try {
-    pt::read_info(in, tree);
-  } catch (const pt::info_parser_error& e) {
-    throw InputError(source, "campaign.definition, line " + std::to_string(e.line()), e.message());
-  }
-  return tree;
+  return core::parse_info(definition, source + ": campaign.definition");
 }
 
 }  // namespace

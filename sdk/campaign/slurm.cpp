@@ -11,6 +11,8 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/host/process.h"
 
@@ -69,7 +71,7 @@ void cancel(const std::string& array) {
 /// An array that a campaign which was killed left behind.
 void cancel_left_behind(const SlurmOptions& o) {
   std::string array;
-  std::ifstream(array_file(o)) >> array;
+  if (fs::exists(array_file(o))) core::open_input(array_file(o), core::kMaxTextFileBytes) >> array;
   if (!array.empty()) cancel(array);
   std::error_code ignored;
   fs::remove(array_file(o), ignored);
@@ -203,8 +205,7 @@ bool run_on_slurm(const std::vector<TrialJob>& jobs, const SlurmOptions& o, cons
 }
 
 bool fly_batch(const fs::path& file, const std::atomic<bool>* stop) {
-  std::ifstream in(file);
-  const json batch = json::parse(in, nullptr, false);
+  const json batch = core::json_of(core::read_input(file, core::kMaxTextFileBytes));
   std::vector<TrialJob> jobs;
   ExecutorOptions options;
   try {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "sdk/campaign/sqlite.h"
 #include "sdk/evaluation/metric_definitions.h"
 
@@ -86,6 +87,7 @@ std::string schema_sql() {
 }
 
 OpenStore open_file(const fs::path& file, int flags) {
+  if (fs::exists(file)) core::check_input(file.string(), core::kMaxDataFileBytes);
   sqlite3* db = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &db, flags, nullptr);
   OpenStore store(db);

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 
 namespace karst::check {
 namespace {
@@ -24,8 +25,7 @@ T at(const std::string& bytes, std::uint64_t offset, const std::string& file) {
 }  // namespace
 
 std::vector<std::string> exported_symbols(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = core::read_input(file, core::kMaxPluginBytes);
   const auto header = at<Elf64_Ehdr>(bytes, 0, file);
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64)
     throw core::InputError(file, "", "is not a 64-bit ELF file");

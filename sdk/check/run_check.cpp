@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "core_stack/common/options.h"
 #include "sdk/host/probe.h"
 #include "sdk/host/process.h"
@@ -169,8 +170,7 @@ const char* name_of(Verdict verdict) {
 }
 
 std::vector<TestResult> run_check(const CheckOptions& o, const std::function<void(const TestResult&)>& done) {
-  if (std::error_code error; !fs::is_regular_file(o.file, error))
-    throw InputError(o.file, "", "is not a file");
+  core::check_input(o.file, core::kMaxPluginBytes);
   if (access(o.file.c_str(), R_OK) != 0) throw InputError(o.file, "", "cannot be read");
   check_names(o);
   std::vector<TestResult> results;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "sdk/evaluation/decimate.h"
 #include "sdk/evaluation/map_error.h"
 #include "sdk/evaluation/umeyama.h"
@@ -94,7 +95,7 @@ std::vector<StampedPose> read_kitti(const std::string& file, const std::vector<S
   // Columns: the camera's axes in the body's, x forward y left z up.
   Eigen::Matrix3d body_camera;
   body_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  std::ifstream in(file);
+  std::ifstream in = core::open_input(file, core::kMaxRecordFileBytes);
   std::vector<StampedPose> poses;
   std::size_t number = 0;
   for (std::string line; std::getline(in, line);) {
@@ -188,10 +189,9 @@ ordered_json map_evaluation(const std::vector<Vec3>& points, const MapReference&
 
 std::vector<StampedPose> read_poses(const std::string& file, const std::vector<StampedPose>& stamps,
                                     std::vector<std::string>& problems) {
-  if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "no such file of poses");
   std::string line;
   {
-    std::ifstream in(file);
+    std::ifstream in = core::open_input(file, core::kMaxRecordFileBytes);
     while (std::getline(in, line) && (line.empty() || line[0] == '#')) continue;
   }
   std::istringstream words(line);

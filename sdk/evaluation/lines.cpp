@@ -1,9 +1,10 @@
 #include "sdk/evaluation/lines.h"
 
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <limits>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 
 namespace karst::evaluation {
 
@@ -12,14 +13,11 @@ std::vector<std::string> read_lines(const std::filesystem::path& file, std::vect
   std::error_code absent;
   if (!std::filesystem::exists(file, absent)) return lines;
   const std::string name = file.filename().string();
-  if (std::filesystem::is_directory(file, absent)) {
-    problems.push_back(name + ": is a directory, not a file");
-    return lines;
-  }
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in.good() && !in.eof()) {
-    problems.push_back(name + ": cannot be read");
+  std::string bytes;
+  try {
+    bytes = core::read_input(file, core::kMaxRecordFileBytes);
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
     return lines;
   }
   if (bytes.empty()) problems.push_back(name + ": is empty: its content is lost or was never written");

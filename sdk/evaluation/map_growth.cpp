@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 
 namespace karst::evaluation {
 namespace {
@@ -30,12 +31,13 @@ std::vector<OccupiedSpan> read_map_growth(const std::filesystem::path& file,
                                           std::vector<std::string>& problems) {
   std::error_code absent;
   if (!std::filesystem::exists(file, absent)) return {};
-  if (std::filesystem::is_directory(file, absent)) {
-    problems.push_back(file.filename().string() + ": is a directory, not a file");
+  std::string bytes;
+  try {
+    bytes = core::read_input(file, core::kMaxRecordFileBytes);
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
     return {};
   }
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   if (bytes.size() % kRecordBytes != 0)
     problems.push_back(file.filename().string() + ": byte " +
                        std::to_string(bytes.size() / kRecordBytes * kRecordBytes) +

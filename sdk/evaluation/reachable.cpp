@@ -90,10 +90,9 @@ std::optional<CellKey> flyable_near(const Vec3& start, const CellSet& clear, con
   return best;
 }
 
-}  // namespace
-
-Reachable find_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
-                         const std::string& name) {
+/// All but what can only be seen.
+Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
+                       const std::string& name) {
   const double edge = options.resolution_m;
   CellSet rock = empty_set_around(mesh, edge, name);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) insert_touched(rock, triangle(mesh, i), edge);
@@ -121,12 +120,24 @@ Reachable find_reachable(const cave::TriangleMesh& mesh, const Vec3& start, cons
                      "no place with " + number_text(options.clearance_m) +
                          " m to rock in a straight line within " + number_text(kStartSearchM) + " m");
   r.flyable = flood(clear, false, *first, escaped);
-
-  r.reachable = seen_from(r.flyable, r.free, options.sight_m / edge);
   r.free_cells = r.free.size();
   r.flyable_cells = r.flyable.size();
+  return r;
+}
+
+}  // namespace
+
+Reachable find_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
+                         const std::string& name) {
+  Reachable r = find_flyable(mesh, start, options, name);
+  r.reachable = seen_from(r.flyable, r.free, options.sight_m / options.resolution_m);
   r.reachable_cells = r.reachable.size();
   return r;
+}
+
+void check_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
+                     const std::string& name) {
+  find_flyable(mesh, start, options, name);
 }
 
 }  // namespace karst::evaluation

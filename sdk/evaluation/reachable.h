@@ -41,4 +41,8 @@ struct Reachable {
 Reachable find_reachable(const cave::TriangleMesh& mesh, const core::Vec3& start,
                          const ReachableOptions& options, const std::string& name);
 
+/// Throws the same of a start and mesh, in a fraction of the time.
+void check_reachable(const cave::TriangleMesh& mesh, const core::Vec3& start, const ReachableOptions& options,
+                     const std::string& name);
+
 }  // namespace karst::evaluation

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "sdk/evaluation/whole_file.h"
 
 namespace karst::evaluation {
@@ -81,8 +82,12 @@ Bytes bytes_of(const Reachable& r, std::uint64_t key) {
 std::optional<Reachable> read(const fs::path& file, std::uint64_t key, const ReachableOptions& options) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  const Bytes bytes{std::istreambuf_iterator<char>(in), {}};
+  Bytes bytes;
+  try {
+    bytes = core::read_input(file, core::kMaxRecordFileBytes);
+  } catch (const core::InputError&) {  // it is a cache: what cannot be read is worked out anew
+    return std::nullopt;
+  }
   constexpr std::size_t around = sizeof(Head) + sizeof(std::uint64_t);
   if (bytes.size() < around || (bytes.size() - around) % sizeof(BlockEntry) != 0) return std::nullopt;
   std::uint64_t sum = 0;

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "core_stack/common/json_file.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/metrics.h"
 #include "sdk/evaluation/page.h"
@@ -40,8 +41,7 @@ std::string team_report_page(const ordered_json& data) {
 
 void write_report(const std::filesystem::path& run_dir) {
   const RunRecord run = read_run(run_dir);
-  std::ifstream in(run_dir / "metrics.json");
-  ordered_json metrics = in ? core::json_of<nlohmann::ordered_json>(in) : ordered_json();
+  auto metrics = core::json_of_file<ordered_json>(run_dir / "metrics.json");
   if (!metrics.is_object()) metrics = evaluate_run(run_dir, {});
   write_whole_file(run_dir / "report.html", report_page(report_data(run, metrics)));
 }

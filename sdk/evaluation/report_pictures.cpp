@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core_stack/common/geometry.h"
+#include "core_stack/common/input_file.h"
 #include "sdk/evaluation/base64.h"
 #include "sdk/evaluation/table.h"
 
@@ -28,8 +29,8 @@ void demand(bool fine, const Coder& coder) {
 }
 
 std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = core::read_input(file, core::kMaxTextFileBytes);
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace

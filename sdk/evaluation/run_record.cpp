@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "sdk/evaluation/lines.h"
@@ -105,14 +106,13 @@ std::vector<Setting> read_settings(const fs::path& file, std::vector<std::string
 
 json read_json(const fs::path& file, std::vector<std::string>& problems) {
   if (!fs::exists(file)) return nullptr;
-  if (fs::is_directory(file)) {
-    problems.push_back(file.filename().string() + ": is a directory, not a file");
-    return nullptr;
+  try {
+    json value = core::json_of(core::read_input(file, core::kMaxTextFileBytes));
+    if (!value.is_discarded()) return value;
+    problems.push_back(file.filename().string() + ": is not valid JSON; left out");
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
   }
-  std::ifstream in(file);
-  json value = core::json_of(in);
-  if (!value.is_discarded()) return value;
-  problems.push_back(file.filename().string() + ": is not valid JSON; left out");
   return nullptr;
 }
 

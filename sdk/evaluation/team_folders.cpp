@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/run_record.h"
 
@@ -26,7 +27,8 @@ std::optional<TeamSize> told_size(std::optional<double> robots, const fs::path& 
 }
 
 std::optional<TeamSize> size_in_log(const fs::path& log) {
-  std::ifstream in(log);
+  if (!fs::is_regular_file(log)) return std::nullopt;
+  std::ifstream in = core::open_input(log, core::kMaxRecordFileBytes);
   std::string line;
   std::getline(in, line);
   const json first = core::json_of(line);

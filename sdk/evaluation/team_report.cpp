@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core_stack/common/json_file.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/flight_figures.h"
 #include "sdk/evaluation/report_curve.h"
@@ -148,8 +149,7 @@ void write_team_report(const TeamRecord& team, const ordered_json& metrics) {
 
 void write_team_report(const std::filesystem::path& run_dir) {
   const TeamRecord team = read_team(run_dir);
-  std::ifstream in(run_dir / "metrics.json");
-  const auto metrics = in ? core::json_of<nlohmann::ordered_json>(in) : ordered_json();
+  const auto metrics = core::json_of_file<ordered_json>(run_dir / "metrics.json");
   write_team_report(team, metrics.is_object() ? metrics : ordered_json::object());
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/common/json_file.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/table.h"
 
@@ -41,8 +42,7 @@ WallClock read_wall_clock(const std::filesystem::path& run_dir, std::vector<std:
               decide.max, plan.mean, plan.p99, plan.max};
   const auto file = run_dir / "timing.json";
   if (!std::filesystem::is_regular_file(file)) return w;
-  std::ifstream in(file);
-  const auto timing = core::json_of(in);
+  const auto timing = core::json_of_file(file);
   if (!timing.is_object()) {
     problems.push_back("timing.json: is no JSON object");
     return w;

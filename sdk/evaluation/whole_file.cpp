@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/output_file.h"
 
 namespace karst::evaluation {
 
@@ -15,8 +16,11 @@ void write_whole_file(const fs::path& file, std::string_view bytes) {
   const bool device =
       fs::exists(file, ignored) && fs::is_other(file, ignored);  // /dev/stdout: nothing to rename onto
   const fs::path part = device ? file : fs::path(file.string() + ".part");
+  // What a killed run left goes first, and a FIFO, which would block, or a link, which would lead elsewhere.
+  if (!device && !fs::is_directory(part, ignored)) fs::remove(part, ignored);
   errno = 0;
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
+  std::ofstream out =
+      device ? core::open_output(part) : std::ofstream(part, std::ios::binary | std::ios::trunc);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
   if (out && !device) fs::rename(part, file, error);

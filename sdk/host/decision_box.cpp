@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kFarthest_m = 1e5;  // no cave is wider; beyond it float rounding would bite
 constexpr double kLongestTolerance_m = 100.0, kHighestSpeed_mps = 1000.0;
+constexpr double kLowestSpeed_mps = 0.05;  // the least that motion.min_speed can be
 
 core::Goal to_core(const karst_goal_t& g) {
   core::Goal out;
@@ -34,6 +35,8 @@ std::string goal_fault(const karst_goal_t& g) {
     return "its tolerance is not in (0, 100] m";
   if (!(g.max_speed_mps >= 0 && g.max_speed_mps <= kHighestSpeed_mps))
     return "its speed limit is not a speed (0 stands for the mission's)";
+  if (g.max_speed_mps > 0 && g.max_speed_mps < kLowestSpeed_mps)
+    return "its speed limit is below 0.05 m/s (0 stands for the mission's)";
   if (!std::isfinite(g.score)) return "its score is not finite";
   const std::string text = fault_of(g.why, kLineLimit);
   return text.empty() ? "" : "its why " + text;

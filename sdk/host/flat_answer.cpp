@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "core_stack/common/error.h"
+#include "core_stack/common/info_reader.h"
 #include "sdk/abi/karst_abi_services.h"
 #include "sdk/host/decision_box.h"
 #include "sdk/host/policy_state.h"
@@ -31,14 +33,11 @@ void put(FlatWriter& out, const boost::property_tree::ptree& tree) {
 }
 
 boost::property_tree::ptree tree(FlatReader& in) {
-  std::istringstream text(in.text(kLongestText));
-  boost::property_tree::ptree out;
   try {
-    boost::property_tree::read_info(text, out);
-  } catch (const boost::property_tree::info_parser_error& e) {
-    in.fail("parameters that are none: " + e.message());
+    return core::parse_info(in.text(kLongestText), "parameters");
+  } catch (const core::InputError& e) {
+    in.fail(e.what());
   }
-  return out;
 }
 
 void put(FlatWriter& out, const PolicyLegacy& l) {
@@ -217,22 +216,23 @@ LengthsQuestion read_lengths_question(std::span<const std::byte> bytes) {
   return q;
 }
 
-Bytes flatten(const std::optional<std::vector<double>>& lengths) {
+Bytes flatten(const PathAnswer& answer) {
   FlatWriter out;
-  out.put(lengths.has_value());
-  if (!lengths) return out.take();
-  out.put<std::uint64_t>(lengths->size());
-  for (const double l : *lengths) out.put(l);
+  out.put(static_cast<std::uint32_t>(answer.status));
+  out.put<std::uint64_t>(answer.lengths_m.size());
+  for (const double l : answer.lengths_m) out.put(l);
   return out.take();
 }
 
-std::optional<std::vector<double>> read_lengths(std::span<const std::byte> bytes) {
+PathAnswer read_path_answer(std::span<const std::byte> bytes) {
   FlatReader in(bytes);
-  if (!in.flag()) return std::nullopt;
-  std::vector<double> lengths(in.count(sizeof(double), KARST_MAX_PATH_GOALS, "lengths"));
-  for (double& l : lengths) l = in.number<double>();
+  PathAnswer answer;
+  answer.status = static_cast<PathAnswer::Status>(
+      in.choice(0, static_cast<std::uint32_t>(PathAnswer::Status::too_much), "an answer about paths"));
+  answer.lengths_m.resize(in.count(sizeof(double), KARST_MAX_PATH_GOALS, "lengths"));
+  for (double& l : answer.lengths_m) l = in.number<double>();
   in.demand_end();
-  return lengths;
+  return answer;
 }
 
 Bytes flatten(const std::string& text) {

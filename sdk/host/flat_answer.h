@@ -10,6 +10,7 @@
 
 #include "core_stack/mission/policy_port.h"
 #include "sdk/host/flat_bytes.h"
+#include "sdk/host/path_question.h"
 
 namespace karst::host {
 
@@ -69,9 +70,8 @@ Bytes flatten(const core::PolicyEvent& event);
 core::PolicyEvent read_event(std::span<const std::byte> bytes);
 Bytes flatten(const LengthsQuestion& question);
 LengthsQuestion read_lengths_question(std::span<const std::byte> bytes);
-/// nullopt: the host has no roadmap for this request.
-Bytes flatten(const std::optional<std::vector<double>>& lengths);
-std::optional<std::vector<double>> read_lengths(std::span<const std::byte> bytes);
+Bytes flatten(const PathAnswer& answer);
+PathAnswer read_path_answer(std::span<const std::byte> bytes);
 Bytes flatten(const std::string& text);
 /// Cleaned: one line of UTF-8.
 std::string read_text(std::span<const std::byte> bytes);

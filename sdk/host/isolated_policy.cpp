@@ -9,10 +9,10 @@ namespace karst::host {
 namespace {
 
 /// The answer to a question of the child, which may ask for anything.
-std::optional<std::vector<double>> lengths(const core::DecisionRequest* request, const Bytes& body) {
+PathAnswer lengths(const core::DecisionRequest* request, const Bytes& body) {
   const LengthsQuestion q = read_lengths_question(body);
-  if (request == nullptr || request->map == nullptr || request->roadmap == nullptr) return std::nullopt;
-  return request->roadmap->distances(*request->map, q.from, q.goals, q.tolerance_m);
+  if (request == nullptr || request->map == nullptr || request->roadmap == nullptr) return {};
+  return path_lengths(*request->map, *request->roadmap, q.from, q.goals, q.tolerance_m);
 }
 
 /// "file: place: reason", as thrown in the policy's process.
@@ -71,11 +71,15 @@ void IsolatedPolicy::start() {
 RingMessage IsolatedPolicy::question(const char* call, Said kind, const Bytes& body,
                                      const core::DecisionRequest* request) {
   if (!process_) throw ProcessBroken("it has no process any more");
+  if (kind != Said::event) process_->begin_round();
   process_->begin_call(call);
   process_->send(static_cast<std::uint32_t>(kind), body);
   for (;;) {
     RingMessage said = process_->receive(kMostAnswerBytes);
-    if (said.kind != static_cast<std::uint32_t>(Said::asks_lengths)) return said;
+    if (said.kind != static_cast<std::uint32_t>(Said::asks_lengths)) {
+      process_->end_call();
+      return said;
+    }
     process_->check();  // asking again and again is no way to escape the limits
     process_->send(static_cast<std::uint32_t>(Said::lengths), flatten(lengths(request, said.body)));
   }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "sdk/host/process_state.h"
 #include "sdk/host/text.h"
 
@@ -86,6 +87,7 @@ bool belongs_to(const void* symbol, const std::string& path) {
 const karst_plugin_t& enter_plugin(const std::string& path) {
   const std::string file =
       std::filesystem::absolute(path).string();  // a bare name must not search LD_LIBRARY_PATH
+  core::check_input(path, core::kMaxPluginBytes);
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) throw InputError(path, "", std::string("cannot be opened: ") + dlerror());
   void* symbol = dlsym(handle, KARST_PLUGIN_ENTRY_NAME);

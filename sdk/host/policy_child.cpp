@@ -1,12 +1,9 @@
 #include "sdk/host/policy_child.h"
 
-#include <unistd.h>
-
-#include <chrono>
 #include <memory>
 #include <mutex>
-#include <thread>
 
+#include "sdk/host/file_access.h"
 #include "sdk/host/flat_answer.h"
 #include "sdk/host/flat_request.h"
 #include "sdk/host/loaded_policy.h"
@@ -19,19 +16,9 @@ namespace {
 
 constexpr std::size_t kMostRequestBytes = std::size_t{4} << 30;
 
-/// Ends this process when the host is gone, whatever the policy does. (A signal on the parent's death would
-/// come as soon as the thread that started this process ends.)
-void end_with(pid_t host) {
-  std::thread([host] {
-    while (getppid() == host) std::this_thread::sleep_for(std::chrono::seconds(1));
-    _exit(0);
-  }).detach();
-}
-
 class Server {
  public:
-  Server(const RingMemory& own, const RingMemory& hosts, pid_t host)
-      : host_(host), ring_(own, hosts, [] {}), requests_(false) {}
+  Server(const RingMemory& own, const RingMemory& hosts) : ring_(own, hosts, [] {}), requests_(false) {}
 
   int run() {
     start();
@@ -67,8 +54,7 @@ class Server {
     choice.failures_allowed = order.failures_allowed;
     choice.hang_limit_s = choice.cpu_limit_s = 1e9;  // the host's to enforce: it can end this process
     try {
-      confine_this_process(order.memory_limit_bytes);
-      end_with(host_);
+      confine_this_process(order.memory_limit_bytes, places_to_read(order.file));
       const Selection found = open_policy(order.file, order.policy);
       policy_ = std::make_unique<LoadedPolicy>(
           found.plugin, *found.policy, choice, order.legacy,
@@ -96,14 +82,12 @@ class Server {
   }
 
   /// Asks the host. On a thread of the policy, while this one waits for decide() to return.
-  std::optional<std::vector<double>> lengths(const core::Vec3& from, std::span<const core::Vec3> goals,
-                                             double tolerance_m) {
+  PathAnswer lengths(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
     const std::lock_guard lock(asking_);
     say(Said::asks_lengths, flatten(LengthsQuestion{from, {goals.begin(), goals.end()}, tolerance_m}));
-    return read_lengths(ring_.receive(kMostAnswerBytes).body);
+    return read_path_answer(ring_.receive(kMostAnswerBytes).body);
   }
 
-  pid_t host_;
   RingEnd ring_;
   RequestReader requests_;
   std::mutex asking_;
@@ -112,10 +96,10 @@ class Server {
 
 }  // namespace
 
-int serve_policy(pid_t host) {
+int serve_policy() {
   RingMemory hosts(kRequestsDescriptor, false), own(kAnswersDescriptor, true);
   hosts.close_descriptor(), own.close_descriptor();
-  return Server(own, hosts, host).run();
+  return Server(own, hosts).run();
 }
 
 }  // namespace karst::host

@@ -8,12 +8,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/file_access.h"
 #include "sdk/host/policy_child.h"
 #include "sdk/host/process.h"
 
@@ -81,10 +83,37 @@ std::string policy_child_program() {
   return (self.parent_path().parent_path() / "lib/karst/karst-policy-child").string();
 }
 
+StartingThread::StartingThread(const std::function<pid_t()>& start) {
+  const auto started = std::make_shared<std::promise<pid_t>>();
+  thread_ = std::thread([started, start, released = release_.get_future()] {
+    try {
+      started->set_value(start());
+    } catch (...) {
+      started->set_exception(std::current_exception());
+    }
+    released.wait();
+  });
+  try {
+    process_ = started->get_future().get();
+  } catch (...) {
+    end();
+    throw;
+  }
+}
+
+StartingThread::~StartingThread() { end(); }
+
+void StartingThread::end() {
+  release_.set_value();
+  thread_.join();
+}
+
 PolicyProcess::PolicyProcess(const std::string& program, CallLimits limits)
     : limits_(limits), ring_(ours_, theirs_, [this] { watch(); }) {
   const Descriptor requests(ours_.read_only_descriptor());
-  id_ = spawn(program, requests.value, theirs_.descriptor());
+  if (landlock_version() == 0) hide_this_process();
+  started_by_.emplace([&] { return spawn(program, requests.value, theirs_.descriptor()); });
+  id_ = started_by_->process();
   ours_.close_descriptor(), theirs_.close_descriptor();
 }
 
@@ -107,8 +136,18 @@ void PolicyProcess::begin_call(const char* name) {
   // The kernel's own limit stands behind watch(), and also ends a process that computes while nobody waits.
   rlimit cpu{};
   if (id_ <= 0 || prlimit(id_, RLIMIT_CPU, nullptr, &cpu) != 0) return;
-  cpu.rlim_cur = static_cast<rlim_t>(std::ceil(cpu_before_s_ + limits_.cpu_s) + 1);
+  cpu.rlim_cur =
+      static_cast<rlim_t>(std::ceil(cpu_before_s_ + std::max(0.0, limits_.cpu_s - spent_cpu_s_)) + 1);
   prlimit(id_, RLIMIT_CPU, &cpu, nullptr);
+}
+
+void PolicyProcess::end_call() {
+  spent_wall_s_ += waited_s();
+  spent_cpu_s_ += cpu_s() - cpu_before_s_;
+}
+
+double PolicyProcess::waited_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - call_began_).count();
 }
 
 void PolicyProcess::watch() {
@@ -124,9 +163,9 @@ void PolicyProcess::watch() {
     end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     throw ProcessBroken("its process ended" + in_call + ": " + describe(end));
   }
-  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - call_began_;
-  if (const std::string which = passed(limits_, waited.count(), cpu_s() - cpu_before_s_); !which.empty())
-    throw ProcessBroken(std::string(call_) + "() " + which);
+  const std::string which =
+      passed(limits_, spent_wall_s_ + waited_s(), spent_cpu_s_ + cpu_s() - cpu_before_s_);
+  if (!which.empty()) throw ProcessBroken(std::string(call_) + "() " + which);
   if (threads_of(id_) > kMostThreads)
     throw ProcessBroken("it ran more than " + std::to_string(kMostThreads) + " threads" + in_call);
 }

@@ -96,7 +96,10 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
   _exit(0);
 }
 
-/// Reads until the other end closes. False if that takes longer than the limit.
+/// What a file has to say of 64 policies with 256 parameters each, five texts of a kilobyte to each of them.
+constexpr std::size_t kMostBytes = std::size_t{128} << 20;
+
+/// Reads until the other end closes. False if that takes longer than the limit, or is more than can be.
 bool read_all(int in, double limit_s, std::string& text) {
   using clock = std::chrono::steady_clock;
   const auto until = clock::now() + std::chrono::duration<double>(limit_s);
@@ -109,6 +112,7 @@ bool read_all(int in, double limit_s, std::string& text) {
     char buffer[4096];
     const ssize_t n = read(in, buffer, sizeof buffer);
     if (n <= 0) return true;
+    if (text.size() > kMostBytes) return false;
     text.append(buffer, static_cast<std::size_t>(n));
   }
 }

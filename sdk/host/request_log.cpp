@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "core_stack/common/json_text.h"
 
 namespace karst::host {
@@ -148,10 +149,9 @@ void RecordingPolicy::notify(const core::PolicyEvent& e) {
 }
 
 RequestLogReader::RequestLogReader(const std::filesystem::path& file)
-    : file_(file.string()), in_(file, std::ios::binary | std::ios::ate) {
-  if (!in_) throw InputError(file_, "", "cannot be opened");
-  size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(in_.tellg(), 0));
-  in_.seekg(0);
+    : file_(file.string()),
+      in_(core::open_input(file_, core::kMaxDataFileBytes)),
+      size_(std::filesystem::file_size(file)) {
   const std::optional<Record> first = read();
   if (!first || first->kind != kHeader) fail("a record of requests begins with whom they were put to");
   try {

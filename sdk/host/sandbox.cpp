@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/file_access.h"
 
 namespace karst::host {
 namespace {
@@ -51,6 +52,9 @@ class Filter {
  public:
   Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), &seccomp_release) {
     if (!context_) cannot("system calls cannot be filtered", ENOMEM);
+    // Calls of another architecture (x32, i386): the default ends the thread that made one, and only that.
+    const int code = seccomp_attr_set(context_.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS);
+    if (code != 0) cannot("calls of other architectures cannot be filtered", -code);
   }
   template <class... Comparisons>
   void rule(std::uint32_t action, const char* name, Comparisons... when) {
@@ -74,11 +78,13 @@ class Filter {
 
 }  // namespace
 
-void confine_this_process(std::uint64_t memory_limit_bytes) {
+void confine_this_process(std::uint64_t memory_limit_bytes,
+                          const std::vector<std::filesystem::path>& readable) {
   if (memory_can_be_limited()) limit(RLIMIT_AS, memory_limit_bytes, "memory");
   limit(RLIMIT_CORE, 0, "core dumps");
   limit(RLIMIT_FSIZE, 0, "the size of files");
   limit(RLIMIT_NOFILE, 64, "open files");
+  read_only_from(readable);
 
   Filter filter;
   for (const char* name : kAllowed) filter.allow(name);

@@ -118,9 +118,13 @@ struct Services : Serving {
         demand(finite(goals[i]), "a goal is not finite");
         places.push_back(to_core(goals[i]));
       }
-      const std::optional<std::vector<double>> found = s.lengths_(to_core(from), places, tolerance_m);
-      if (!found || found->size() != count) throw closed;
-      std::copy(found->begin(), found->end(), out);
+      const PathAnswer found = s.lengths_(to_core(from), places, tolerance_m);
+      if (found.status == PathAnswer::Status::too_much)
+        throw Refusal{KARST_ERROR_LIMIT,
+                      "so many goals that are not clear cannot be searched so far around: ask for fewer at a "
+                      "time, or with less tolerance"};
+      if (found.status != PathAnswer::Status::answered || found.lengths_m.size() != count) throw closed;
+      std::copy(found.lengths_m.begin(), found.lengths_m.end(), out);
     });
   }
 
@@ -205,7 +209,10 @@ struct Services : Serving {
     if (out == nullptr) return;
     const std::int32_t code = serve(h, nullptr, [&](Session& s) {
       on_decision_thread(s);
-      for (std::uint64_t i = 0; i < count; ++i) out[i] = s.random_.uniform();
+      for (std::uint64_t i = 0; i < count; ++i) {
+        if (i % KARST_MAX_BATCH == 0) going_on(s);
+        out[i] = s.random_.uniform();
+      }
       s.numbers_drawn_ += count;
     });
     if (code != KARST_OK) std::fill_n(out, count, 0.5);  // never numbers that differ from run to run

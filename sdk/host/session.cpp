@@ -24,7 +24,7 @@ void Session::begin_deciding(const core::DecisionRequest& request, const PathLen
   if (!lengths_ && request.map != nullptr && request.roadmap != nullptr)
     lengths_ = [&map = *request.map, &roadmap = *request.roadmap](
                    const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
-      return std::optional(roadmap.distances(map, from, goals, tolerance_m));
+      return path_lengths(map, roadmap, from, goals, tolerance_m);
     };
   imaged_ = request.imaged;
   rgb_ = request.vehicle == nullptr ? nullptr : request.vehicle->rgb.get();

@@ -17,14 +17,10 @@
 #include "core_stack/common/random.h"
 #include "core_stack/mission/policy_port.h"
 #include "sdk/abi/karst_abi_imaged.h"
+#include "sdk/host/path_question.h"
 #include "sdk/host/snapshot.h"
 
 namespace karst::host {
-
-/// Lengths of ways through the request's map, as core::Roadmap::distances gives them; none if this request
-/// has no roadmap.
-using PathLengths = std::function<std::optional<std::vector<double>>(
-    const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m)>;
 
 class Session {
  public:

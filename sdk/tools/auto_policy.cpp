@@ -10,6 +10,7 @@
 #include "sdk/selection/preset.h"
 #include "sdk/selection/select.h"
 #include "sdk/tools/select_command.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -118,8 +119,8 @@ void settle_policy(Mission& m) {
   if (results.empty())
     throw InputError(m.file, "policy.auto.results",
                      "no experience is installed: name a store or an experience");
-  const selection::Experience e = selection::load_experience(
-      {results}, [](const std::string& s) { std::fprintf(stderr, "%s\n", s.c_str()); });
+  const selection::Experience e =
+      selection::load_experience({results}, [](const std::string& s) { print_error("%s\n", s.c_str()); });
   const selection::Selected s =
       selection::select(e, figures, o.select, m.file,
                         o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));

@@ -9,7 +9,9 @@
 #include <string>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/printable.h"
 #include "sdk/evaluation/metric_definitions.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -66,10 +68,10 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
   tallies_.resize(plan.contestants.size());
   if (quiet_) return;
   if (!begun_)
-    std::fprintf(stderr, "%s: %s x %s x %s = %zu trials, %zu of them flown already\n", plan.name.c_str(),
-                 core::counted(plan.contestants.size(), "contestant").c_str(),
-                 core::counted(plan.caves.size(), "cave").c_str(),
-                 core::counted(plan.seeds.size(), "seed").c_str(), p.trials, p.finished);
+    print_error("%s: %s x %s x %s = %zu trials, %zu of them flown already\n", plan.name.c_str(),
+                core::counted(plan.contestants.size(), "contestant").c_str(),
+                core::counted(plan.caves.size(), "cave").c_str(),
+                core::counted(plan.seeds.size(), "seed").c_str(), p.trials, p.finished);
   begun_ = true;
   if (p.last) {
     Tally& tally = tallies_[p.last->result.contestant];
@@ -83,17 +85,17 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
     if (!p.last) return;
     const campaign::TrialResult& r = p.last->result;
     const double coverage = coverage_of(*p.last);
-    std::fprintf(stderr, "%zu/%zu · %s · %s, %s, seed %lld: %s%s%s%s\n", p.finished, p.trials,
-                 time_left(p).c_str(), plan.contestants[r.contestant].name.c_str(),
-                 plan.caves[r.cave].name.c_str(), static_cast<long long>(r.seed), r.outcome.c_str(),
-                 std::isfinite(coverage) ? text(", coverage %.1f %%", 100 * coverage).c_str() : "",
-                 r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
+    print_error("%zu/%zu · %s · %s, %s, seed %lld: %s%s%s%s\n", p.finished, p.trials, time_left(p).c_str(),
+                plan.contestants[r.contestant].name.c_str(), plan.caves[r.cave].name.c_str(),
+                static_cast<long long>(r.seed), r.outcome.c_str(),
+                std::isfinite(coverage) ? text(", coverage %.1f %%", 100 * coverage).c_str() : "",
+                r.failed ? ": " : "", r.failed ? r.reason.c_str() : "");
     return;
   }
   std::string found = "coverage so far:";
   for (std::size_t i = 0; i < tallies_.size(); ++i)
     if (tallies_[i].trials)
-      found += text(" %s %.1f %%", plan.contestants[i].name.c_str(),
+      found += text(" %s %.1f %%", core::printable(plan.contestants[i].name).c_str(),
                     100 * tallies_[i].coverage / tallies_[i].trials);
   std::string line = bar(p) + text(" %zu/%zu · %s", p.finished, p.trials, time_left(p).c_str()) + pace +
                      (p.failed ? text(" · %zu failed", p.failed) : "");

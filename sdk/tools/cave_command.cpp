@@ -11,11 +11,13 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "sdk/selection/describe.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/cave_facts.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -52,7 +54,7 @@ class Progress {
     if (terminal_)
       std::fprintf(stderr, "\r%-24s %3.0f %%", step, 100 * share);
     else if (fresh)
-      std::fprintf(stderr, "%s\n", step);
+      print_error("%s\n", step);
   }
   void end() const {
     if (terminal_) std::fprintf(stderr, "\r%30s\r", "");
@@ -77,7 +79,7 @@ cave::CaveRecipe recipe_of(const GenerateArguments& args) {
 
 void write_info(const std::string& path, const std::string& mesh, const cave::GeneratedCave& cave,
                 cave::CaveRecipe recipe, const GenerateArguments& args) {
-  std::ofstream out(path);
+  std::ofstream out = core::open_output(path);
   out << "; made by: karst cave generate --preset " << args.preset << " --seed " << args.seed;
   for (const std::string& s : args.set) out << " --set \"" << s << "\"";
   out << "\n; recipe:\n";
@@ -121,14 +123,14 @@ void generate(const GenerateArguments& args) {
     for (std::size_t i = 1; i < way.size(); ++i) length_m += (way[i] - way[i - 1]).norm();
   const MeshFacts facts = mesh_facts(cave.mesh);
   const Vec3 extent = facts.high - facts.low;
-  std::printf("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", info_path.c_str(),
-              cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.ways.size(), length_m);
-  std::printf("  %zu triangles; %zu fallen blocks, %zu speleothems\n", facts.triangles, cave.boulders,
-              cave.speleothems);
-  std::printf("  on the map's grid: %.0f m3 to explore, %.0f m3 of it at least %.1f m from rock\n",
-              r.volume_m3(), r.flyable_volume_m3(), r.options.clearance_m);
-  std::printf("next:\n  karst fly --cave %s --policy nearest_frontier\n  karst cave info %s\n",
-              info_path.c_str(), info_path.c_str());
+  print_out("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", info_path.c_str(),
+            cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.ways.size(), length_m);
+  print_out("  %zu triangles; %zu fallen blocks, %zu speleothems\n", facts.triangles, cave.boulders,
+            cave.speleothems);
+  print_out("  on the map's grid: %.0f m3 to explore, %.0f m3 of it at least %.1f m from rock\n",
+            r.volume_m3(), r.flyable_volume_m3(), r.options.clearance_m);
+  print_out("next:\n  karst fly --cave %s --policy nearest_frontier\n  karst cave info %s\n",
+            info_path.c_str(), info_path.c_str());
 }
 
 ordered_json json_of(const InfoArguments& args, const MeshFacts& m) {
@@ -140,28 +142,27 @@ ordered_json json_of(const InfoArguments& args, const MeshFacts& m) {
 
 void print_mesh(const InfoArguments& args, const MeshFacts& m) {
   const Vec3 e = m.high - m.low;
-  std::printf("%s\n", args.file.c_str());
-  std::printf("  triangles          %zu\n", m.triangles);
-  std::printf("  extent             %.1f x %.1f x %.1f m, heights %.1f to %.1f m\n", e.x(), e.y(), e.z(),
-              m.low.z(), m.high.z());
+  print_out("%s\n", args.file.c_str());
+  print_out("  triangles          %zu\n", m.triangles);
+  print_out("  extent             %.1f x %.1f x %.1f m, heights %.1f to %.1f m\n", e.x(), e.y(), e.z(),
+            m.low.z(), m.high.z());
   if (m.odd_edges == 0)
-    std::printf("  closed             yes, every edge joins two triangles that face the same side\n");
+    print_out("  closed             yes, every edge joins two triangles that face the same side\n");
   else
-    std::printf(
-        "  closed             no, %zu of %zu edges do not join two triangles that face the same side\n",
-        m.odd_edges, m.edges);
+    print_out("  closed             no, %zu of %zu edges do not join two triangles that face the same side\n",
+              m.odd_edges, m.edges);
 }
 
 void info(const InfoArguments& args) {
   const bool bare = std::filesystem::path(args.file).extension() != ".info";
   if (bare && args.start.empty()) {
-    if (!std::filesystem::is_regular_file(args.file)) throw InputError(args.file, "", "no such cave file");
+    if (!std::filesystem::exists(args.file)) throw InputError(args.file, "", "no such cave file");
     const MeshFacts facts = mesh_facts(cave::load_mesh(args.file));
     if (args.json) {
-      std::printf("%s\n", core::json_text(json_of(args, facts), 2).c_str());
+      print_out("%s\n", core::json_text(json_of(args, facts), 2).c_str());
     } else {
       print_mesh(args, facts);
-      std::printf("  no start pose: give --start \"x y z\" for clearance and volumes\n");
+      print_out("  no start pose: give --start \"x y z\" for clearance and volumes\n");
     }
     return;
   }
@@ -190,21 +191,21 @@ void info(const InfoArguments& args) {
     j["fly_through_heights_m"] = {lowest, highest};
     j["width_m_p10_p50_p90"] = passages.width_m;
     j["height_m_p10_p50_p90"] = passages.height_m;
-    std::printf("%s\n", core::json_text(j, 2).c_str());
+    print_out("%s\n", core::json_text(j, 2).c_str());
     return;
   }
   print_mesh(args, facts);
-  std::printf("  start              %.2f %.2f %.2f, %.2f m from rock\n", start.x(), start.y(), start.z(),
-              clearance_m);
-  std::printf("  free volume        %.0f m3, connected to the start, in cells of %g m\n", r.free_volume_m3(),
-              r.options.resolution_m);
-  std::printf("  reachable volume   %.0f m3, what coverage is measured by\n", r.volume_m3());
-  std::printf("  fly-through volume %.0f m3, at least %g m from rock, heights %.1f to %.1f m\n",
-              r.flyable_volume_m3(), r.options.clearance_m, lowest, highest);
-  std::printf("  width there        %.1f m; %.1f m and %.1f m at the 10th and 90th percentile\n",
-              passages.width_m[1], passages.width_m[0], passages.width_m[2]);
-  std::printf("  height there       %.1f m; %.1f m and %.1f m\n", passages.height_m[1], passages.height_m[0],
-              passages.height_m[2]);
+  print_out("  start              %.2f %.2f %.2f, %.2f m from rock\n", start.x(), start.y(), start.z(),
+            clearance_m);
+  print_out("  free volume        %.0f m3, connected to the start, in cells of %g m\n", r.free_volume_m3(),
+            r.options.resolution_m);
+  print_out("  reachable volume   %.0f m3, what coverage is measured by\n", r.volume_m3());
+  print_out("  fly-through volume %.0f m3, at least %g m from rock, heights %.1f to %.1f m\n",
+            r.flyable_volume_m3(), r.options.clearance_m, lowest, highest);
+  print_out("  width there        %.1f m; %.1f m and %.1f m at the 10th and 90th percentile\n",
+            passages.width_m[1], passages.width_m[0], passages.width_m[2]);
+  print_out("  height there       %.1f m; %.1f m and %.1f m\n", passages.height_m[1], passages.height_m[0],
+            passages.height_m[2]);
 }
 
 struct DescribeArguments {
@@ -215,9 +216,9 @@ struct DescribeArguments {
 void describe(const DescribeArguments& args) {
   const selection::CaveFigures figures = selection::describe_file(args.file, args.start).figures;
   if (args.json)
-    std::printf("%s\n", ordered_json::parse(selection::to_json(figures)).dump(2).c_str());
+    print_out("%s\n", ordered_json::parse(selection::to_json(figures)).dump(2).c_str());
   else
-    std::printf("%s\n%s", args.file.c_str(), selection::to_text(figures).c_str());
+    print_out("%s\n%s", args.file.c_str(), selection::to_text(figures).c_str());
 }
 
 std::string generate_footer() {

@@ -9,9 +9,11 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/output_file.h"
 #include "sdk/check/run_check.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -49,7 +51,7 @@ int list_tests(bool json) {
     if (json)
       out.push_back({{"name", t.name}, {"level", name_of(t.level)}, {"description", t.description}});
     else
-      std::printf("%-30s %-9s %s\n", t.name, name_of(t.level), t.description);
+      print_out("%-30s %-9s %s\n", t.name, name_of(t.level), t.description);
   }
   if (json) std::cout << out.dump(2) << "\n";
   return 0;
@@ -66,8 +68,8 @@ void print(const TestResult& r) {
   const bool failed = r.verdict == Verdict::failed;
   const char* mark = failed ? "FAILED" : r.verdict == Verdict::not_applicable ? "n/a" : name_of(r.verdict);
   const std::string say = r.verdict == Verdict::passed ? figures_text(r.figures) : r.reason;
-  std::printf("  %-8s %-30s %s\n", mark, r.test->name, say.c_str());
-  if (failed) std::printf("           %s\n           repeat: %s\n", r.test->description, r.repeat.c_str());
+  print_out("  %-8s %-30s %s\n", mark, r.test->name, say.c_str());
+  if (failed) print_out("           %s\n           repeat: %s\n", r.test->description, r.repeat.c_str());
   std::fflush(stdout);
 }
 
@@ -93,15 +95,15 @@ int check_file(Arguments& args) {
   args.options.stop = &interrupted;
   std::string policy;
   if (!args.json)
-    std::printf("%s, level %s, seed %llu\n", args.options.file.c_str(), name_of(args.options.level),
-                static_cast<unsigned long long>(args.options.seed));
+    print_out("%s, level %s, seed %llu\n", args.options.file.c_str(), name_of(args.options.level),
+              static_cast<unsigned long long>(args.options.seed));
   const std::vector<TestResult> results = check::run_check(args.options, [&](const TestResult& r) {
     if (args.json) return;
-    if (r.policy != policy) std::printf("%s\n", (policy = r.policy).c_str());
+    if (r.policy != policy) print_out("%s\n", (policy = r.policy).c_str());
     print(r);
   });
   if (interrupted) {
-    std::fprintf(stderr, "karst: stopped after %zu tests\n", results.size());
+    print_error("karst: stopped after %zu tests\n", results.size());
     return kInterrupted;
   }
   std::map<Verdict, int> count;
@@ -118,8 +120,8 @@ int check_file(Arguments& args) {
                                  2)
               << "\n";
   else
-    std::printf("%d passed, %d failed, %d not applicable, %d not run\n", count[Verdict::passed],
-                count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run]);
+    print_out("%d passed, %d failed, %d not applicable, %d not run\n", count[Verdict::passed],
+              count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run]);
   return passed ? 0 : kFailed;
 }
 
@@ -153,7 +155,7 @@ void write_answers(const Arguments& args) {
   } catch (const check::Failed& f) {
     throw core::InputError(args.options.file, "", f.reason);
   }
-  std::ofstream out(args.out, std::ios::binary);
+  std::ofstream out = core::open_output(args.out);
   out << answers;
   if (!out.flush()) throw core::InputError(args.out, "", "cannot be written");
 }

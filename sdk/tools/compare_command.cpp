@@ -25,6 +25,7 @@
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/results_text.h"
 #include "sdk/tools/run_files.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -124,10 +125,10 @@ void tell_too_few(const campaign::Plan& plan) {
   const std::size_t caves = plan.caves.size(), pairs = caves * plan.seeds.size(),
                     least = campaign::least_pairs(plan.contestants.size(), campaign::VerdictOptions{}.alpha);
   if (pairs >= least) return;
-  std::fprintf(stderr,
-               "karst: no difference can be shown by this campaign, whatever it finds: the test of %zu "
-               "contestants needs %zu pairs of flights, and these are %zu; fly %zu seeds at least\n",
-               plan.contestants.size(), least, pairs, (least + caves - 1) / caves);
+  print_error(
+      "karst: no difference can be shown by this campaign, whatever it finds: the test of %zu "
+      "contestants needs %zu pairs of flights, and these are %zu; fly %zu seeds at least\n",
+      plan.contestants.size(), least, pairs, (least + caves - 1) / caves);
 }
 
 int compare(const CompareArguments& args) {
@@ -171,14 +172,14 @@ int compare(const CompareArguments& args) {
     done = campaign::run_campaign(c, options);
   }
   if (!done) {
-    std::fprintf(stderr, "karst: stopped; karst compare %s goes on where it was\n", options.folder.c_str());
+    print_error("karst: stopped; karst compare %s goes on where it was\n", options.folder.c_str());
     return kInterrupted;
   }
   const campaign::CampaignResults results = campaign::read_results(options.folder);
   print_results(results, args.metric);
-  std::printf("Look next at:\n  %s   the report\n", write_campaign_page(options.folder, args.metric).c_str());
-  std::printf("  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
-  std::printf("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
+  print_out("Look next at:\n  %s   the report\n", write_campaign_page(options.folder, args.metric).c_str());
+  print_out("  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
+  print_out("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
   return 0;
 }
 

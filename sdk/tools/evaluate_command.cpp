@@ -14,6 +14,7 @@
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -48,22 +49,22 @@ std::string text(const ordered_json& v, const char* format, double factor = 1) {
 
 void print_row(const char* name, const ordered_json& s, const char* unit, double factor) {
   if (s["count"] == 0) {
-    std::printf("  %-28s none: the trajectory is too short\n", name);
+    print_out("  %-28s none: the trajectory is too short\n", name);
     return;
   }
-  std::printf("  %-28s", name);
+  print_out("  %-28s", name);
   for (const char* key : {"rmse", "mean", "median", "std", "min", "max"})
-    std::printf(" %9s", text(s[key], "%.4f", factor).c_str());
-  std::printf("  %s\n", unit);
+    print_out(" %9s", text(s[key], "%.4f", factor).c_str());
+  print_out("  %s\n", unit);
 }
 
 void print_trajectory(const ordered_json& e) {
   constexpr double kDegrees = 57.29577951308232;
-  std::printf("Trajectory against %s: %zu pairs of %zu poses, alignment %s, path %s\n",
-              e["truth"].get<std::string>().c_str(), e["pairs"].get<std::size_t>(),
-              e["poses"].get<std::size_t>(), e["alignment"]["kind"].get<std::string>().c_str(),
-              text(e["path_length_m"], "%.2f m").c_str());
-  std::printf("  %-28s %9s %9s %9s %9s %9s %9s\n", "", "rmse", "mean", "median", "std", "min", "max");
+  print_out("Trajectory against %s: %zu pairs of %zu poses, alignment %s, path %s\n",
+            e["truth"].get<std::string>().c_str(), e["pairs"].get<std::size_t>(),
+            e["poses"].get<std::size_t>(), e["alignment"]["kind"].get<std::string>().c_str(),
+            text(e["path_length_m"], "%.2f m").c_str());
+  print_out("  %-28s %9s %9s %9s %9s %9s %9s\n", "", "rmse", "mean", "median", "std", "min", "max");
   print_row("absolute, translation", e["ape"]["translation_m"], "m", 1);
   print_row("absolute, rotation", e["ape"]["rotation_rad"], "deg", kDegrees);
   for (const auto& [key, unit, delta] :
@@ -73,25 +74,24 @@ void print_trajectory(const ordered_json& e) {
     print_row((stretch + ", rot.").c_str(), e["rpe"][key]["rotation_rad"], "deg", kDegrees);
   }
   const ordered_json& d = e["drift"];
-  std::printf("  drift at the end            %s (%s of the path)\n", text(d["end_error_m"], "%.3f m").c_str(),
-              text(d["end_percent"], "%.3f %%").c_str());
+  print_out("  drift at the end            %s (%s of the path)\n", text(d["end_error_m"], "%.3f m").c_str(),
+            text(d["end_percent"], "%.3f %%").c_str());
   if (d["segments"] != 0)
-    std::printf("  drift over segments         %s, %s a metre (%zu segments of 1 to 8 times %s)\n",
-                text(d["segment_percent"], "%.3f %%").c_str(),
-                text(d["segment_rotation_radpm"], "%.4f deg", kDegrees).c_str(),
-                d["segments"].get<std::size_t>(), text(d["segment_unit_m"], "%g m").c_str());
-  std::printf("  heading error (rms)         %s\n",
-              text(e["heading_error_rad"], "%.3f deg", kDegrees).c_str());
+    print_out("  drift over segments         %s, %s a metre (%zu segments of 1 to 8 times %s)\n",
+              text(d["segment_percent"], "%.3f %%").c_str(),
+              text(d["segment_rotation_radpm"], "%.4f deg", kDegrees).c_str(),
+              d["segments"].get<std::size_t>(), text(d["segment_unit_m"], "%g m").c_str());
+  print_out("  heading error (rms)         %s\n", text(e["heading_error_rad"], "%.3f deg", kDegrees).c_str());
 }
 
 void print_map(const ordered_json& e) {
-  std::printf("Map against %s: %zu points, nearest of %zu", e["reference"].get<std::string>().c_str(),
-              e["points"].get<std::size_t>(), e["reference_points"].get<std::size_t>());
+  print_out("Map against %s: %zu points, nearest of %zu", e["reference"].get<std::string>().c_str(),
+            e["points"].get<std::size_t>(), e["reference_points"].get<std::size_t>());
   if (e["density_per_m2"].is_number())
-    std::printf(" (%s of the mesh)", text(e["density_per_m2"], "%g a m^2").c_str());
-  std::printf("\n  map error                   mean %s, std %s, median %s, max %s\n",
-              text(e["error_m"]["mean"], "%.3f m").c_str(), text(e["error_m"]["std"], "%.3f m").c_str(),
-              text(e["error_m"]["median"], "%.3f m").c_str(), text(e["error_m"]["max"], "%.2f m").c_str());
+    print_out(" (%s of the mesh)", text(e["density_per_m2"], "%g a m^2").c_str());
+  print_out("\n  map error                   mean %s, std %s, median %s, max %s\n",
+            text(e["error_m"]["mean"], "%.3f m").c_str(), text(e["error_m"]["std"], "%.3f m").c_str(),
+            text(e["error_m"]["median"], "%.3f m").c_str(), text(e["error_m"]["max"], "%.2f m").c_str());
 }
 
 ordered_json without_plots(ordered_json e) {
@@ -140,7 +140,7 @@ void evaluate(const EvaluateArguments& args) {
         points, evaluation::open_reference(reference, args.density_per_m2, points));
     result["map"]["file"] = map_file;
   }
-  for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
   if (result["trajectory"].is_null() && result["map"].is_null())
     throw core::InputError(args.run, "", "nothing to compare it with: name a --truth or a --reference");
 
@@ -154,8 +154,8 @@ void evaluate(const EvaluateArguments& args) {
   }
   if (!result["trajectory"].is_null()) print_trajectory(result["trajectory"]);
   if (!result["map"].is_null()) print_map(result["map"]);
-  std::printf("Look next at:\n  %s   all figures\n", out.c_str());
-  if (with_report) std::printf("  %s   with plots of the errors\n", (run / "report.html").c_str());
+  print_out("Look next at:\n  %s   all figures\n", out.c_str());
+  if (with_report) print_out("  %s   with plots of the errors\n", (run / "report.html").c_str());
 }
 
 }  // namespace

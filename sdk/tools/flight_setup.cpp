@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <boost/property_tree/info_parser.hpp>
+#include <cstdio>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/file_access.h"
 
 namespace karst::tools {
 
@@ -16,6 +18,9 @@ host::PolicyChoice policy_choice(const Mission& mission, const FlightArguments& 
   choice.seed = policy_seed(mission);
   const bool own_process = mission.policy_isolation == "process";
   choice.isolation = own_process ? host::Isolation::process : host::Isolation::in_process;
+  if (own_process && host::landlock_version() == 0)
+    std::fputs("warning: this kernel has no Landlock: the policy's process can read what this user can\n",
+               stderr);
   choice.memory_limit_mib = mission.policy_memory_limit_mib;
   choice.cpu_limit_s = mission.policy_cpu_limit_s;
   // In lockstep the vehicle's clock stands still meanwhile: a loaded machine must not cost a policy its

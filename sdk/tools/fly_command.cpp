@@ -14,16 +14,19 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/stall_watch.h"
 #include "sdk/host/hosted_policy.h"
 #include "sdk/host/request_log.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/auto_policy.h"
+#include "sdk/tools/cave_check.h"
 #include "sdk/tools/fly_team.h"
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/mission_file.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
 #include "sdk/tools/status_line.h"
+#include "sdk/tools/terminal.h"
 #include "sdk/tools/timing.h"
 
 namespace karst::tools {
@@ -60,21 +63,32 @@ void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool 
     std::snprintf(text.data(), text.size(), format, metrics[key].get<double>());
     return std::string(text.data());
   };
-  std::printf("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
-              metrics["reason"].get<std::string>().c_str());
-  std::printf("  flight time      %s\n  path length      %s\n  mean speed       %s\n",
-              number("flight_time_s", "%.0f s").c_str(), number("path_length_m", "%.0f m").c_str(),
-              number("mean_speed_mps", "%.2f m/s").c_str());
-  std::printf("  explored volume  %s", number("explored_volume_m3", "%.0f m^3").c_str());
+  print_out("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
+            metrics["reason"].get<std::string>().c_str());
+  print_out("  flight time      %s\n  path length      %s\n  mean speed       %s\n",
+            number("flight_time_s", "%.0f s").c_str(), number("path_length_m", "%.0f m").c_str(),
+            number("mean_speed_mps", "%.2f m/s").c_str());
+  print_out("  explored volume  %s", number("explored_volume_m3", "%.0f m^3").c_str());
   if (!metrics["coverage"].is_null())
-    std::printf(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
-  std::printf("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
+    print_out(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
+  print_out("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
   print_objects(metrics);
-  std::printf("Look next at:\n");
+  print_out("Look next at:\n");
   if (with_report)
-    std::printf("  %s   the flight in 3D with plots; open it in a browser\n",
-                (run_dir / "report.html").c_str());
-  std::printf("  %s   all figures\n", (run_dir / "metrics.json").c_str());
+    print_out("  %s   the flight in 3D with plots; open it in a browser\n",
+              (run_dir / "report.html").c_str());
+  print_out("  %s   all figures\n", (run_dir / "metrics.json").c_str());
+}
+
+// Longer than any decision or plan takes, on any machine.
+constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};
+
+/// Nothing can be torn down: what hangs holds it. The record is complete up to the last second.
+void end_stalled(const std::string& running, const fs::path& run_dir) {
+  std::fprintf(stderr,
+               "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
+               running.empty() ? "a step" : ("\"" + running + "\"").c_str(), run_dir.c_str());
+  std::_Exit(kNotLanded);
 }
 
 /// The mission's vehicle at the cave's start, which records in `run_dir` unless that is "".
@@ -90,15 +104,14 @@ std::unique_ptr<core::Vehicle> make_vehicle(const Mission& mission, const std::s
   return vehicle;
 }
 
-boost::property_tree::ptree as_flown(const Mission& mission, const host::HostedPolicy& policy,
-                                     const core::Vehicle& vehicle) {
-  return recorded_mission(mission, policy.parameters(),
-                          {policy.version(), vehicle.description().implementation});
+boost::property_tree::ptree as_flown(const Mission& mission, const host::HostedPolicy& policy) {
+  return recorded_mission(mission, policy.parameters(), policy.version());
 }
 
 /// Everything that a flight would look at before its take-off, and nothing of a flight.
 int check(const std::string& file, const Mission& mission, const host::HostedPolicy& policy) {
-  write_mission(file, as_flown(mission, policy, *make_vehicle(mission, "")));
+  make_vehicle(mission, "");  // looks at the cave and the start
+  write_mission(file, as_flown(mission, policy));
   return 0;
 }
 
@@ -124,6 +137,7 @@ int fly(const FlyArguments& args) {
   Mission mission = read_mission(args.mission_file, overrides);
   settle_policy(mission);
   core::check(mission.core.team, mission.core.homing, mission.file);
+  if (!mission.cave.empty()) check_cave(mission.cave, mission.start);
   make_cave_cache(args.flight.cave_cache);
 
   if (mission.core.team.robots > 1) {
@@ -141,7 +155,7 @@ int fly(const FlyArguments& args) {
   RunClaim claim(run_dir);
   core::Recorder recorder(run_dir);
   const std::unique_ptr<core::Vehicle> vehicle = make_vehicle(mission, run_dir.string());
-  write_mission(run_dir / "mission.info", as_flown(mission, *policy, *vehicle));
+  write_mission(run_dir / "mission.info", as_flown(mission, *policy));
   if (interrupted) throw core::InputError("karst fly", "", "stopped by the operator before take-off");
   claim.keep();
   if (!mission.policy_selection.empty())
@@ -161,10 +175,15 @@ int fly(const FlyArguments& args) {
   try {
     StatusLine line(args.flight.quiet || args.flight.json);
     const auto begin = std::chrono::steady_clock::now();
-    const core::MissionResult result = control.run([&](const core::MissionStatus& status) {
-      line.show(status);
-      return !interrupted.load();
-    });
+    {
+      const core::StallWatch stall(executive, args.flight.real_time ? kStallInRealTime : kStallInLockstep,
+                                   [&](const std::string& running) { end_stalled(running, run_dir); });
+      control.fly([&](const core::MissionStatus& status) {
+        line.show(status);
+        return !interrupted.load();
+      });
+    }
+    const core::MissionResult result = control.end();
     line.end();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     write_timing(run_dir, executive, wall.count());
@@ -175,10 +194,10 @@ int fly(const FlyArguments& args) {
     } else {
       print_summary(metrics, run_dir, !args.flight.no_report);
     }
+    if (!result.record_problem.empty()) throw std::runtime_error(result.record_problem);
     if (result.outcome == "landed") code = std::fflush(stdout) == 0 ? 0 : 1;
   } catch (const std::exception& e) {  // a full disk: it flew all the same
-    std::fprintf(stderr, "karst: %s\nkarst: the flight's record is incomplete: %s\n", e.what(),
-                 run_dir.c_str());
+    print_error("karst: %s\nkarst: the flight's record is incomplete: %s\n", e.what(), run_dir.c_str());
   }
   if (policy->abandoned()) {  // its thread hangs in the plugin: nothing may be torn down
     std::fflush(stdout);

@@ -17,6 +17,7 @@
 #include "sdk/tools/run_files.h"
 #include "sdk/tools/status_line.h"
 #include "sdk/tools/team_metrics.h"
+#include "sdk/tools/terminal.h"
 #include "sdk/tools/timing.h"
 
 namespace karst::tools {
@@ -59,15 +60,20 @@ std::unique_ptr<core::TeamVehicles> make_vehicles(const Mission& mission, const 
   return vehicles;
 }
 
+core::MissionKey radio_key(const Mission& mission) {
+  const std::string& file = mission.core.team.key_file;
+  return file.empty() ? core::key_of_seed(static_cast<std::uint64_t>(mission.seed)) : core::read_key(file);
+}
+
 /// Whoever sets one of the two easily forgets the other, and lands out of reach, or nearer than need be.
 void compare_radio_with_belief(const Mission& mission) {
   const std::string believed = mission.resolved.get("homing.landing.link.range", "");
   const std::string real = mission.resolved.get("radio.range", believed);
   if (believed != real)
-    std::fprintf(stderr,
-                 "karst: note: the radio reaches %s (radio.range), and the robots land as if it were %s "
-                 "(homing.landing.link.range)\n",
-                 real.c_str(), believed.c_str());
+    print_error(
+        "karst: note: the radio reaches %s (radio.range), and the robots land as if it were %s "
+        "(homing.landing.link.range)\n",
+        real.c_str(), believed.c_str());
 }
 
 /// A line every half minute of the mission.
@@ -79,7 +85,7 @@ class TeamStatus {
     std::string line = std::to_string(now / core::kSecond) + " s:";
     for (std::size_t i = 0; i < robots.size(); ++i)
       line += "  " + std::to_string(i + 1) + " " + name_of(robots[i].phase);
-    std::fprintf(stderr, "%s\n", line.c_str());
+    print_error("%s\n", line.c_str());
   }
 
  private:
@@ -88,21 +94,21 @@ class TeamStatus {
 
 void print_summary(const core::TeamResult& result, const nlohmann::json& metrics, const fs::path& run_dir,
                    bool with_report) {
-  std::printf("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
-              metrics["reason"].get<std::string>().c_str());
-  std::printf("  robot  explored  outcome    at the base\n");
+  print_out("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
+            metrics["reason"].get<std::string>().c_str());
+  print_out("  robot  explored  outcome    at the base\n");
   for (std::size_t i = 0; i < result.robots.size(); ++i) {
     const core::RobotResult& r = result.robots[i];
-    std::printf("  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1, r.exploration_time_s,
-                r.mission.outcome.c_str(), r.connected ? "connected" : "cut off", r.records_at_base,
-                r.records, r.mission.reason.c_str());
+    print_out("  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1, r.exploration_time_s,
+              r.mission.outcome.c_str(), r.connected ? "connected" : "cut off", r.records_at_base, r.records,
+              r.mission.reason.c_str());
   }
   print_objects(metrics);
-  std::printf("  over the air     %.0f kB in %.0f s\nLook next at:\n",
-              1e-3 * static_cast<double>(result.bytes_on_air), result.duration_s);
+  print_out("  over the air     %.0f kB in %.0f s\nLook next at:\n",
+            1e-3 * static_cast<double>(result.bytes_on_air), result.duration_s);
   if (with_report)
-    std::printf("  %s   all robots over time, in a browser\n", (run_dir / "report.html").c_str());
-  std::printf(
+    print_out("  %s   all robots over time, in a browser\n", (run_dir / "report.html").c_str());
+  print_out(
       "  %s   what became of the team, and what the base knew when\n  %s   the first robot's own flight\n",
       (run_dir / "team.jsonl").c_str(), (run_dir / folder_of(0)).c_str());
 }
@@ -121,12 +127,13 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
     robots.push_back(mission_of(mission, i));
     policies.push_back(host::load_policy(policy_choice(robots.back(), args)));
   }
-  const auto record = [&](const Mission& m, const core::Vehicle& vehicle) {
-    return recorded_mission(m, policies.front()->parameters(),
-                            {policies.front()->version(), vehicle.description().implementation});
+  const auto record = [&](const Mission& m) {
+    return recorded_mission(m, policies.front()->parameters(), policies.front()->version());
   };
+  const core::MissionKey key = radio_key(mission);
   if (!check.empty()) {
-    write_mission(check, record(mission, make_vehicles(mission, robots, "")->robot(0)));
+    make_vehicles(mission, robots, "");  // looks at the cave and the starts
+    write_mission(check, record(mission));
     return 0;
   }
 
@@ -142,16 +149,16 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
     seats.push_back({policies[i].get(), recorders.back().get()});
   }
   const auto vehicles = make_vehicles(mission, robots, run_dir);
-  write_mission(run_dir / "mission.info", record(mission, vehicles->robot(0)));
+  write_mission(run_dir / "mission.info", record(mission));
   for (std::size_t i = 0; i < robots.size(); ++i) {
     robots[i].start = vehicles->start_of(i);
-    write_mission(run_dir / folder_of(i) / "mission.info", record(robots[i], vehicles->robot(i)));
+    write_mission(run_dir / folder_of(i) / "mission.info", record(robots[i]));
   }
   claim.keep();
   for (const auto& own : own_claims) own->keep();
 
-  core::TeamMission team(mission.core, *vehicles, seats, static_cast<std::uint64_t>(mission.seed), run_dir,
-                         args.threads);
+  core::TeamMission team(mission.core, *vehicles, seats, static_cast<std::uint64_t>(mission.seed), key,
+                         run_dir, args.threads);
   const TeamStatus status(args.quiet || args.json);
   const auto begin = std::chrono::steady_clock::now();
   const core::TeamResult result = team.run([&](core::TimeNs now, const auto& all) {
@@ -179,10 +186,10 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
       std::cout << core::json_text(metrics, 2) << std::endl;
     else
       print_summary(result, metrics, run_dir, !args.no_report);
+    if (!result.record_problem.empty()) throw std::runtime_error(result.record_problem);
     if (metrics["outcome"] == "landed") code = std::fflush(stdout) == 0 ? 0 : 1;
   } catch (const std::exception& e) {  // a full disk: they flew all the same
-    std::fprintf(stderr, "karst: %s\nkarst: the flights' record is incomplete: %s\n", e.what(),
-                 run_dir.c_str());
+    print_error("karst: %s\nkarst: the flights' record is incomplete: %s\n", e.what(), run_dir.c_str());
   }
   const bool hangs =
       std::any_of(policies.begin(), policies.end(), [](const auto& p) { return p->abandoned(); });

@@ -13,6 +13,7 @@
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
+#include "sdk/tools/terminal.h"
 #include "sdk/tools/tune_command.h"
 
 namespace {
@@ -34,7 +35,7 @@ std::string wrong_command(const CLI::App& app) {
 int exit_code(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_name() == "RuntimeError") return e.get_exit_code();
   const std::string wrong = e.get_exit_code() == 0 ? "" : wrong_command(app);
-  if (!wrong.empty()) std::fprintf(stderr, "karst: %s\n", wrong.c_str());
+  if (!wrong.empty()) karst::tools::print_error("karst: %s\n", wrong.c_str());
   return app.exit(e) == 0 ? 0 : 1;
 }
 
@@ -75,10 +76,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     code = exit_code(app, e);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "karst: %s\n", e.what());
+    karst::tools::print_error("karst: %s\n", e.what());
     code = 1;
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  std::fprintf(stderr, "karst: standard output cannot be written\n");
+  karst::tools::print_error("karst: standard output cannot be written\n");
   return code == 0 ? 1 : code;
 }

@@ -14,6 +14,7 @@
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/map_inputs.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -104,7 +105,7 @@ std::vector<Placed> place_all(const std::vector<MapInput>& maps, const core::Map
   while (!waiting.empty()) {
     std::vector<Placed> refused;
     for (const MapInput* map : waiting) {
-      std::fprintf(stderr, "registering %s ...\n", map->name.c_str());
+      print_error("registering %s ...\n", map->name.c_str());
       const Placed p{map, core::register_maps(merged.piece(), map->piece, options)};
       if (p.registration.trusted) {
         merged.add(*map, p.registration.T_target_source);
@@ -126,15 +127,15 @@ std::vector<Placed> place_all(const std::vector<MapInput>& maps, const core::Map
 void print(const Placed& p) {
   const core::MapRegistration& r = p.registration;
   const core::Vec3& t = r.T_target_source.position;
-  std::printf("%s: %s\n", p.map->name.c_str(), r.trusted ? "in place" : ("refused: " + r.reason).c_str());
-  std::printf("  moved by (%.2f, %.2f, %.2f) m, turned by %.2f deg%s\n", t.x(), t.y(), t.z(),
-              core::heading_of(r.T_target_source.orientation) * 180 / std::numbers::pi,
-              r.trusted ? "" : " at best");
-  std::printf("  residual %.3f m, overlap %.0f %% of it and %.0f %% of the rest (%.0f m^2)\n",
-              r.overlay.residual_m(), 100 * r.overlay.source_overlap(), 100 * r.overlay.target_overlap(),
-              r.shared_m2);
-  std::printf("  agreement %.1f %%, hold %.3f, next best pose %.0f %% as good\n", 100 * r.overlay.agreement(),
-              r.hold, 100 * r.rival);
+  print_out("%s: %s\n", p.map->name.c_str(), r.trusted ? "in place" : ("refused: " + r.reason).c_str());
+  print_out("  moved by (%.2f, %.2f, %.2f) m, turned by %.2f deg%s\n", t.x(), t.y(), t.z(),
+            core::heading_of(r.T_target_source.orientation) * 180 / std::numbers::pi,
+            r.trusted ? "" : " at best");
+  print_out("  residual %.3f m, overlap %.0f %% of it and %.0f %% of the rest (%.0f m^2)\n",
+            r.overlay.residual_m(), 100 * r.overlay.source_overlap(), 100 * r.overlay.target_overlap(),
+            r.shared_m2);
+  print_out("  agreement %.1f %%, hold %.3f, next best pose %.0f %% as good\n", 100 * r.overlay.agreement(),
+            r.hold, 100 * r.rival);
 }
 
 /// Before minutes of registration, not after them.
@@ -173,9 +174,9 @@ int merge(const MergeArguments& args) {
     std::cout << core::json_text(report, 2) << std::endl;
   } else {
     for (const Placed& p : placed) print(p);
-    for (const fs::path& f : files) std::printf("%s\n", f.c_str());
+    for (const fs::path& f : files) print_out("%s\n", f.c_str());
   }
-  if (!all) std::fprintf(stderr, "karst: not all maps could be put together; nothing was written\n");
+  if (!all) print_error("karst: not all maps could be put together; nothing was written\n");
   return all ? 0 : kRefused;
 }
 

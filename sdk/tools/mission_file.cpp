@@ -5,6 +5,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_lines.h"
+#include "core_stack/common/info_reader.h"
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
 #include "core_stack/vehicle/team_vehicles.h"
@@ -21,8 +22,7 @@ using core::OptionTable;
 
 constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
                      *kSelection = "policy.selection";
-constexpr const char *kPolicyVersion = "policy.version", *kVehicleImplementation = "vehicle.implementation",
-                     *kKarstVersion = "karst.version";
+constexpr const char *kPolicyVersion = "policy.version", *kKarstVersion = "karst.version";
 
 void describe_mission(OptionTable& t, Mission& m) {
   t.add("seed", m.seed, 0, 9e15, "seed of every random stream of the mission");
@@ -100,7 +100,7 @@ std::pair<std::string, std::string> split_setting(const std::string& setting) {
 Mission read_mission(const std::string& file, const MissionOverrides& overrides) {
   Mission m;
   m.file = file.empty() ? "command line" : file;
-  pt::ptree tree = file.empty() ? pt::ptree() : core::read_info(file);
+  pt::ptree tree = file.empty() ? pt::ptree() : core::read_including_info(file);
   m.policy_parameters = take(tree, kParameters);  // the policy itself says which keys it knows
   if (!m.policy_parameters.data().empty())
     throw InputError(m.file, kParameters,
@@ -109,7 +109,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   if (!m.auto_policy.data().empty())
     throw InputError(m.file, kAuto, "expected a block { ... }, got \"" + m.auto_policy.data() + "\"");
   m.policy_selection = take(tree, kSelection).data();
-  for (const char* fact : {kPolicyVersion, kVehicleImplementation, kKarstVersion}) take(tree, fact);
+  for (const char* fact : {kPolicyVersion, kKarstVersion}) take(tree, fact);
 
   std::vector<std::pair<std::string, std::string>> settings;
   for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
@@ -141,6 +141,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
 
   table.read(m.file, tree);
   m.cave = core::beside(file, m.cave);
+  m.core.team.key_file = core::beside(file, m.core.team.key_file);
   const std::string recorded_policy = m.policy;
   for (const auto& [key, value] : settings)
     if (!put_below(kParameters, key, value, m.policy_parameters) &&
@@ -175,15 +176,17 @@ std::uint64_t policy_seed(const Mission& m) {
   return core::Random::stream(seed, "policy stream " + std::to_string(m.policy_stream)).bits();
 }
 
-pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters, const RecordedFacts& facts) {
+pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
+                           const std::string& policy_version) {
   pt::ptree tree = m.resolved;
   tree.put("cave.file", m.cave.empty() ? "" : std::filesystem::absolute(m.cave).lexically_normal().string());
   tree.put("cave.start", m.start);
+  if (const std::string& key = m.core.team.key_file; !key.empty() && tree.get_child_optional("team"))
+    tree.put("team.key_file", std::filesystem::absolute(key).lexically_normal().string());
   tree.put("policy.name", m.policy);
   if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);
-  tree.put(kPolicyVersion, facts.policy_version);
+  tree.put(kPolicyVersion, policy_version);
   if (!m.policy_selection.empty()) tree.put(kSelection, m.policy_selection);
-  tree.put(kVehicleImplementation, facts.vehicle_implementation);
   tree.put(kKarstVersion, KARST_VERSION);
   return tree;
 }

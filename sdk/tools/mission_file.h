@@ -41,16 +41,11 @@ struct Mission {
 /// while noise, gusts and faults stay as they are.
 std::uint64_t policy_seed(const Mission& mission);
 
-/// What a run records besides the settings it was flown with: facts, which nobody sets.
-struct RecordedFacts {
-  std::string policy_version, vehicle_implementation;
-};
-
 /// A mission as its run directory keeps it, every setting resolved: `mission.info`. It can be flown again as
 /// it is.
 boost::property_tree::ptree recorded_mission(const Mission& mission,
                                              const boost::property_tree::ptree& policy_parameters,
-                                             const RecordedFacts& facts);
+                                             const std::string& policy_version);
 
 /// Reads, overrides, checks. `file` may be "" for a mission given on the command line alone. Facts recorded
 /// in the file are passed over. Throws core::InputError naming file, key, what was expected and the nearest

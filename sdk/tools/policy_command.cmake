@@ -9,4 +9,4 @@ karst_embed(${templates} HEADER sdk/tools/policy_templates.h NAMESPACE karst::to
       policy_cmake=${examples}/1_nearest/CMakeLists.txt policy_readme=${CMAKE_CURRENT_SOURCE_DIR}/new_policy/README.md)
 karst_library(karst_policy_command policy_command.cpp policy_name.cpp policy_new.cpp ${templates}
               check_command.cpp request_replay_command.cpp
-              LINK karst_check karst_host nlohmann_json::nlohmann_json CLI11::CLI11)
+              LINK karst_terminal karst_check karst_host nlohmann_json::nlohmann_json CLI11::CLI11)

@@ -12,6 +12,7 @@
 #include "sdk/tools/check_command.h"
 #include "sdk/tools/policy_new.h"
 #include "sdk/tools/request_replay_command.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -66,18 +67,19 @@ std::string allowed_text(const ParameterListing& p) {
 void print_text(const std::vector<PolicyListing>& all, const host::SearchPath& path, bool verbose) {
   for (const PolicyListing& p : all) {
     if (!p.broken.empty()) continue;
-    std::cout << p.id << " " << p.version << "\n    " << p.one_line << "\n    " << p.file << "\n";
-    if (!p.shadowed_by.empty()) std::cout << "    hidden by " << p.shadowed_by << "\n";
+    print_out("%s %s\n    %s\n    %s\n", p.id.c_str(), p.version.c_str(), p.one_line.c_str(), p.file.c_str());
+    if (!p.shadowed_by.empty()) print_out("    hidden by %s\n", p.shadowed_by.c_str());
     if (!verbose) continue;
     for (const ParameterListing& q : p.parameters)
-      std::cout << "      " << q.id << " = " << q.default_text << (q.unit.empty() ? "" : " " + q.unit)
-                << "  (" << allowed_text(q) << ")\n          " << q.help << "\n";
+      print_out("      %s = %s  (%s)\n          %s\n", q.id.c_str(),
+                (q.default_text + (q.unit.empty() ? "" : " " + q.unit)).c_str(), allowed_text(q).c_str(),
+                q.help.c_str());
   }
   for (const PolicyListing& p : all)
-    if (!p.broken.empty()) std::cout << "broken: " << p.file << "\n    " << p.broken << "\n";
+    if (!p.broken.empty()) print_out("broken: %s\n    %s\n", p.file.c_str(), p.broken.c_str());
   if (!all.empty() && !verbose) return;
-  std::cout << (all.empty() ? "no policies found; searched:\n" : "searched:\n");
-  for (const std::string& folder : path.folders) std::cout << "    " << folder << "\n";
+  print_out("%s:\n", all.empty() ? "no policies found; searched" : "searched");
+  for (const std::string& folder : path.folders) print_out("    %s\n", folder.c_str());
 }
 
 }  // namespace

@@ -15,9 +15,11 @@
 #include <string>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/output_file.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/policy_name.h"
 #include "sdk/tools/policy_templates.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -73,8 +75,7 @@ std::string sdk_prefix() {
 }
 
 void write(const fs::path& file, const std::string& text) {
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
+  std::ofstream out = core::open_output(file);
   out << text;
   out.close();
   if (!out) throw InputError(file.string(), "", std::string("cannot be written: ") + std::strerror(errno));
@@ -113,15 +114,15 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
     fs::remove_all(folder, error);
     throw;
   }
-  std::printf("%s: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
+  print_out("%s: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
   for (const std::string& file :
        {name + ".cpp", name + "_test.cpp", std::string("CMakeLists.txt"), std::string("README.md")})
-    std::printf("  %s\n", file.c_str());
-  std::printf(
+    print_out("  %s\n", file.c_str());
+  print_out(
       "next, in that folder:\n  cmake -S . -B build && cmake --build build && ctest --test-dir build\n"
       "README.md says how to fly it\n");
   if (sdk.empty())
-    std::printf("no SDK lies beside this karst: tell cmake where it is, by -DCMAKE_PREFIX_PATH=FOLDER\n");
+    print_out("no SDK lies beside this karst: tell cmake where it is, by -DCMAKE_PREFIX_PATH=FOLDER\n");
 }
 
 }  // namespace

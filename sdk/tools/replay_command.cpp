@@ -10,12 +10,14 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/printable.h"
 #include "plugins/replay/decimal_time.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/replay_run.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/run_files.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -38,7 +40,7 @@ class ReplayLine {
     const core::Vec3& p = pose.T_world_body.position;
     std::fprintf(stderr, "%sscan %zu of %zu  at (%.1f, %.1f, %.1f)  %d features  %.0f m^3 free  %s%s",
                  terminal_ ? "\r\033[K" : "", scan, scans_, p.x(), p.y(), p.z(), pose.edges + pose.planes,
-                 map.free_volume_m3(), pose.valid ? "" : ("lost: " + pose.problem).c_str(),
+                 map.free_volume_m3(), pose.valid ? "" : ("lost: " + core::printable(pose.problem)).c_str(),
                  terminal_ ? "" : "\n");
   }
   void end() const {
@@ -90,26 +92,26 @@ void write_settings(const fs::path& run_dir, const replay::Recording& recording,
 
 void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir,
                    bool report) {
-  std::printf("%zu scans, %zu of them lost", s.scans, s.lost);
-  if (s.lost > 0) std::printf(" (the last: %s)", s.last_problem.c_str());
-  std::printf("\n  points           %zu used, %zu left out (not finite, or out of range)\n", s.points,
-              s.dropped_points);
-  if (s.imu_samples > 0) std::printf("  IMU              %zu samples\n", s.imu_samples);
-  std::printf("  path length      %.2f m\n", s.path_m);
+  print_out("%zu scans, %zu of them lost", s.scans, s.lost);
+  if (s.lost > 0) print_out(" (the last: %s)", s.last_problem.c_str());
+  print_out("\n  points           %zu used, %zu left out (not finite, or out of range)\n", s.points,
+            s.dropped_points);
+  if (s.imu_samples > 0) print_out("  IMU              %zu samples\n", s.imu_samples);
+  print_out("  path length      %.2f m\n", s.path_m);
   if (metrics["explored_volume_m3"].is_number())
-    std::printf("  free volume      %.0f m^3\n", metrics["explored_volume_m3"].get<double>());
-  if (s.degenerate > 0) std::printf("  degenerate       %zu scans left a direction free\n", s.degenerate);
+    print_out("  free volume      %.0f m^3\n", metrics["explored_volume_m3"].get<double>());
+  if (s.degenerate > 0) print_out("  degenerate       %zu scans left a direction free\n", s.degenerate);
   if (s.scans > 0)
-    std::printf("  localization     %.1f ms a scan, %.1f ms at most\n",
-                1e3 * s.localization_s / static_cast<double>(s.scans), 1e3 * s.slowest_s);
+    print_out("  localization     %.1f ms a scan, %.1f ms at most\n",
+              1e3 * s.localization_s / static_cast<double>(s.scans), 1e3 * s.slowest_s);
   if (s.without_times)
-    std::printf(
+    print_out(
         "note: the points have no times, so motion during a scan was not compensated; see time.direction and "
         "compensated in docs/replay.md\n");
-  std::printf("Look next at:\n");
-  if (report) std::printf("  %s   the map in 3D; open it in a browser\n", (run_dir / "report.html").c_str());
-  std::printf("  %s   the trajectory (TUM); karst evaluate %s --truth FILE\n",
-              (run_dir / "trajectory.tum").c_str(), run_dir.c_str());
+  print_out("Look next at:\n");
+  if (report) print_out("  %s   the map in 3D; open it in a browser\n", (run_dir / "report.html").c_str());
+  print_out("  %s   the trajectory (TUM); karst evaluate %s --truth FILE\n",
+            (run_dir / "trajectory.tum").c_str(), run_dir.c_str());
 }
 
 int replay_scans(const ReplayArguments& args) {
@@ -118,8 +120,8 @@ int replay_scans(const ReplayArguments& args) {
     replay::RecordingInfo info;
     core::OptionTable declared;
     describe(declared, info);
-    std::printf("Keys for --set:\n%s\nKeys of recording.info:\n%s", table_of(options).help().c_str(),
-                declared.help().c_str());
+    print_out("Keys for --set:\n%s\nKeys of recording.info:\n%s", table_of(options).help().c_str(),
+              declared.help().c_str());
     return 0;
   }
   if (args.scans.empty() || args.out.empty())
@@ -154,8 +156,7 @@ int replay_scans(const ReplayArguments& args) {
   line.end();
   const nlohmann::json metrics = finish_run(run_dir, "", "", !args.no_report);
   if (!damage.empty()) {
-    std::fprintf(stderr, "karst: %s\nkarst: what came before it stands in %s\n", damage.c_str(),
-                 run_dir.c_str());
+    print_error("karst: %s\nkarst: what came before it stands in %s\n", damage.c_str(), run_dir.c_str());
     return 1;
   }
   if (args.json) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_file.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
@@ -23,6 +24,7 @@
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/tools/campaign_page.h"
 #include "sdk/tools/team_metrics.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -66,9 +68,7 @@ evaluation::Truth truth_of(const std::string& cave_file, const std::string& star
 
 /// What only the cave's mesh can say stays as it was last written, if the cave can no longer be read.
 void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
-  std::ifstream in(run_dir / "metrics.json");
-  if (!in || !fs::is_regular_file(run_dir / "metrics.json")) return;
-  const auto before = core::json_of<nlohmann::ordered_json>(in);
+  const auto before = core::json_of_file<nlohmann::ordered_json>(run_dir / "metrics.json");
   if (!before.is_object()) return;
   std::string kept;
   for (const char* key : evaluation::kCaveFigures) {
@@ -77,7 +77,7 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
     metrics[key] = *value;
     kept += (kept.empty() ? "" : ", ") + std::string(key);
   }
-  if (!kept.empty()) std::fprintf(stderr, "karst: kept from the metrics.json there was: %s\n", kept.c_str());
+  if (!kept.empty()) print_error("karst: kept from the metrics.json there was: %s\n", kept.c_str());
 }
 
 /// Says why if the cave cannot be read.
@@ -89,7 +89,7 @@ evaluation::Truth truth_if_known(const fs::path& run_dir, const std::string& cav
                     evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems), cache);
   } catch (const core::InputError& e) {
     lost_cave = true;
-    std::fprintf(stderr, "karst: coverage is not known: %s\n", e.what());
+    print_error("karst: coverage is not known: %s\n", e.what());
     return {};
   }
 }
@@ -124,18 +124,17 @@ void report_team(const fs::path& run, const std::string& cave, const std::string
   std::vector<nlohmann::json> own;
   for (const fs::path& robot : evaluation::robot_folders(run)) {
     own.push_back(finish_run(robot, cave, start, with_report));
-    std::printf("%s\n", (robot / written).c_str());
+    print_out("%s\n", (robot / written).c_str());
   }
-  std::ifstream in(run / "metrics.json");
-  auto metrics = in ? core::json_of<nlohmann::ordered_json>(in) : nlohmann::ordered_json();
+  auto metrics = core::json_of_file<nlohmann::ordered_json>(run / "metrics.json");
   if (!metrics.is_object()) {
-    std::fprintf(stderr, "karst: %s: not there or no JSON object: outcomes of the team are not known\n",
-                 (run / "metrics.json").c_str());
+    print_error("karst: %s: not there or no JSON object: outcomes of the team are not known\n",
+                (run / "metrics.json").c_str());
     metrics = metrics_of_cut_team(run, cave, own);
   }
   add_sums(metrics, own);
   finish_team(run, cave, start, metrics, with_report);
-  std::printf("%s\n", (run / written).c_str());
+  print_out("%s\n", (run / written).c_str());
 }
 
 }  // namespace
@@ -148,7 +147,7 @@ nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, cons
   nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &run_problems);
   problems.insert(problems.end(), run_problems.begin(), run_problems.end());
   if (lost_cave) keep_known(metrics, run_dir);
-  for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
   if (with_report) evaluation::write_report(run_dir);
   return metrics;
@@ -157,15 +156,15 @@ nlohmann::json finish_run(const fs::path& run_dir, const std::string& cave, cons
 void print_objects(const nlohmann::json& m) {
   if (!m["objects_placed"].is_number()) return;
   const auto count = [&](const char* key) { return m[key].get<int>(); };
-  std::printf("  objects          %d placed, %d in view in six images, %d found; %d known at the base",
-              count("objects_placed"), count("objects_seen"), count("objects_found"),
-              count("objects_reported"));
+  print_out("  objects          %d placed, %d in view in six images, %d found; %d known at the base",
+            count("objects_placed"), count("objects_seen"), count("objects_found"),
+            count("objects_reported"));
   if (m["object_error_m"].is_number())
-    std::printf(", %.2f m off, after %.0f s", m["object_error_m"].get<double>(),
-                m["object_report_time_s"].get<double>());
-  std::printf("%s\n", count("objects_false") > 0
-                          ? (", and " + std::to_string(count("objects_false")) + " false").c_str()
-                          : "");
+    print_out(", %.2f m off, after %.0f s", m["object_error_m"].get<double>(),
+              m["object_report_time_s"].get<double>());
+  print_out("%s\n", count("objects_false") > 0
+                        ? (", and " + std::to_string(count("objects_false")) + " false").c_str()
+                        : "");
 }
 
 void finish_team(const fs::path& run_dir, const std::string& cave, const std::string& start,
@@ -178,7 +177,7 @@ void finish_team(const fs::path& run_dir, const std::string& cave, const std::st
   evaluation::set_figures(metrics, evaluation::team_object_figures(team, team.problems));
   problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are told already
   if (lost_cave) keep_known(metrics, run_dir);
-  for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
   write_team_telemetry(team);
   if (with_report) evaluation::write_team_report(team, metrics);
@@ -204,7 +203,7 @@ void add_report_command(CLI::App& app) {
   report->callback([args] {
     const fs::path run = args->run;
     if (is_campaign(run)) {
-      std::printf("%s\n", write_campaign_page(run, args->metric, args->worst).c_str());
+      print_out("%s\n", write_campaign_page(run, args->metric, args->worst).c_str());
       return;
     }
     if (!fs::exists(run / "mission.info"))
@@ -216,7 +215,7 @@ void add_report_command(CLI::App& app) {
       return;
     }
     finish_run(run, info.get("cave.file", ""), info.get("cave.start", ""), !args->no_report);
-    std::printf("%s\n", (run / (args->no_report ? "metrics.json" : "report.html")).c_str());
+    print_out("%s\n", (run / (args->no_report ? "metrics.json" : "report.html")).c_str());
   });
 }
 

@@ -13,6 +13,7 @@
 #include "sdk/host/hosted_policy.h"
 #include "sdk/host/request_log.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -57,9 +58,9 @@ std::string ask(host::HostedPolicy& policy, const core::DecisionRequest& request
 }
 
 void print(const core::DecisionRequest& r, const std::string& recorded, const std::string& now) {
-  std::printf("%5u  %7.1f s  %3zu frontiers  %s  %s\n", r.sequence, core::seconds(r.stamp),
-              r.frontiers.size(), recorded == now ? "same   " : "DIFFERS", host::answer_line(now).c_str());
-  if (recorded != now) std::printf("%31s recorded: %s\n", "", host::answer_line(recorded).c_str());
+  print_out("%5u  %7.1f s  %3zu frontiers  %s  %s\n", r.sequence, core::seconds(r.stamp), r.frontiers.size(),
+            recorded == now ? "same   " : "DIFFERS", host::answer_line(now).c_str());
+  if (recorded != now) print_out("%31s recorded: %s\n", "", host::answer_line(recorded).c_str());
 }
 
 int replay(const Arguments& args) {
@@ -94,8 +95,8 @@ int replay(const Arguments& args) {
       print(log.request(), log.answer(), now);
   }
   if (log.passed_over() > 0)
-    std::fprintf(stderr, "karst: %s: its last record is cut short, %llu bytes of it are passed over\n",
-                 file.c_str(), static_cast<unsigned long long>(log.passed_over()));
+    print_error("karst: %s: its last record is cut short, %llu bytes of it are passed over\n", file.c_str(),
+                static_cast<unsigned long long>(log.passed_over()));
   if (args.json)
     std::cout << core::json_text(ordered_json{{"schema", 1},
                                               {"policy", policy->name()},
@@ -105,8 +106,8 @@ int replay(const Arguments& args) {
                                  2)
               << "\n";
   else
-    std::printf("%s of %s %s, %zu as recorded, %zu different\n", core::counted(asked, "decision").c_str(),
-                policy->name().c_str(), policy->version().c_str(), asked - different, different);
+    print_out("%s of %s %s, %zu as recorded, %zu different\n", core::counted(asked, "decision").c_str(),
+              policy->name().c_str(), policy->version().c_str(), asked - different, different);
   if (args.expect_same && asked == 0)
     throw core::InputError(file.string(), "--expect-same", "no decision was compared");
   return args.expect_same && different > 0 ? kDiffers : 0;

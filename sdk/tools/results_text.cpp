@@ -10,6 +10,7 @@
 #include "core_stack/common/options.h"
 #include "sdk/campaign/verdict.h"
 #include "sdk/evaluation/metric_definitions.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -37,7 +38,7 @@ void print_row(const CampaignResults& results, const campaign::Place& place,
                      results.contestants[place.contestant].name + " | " + std::to_string(trials) + " | " +
                      std::to_string(failed) + " |";
   for (const std::vector<double>& of_figure : means) line += " " + number(of_figure[place.contestant]) + " |";
-  std::printf("%s\n", line.c_str());
+  print_out("%s\n", line.c_str());
 }
 
 }  // namespace
@@ -55,8 +56,8 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   const std::string metric = asked.empty() ? results.metric : asked;
   check_metric(metric);
   if (metric != results.metric)
-    std::printf("The campaign declared %s before it flew; what follows is about %s.\n",
-                results.metric.c_str(), metric.c_str());
+    print_out("The campaign declared %s before it flew; what follows is about %s.\n", results.metric.c_str(),
+              metric.c_str());
   campaign::VerdictOptions options;
   options.metric = metric;
   const campaign::Verdicts verdicts = campaign::compare_all(results, options);
@@ -69,13 +70,13 @@ void print_results(const CampaignResults& results, const std::string& asked) {
     head += " " + f + " |", rule += "---:|";
     means.push_back(campaign::comparable_means(results, evaluation::metric_index(f)));
   }
-  std::printf("%s: means over %s, of the flights that all have flown\n\n%s\n%s\n", results.name.c_str(),
-              core::counted(results.caves.size(), "cave").c_str(), head.c_str(), rule.c_str());
+  print_out("%s: means over %s, of the flights that all have flown\n\n%s\n%s\n", results.name.c_str(),
+            core::counted(results.caves.size(), "cave").c_str(), head.c_str(), rule.c_str());
   for (const campaign::Place& place : verdicts.ranking) print_row(results, place, means);
-  std::printf("\n");
+  print_out("\n");
   for (const campaign::Comparison& c : verdicts.comparisons)
-    if (c.metric == verdicts.metric) std::printf("%s\n", c.sentence.c_str());
-  if (results.contestants.size() > 2) std::printf("\n%s\n", verdicts.sentence.c_str());
+    if (c.metric == verdicts.metric) print_out("%s\n", c.sentence.c_str());
+  if (results.contestants.size() > 2) print_out("\n%s\n", verdicts.sentence.c_str());
 }
 
 }  // namespace karst::tools

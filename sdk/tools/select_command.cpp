@@ -15,6 +15,7 @@
 #include "sdk/selection/preset.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/install_place.h"
+#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -36,7 +37,7 @@ struct Arguments {
 
 ordered_json known(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(); }
 
-void tell(const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); }
+void tell(const std::string& message) { print_error("%s\n", message.c_str()); }
 
 Experience experience_of(const Arguments& args) {
   std::vector<std::string> files = args.results;
@@ -56,32 +57,32 @@ std::string interval_text(const selection::Expected& x) {
 
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
            const Arguments& args) {
-  std::printf("The cave:\n%s", selection::to_text(cave).c_str());
-  std::printf("%s:\n", s.flown ? "This very cave was flown; all rests on that. Nearest" : "Caves like it");
+  print_out("The cave:\n%s", selection::to_text(cave).c_str());
+  print_out("%s:\n", s.flown ? "This very cave was flown; all rests on that. Nearest" : "Caves like it");
   for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
     const selection::NearCave& n = s.near[i];
     const auto& far = selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)];
-    std::printf("  %-24s distance %5.2f, weight %3.0f %%, most unlike in %s (%.3g here, %.3g there)\n",
-                e.caves[n.cave].name.c_str(), n.distance.value, 100 * n.weight, std::string(far.name).c_str(),
-                cave.*far.value, e.caves[n.cave].figures.*far.value);
+    print_out("  %-24s distance %5.2f, weight %3.0f %%, most unlike in %s (%.3g here, %.3g there)\n",
+              e.caves[n.cave].name.c_str(), n.distance.value, 100 * n.weight, std::string(far.name).c_str(),
+              cave.*far.value, e.caves[n.cave].figures.*far.value);
   }
   if (s.refused) {
-    std::printf("No policy is named: %s.\n", s.reason.c_str());
+    print_out("No policy is named: %s.\n", s.reason.c_str());
     return;
   }
-  std::printf("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
+  print_out("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
   for (const selection::Expected& x : s.ranking)
-    std::printf("  %-24s %8.3g   %s\n", e.contestants[x.contestant].name.c_str(), x.value,
-                interval_text(x).c_str());
+    print_out("  %-24s %8.3g   %s\n", e.contestants[x.contestant].name.c_str(), x.value,
+              interval_text(x).c_str());
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];
-  std::printf("Policy: %s\n", first.policy.c_str());
+  print_out("Policy: %s\n", first.policy.c_str());
   for (const auto& [key, value] : first.parameters)
-    std::printf("  %s = %s\n", key.c_str(), value.data().c_str());
-  std::printf("Expected there:");
+    print_out("  %s = %s\n", key.c_str(), value.data().c_str());
+  print_out("Expected there:");
   const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m)
-    if (!std::isnan(figures[m])) std::printf(" %s %.3g", e.metrics[m].c_str(), figures[m]);
-  std::printf("\n%s.\n", s.reason.c_str());
+    if (!std::isnan(figures[m])) print_out(" %s %.3g", e.metrics[m].c_str(), figures[m]);
+  print_out("\n%s.\n", s.reason.c_str());
 }
 
 ordered_json parameters_json(const selection::Preset& preset) {
@@ -129,7 +130,7 @@ int select_for(const Arguments& args) {
   const Selected s =
       select(e, cave.figures, args.options, args.cave, selection::mesh_hash_of(args.cave, args.start));
   if (args.json)
-    std::printf("%s\n", core::json_text(to_json(e, cave.figures, s, args), 2).c_str());
+    print_out("%s\n", core::json_text(to_json(e, cave.figures, s, args), 2).c_str());
   else
     print(e, cave.figures, s, args);
   if (s.refused) return kRefused;
@@ -143,11 +144,11 @@ int select_for(const Arguments& args) {
 }
 
 void print_shares(const char* name, const selection::LeaveOneOut::Shares& s) {
-  std::printf("  %-28s %5.0f %% %12.0f %% %12.1f %%\n", name, 100 * s.best, 100 * s.within, 100 * s.regret);
+  print_out("  %-28s %5.0f %% %12.0f %% %12.1f %%\n", name, 100 * s.best, 100 * s.within, 100 * s.regret);
 }
 
 void print_answered(const selection::LeaveOneOut& l) {
-  std::printf("of the %zu caves that would not be refused\n", l.caves.size() - l.refused);
+  print_out("of the %zu caves that would not be refused\n", l.caves.size() - l.refused);
   print_shares("selected", l.selected_answered);
   print_shares("always the overall best", l.overall_answered);
   print_shares("drawn at random", l.chance_answered);
@@ -175,28 +176,27 @@ void leave_one_out(const Arguments& args) {
     shares("selected", l.selected), shares("overall_best", l.overall), shares("chance", l.chance);
     shares("selected_answered", l.selected_answered), shares("overall_best_answered", l.overall_answered);
     shares("chance_answered", l.chance_answered);
-    std::printf("%s\n", core::json_text(j, 2).c_str());
+    print_out("%s\n", core::json_text(j, 2).c_str());
     return;
   }
-  std::printf("Each cave left out in turn, selected for from the others, by %s:\n",
-              args.options.metric.c_str());
+  print_out("Each cave left out in turn, selected for from the others, by %s:\n",
+            args.options.metric.c_str());
   for (const selection::LeftOut& c : l.caves)
-    std::printf("  %-24s nearest %5.2f  best %s %.3g; selected %s %.3g%s; overall best %s %.3g\n",
-                e.caves[c.cave].name.c_str(), c.nearest, e.contestants[c.best].name.c_str(), c.best_value,
-                e.contestants[c.selected].name.c_str(), c.selected_value,
-                c.refused ? " (would be refused)" : "", e.contestants[c.overall].name.c_str(),
-                c.overall_value);
-  std::printf("%zu caves               is the best   within 5 %%   lost on average\n", l.caves.size());
+    print_out("  %-24s nearest %5.2f  best %s %.3g; selected %s %.3g%s; overall best %s %.3g\n",
+              e.caves[c.cave].name.c_str(), c.nearest, e.contestants[c.best].name.c_str(), c.best_value,
+              e.contestants[c.selected].name.c_str(), c.selected_value,
+              c.refused ? " (would be refused)" : "", e.contestants[c.overall].name.c_str(), c.overall_value);
+  print_out("%zu caves               is the best   within 5 %%   lost on average\n", l.caves.size());
   print_shares("selected", l.selected);
   print_shares("always the overall best", l.overall);
   print_shares("drawn at random", l.chance);
   if (l.refused > 0 && l.refused < l.caves.size()) print_answered(l);
-  std::printf(
+  print_out(
       "Within 5 %%: what it found is at least as good as the best there but for 5 %% of that. Lost: the "
       "share of the best\n"
       "that was lost. Drawn at random: the mean over all that flew there.\n");
   if (l.caves.size() < kManyCaves)
-    std::printf(
+    print_out(
         "%zu caves are few: by chance alone a share of 50 %% is off by up to %.0f points, 95 times in 100.\n",
         l.caves.size(), 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves.size())));
 }
@@ -207,7 +207,7 @@ void learn(const Arguments& args) {
     throw InputError("--out", args.out, "expected a name that ends in .info");
   const Experience e = selection::load_experience(args.learn, tell);
   evaluation::write_whole_file(args.out, selection::to_info(e));
-  std::printf("%s: %zu contestants in %zu caves\n", args.out.c_str(), e.contestants.size(), e.caves.size());
+  print_out("%s: %zu contestants in %zu caves\n", args.out.c_str(), e.contestants.size(), e.caves.size());
 }
 
 int run(const Arguments& args) {

@@ -13,6 +13,9 @@
 #include <numbers>
 #include <optional>
 
+#include "core_stack/common/json_file.h"
+#include "sdk/tools/terminal.h"
+
 namespace karst::tools {
 namespace {
 
@@ -51,9 +54,7 @@ nlohmann::json metrics_of(const std::string& run, std::string& problem) {
   }
   const fs::path file = fs::path(run) / "metrics.json";
   if (!fs::exists(file)) return row("no metrics.json");
-  std::ifstream in(file);
-  nlohmann::json metrics;
-  if (fs::is_regular_file(file)) metrics = nlohmann::json::parse(in, nullptr, false);
+  auto metrics = core::json_of_file(file);
   if (metrics.is_object()) {
     if (!metrics.contains("cave")) metrics["cave"] = run;
     return metrics;
@@ -119,7 +120,7 @@ void print_spread(const std::vector<nlohmann::json>& runs) {
                        (share == 0 ? counted : "") + " |";
     for (std::size_t i = 0; i < kColumns.size(); ++i)
       line += " " + text_of(quantile(sorted[i], share), kColumns[i]) + " |";
-    std::printf("%s\n", line.c_str());
+    print_out("%s\n", line.c_str());
   }
 }
 
@@ -134,7 +135,7 @@ void add_table_command(CLI::App& app) {
   table->callback([runs] {
     std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
     for (const Column& c : kColumns) head += std::string(" ") + c.title + " |", rule += "---:|";
-    std::printf("%s\n%s\n", head.c_str(), rule.c_str());
+    print_out("%s\n%s\n", head.c_str(), rule.c_str());
     std::vector<std::string> problems;
     std::vector<nlohmann::json> all;
     std::vector<std::string> passed_over;
@@ -149,13 +150,13 @@ void add_table_command(CLI::App& app) {
       std::string line = "|";
       for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
       for (const Column& c : kColumns) line += " " + text_of(number_of(m, c), c) + " |";
-      std::printf("%s\n", line.c_str());
+      print_out("%s\n", line.c_str());
       if (!m.contains("no_figures")) all.push_back(m);
     }
     if (all.size() > 1) print_spread(all);
     std::fflush(stdout);
-    for (const std::string& p : problems) std::fprintf(stderr, "karst: %s\n", p.c_str());
-    for (const std::string& p : passed_over) std::fprintf(stderr, "karst: passed over: %s\n", p.c_str());
+    for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+    for (const std::string& p : passed_over) print_error("karst: passed over: %s\n", p.c_str());
     if (!problems.empty() || passed_over.size() == runs->size()) throw CLI::RuntimeError(1);
   });
 }

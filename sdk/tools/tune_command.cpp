@@ -15,6 +15,7 @@
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/run_files.h"
+#include "sdk/tools/terminal.h"
 #include "sdk/tuning/tune.h"
 
 namespace karst::tools {
@@ -115,13 +116,12 @@ int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult
   const fs::path folder = args.out;
   if (!r.tried.empty()) write_table(folder / "tune.csv", r, o.metric);
   if (r.stopped) {
-    std::fprintf(stderr, "karst: stopped after %s; the same command goes on where it was\n",
-                 core::counted(r.tried.size(), "candidate").c_str());
+    print_error("karst: stopped after %s; the same command goes on where it was\n",
+                core::counted(r.tried.size(), "candidate").c_str());
     return kInterrupted;
   }
   if (r.best == 0) {
-    std::printf("None of %zu candidates did better than the default; no preset is written.\n",
-                r.tried.size());
+    print_out("None of %zu candidates did better than the default; no preset is written.\n", r.tried.size());
     return 0;
   }
   const tuning::Candidate& best = r.tried[r.best];
@@ -133,12 +133,12 @@ int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult
   evaluation::write_whole_file(
       folder / "preset.info",
       selection::to_info(preset, "karst tune " + args.policy + ", by " + o.metric + "\n" + worth));
-  std::printf("Best of %zu candidates: %s\n%sLook next at:\n", r.tried.size(),
-              parameters_text(best.parameters).c_str(), worth.c_str());
-  std::printf("  karst fly --preset %s --cave FILE\n", (folder / "preset.info").c_str());
-  std::printf("  %s   all candidates\n", (folder / "tune.csv").c_str());
+  print_out("Best of %zu candidates: %s\n%sLook next at:\n", r.tried.size(),
+            parameters_text(best.parameters).c_str(), worth.c_str());
+  print_out("  karst fly --preset %s --cave FILE\n", (folder / "preset.info").c_str());
+  print_out("  %s   all candidates\n", (folder / "tune.csv").c_str());
   if (r.held_out)
-    std::printf("  karst results %s   the flights through caves held out\n", (folder / "held_out").c_str());
+    print_out("  karst results %s   the flights through caves held out\n", (folder / "held_out").c_str());
   return 0;
 }
 
@@ -149,10 +149,10 @@ int tune(const Arguments& args) {
   const tuning::TuneOptions o = options_of(args);
   const std::size_t candidates = tuning::candidates_of(o);
   if (!args.quiet)
-    std::fprintf(stderr, "%s, %s through %s with %s\n", core::counted(o.axes.size(), "parameter").c_str(),
-                 core::counted(candidates, "candidate").c_str(),
-                 core::counted(o.campaign.caves.size(), "cave").c_str(),
-                 core::counted(o.campaign.seeds.size(), "seed").c_str());
+    print_error("%s, %s through %s with %s\n", core::counted(o.axes.size(), "parameter").c_str(),
+                core::counted(candidates, "candidate").c_str(),
+                core::counted(o.campaign.caves.size(), "cave").c_str(),
+                core::counted(o.campaign.seeds.size(), "seed").c_str());
   const std::atomic<bool>& interrupted = watch_for_interrupt();
   const tuning::Fly fly = [&](const Campaign& wanted,
                               const std::string& name) -> std::optional<campaign::CampaignResults> {
@@ -173,8 +173,8 @@ int tune(const Arguments& args) {
   tuning::TuneEvents events;
   events.tried = [&](const tuning::Candidate& tried, std::size_t of) {
     if (!args.quiet)
-      std::fprintf(stderr, "%3zu of %zu  %s %.4g  %s\n", ++n, of, o.metric.c_str(), tried.mean,
-                   parameters_text(tried.parameters).c_str());
+      print_error("%3zu of %zu  %s %.4g  %s\n", ++n, of, o.metric.c_str(), tried.mean,
+                  parameters_text(tried.parameters).c_str());
   };
   return finish(args, o, tuning::tune(o, fly, events));
 }

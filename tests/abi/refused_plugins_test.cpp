@@ -1,11 +1,13 @@
 // Plugins that must not be loaded, each with the text a user reads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/plugin_file.h"
 #include "tests/abi/room.h"
 
 namespace karst::test {
@@ -54,6 +56,24 @@ TEST(RefusedPlugin, CrashAtLoadCostsAChildProcessOnly) {
 
 TEST(RefusedPlugin, ExitAtLoadCostsAChildProcessOnly) {
   EXPECT_THAT(load_error("exit_at_load"), HasSubstr("ended the process when opened"));
+}
+
+TEST(RefusedPlugin, PipeIsNotWaitedFor) {
+  const auto pipe = std::filesystem::temp_directory_path() / "karst_pipe.so";
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(host::enter_plugin(pipe.string()), core::InputError);
+  for (const host::Isolation isolation : {host::Isolation::in_process, host::Isolation::process}) {
+    host::PolicyChoice c = choice_of("plain");
+    c.isolation = isolation;
+    try {
+      host::load_policy(c, {{pipe.string()}, {}});
+      ADD_FAILURE() << "it was opened";
+    } catch (const core::InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("not a regular file"));
+    }
+  }
+  std::filesystem::remove(pipe);
 }
 
 TEST(RefusedPlugin, TextFileIsNoSharedObject) {

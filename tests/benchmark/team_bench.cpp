@@ -41,12 +41,12 @@ void messages() {
   for (std::uint32_t i = 0; i < 7; ++i) facts.rays.push_back({{3, 120}, {3, 119 - i}, true, 250 * kSecond});
   const Bytes record = *write_record(facts);
   const Bytes frame =
-      *write_frame({.sender = 3, .records = {{3, 1, record}, {3, 2, record}, {3, 3, record}}});
+      *testing::write_frame({.sender = 3, .records = {{3, 1, record}, {3, 2, record}, {3, 3, record}}});
   constexpr int kTimes = 200000;
   std::size_t sum = 0;
   Refusal why{};
   const double read_ms = cpu_ms([&] {
-    for (int i = 0; i < kTimes; ++i) sum += read_frame(frame, why)->records.size();
+    for (int i = 0; i < kTimes; ++i) sum += testing::read_frame(frame, why)->records.size();
   });
   const double record_ms = cpu_ms([&] {
     for (int i = 0; i < kTimes; ++i) sum += std::get<TreeFacts>(*read_record(record, why)).rays.size();

@@ -20,11 +20,6 @@ TEST(Transcript, TellsOtherOutputFromWhatIsDocumented) {
 class Tutorial : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Tutorial, PrintsWhatItSays) {
-#if defined(__x86_64__)
-  if (!__builtin_cpu_supports("avx2"))
-    GTEST_SKIP()
-        << "skipped: rays are cast with AVX2 in the flights whose output is shown, and this machine has none";
-#endif
   const std::string document = GetParam();
   expect_as_documented(fs::path(KARST_SOURCE_DIR) / "docs" / document,
                        fresh_folder("author_" + fs::path(document).stem().string()));

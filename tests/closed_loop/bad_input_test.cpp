@@ -1,5 +1,8 @@
 // Every kind of bad input a user can give the command: a clear error, a non-zero exit, nothing lost.
+#include <sys/stat.h>
+
 #include "tests/closed_loop/command.h"
+#include "tests/closed_loop/drawn_cave.h"
 
 namespace karst {
 namespace {
@@ -63,6 +66,19 @@ TEST(BadInput, AMeshWithAHoleAtTheStart) {
   const fs::path dir = fresh_folder("bad_hole");
   const std::string mesh = written(dir / "open.stl", box_stl(4, 2));
   expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {"open.stl", "hole"});
+}
+
+TEST(BadInput, AFlightIsRefusedWhereCaveInfoRefuses) {
+  // As it was: it flew, and said afterwards that its coverage could not be known. The hole lies behind a
+  // corner, out of sight of the start.
+  const fs::path dir = fresh_folder("bad_hole_far");
+  const std::string cave = draw_cave(dir, {{{0, 0, 0}, {12, 4, 4}}, {{8, 0, 0}, {12, 12, 4}}}, {2, 2, 1.5});
+  std::string mesh = bytes_of(dir / "cave.obj");
+  const std::size_t face = mesh.rfind("\nf ");
+  written(dir / "cave.obj", mesh.substr(0, face + 1));
+  expect_refused(run_karst("cave info " + cave), {"free space leads outside the mesh"});
+  expect_refused(fly(dir, "--cave " + cave), {"free space leads outside the mesh"});
+  EXPECT_FALSE(fs::exists(dir / "run"));
 }
 
 TEST(BadInput, ACaveCacheThatIsNoFolder) {
@@ -218,7 +234,8 @@ TEST(BadInput, AFullStandardOutput) {
 
 TEST(BadInput, ASettingDoesNotSwallowTheMissionFile) {
   const fs::path dir = fresh_folder("bad_swallow");
-  expect_refused(run_karst("fly --set seed=3 " + (dir / "none.info").string()), {"none.info", "cannot open"});
+  expect_refused(run_karst("fly --set seed=3 " + (dir / "none.info").string()),
+                 {"none.info", "cannot be opened"});
 }
 
 TEST(BadInput, ATableOfRunsNamesWhatIsNone) {
@@ -260,6 +277,70 @@ TEST(BadInput, UsageErrorsTeach) {
   EXPECT_NE(nothing.code, 0);
   EXPECT_TRUE(nothing.says("--cave")) << nothing.text;
   EXPECT_TRUE(run_karst("fly --help").says("karst fly examples/missions/demo.info"));
+}
+
+/// What `karst ARGUMENTS` says, which would wait for ever for a FIFO's other end: here for twenty seconds.
+Output within_limits(const std::string& arguments) {
+  return run_command("ulimit -v 8000000; timeout 20 " + std::string(KARST_BINARY_DIR) + "/bin/karst " +
+                     arguments);
+}
+
+// They blocked, or filled the memory.
+TEST(BadInput, AFifoOrADeviceIsNoInput) {
+  const fs::path dir = fresh_folder("bad_fifo");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  fs::create_directories(dir / "run");
+  for (const char* name :
+       {"f.ply", "f.info", "f.so", "f.bt", "f.tum", "f.sqlite", "f.pcd", "run/metrics.json"})
+    ASSERT_EQ(mkfifo((dir / name).c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", dir / "zero.info");
+  fs::create_symlink("/dev/zero", dir / "zero.ply");
+  const auto at = [&](const char* name) { return (dir / name).string(); };
+  const std::string start = " --start '0 0 0'";
+  for (const char* kind : {"f", "zero"}) {
+    const std::string named = at(kind), why = std::string(kind) == "f" ? "is a FIFO" : "is a device";
+    for (const std::string& arguments :
+         {"fly --out " + at("out") + " --cave " + named + ".ply" + start,
+          "fly --out " + at("out") + " " + named + ".info",
+          "fly --out " + at("out") + " --cave " + mesh + start + " --preset " + named + ".info",
+          "cave info " + named + ".ply", "cave info " + named + ".info", "compare " + named + ".info"})
+      expect_refused(within_limits(arguments), {why.c_str(), "not a regular file"});
+  }
+  expect_refused(within_limits("policy check " + at("f.so")), {"is a FIFO"});
+  expect_refused(within_limits("map merge " + at("f.bt") + " " + at("f.bt") + " --out " + at("m")),
+                 {"is a FIFO"});
+  EXPECT_NE(within_limits("table " + at("run")).code, 124) << "it waited for the FIFO";
+}
+
+// They erased the screen, set the title and hid what was said before.
+TEST(BadInput, WhatOthersWroteIsNotObeyedByATerminal) {
+  const fs::path dir = fresh_folder("bad_escapes");
+  fs::create_directories(dir / "run");
+  written(dir / "run" / "metrics.json", R"({"cave": "a\u001b[2Jb\u009b2Jc\u202ed", "outcome": "landed"})");
+  const Output table = run_karst("table " + (dir / "run").string());
+  EXPECT_TRUE(table.says("a?[2Jb?2Jc?d")) << table.text;
+  const std::string name = "evil\033]0;owned\007.info";
+  written(dir / name, "mission { \033[2J 1 }\n");
+  const Output refused = run_karst("fly '" + (dir / name).string() + "'");
+  expect_refused(refused, {"evil?]0;owned?.info"});
+  for (const Output* out : {&table, &refused})
+    for (const char* obeyed : {"\033", "\007", "\xc2\x9b", "\xe2\x80\xae"})
+      EXPECT_FALSE(out->says(obeyed)) << out->text;
+}
+
+TEST(BadInput, AMissionOfAGigabyteOrAMillionKeysIsRefusedInShortWords) {
+  const fs::path dir = fresh_folder("bad_large");
+  fs::resize_file(written(dir / "gigabyte.info", ""), std::uintmax_t{1} << 30);
+  expect_refused(within_limits("fly " + (dir / "gigabyte.info").string()),
+                 {"gigabyte.info: is 1073741824 bytes"});
+  std::string keys;
+  for (int i = 0; i < 1'000'000; ++i) keys += "k 1\n";
+  expect_refused(within_limits("fly " + written(dir / "keys.info", keys)),
+                 {"keys.info: line 200001: more than"});
+  const Output longest =
+      run_karst("fly " + written(dir / "value.info", "seed " + std::string(60'000, '7') + "\n"));
+  expect_refused(longest, {"value.info: seed"});
+  EXPECT_LT(longest.text.size(), 10'000u);
 }
 
 TEST(BadInput, AFirstHoverAboveTheCeilingIsRefusedAndLeavesNoRunDirectory) {

@@ -73,8 +73,55 @@ INSTANTIATE_TEST_SUITE_P(Drawer, DrawerFlight,
                                            "memory_flood", "thread_bomb", "forking", "talkative",
                                            "flooding_stdout", "locale_changer", "reaching_out", "babbling",
                                            "writes_request", "stack_overflow", "stops_itself", "scribbling",
-                                           "crash_in_event"),
+                                           "crash_in_event", "outliving", "other_architecture"),
                          [](const auto& i) { return std::string(i.param); });
+
+/// Long enough for the policy to be asked tens of times.
+std::filesystem::path fly_hostile(const std::string& name) {
+  return fly(name,
+             "--policy plain --plugin " + std::string(KARST_BINARY_DIR) + "/tests/plugins/" + name + ".so" +
+                 kInChild,
+             60);
+}
+
+void expect_landed_after_exploring(const std::filesystem::path& run) {
+  const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "landed") << m["reason"];
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_GT(m["path_length_m"].get<double>(), 15);
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+/// The first such goal that was accepted had the control thread sample a trajectory until memory was gone.
+TEST(HostileFlight, GoalsToBeFlownToInAYearAreRefusedAndTheFallbackFlies) {
+  const auto run = fly_hostile("crawling");
+  expect_landed_after_exploring(run);
+  const std::string events = bytes_of(run / "events.jsonl");
+  EXPECT_GT(count(events, "its speed limit of 0.1 m/s is below motion.min_speed"), 0u);
+  EXPECT_GT(count(events, "its speed limit is below 0.05 m/s"), 0u);
+  EXPECT_GT(count(events, R"("policy":"fallback")"), 0u);
+}
+
+/// One such question held the map lane for minutes, and the vehicle hovered without a map.
+TEST(HostileFlight, QuestionsForPathsFromAnywhereToThousandsOfPlacesHoldNobodyUp) {
+  expect_landed_after_exploring(fly_hostile("asking_far"));
+}
+
+/// 325 MB in 29 decisions.
+TEST(HostileFlight, DrawingsAndLogsWithoutEndFillNoDiskAndAreSaidToBeLeftOutOnce) {
+  const auto run = fly_hostile("drawing_much");
+  expect_landed_after_exploring(run);
+  const std::string events = bytes_of(run / "events.jsonl");
+  EXPECT_LT(events.size(), 12'000'000u);
+  EXPECT_EQ(count(events, "has drawn all that a flight may"), 1u);
+  EXPECT_EQ(count(events, "has logged all that a flight may"), 1u);
+}
 
 }  // namespace
 }  // namespace karst

@@ -1,6 +1,10 @@
 // Whole missions in generated caves, with asserted outcomes.
+#include <unistd.h>
+
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -133,6 +137,19 @@ TEST(TakeOff, ARoofThatCameDownEndsTheClimbBelowItAndHomeIsThere) {
   EXPECT_GT(metrics_of(folder / "run")["path_length_m"].get<double>(), 20);
 }
 
+/// As it was, the signal that comes with a file beyond its limit ended the process, and the vehicle fell.
+TEST(FileSizeLimit, SendsTheVehicleHomeAndDoesNotEndTheMission) {
+  const auto run = fresh_folder("flight_file_size") / "run";
+  const Output out = run_command("prlimit --fsize=60000 " KARST_BINARY_DIR "/bin/karst fly --cave " +
+                                 generated_cave("small", 7) + " --set simulator.vehicle=camera_uav --quiet" +
+                                 " --no-report --out " + run.string());
+  EXPECT_EQ(out.code, 2) << "landed, but the record is incomplete: " << out.text;
+  EXPECT_TRUE(out.says("record is incomplete")) << out.text;
+  const std::string truth = bytes_of(run / "truth_events.jsonl");
+  EXPECT_NE(truth.find("landed"), std::string::npos) << truth;
+  EXPECT_EQ(truth.find("contact"), std::string::npos) << truth;
+}
+
 /// A rock as large as the passage falls five metres ahead, where the same flight came through at full speed.
 class Rockfall : public ::testing::TestWithParam<int> {};
 
@@ -239,7 +256,35 @@ TEST(Determinism, AnotherSeedIsAnotherFlight) {
   EXPECT_FALSE(bytes_of(folder / "one" / "trajectory.tum") == bytes_of(folder / "two" / "trajectory.tum"));
 }
 
-TEST(Interrupt, AMissionCutShortLeavesAWholeRunDirectory) {
+TEST(LostPose, AVehicleThatStandsDoesNotTakeOffAgain) {
+  // As it was: who lost the pose while taking off and touched down before that was over was not seen to
+  // stand. The motors went on, on an estimate that ran away, and carried it into the rock.
+  const auto folder = fresh_folder("flight_lost_pose");
+  const std::string cave = generated_cave("small", 7);
+  std::string info = bytes_of(cave);
+  info.insert(info.find("mesh \"") + 6, std::filesystem::path(cave).parent_path().string() + "/");
+  for (const char* after : {"1.2", "1.8", "2.4"}) {
+    SCOPED_TRACE(after);
+    std::ofstream(folder / "cave.info")
+        << info << "\nfault { sensor lidar kind lost after " << after << " for 600 }\n";
+    const auto run = folder / after;
+    const Output out =
+        run_karst("fly --cave " + (folder / "cave.info").string() +
+                  " --set mission.max_flight_time=60s --quiet --no-report --out " + run.string());
+    EXPECT_EQ(metrics_of(run)["contacts"], 0) << out.text;
+    const std::string truth = bytes_of(run / "truth_events.jsonl");
+    const auto count = [&truth](const std::string& event) {
+      int n = 0;
+      for (std::size_t at = 0; (at = truth.find("\"" + event + "\"", at)) != std::string::npos; ++at) ++n;
+      return n;
+    };
+    EXPECT_EQ(count("take-off"), 1);
+    EXPECT_EQ(count("landed"), 1);
+    EXPECT_LT(metrics_of(run)["flight_time_s"].get<double>(), 30);
+  }
+}
+
+TEST(Interrupt, AMissionCutShortLandsWhereItIsAndLeavesAWholeRunDirectory) {
   const auto run = fresh_folder("flight_interrupted") / "run";
   const std::string karst = std::string(KARST_BINARY_DIR) + "/bin/karst";
   const std::string line = "timeout -s INT 3 " + karst + " fly --cave " + generated_cave("small", 7) +
@@ -249,8 +294,36 @@ TEST(Interrupt, AMissionCutShortLeavesAWholeRunDirectory) {
   const nlohmann::json m = metrics_of(run);
   ASSERT_TRUE(m.is_object()) << "no metrics after an interrupt";
   EXPECT_EQ(m["outcome"], "aborted");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_EQ(m["reason"].get<std::string>().find("stopped by the operator: on the ground "), 0u)
+      << m["reason"];
   EXPECT_GT(std::filesystem::file_size(run / "map.bt"), 0u);
   EXPECT_GT(std::filesystem::file_size(run / "report.html"), 0u);
+}
+
+TEST(Interrupt, ASecondSignalEndsTheProcessAtOnce) {
+  const auto run = fresh_folder("flight_interrupted_twice") / "run";
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string karst = std::string(KARST_BINARY_DIR) + "/bin/karst", cave = generated_cave("small", 7);
+    // In real time the landing takes seconds: the second signal comes long before its end.
+    execl(karst.c_str(), "karst", "fly", "--real-time", "--cave", cave.c_str(), "--quiet", "--out",
+          run.c_str(), nullptr);
+    _exit(127);
+  }
+  const auto flies = [&] { return bytes_of(run / "events.jsonl").find("explore") != std::string::npos; };
+  while (!flies() && waitpid(child, nullptr, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  kill(child, SIGTERM);
+  const auto lands = [&] { return bytes_of(run / "events.jsonl").find("stopped by") != std::string::npos; };
+  while (!lands() && waitpid(child, nullptr, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  kill(child, SIGTERM);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+  EXPECT_EQ(bytes_of(run / "events.jsonl").find("\"kind\":\"outcome\""), std::string::npos);
 }
 
 }  // namespace

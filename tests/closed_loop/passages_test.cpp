@@ -123,6 +123,29 @@ TEST_P(FallingRock, ThatClosesThePassageAheadIsBrakedFor) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, FallingRock, ::testing::Range(1, 1 + seeds()));
 
+/// A rock fills the only passage behind the vehicle. As it was, it hovered for a minute before it came down;
+/// so it did in its own dust, which does not settle below a hovering vehicle.
+TEST(ShutIn, AVehicleWithoutAWayHomeLandsWhereItIsWithinFifteenSeconds) {
+  const auto folder = fresh_folder("shut_in");
+  const std::string cave = draw_cave(
+      folder, {{{-3, -3, 0}, {3, 3, 3}}, {{3, -1.6, 0}, {24, 1.6, 3}}, {{24, -4, 0}, {30, 4, 3}}}, {0, 0, 1});
+  std::ofstream(cave, std::ios::app) << "boulder { position \"8 0 1.5\" radius \"2.35 m\" after \"20 s\" }\n";
+  const Output out =
+      run_karst("fly --cave " + cave + " --set mission.max_flight_time=120s --quiet --no-report --out " +
+                (folder / "run").string());
+  EXPECT_EQ(out.code, 2) << out.text;
+  const std::string truth = bytes_of(folder / "run" / "truth_events.jsonl");
+  const auto fallen = nlohmann::json::parse(
+      truth.substr(truth.rfind('{', truth.find("rockfall")))
+          .substr(0, truth.find('\n', truth.find("rockfall")) - truth.rfind('{', truth.find("rockfall"))));
+  ASSERT_GT(fallen["x"].get<double>(), 11) << "it was to be behind the rock by then";
+  const auto m = nlohmann::json::parse(bytes_of(folder / "run" / "metrics.json"), nullptr, false);
+  ASSERT_TRUE(m.is_object());
+  EXPECT_EQ(m["outcome"], "stuck");
+  EXPECT_EQ(m["contacts"], 0);
+  EXPECT_LT(m["longest_stall_s"].get<double>(), 15);
+}
+
 /// Walls as smooth as a pipe's, and neither end in sight around two bends: no scan tells how far along it is.
 TEST(SmoothTube, IsFlownWithoutTouchingAnything) {
   const auto folder = fresh_folder("smooth_tube");

@@ -221,6 +221,25 @@ TEST(Team, RetreatsBeforeOneThatComesHomeWhereNoneGetsBy) {
   EXPECT_NE(std::find_if(out, x.end(), [](double m) { return m > 6; }), x.end());
 }
 
+// As it was: robot 3 made room for one that came home, and flew into robot 4 behind it.
+TEST(Team, OfFourInAPassageForOneNobodyFliesIntoAnother) {
+  const auto folder = fresh_folder("team_four");
+  const std::string cave =
+      draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -0.9, 0}, {60, 0.9, 1.9}}}, {0, 0, 1});
+  const Flown f = fly(cave, folder / "run",
+                      team_of(4, "return_to_base",
+                              "--set seed=3 --set team.stagger=12s --set team.linger=10s"
+                              " --set radio.range=30m --set homing.landing.link.range=30m"));
+  ASSERT_EQ(f.robots.size(), 4u) << f.output.text;
+  EXPECT_EQ(f.metrics["contacts"], 0);
+  EXPECT_EQ(f.count(f.truth, "contact"), 0);
+  for (const json& r : f.robots) {
+    EXPECT_TRUE(r["outcome"] == "landed" || r["outcome"] == "stuck")
+        << r;  // stuck: down, but not where meant
+    EXPECT_GT(r["battery_left"], 0.0) << r;
+  }
+}
+
 TEST(Team, ByThePapersTreeLandsConnected) {
   const auto folder = fresh_folder("team_tree");
   expect_all_well(fly(passage(folder), folder / "run", team_of(2, "relay_tree")), 2);

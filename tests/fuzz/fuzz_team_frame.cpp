@@ -1,9 +1,10 @@
-// Any bytes from the radio: they are refused, or what was read can be written and read again. A frame's
-// checksum is put right first, or the fuzzer would never get past it.
+// Any bytes from the radio: they are refused, or what was read can be written and read again. A frame's tag
+// is put right first, or the fuzzer would never get past it: so it speaks as one who holds the mission's key.
 #include <cstdlib>
 
 #include "core_stack/homing/gossip.h"
 #include "core_stack/homing/homing_tree.h"
+#include "tests/unit/homing/test_radio.h"
 
 using namespace karst::core;
 
@@ -22,14 +23,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (tree.nodes().size() > 50) std::abort();
     }
   }
-  if (bytes.size() > 4) {
-    bytes.resize(bytes.size() - 4);
-    WireWriter(bytes).number(crc32(bytes), 4);
+  const MissionKey key = testing::test_key();
+  if (bytes.size() > kTagBytes) {
+    bytes.resize(bytes.size() - kTagBytes);
+    const Tag tag = tag_of(bytes, key);
+    bytes.insert(bytes.end(), tag.begin(), tag.end());
   }
-  if (const auto frame = read_frame(bytes, why))
-    if (write_frame(*frame) != bytes) std::abort();
-  Gossip robot(1, {}, 1);
-  robot.receive(bytes, kSecond);
-  robot.send(2 * kSecond);
+  const auto frame = read_frame(bytes, key, why);
+  if (frame && write_frame(*frame, key) != bytes) std::abort();
+  Gossip robot(testing::radio(1), {}, 1);
+  robot.receive(bytes, frame ? frame->sent : kSecond);
+  robot.send((frame ? frame->sent : kSecond) + kSecond);
   return 0;
 }

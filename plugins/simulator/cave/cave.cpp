@@ -55,7 +55,7 @@ CaveDescription read_cave_file(const std::string& path, const std::string& start
 
 CaveDescription describe_cave(const std::string& path, const std::string& start) {
   if (path.empty()) throw InputError("cave", "", "no cave given: name a cave's .info file or a mesh");
-  if (!std::filesystem::is_regular_file(path))
+  if (!std::filesystem::exists(path))
     throw InputError(path, "", "no such cave file; `karst cave generate` makes one");
   if (std::filesystem::path(path).extension() == ".info") return read_cave_file(path, start);
   if (start.empty())

@@ -10,6 +10,8 @@
 #include <unordered_map>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/output_file.h"
+#include "plugins/simulator/cave/import_child.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
 
 namespace karst::cave {
@@ -121,14 +123,7 @@ std::string ply_bytes(const TriangleMesh& mesh) {
   return bytes;
 }
 
-}  // namespace
-
-TriangleMesh load_mesh(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".dae")
-    throw InputError(path, "", "a mesh must be a .stl, .ply, .obj or .dae file");
-  check_declared_size(path);
-
+TriangleMesh import_mesh(const std::string& path, const std::string& extension) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr || scene->mRootNode == nullptr)
@@ -144,12 +139,22 @@ TriangleMesh load_mesh(const std::string& path) {
   return mesh;
 }
 
+}  // namespace
+
+TriangleMesh load_mesh(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".dae")
+    throw InputError(path, "", "a mesh must be a .stl, .ply, .obj or .dae file");
+  check_declared_size(path);
+  return import_in_child(path, [&] { return import_mesh(path, extension); });
+}
+
 void write_mesh(const std::string& path, const TriangleMesh& mesh) {
   const std::string extension = lower_extension(path);
   if (extension != ".stl" && extension != ".ply")
     throw InputError(path, "", "meshes are written as .ply or .stl");
   const std::string bytes = extension == ".stl" ? stl_bytes(mesh) : ply_bytes(mesh);
-  std::ofstream out(path, std::ios::binary);
+  std::ofstream out = core::open_output(path);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.flush();
   if (!out) throw InputError(path, "", "cannot be written");

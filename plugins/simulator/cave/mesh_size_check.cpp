@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
 
 namespace karst::cave {
@@ -106,13 +107,15 @@ void check_binary_ply(const std::string& path, const PlyHeader& header, const st
   const bool big_endian = header.format == "binary_big_endian";
   std::uintmax_t at = 0;
   const auto take = [&](const PlyElement& e, std::uintmax_t index, std::uintmax_t bytes) {
-    at += bytes;
-    if (at > body.size())
+    if (bytes > body.size() - at)
       throw InputError(path, "byte " + std::to_string(header_size + body.size()),
                        "the file is truncated in " + e.name + " " + std::to_string(index) + " of " +
                            std::to_string(e.count));
+    at += bytes;
   };
-  for (const PlyElement& e : header.elements)
+  for (const PlyElement& e : header.elements) {
+    if (e.properties.empty() && e.count > 0)  // would take no bytes, however many there are
+      throw InputError(path, "element " + e.name, "has no properties");
     for (std::uintmax_t i = 0; i < e.count; ++i)
       for (const PlyProperty& p : e.properties) {
         if (p.count_size == 0) {
@@ -121,8 +124,11 @@ void check_binary_ply(const std::string& path, const PlyHeader& header, const st
         }
         const std::uintmax_t count_at = at;
         take(e, i, p.count_size);
-        take(e, i, p.size * list_length(body, static_cast<std::size_t>(count_at), p.count_size, big_endian));
+        const std::uintmax_t items =
+            list_length(body, static_cast<std::size_t>(count_at), p.count_size, big_endian);
+        take(e, i, p.size * std::min<std::uintmax_t>(items, body.size() + 1));
       }
+  }
 }
 
 void check_ply(const std::string& path, std::ifstream& in) {
@@ -144,11 +150,8 @@ void check_ply(const std::string& path, std::ifstream& in) {
 }  // namespace
 
 void check_declared_size(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  std::ifstream in(path, std::ios::binary);
-  if (error || !in)
-    throw InputError(path, "", "cannot be read: " + (error ? error.message() : "no permission"));
+  std::ifstream in = core::open_input(path, core::kMaxMeshFileBytes);
+  const std::uintmax_t size = std::filesystem::file_size(path);
   if (size == 0) throw InputError(path, "", "the file is empty");
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".stl" || extension == ".STL") check_stl(path, in, size);

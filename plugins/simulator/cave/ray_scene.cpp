@@ -3,38 +3,21 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
+#include <optional>
 
 #include "plugins/simulator/cave/closest_point.h"
+#include "plugins/simulator/cave/ray_triangle.h"
 
 namespace karst::cave {
 
 using core::Vec3;
 using core::Vec3f;
 
-struct RayScene::Handles {
-  RTCDevice device = rtcNewDevice(device_config());
-  RTCScene scene = rtcNewScene(device);
-  ~Handles() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-};
-
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-RTCRayHit to_embree(const Ray& ray, float near, float far) {
-  RTCRayHit r{};
-  r.ray.org_x = ray.origin.x(), r.ray.org_y = ray.origin.y(), r.ray.org_z = ray.origin.z();
-  r.ray.dir_x = ray.direction.x(), r.ray.dir_y = ray.direction.y(), r.ray.dir_z = ray.direction.z();
-  r.ray.tnear = near, r.ray.tfar = far;
-  r.ray.mask = ~0u;
-  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  return r;
-}
 
 Hit to_hit(float range, std::uint32_t triangle, Vec3f normal, const Vec3f& direction) {
   normal.normalize();
@@ -53,48 +36,130 @@ void meet(const Sphere& s, const Ray& ray, float max_range_m, Hit& hit) {
   hit = to_hit(range, kBoulder, (o + t * d).cast<float>(), ray.direction);
 }
 
+struct Corners {
+  Vec3 a, b, c;
+  Vec3 normal() const { return (b - a).cross(c - a).normalized(); }
+};
+
+Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  const auto& v = mesh.vertices;
+  return {v[t[0]].cast<double>(), v[t[1]].cast<double>(), v[t[2]].cast<double>()};
+}
+
+// Embree decides which triangles are asked, never what the answer is. So that no processor's rounding leaves
+// out a triangle that another's asks, boxes, ranges and radii given to it have room to spare: far more than
+// its boxes and slabs, in floats, can be wrong by.
+
+/// Metres that Embree's arithmetic may be wrong by, at coordinates and distances up to `extent_m`.
+float slack_m(float extent_m) { return 1e-3f + 4e-6f * extent_m; }
+
+void box_of_triangle(const RTCBoundsFunctionArguments* args) {
+  const auto& mesh = *static_cast<const TriangleMesh*>(args->geometryUserPtr);
+  const auto& t = mesh.triangles[args->primID];
+  const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const Vec3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+  const float slack = slack_m(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff());
+  RTCBounds& box = *args->bounds_o;
+  box.lower_x = low.x() - slack, box.lower_y = low.y() - slack, box.lower_z = low.z() - slack;
+  box.upper_x = high.x() + slack, box.upper_y = high.y() + slack, box.upper_z = high.z() + slack;
+}
+
+constexpr unsigned kPacket = 8;
+
+/// What a packet of rays has met so far; Embree hands its first member back to meet_triangle().
+struct PacketSearch {
+  RTCIntersectContext context;
+  std::array<double, kPacket> range_m;
+  std::vector<double>* crossings;  // instead, if not null: every range of a packet of one
+};
+
+void meet_triangle(const RTCIntersectFunctionNArguments* args) {
+  auto& search = *reinterpret_cast<PacketSearch*>(args->context);
+  const Corners t = corners(*static_cast<const TriangleMesh*>(args->geometryUserPtr), args->primID);
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned k = 0; k < args->N; ++k) {
+    if (!args->valid[k]) continue;
+    const Vec3 o(RTCRayN_org_x(rays, args->N, k), RTCRayN_org_y(rays, args->N, k),
+                 RTCRayN_org_z(rays, args->N, k));
+    const Vec3 d(RTCRayN_dir_x(rays, args->N, k), RTCRayN_dir_y(rays, args->N, k),
+                 RTCRayN_dir_z(rays, args->N, k));
+    const std::optional<double> range = ray_triangle_range(o, d, t.a, t.b, t.c);
+    if (!range) continue;
+    if (search.crossings) {
+      search.crossings->push_back(*range);
+      continue;
+    }
+    double& best = search.range_m[RTCRayN_id(rays, args->N, k)];
+    unsigned& triangle = RTCHitN_primID(hits, args->N, k);
+    if (*range > best || (*range == best && args->primID > triangle)) continue;
+    best = *range;
+    triangle = args->primID;
+    RTCHitN_geomID(hits, args->N, k) = args->geomID;
+    const auto reach = static_cast<float>(best);
+    RTCRayN_tfar(rays, args->N, k) = std::min(RTCRayN_tfar(rays, args->N, k), reach + slack_m(reach));
+  }
+}
+
 struct NearestSearch {
   const TriangleMesh* mesh;
   Vec3 p;
   Nearest best;
+  std::uint32_t triangle;
 };
+
+/// The query's place is rounded to floats: up to that much nearer or farther than `p`.
+float query_radius(const Vec3& p, double distance_m) {
+  const auto distance = static_cast<float>(distance_m);
+  return distance + slack_m(distance + static_cast<float>(p.cwiseAbs().maxCoeff()));
+}
 
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
   auto& search = *static_cast<NearestSearch*>(args->userPtr);
-  const auto& t = search.mesh->triangles[args->primID];
-  const auto& v = search.mesh->vertices;
-  const Vec3 q =
-      closest_on_triangle(search.p, v[t[0]].cast<double>(), v[t[1]].cast<double>(), v[t[2]].cast<double>());
+  const Corners t = corners(*search.mesh, args->primID);
+  const Vec3 q = closest_on_triangle(search.p, t.a, t.b, t.c);
   const double d = (q - search.p).norm();
-  if (d >= search.best.distance_m) return false;
+  if (d > search.best.distance_m) return false;
+  if (d == search.best.distance_m && (!search.best.found || args->primID > search.triangle)) return false;
   search.best = {d, q, true};
-  args->query->radius = std::nextafter(static_cast<float>(d), kInfinity);
+  search.triangle = args->primID;
+  args->query->radius = std::min(args->query->radius, query_radius(search.p, d));
   return true;
 }
 
 }  // namespace
 
-const char* RayScene::device_config() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? "threads=1,isa=avx2"
-                                                                         : "threads=1,isa=sse4.2";
-}
+/// Holds the mesh as well: Embree asks for its triangles as long as the scene lives.
+struct RayScene::Handles {
+  explicit Handles(std::shared_ptr<const TriangleMesh> m) : mesh(std::move(m)) {
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(mesh->triangles.size()));
+    rtcSetGeometryUserData(g, const_cast<TriangleMesh*>(mesh.get()));
+    rtcSetGeometryBoundsFunction(
+        g, [](const RTCBoundsFunctionArguments* args) { box_of_triangle(args); }, nullptr);
+    rtcSetGeometryIntersectFunction(g, meet_triangle);
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(scene, g);
+    rtcReleaseGeometry(g);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(scene);
+  }
+  ~Handles() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  Handles(const Handles&) = delete;
+  Handles& operator=(const Handles&) = delete;
+
+  std::shared_ptr<const TriangleMesh> mesh;
+  RTCDevice device = rtcNewDevice("threads=1");
+  RTCScene scene = rtcNewScene(device);
+};
 
 RayScene::RayScene(TriangleMesh mesh)
     : mesh_(std::make_shared<const TriangleMesh>(std::move(mesh))),
-      handles_(std::make_shared<const Handles>()) {
-  RTCGeometry g = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
-                                           mesh_->vertices.size());
-  std::memcpy(vertices, mesh_->vertices.data(), mesh_->vertices.size() * sizeof(Vec3f));
-  void* indices =
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh_->triangles.size());
-  std::memcpy(indices, mesh_->triangles.data(), mesh_->triangles.size() * 12);
-  rtcCommitGeometry(g);
-  rtcAttachGeometry(handles_->scene, g);
-  rtcReleaseGeometry(g);
-  rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-  rtcCommitScene(handles_->scene);
-}
+      handles_(std::make_shared<const Handles>(mesh_)) {}
 
 RayScene RayScene::with_boulders(std::vector<Sphere> boulders) const {
   RayScene scene = *this;
@@ -103,37 +168,39 @@ RayScene RayScene::with_boulders(std::vector<Sphere> boulders) const {
 }
 
 void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<Hit> out) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  for (std::size_t first = 0; first < rays.size(); first += 8) {
-    const std::size_t n = std::min<std::size_t>(8, rays.size() - first);
-    alignas(32) int valid[8];
+  PacketSearch search;
+  rtcInitIntersectContext(&search.context);
+  search.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  search.crossings = nullptr;
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::size_t n = std::min<std::size_t>(kPacket, rays.size() - first);
+    alignas(32) int valid[kPacket];
     alignas(32) RTCRayHit8 p;
-    for (std::size_t k = 0; k < 8; ++k) {
-      const Ray& ray = rays[first + std::min(k, n - 1)];
+    for (unsigned k = 0; k < kPacket; ++k) {
+      const Ray& ray = rays[first + std::min<std::size_t>(k, n - 1)];
       valid[k] = k < n ? -1 : 0;
       p.ray.org_x[k] = ray.origin.x(), p.ray.org_y[k] = ray.origin.y(), p.ray.org_z[k] = ray.origin.z();
       p.ray.dir_x[k] = ray.direction.x(), p.ray.dir_y[k] = ray.direction.y(),
       p.ray.dir_z[k] = ray.direction.z();
-      p.ray.tnear[k] = 0, p.ray.tfar[k] = max_range_m, p.ray.time[k] = 0;
-      p.ray.mask[k] = ~0u, p.ray.id[k] = 0, p.ray.flags[k] = 0;
-      p.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      p.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      p.ray.tnear[k] = 0, p.ray.tfar[k] = max_range_m + slack_m(max_range_m), p.ray.time[k] = 0;
+      p.ray.mask[k] = ~0u, p.ray.id[k] = k, p.ray.flags[k] = 0;
+      p.hit.primID[k] = p.hit.geomID[k] = p.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect8(valid, handles_->scene, &context, &p);
-    for (std::size_t k = 0; k < n; ++k) {
-      out[first + k] = p.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
-                           ? Hit{}
-                           : to_hit(p.ray.tfar[k], p.hit.primID[k],
-                                    {p.hit.Ng_x[k], p.hit.Ng_y[k], p.hit.Ng_z[k]}, rays[first + k].direction);
-      for (const Sphere& s : boulders_) meet(s, rays[first + k], max_range_m, out[first + k]);
+    search.range_m.fill(static_cast<double>(max_range_m));
+    rtcIntersect8(valid, handles_->scene, &search.context, &p);
+    for (unsigned k = 0; k < n; ++k) {
+      const Ray& ray = rays[first + k];
+      Hit& hit = out[first + k];
+      hit = p.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
+                ? Hit{}
+                : to_hit(static_cast<float>(search.range_m[k]), p.hit.primID[k],
+                         corners(*mesh_, p.hit.primID[k]).normal().cast<float>(), ray.direction);
+      for (const Sphere& s : boulders_) meet(s, ray, max_range_m, hit);
     }
   }
 }
 
 Hit RayScene::cast(const Ray& ray, float max_range_m) const {
-  // A packet of one: rtcIntersect1 uses another kernel, whose ranges differ in the last bits.
   Hit hit;
   cast({&ray, 1}, max_range_m, {&hit, 1});
   return hit;
@@ -145,24 +212,33 @@ double RayScene::ray_cast(const Vec3& from, const Vec3& direction, double max_ra
 }
 
 int RayScene::crossings(const Ray& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  float near = 0;
-  for (int n = 0;; ++n) {
-    RTCRayHit r = to_embree(ray, near, kInfinity);
-    rtcIntersect1(handles_->scene, &context, &r);
-    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return n;
-    near = std::max(r.ray.tfar + 1e-4f, std::nextafter(r.ray.tfar, kInfinity));
-  }
+  constexpr double kOneSurface_m = 1e-4;
+  std::vector<double> ranges;
+  PacketSearch search;
+  rtcInitIntersectContext(&search.context);
+  search.crossings = &ranges;
+  RTCRayHit r{};
+  r.ray.org_x = ray.origin.x(), r.ray.org_y = ray.origin.y(), r.ray.org_z = ray.origin.z();
+  r.ray.dir_x = ray.direction.x(), r.ray.dir_y = ray.direction.y(), r.ray.dir_z = ray.direction.z();
+  r.ray.tfar = kInfinity;
+  r.ray.mask = ~0u;
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(handles_->scene, &search.context, &r);
+  std::sort(ranges.begin(), ranges.end());
+  int n = 0;
+  double counted = -1;
+  for (const double range : ranges)
+    if (counted < 0 || range > counted + kOneSurface_m) ++n, counted = range;
+  return n;
 }
 
 Nearest RayScene::nearest(const Vec3& p, double within_m) const {
-  NearestSearch search{mesh_.get(), p, {within_m, p, false}};
+  NearestSearch search{mesh_.get(), p, {within_m, p, false}, 0};
   RTCPointQuery query;
   query.x = static_cast<float>(p.x()), query.y = static_cast<float>(p.y()),
   query.z = static_cast<float>(p.z());
   query.time = 0;
-  query.radius = std::nextafter(static_cast<float>(within_m), kInfinity);
+  query.radius = query_radius(p, within_m);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(handles_->scene, &query, &context, visit_triangle, &search);

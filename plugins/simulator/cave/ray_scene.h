@@ -1,4 +1,8 @@
-// Ray casts and closest points on a triangle mesh (Embree 3), and on boulders that come and go.
+// Ray casts and closest points on a triangle mesh, and on boulders that come and go.
+//
+// Embree 3 finds the triangles that a ray may meet; ranges are computed here. Embree's own come from
+// approximate reciprocals (rcpps), which differ between makers of processors, and from fused multiply-adds
+// where there are any.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -37,14 +41,9 @@ struct Nearest {
 };
 
 /// A value: copies share the mesh. All queries are const and may run on several threads at once. Results
-/// depend on the rock and the query only.
+/// depend on the rock and the query only: they have the same bits on every processor and in any company.
 class RayScene {
  public:
-  /// Embree's configuration. Left alone it takes the machine's widest vectors, and ranges then differ in
-  /// their last bits from one machine to the next. Fixed to AVX2, which is twice as fast as SSE 4.2 here;
-  /// only a processor without it gets SSE 4.2.
-  static const char* device_config();
-
   explicit RayScene(TriangleMesh mesh);
   /// The same mesh with these boulders and no others.
   RayScene with_boulders(std::vector<Sphere> boulders) const;
@@ -52,9 +51,8 @@ class RayScene {
   const TriangleMesh& mesh() const { return *mesh_; }
   const std::vector<Sphere>& boulders() const { return boulders_; }
 
-  /// `out[i]` is the first hit of `rays[i]`. Neighbouring rays should point to neighbouring places: they are
-  /// cast in packets of eight. A ray's hit has the same bits in any company, but for one: where it meets the
-  /// edge of two triangles either may be named, and their ranges may differ in the last bit.
+  /// `out[i]` is the first hit of `rays[i]`; of triangles met at the same range, the first of the mesh.
+  /// Neighbouring rays should point to neighbouring places: they are cast in packets of eight.
   void cast(std::span<const Ray> rays, float max_range_m, std::span<Hit> out) const;
   Hit cast(const Ray& ray, float max_range_m) const;
 

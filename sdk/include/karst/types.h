@@ -84,7 +84,7 @@ struct Goal {
   Vec3 position;
   double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: any
   double tolerance_m = 0.5;
-  double max_speed_mps = 0;       // 0: the mission's
+  double max_speed_mps = 0;       // 0: the mission's; not less than motion.min_speed
   std::uint32_t frontier_id = 0;  // 0: none
   double score = 0;               // higher is better, in the policy's own unit
   std::string why;                // one line for the report

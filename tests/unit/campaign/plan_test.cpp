@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
 
 #include "sdk/campaign/folder.h"
 #include "sdk/campaign/hash.h"
+#include "sdk/campaign/plan_text.h"
 #include "sdk/host/process.h"
 #include "tests/unit/campaign/store_fixture.h"
 
@@ -81,6 +83,20 @@ TEST(Plan, AFigureThatATeamOfThatSizeCannotHaveIsRefused) {
 TEST(Plan, ADamagedDefinitionIsAnError) {
   for (const std::string& text : {std::string("name x\n"), std::string("name {\n"), std::string()})
     EXPECT_TRUE(says(error_of([&] { plan_of(text, "store"); }), "store: campaign.definition"));
+}
+
+// 200,000 levels ended the process, and what it includes was opened.
+TEST(Plan, ADefinitionOfSomebodyElsesIsBoundedAndOpensNothing) {
+  std::string deep;
+  for (int i = 0; i < 200'000; ++i) deep += "a {\n";
+  CampaignResults results;
+  for (const auto& read : {std::function<void()>([&] { plan_of(deep, "store"); }),
+                           std::function<void()>([&] { read_conditions(deep, "store", results); })})
+    EXPECT_TRUE(
+        says(error_of(read), "store: campaign.definition: line 101: blocks stand more than 100 deep"));
+  const std::string including = definition_of(small_plan()) + "#include \"/dev/zero\"\n";
+  EXPECT_TRUE(
+      says(error_of([&] { plan_of(including, "store"); }), ": #include is followed in mission files"));
 }
 
 TEST(Plan, WhatChangedIsNamed) {

@@ -167,7 +167,7 @@ TEST(Store, OfALaterVersionIsRefusedAsSuch) {
 TEST(Store, WhoseDefinitionOrHorizonIsDamagedSaysSo) {
   for (const auto& [change, complaint] :
        {std::pair("UPDATE campaign SET value = 'x {' WHERE key = 'definition'",
-                  "campaign.definition, line 1: unmatched {"),
+                  "campaign.definition: line 1: unmatched {"),
         std::pair("UPDATE campaign SET value = '-5' WHERE key = 'horizon_s'",
                   "campaign.horizon_s: expected seconds, got -5")}) {
     const fs::path file = full_store(quick_folder("head"));

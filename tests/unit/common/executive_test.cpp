@@ -69,6 +69,38 @@ TEST(Executive, StopsWhenDoneOrAtTheLimitAndCanGoOn) {
   EXPECT_EQ(e.now(), 55);
 }
 
+TEST(Executive, APeriodicStepThatThrowsComesAgainAtItsTime) {
+  // As it was: its next turn was registered after it had run, so the first exception was the end of it.
+  Executive e(1);
+  std::string trace;
+  e.every("fails", 10, 10, [&] {
+    trace += 'f';
+    if (e.now() != 20) return;
+    throw std::runtime_error("once");
+  });
+  e.every("other", 10, 10, [&] { trace += 'o'; });
+  EXPECT_THROW(e.run_until(40, kNever), std::runtime_error);
+  EXPECT_EQ(e.now(), 20);
+  e.run_until(40, kNever);
+  EXPECT_EQ(trace, "fofofofo") << "in the order of registration, none left out";
+}
+
+TEST(Executive, CountsTheJobsUnderWayByName) {
+  for (const int threads : {1, 2}) {
+    Executive e(threads);
+    e.job(
+        "scan", Lane::map, 10, [] {}, [] {});
+    e.job(
+        "scan", Lane::map, 20, [] { throw std::runtime_error("fails"); }, [] {});
+    EXPECT_EQ(e.under_way("scan"), 2);
+    EXPECT_EQ(e.under_way("plan"), 0);
+    e.run_until(10, kNever);
+    EXPECT_EQ(e.under_way("scan"), 1);
+    EXPECT_THROW(e.run_until(20, kNever), std::runtime_error);
+    EXPECT_EQ(e.under_way("scan"), 0) << "what failed is not waited for";
+  }
+}
+
 TEST(Executive, NothingRunsBeforeNow) {
   Executive e(1);
   e.run_until(100, kNever);

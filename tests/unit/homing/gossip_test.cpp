@@ -11,6 +11,9 @@ namespace {
 
 using testing::Heard;
 using testing::Network;
+using testing::radio;
+using testing::read_frame;
+using testing::write_frame;
 
 const Heard kChain = [](RobotId a, RobotId b, TimeNs) { return a + 1 == b || b + 1 == a; };
 const Heard kAll = [](RobotId, RobotId, TimeNs) { return true; };
@@ -79,7 +82,7 @@ double oldest_state_s(RobotId n, TeamPhase phase, std::uint32_t backlog) {
 // As it was: of sixteen radios two states fitted a frame, and over ten hops they were a minute old: the base
 // took half the chain for cut off. And again where there were more records to pass on than could be.
 TEST(Gossip, OfManyRadiosInAChainTheBaseKnowsHowAllAreNow) {
-  for (const RobotId n : {16, 26, 32})
+  for (const RobotId n : {RobotId{16}, RobotId{26}, RobotId{32}})
     for (const TeamPhase phase : {TeamPhase::explore, TeamPhase::relay})
       for (const std::uint32_t backlog : {0, 3})  // 3: more records to pass on than links carry
         EXPECT_LT(oldest_state_s(n, phase, backlog), kPeriodsPerRadio * n)
@@ -136,7 +139,7 @@ TEST(Gossip, WhoComesIntoContactAmongManyIsToldOfOneThatFellSilent) {
 }
 
 TEST(Gossip, WhatIsHeldOfAllFitsAFrameThoughOfEachThereIsAGap) {
-  Gossip base(kBase, {}, 1);
+  Gossip base(radio(kBase), {}, 1);
   const Bytes record = *write_record(object(1, 33));
   for (RobotId r = 1; r < kMostRobots; ++r)
     base.receive(*write_frame({.sender = r, .records = {{r, 33, record}}}), kSecond);
@@ -213,7 +216,8 @@ TEST(Gossip, KeepsToItsShareOfBandwidth) {
     net.run(1);
   }
   for (const Gossip& r : net.robots)
-    EXPECT_LE(static_cast<double>(r.counts().bytes_sent), 1000 * 60.0 + 11 * kFrameBytes);
+    EXPECT_LE(static_cast<double>(r.counts().bytes_sent),
+              GossipOptions{}.bytes_per_s * 60.0 + 11 * kFrameBytes);
 }
 
 TEST(Gossip, IdleItSaysLittle) {
@@ -226,9 +230,13 @@ TEST(Gossip, IdleItSaysLittle) {
 }
 
 TEST(Gossip, HostileFramesLeaveItAsItWas) {
-  Gossip robot(1, {}, 1);
+  Gossip robot(radio(1), {}, 1);
   const auto record = write_record(object(2, 1));
-  const auto hear = [&](const Frame& f) { robot.receive(*write_frame(f), kSecond); };
+  std::uint16_t sequence = 0;
+  const auto hear = [&](Frame f) {
+    f.sequence = sequence++;
+    robot.receive(*write_frame(f), kSecond);
+  };
   hear({.sender = 2, .records = {{2, 5000, *record}}});  // far ahead: would need memory without end
   hear({.sender = 2, .records = {{2, 1, {9, 9, 9}}}});   // no record
   EXPECT_EQ(robot.counts().records_refused, 2u);
@@ -264,9 +272,12 @@ TEST(Gossip, RecordsFromTheFutureAreRefusedAndTheGenuineOnesUnderTheirNumbersTak
       ray,
       life,
   };
-  Gossip robot(1, {}, 1);
+  Gossip robot(radio(1), {}, 1);
+  std::uint16_t sequence = 0;
   const auto hear = [&](std::uint32_t number, const Record& r) {
-    robot.receive(*write_frame({.sender = 2, .records = {{2, number, *write_record(r)}}}), kSecond);
+    robot.receive(
+        *write_frame({.sender = 2, .sequence = sequence++, .records = {{2, number, *write_record(r)}}}),
+        kSecond);
   };
   for (std::uint32_t i = 0; i < forged.size(); ++i) hear(i + 1, forged[i]);
   EXPECT_EQ(robot.counts().records_refused, forged.size());
@@ -294,7 +305,7 @@ TEST(Gossip, ARobotThatStartsAnewGoesOnBehindWhatOthersRemember) {
   Network net(2, kAll, 0, 0, 2);
   for (std::uint32_t n = 1; n <= 5; ++n) net.robots[1].publish(object(1, n));
   net.run(5);
-  net.robots[1] = Gossip(1, {}, 99);
+  net.robots[1] = Gossip(radio(1), {}, 99);
   net.run(10);
   EXPECT_EQ(net.robots[1].publish(object(1, 6)), 6u);
   net.run(5);

@@ -120,10 +120,10 @@ TEST(Encounter, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
 TEST(Encounter, WithNoRoomGoesBeforeTheOther) {
   Meeting m;
   ASSERT_EQ(m.run(4), Action::make_room);
-  m.encounter.no_room(m.now);
+  m.encounter.no_room(m.now, false);
   m.other.velocity_mps.setZero();
   ASSERT_EQ(m.run(10), Action::make_room);
-  m.encounter.no_room(m.now);
+  m.encounter.no_room(m.now, false);
   EXPECT_EQ(m.encounter.told(TeamPhase::explore, m.now), TeamPhase::boxed);
   // The other hears it, and gives way to it.
   Neighbour boxed = m.self;
@@ -131,6 +131,42 @@ TEST(Encounter, WithNoRoomGoesBeforeTheOther) {
   EXPECT_TRUE(goes_before(boxed, m.other));
   m.other.velocity_mps = {1, 0, 0};
   EXPECT_EQ(m.run(3), Action::go_on);
+}
+
+// As it was: it flew on, into the one behind it.
+TEST(Encounter, OnItsWayToMakeRoomStopsForAThirdThatItFliesAt) {
+  Meeting m;
+  Neighbour third{3, {-8, 0, 0}};
+  const auto step = [&] {
+    m.now += kSecond / 10;
+    m.self.position += 0.1 * m.self.velocity_mps;
+    return m.encounter.update({}, m.self, {m.other, third}, m.now, m.self.velocity_mps.isZero());
+  };
+  ASSERT_EQ(m.run(4), Action::make_room);
+  m.encounter.set_out();
+  m.self.velocity_mps = {-1, 0, 0};
+  Action last = step();
+  while (last == Action::hold && m.self.position.x() > -8) last = step();
+  EXPECT_EQ(last, Action::stop);
+  const KeepApart rule;
+  EXPECT_NEAR(m.self.position.x(), -8 + rule.distance_m / 2 + rule.own_s + 0.5 / rule.brake_mps2, 0.11);
+  m.self.velocity_mps.setZero(), m.other.velocity_mps.setZero();
+  EXPECT_EQ(step(), Action::hold);
+  for (int i = 0; i < 40 && last != Action::make_room; ++i) last = step();
+  EXPECT_EQ(last, Action::make_room) << "for another place";
+}
+
+TEST(Encounter, AmongACrowdWaitsLongerForRoomBeforeItGoesFirst) {
+  Meeting m;
+  m.other.position = {2.9, 0, 0}, m.other.velocity_mps.setZero();
+  for (int asked = 1; asked < 8; ++asked) {
+    ASSERT_EQ(m.run(10), Action::make_room);
+    m.encounter.no_room(m.now, true);
+    EXPECT_EQ(m.encounter.told(TeamPhase::explore, m.now), TeamPhase::explore) << asked;
+  }
+  ASSERT_EQ(m.run(10), Action::make_room);
+  m.encounter.no_room(m.now, true);
+  EXPECT_EQ(m.encounter.told(TeamPhase::explore, m.now), TeamPhase::boxed);
 }
 
 TEST(Encounter, WhoGoesFirstWaitsForTheOtherToStandAside) {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core_stack/homing/gossip.h"
+#include "tests/unit/homing/test_radio.h"
 
 namespace karst::core::testing {
 
@@ -20,7 +21,7 @@ struct Network {
 
   Network(RobotId n, Heard l, double lose, double corrupt, std::uint64_t seed)
       : linked(std::move(l)), loss(lose), corruption(corrupt), random(seed), delivered(n) {
-    for (RobotId i = 0; i < n; ++i) robots.emplace_back(i, GossipOptions{}, seed + i);
+    for (RobotId i = 0; i < n; ++i) robots.emplace_back(radio(i), GossipOptions{}, seed + i);
   }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end; now += kSecond / 10) {
@@ -29,7 +30,7 @@ struct Network {
         TeamState state;
         state.stamp = now;
         state.seconds_left = 100;
-        state.phase = phase;
+        state.phase = r.self() == kBase ? TeamPhase::standby : phase;
         r.set_state(state);
         for (Bytes& b : r.send(now)) air.push_back({r.self(), std::move(b)});
       }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/unit/homing/random_messages.h"
+#include "tests/unit/homing/test_radio.h"
 
 namespace karst::core {
 namespace {
@@ -13,16 +14,10 @@ namespace {
 using testing::below;
 using testing::random_record;
 using testing::random_state;
+using testing::read_frame;
+using testing::write_frame;
 
 Random seeded() { return Random(*rc::gen::inRange<std::uint64_t>(1, 1u << 30)); }
-
-TEST(Wire, TheChecksumIsThatOfIeee8023) {
-  // The check value that catalogues of CRCs give for it.
-  const std::string digits = "123456789";
-  const Bytes bytes(digits.begin(), digits.end());
-  EXPECT_EQ(crc32(bytes), 0xcbf43926u);
-  EXPECT_EQ(crc32({}), 0u);
-}
 
 TEST(Wire, CompactNumbersHaveOneFormOnly) {
   for (const std::uint32_t v : {0u, 1u, 127u, 128u, 16383u, 16384u, 0xffffffffu}) {
@@ -71,6 +66,7 @@ TEST(Messages, AFrameReadIsTheFrameWritten) {
     Random random = seeded();
     Frame frame;
     frame.sender = static_cast<RobotId>(below(random, kMostRobots));
+    frame.sent = testing::random_time(random);
     frame.sequence = static_cast<std::uint16_t>(random.bits());
     frame.tells_held = random.uniform() < 0.5;
     if (random.uniform() < 0.7) frame.states.push_back(random_state(random));
@@ -91,6 +87,7 @@ TEST(Messages, AFrameReadIsTheFrameWritten) {
     const auto read = read_frame(*bytes, why);
     RC_ASSERT(read.has_value());
     RC_ASSERT(read->sender == frame.sender && read->tells_held == frame.tells_held);
+    RC_ASSERT(read->sent == frame.sent && read->sequence == frame.sequence);
     RC_ASSERT(write_frame(*read) == bytes);
   });
 }
@@ -132,14 +129,15 @@ TEST(Messages, AnyDamageIsNoticed) {
   });
 }
 
-/// A frame whose checksum is right and whose inside is `body`.
+/// A frame whose tag is right and whose inside is `body`.
 Bytes sealed(Bytes body) {
-  WireWriter(body).number(crc32(body), 4);
+  const Tag tag = tag_of(body, testing::test_key());
+  body.insert(body.end(), tag.begin(), tag.end());
   return body;
 }
 
 TEST(Messages, HostileFramesAreRefusedByReason) {
-  const Bytes head = {0x4b, 0x72, kWireVersion, 2, 0, 0};
+  const Bytes head = {0x4b, 0x72, kWireVersion, 2, 0, 0, 0, 0, 0, 0};
   const auto why_of = [](const Bytes& bytes) {
     Refusal why{};
     EXPECT_FALSE(read_frame(bytes, why));
@@ -155,14 +153,15 @@ TEST(Messages, HostileFramesAreRefusedByReason) {
   EXPECT_EQ(why_of({}), Refusal::too_short);
   EXPECT_EQ(why_of(Bytes(100000, 7)), Refusal::too_short);
   EXPECT_EQ(why_of(Bytes(50, 0)), Refusal::no_frame);
-  EXPECT_EQ(why_of(sealed({0x4b, 0x72, 0, 2, 0, 0, 0, 0, 0})), Refusal::version);
-  EXPECT_EQ(why_of({0x4b, 0x72, 1, 2, 0, 0, 0, 0, 0, 1, 2, 3, 4}), Refusal::checksum);
+  EXPECT_EQ(why_of(sealed({0x4b, 0x72, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0})), Refusal::version);
+  EXPECT_EQ(why_of({0x4b, 0x72, kWireVersion, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8}),
+            Refusal::forged);
   EXPECT_EQ(why_of(with({255, 0, 0})), Refusal::truncated);  // says it holds 255 states
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 1, 250})), Refusal::truncated);
   EXPECT_EQ(why_of(with({0, 0, 0, 9})), Refusal::truncated);  // a byte too many
   EXPECT_EQ(why_of(with({0, 1, kMostRobots, 0, 0, 0})), Refusal::range);
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);  // record 0
-  Bytes sender = {0x4b, 0x72, kWireVersion, 99, 0, 0, 0, 0, 0};
+  Bytes sender = {0x4b, 0x72, kWireVersion, 99, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   EXPECT_EQ(why_of(sealed(sender)), Refusal::range);
 }
 

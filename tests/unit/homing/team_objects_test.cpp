@@ -68,7 +68,8 @@ RC_GTEST_PROP(TeamObjects, AreTheSameInWhateverOrderReportsCome, (std::uint64_t 
 
 TEST(TeamObjects, ComeToTheBaseOverTheAir) {
   const Vec3 base(0, 0, 1);
-  Teammate finder(1, {}, {}, base, 1), at_base(kBase, {}, {}, base, 1);
+  const MissionKey radio_key = key_of_seed(1);
+  Teammate finder(1, {}, {}, base, 1, radio_key), at_base(kBase, {}, {}, base, 1, radio_key);
   EXPECT_GT(finder.publish(report(1, 7, 2, {12.34, -5.6, 0.7}, 0.3)), 0u);
   for (int i = 1; i <= 100; ++i) {
     const TimeNs now = i * 100 * kMillisecond;

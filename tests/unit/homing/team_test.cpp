@@ -6,6 +6,7 @@
 #include "core_stack/common/random.h"
 #include "core_stack/homing/home.h"
 #include "core_stack/homing/teammate.h"
+#include "tests/unit/homing/test_radio.h"
 
 namespace karst::core {
 namespace {
@@ -77,7 +78,8 @@ struct Team {
   explicit Team(RobotId robots) {
     TeamOptions options;
     options.robots = robots;
-    for (RobotId r = 0; r <= robots; ++r) mates.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7);
+    for (RobotId r = 0; r <= robots; ++r)
+      mates.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7, testing::test_key());
   }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end;) {
@@ -184,11 +186,11 @@ TEST(Teammate, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPiece
   team.run(60);
   team.linked = [](RobotId a, RobotId b) { return a != 4 && b != 4 && (a + 1 == b || b + 1 == a); };
   // The record of the landing before all else: what is known of robot 2 else dates from when it flew.
-  Frame first{.sender = 2};
+  Frame first{.sender = 2, .sent = team.now};
   const LandingClaim landed{team.now - 60 * kSecond, {80, 0, 0}, {80, 0, 1}, LandingClaim::State::landed};
   first.records = {{2, team.mates[3].gossip().held(2).first() + 1, *write_record(landed)}};
   Teammate with_record = team.mates[3];
-  with_record.hear(*write_frame(first), team.now);
+  with_record.hear(*testing::write_frame(first), team.now);
   ASSERT_EQ(with_record.landing_of(2)->state, LandingClaim::State::landed);
   EXPECT_EQ(with_record.relays().size(), 3u);
   EXPECT_FALSE(with_record.relays().back().stands_by) << "it stands";
@@ -264,8 +266,9 @@ TEST(Teammate, AClaimAsFarFromAnothersAsPlacesAreChosenIsNotOverruled) {
   const double apart_m = HomingOptions{}.landing.keep_apart_m + 0.02;
   ASSERT_LT(apart_m, TeamOptions{}.keep_apart_m);
   team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
-  team.mates[2].publish(LandingClaim{
-      team.now + kSecond, {40 + apart_m, 0, 0}, {40 + apart_m, 0, 1}, LandingClaim::State::claimed});
+  team.run(1);
+  team.mates[2].publish(
+      LandingClaim{team.now, {40 + apart_m, 0, 0}, {40 + apart_m, 0, 1}, LandingClaim::State::claimed});
   team.run(5);
   EXPECT_FALSE(team.mates[2].overruled());
 }

@@ -34,6 +34,10 @@ TEST(GoalFault, EachFieldIsLookedAt) {
   EXPECT_NE(fault([](auto& g) { g.tolerance_m = NAN; }), "");
   EXPECT_NE(fault([](auto& g) { g.max_speed_mps = -1; }), "");
   EXPECT_NE(fault([](auto& g) { g.max_speed_mps = NAN; }), "");
+  for (const double crawl_mps : {1e-300, 1e-9, 1e-4, 0.049})
+    EXPECT_EQ(fault([=](auto& g) { g.max_speed_mps = crawl_mps; }),
+              "its speed limit is below 0.05 m/s (0 stands for the mission's)");
+  EXPECT_EQ(fault([](auto& g) { g.max_speed_mps = 0.05; }), "");
   EXPECT_NE(fault([](auto& g) { g.score = INFINITY; }), "");
   EXPECT_NE(fault([](auto& g) { g.why = {"two\nlines", 9}; }), "");
   const std::string longer(241, 'x');

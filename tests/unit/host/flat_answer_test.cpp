@@ -85,6 +85,34 @@ TEST(FlatAnswer, GoalsWithoutTheOutcomeGoalsAreRefused) {
   EXPECT_THROW(host::read_decision_report(host::flatten(r)), host::FlatError);
 }
 
+/// A ready message whose parameters are `info`, which no honest child writes.
+Bytes ready_with(const std::string& info) {
+  host::FlatWriter out;
+  out.put(std::string("1.0.0"));
+  out.put(info);
+  return out.take();
+}
+
+// The host, in flight, opened what a policy's process named: a FIFO, /dev/zero, /etc/shadow.
+TEST(FlatAnswer, AReadyMessageOpensNoFileInTheHost) {
+  for (const char* file : {"/dev/zero", "/etc/passwd", "/proc/self/environ"}) {
+    const Bytes bytes = ready_with("ratio 1\n#include \"" + std::string(file) + "\"\n");
+    try {
+      host::read_ready_report(bytes);
+      ADD_FAILURE() << file;
+    } catch (const host::FlatError& e) {
+      EXPECT_NE(std::string(e.what()).find("parameters: line 2: #include"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_EQ(host::read_ready_report(ready_with("ratio 1\n")).parameters.get<int>("ratio"), 1);
+}
+
+TEST(FlatAnswer, AReadyMessageOfManyLevelsIsRefused) {
+  std::string deep;
+  for (int i = 0; i < 16'000; ++i) deep += "a {\n";
+  EXPECT_THROW(host::read_ready_report(ready_with(deep)), host::FlatError);
+}
+
 TEST(FlatAnswer, PathsBetweenNoPlacesAreRefused) {
   host::LengthsQuestion q{{0, 0, 0}, {{1, 1, 1}}, 0.5};
   EXPECT_EQ(host::read_lengths_question(host::flatten(q)).goals, q.goals);
@@ -92,6 +120,16 @@ TEST(FlatAnswer, PathsBetweenNoPlacesAreRefused) {
   EXPECT_THROW(host::read_lengths_question(host::flatten(q)), host::FlatError);
   q.goals.assign(5000, core::Vec3::Zero());
   EXPECT_THROW(host::read_lengths_question(host::flatten(q)), host::FlatError);
+}
+
+TEST(FlatAnswer, AnswersAboutPathsComeThroughWhole) {
+  using Status = host::PathAnswer::Status;
+  for (const Status status : {Status::answered, Status::no_roadmap, Status::too_much}) {
+    const host::PathAnswer answer{status, {1.5, std::numeric_limits<double>::infinity()}};
+    const host::PathAnswer read = host::read_path_answer(host::flatten(answer));
+    EXPECT_EQ(read.status, status);
+    EXPECT_EQ(read.lengths_m, answer.lengths_m);
+  }
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct Bench {
   std::function<bool(PoseMeasurement&)> pose = [](PoseMeasurement&) { return true; };  // false: does not come
   std::function<Vec3(double t)> field = [](double) { return kEarthField; };
   bool imu = true, biased = true;
+  Vec3 gust_mps2 = Vec3::Zero(), rate_lag_radps = Vec3::Zero();  // that commands do not know of
   bool hovering = false;  // for ever: in motion, accelerations and positions tell the heading
 
   explicit Bench(const EstimatorOptions& o = {}) : e(o, {}) {}
@@ -47,7 +48,8 @@ struct Bench {
         e.on_imu(measured);
       } else if (now % (2 * kImuPeriod) == 0) {
         // Commands as a controller gives them: a little off.
-        e.bridge({now, Vec3(0, 0, truth.specific_force_mps2.z() * 1.02), truth.body_rate_radps});
+        e.bridge({now, Vec3(0, 0, truth.specific_force_mps2.z() * 1.02) + gust_mps2,
+                  truth.body_rate_radps + rate_lag_radps});
       }
       if (now % (20 * kMillisecond) == 0)
         e.on_magnetometer(
@@ -230,6 +232,27 @@ TEST(FilterBank, WithoutTheImuCommandsAndPosesCarryItForASecond) {
   EXPECT_LT(worst_m, 0.2);
   EXPECT_LT(b.position_error_m(), 0.05);
   EXPECT_EQ(b.e.health(b.now), Health::good);
+}
+
+TEST(FilterBank, WithoutTheImuAGustAndATurnDoNotMakeItRefuseTheLidar) {
+  Bench b;
+  b.run_until(20);
+  b.imu = false;
+  b.gust_mps2 = {0.7, -0.3, 0};
+  b.rate_lag_radps = {0.05, -0.05, 0.25};
+  double worst_m = 0, refused_until_s = 0;
+  const auto look = [&](double t_s) {
+    worst_m = std::max(worst_m, b.position_error_m());
+    if (b.e.diagnose(from_seconds(t_s)).reason == std::string("poses contradict the IMU"))
+      refused_until_s = std::max(refused_until_s, t_s);
+  };
+  b.run_until(21, look);
+  b.imu = true;
+  b.run_until(23, look);
+  EXPECT_LT(worst_m, 0.15);
+  EXPECT_EQ(refused_until_s, 0) << "poses were refused for more than half a second";
+  EXPECT_EQ(b.e.restarts(), 0);
+  EXPECT_EQ(b.e.health(b.now - kImuPeriod), Health::good);
 }
 
 TEST(FilterBank, APositionThatOneDirectionLeavesOpenIsKnownEverWorse) {

@@ -193,7 +193,7 @@ TEST_F(OctomapIo, ErrorsNameTheFileThePlaceAndTheReason) {
     return "no error";
   };
   const std::string head = "# Octomap OcTree binary file\nid OcTree\nsize 1\n";
-  EXPECT_EQ(message(path("none.bt")), path("none.bt") + ": cannot be opened");
+  EXPECT_EQ(message(path("none.bt")), path("none.bt") + ": cannot be opened: no such file");
   EXPECT_EQ(message(write("a", "ply\n")), path("a") + ": line 1: is no OctoMap .bt or .ot file");
   EXPECT_EQ(message(write("b", head + "res -1\ndata\n")),
             path("b") + ": res: expected the edge length of a cell, in metres");

@@ -301,5 +301,56 @@ TEST(Explorer, AnAbandonedGoalIsNotAcceptedAgainWhileTheMapIsUnchanged) {
   EXPECT_NE(again.rejected[0].reason.find("no progress"), std::string::npos);
 }
 
+TEST(Explorer, RefusesAGoalThatAsksForLessThanTheLeastSpeed) {
+  CoreOptions options;
+  options.motion.min_speed_mps = 0.3;
+  Room room(options);
+  const auto at_speed = [&](double speed_mps) {
+    return room.decide([speed_mps](const DecisionRequest&) {
+      Decision d;
+      d.outcome = Outcome::goals;
+      d.goals.resize(1);
+      d.goals[0].position = Vec3(6.5, 4, 2);
+      d.goals[0].max_speed_mps = speed_mps;
+      return d;
+    });
+  };
+  for (const double speed_mps : {1e-300, 1e-9, 1e-4, 0.29, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const RoundResult r = at_speed(speed_mps);
+    EXPECT_FALSE(r.goal) << speed_mps;
+    ASSERT_EQ(r.rejected.size(), 1u);
+    EXPECT_NE(r.rejected[0].reason.find("below motion.min_speed, 0.3 m/s"), std::string::npos)
+        << r.rejected[0].reason;
+  }
+  for (const double speed_mps : {0.0, 0.3, 0.5, 1000.0}) EXPECT_TRUE(at_speed(speed_mps).goal) << speed_mps;
+}
+
+TEST(Explorer, TakesWhatIsAskedForWhereTheLeastSpeedIsAboveTheGreatest) {
+  CoreOptions options;
+  options.motion.min_speed_mps = 5;
+  options.motion.max_speed_mps = 0.5;
+  Room room(options);
+  const RoundResult r = room.decide([](const DecisionRequest&) {
+    Decision d;
+    d.outcome = Outcome::goals;
+    d.goals.resize(1);
+    d.goals[0].position = Vec3(6.5, 4, 2);
+    d.goals[0].max_speed_mps = 0.5;
+    return d;
+  });
+  EXPECT_TRUE(r.goal);
+}
+
+TEST(Explorer, BelowALowRoofHoversWhereThereIsRoomAboveAndBelow) {
+  // The vehicle stands at z = 1, its hull of 0.3 m touches the ground. A roof's cells begin at their lower
+  // face.
+  const auto hover_m = [](double height_m, double highest_m) {
+    return Room({}, Vec3(8, 6, height_m)).explorer->hover_below(Vec3(3, 3, highest_m)).z();
+  };
+  EXPECT_EQ(hover_m(4, 2), 2) << "room enough";
+  EXPECT_NEAR(hover_m(2.6, 2), 1.8, 0.06) << "0.6 m to the middle of the roof's cells, half a cell beyond";
+  EXPECT_NEAR(hover_m(1.8, 1.3), 1.15, 0.06) << "in the middle, for want of that";
+}
+
 }  // namespace
 }  // namespace karst::core

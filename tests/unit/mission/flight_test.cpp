@@ -28,6 +28,44 @@ TEST(Flight, IsDisarmedUntilItClimbs) {
   EXPECT_FALSE(f.flight.control(30 * kMillisecond).armed);
 }
 
+TEST(Flight, MotorsThatWereSwitchedOffStayOff) {
+  IdealFlight f;
+  f.flight.climb(0, 1.0, 0.5);
+  f.advance(3);
+  f.flight.disarm();
+  f.flight.climb(f.now, 1.0, 0.5);
+  f.flight.follow({Vec3::Zero(), Vec3(5, 0, 0)}, 0, f.now, {});
+  f.flight.land_now(f.now);
+  EXPECT_FALSE(f.flight.control(f.now + 10 * kMillisecond).armed);
+  EXPECT_FALSE(f.flight.airborne());
+}
+
+TEST(Flight, LandsAtOnceWhateverElseItIsTold) {
+  IdealFlight f;
+  f.flight.climb(0, 2.0, 0.5);
+  f.advance(6);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.advance(4);
+  const Vec3 at = f.flight.reference().position;
+  const double speed = f.flight.reference().velocity_mps.norm();
+  ASSERT_GT(speed, 1.5);
+  f.flight.land_now(f.now);
+  f.flight.follow({at, at + Vec3(0, 20, 0)}, 0, f.now, heading);
+  f.advance(1);
+  f.flight.brake(f.now);
+  f.flight.cap_speed(f.now, 0.5);
+  f.flight.climb(f.now, 5, 0.5);
+  f.advance(4);
+  const Vec3 end = f.flight.reference().position;
+  EXPECT_LT(end.x() - at.x(), speed * speed / MotionLimits{}.max_acceleration_mps2 + 0.5);
+  EXPECT_NEAR(end.y(), from.y(), 0.02);
+  EXPECT_NEAR(f.flight.reference().velocity_mps.z(), -MissionOptions{}.landing_speed_mps, 0.02);
+  EXPECT_LT(end.z(), at.z() - 0.8);
+}
+
 TEST(Flight, ClimbsToTheHeightAndRests) {
   IdealFlight f;
   f.flight.climb(0, 1.0, 0.5);

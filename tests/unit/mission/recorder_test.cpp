@@ -32,6 +32,19 @@ TEST(Recorder, WritesEventsAsOneJsonObjectALine) {
   EXPECT_EQ(nlohmann::json::parse(line)["kind"], "log");
 }
 
+TEST(Recorder, WritesFieldsMadeIntoTextElsewhereAsItWouldItself) {
+  const fs::path dir = fresh("recorder_texts");
+  Recorder recorder(dir);
+  const nlohmann::json fields{{"text", "a \"b\""}, {"points", {{1.5, 2, 3}}}, {"alpha", 1}};
+  recorder.event(1500 * kMillisecond, "drawing", fields);
+  recorder.event_of_text(1500 * kMillisecond, "drawing", fields.dump());
+  ASSERT_TRUE(recorder.flush());
+  std::ifstream in(dir / "events.jsonl");
+  std::string one, other;
+  ASSERT_TRUE(std::getline(in, one) && std::getline(in, other));
+  EXPECT_EQ(one, other);
+}
+
 TEST(Recorder, GrowthHoldsTheComingAndGoingOfOccupiedCellsOnly) {
   const fs::path dir = fresh("recorder_growth");
   Recorder recorder(dir);

@@ -132,5 +132,70 @@ TEST(Roadmap, EmptyOrBlockedGivesReasons) {
   EXPECT_EQ(roadmap.find(map, {-3, 2, 1.5}, {3, 2, 1.5}).status, PlanStatus::start_blocked);
 }
 
+/// The same by looking at every node.
+std::optional<Vec3> nearest_that_sees(const VoxelMap& map, const Roadmap& roadmap, const Vec3& goal,
+                                      double tolerance_m) {
+  std::optional<Vec3> best;
+  for (const Vec3& p : roadmap.places_near(Vec3(3, 2, 1.6), 50))
+    if (const double d = (p - goal).norm();
+        d <= tolerance_m && (!best || d < (*best - goal).norm()) && !map.first_not_free(p, goal))
+      best = p;
+  return best;
+}
+
+TEST(Roadmap, ApproachesTheNearestNodeThatSeesTheGoalWhateverTheTolerance) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    const VoxelMap map = random_map(random.bits(), kSize, 0.015 * static_cast<double>(1 + seed % 3));
+    Roadmap roadmap{kOptions};
+    roadmap.update(map, all_cells(map));
+    const double search_m = search_clearance_m(kOptions, map.resolution_m());
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 goal = point_in(random);
+      if (is_clear(map, goal, search_m)) continue;
+      for (const double tolerance_m : {0.0, 0.5, 2.0, 5.0, 100.0}) {
+        const std::optional<Vec3> place = roadmap.approach(map, goal, tolerance_m),
+                                  oracle = nearest_that_sees(map, roadmap, goal, tolerance_m);
+        ASSERT_EQ(place.has_value(), oracle.has_value()) << seed << ' ' << tolerance_m;
+        if (!place) continue;
+        ASSERT_NEAR((*place - goal).norm(), (*oracle - goal).norm(), 1e-12);
+        ++found;
+      }
+    }
+  }
+  EXPECT_GT(found, 100);
+}
+
+TEST(Roadmap, NodesNearAPlaceComeInTheSameOrderFromFarAndFromNear) {
+  const VoxelMap map = random_map(5, kSize, 0.02);
+  Roadmap roadmap{kOptions};
+  roadmap.update(map, all_cells(map));
+  const Vec3 p(3, 2, 1.6);
+  const std::vector<Vec3> near = roadmap.places_near(p, 2.0);  // block by block
+  std::vector<Vec3> far;
+  for (const Vec3& q : roadmap.places_near(p, 200))  // tile by tile
+    if ((q - p).norm() <= 2.0) far.push_back(q);
+  ASSERT_GT(near.size(), 10u);
+  EXPECT_EQ(near, far);
+}
+
+TEST(Roadmap, StopsAtTheWorkItMayDoWhateverIsAsked) {
+  const VoxelMap map = random_map(3, kSize, 0.02);
+  Roadmap roadmap{kOptions};
+  roadmap.update(map, all_cells(map));
+  Random random(1);
+  std::vector<Vec3> goals;
+  for (int i = 0; i < 500; ++i) goals.push_back(point_in(random));
+  const Vec3 from = roadmap.places_near(Vec3(3, 2, 1.6), 3).front();
+  WorkBudget ample(100'000'000), scarce(20'000);
+  const std::vector<double> whole = roadmap.distances(map, from, goals, 100, 1e9, &ample);
+  EXPECT_FALSE(ample.exhausted());
+  EXPECT_LT(ample.left(), 100'000'000u);
+  EXPECT_EQ(whole, roadmap.distances(map, from, goals, 100));
+  roadmap.distances(map, from, goals, 100, 1e9, &scarce);
+  EXPECT_TRUE(scarce.exhausted());
+}
+
 }  // namespace
 }  // namespace karst::core

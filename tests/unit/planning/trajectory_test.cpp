@@ -211,5 +211,31 @@ TEST(SampleTrajectory, IsSlowNearSlowPlacesAndNowhereElse) {
   EXPECT_LT(seconds(with.end() - without.end()), 4);
 }
 
+/// Speeds that a goal asked for once: the samples went on until memory was gone.
+TEST(Trajectory, ThatWouldTakeForEverEndsAtRestOnThePathWithinTwoHours) {
+  const std::vector<Vec3> path{{0, 0, 0}, {30, 0, 0}, {30, 40, 0}};
+  for (const double speed_mps : {0.0, 1e-300, 1e-9, 1e-4, 1e-3, 5e-3})
+    for (const double start_mps : {0.0, 1.5}) {
+      MotionLimits limits;
+      limits.max_speed_mps = limits.min_speed_mps = speed_mps;
+      HeadingPlan heading;
+      heading.goal_heading_rad = 1.0;
+      const Trajectory t = sample_trajectory(path, start_mps, kSecond, limits, heading);
+      ASSERT_GE(t.samples.size(), 1u);
+      ASSERT_LE(seconds(t.end() - t.start), 7300) << speed_mps;
+      for (const TrajectorySample& s : t.samples)
+        ASSERT_LT(distance_to_path(path, s.position), 0.03) << speed_mps;
+      EXPECT_TRUE(t.samples.front().position == path.front());
+      const std::size_t n = t.samples.size();
+      if (n > 1) {
+        EXPECT_LT((t.samples[n - 1].position - t.samples[n - 2].position).norm(), 0.02);
+      }
+      const double flown_m = (t.samples.back().position - path.front()).norm();
+      if (speed_mps >= 1e-3) {
+        EXPECT_NEAR(flown_m, std::min(50.0, 7200 * speed_mps), 0.2 + 0.3 * flown_m);
+      }
+    }
+}
+
 }  // namespace
 }  // namespace karst::core

@@ -284,7 +284,7 @@ TEST(ScanFile, WhatIsNoCloudSaysWhy) {
             std::string::npos);
   EXPECT_NE(error_of(dir.write("v.bin", "12345")).find("no multiple"), std::string::npos);
   std::filesystem::create_directory(dir.path() / "f.pcd");
-  EXPECT_NE(error_of((dir.path() / "f.pcd").string()).find("is a folder"), std::string::npos);
+  EXPECT_NE(error_of((dir.path() / "f.pcd").string()).find("is a directory"), std::string::npos);
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST(LidarInClouds, ItsEchoesAreInTheCloudInFrontOfTheRockAndWeak) {
     ASSERT_LT(dusty.range_m[i], clear.range_m[i]);
     const auto beam = model->direction(static_cast<int>(i) / 512, static_cast<int>(i) % 512);
     const Vec3 p = model->T_body_lidar.position + dusty.range_m[i] * beam.cast<double>();
-    ASSERT_LT((p - cloud.position).norm(), 1.8 + 1e-4);
+    ASSERT_LT((p - cloud.position).norm(), 1.8 + 6e-4);  // whole millimetres
     mean += dusty.intensity[i];
   }
   EXPECT_GT(echoes, 500);

@@ -45,7 +45,8 @@ TEST_P(LidarUnits, RangesInABoxAreTheClosedForm) {
     for (int j = 0; j < 256; ++j) {
       const Vec3 d = T_world_lidar.orientation * lidar.model()->direction(c, j).cast<double>();
       const double expected = range_in_box(kLow, kHigh, T_world_lidar.position, d);
-      ASSERT_NEAR(scan.range_m[static_cast<std::size_t>(c * 256 + j)], expected, 1e-4) << c << " " << j;
+      ASSERT_NEAR(scan.range_m[static_cast<std::size_t>(c * 256 + j)], expected, 6e-4)
+          << c << " " << j;  // whole millimetres
     }
 }
 INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os0_64", "os1_64", "os0_128"));
@@ -88,7 +89,7 @@ TEST(Lidar, ASweepFromAMovingVehicleIsDistortedColumnByColumn) {
     const Pose still = pose_of(0.1) * lidar.model()->T_body_lidar;
     const Vec3 beam = lidar.model()->direction(7, j).cast<double>();
     const double measured = scan.range_m[static_cast<std::size_t>(7 * 256 + j)];
-    ASSERT_NEAR(measured, range_in_box(kLow, kHigh, fired.position, fired.orientation * beam), 2e-4);
+    ASSERT_NEAR(measured, range_in_box(kLow, kHigh, fired.position, fired.orientation * beam), 7e-4);
     largest_distortion =
         std::max(largest_distortion,
                  std::abs(measured - range_in_box(kLow, kHigh, still.position, still.orientation * beam)));
@@ -144,7 +145,7 @@ TEST(Lidar, DustIsNearDimAndAsFrequentAsAsked) {
   for (std::size_t i = 0; i < scan.range_m.size(); ++i) {
     if (scan.intensity[i] > 0.02f) continue;
     ++dust;
-    ASSERT_LT(scan.range_m[i], 3.0f);
+    ASSERT_LE(scan.range_m[i], 3.0f + 1e-6f);
   }
   EXPECT_NEAR(dust / static_cast<double>(scan.range_m.size()), 0.05, 0.005);
 }

@@ -1,6 +1,13 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <cstring>
+#include <ctime>
+#include <functional>
 
 #include "meshes.h"
+#include "plugins/simulator/cave/import_child.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
 
 namespace karst::test {
@@ -81,6 +88,90 @@ TEST_F(MeshFiles, ColladaAgreesWithItsStlTwin) {
   ASSERT_EQ(dae.triangles.size(), stl.triangles.size());
   const cave::RayScene scene(stl);
   for (const Vec3f& v : dae.vertices) ASSERT_LT(scene.distance_to_rock(v.cast<double>(), 10), 1e-4);
+}
+
+/// A Collada file with one triangle, geometry "g", whose nodes are `library` and scene is `scene`.
+std::string collada_of(const std::string& library, const std::string& scene) {
+  return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+         "version=\"1.4.1\"><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+         "<float_array id=\"pa\" count=\"9\">0 0 0 1 0 0 0 3 0</float_array><technique_common>"
+         "<accessor source=\"#pa\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
+         "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common>"
+         "</source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>"
+         "<triangles count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 1 2</p>"
+         "</triangles></mesh></geometry></library_geometries><library_nodes>" +
+         library + "</library_nodes><library_visual_scenes><visual_scene id=\"s\">" + scene +
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene "
+         "url=\"#s\"/></scene></COLLADA>";
+}
+
+// It ended the process: the importer follows such nodes until the stack is gone.
+TEST_F(MeshFiles, ColladaNodesThatContainThemselvesAreRefused) {
+  const std::string triangle = "<instance_geometry url=\"#g\"/>",
+                    scene = "<node><instance_node url=\"#a\"/></node>";
+  EXPECT_EQ(error_for("fine.dae", collada_of("<node id=\"a\">" + triangle + "</node>", scene)), "");
+  expect_refused("self.dae",
+                 collada_of("<node id=\"a\">" + triangle + "<instance_node url=\"#a\"/></node>", scene),
+                 "is no mesh that can be read");
+  expect_refused(
+      "round.dae",
+      collada_of("<node id=\"a\">" + triangle +
+                     "<instance_node url=\"#b\"/></node><node id=\"b\"><instance_node url=\"#a\"/></node>",
+                 scene),
+      "is no mesh that can be read");
+}
+
+TEST_F(MeshFiles, ColladaNodesOfManyLevelsEndNothing) {
+  std::string deep;
+  for (int i = 0; i < 200'000; ++i) deep += "<node>";
+  deep += "<instance_geometry url=\"#g\"/>";
+  for (int i = 0; i < 200'000; ++i) deep += "</node>";
+  expect_refused("deep.dae", collada_of("", deep), "");
+}
+
+TEST_F(MeshFiles, AnImportThatBreaksOrAsksForTooMuchIsAnError) {
+  cave::write_mesh(path("a.ply"), tunnel_);
+  const auto fault = [&](const std::function<TriangleMesh()>& import, cave::ImportLimits limits = {}) {
+    return error_of([&] { cave::import_in_child(path("a.ply"), import, limits); });
+  };
+  const auto says = [](const std::string& e, const char* part) { return e.find(part) != std::string::npos; };
+  const std::string broken = fault([]() -> TriangleMesh {
+    std::raise(SIGKILL);
+    return {};
+  });
+  EXPECT_TRUE(says(broken, "a.ply: is no mesh that can be read: the importer broke on it (Killed)"))
+      << broken;
+  const std::string slow = fault(
+      []() -> TriangleMesh {
+        while (std::clock() >= 0) continue;
+        return {};
+      },
+      {0, 1});
+  EXPECT_TRUE(says(slow, "processor time") || says(slow, "Killed")) << slow;
+  EXPECT_TRUE(says(fault([]() -> TriangleMesh { throw std::bad_alloc(); }), "more memory"));
+  EXPECT_TRUE(says(fault([]() -> TriangleMesh { _exit(0); }), "gave no answer"));
+  EXPECT_TRUE(says(fault([] { return TriangleMesh{{{0, 0, 0}}, {{0, 0, 1}}}; }), "makes no sense"));
+  EXPECT_TRUE(
+      says(fault([]() -> TriangleMesh { throw core::InputError("x", "", "own words"); }), "own words"));
+}
+
+// Two levels of 2^64 elements, and a list whose length wraps, kept the check itself busy for ever.
+TEST_F(MeshFiles, APlyHeaderThatPromisesTooMuchIsRefusedAtOnce) {
+  const std::string head = "ply\nformat binary_little_endian 1.0\n";
+  expect_refused("nothing.ply", head + "element vertex 18446744073709551615\nend_header\n", "");
+  expect_refused(
+      "list.ply",
+      head + "element face 18446744073709551615\nproperty list double double vertex_indices\nend_header\n" +
+          std::string(64, '\xff'),
+      "truncated");
+}
+
+TEST_F(MeshFiles, AFifoIsNoMesh) {
+  ASSERT_EQ(mkfifo(path("f.ply").c_str(), 0600), 0);
+  alarm(20);  // instead of a test that waits for ever
+  const std::string e = error_of([&] { load_mesh(path("f.ply")); });
+  alarm(0);
+  EXPECT_EQ(e, path("f.ply") + ": is a FIFO, not a regular file");
 }
 
 TEST_F(MeshFiles, ColladaWithYUpIsTurned) {

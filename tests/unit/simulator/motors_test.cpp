@@ -32,6 +32,16 @@ TEST(Motors, EachMotorsTorqueFollowsFromItsPlace) {
   }
 }
 
+TEST(Motors, AWornOneExertsItsShareFromItsTimeOn) {
+  MotorModel m;
+  const MotorThrusts f(1, 2, 3, 4);
+  EXPECT_EQ(sim::exerted(m, f, 100), f);
+  m.weak = 3;
+  m.weak_after_s = 10;
+  EXPECT_EQ(sim::exerted(m, f, 9.999), f);
+  EXPECT_TRUE(sim::exerted(m, f, 10).isApprox(MotorThrusts(1, 2, 2.7, 4), 1e-12));
+}
+
 RC_GTEST_PROP(Motors, MixingInvertsTheWrenchWithinReach, (std::uint32_t seed)) {
   core::Random r(seed);
   const MotorModel m;

@@ -110,6 +110,18 @@ TEST(Radio, BandwidthIsSharedByAllWhoHearOneAnother) {
   EXPECT_EQ(radio.receive(1, 3 * kSecond).size(), 20u);
 }
 
+TEST(Radio, NothingArrivesThatIsSentInTheSilence) {
+  RadioOptions o = clean();
+  o.silent_after_s = 10, o.silent_for_s = 5;
+  Radio radio(o, 1);
+  radio.place(0, {0, 0, 0});
+  radio.place(1, {10, 0, 0});
+  for (int t = 9; t <= 16; ++t) radio.send(hall(), 0, bytes_of(static_cast<std::size_t>(t)), t * kSecond);
+  std::vector<std::size_t> sizes;
+  for (const RadioPacket& p : radio.receive(1, 20 * kSecond)) sizes.push_back(p.bytes.size());
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{9, 15, 16}));
+  EXPECT_EQ(radio.counts(1).bytes_lost, 10u + 11 + 12 + 13 + 14);
+}
 TEST(Radio, EveryByteIsAccountedFor) {
   rc::check("bytes", [] {
     core::Random random(*rc::gen::inRange<std::uint64_t>(1, 1u << 30));

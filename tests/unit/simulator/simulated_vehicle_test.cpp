@@ -337,5 +337,31 @@ TEST_F(Simulation, ThePluginIsLoadedByItsOneSymbol) {
       << "errors cross the plugin's border as what they are";
 }
 
+TEST_F(Simulation, WithoutCommandsTheAutopilotLevelsTheVehicleAndComesDown) {
+  // Commands end with the vehicle rising and about to tilt.
+  SimulatedVehicle vehicle(options, setup);
+  Executive executive(1);
+  listener = std::make_unique<Listener>();
+  listener->executive = &executive;
+  vehicle.start(executive, *listener);
+  const double weight_n = vehicle.description().mass_kg * 9.81;
+  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] {
+    const double t = seconds(executive.now());
+    if (t < 2.5) vehicle.command({Vec3(t > 2.3 ? 0.1 : 0, 0, 0), (t < 1 ? 1.15 : 1.01) * weight_n, true});
+  });
+  executive.run_until(from_seconds(2.5), [] { return false; });
+  ASSERT_EQ(listener->grounds, "GA");
+  const double height_m = vehicle.position().z();
+  executive.run_until(from_seconds(5), [] { return false; });
+  EXPECT_NEAR(vehicle.velocity_mps().z(), -0.5, 0.05);
+  executive.run_until(from_seconds(15), [&] { return !listener->lost.empty(); });
+  EXPECT_EQ(listener->grounds, "GAG") << "it stands " << listener->lost << listener->reason;
+  EXPECT_GT(height_m, 0.5);
+  EXPECT_FALSE(vehicle.airborne());
+  executive.run_until(from_seconds(20), [] { return false; });
+  EXPECT_EQ(listener->grounds, "GAG") << "and its motors are off";
+  vehicle.finish();
+}
+
 }  // namespace
 }  // namespace karst::test

@@ -89,7 +89,7 @@ inline Expectation is_well_formed() {
             if (d.goals.size() > 64 || (d.outcome == KARST_OUTCOME_GOALS && d.goals.empty())) return false;
             for (const Goal& g : d.goals)
               if (!is_finite(g.position) || std::isinf(g.heading_rad) || !(g.tolerance_m > 0) ||
-                  !std::isfinite(g.tolerance_m) || !(g.max_speed_mps >= 0) ||
+                  !std::isfinite(g.tolerance_m) || !(g.max_speed_mps == 0 || g.max_speed_mps >= 0.05) ||
                   !std::isfinite(g.max_speed_mps) || !std::isfinite(g.score) || g.why.size() > 240)
                 return false;
             return d.reason.size() <= 240;

@@ -1,0 +1,20 @@
+// Sees a periodic step that does not come any more, by what still comes.
+#pragma once
+#include "core_stack/common/time.h"
+
+namespace karst::core {
+
+class StepWatch {
+ public:
+  /// `patience`: some periods of the step.
+  explicit StepWatch(TimeNs patience) : patience_(patience) {}
+  void came(TimeNs now) { last_ = now; }
+  TimeNs since(TimeNs now) const { return now - last_; }
+  bool missing(TimeNs now) const { return since(now) > patience_; }
+
+ private:
+  TimeNs patience_;
+  TimeNs last_ = 0;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,12 @@
+// Where the command's words go out. What they say comes from files, policies and campaigns of others, so all
+// of it is made printable here.
+#pragma once
+
+namespace karst::tools {
+
+/// As std::printf, of printable text (core_stack/common/printable.h).
+[[gnu::format(printf, 1, 2)]] void print_out(const char* format, ...);
+/// The same to standard error, and no longer than a screen or two.
+[[gnu::format(printf, 1, 2)]] void print_error(const char* format, ...);
+
+}  // namespace karst::tools
