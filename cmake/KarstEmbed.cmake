@@ -18,4 +18,5 @@ function(karst_embed out)
     DEPENDS ${script} ${files}
     COMMENT "Embedding ${A_HEADER}"
     VERBATIM)
+  set_source_files_properties(${out} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # it is not there yet
 endfunction()

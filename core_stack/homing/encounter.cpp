@@ -8,7 +8,7 @@ namespace {
 constexpr double kGoOn = 1.3;                // times the distance at which it stopped: then it goes on
 constexpr double kPast_m = 2.0;              // so much farther away than it was: the other is past
 constexpr double kNearer_m = 0.3;            // so much nearer: it comes
-constexpr double kComes_mps = 0.15;          // so fast: it comes, or goes
+constexpr double kMoves_mps = 0.15;          // so fast: it comes, or goes
 constexpr TimeNs kLook = 3 * kSecond;        // another that stands near may want to get by
 constexpr TimeNs kStands = 8 * kSecond;      // it does not get by, so the place is no good
 constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
@@ -49,7 +49,7 @@ bool Encounter::over(const KeepApart& rule, const Neighbour& self, const Neighbo
       if (!aside_since_) aside_since_ = now;
       return now - *aside_since_ > kSeen;
     }
-    return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kComes_mps || now - since_ > kFirst;
+    return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
   }
   if (d < nearest_m_ - kNearer_m) nearest_m_ = d, nearest_at_ = now;
   if (on_the_way_ || d < kGoOn * rule.distance_m) return false;
@@ -83,8 +83,8 @@ Encounter::Action Encounter::update(const KeepApart& rule, Neighbour self,
   if (!at_rest || on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain)
     return Action::hold;
   const bool in_its_way = aside_ ? d < 2 * rule.distance_m && now - std::max(nearest_at_, since_) > kStands &&
-                                       std::abs(coming_mps(self, *other)) < kComes_mps
-                                 : coming_mps(self, *other) > kComes_mps || now - since_ > kLook;
+                                       std::abs(coming_mps(self, *other)) < kMoves_mps
+                                 : coming_mps(self, *other) > kMoves_mps || now - since_ > kLook;
   if (!in_its_way) return Action::hold;
   asked_at_ = now;
   return Action::make_room;

@@ -7,7 +7,7 @@
 namespace karst::core {
 namespace {
 
-constexpr std::size_t kChunk = 128;  // features
+constexpr std::size_t kFeaturesPerChunk = 128;
 // A plane: enough points, spread in two directions (not along one ring only), thin.
 constexpr double kPlanePoints = 12, kPlaneSpread = 0.3 /* voxels */,
                  kPlaneThickness = 0.35 /* of the spread */;
@@ -74,11 +74,11 @@ Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T
 
   const std::vector<Vec3f> places = one_a_voxel(world.planes, scratch[first_level]);
   std::vector<Match> lines(world.edges.size());
-  for_each_chunk(lines.size(), kChunk, threads, [&](std::size_t, std::size_t first, std::size_t end) {
+  for_each_chunk(lines.size(), kFeaturesPerChunk, threads, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) match_line(map.edges(), world.edges[i], lines[i]);
   });
   std::vector<PlaneMatch> planes(places.size());
-  for_each_chunk(places.size(), kChunk, threads, [&](std::size_t, std::size_t first, std::size_t end) {
+  for_each_chunk(places.size(), kFeaturesPerChunk, threads, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i)
       for (std::size_t l = first_level; l < levels.size() && planes[i].match.normals == 0; ++l)
         if (match_plane(levels[l], scratch[l], places[i], planes[i])) planes[i].level = l;

@@ -9,7 +9,7 @@
 namespace karst::core {
 namespace {
 
-constexpr std::size_t kChunk = 256;     // matches
+constexpr std::size_t kMatchesPerChunk = 256;
 constexpr double kFreeDeviation = 100;  // m, along directions that nothing measures
 constexpr double kSmallStep = 1e-4;     // m: Gauss-Newton has arrived
 constexpr double kSettled = 0.2;        // voxels: matches found before so small a move still hold
@@ -60,8 +60,8 @@ void describe(OptionTable& t, RegistrationOptions& o) {
 
 NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world_body, double width_m,
                           int threads) {
-  std::vector<NormalEquations> parts(chunk_count(matches.size(), kChunk));
-  for_each_chunk(matches.size(), kChunk, threads, [&](std::size_t chunk, std::size_t first, std::size_t end) {
+  std::vector<NormalEquations> parts(chunk_count(matches.size(), kMatchesPerChunk));
+  for_each_chunk(matches.size(), kMatchesPerChunk, threads, [&](std::size_t chunk, std::size_t first, std::size_t end) {
     parts[chunk] = sums_of(matches.data() + first, matches.data() + end, T_world_body, width_m);
   });
   NormalEquations sums;

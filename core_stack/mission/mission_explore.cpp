@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core_stack/common/json_text.h"
+#include "core_stack/mission/json_point.h"
 #include "core_stack/mission/mission_control.h"
 
 namespace karst::core {
@@ -14,14 +15,6 @@ constexpr TimeNs kPause = 400 * kMillisecond;
 constexpr double kSameGoal_m = 0.3;
 constexpr double kProgress_m = 0.5;
 constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
-
-nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
-nlohmann::json list(const std::vector<Vec3>& points) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const Vec3& p : points) all.push_back(list(p));
-  return all;
-}
 
 nlohmann::json to_json(const Goal& goal, const char* state, const std::string& reason) {
   nlohmann::json j{{"position", list(goal.position)},

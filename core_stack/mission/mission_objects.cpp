@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core_stack/mission/json_point.h"
 #include "core_stack/mission/mission_control.h"
 #include "core_stack/mission/object_log.h"
 
@@ -9,8 +10,6 @@ namespace karst::core {
 namespace {
 
 constexpr std::uint32_t kReported = 0;  // in place of a record's number, which is 1 at least
-
-nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 const char* name_of(ObjectNews::State state) {
   switch (state) {

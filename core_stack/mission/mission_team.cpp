@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/mission/json_point.h"
 #include "core_stack/mission/mission_control.h"
 
 namespace karst::core {
@@ -19,8 +20,6 @@ constexpr double kAtRefuge_m = 0.5;
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
 constexpr double kAboutThere_m = 0.4, kMostStrayed_m = 1.5;
-
-nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 TeamPhase told(Phase phase) {
   switch (phase) {

@@ -3,14 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/mission/json_point.h"
 #include "core_stack/vehicle/object_detection.h"
 
 namespace karst::core {
 namespace {
-
-double rounded(double v) { return std::round(v * 1000) / 1000; }
-
-nlohmann::json list(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
 const char* name(std::uint8_t kind) { return name_of(static_cast<ObjectKind>(kind)); }
 
@@ -36,7 +33,7 @@ void ObjectLog::news(TimeNs now, const char* kind, const ToldObjects& objects, R
     nlohmann::json fields{{"robot", key.first}, {"number", key.second}, {"state", state}};
     if (seen.kind != 0) {
       fields["what"] = name(seen.kind);
-      fields["position"] = list(seen.position);
+      fields["position"] = rounded_list(seen.position);
       fields["deviation"] = rounded(seen.deviation_m);
     }
     log.event(now, kind, fields);
@@ -48,7 +45,7 @@ nlohmann::json list_of(const std::vector<TeamObject>& objects) {
   nlohmann::json all = nlohmann::json::array();
   for (const TeamObject& o : objects)
     all.push_back({{"what", name(o.kind)},
-                   {"position", list(o.position)},
+                   {"position", rounded_list(o.position)},
                    {"deviation", rounded(o.deviation_m)},
                    {"told_by", o.told_by}});
   return all;

@@ -5,13 +5,10 @@
 #include <numeric>
 
 #include "core_stack/common/error.h"
+#include "core_stack/mission/json_point.h"
 
 namespace karst::core {
 namespace {
-
-double rounded(double v) { return std::round(v * 1000) / 1000; }
-
-nlohmann::json list(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
 }  // namespace
 
@@ -34,7 +31,7 @@ void TeamLog::base(TimeNs t, const Teammate& base) {
     if (base.told_dead(r)) dead.push_back(r);
     const auto& landing = base.landing_of(r);
     if (landing && landing->state == LandingClaim::State::landed)
-      relays.push_back({r, list(landing->ground)});
+      relays.push_back({r, rounded_list(landing->ground)});
   }
   event(t, "base",
         {{"connected", base.graph().connected(t)},

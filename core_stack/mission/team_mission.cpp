@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core_stack/mission/json_point.h"
+
 namespace karst::core {
 namespace {
 
@@ -18,8 +20,6 @@ CoreOptions for_team(CoreOptions o) {
   o.homing.landing.landing_speed_mps = o.mission.landing_speed_mps;
   return o;
 }
-
-nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 }  // namespace
 

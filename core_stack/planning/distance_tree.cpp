@@ -8,7 +8,7 @@
 namespace karst::core {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
 /// Names of what comes next on the way that are no node's place.
 constexpr CellKey kNothing{std::numeric_limits<std::int32_t>::max(), 0, 0};
 constexpr CellKey kRoot{std::numeric_limits<std::int32_t>::min(), 0, 0};
@@ -56,7 +56,7 @@ struct DistanceTree::Tree {
   void forget_ways_through(const RoadmapGraph& g, std::vector<PastNode> gone, std::vector<NodeRef>& lost);
   void settle(const RoadmapGraph& g, const std::vector<NodeRef>& lost);
   void forget(const NodeRef& n, std::vector<PastNode>& gone, std::vector<NodeRef>& lost) {
-    length(n) = kInf, next(n) = kNothing;
+    length(n) = kUnreached_m, next(n) = kNothing;
     lost.push_back(n);
     gone.push_back({n.tile, tiles[n.tile].nodes[n.local]});
   }
@@ -70,7 +70,7 @@ void DistanceTree::Tree::take_over(const RoadmapGraph& g, std::uint32_t tile, st
   TreeTile& now = tiles[tile];
   now.seen = g.updates;
   now.nodes = g.tiles[tile].nodes;
-  now.length_m.assign(now.nodes.size(), kInf);
+  now.length_m.assign(now.nodes.size(), kUnreached_m);
   now.next.assign(now.nodes.size(), kNothing);
   std::vector<char> kept(before.nodes.size(), false);
   for (std::uint32_t i = 0; i < now.nodes.size(); ++i) {
@@ -84,7 +84,7 @@ void DistanceTree::Tree::take_over(const RoadmapGraph& g, std::uint32_t tile, st
     }
   }
   for (std::size_t k = 0; k < kept.size(); ++k)
-    if (!kept[k] && before.length_m[k] < kInf) gone.push_back({tile, before.nodes[k]});
+    if (!kept[k] && before.length_m[k] < kUnreached_m) gone.push_back({tile, before.nodes[k]});
 }
 
 /// Nodes that led straight to the root and no longer do, or not as they did, forget it.
@@ -130,16 +130,16 @@ void DistanceTree::Tree::settle(const RoadmapGraph& g, const std::vector<NodeRef
   for (std::size_t i = 0; i < joins.size(); ++i) offer(joins[i].node, joins[i].length_m, kRoot);
   // Neighbours' offers are gathered first: one that stands on another lost node's offer would do no harm, but
   // push entries that go stale.
-  std::vector<std::pair<double, CellKey>> offers(lost.size(), {kInf, kNothing});
+  std::vector<std::pair<double, CellKey>> offers(lost.size(), {kUnreached_m, kNothing});
   for (std::size_t i = 0; i < lost.size(); ++i) {
     const Vec3 p = g.position_of(lost[i]);
     g.for_each_neighbour(lost[i], [&](const NodeRef& m) {
-      if (length(m) == kInf) return;
+      if (length(m) == kUnreached_m) return;
       offers[i] = std::min(offers[i], {length(m) + (g.position_of(m) - p).norm(), g.cell_of(m)});
     });
   }
   for (std::size_t i = 0; i < lost.size(); ++i)
-    if (offers[i].first < kInf) offer(lost[i], offers[i].first, offers[i].second);
+    if (offers[i].first < kUnreached_m) offer(lost[i], offers[i].first, offers[i].second);
 
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end());
@@ -169,7 +169,7 @@ void DistanceTree::Tree::update(const RoadmapGraph& g) {
 std::optional<Join> DistanceTree::Tree::best_join(const RoadmapGraph& g, const Vec3& from,
                                                   double& length_m) const {
   std::optional<Join> best;
-  length_m = kInf;
+  length_m = kUnreached_m;
   for (const Join& j : g.joins(from))
     if (j.length_m + length(j.node) < length_m) length_m = j.length_m + length(j.node), best = j;
   return best;
@@ -194,7 +194,7 @@ std::optional<double> DistanceTree::length_m(const VoxelMap& map, const Roadmap&
   const RoadmapGraph& g = roadmap.graph();
   if (!tree_->root || !g.rule) return std::nullopt;
   const std::vector<Vec3> way_out = way_to_clear(map, g, from);
-  double length_m = kInf;
+  double length_m = kUnreached_m;
   if (way_out.empty() || !tree_->best_join(g, way_out.back(), length_m)) return std::nullopt;
   return path_length_m(way_out) + length_m;
 }
@@ -213,7 +213,7 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
     return fail(PlanStatus::start_blocked,
                 "the start is nearer to an obstacle than the clearance and no way leads out");
   path.escape_points = path.points.size() - 1;
-  double length_m = kInf;
+  double length_m = kUnreached_m;
   const std::optional<Join> out = tree_->best_join(g, path.points.back(), length_m);
   if (!out) return fail(PlanStatus::no_path, "no way through known free space leads home");
 
@@ -229,7 +229,7 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
     if (tree_->joined[i] == g.cell_of(nodes.back()))
       append_way(g, *out, nodes, tree_->joins[i], *tree_->root, path.points);
   path.status = PlanStatus::found;
-  measure(path, kInf);
+  measure(path, kUnreached_m);
   return path;
 }
 

@@ -7,8 +7,6 @@
 namespace surface_coverage {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
-
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

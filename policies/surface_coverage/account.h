@@ -16,6 +16,8 @@ using karst::SurfaceCell;
 using karst::Vec3;
 using karst::Viewpoint;
 
+constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180;
+
 /// A cell of the map by the place of its centre; the map's own numbering is not known here.
 struct CellId {
   long x = 0, y = 0, z = 0;

@@ -7,7 +7,6 @@
 namespace surface_coverage {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180;
 constexpr double kApart_m = 1.0;  // places for one patch
 constexpr double kMargin_rad =
     4 * kDegree;  // from the edges of what counts: the estimate and the map are off

@@ -16,8 +16,6 @@
 namespace surface_coverage {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// A place worth flying to: for pictures of `cells`, or to see what lies behind a frontier.
 struct Stop {
   Viewpoint at;

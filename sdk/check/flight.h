@@ -10,6 +10,9 @@
 
 namespace karst::check {
 
+/// A cave for a flight of some dozens of decisions.
+inline const CaveShape kShape{.volume_m3 = 200, .radius_m = 1.6, .branches = 4, .resolution_m = 0.2};
+
 class Flight {
  public:
   /// The cave is known up to `known_share` of its length at first. Everything follows from the seed.

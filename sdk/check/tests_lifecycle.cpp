@@ -14,7 +14,7 @@ using Of = Test::Of;
 
 const CaveShape kSmall{.volume_m3 = 120, .radius_m = 1.6, .branches = 2, .resolution_m = 0.2};
 
-std::string string_of(const karst_text_t& t) { return host::cleaned(t, host::kLogLineLimit); }
+std::string line_of(const karst_text_t& t) { return host::cleaned(t, host::kLogLineLimit); }
 
 void order(Context& c) {
   const auto session = new_session(c);
@@ -125,9 +125,9 @@ void bounds(Context& c) {
     const karst_parameter_t& p = d.parameters[i];
     std::vector<karst_parameter_value_t> values = defaults(*c.policy);
     if (p.type == KARST_PARAMETER_TEXT) {
-      for (const std::string& choice : host::split_choices(string_of(p.choices))) {
+      for (const std::string& choice : host::split_choices(line_of(p.choices))) {
         values[i].text = host::view_of(choice);
-        fly_with(c, values, string_of(p.id) + " = " + choice);
+        fly_with(c, values, line_of(p.id) + " = " + choice);
         ++tried;
       }
       continue;
@@ -137,7 +137,7 @@ void bounds(Context& c) {
       values[i].number = v;
       char text[40];
       std::snprintf(text, sizeof text, " = %g", v);
-      fly_with(c, values, string_of(p.id) + text);
+      fly_with(c, values, line_of(p.id) + text);
       ++tried;
     }
   }
@@ -157,7 +157,7 @@ void texts(Context& c) {
     for (const std::string& text : odd) {
       std::vector<karst_parameter_value_t> values = defaults(*c.policy);
       values[i].text = host::view_of(text);
-      fly_with(c, values, string_of(d.parameters[i].id) + " = \"" + text.substr(0, 20) + "\"");
+      fly_with(c, values, line_of(d.parameters[i].id) + " = \"" + text.substr(0, 20) + "\"");
     }
   }
   if (!any) throw NotApplicable{"it declares no parameter of free text"};

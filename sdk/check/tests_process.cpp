@@ -8,12 +8,12 @@ namespace {
 
 using Of = Test::Of;
 
-const CaveShape kShape{.volume_m3 = 150, .radius_m = 1.6, .branches = 3, .resolution_m = 0.2};
+const CaveShape kSmallShape{.volume_m3 = 150, .radius_m = 1.6, .branches = 3, .resolution_m = 0.2};
 
 /// A whole life, between two looks at the process. Returns what its calls changed.
 std::vector<std::string> live(Context& c) {
   const auto session = new_session(c);
-  Flight flight(c.seed, kShape);
+  Flight flight(c.seed, kSmallShape);
   const auto object = started(c, *session);
   fly(*object, flight, 8);
   demand(object->deactivate());

@@ -11,7 +11,6 @@ namespace {
 
 using Of = Test::Of;
 
-const CaveShape kShape{.volume_m3 = 200, .radius_m = 1.6, .branches = 4, .resolution_m = 0.2};
 constexpr const char* kServices[] = {"map.info",           "map.cell_states",   "map.cast_rays",
                                      "map.count_in_boxes", "map.surface_cells", "map.retain",
                                      "path.lengths",       "gain.newly_seen",   "draw.points",

@@ -9,7 +9,6 @@ namespace {
 
 using Of = Test::Of;
 
-const CaveShape kShape{.volume_m3 = 200, .radius_m = 1.6, .branches = 4, .resolution_m = 0.2};
 constexpr int kBefore = 10, kAfter = 10;  // decisions
 
 std::unique_ptr<Object> restorable(Context& c, host::Session& session) {

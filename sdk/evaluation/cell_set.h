@@ -12,6 +12,10 @@ namespace karst::evaluation {
 
 using core::CellKey;
 
+inline core::Vec3 center_of(const CellKey& k, double resolution_m) {
+  return core::Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) * resolution_m;
+}
+
 class CellSet {
  public:
   static constexpr int kEdge = 8;  // cells along a block's edge

@@ -36,10 +36,6 @@ CellKey key_of(const Vec3& p, double resolution_m) {
   return {k(p.x()), k(p.y()), k(p.z())};
 }
 
-Vec3 center_of(const CellKey& k, double resolution_m) {
-  return Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) * resolution_m;
-}
-
 Triangle triangle(const cave::TriangleMesh& mesh, std::size_t i) {
   const auto& t = mesh.triangles[i];
   return {mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(),

@@ -29,10 +29,6 @@ KeyBox cells_touching(const Vec3& low, const Vec3& high, double edge_m) {
 Vec3 low_of(const Triangle& t) { return t.a.cwiseMin(t.b).cwiseMin(t.c); }
 Vec3 high_of(const Triangle& t) { return t.a.cwiseMax(t.b).cwiseMax(t.c); }
 
-Vec3 center_of(const CellKey& k, double resolution_m) {
-  return Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) * resolution_m;
-}
-
 template <class Visit>
 void for_each_key(const KeyBox& box, const Visit& visit) {
   for (std::int32_t z = box.low.z; z <= box.high.z; ++z)

@@ -7,8 +7,6 @@ namespace {
 
 constexpr const char* kPath = "policy.parameters";  // in a mission file
 
-std::string string_of(const karst_text_t& t) { return t.length == 0 ? "" : std::string(t.data, t.length); }
-
 }  // namespace
 
 std::vector<std::string> split_choices(const std::string& choices) {

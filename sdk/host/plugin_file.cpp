@@ -34,8 +34,6 @@ bool is_identifier(const std::string& s) {
   return s.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
-std::string string_of(const karst_text_t& t) { return t.length == 0 ? "" : std::string(t.data, t.length); }
-
 /// "" or the first mandatory slot that is missing. The size check comes first: a short table has no later
 /// slots.
 std::string missing_slot(const karst_policy_t& p) {

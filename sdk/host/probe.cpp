@@ -22,34 +22,34 @@ namespace {
 
 using nlohmann::json;
 
-std::string string_of(const karst_text_t& t) { return cleaned(t, kLogLineLimit); }
+std::string line_of(const karst_text_t& t) { return cleaned(t, kLogLineLimit); }
 
 std::string default_text(const karst_parameter_t& p) {
   if (p.type == KARST_PARAMETER_BOOLEAN) return p.default_number != 0 ? "true" : "false";
-  if (p.type == KARST_PARAMETER_TEXT) return string_of(p.default_text);
+  if (p.type == KARST_PARAMETER_TEXT) return line_of(p.default_text);
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, p.default_number).ptr};
 }
 
 json parameter_json(const karst_parameter_t& p) {
   constexpr const char* types[] = {"", "real", "integer", "boolean", "text"};
-  return {{"id", string_of(p.id)},
+  return {{"id", line_of(p.id)},
           {"type", types[p.type]},
-          {"unit", string_of(p.unit)},
+          {"unit", line_of(p.unit)},
           {"default", default_text(p)},
           {"low", p.low},
           {"high", p.high},
-          {"help", string_of(p.help)},
-          {"choices", split_choices(string_of(p.choices))}};
+          {"help", line_of(p.help)},
+          {"choices", split_choices(line_of(p.choices))}};
 }
 
 json policy_json(const karst_policy_descriptor_t& d) {
   json parameters = json::array();
   for (std::uint32_t i = 0; i < d.parameter_count; ++i) parameters.push_back(parameter_json(d.parameters[i]));
-  return {{"id", string_of(d.id)},
-          {"name", string_of(d.name)},
-          {"version", string_of(d.version)},
-          {"one_line", string_of(d.one_line)},
+  return {{"id", line_of(d.id)},
+          {"name", line_of(d.name)},
+          {"version", line_of(d.version)},
+          {"one_line", line_of(d.one_line)},
           {"parameters", parameters}};
 }
 
@@ -89,7 +89,7 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
   dup2(null, STDIN_FILENO), dup2(null, STDOUT_FILENO), dup2(null, STDERR_FILENO);
   const std::string text = answer(file);
   for (std::size_t sent = 0; sent < text.size();) {
-    const ssize_t n = write(out, text.data() + sent, text.size() - sent);
+    const ssize_t n = ::write(out, text.data() + sent, text.size() - sent);
     if (n <= 0) break;
     sent += static_cast<std::size_t>(n);
   }

@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
   execv(argv[0], argv);
   const char* text = std::strerror(errno);
   for (const char* part : {"karst: cannot run ", static_cast<const char*>(argv[0]), ": ", text, "\n"})
-    if (write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
+    if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
   _exit(127);
 }
 

@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 
 constexpr int kFailed = 2;  // exit code when a test failed
 
-struct Arguments {
+struct CheckArguments {
   check::CheckOptions options;
   std::string work, out;
   bool json = false, list = false;
@@ -85,7 +85,7 @@ ordered_json to_json(const TestResult& r) {
   return j;
 }
 
-int check_file(Arguments& args) {
+int check_file(CheckArguments& args) {
   if (args.list) return list_tests(args.json);
   if (args.options.file.empty())
     throw core::InputError("karst policy check", "",
@@ -125,7 +125,7 @@ int check_file(Arguments& args) {
   return passed ? 0 : kFailed;
 }
 
-check::Context context_of(const Arguments& args, check::Progress& progress) {
+check::Context context_of(const CheckArguments& args, check::Progress& progress) {
   check::Context c;
   c.file = args.options.file;
   c.karst = std::filesystem::read_symlink("/proc/self/exe").string();
@@ -136,7 +136,7 @@ check::Context context_of(const Arguments& args, check::Progress& progress) {
   return c;
 }
 
-void run_one(const Arguments& args) {
+void run_one(const CheckArguments& args) {
   const Test* test = args.options.tests.size() == 1 ? check::find_test(args.options.tests[0]) : nullptr;
   if (test == nullptr) throw core::InputError("karst policy check-one", "", "runs one test, by its name");
   check::Progress progress(std::filesystem::path(args.work) / "progress");
@@ -144,7 +144,7 @@ void run_one(const Arguments& args) {
   run_test(context, *test, args.work);
 }
 
-void write_answers(const Arguments& args) {
+void write_answers(const CheckArguments& args) {
   check::Progress progress(args.out + ".progress");
   std::filesystem::remove(args.out + ".progress");
   check::Context context = context_of(args, progress);
@@ -160,7 +160,7 @@ void write_answers(const Arguments& args) {
   if (!out.flush()) throw core::InputError(args.out, "", "cannot be written");
 }
 
-void add_common(CLI::App& app, Arguments& args) {
+void add_common(CLI::App& app, CheckArguments& args) {
   app.add_option("file", args.options.file, "policy plugin (.so)")->check(not_empty());
   app.add_option("--policy", args.options.policy, "only this policy of the file")->check(not_empty());
   app.add_option("--seed", args.options.seed, "seed of caves, flights and damage; default 1")
@@ -178,7 +178,7 @@ void add_common(CLI::App& app, Arguments& args) {
 }  // namespace
 
 void add_check_command(CLI::App& policy) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<CheckArguments>();
   CLI::App* check_app = policy.add_subcommand(
       "check",
       "Test a policy plugin from outside, each test in a process of its own.\n\n"

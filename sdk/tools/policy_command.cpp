@@ -21,7 +21,7 @@ using host::ParameterListing;
 using host::PolicyListing;
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct PolicyArguments {
   std::vector<std::string> plugins;
   bool json = false, verbose = false;
 };
@@ -85,7 +85,7 @@ void print_text(const std::vector<PolicyListing>& all, const host::SearchPath& p
 }  // namespace
 
 void add_policy_command(CLI::App& app) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<PolicyArguments>();
   CLI::App* policy = app.add_subcommand("policy", "Exploration policies this installation can fly");
   policy->require_subcommand(1);
   add_policy_new(*policy);

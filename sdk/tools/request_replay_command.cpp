@@ -25,14 +25,14 @@ using nlohmann::ordered_json;
 constexpr int kDiffers = 2;
 constexpr double kNoLimit_s = 1e7;  // a debugger may stop the policy for as long as it takes
 
-struct Arguments {
+struct ReplayArguments {
   std::string run, policy;
   std::vector<std::string> plugins, settings;
   std::uint32_t from = 1, to = std::numeric_limits<std::uint32_t>::max();
   bool expect_same = false, json = false;
 };
 
-host::PolicyChoice choice_of(const Arguments& args, const host::RequestLogHeader& header) {
+host::PolicyChoice choice_of(const ReplayArguments& args, const host::RequestLogHeader& header) {
   host::PolicyChoice c;
   c.name = args.policy.empty() ? header.policy : args.policy;
   c.plugin_files = args.plugins;
@@ -63,7 +63,7 @@ void print(const core::DecisionRequest& r, const std::string& recorded, const st
   if (recorded != now) print_out("%31s recorded: %s\n", "", host::answer_line(recorded).c_str());
 }
 
-int replay(const Arguments& args) {
+int replay(const ReplayArguments& args) {
   const fs::path file =
       fs::is_directory(args.run) ? fs::path(args.run) / host::kRequestLogName : fs::path(args.run);
   if (!fs::exists(file) && fs::is_directory(args.run))
@@ -116,7 +116,7 @@ int replay(const Arguments& args) {
 }  // namespace
 
 void add_request_replay_command(CLI::App& policy) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ReplayArguments>();
   CLI::App* app = policy.add_subcommand(
       "replay",
       "Put the requests of a flight to a policy once more, without a vehicle.\n\n"

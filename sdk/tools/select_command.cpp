@@ -28,7 +28,7 @@ using selection::Selected;
 constexpr std::size_t kManyCaves = 30;  // a share of fewer caves may be off by 18 points and more
 constexpr int kRefused = 3;             // exit code: nothing similar was flown
 
-struct Arguments {
+struct SelectArguments {
   std::string cave, start, out, preset;
   std::vector<std::string> results, learn;
   selection::SelectOptions options;
@@ -39,7 +39,7 @@ ordered_json known(double v) { return std::isfinite(v) ? ordered_json(v) : order
 
 void tell(const std::string& message) { print_error("%s\n", message.c_str()); }
 
-Experience experience_of(const Arguments& args) {
+Experience experience_of(const SelectArguments& args) {
   std::vector<std::string> files = args.results;
   if (files.empty() && !installed_experience().empty()) files = {installed_experience()};
   if (files.empty())
@@ -56,7 +56,7 @@ std::string interval_text(const selection::Expected& x) {
 }
 
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
-           const Arguments& args) {
+           const SelectArguments& args) {
   print_out("The cave:\n%s", selection::to_text(cave).c_str());
   print_out("%s:\n", s.flown ? "This very cave was flown; all rests on that. Nearest" : "Caves like it");
   for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
@@ -92,7 +92,7 @@ ordered_json parameters_json(const selection::Preset& preset) {
 }
 
 ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
-                     const Arguments& args) {
+                     const SelectArguments& args) {
   ordered_json j{{"refused", s.refused},
                  {"flown", s.flown},
                  {"reason", s.reason},
@@ -124,7 +124,7 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
   return j;
 }
 
-int select_for(const Arguments& args) {
+int select_for(const SelectArguments& args) {
   const selection::Description cave = selection::describe_file(args.cave, args.start);
   const Experience e = experience_of(args);
   const Selected s =
@@ -154,7 +154,7 @@ void print_answered(const selection::LeaveOneOut& l) {
   print_shares("drawn at random", l.chance_answered);
 }
 
-void leave_one_out(const Arguments& args) {
+void leave_one_out(const SelectArguments& args) {
   const Experience e = experience_of(args);
   const selection::LeaveOneOut l = selection::leave_one_out(e, args.options, "karst select");
   if (args.json) {
@@ -201,7 +201,7 @@ void leave_one_out(const Arguments& args) {
         l.caves.size(), 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves.size())));
 }
 
-void learn(const Arguments& args) {
+void learn(const SelectArguments& args) {
   if (args.out.empty()) throw InputError("karst select", "--learn", "needs --out FILE.info");
   if (std::filesystem::path(args.out).extension() != ".info")
     throw InputError("--out", args.out, "expected a name that ends in .info");
@@ -210,7 +210,7 @@ void learn(const Arguments& args) {
   print_out("%s: %zu contestants in %zu caves\n", args.out.c_str(), e.contestants.size(), e.caves.size());
 }
 
-int run(const Arguments& args) {
+int run(const SelectArguments& args) {
   const int wanted = !args.cave.empty() + !args.learn.empty() + args.leave_one_out;
   if (wanted != 1)
     throw InputError("karst select", "", "needs one of --cave FILE, --learn STORE, --leave-one-out");
@@ -228,7 +228,7 @@ std::string installed_experience() {
 }
 
 void add_select_command(CLI::App& app) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<SelectArguments>();
   CLI::App* select = app.add_subcommand(
       "select",
       "Name the policy for a cave, by how policies fared in caves like it\n\n"

@@ -26,7 +26,7 @@ using campaign::Campaign;
 using core::InputError;
 using tuning::TuneResult;
 
-struct Arguments {
+struct TuneArguments {
   std::string policy, plugin, out, mission, profile = "campaign", flight_time = "300 s";
   std::vector<std::string> caves, held_out, parameters, settings;
   std::int64_t seeds = 2;
@@ -57,7 +57,7 @@ host::PolicyListing listing_of(const std::string& name, const std::string& plugi
                    "no plugin offers it" + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
-tuning::TuneOptions options_of(const Arguments& args) {
+tuning::TuneOptions options_of(const TuneArguments& args) {
   tuning::TuneOptions o = args.tune;
   o.policy = campaign::parse_contestant(args.policy);
   o.policy.plugin = args.plugin;
@@ -112,7 +112,7 @@ std::string worth_text(const TuneResult& r) {
   return out;
 }
 
-int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult& r) {
+int finish(const TuneArguments& args, const tuning::TuneOptions& o, const TuneResult& r) {
   const fs::path folder = args.out;
   if (!r.tried.empty()) write_table(folder / "tune.csv", r, o.metric);
   if (r.stopped) {
@@ -142,7 +142,7 @@ int finish(const Arguments& args, const tuning::TuneOptions& o, const TuneResult
   return 0;
 }
 
-int tune(const Arguments& args) {
+int tune(const TuneArguments& args) {
   refuse_run(args.out);
   if (fs::exists(fs::path(args.out) / "campaign.sqlite"))
     throw InputError(args.out, "campaign.sqlite", "is that of a campaign; choose another --out");
@@ -182,7 +182,7 @@ int tune(const Arguments& args) {
 }  // namespace
 
 void add_tune_command(CLI::App& app) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<TuneArguments>();
   CLI::App* tune_app = app.add_subcommand(
       "tune",
       "Find better parameters for a policy by flying it, and say what they are worth in caves it was not "

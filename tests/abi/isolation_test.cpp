@@ -41,15 +41,6 @@ std::unique_ptr<host::HostedPolicy> load_isolated(const std::string& file,
   return load(file, isolated(policy));
 }
 
-std::string failure_of(core::PolicyPort& policy, const core::DecisionRequest& request) {
-  try {
-    policy.decide(request);
-  } catch (const core::PolicyFailure& e) {
-    return e.what();
-  }
-  return "";
-}
-
 std::string why_of(const std::string& file, host::Isolation isolation) {
   host::PolicyChoice c = isolated();
   c.isolation = isolation;

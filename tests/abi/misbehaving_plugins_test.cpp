@@ -20,16 +20,6 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// What decide() throws; "" if it returns.
-std::string failure_of(core::PolicyPort& policy, const core::DecisionRequest& request) {
-  try {
-    policy.decide(request);
-  } catch (const core::PolicyFailure& e) {
-    return e.what();
-  }
-  return "";
-}
-
 /// The reason of the hold a first failure leads to.
 std::string first_failure(const std::string& file, const std::string& name = "plain") {
   Room room;

@@ -75,6 +75,15 @@ inline std::unique_ptr<host::HostedPolicy> load(const std::string& file,
                                                 const std::string& policy = "plain") {
   return load(file, choice_of(policy));
 }
+/// What decide() throws; "" if it returns.
+inline std::string failure_of(core::PolicyPort& policy, const core::DecisionRequest& request) {
+  try {
+    policy.decide(request);
+  } catch (const core::PolicyFailure& e) {
+    return e.what();
+  }
+  return "";
+}
 /// What load says when it fails; "" if it does not.
 inline std::string load_error(const std::string& file, const std::string& policy = "plain") {
   try {

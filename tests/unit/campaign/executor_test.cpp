@@ -143,7 +143,7 @@ TEST(Process, ItsOutputAndItsEndAreTold) {
 
 // Rows of trials that did not go well.
 
-Plan small_plan() {
+Plan one_trial_plan() {
   Plan plan;
   plan.trial_timeout_s = 60;
   plan.contestants.resize(1);
@@ -158,9 +158,9 @@ Plan small_plan() {
 StoredTrial collected(const std::string& name, const std::string& script, double timeout_s = 100) {
   const fs::path dir = fresh_folder(name);
   TrialJob j = job(dir, "unused", script);
-  j.run_dir = dir / run_dir_of(small_plan(), {0, 0, 4});
+  j.run_dir = dir / run_dir_of(one_trial_plan(), {0, 0, 4});
   ends_of({j}, options_for(dir, timeout_s));
-  return collect(small_plan(), {0, 0, 4}, dir);
+  return collect(one_trial_plan(), {0, 0, 4}, dir);
 }
 
 TEST(Collect, ATrialThatCouldNotStartIsFailedWithItsOwnReason) {

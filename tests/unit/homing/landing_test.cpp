@@ -17,7 +17,7 @@ namespace {
 
 using testing::passage;
 
-constexpr double kRadius = 0.3;
+constexpr double kRobotRadius_m = 0.3;
 
 /// Rock below `floor(x, y)` in cells, free above it, up to cell 15.
 VoxelMap floor_map(const std::function<int(int x, int y)>& floor) {
@@ -29,10 +29,10 @@ VoxelMap floor_map(const std::function<int(int x, int y)>& floor) {
 }
 const Vec3 kPlace(0.1, 0.1, 1.5);
 
-GroundVerdict verdict(const VoxelMap& map) { return ground_below(map, kPlace, kRadius, {}).verdict; }
+GroundVerdict verdict(const VoxelMap& map) { return ground_below(map, kPlace, kRobotRadius_m, {}).verdict; }
 
 TEST(Ground, FlatIsGoodAndLiesWhereTheFloorIs) {
-  const Ground g = ground_below(floor_map([](int, int) { return 2; }), kPlace, kRadius, {});
+  const Ground g = ground_below(floor_map([](int, int) { return 2; }), kPlace, kRobotRadius_m, {});
   EXPECT_EQ(g.verdict, GroundVerdict::good);
   EXPECT_NEAR((g.ground - Vec3(0.1, 0.1, 0.4)).norm(), 0, 1e-9);
   EXPECT_NEAR(g.step_m, 0, 1e-9);
@@ -71,14 +71,14 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
     }
     const GroundOptions options;
     const Vec3 place(random.uniform(-1, 1), random.uniform(-1, 1), 1.5);
-    const Ground g = ground_below(map, place, kRadius, options);
+    const Ground g = ground_below(map, place, kRobotRadius_m, options);
 
     std::vector<Vec3> points;
     bool open_to_floor = true;
     for (int x = -12; x < 12; ++x)
       for (int y = -12; y < 12; ++y) {
         const Vec3 c = map.center_of({x, y, 0});
-        if (std::hypot(c.x() - place.x(), c.y() - place.y()) > kRadius + options.margin_m) continue;
+        if (std::hypot(c.x() - place.x(), c.y() - place.y()) > kRobotRadius_m + options.margin_m) continue;
         int top = 100;
         for (int z = -3; z <= 7; ++z)
           if (map.at(CellKey{x, y, z}) == Cell::occupied) top = z;
@@ -110,12 +110,12 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
 
 TEST(OthersGetBy, OverItBesideItOrNotAtAll) {
   const Vec3 middle(0.1, 0.1, 0.3);
-  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRadius, 0.55, 3));     // over it
-  EXPECT_FALSE(others_get_by(passage(1.6, 1.4), middle, kRadius, 0.55, 3));  // neither over nor past it
-  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRadius, 0.55, 3));     // past it
-  EXPECT_TRUE(others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRadius, 0.55, 3));  // on one side of it
+  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRobotRadius_m, 0.55, 3));     // over it
+  EXPECT_FALSE(others_get_by(passage(1.6, 1.4), middle, kRobotRadius_m, 0.55, 3));  // neither over nor past it
+  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRobotRadius_m, 0.55, 3));     // past it
+  EXPECT_TRUE(others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRobotRadius_m, 0.55, 3));  // on one side of it
   // At the end of a blind passage nobody is held up.
-  EXPECT_TRUE(others_get_by(passage(2, 1.6), {9, 0.1, 0.3}, kRadius, 0.55, 3));
+  EXPECT_TRUE(others_get_by(passage(2, 1.6), {9, 0.1, 0.3}, kRobotRadius_m, 0.55, 3));
 }
 
 // A relay landed where others got by by its radius; in their maps it filled cells, and closed the passage.
@@ -126,13 +126,13 @@ TEST(OthersGetBy, StillWhenTheyHaveMappedIt) {
   for (int n = 0; n < 200; ++n) {
     std::vector<CellChange> changes;
     VoxelMap map = passage(random.uniform(2, 4), random.uniform(1.3, 1.9), 8, &changes);
-    const Vec3 standing(random.uniform(-0.5, 0.5), random.uniform(-1, 1), kRadius);
+    const Vec3 standing(random.uniform(-0.5, 0.5), random.uniform(-1, 1), kRobotRadius_m);
     const double clearance_m = search_clearance_m(planning, map.resolution_m());
-    const bool by_radius = others_get_by(map, standing, kRadius, clearance_m, 3),
-               as_mapped = others_get_by(map, standing, kRadius + kAsMapped_m, clearance_m, 3);
+    const bool by_radius = others_get_by(map, standing, kRobotRadius_m, clearance_m, 3),
+               as_mapped = others_get_by(map, standing, kRobotRadius_m + kAsMapped_m, clearance_m, 3);
     const Vec3 landed = standing + 0.1 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
     for (int i = 0; i < 1000; ++i) {
-      const Vec3 p = landed + kRadius * Vec3(random.normal(), random.normal(), random.normal()).normalized();
+      const Vec3 p = landed + kRobotRadius_m * Vec3(random.normal(), random.normal(), random.normal()).normalized();
       map.assign(map.key_of(p), 1, 2.0f);
     }
     Roadmap roadmap(planning);
@@ -152,7 +152,7 @@ TEST(OthersGetBy, AWallBesideThatWasClosedBeforeIsNoMatter) {
   VoxelMap map = passage(6, 3.2);
   for (int x = -60; x < 60; ++x)
     for (int z = 0; z < 16; ++z) map.assign({x, 0, z}, 1, 2.0f);
-  EXPECT_TRUE(others_get_by(map, {0.1, 1.5, 0.3}, kRadius, 0.55, 3));
+  EXPECT_TRUE(others_get_by(map, {0.1, 1.5, 0.3}, kRobotRadius_m, 0.55, 3));
 }
 
 TEST(LinkEstimate, UnknownAndRockTakeTheirDecibels) {

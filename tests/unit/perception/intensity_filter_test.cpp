@@ -12,9 +12,6 @@
 namespace karst::core {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
-
 LidarScan scan_of(std::vector<float> range_m, std::vector<float> intensity) {
   return {0, nullptr, std::move(range_m), std::move(intensity)};
 }
@@ -38,8 +35,8 @@ TEST(IntensityFilter, ThePercentileIsThatOfAllReturns) {
     LidarScan scan;
     for (int i = 0; i < 200; ++i) {
       const double kind = random.uniform();
-      scan.range_m.push_back(kind < 0.1   ? kNan
-                             : kind < 0.2 ? kInf
+      scan.range_m.push_back(kind < 0.1   ? std::numeric_limits<float>::quiet_NaN()
+                             : kind < 0.2 ? std::numeric_limits<float>::infinity()
                                           : static_cast<float>(random.uniform(0.3, 3)));
       scan.intensity.push_back(static_cast<float>(std::floor(random.uniform(0, 50)) / 50));  // many ties
     }
@@ -61,16 +58,16 @@ TEST(IntensityFilter, ThePercentileIsThatOfAllReturns) {
 }
 
 TEST(IntensityFilter, LeavesScansAloneThatItCannotJudge) {
-  const std::vector<float> ranges{1, 1, 1, kNan};
+  const std::vector<float> ranges{1, 1, 1, std::numeric_limits<float>::quiet_NaN()};
   LidarScan no_intensity = scan_of({1, 1, 1}, {});
   drop_weakest_returns(no_intensity, 10, 1.5);
   EXPECT_EQ(no_intensity.range_m, (std::vector<float>{1, 1, 1}));
   LidarScan empty;
   drop_weakest_returns(empty, 10, 1.5);
-  LidarScan nothing_seen = scan_of({kNan, kInf}, {0.5f, 0.1f});
+  LidarScan nothing_seen = scan_of({std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}, {0.5f, 0.1f});
   drop_weakest_returns(nothing_seen, 50, 2);
-  EXPECT_EQ(nothing_seen.range_m[1], kInf);
-  LidarScan uniform = scan_of({1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, kNan});
+  EXPECT_EQ(nothing_seen.range_m[1], std::numeric_limits<float>::infinity());
+  LidarScan uniform = scan_of({1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, std::numeric_limits<float>::quiet_NaN()});
   drop_weakest_returns(uniform, 50, 2);
   EXPECT_EQ(uniform.range_m, (std::vector<float>{1, 1, 1, 1})) << "none is weaker than the others";
   LidarScan off = scan_of({1, 1}, {0.0f, 1.0f});

@@ -12,9 +12,6 @@
 namespace karst::core {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
-
 std::shared_ptr<const LidarModel> unit(int columns, int channels, double half_fov_rad) {
   auto model = std::make_shared<LidarModel>();
   model->columns = columns;
@@ -122,8 +119,8 @@ TEST(LonelyReturns, NothingButDropsAndTheRingHasNoSeam) {
     for (float& r : scan.range_m) {
       const double kind = random.uniform();
       if (kind < 0.3) r = static_cast<float>(random.uniform(0.3, 5));
-      if (kind < 0.1) r = kInf;
-      if (kind < 0.05) r = kNan;
+      if (kind < 0.1) r = std::numeric_limits<float>::infinity();
+      if (kind < 0.05) r = std::numeric_limits<float>::quiet_NaN();
     }
     LidarScan turned = scan;
     const int shift = 1 + static_cast<int>(random.uniform(0, 63));
@@ -156,9 +153,9 @@ TEST(LonelyReturns, ScansItCannotJudgeAreLeftAlone) {
   drop_lonely_returns(no_intensity, {});
   EXPECT_EQ(no_intensity.range_m, ranges);
   LidarScan nothing = room(unit(64, 8, 0.3), 0);
-  std::fill(nothing.range_m.begin(), nothing.range_m.end(), kInf);
+  std::fill(nothing.range_m.begin(), nothing.range_m.end(), std::numeric_limits<float>::infinity());
   drop_lonely_returns(nothing, {});
-  EXPECT_EQ(nothing.range_m, std::vector<float>(512, kInf));
+  EXPECT_EQ(nothing.range_m, std::vector<float>(512, std::numeric_limits<float>::infinity()));
   LidarScan one_row{0, unit(64, 2, 0.1), std::vector<float>(128, 2.0f), std::vector<float>(128, 0.1f)};
   drop_lonely_returns(one_row, {});
   EXPECT_EQ(one_row.range_m, std::vector<float>(128, 2.0f));

@@ -9,13 +9,12 @@
 namespace karst::core {
 namespace {
 
-const PlanningOptions kOptions{.clearance_m = 0.45};
 
 using testing::draw;
 using testing::Obstacles;
 using testing::random_map;
 
-constexpr CellKey kSize{16, 12, 8};
+constexpr CellKey kRoom{16, 12, 8};
 
 CellKey random_cell(Random& random, const CellKey& size) {
   const auto in = [&](std::int32_t n) {
@@ -35,7 +34,7 @@ TEST(GridPlanner, LengthIsWithinTheWeightOfDijkstra) {
   int found = 0, without = 0;
   EXPECT_TRUE(rc::check([&](std::uint64_t seed) {
     Random random(seed);
-    const VoxelMap map = random_map(random.bits(), kSize, seed % 2 ? 0.03 : 0.1);
+    const VoxelMap map = random_map(random.bits(), kRoom, seed % 2 ? 0.03 : 0.1);
     const Obstacles obstacles(map);
     PlanningOptions options;
     options.clearance_m = 0.3;
@@ -43,12 +42,12 @@ TEST(GridPlanner, LengthIsWithinTheWeightOfDijkstra) {
     CellKey from, to;
     bool ends_clear = false;
     for (int i = 0; i < 30 && !ends_clear; ++i) {
-      from = random_cell(random, kSize), to = random_cell(random, kSize);
+      from = random_cell(random, kRoom), to = random_cell(random, kRoom);
       ends_clear = is_clear(map, map.center_of(from), 0.3) && is_clear(map, map.center_of(to), 0.3);
     }
     if (!ends_clear) return;
     const Path path = plan_on_grid(map, map.center_of(from), map.center_of(to), options);
-    const std::optional<double> best = testing::dijkstra_m(map, obstacles, kSize, from, to, 0.3);
+    const std::optional<double> best = testing::dijkstra_m(map, obstacles, kRoom, from, to, 0.3);
     RC_ASSERT(path.found() == (best.has_value()));
     if (!best) {
       ++without;

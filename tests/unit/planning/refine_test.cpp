@@ -9,7 +9,6 @@
 namespace karst::core {
 namespace {
 
-const PlanningOptions kOptions{.clearance_m = 0.45};
 
 using testing::Obstacles;
 using testing::WindingCave;

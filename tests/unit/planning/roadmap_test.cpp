@@ -9,25 +9,24 @@
 namespace karst::core {
 namespace {
 
-const PlanningOptions kOptions{.clearance_m = 0.45};
 
 using testing::all_cells;
 using testing::Obstacles;
 using testing::random_map;
 using testing::WindingCave;
 
-constexpr CellKey kSize{30, 22, 16};
+constexpr CellKey kHall{30, 22, 16};
 
 Vec3 point_in(Random& random) {
-  return {random.uniform(0.3, 0.2 * kSize.x - 0.3), random.uniform(0.3, 0.2 * kSize.y - 0.3),
-          random.uniform(0.3, 0.2 * kSize.z - 0.3)};
+  return {random.uniform(0.3, 0.2 * kHall.x - 0.3), random.uniform(0.3, 0.2 * kHall.y - 0.3),
+          random.uniform(0.3, 0.2 * kHall.z - 0.3)};
 }
 
 TEST(Roadmap, ReachesExactlyWhatTheGridReaches) {
   int reached = 0, not_reached = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     Random random(seed);
-    const VoxelMap map = random_map(random.bits(), kSize, 0.015 * static_cast<double>(1 + seed % 3));
+    const VoxelMap map = random_map(random.bits(), kHall, 0.015 * static_cast<double>(1 + seed % 3));
     const Obstacles obstacles(map);
     Roadmap roadmap{kOptions};
     roadmap.update(map, all_cells(map));
@@ -107,7 +106,7 @@ TEST(Roadmap, LengthsAreNearTheGridsShortest) {
 }
 
 TEST(Roadmap, AGoalInTheCornerIsApproachedWithinItsTolerance) {
-  const VoxelMap map = random_map(1, kSize, 0.0);  // a box of free cells in the unknown
+  const VoxelMap map = random_map(1, kHall, 0.0);  // a box of free cells in the unknown
   Roadmap roadmap{kOptions};
   roadmap.update(map, all_cells(map));
   const Vec3 corner(0.12, 2.0, 1.5), from(3, 2, 1.5);
@@ -121,7 +120,7 @@ TEST(Roadmap, AGoalInTheCornerIsApproachedWithinItsTolerance) {
 }
 
 TEST(Roadmap, EmptyOrBlockedGivesReasons) {
-  const VoxelMap map = random_map(1, kSize, 0.0);
+  const VoxelMap map = random_map(1, kHall, 0.0);
   const Roadmap empty{kOptions};
   EXPECT_EQ(empty.node_count(), 0u);
   EXPECT_FALSE(empty.find(map, {1, 1, 1}, {2, 2, 2}).reason.empty());
@@ -147,7 +146,7 @@ TEST(Roadmap, ApproachesTheNearestNodeThatSeesTheGoalWhateverTheTolerance) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Random random(seed);
-    const VoxelMap map = random_map(random.bits(), kSize, 0.015 * static_cast<double>(1 + seed % 3));
+    const VoxelMap map = random_map(random.bits(), kHall, 0.015 * static_cast<double>(1 + seed % 3));
     Roadmap roadmap{kOptions};
     roadmap.update(map, all_cells(map));
     const double search_m = search_clearance_m(kOptions, map.resolution_m());
@@ -168,7 +167,7 @@ TEST(Roadmap, ApproachesTheNearestNodeThatSeesTheGoalWhateverTheTolerance) {
 }
 
 TEST(Roadmap, NodesNearAPlaceComeInTheSameOrderFromFarAndFromNear) {
-  const VoxelMap map = random_map(5, kSize, 0.02);
+  const VoxelMap map = random_map(5, kHall, 0.02);
   Roadmap roadmap{kOptions};
   roadmap.update(map, all_cells(map));
   const Vec3 p(3, 2, 1.6);
@@ -181,7 +180,7 @@ TEST(Roadmap, NodesNearAPlaceComeInTheSameOrderFromFarAndFromNear) {
 }
 
 TEST(Roadmap, StopsAtTheWorkItMayDoWhateverIsAsked) {
-  const VoxelMap map = random_map(3, kSize, 0.02);
+  const VoxelMap map = random_map(3, kHall, 0.02);
   Roadmap roadmap{kOptions};
   roadmap.update(map, all_cells(map));
   Random random(1);

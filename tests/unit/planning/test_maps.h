@@ -6,6 +6,14 @@
 
 #include "core_stack/common/random.h"
 #include "core_stack/mapping/voxel_map.h"
+#include "core_stack/planning/path.h"
+
+namespace karst::core {
+
+/// Of the planning tests' vehicle.
+inline const PlanningOptions kOptions{.clearance_m = 0.45};
+
+}  // namespace karst::core
 
 namespace karst::core::testing {
 

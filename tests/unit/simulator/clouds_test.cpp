@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "exact_lidar.h"
 #include "meshes.h"
 #include "plugins/simulator/lidar.h"
 
@@ -97,16 +98,6 @@ TEST(Clouds, EchoesAreDistributedExponentiallyAndComeFromTheNearEndMostly) {
   EXPECT_NEAR(place, 2 + 1 / 3.0 - std::exp(-3) / (1 - std::exp(-3)), 0.005);
 }
 
-constexpr core::TimeNs kEnd = 100 * core::kMillisecond;
-
-sim::LidarOptions exact(const char* unit) {
-  sim::LidarOptions o;
-  o.unit = unit;
-  o.columns = 512;
-  o.noise_m = 0;
-  return o;
-}
-
 core::LidarScan scan_of(const cave::Cave& cave, const sim::LidarOptions& o, std::vector<cave::Cloud> clouds,
                         std::uint64_t seed = 1) {
   return sim::Lidar(o).sweep(cave, {{0, {}}}, kEnd, core::Random(7),
@@ -115,8 +106,8 @@ core::LidarScan scan_of(const cave::Cave& cave, const sim::LidarOptions& o, std:
 
 TEST(LidarInClouds, RockBehindACloudIsDimmedByBeerAndLambert) {
   const cave::Cave room = make_cave(box_mesh({-6, -4, -2}, {9, 5, 3}));
-  const core::LidarScan clear = scan_of(room, exact("os1_64"), {}),
-                        hazy = scan_of(room, exact("os1_64"), {ball({0, 0, 0.1}, 2, 0.1)});
+  const core::LidarScan clear = scan_of(room, exact("os1_64", 512), {}),
+                        hazy = scan_of(room, exact("os1_64", 512), {ball({0, 0, 0.1}, 2, 0.1)});
   int compared = 0;
   for (std::size_t i = 0; i < clear.range_m.size(); ++i) {
     if (hazy.range_m[i] != clear.range_m[i]) continue;
@@ -130,7 +121,7 @@ TEST(LidarInClouds, RockBehindACloudIsDimmedByBeerAndLambert) {
 TEST(LidarInClouds, ItsEchoesAreInTheCloudInFrontOfTheRockAndWeak) {
   const cave::Cave room = make_cave(box_mesh({-6, -4, -2}, {9, 5, 3}));
   const auto cloud = ball({4, 0, 0}, 1.8, 0.5);
-  const auto o = exact("os1_64");
+  const auto o = exact("os1_64", 512);
   const core::LidarScan clear = scan_of(room, o, {}), dusty = scan_of(room, o, {cloud});
   const auto model = sim::lidar_model(o);
   int echoes = 0;
@@ -153,7 +144,7 @@ TEST(LidarInClouds, AThinSheetOutshinesRockAsOftenAsAnExponentialExceedsTheRocks
   // A sheet across the way, thinner than a pulse, before dark rock: one stretch, one draw.
   cave::Cave room = make_cave(box_mesh({-9, -40, -40}, {14, 40, 40}));
   room.description.reflectivity = 0.02;
-  const auto o = exact("os1_64");
+  const auto o = exact("os1_64", 512);
   const core::LidarScan scan = scan_of(room, o, {box({5, 0, 0}, {0.2, 60, 60}, 0.15)});
   const auto model = sim::lidar_model(o);
   double expected = 0, seen = 0, beams = 0;
@@ -174,17 +165,17 @@ TEST(LidarInClouds, AThinSheetOutshinesRockAsOftenAsAnExponentialExceedsTheRocks
 
 TEST(LidarInClouds, ABlindingCloudLeavesNoMeasurementAndClaimsNoFreeSpace) {
   const cave::Cave room = make_cave(box_mesh({-6, -4, -2}, {9, 5, 3}));
-  const core::LidarScan scan = scan_of(room, exact("os0_32"), {ball({0, 0, 0}, 5, 3)});
+  const core::LidarScan scan = scan_of(room, exact("os0_32", 512), {ball({0, 0, 0}, 5, 3)});
   for (const float r : scan.range_m) ASSERT_TRUE(std::isnan(r) || r < 3);
   // Nothing in reach, and a cloud before it: that, too, is no measurement.
   const cave::Cave far = make_cave(box_mesh({-200, -200, -200}, {200, 200, 200}));
-  for (const float r : scan_of(far, exact("os0_32"), {ball({0, 0, 0}, 2, 0.05)}).range_m)
+  for (const float r : scan_of(far, exact("os0_32", 512), {ball({0, 0, 0}, 2, 0.05)}).range_m)
     ASSERT_TRUE(std::isnan(r) || r < 2.2f);
 }
 
 TEST(LidarInClouds, SameSeedSameBytesAndBeamsBesideTheCloudAreUntouched) {
   const cave::Cave room = make_cave(box_mesh({-6, -4, -2}, {9, 5, 3}));
-  auto o = exact("os0_32");
+  auto o = exact("os0_32", 512);
   o.noise_m = 0.02;
   const auto cloud = ball({4, 0, 0}, 1.5, 0.6);
   const core::LidarScan a = scan_of(room, o, {cloud}, 1), b = scan_of(room, o, {cloud}, 1),

@@ -1,5 +1,6 @@
 #include "plugins/simulator/lidar.h"
 
+#include "exact_lidar.h"
 #include "meshes.h"
 
 namespace karst::test {
@@ -10,16 +11,6 @@ using core::Pose;
 using sim::Lidar;
 using sim::LidarOptions;
 using sim::PoseTrack;
-
-LidarOptions exact(const char* unit, int columns = 256) {
-  LidarOptions o;
-  o.unit = unit;
-  o.columns = columns;
-  o.noise_m = 0;
-  return o;
-}
-
-constexpr core::TimeNs kEnd = 100 * core::kMillisecond;
 
 /// Range from a point inside an axis-parallel box to its wall: the slab method.
 double range_in_box(const Vec3& lo, const Vec3& hi, const Vec3& from, const Vec3& d) {
@@ -35,7 +26,7 @@ class LidarUnits : public testing::TestWithParam<const char*> {};
 
 TEST_P(LidarUnits, RangesInABoxAreTheClosedForm) {
   const cave::Cave box = make_cave(box_mesh(kLow, kHigh));
-  const Lidar lidar(exact(GetParam()));
+  const Lidar lidar(exact(GetParam(), 256));
   const Pose pose{{1, -1, 0.5}, core::from_heading(0.4) * core::Quat(Eigen::AngleAxisd(0.1, Vec3::UnitX()))};
   const LidarScan scan = lidar.sweep(box, {{0, pose}, {kEnd, pose}}, kEnd, core::Random(1));
   const Pose T_world_lidar = pose * lidar.model()->T_body_lidar;
@@ -53,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os
 
 TEST(Lidar, UnitsHaveTheirChannelsAndFieldOfView) {
   const auto check = [](const char* unit, int channels, double half_fov_deg) {
-    const auto m = sim::lidar_model(exact(unit));
+    const auto m = sim::lidar_model(exact(unit, 256));
     EXPECT_EQ(m->channels(), channels);
     EXPECT_NEAR(m->elevation_rad.front() * 180 / std::numbers::pi, half_fov_deg, 1e-4);
     EXPECT_NEAR(m->elevation_rad.back() * 180 / std::numbers::pi, -half_fov_deg, 1e-4);
@@ -77,7 +68,7 @@ TEST(Lidar, A64ChannelUnitOf1024ColumnsGivesItsPoints) {
 
 TEST(Lidar, ASweepFromAMovingVehicleIsDistortedColumnByColumn) {
   const cave::Cave box = make_cave(box_mesh(kLow, kHigh));
-  const Lidar lidar(exact("vlp16"));
+  const Lidar lidar(exact("vlp16", 256));
   // 3 m/s and a turn of 2 rad/s over the sweep, tracked every 5 ms.
   const auto pose_of = [](double t) { return Pose{Vec3(3 * t, -1 * t, 0.2), core::from_heading(2 * t)}; };
   PoseTrack track;
@@ -115,10 +106,10 @@ TEST(Lidar, NoiseHasItsDeviation) {
 
 TEST(Lidar, BeyondReachIsInfiniteAndTooNearIsNoMeasurement) {
   const cave::Cave far = make_cave(box_mesh({-200, -200, -200}, {200, 200, 200}));
-  for (const float r : Lidar(exact("vlp16")).sweep(far, {{0, {}}}, kEnd, core::Random(1)).range_m)
+  for (const float r : Lidar(exact("vlp16", 256)).sweep(far, {{0, {}}}, kEnd, core::Random(1)).range_m)
     ASSERT_TRUE(std::isinf(r));
   const cave::Cave near = make_cave(box_mesh({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}));
-  const LidarScan scan = Lidar(exact("vlp16")).sweep(near, {{0, {}}}, kEnd, core::Random(1));
+  const LidarScan scan = Lidar(exact("vlp16", 256)).sweep(near, {{0, {}}}, kEnd, core::Random(1));
   EXPECT_TRUE(std::isnan(scan.range_m[7 * 256])) << "straight backwards, 0.2 m";
 }
 
@@ -130,7 +121,7 @@ TEST(Lidar, IntensityFallsWithRangeIncidenceAndReflectivity) {
 
   cave::Cave box = make_cave(box_mesh(kLow, kHigh));
   box.description.patches.push_back({{9, 0, 0}, 3, 0.05});  // wet rock ahead
-  const LidarScan scan = Lidar(exact("vlp16")).sweep(box, {{0, {}}}, kEnd, core::Random(1));
+  const LidarScan scan = Lidar(exact("vlp16", 256)).sweep(box, {{0, {}}}, kEnd, core::Random(1));
   const auto at = [&](int column) { return scan.intensity[static_cast<std::size_t>(7 * 256 + column)]; };
   EXPECT_NEAR(at(128), sim::return_intensity(0.05, 1, 9), 1e-3);
   EXPECT_NEAR(at(0), sim::return_intensity(0.5, 1, 6), 1e-2);
