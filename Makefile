@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 CMAKE_FLAGS ?=
 DEMO_RUN ?= runs/demo
 
-.PHONY: help demo test build bench faults format lint asan tsan fuzz install clean
+.PHONY: help demo test build bench faults format check-format lint asan tsan fuzz install clean
 help:
 	@echo "make demo     install, build, generate a cave, fly a mission through it, write the report"
 	@echo "make test     install, build, run every test"
@@ -50,9 +50,11 @@ faults:
 SOURCES = $$(git ls-files '*.h' '*.hpp' '*.c' '*.cpp')
 format:
 	@clang-format -i $(SOURCES)
+check-format:
+	@clang-format --dry-run -Werror $(SOURCES)
 lint:
 	@.ci/install test
-	@clang-format --dry-run -Werror $(SOURCES)
+	@$(MAKE) check-format
 	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
 	@.ci/tidy $(BUILD)
 

@@ -206,6 +206,7 @@ void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
     queue_.pop_back();
     now_ = std::max(now_, event.time);
     run(std::move(event));
+    running_ = &kNoName;
     if (done()) return;
   }
   now_ = std::max(now_, limit);

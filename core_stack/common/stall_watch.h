@@ -1,4 +1,4 @@
-// Sees that an executive's loop hangs: by the wall clock, from a thread of its own.
+// Sees that the loop of one executive, or of a team's, hangs: by the wall clock, from a thread of its own.
 //
 // In lockstep the clock waits for what is late, so a step or job that never returns holds everything up for
 // ever; in real time one such step does. Nobody can take it back. The watch tells its name, and whoever made
@@ -10,6 +10,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core_stack/common/executive.h"
 
@@ -19,16 +20,18 @@ class StallWatch {
  public:
   /// Called once on the watch's thread, with the name of what the loop is busy with.
   using Report = std::function<void(const std::string& running)>;
-  /// `executive` outlives it.
-  StallWatch(const Executive& executive, std::chrono::milliseconds patience, Report report);
+  /// The executives take turns, as those of a team do: all must stand still. They outlive the watch.
+  StallWatch(std::vector<const Executive*> executives, std::chrono::milliseconds patience, Report report);
   ~StallWatch();
   StallWatch(const StallWatch&) = delete;
   StallWatch& operator=(const StallWatch&) = delete;
 
  private:
   void watch();
+  std::uint64_t events() const;
+  std::string running() const;
 
-  const Executive& executive_;
+  std::vector<const Executive*> executives_;
   std::chrono::milliseconds patience_;
   Report report_;
   std::mutex mutex_;

@@ -74,15 +74,18 @@ Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T
 
   const std::vector<Vec3f> places = one_a_voxel(world.planes, scratch[first_level]);
   std::vector<Match> lines(world.edges.size());
-  for_each_chunk(lines.size(), kFeaturesPerChunk, threads, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) match_line(map.edges(), world.edges[i], lines[i]);
-  });
+  for_each_chunk(lines.size(), kFeaturesPerChunk, threads,
+                 [&](std::size_t, std::size_t first, std::size_t end) {
+                   for (std::size_t i = first; i < end; ++i)
+                     match_line(map.edges(), world.edges[i], lines[i]);
+                 });
   std::vector<PlaneMatch> planes(places.size());
-  for_each_chunk(places.size(), kFeaturesPerChunk, threads, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i)
-      for (std::size_t l = first_level; l < levels.size() && planes[i].match.normals == 0; ++l)
-        if (match_plane(levels[l], scratch[l], places[i], planes[i])) planes[i].level = l;
-  });
+  for_each_chunk(places.size(), kFeaturesPerChunk, threads,
+                 [&](std::size_t, std::size_t first, std::size_t end) {
+                   for (std::size_t i = first; i < end; ++i)
+                     for (std::size_t l = first_level; l < levels.size() && planes[i].match.normals == 0; ++l)
+                       if (match_plane(levels[l], scratch[l], places[i], planes[i])) planes[i].level = l;
+                 });
 
   Matches out;
   out.places = static_cast<int>(lines.size() + planes.size());

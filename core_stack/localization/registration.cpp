@@ -61,9 +61,10 @@ void describe(OptionTable& t, RegistrationOptions& o) {
 NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world_body, double width_m,
                           int threads) {
   std::vector<NormalEquations> parts(chunk_count(matches.size(), kMatchesPerChunk));
-  for_each_chunk(matches.size(), kMatchesPerChunk, threads, [&](std::size_t chunk, std::size_t first, std::size_t end) {
-    parts[chunk] = sums_of(matches.data() + first, matches.data() + end, T_world_body, width_m);
-  });
+  for_each_chunk(
+      matches.size(), kMatchesPerChunk, threads, [&](std::size_t chunk, std::size_t first, std::size_t end) {
+        parts[chunk] = sums_of(matches.data() + first, matches.data() + end, T_world_body, width_m);
+      });
   NormalEquations sums;
   for (const NormalEquations& p : parts) {
     sums.information += p.information, sums.gradient += p.gradient;

@@ -8,9 +8,7 @@
 #include "core_stack/mission/json_point.h"
 
 namespace karst::core {
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 TeamLog::TeamLog(const std::filesystem::path& run_dir) : file_(run_dir / "team.jsonl", std::ios::binary) {
   if (!file_) throw InputError((run_dir / "team.jsonl").string(), "", "cannot be written");

@@ -21,7 +21,9 @@ std::string fault_of(const karst_text_t& text, std::uint64_t limit);
 std::string cleaned(const karst_text_t& text, std::uint64_t limit);
 
 /// The bytes as they are.
-inline std::string string_of(const karst_text_t& t) { return t.length == 0 ? "" : std::string(t.data, t.length); }
+inline std::string string_of(const karst_text_t& t) {
+  return t.length == 0 ? "" : std::string(t.data, t.length);
+}
 
 /// A view of `s`, which must outlive it.
 inline karst_text_t view_of(std::string_view s) { return {s.data(), s.size()}; }

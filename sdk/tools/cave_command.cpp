@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/json_text.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
@@ -159,7 +158,7 @@ void info(const InfoArguments& args) {
     if (!std::filesystem::exists(args.file)) throw InputError(args.file, "", "no such cave file");
     const MeshFacts facts = mesh_facts(cave::load_mesh(args.file));
     if (args.json) {
-      print_out("%s\n", core::json_text(json_of(args, facts), 2).c_str());
+      print_json(json_of(args, facts));
     } else {
       print_mesh(args, facts);
       print_out("  no start pose: give --start \"x y z\" for clearance and volumes\n");
@@ -191,7 +190,7 @@ void info(const InfoArguments& args) {
     j["fly_through_heights_m"] = {lowest, highest};
     j["width_m_p10_p50_p90"] = passages.width_m;
     j["height_m_p10_p50_p90"] = passages.height_m;
-    print_out("%s\n", core::json_text(j, 2).c_str());
+    print_json(j);
     return;
   }
   print_mesh(args, facts);
@@ -216,7 +215,7 @@ struct DescribeArguments {
 void describe(const DescribeArguments& args) {
   const selection::CaveFigures figures = selection::describe_file(args.file, args.start).figures;
   if (args.json)
-    print_out("%s\n", ordered_json::parse(selection::to_json(figures)).dump(2).c_str());
+    print_json(ordered_json::parse(selection::to_json(figures)));
   else
     print_out("%s\n%s", args.file.c_str(), selection::to_text(figures).c_str());
 }

@@ -4,11 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <map>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/json_text.h"
 #include "core_stack/common/output_file.h"
 #include "sdk/check/run_check.h"
 #include "sdk/tools/arguments.h"
@@ -53,7 +51,7 @@ int list_tests(bool json) {
     else
       print_out("%-30s %-9s %s\n", t.name, name_of(t.level), t.description);
   }
-  if (json) std::cout << out.dump(2) << "\n";
+  if (json) print_json(out);
   return 0;
 }
 
@@ -111,14 +109,12 @@ int check_file(CheckArguments& args) {
   for (const TestResult& r : results) ++count[r.verdict], tests.push_back(to_json(r));
   const bool passed = count[Verdict::failed] == 0;
   if (args.json)
-    std::cout << core::json_text(ordered_json{{"schema", 1},
-                                              {"file", args.options.file},
-                                              {"level", name_of(args.options.level)},
-                                              {"seed", args.options.seed},
-                                              {"passed", passed},
-                                              {"tests", tests}},
-                                 2)
-              << "\n";
+    print_json(ordered_json{{"schema", 1},
+                            {"file", args.options.file},
+                            {"level", name_of(args.options.level)},
+                            {"seed", args.options.seed},
+                            {"passed", passed},
+                            {"tests", tests}});
   else
     print_out("%d passed, %d failed, %d not applicable, %d not run\n", count[Verdict::passed],
               count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run]);

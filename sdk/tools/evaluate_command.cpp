@@ -4,7 +4,6 @@
 #include <boost/property_tree/ptree.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -149,7 +148,7 @@ void evaluate(const EvaluateArguments& args) {
   const bool with_report = is_run && fs::is_regular_file(run / "report.html");
   if (with_report) evaluation::write_report(run);
   if (args.json) {
-    std::cout << core::json_text(without_plots(result), 2) << std::endl;
+    print_json(without_plots(result));
     return;
   }
   if (!result["trajectory"].is_null()) print_trajectory(result["trajectory"]);

@@ -3,11 +3,19 @@
 #include <algorithm>
 #include <boost/property_tree/info_parser.hpp>
 #include <cstdio>
+#include <cstdlib>
 
 #include "core_stack/common/error.h"
 #include "sdk/host/file_access.h"
 
 namespace karst::tools {
+
+void end_stalled(const std::string& running, const std::filesystem::path& run_dir) {
+  std::fprintf(stderr,
+               "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
+               running.empty() ? "a step" : ("\"" + running + "\"").c_str(), run_dir.c_str());
+  std::_Exit(kNotLanded);
+}
 
 host::PolicyChoice policy_choice(const Mission& mission, const FlightArguments& args) {
   host::PolicyChoice choice;

@@ -8,12 +8,10 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/json_text.h"
 #include "core_stack/common/stall_watch.h"
 #include "sdk/host/hosted_policy.h"
 #include "sdk/host/request_log.h"
@@ -78,17 +76,6 @@ void print_summary(const nlohmann::json& metrics, const fs::path& run_dir, bool 
     print_out("  %s   the flight in 3D with plots; open it in a browser\n",
               (run_dir / "report.html").c_str());
   print_out("  %s   all figures\n", (run_dir / "metrics.json").c_str());
-}
-
-// Longer than any decision or plan takes, on any machine.
-constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};
-
-/// Nothing can be torn down: what hangs holds it. The record is complete up to the last second.
-void end_stalled(const std::string& running, const fs::path& run_dir) {
-  std::fprintf(stderr,
-               "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
-               running.empty() ? "a step" : ("\"" + running + "\"").c_str(), run_dir.c_str());
-  std::_Exit(kNotLanded);
 }
 
 /// The mission's vehicle at the cave's start, which records in `run_dir` unless that is "".
@@ -176,7 +163,7 @@ int fly(const FlyArguments& args) {
     StatusLine line(args.flight.quiet || args.flight.json);
     const auto begin = std::chrono::steady_clock::now();
     {
-      const core::StallWatch stall(executive, args.flight.real_time ? kStallInRealTime : kStallInLockstep,
+      const core::StallWatch stall({&executive}, args.flight.real_time ? kStallInRealTime : kStallInLockstep,
                                    [&](const std::string& running) { end_stalled(running, run_dir); });
       control.fly([&](const core::MissionStatus& status) {
         line.show(status);
@@ -190,7 +177,7 @@ int fly(const FlyArguments& args) {
     const nlohmann::json metrics =
         finish_run(run_dir, mission.cave, mission.start, !args.flight.no_report, args.flight.cave_cache);
     if (args.flight.json) {
-      std::cout << core::json_text(metrics, 2) << std::endl;
+      print_json(metrics);
     } else {
       print_summary(metrics, run_dir, !args.flight.no_report);
     }

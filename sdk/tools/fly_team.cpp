@@ -4,12 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/json_text.h"
 #include "core_stack/common/random.h"
+#include "core_stack/common/stall_watch.h"
 #include "core_stack/mission/team_mission.h"
 #include "core_stack/vehicle/team_vehicles.h"
 #include "sdk/evaluation/metrics.h"
@@ -161,10 +160,16 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
                          run_dir, args.threads);
   const TeamStatus status(args.quiet || args.json);
   const auto begin = std::chrono::steady_clock::now();
-  const core::TeamResult result = team.run([&](core::TimeNs now, const auto& all) {
-    status.show(now, all);
-    return !args.interrupted->load();
-  });
+  const core::TeamResult result = [&] {
+    std::vector<const core::Executive*> executives;
+    for (std::size_t i = 0; i < robots.size(); ++i) executives.push_back(&team.executive(i));
+    const core::StallWatch stall(executives, kStallInLockstep,
+                                 [&](const std::string& running) { end_stalled(running, run_dir); });
+    return team.run([&](core::TimeNs now, const auto& all) {
+      status.show(now, all);
+      return !args.interrupted->load();
+    });
+  }();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
 
   int code = kNotLanded;
@@ -183,7 +188,7 @@ int fly_team(const Mission& mission, const FlightArguments& args, const std::str
     write_team_timing(run_dir, result.duration_s, wall.count(), args.threads);
     finish_team(run_dir, mission.cave, mission.start, metrics, !args.no_report, args.cave_cache);
     if (args.json)
-      std::cout << core::json_text(metrics, 2) << std::endl;
+      print_json(metrics);
     else
       print_summary(result, metrics, run_dir, !args.no_report);
     if (!result.record_problem.empty()) throw std::runtime_error(result.record_problem);

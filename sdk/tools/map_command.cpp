@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -171,7 +170,7 @@ int merge(const MergeArguments& args) {
     evaluation::write_whole_file(stem + ".json", core::json_text(report, 2) + "\n");
   }
   if (args.json) {
-    std::cout << core::json_text(report, 2) << std::endl;
+    print_json(report);
   } else {
     for (const Placed& p : placed) print(p);
     for (const fs::path& f : files) print_out("%s\n", f.c_str());

@@ -3,10 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "core_stack/common/json_text.h"
 #include "sdk/host/discovery.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/check_command.h"
@@ -48,7 +46,7 @@ ordered_json to_json(const PolicyListing& p) {
 void print_json(const std::vector<PolicyListing>& all) {
   ordered_json out{{"policies", ordered_json::array()}, {"broken", ordered_json::array()}};
   for (const PolicyListing& p : all) out[p.broken.empty() ? "policies" : "broken"].push_back(to_json(p));
-  std::cout << core::json_text(out, 2) << "\n";
+  print_json(out);
 }
 
 std::string allowed_text(const ParameterListing& p) {

@@ -5,11 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <boost/property_tree/info_parser.hpp>
 #include <cstdio>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/json_text.h"
 #include "core_stack/common/printable.h"
 #include "plugins/replay/decimal_time.h"
 #include "sdk/tools/arguments.h"
@@ -160,7 +158,7 @@ int replay_scans(const ReplayArguments& args) {
     return 1;
   }
   if (args.json) {
-    std::cout << core::json_text(metrics, 2) << std::endl;
+    print_json(metrics);
   } else {
     print_summary(summary, metrics, run_dir, !args.no_report);
   }

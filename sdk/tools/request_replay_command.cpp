@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -98,13 +97,11 @@ int replay(const ReplayArguments& args) {
     print_error("karst: %s: its last record is cut short, %llu bytes of it are passed over\n", file.c_str(),
                 static_cast<unsigned long long>(log.passed_over()));
   if (args.json)
-    std::cout << core::json_text(ordered_json{{"schema", 1},
-                                              {"policy", policy->name()},
-                                              {"asked", asked},
-                                              {"different", different},
-                                              {"decisions", decisions}},
-                                 2)
-              << "\n";
+    print_json(ordered_json{{"schema", 1},
+                            {"policy", policy->name()},
+                            {"asked", asked},
+                            {"different", different},
+                            {"decisions", decisions}});
   else
     print_out("%s of %s %s, %zu as recorded, %zu different\n", core::counted(asked, "decision").c_str(),
               policy->name().c_str(), policy->version().c_str(), asked - different, different);

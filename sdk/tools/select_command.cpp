@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/whole_file.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/leave_one_out.h"
@@ -130,7 +129,7 @@ int select_for(const SelectArguments& args) {
   const Selected s =
       select(e, cave.figures, args.options, args.cave, selection::mesh_hash_of(args.cave, args.start));
   if (args.json)
-    print_out("%s\n", core::json_text(to_json(e, cave.figures, s, args), 2).c_str());
+    print_json(to_json(e, cave.figures, s, args));
   else
     print(e, cave.figures, s, args);
   if (s.refused) return kRefused;
@@ -176,7 +175,7 @@ void leave_one_out(const SelectArguments& args) {
     shares("selected", l.selected), shares("overall_best", l.overall), shares("chance", l.chance);
     shares("selected_answered", l.selected_answered), shares("overall_best_answered", l.overall_answered);
     shares("chance_answered", l.chance_answered);
-    print_out("%s\n", core::json_text(j, 2).c_str());
+    print_json(j);
     return;
   }
   print_out("Each cave left out in turn, selected for from the others, by %s:\n",

@@ -76,4 +76,14 @@ inline std::string draw_cave(const std::filesystem::path& folder, const std::vec
   return (folder / "cave.info").string();
 }
 
+/// A passage of 90 m with a bend and a chamber half way, 4 m wide.
+inline std::string passage_cave(const std::filesystem::path& folder) {
+  return draw_cave(folder,
+                   {{{-4, -4, 0}, {4, 4, 3}},
+                    {{3, -2, 0}, {40, 2, 3}},
+                    {{32, -5, 0}, {42, 5, 4}},
+                    {{36, 4, 0}, {40, 50, 3}}},
+                   {0, 0, 1});
+}
+
 }  // namespace karst

@@ -9,6 +9,7 @@
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "plugins/simulator/simulated_vehicle.h"
 #include "tests/closed_loop/command.h"
+#include "tests/closed_loop/drawn_cave.h"
 
 namespace {
 thread_local bool out_of_memory = false;
@@ -38,6 +39,21 @@ const cave::Cave& small_cave() {
   }();
   return small;
 }
+
+/// A room 2.2 m high.
+const cave::Cave& low_room() {
+  static const cave::Cave low = cave::load_cave(
+      draw_cave(fresh_folder("emergency_low_room"), {{{-6, -4, 0}, {6, 4, 2.2}}}, {0, 0, 0.5}), "");
+  return low;
+}
+
+/// Where it flies.
+struct Scene {
+  const cave::Cave& cave = small_cave();
+  bool in_team = false;
+  bool meets_another = false;  // that goes first, and comes nearer from where the vehicle flies to
+  double takeoff_height_m = CoreOptions{}.mission.takeoff_height_m;
+};
 
 /// What goes wrong, once it is due.
 struct Fault {
@@ -194,8 +210,36 @@ struct Ended {
   std::string events;
 };
 
+/// Another vehicle of the team, heard over the radio alone: from the 8th second on it comes towards `vehicle`
+/// from ahead at half a metre a second.
+class Oncoming {
+ public:
+  Oncoming(Executive& executive, const sim::SimulatedVehicle& vehicle, Teammate& told, Teammate says)
+      : vehicle_(vehicle), told_(told), says_(std::move(says)) {
+    executive.every("oncoming", 0, kSecond / 10, [this, &executive] { speak(executive.now()); });
+  }
+
+ private:
+  void speak(TimeNs now) {
+    constexpr double kSpeed_mps = 0.5, kFrom_m = 6;
+    if (now < 8 * kSecond) return;
+    if (!ahead_) ahead_ = vehicle_.velocity_mps().normalized();
+    TeamState state;
+    state.phase = TeamPhase::explore, state.stamp = now;
+    state.position = vehicle_.position() + std::max(1.0, kFrom_m - kSpeed_mps * (seconds(now) - 8)) * *ahead_;
+    state.velocity_mps = -kSpeed_mps * *ahead_;
+    says_.set_state(state);
+    for (const Bytes& frame : says_.speak(now)) told_.hear(frame, now);
+  }
+
+  const sim::SimulatedVehicle& vehicle_;
+  Teammate& told_;
+  Teammate says_;
+  std::optional<Vec3> ahead_;
+};
+
 /// A flight that the fault strikes when it is as fast, `seed` seconds later for each seed.
-Ended fly(const Fault& fault, int seed, bool in_team = false) {
+Ended fly(const Fault& fault, int seed, const Scene& scene = {}) {
   const auto folder =
       fresh_folder("emergency_" + (fault.name.empty() ? "x" : fault.name) + std::to_string(seed));
   sim::SimulatorOptions simulator;
@@ -207,10 +251,11 @@ Ended fly(const Fault& fault, int seed, bool in_team = false) {
   setup.seed = static_cast<std::uint64_t>(seed);
   CoreOptions options;
   options.mission.max_flight_time_s = 200;
+  options.mission.takeoff_height_m = scene.takeoff_height_m;
   setup.climb_m = options.mission.takeoff_height_m;
 
   Recorder recorder(folder);
-  sim::SimulatedVehicle simulated(simulator, setup, small_cave());
+  sim::SimulatedVehicle simulated(simulator, setup, scene.cave);
   Ended out;
   FaultyExecutive* clock = nullptr;
   const auto due = [&] {
@@ -227,12 +272,17 @@ Ended fly(const Fault& fault, int seed, bool in_team = false) {
   StarvedVehicle vehicle(simulated, executive);
   Tourist policy(fault.when_fast ? 100 * kSecond : 20 * kSecond);
   const VehicleDescription described = vehicle.description();
-  Teammate mate(1, options.team, options.homing, described.T_world_start.position, setup.seed,
-                key_of_seed(setup.seed));
-  RelayHoming homing(1, options.team, options.homing, described.T_world_start.position, options.planning,
-                     options.motion, described.radius_m);
+  const Vec3& base = described.T_world_start.position;
+  const auto teammate = [&](RobotId id) {
+    return Teammate(id, options.team, options.homing, base, setup.seed, key_of_seed(setup.seed));
+  };
+  Teammate mate = teammate(2);
+  RelayHoming homing(2, options.team, options.homing, base, options.planning, options.motion,
+                     described.radius_m);
   Teamwork team(mate, homing, options.team, 0);
-  MissionControl control(options, vehicle, executive, policy, recorder, in_team ? &team : nullptr);
+  MissionControl control(options, vehicle, executive, policy, recorder, scene.in_team ? &team : nullptr);
+  std::optional<Oncoming> other;
+  if (scene.meets_another) other.emplace(executive, simulated, mate, teammate(1));
   out.result = control.run([&](const MissionStatus&) { return !(fault.stopped && due()); });
   if (executive.struck_at()) out.struck_at_s = seconds(*executive.struck_at());
   out.ended_at_s = seconds(executive.now());
@@ -257,7 +307,7 @@ TEST_P(FailureInFlight, OfAStepOrJobBrakesAndLands) {
     SCOPED_TRACE(seed);
     const std::string name = GetParam();
     const bool step = name == "control" || name == "vehicle";  // without them nothing flies
-    const Ended flight = fly({.name = name, .for_good = !step}, seed, name == "team");
+    const Ended flight = fly({.name = name, .for_good = !step}, seed, {.in_team = name == "team"});
     EXPECT_GE(flight.fast_mps, kFast_mps);
     expect_landed_at_once(flight, kText);
   }
@@ -275,11 +325,27 @@ TEST_P(FailureOnTheWayHome, OfAJobBrakesAndLands) {
   Fault fault{.name = name, .when_fast = false};
   if (name == "way back") fault.left_out = "home plan";
   const bool in_team = name == "landing place" || name == "give up";
-  expect_landed_at_once(fly(fault, 1, in_team), kText);
+  expect_landed_at_once(fly(fault, 1, {.in_team = in_team}), kText);
 }
 INSTANTIATE_TEST_SUITE_P(Jobs, FailureOnTheWayHome,
                          ::testing::Values("home", "farewell", "home plan", "way back", "landing place",
                                            "give up"));
+
+TEST(FailureWhenMeetingAnother, OfMakingRoomLands) {
+  for (int seed = 1; seed <= seeds(); ++seed) {
+    SCOPED_TRACE(seed);
+    const Ended flight =
+        fly({.name = "make room", .when_fast = false}, seed, {.in_team = true, .meets_another = true});
+    expect_landed_at_once(flight, kText);
+    EXPECT_NE(flight.events.find("give way"), std::string::npos);
+  }
+}
+
+TEST(FailureBelowALowRoof, OfChoosingTheHoverLands) {
+  const Ended flight =
+      fly({.name = "hover", .when_fast = false}, 1, {.cave = low_room(), .takeoff_height_m = 2.4});
+  expect_landed_at_once(flight, kText);
+}
 
 TEST(FailureOnTheGround, OfAJobEndsTheMissionThere) {
   const Ended flight = fly({.name = "launch site", .when_fast = false}, 1);

@@ -150,6 +150,22 @@ TEST(FileSizeLimit, SendsTheVehicleHomeAndDoesNotEndTheMission) {
   EXPECT_EQ(truth.find("contact"), std::string::npos) << truth;
 }
 
+/// On a file system of its own, which is full after some seconds.
+TEST(FullDisk, SendsTheVehicleHomeAndDoesNotEndTheMission) {
+  const auto folder = fresh_folder("flight_full_disk");
+  std::filesystem::create_directories(folder / "disk");
+  const std::string disk = (folder / "disk").string(), mount = "mount -t tmpfs -o size=250k none " + disk;
+  if (run_command("unshare -rm " + mount).code != 0) GTEST_SKIP() << "no file system can be mounted here";
+  const std::string fly = std::string(KARST_BINARY_DIR "/bin/karst fly --cave ") +
+                          generated_cave("small", 7) +
+                          " --set simulator.vehicle=camera_uav --quiet --no-report --out " + disk + "/run";
+  const Output out = run_command("unshare -rm sh -c '" + mount + " && " + fly + "; code=$?; cp -r " + disk +
+                                 "/run " + folder.string() + "; exit $code'");
+  EXPECT_EQ(out.code, 2) << "landed, but the record is incomplete: " << out.text;
+  EXPECT_TRUE(out.says("record is incomplete")) << out.text;
+  EXPECT_TRUE(out.says("No space left on device") || out.says("cannot be written")) << out.text;
+}
+
 /// A rock as large as the passage falls five metres ahead, where the same flight came through at full speed.
 class Rockfall : public ::testing::TestWithParam<int> {};
 

@@ -28,16 +28,6 @@ std::string corridor_cave(const fs::path& folder) {
                    {0, 0, 1});
 }
 
-/// A passage of 90 m with a bend and a chamber half way, 4 m wide.
-std::string passage_cave(const fs::path& folder) {
-  return draw_cave(folder,
-                   {{{-4, -4, 0}, {4, 4, 3}},
-                    {{3, -2, 0}, {40, 2, 3}},
-                    {{32, -5, 0}, {42, 5, 4}},
-                    {{36, 4, 0}, {40, 50, 3}}},
-                   {0, 0, 1});
-}
-
 /// A cave file with `lines` added.
 std::string with(const std::string& cave, const std::string& lines) {
   std::ofstream(cave, std::ios::app) << lines;

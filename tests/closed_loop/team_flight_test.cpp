@@ -9,16 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-/// A passage of 90 m with a bend and a chamber half way, 4 m wide.
-std::string passage(const std::filesystem::path& folder) {
-  return draw_cave(folder,
-                   {{{-4, -4, 0}, {4, 4, 3}},
-                    {{3, -2, 0}, {40, 2, 3}},
-                    {{32, -5, 0}, {42, 5, 4}},
-                    {{36, 4, 0}, {40, 50, 3}}},
-                   {0, 0, 1});
-}
-
 /// Poses from a sensor, a radio of 15 m by distance alone, a battery for little more than a minute.
 std::string team_of(int robots, const std::string& strategy, const std::string& more = "") {
   return " --policy nearest_frontier --set team.robots=" + std::to_string(robots) +
@@ -85,7 +75,7 @@ void expect_all_well(const Flown& f, std::size_t robots) {
 
 TEST(Team, LandsConnectedAndTheSameWithAnyNumberOfThreads) {
   const auto folder = fresh_folder("team_chain");
-  const std::string cave = passage(folder);
+  const std::string cave = passage_cave(folder);
   const Flown one = fly(cave, folder / "one", team_of(3, "relay_chain", "--threads 1"));
   expect_all_well(one, 3);
   const Flown three = fly(cave, folder / "three", team_of(3, "relay_chain", "--threads 3"));
@@ -104,7 +94,7 @@ TEST(Team, LandsConnectedAndTheSameWithAnyNumberOfThreads) {
 
 TEST(Team, DropsNodesWhereTheReachEndsAndLandsByThem) {
   const auto folder = fresh_folder("team_nodes");
-  const Flown f = fly(passage(folder), folder / "run", team_of(2, "relay_chain", "--set team.nodes=2"));
+  const Flown f = fly(passage_cave(folder), folder / "run", team_of(2, "relay_chain", "--set team.nodes=2"));
   expect_all_well(f, 2);
   const auto distance_m = [](const json& a, const json& b) {
     return std::hypot(a[0].get<double>() - b[0].get<double>(), a[1].get<double>() - b[1].get<double>(),
@@ -134,7 +124,7 @@ TEST(Team, DropsNodesWhereTheReachEndsAndLandsByThem) {
 
 TEST(Team, IsComparedByACampaignUnderTwoStrategies) {
   const auto folder = fresh_folder("team_campaign");
-  passage(folder);
+  passage_cave(folder);
   std::ofstream(folder / "base.info") << R"(
 team { robots 2  stagger "20 s"  linger "20 s" }
 simulator { battery_minutes "1.2 min"  pose { fitted always } }
@@ -179,7 +169,7 @@ contestant { name relay  policy nearest_frontier  settings { team { strategy rel
 
 TEST(Team, ReturnsToTheBaseWhereThatIsTheStrategy) {
   const auto folder = fresh_folder("team_base");
-  expect_all_well(fly(passage(folder), folder / "run", team_of(3, "return_to_base")), 3);
+  expect_all_well(fly(passage_cave(folder), folder / "run", team_of(3, "return_to_base")), 3);
 }
 
 /// Robot 1 goes home while robot 2 comes towards it, where two have no room side by side but near the walls.
@@ -242,14 +232,14 @@ TEST(Team, OfFourInAPassageForOneNobodyFliesIntoAnother) {
 
 TEST(Team, ByThePapersTreeLandsConnected) {
   const auto folder = fresh_folder("team_tree");
-  expect_all_well(fly(passage(folder), folder / "run", team_of(2, "relay_tree")), 2);
+  expect_all_well(fly(passage_cave(folder), folder / "run", team_of(2, "relay_tree")), 2);
 }
 
 TEST(Team, ThroughRockAndABadRadioStillReports) {
   const auto folder = fresh_folder("team_lossy");
   // 30 % lost, and of what arrives half is corrupted: a third of all frames is good.
   const Flown f =
-      fly(passage(folder), folder / "run",
+      fly(passage_cave(folder), folder / "run",
           team_of(2, "relay_chain", "--set radio.loss=0.3 --set radio.corrupt=0.5 --set team.linger=60s"));
   ASSERT_EQ(f.robots.size(), 2u);
   std::uint64_t corrupted = 0, refused = 0;
@@ -270,7 +260,7 @@ TEST(Team, ThroughRockAndABadRadioStillReports) {
 
 TEST(Team, WithoutOneThatNeverComesBackGoesOn) {
   const auto folder = fresh_folder("team_lost");
-  const Flown f = fly(passage(folder), folder / "run",
+  const Flown f = fly(passage_cave(folder), folder / "run",
                       team_of(3, "relay_chain", "--set team.lost_robot=1 --set team.lost_after=30s"));
   ASSERT_EQ(f.robots.size(), 3u);
   EXPECT_EQ(f.output.code, 2) << "not all came down";
@@ -285,7 +275,7 @@ TEST(Team, WithoutOneThatNeverComesBackGoesOn) {
 TEST(Team, TellsOfARelayThatFailsAndTheNextDoNotCountOnIt) {
   const auto folder = fresh_folder("team_silent");
   const Flown f =
-      fly(passage(folder), folder / "run",
+      fly(passage_cave(folder), folder / "run",
           team_of(3, "relay_chain",
                   "--set team.stagger=60s --set team.silent_relay=1 --set team.silent_after=20s"));
   ASSERT_EQ(f.robots.size(), 3u);

@@ -110,10 +110,12 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
 
 TEST(OthersGetBy, OverItBesideItOrNotAtAll) {
   const Vec3 middle(0.1, 0.1, 0.3);
-  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRobotRadius_m, 0.55, 3));     // over it
-  EXPECT_FALSE(others_get_by(passage(1.6, 1.4), middle, kRobotRadius_m, 0.55, 3));  // neither over nor past it
-  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRobotRadius_m, 0.55, 3));     // past it
-  EXPECT_TRUE(others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRobotRadius_m, 0.55, 3));  // on one side of it
+  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRobotRadius_m, 0.55, 3));  // over it
+  EXPECT_FALSE(
+      others_get_by(passage(1.6, 1.4), middle, kRobotRadius_m, 0.55, 3));        // neither over nor past it
+  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRobotRadius_m, 0.55, 3));  // past it
+  EXPECT_TRUE(
+      others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRobotRadius_m, 0.55, 3));  // on one side of it
   // At the end of a blind passage nobody is held up.
   EXPECT_TRUE(others_get_by(passage(2, 1.6), {9, 0.1, 0.3}, kRobotRadius_m, 0.55, 3));
 }
@@ -132,7 +134,8 @@ TEST(OthersGetBy, StillWhenTheyHaveMappedIt) {
                as_mapped = others_get_by(map, standing, kRobotRadius_m + kAsMapped_m, clearance_m, 3);
     const Vec3 landed = standing + 0.1 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
     for (int i = 0; i < 1000; ++i) {
-      const Vec3 p = landed + kRobotRadius_m * Vec3(random.normal(), random.normal(), random.normal()).normalized();
+      const Vec3 p =
+          landed + kRobotRadius_m * Vec3(random.normal(), random.normal(), random.normal()).normalized();
       map.assign(map.key_of(p), 1, 2.0f);
     }
     Roadmap roadmap(planning);

@@ -64,7 +64,8 @@ TEST(IntensityFilter, LeavesScansAloneThatItCannotJudge) {
   EXPECT_EQ(no_intensity.range_m, (std::vector<float>{1, 1, 1}));
   LidarScan empty;
   drop_weakest_returns(empty, 10, 1.5);
-  LidarScan nothing_seen = scan_of({std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}, {0.5f, 0.1f});
+  LidarScan nothing_seen = scan_of(
+      {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}, {0.5f, 0.1f});
   drop_weakest_returns(nothing_seen, 50, 2);
   EXPECT_EQ(nothing_seen.range_m[1], std::numeric_limits<float>::infinity());
   LidarScan uniform = scan_of({1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, std::numeric_limits<float>::quiet_NaN()});

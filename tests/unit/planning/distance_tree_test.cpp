@@ -13,7 +13,6 @@ namespace {
 using testing::all_cells;
 using testing::Obstacles;
 
-
 /// Two corridors from x = 0 to 12 m, 2 m wide, joined at both ends; the first is the shorter way round.
 VoxelMap ring(std::vector<CellChange>& changes) {
   VoxelMap map{MapOptions{}};

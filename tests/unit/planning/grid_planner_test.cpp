@@ -9,7 +9,6 @@
 namespace karst::core {
 namespace {
 
-
 using testing::draw;
 using testing::Obstacles;
 using testing::random_map;

@@ -9,7 +9,6 @@
 namespace karst::core {
 namespace {
 
-
 using testing::all_cells;
 using testing::Obstacles;
 using testing::WindingCave;
