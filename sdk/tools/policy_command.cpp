@@ -43,7 +43,7 @@ ordered_json to_json(const PolicyListing& p) {
   return j;
 }
 
-void print_json(const std::vector<PolicyListing>& all) {
+void print_listings(const std::vector<PolicyListing>& all) {
   ordered_json out{{"policies", ordered_json::array()}, {"broken", ordered_json::array()}};
   for (const PolicyListing& p : all) out[p.broken.empty() ? "policies" : "broken"].push_back(to_json(p));
   print_json(out);
@@ -99,7 +99,7 @@ void add_policy_command(CLI::App& app) {
     const host::SearchPath path = host::default_search_path(args->plugins);
     const std::vector<PolicyListing> all = host::list_policies(path);
     if (args->json)
-      print_json(all);
+      print_listings(all);
     else
       print_text(all, path, args->verbose);
     const bool asked_for_broken = std::any_of(all.begin(), all.end(), [&](const PolicyListing& p) {
