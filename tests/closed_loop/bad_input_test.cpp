@@ -72,7 +72,8 @@ TEST(BadInput, AFlightIsRefusedWhereCaveInfoRefuses) {
   // As it was: it flew, and said afterwards that its coverage could not be known. The hole lies behind a
   // corner, out of sight of the start.
   const fs::path dir = fresh_folder("bad_hole_far");
-  const std::string cave = draw_cave(dir, {{{0, 0, 0}, {12, 4, 4}}, {{8, 0, 0}, {12, 12, 4}}}, {2, 2, 1.5});
+  const std::string cave = draw_cave(
+      dir, {{{0, 0, 0}, {12, 4, 4}}, {{8, 0, 0}, {12, 12, 4}}, {{8, 8, 0}, {20, 12, 4}}}, {2, 2, 1.5});
   std::string mesh = bytes_of(dir / "cave.obj");
   const std::size_t face = mesh.rfind("\nf ");
   written(dir / "cave.obj", mesh.substr(0, face + 1));
