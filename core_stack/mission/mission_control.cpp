@@ -13,9 +13,7 @@ constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 // A step that has not come for so long does not come any more.
 constexpr TimeNs kControlMissed = 100 * kMillisecond, kSupervisionMissed = 500 * kMillisecond;
 
-constexpr TimeNs kSettling = kSecond;  // on the ground, for the estimate
-constexpr double kClimbSpeed_mps = 0.5;
-constexpr double kFlownStep_m = 0.25;
+constexpr TimeNs kSettling = kSecond;             // on the ground, for the estimate
 constexpr double kOverdue_s = 600;                // beyond the time limit: then it is given up
 constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to come in
 
@@ -29,46 +27,61 @@ double turn_to_see_all_around(const VehicleDescription& vehicle) {
 
 }  // namespace
 
-const char* name_of(Phase phase) {
-  switch (phase) {
-    case Phase::standby:
-      return "standby";
-    case Phase::takeoff:
-      return "takeoff";
-    case Phase::look:
-      return "look";
-    case Phase::explore:
-      return "explore";
-    case Phase::home:
-      return "home";
-    case Phase::land:
-      return "land";
-    case Phase::done:
-      return "done";
-  }
-  return "?";
-}
-
 MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive,
                                PolicyPort& policy, Recorder& recorder, Teamwork* team)
-    : options_(options),
-      description_(vehicle.description()),
+    : onboard_(options, vehicle.description(), executive, recorder, policy),
       vehicle_(vehicle),
-      executive_(executive),
-      recorder_(recorder),
-      team_(team),
-      flight_(options, description_),
-      control_watch_(kControlMissed),
-      supervision_watch_(kSupervisionMissed),
+      endurance_(options.mission.max_flight_time_s),
+      goals_(recorder),
+      path_(onboard_),
+      take_off_(onboard_, phases_, path_),
+      team_(in_team(team)),
+      sensors_(onboard_, sensor_wiring()),
+      exploration_(onboard_, {phases_, goals_, path_, way_flown_, endurance_}, exploration_wiring()),
+      return_home_(onboard_,
+                   {phases_, goals_, path_, way_flown_, endurance_,
+                    team_ && team_->landing ? &*team_->landing : nullptr},
+                   home_wiring()),
+      objects_(onboard_, team),
       safety_(options.safety),
-      explorer_(options, description_, policy),
-      objects_(options.objects) {
-  if (description_.lidar && options.localization.source == "lidar")
-    loam_.emplace(options.localization.loam, description_.T_world_start);
-  battery_.seconds_left = options.mission.max_flight_time_s;
-  if (!team_) return;
-  explorer_.join(team_->homing(), team_->options().claim_radius_m);
-  nodes_left_ = team_->options().nodes;
+      control_watch_(kControlMissed),
+      supervision_watch_(kSupervisionMissed) {
+  if (team) onboard_.map.while_idle().join(team->homing(), team->options().claim_radius_m);
+}
+
+std::optional<MissionControl::InTeam> MissionControl::in_team(Teamwork* team) {
+  if (!team) return std::nullopt;
+  InTeam out{*team, TeamMember(onboard_, *team, {phases_, path_, endurance_}),
+             RightOfWay(onboard_, *team, {phases_, goals_, path_, way_flown_}), std::nullopt};
+  if (team->lands_as_relay()) out.landing.emplace(onboard_, *team, phases_, endurance_);
+  return out;
+}
+
+SensorPipeline::Wiring MissionControl::sensor_wiring() {
+  return {.ask = [this] { return map_question(); },
+          .tell = [this](const MapNews& news) { on_map(news); },
+          .others =
+              [this](TimeNs stamp) {
+                return team_ ? team_->member.others_at(stamp) : std::vector<MovingBody>{};
+              }};
+}
+
+Exploration::Wiring MissionControl::exploration_wiring() {
+  return {.go_home = [this](const std::string& reason) { return_home_.begin(reason); },
+          .claim =
+              [this](const Goal& goal) {
+                if (team_) team_->member.claim_goal(goal);
+              },
+          .mates = [this] { return team_ ? team_->member.mates() : std::vector<HeardMate>{}; }};
+}
+
+ReturnHome::Wiring MissionControl::home_wiring() {
+  return {.enter = [this](Phase phase, const std::string& reason) { enter(phase, reason); },
+          .in_company = [this] { return team_ && team_->member.in_company(); },
+          .give_up_goals =
+              [this] {
+                if (team_) team_->member.give_up_goals();
+              }};
 }
 
 MissionResult MissionControl::run(const Watch& watch) {
@@ -78,7 +91,7 @@ MissionResult MissionControl::run(const Watch& watch) {
 
 void MissionControl::fly(const Watch& watch) {
   begin(watch);
-  advance(from_seconds(options_.mission.max_flight_time_s + kOverdue_s));
+  advance(from_seconds(onboard_.options.mission.max_flight_time_s + kOverdue_s));
 }
 
 void MissionControl::begin(const Watch& watch) {
@@ -86,33 +99,19 @@ void MissionControl::begin(const Watch& watch) {
   control_watch_.came(now());
   supervision_watch_.came(now());
   enter(Phase::standby, "");
-  executive_.job(
-      "launch site", Lane::map, kMappingBudget, [this] { explorer_.declare_launch_site(explorer_.home()); },
-      [] {});
-  vehicle_.start(executive_, *this);
-  executive_.every("control", kControlPeriod, kControlPeriod, [this] { control(); });
-  executive_.every("supervise", kSupervisionPeriod, kSupervisionPeriod, [this] { supervise(); });
-  executive_.every("watch", kSecond, kSecond, [this] {
-    const MissionStatus status{now(),
-                               phase_,
-                               battery_.fraction_left,
-                               battery_.seconds_left,
-                               explored_m3_,
-                               flight_.state().velocity_mps.norm(),
-                               goal_ ? goal_->why : ""};
-    if (const int overruns = executive_.overruns(); overruns > overruns_) {
-      recorder_.event(now(), "overrun", {{"count", overruns - overruns_}});
-      overruns_ = overruns;
-    }
-    if (!watch_(status)) land_now("stopped by the operator");
-  });
+  onboard_.map.job("launch site", kMappingBudget,
+                   [](Explorer& explorer) { explorer.declare_launch_site(explorer.home()); });
+  vehicle_.start(onboard_.executive, *this);
+  onboard_.executive.every("control", kControlPeriod, kControlPeriod, [this] { control(); });
+  onboard_.executive.every("supervise", kSupervisionPeriod, kSupervisionPeriod, [this] { supervise(); });
+  onboard_.executive.every("watch", kSecond, kSecond, [this] { tell_watcher(); });
 }
 
 /// Whatever fails, the steps go on: the vehicle has to come down.
 bool MissionControl::advance(TimeNs until) {
   while (!result_) {
     try {
-      executive_.run_until(until, [this] { return result_.has_value(); });
+      onboard_.executive.run_until(until, [this] { return result_.has_value(); });
       break;
     } catch (const std::exception& e) {
       land_now(e.what());
@@ -120,7 +119,7 @@ bool MissionControl::advance(TimeNs until) {
       land_now("an unknown exception");
     }
   }
-  return !result_ && now() < from_seconds(options_.mission.max_flight_time_s + kOverdue_s);
+  return !result_ && now() < from_seconds(onboard_.options.mission.max_flight_time_s + kOverdue_s);
 }
 
 /// What cannot be written does not keep the rest from being written.
@@ -135,19 +134,22 @@ MissionResult MissionControl::end() {
       if (problem.empty()) problem = "an unknown exception";
     }
   };
-  attempt([this] { executive_.drain(); });
+  attempt([this] { onboard_.executive.drain(); });
   attempt([this] {
     finish("aborted", emergency_ ? *emergency_ + ": it did not come down"
                                  : "the vehicle did not come back within ten minutes after the time limit");
   });
   attempt([this] {
-    if (team_) become_relay();
+    if (!team_) return;
+    const bool where_it_should = result_->outcome == "landed";
+    team_->member.become_relay(result_->stands,
+                               where_it_should ? std::optional(return_home_.hover()) : std::nullopt);
   });
   attempt([this] { vehicle_.finish(); });
   attempt([this] {
-    if (description_.detects_objects) write_objects();
+    if (onboard_.vehicle.detects_objects) objects_.write();
   });
-  attempt([this] { recorder_.final_map(explorer_.map()); });
+  attempt([this] { onboard_.recorder.final_map(onboard_.map.while_idle().map()); });
   if (!result_) result_ = MissionResult{"aborted", "", standing_, ""};
   result_->record_problem = problem;
   return *result_;
@@ -156,12 +158,13 @@ MissionResult MissionControl::end() {
 void MissionControl::land_now(const char* reason) noexcept {
   if (emergency_ || result_) return;
   emergency_.emplace();
-  flight_.land_now(now());
-  phase_ = Phase::land;
+  onboard_.flight.land_now(now());
+  sensors_.close();
+  phases_.enter(Phase::land, now());
   try {  // telling of it may fail, too
     *emergency_ = reason;
     enter(Phase::land, reason);
-    recorder_.event(now(), "safety", {{"action", "land"}, {"reason", reason}});
+    onboard_.recorder.event(now(), "safety", {{"action", "land"}, {"reason", reason}});
   } catch (...) {
   }
 }
@@ -173,23 +176,21 @@ void MissionControl::finish(const std::string& outcome, const std::string& reaso
   result_->outcome = outcome;
   result_->reason = reason;
   enter(Phase::done, reason);
-  settle_objects(outcome == "landed" || (team_ && result_->stands));
-  recorder_.event(now(), "outcome",
-                  {{"outcome", outcome}, {"reason", reason}, {"mass_kg", flight_.mass_kg()}});
-  recorder_.flush();
+  objects_.settle(outcome == "landed" || (team_ && result_->stands));
+  onboard_.recorder.event(now(), "outcome",
+                          {{"outcome", outcome}, {"reason", reason}, {"mass_kg", onboard_.flight.mass_kg()}});
+  onboard_.recorder.flush();
 }
 
 void MissionControl::enter(Phase phase, const std::string& reason) {
-  phase_ = phase;
-  phase_since_ = now();
-  last_landmark_ = flight_.reference().position;
-  last_landmark_time_ = now();
-  recorder_.event(now(), "phase", {{"phase", name_of(phase)}, {"reason", reason}});
+  phases_.enter(phase, now());
+  if (phase == Phase::explore) exploration_.begin();
+  onboard_.recorder.event(now(), "phase", {{"phase", name_of(phase)}, {"reason", reason}});
 }
 
 void MissionControl::on_imu(const ImuSample& s) {
   if (s.stamp > now()) return;
-  flight_.on_imu(s);
+  onboard_.flight.on_imu(s);
   watch_steps();
 }
 
@@ -200,10 +201,26 @@ void MissionControl::watch_steps() {
   if (emergency_ && !result_ && control_watch_.since(now()) > kControlPeriod) control();
 }
 
+void MissionControl::tell_watcher() {
+  const BatteryStatus& battery = endurance_.battery();
+  const MissionStatus status{now(),
+                             phase(),
+                             battery.fraction_left,
+                             battery.seconds_left,
+                             sensors_.explored_m3(),
+                             onboard_.flight.state().velocity_mps.norm(),
+                             goals_.goal() ? goals_.goal()->why : ""};
+  if (const int overruns = onboard_.executive.overruns(); overruns > overruns_) {
+    onboard_.recorder.event(now(), "overrun", {{"count", overruns - overruns_}});
+    overruns_ = overruns;
+  }
+  if (!watch_(status)) land_now("stopped by the operator");
+}
+
 void MissionControl::control() {
   control_watch_.came(now());
   if (emergency_ && standing_) return touch_down(now());
-  vehicle_.command(flight_.control(now()));
+  vehicle_.command(onboard_.flight.control(now()));
 }
 
 void MissionControl::supervise() {
@@ -211,25 +228,29 @@ void MissionControl::supervise() {
   record();
   if (emergency_) return;
   keep_safe();
-  if (team_) keep_apart();
-  switch (phase_) {
+  if (team_) team_->right_of_way.step();
+  fly_phase();
+}
+
+void MissionControl::fly_phase() {
+  switch (phase()) {
     case Phase::standby:
-      if (now() - phase_since_ < kSettling || (team_ && !airspace_clear())) break;
-      flight_.climb(now(), options_.mission.takeoff_height_m, kClimbSpeed_mps);
+      if (now() - phases_.since() < kSettling || (team_ && !team_->member.airspace_clear())) break;
+      take_off_.begin();
       enter(Phase::takeoff, "");
       break;
     case Phase::takeoff:
-      if (flight_.at_rest(now() - kSettling)) end_take_off();
+      take_off();
       break;
     case Phase::look:
-      if (flight_.at_rest(now() - kLastLook)) enter(Phase::explore, "");
+      if (onboard_.flight.at_rest(now() - kLastLook)) enter(Phase::explore, "");
       break;
     case Phase::explore:
-      explore();
-      watch_battery();
+      exploration_.step();
+      return_home_.watch_time();
       break;
     case Phase::home:
-      go_home();
+      return_home_.step();
       break;
     case Phase::land:
       land();
@@ -239,71 +260,120 @@ void MissionControl::supervise() {
   }
 }
 
-void MissionControl::end_take_off() {
-  if (standing_) {
-    flight_.disarm();
-    return finish("stuck", "it does not lift off: too heavy for its motors?");
+void MissionControl::take_off() {
+  switch (take_off_.step(standing_)) {
+    case TakeOff::State::climbs:
+      return;
+    case TakeOff::State::does_not_lift:
+      onboard_.flight.disarm();
+      return finish("stuck", "it does not lift off: too heavy for its motors?");
+    case TakeOff::State::hovers:
+      break;
   }
-  if (braked_at_ && !hover_chosen_) return choose_hover();
-  if (executive_.under_way("hover") > 0) return;
-  has_taken_off_ = true;
-  home_ = flight_.reference().position;
-  flown_ = {home_};
-  executive_.job(
-      "home", Lane::map, kMappingBudget, [this, home = home_] { explorer_.set_home(home); }, [] {});
+  const Vec3& hover = onboard_.flight.reference().position;
+  way_flown_.begin(hover);
+  return_home_.set_home(hover);
   // A vehicle that sees all around already has nothing to look around for.
-  if (!description_.lidar) flight_.look_around(now(), turn_to_see_all_around(description_));
-  enter(description_.lidar ? Phase::explore : Phase::look, "");
+  if (onboard_.vehicle.lidar) return enter(Phase::explore, "");
+  onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
+  enter(Phase::look, "");
 }
 
-/// A roof stopped the take-off. To this place it comes back at the end: it had better have room there.
-void MissionControl::choose_hover() {
-  hover_chosen_ = true;
-  auto hover = std::make_shared<Vec3>();
-  executive_.job(
-      "hover", Lane::map, kMappingBudget,
-      [this, hover, highest = flight_.reference().position] { *hover = explorer_.hover_below(highest); },
-      [this, hover] {
-        if (phase_ != Phase::takeoff) return;
-        const double up_m = hover->z() - description_.T_world_start.position.z();
-        recorder_.event(
-            now(), "log",
-            {{"text", "a low roof: it hovers " + std::to_string(up_m).substr(0, 4) + " m up, not " +
-                          std::to_string(options_.mission.takeoff_height_m).substr(0, 4) + " m"}});
-        flight_.climb(now(), hover->z() - flight_.reference().position.z(), kClimbSpeed_mps);
-      });
+void MissionControl::land() {
+  if (standing_) return touch_down(now());  // it had not left the ground yet
+  if (!onboard_.flight.at_rest(now())) return;
+  // Down until the ground is felt; the height above it is not known to better than the map.
+  const MissionOptions& o = onboard_.options.mission;
+  onboard_.flight.climb(now(), -(o.takeoff_height_m + 0.5), o.landing_speed_mps);
+}
+
+MapQuestion MissionControl::map_question() const {
+  MapQuestion question;
+  const bool takes_off = phases_.in(Phase::takeoff);
+  if (takes_off || phases_.under_way())  // of what it takes off from, the ground is near
+    question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
+  question.narrow_places = path_.narrow_places();
+  question.touch_only = path_.as_come();
+  question.frontier = goals_.frontier();
+  return question;
+}
+
+void MissionControl::on_map(const MapNews& news) {
+  onboard_.recorder.map_changes(now(), news.changes);
+  goals_.note_frontier(news.frontier, news.frontier_open);
+  if (!news.blocked_after_m || path_.blocked() || onboard_.flight.at_rest(now())) return;
+  if (phases_.in(Phase::takeoff) && take_off_.below_roof()) return;
+  goals_.drop_next(GoalFate::unreachable, kPathForbidden, now());
+  path_.avoid(*news.blocked_after_m, phases_, now());
+}
+
+void MissionControl::keep_safe() {
+  if (phases_.in(Phase::standby) || phases_.in(Phase::land) || phases_.in(Phase::done))
+    return sensors_.see_nothing_needed();
+  const Flight& flight = onboard_.flight;
+  SafetyObservation o;
+  o.now = now();
+  o.estimate = flight.estimator().diagnose(now());
+  o.tracking_error_m = (flight.state().position - flight.reference().position).norm();
+  if (phases_.under_way())
+    o.hull_clearance_m = sensors_.hull_clearance_m();  // not while it lifts off from the ground
+  o.blind_s = seconds(sensors_.blind_for());
+  o.battery_s = endurance_.battery().seconds_left;
+  const SafetyVerdict verdict = safety_.judge(o);
+  if (verdict == verdict_) return;
+  verdict_ = verdict;
+  path_.obey(verdict.action);
+  onboard_.recorder.event(now(), "safety", {{"action", name_of(verdict.action)}, {"reason", verdict.reason}});
+  react(verdict);
+}
+
+void MissionControl::react(const SafetyVerdict& verdict) {
+  const bool under_way = phases_.under_way();
+  const double share = verdict.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_share;
+  if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * share);
+  if (verdict.action == SafetyAction::land) {
+    path_.brake(now());
+    enter(Phase::land, verdict.reason);
+  } else if (verdict.action == SafetyAction::home && phases_.in(Phase::explore)) {
+    return_home_.begin(verdict.reason);
+  } else if (verdict.action == SafetyAction::brake && under_way && !onboard_.flight.at_rest(now())) {
+    goals_.drop_next(GoalFate::superseded, verdict.reason, now());
+    path_.brake(now());
+    path_.block();  // and look for a new way from there
+  }
 }
 
 void MissionControl::record() {
-  recorder_.pose(flight_.state());
-  recorder_.telemetry({now(), name_of(phase_), flight_.state(), flight_.reference().position,
-                       battery_.fraction_left, battery_.seconds_left, explored_m3_, home_distance_m_});
-  if (has_taken_off_) {
-    const Vec3& here = flight_.reference().position;
-    if (const double step_m = (flown_.back() - here).norm(); step_m > kFlownStep_m) {
-      flown_m_ += step_m;
-      flown_.push_back(here);
+  const Flight& flight = onboard_.flight;
+  const BatteryStatus& battery = endurance_.battery();
+  onboard_.recorder.pose(flight.state());
+  onboard_.recorder.telemetry({now(), name_of(phase()), flight.state(), flight.reference().position,
+                               battery.fraction_left, battery.seconds_left, sensors_.explored_m3(),
+                               return_home_.distance_m()});
+  if (way_flown_.begun()) way_flown_.note(flight.reference().position);
+  const bool each_second = now() % kSecond == 0;
+  if (team_) team_->member.report(team_->right_of_way.told_now());
+  if (team_ && !emergency_ && each_second) {
+    if (way_flown_.begun()) {
+      team_->member.share();
+      return_home_.give_way_at_landing();
     }
+    objects_.note_at_base();
   }
-  if (team_) report_state();
-  if (team_ && !emergency_ && now() % kSecond == 0) {
-    if (has_taken_off_) share();
-    note_objects_at_base(team_->known_at_base());
-  }
-  if (now() % kSecond == 0 && !recorder_.flush() && phase_ == Phase::explore)
-    begin_homing("the run directory cannot be written any more (disk full?)");
+  if (each_second && !onboard_.recorder.flush() && phases_.in(Phase::explore))
+    return_home_.begin("the run directory cannot be written any more (disk full?)");
 }
 
 void MissionControl::on_ground(TimeNs stamp, bool standing) {
   standing_ = standing;
-  const bool takes_off = !has_taken_off_ && phase_ != Phase::land;  // it may touch once more
-  if (standing && !takes_off && phase_ != Phase::done) touch_down(stamp);
+  const bool takes_off = !way_flown_.begun() && !phases_.in(Phase::land);  // it may touch once more
+  if (standing && !takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
 /// Motors off, before anything else: who has lost the pose would never come down again.
 void MissionControl::touch_down(TimeNs stamp) {
-  flight_.disarm();
-  vehicle_.command(flight_.control(stamp));
+  onboard_.flight.disarm();
+  vehicle_.command(onboard_.flight.control(stamp));
   try {
     finish_on_ground();
   } catch (...) {  // it stands, even if that cannot be told
@@ -313,15 +383,16 @@ void MissionControl::touch_down(TimeNs stamp) {
 }
 
 void MissionControl::finish_on_ground() {
-  const Vec3& there = landing_ ? landing_->ground : description_.T_world_start.position;
-  const double off_m = (flight_.state().position - there).head<2>().norm();
+  const std::optional<LandingSpot> spot = return_home_.landing_spot();
+  const Vec3 there = spot ? spot->ground : onboard_.vehicle.T_world_start.position;
+  const double off_m = (onboard_.flight.state().position - there).head<2>().norm();
   const std::string place = std::to_string(off_m).substr(0, 5) + " m from the start";
   if (emergency_)
     finish("aborted", *emergency_ + ": on the ground " + place);
-  else if (phase_ != Phase::land)
-    finish("contact", std::string("touched the ground in phase ") + name_of(phase_));
+  else if (!phases_.in(Phase::land))
+    finish("contact", std::string("touched the ground in phase ") + name_of(phase()));
   else if (off_m < 1.0)
-    finish("landed", landing_ ? "as a relay" : "at the start");
+    finish("landed", spot ? "as a relay" : "at the start");
   else
     finish("stuck", "on the ground " + place);
 }

@@ -1,9 +1,9 @@
-// Objects of interest: what the detector says goes into the object map, and what that finds is told.
+#include "core_stack/mission/object_search.h"
+
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core_stack/mission/json_point.h"
-#include "core_stack/mission/mission_control.h"
 #include "core_stack/mission/object_log.h"
 
 namespace karst::core {
@@ -25,35 +25,38 @@ const char* name_of(ObjectNews::State state) {
 
 }  // namespace
 
-void MissionControl::on_objects(const ObjectDetections& look) {
-  if (look.stamp > now() || !look.camera) return;
-  const auto& known = flight_.estimator().history().states();
+void ObjectSearch::on_objects(const ObjectDetections& look) {
+  if (look.stamp > onboard_.now() || !look.camera) return;
+  const auto& known = onboard_.flight.estimator().history().states();
   if (known.empty() || look.stamp < known.front().stamp) {  // where the camera was then is not known any more
     if (!std::exchange(late_looks_told_, true))
-      recorder_.event(now(), "log", {{"text", "the object detector is too slow: its news is dropped"}});
+      onboard_.recorder.event(onboard_.now(), "log",
+                              {{"text", "the object detector is too slow: its news is dropped"}});
     return;
   }
-  const Pose T_world_camera = flight_.estimator().history().pose_at(look.stamp) * look.camera->T_body_camera;
-  objects_.note(look, T_world_camera, flight_.estimator().active().position_sigma_m());
-  tell_objects(false);
+  const Pose T_world_camera =
+      onboard_.flight.estimator().history().pose_at(look.stamp) * look.camera->T_body_camera;
+  objects_.note(look, T_world_camera, onboard_.flight.estimator().active().position_sigma_m());
+  tell(Told::what_changed);
 }
 
 /// Into the events, and to the team.
-void MissionControl::tell_objects(bool all) {
-  for (const ObjectNews& news : objects_.take_news(now(), all)) {
+void ObjectSearch::tell(Told which) {
+  for (const ObjectNews& news : objects_.take_news(onboard_.now(), which == Told::all)) {
     const FoundObject& o = news.object;
     const bool withdrawn = news.state == ObjectNews::State::withdrawn;
-    recorder_.event(now(), "object",
-                    {{"number", o.number},
-                     {"state", name_of(news.state)},
-                     {"what", core::name_of(o.kind)},
-                     {"position", list(o.position)},
-                     {"deviation", o.deviation_m},
-                     {"sightings", o.sightings}});
+    onboard_.recorder.event(onboard_.now(), "object",
+                            {{"number", o.number},
+                             {"state", name_of(news.state)},
+                             {"what", core::name_of(o.kind)},
+                             {"position", list(o.position)},
+                             {"deviation", o.deviation_m},
+                             {"sightings", o.sightings}});
     if (!team_) continue;
     const ObjectKind kind = withdrawn ? ObjectKind::none : o.kind;
-    const std::uint32_t record = team_->publish(ObjectSeen{
-        team_->team_time(now()), o.number, static_cast<std::uint8_t>(kind), o.position, o.deviation_m});
+    const std::uint32_t record =
+        team_->publish(ObjectSeen{team_->team_time(onboard_.now()), o.number, static_cast<std::uint8_t>(kind),
+                                  o.position, o.deviation_m});
     if (withdrawn)
       records_.erase(o.number);
     else if (record != 0)
@@ -62,26 +65,27 @@ void MissionControl::tell_objects(bool all) {
 }
 
 /// Of which it knows that the base knows them, once each.
-void MissionControl::note_objects_at_base(std::uint32_t records_at_base) {
+void ObjectSearch::note_at_base() {
+  const std::uint32_t known = team_->known_at_base();
   for (auto& [number, record] : records_) {
-    if (record == kReported || record > records_at_base) continue;
-    recorder_.event(now(), "object", {{"number", number}, {"state", "reported"}});
+    if (record == kReported || record > known) continue;
+    onboard_.recorder.event(onboard_.now(), "object", {{"number", number}, {"state", "reported"}});
     record = kReported;
   }
 }
 
 /// At the end of the flight. A vehicle that flies alone reports where it landed, at the start; of a team, one
 /// that crashed tells nothing any more.
-void MissionControl::settle_objects(bool landed) {
+void ObjectSearch::settle(bool landed) {
   if (team_ && !landed) return;
-  tell_objects(true);
-  if (team_) return note_objects_at_base(team_->known_at_base());
+  tell(Told::all);
+  if (team_) return note_at_base();
   if (!landed) return;
   for (const FoundObject& o : objects_.objects())
-    recorder_.event(now(), "object", {{"number", o.number}, {"state", "reported"}});
+    onboard_.recorder.event(onboard_.now(), "object", {{"number", o.number}, {"state", "reported"}});
 }
 
-void MissionControl::write_objects() {
+void ObjectSearch::write() const {
   nlohmann::json found = nlohmann::json::array();
   for (const FoundObject& o : objects_.objects())
     found.push_back({{"number", o.number},
@@ -93,7 +97,7 @@ void MissionControl::write_objects() {
                      {"last_seen", seconds(o.last_seen)}});
   nlohmann::ordered_json all{{"schema", "karst.objects/1"}, {"found", found}};
   if (team_) all["known"] = list_of(team_->objects());
-  recorder_.objects(all);
+  onboard_.recorder.objects(all);
 }
 
 }  // namespace karst::core

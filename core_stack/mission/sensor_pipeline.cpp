@@ -1,0 +1,176 @@
+#include "core_stack/mission/sensor_pipeline.h"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mission/picture_file.h"
+#include "core_stack/perception/intensity_filter.h"
+
+namespace karst::core {
+namespace {
+
+/// A scan's pose counts this long after the scan came in: with the sensor's own delay of 20 ms the estimate
+/// rests on a scan that ended 80 ms ago when the pose arrives.
+constexpr TimeNs kLocalizationBudget = 60 * kMillisecond;
+/// In real time, where mapping falls behind: what is seen beyond so many waiting messages is not mapped. In
+/// lockstep no more than a budget's worth waits.
+constexpr int kMostWaiting = 16;
+/// Returns within this margin around the vehicle are the vehicle.
+constexpr double kSelfMargin_m = 0.05;
+
+}  // namespace
+
+SensorPipeline::SensorPipeline(Onboard& onboard, Wiring wiring)
+    : onboard_(onboard), wiring_(std::move(wiring)) {
+  const CoreOptions& o = onboard.options;
+  if (onboard.vehicle.lidar && o.localization.source == "lidar")
+    loam_.emplace(onboard.executive, Lane::localization, o.localization.loam, onboard.vehicle.T_world_start);
+}
+
+void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
+  if (scan->stamp > onboard_.now()) return;  // of a clock gone wrong
+  if (!loam_) return map_scan(std::move(scan));
+  if (onboard_.executive.under_way("localization") > 1)
+    return;  // in real time, where it falls behind: the newest scans are of no use if they are late
+  const double self_m = onboard_.vehicle.radius_m + kSelfMargin_m;
+  loam_->job(
+      "localization", kLocalizationBudget,
+      [scan, history = onboard_.flight.estimator().history(), self_m,
+       filter = onboard_.options.perception](Loam& loam) {
+        // Only the paper's rule: robust matching copes with the dust that is left. What makes the map clean
+        // costs true returns at edges and bumps, and the drift grows threefold (docs/localization.md).
+        LidarScan filtered = *scan;
+        drop_weakest_returns(filtered, filter.percentile, filter.radius_m);
+        return loam.process(to_sweep(filtered, self_m), history);
+      },
+      [this, scan](const LoamPose& pose) {
+        const bool accepted =
+            pose.valid && onboard_.flight.on_lidar_pose({pose.stamp, pose.T_world_body, pose.covariance});
+        note_localization(pose, accepted);
+        // What is not known where it was seen would spoil the map.
+        if (accepted) map_scan(scan);
+      });
+}
+
+void SensorPipeline::on_pose(const PoseSample& s) {
+  if (!loam_ && s.stamp <= onboard_.now()) onboard_.flight.on_pose(s);
+}
+
+/// Into the events, whenever it changes.
+void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
+  const std::string state = !pose.valid                ? pose.problem
+                            : !accepted                ? "the pose contradicts the IMU"
+                            : pose.free_directions > 0 ? std::to_string(pose.free_directions) +
+                                                             " directions held from the prediction"
+                                                       : "";
+  const Estimator& e = onboard_.flight.estimator();
+  const std::string believed = e.believed();
+  onboard_.recorder.located({onboard_.now(), pose, accepted, e.active().position_sigma_m(),
+                             e.active().heading_sigma_rad(), believed});
+  if (state == localization_state_ && believed == believed_) return;
+  localization_state_ = state;
+  believed_ = believed;
+  onboard_.recorder.event(onboard_.now(), "localization",
+                          {{"valid", pose.valid},
+                           {"accepted", accepted},
+                           {"free_directions", pose.free_directions},
+                           {"believed", believed},
+                           {"reason", state}});
+}
+
+void SensorPipeline::map_scan(std::shared_ptr<const LidarScan> scan) {
+  integrate([scan, history = onboard_.flight.estimator().history(), filter = onboard_.options.perception,
+             range_m = onboard_.options.mission.mapping_range_m, others = wiring_.others(scan->stamp),
+             self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
+    LidarScan filtered = *scan;
+    filter_low_intensity(filtered, filter);
+    std::vector<Ray> rays = to_rays(filtered, history, self_m, range_m);
+    leave_out(rays, others);
+    return rays;
+  });
+}
+
+void SensorPipeline::on_depth(std::shared_ptr<const DepthImage> image) {
+  integrate([image, history = onboard_.flight.estimator().history(), others = wiring_.others(image->stamp),
+             self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
+    std::vector<Ray> rays = to_rays(*image, history, self_m);
+    leave_out(rays, others);
+    return rays;
+  });
+}
+
+/// Where it was taken is known as well as it can be: scans of that moment have been located since.
+void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
+  if (frame->stamp > onboard_.now() || !frame->model || closed_) return;
+  const Pose T_world_camera =
+      onboard_.flight.estimator().history().pose_at(frame->stamp) * frame->model->camera.T_body_camera;
+  onboard_.map.job("imaged surface", kMappingBudget,
+                   [T_world_camera](Explorer& explorer) { explorer.note_picture(T_world_camera); });
+  std::string file;
+  if (!frame->rgb.empty() && onboard_.executive.under_way("picture file") < kMostWaiting) {
+    std::array<char, 40> name;
+    std::snprintf(name.data(), name.size(), "frames/%09.3f.jpg", seconds(frame->stamp));
+    file = name.data();
+    keep_picture(frame, file);
+  } else if (!frame->rgb.empty() && pictures_lost_++ == 0) {
+    onboard_.recorder.event(onboard_.now(), "log",
+                            {{"text", "pictures come faster than they can be written: some are not kept"}});
+  }
+  onboard_.recorder.frame(*frame, T_world_camera, file);
+}
+
+/// Nothing waits for it; a disk that refuses costs the picture and a warning, not the flight.
+void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file) {
+  auto problem = std::make_shared<std::string>();
+  onboard_.executive.job(
+      "picture file", Lane::pictures, kSecond / 2,
+      [frame, path = onboard_.recorder.directory() / file, problem] {
+        try {
+          write_jpeg(path, *frame);
+        } catch (const std::exception& e) {
+          *problem = e.what();
+        }
+      },
+      [this, problem] {
+        if (!problem->empty() && pictures_lost_++ == 0)
+          onboard_.recorder.event(onboard_.now(), "log", {{"text", *problem}});
+      });
+}
+
+void SensorPipeline::integrate(std::function<std::vector<Ray>()> make_rays) {
+  if (closed_ || onboard_.executive.under_way("mapping") >= kMostWaiting) return;
+  struct Mapped {
+    MapNews news;
+    double explored_m3 = 0;
+    std::optional<double> hull_clearance_m;
+  };
+  onboard_.map.job(
+      "mapping", kMappingBudget,
+      [make_rays = std::move(make_rays), here = onboard_.flight.state().position,
+       question = wiring_.ask()](Explorer& explorer) {
+        Mapped out;
+        MapNews& news = out.news;
+        news.changes = explorer.integrate(make_rays());
+        out.explored_m3 = explorer.map().free_volume_m3();
+        const std::vector<Vec3>& ahead = question.ahead;
+        if (ahead.size() > 1) {
+          const int blocked = question.touch_only ? explorer.touching_segment(ahead)
+                                                  : explorer.blocked_segment(ahead, question.narrow_places);
+          if (blocked >= 0)
+            news.blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
+        }
+        out.hull_clearance_m = explorer.hull_clearance_m(here);
+        news.frontier = question.frontier;
+        if (news.frontier != 0) news.frontier_open = explorer.cluster_alive(news.frontier);
+        return out;
+      },
+      [this](const Mapped& mapped) {
+        explored_m3_ = mapped.explored_m3;
+        hull_clearance_m_ = mapped.hull_clearance_m;
+        last_seen_ = onboard_.now();
+        wiring_.tell(mapped.news);
+      });
+}
+
+}  // namespace karst::core

@@ -1,0 +1,75 @@
+// From the sensors to the map: a scan is located by LOAM, its pose goes into the state estimate, and the rays
+// of what is located go into the map. Images go into the map where the estimate says they were taken.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core_stack/localization/loam.h"
+#include "core_stack/mapping/moving_bodies.h"
+#include "core_stack/mission/onboard.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+/// What is looked up in the map as soon as new rays are in it.
+struct MapQuestion {
+  std::vector<Vec3> ahead;          // the trajectory that has to be clear; empty: none
+  std::vector<Vec3> narrow_places;  // near which less clearance will do
+  bool touch_only = false;          // only what the vehicle would touch is in its way
+  std::uint32_t frontier = 0;       // of the goal under way; 0: none
+};
+
+struct MapNews {
+  std::vector<CellChange> changes;
+  std::optional<double> blocked_after_m;  // along `ahead`
+  std::uint32_t frontier = 0;             // as asked
+  bool frontier_open = true;              // it is worth flying to
+};
+
+class SensorPipeline {
+ public:
+  struct Wiring {
+    std::function<MapQuestion()> ask;
+    std::function<void(const MapNews&)> tell;
+    /// Other vehicles, where they were at that time: what is seen of them is no rock.
+    std::function<std::vector<MovingBody>(TimeNs stamp)> others;
+  };
+  SensorPipeline(Onboard& onboard, Wiring wiring);
+
+  void on_lidar(std::shared_ptr<const LidarScan> scan);
+  void on_depth(std::shared_ptr<const DepthImage> image);
+  void on_rgb(const std::shared_ptr<const RgbFrame>& frame);
+  /// A pose sensor counts only where no LiDAR locates the vehicle.
+  void on_pose(const PoseSample& s);
+  /// Nothing is mapped any more: the flight ends without the map.
+  void close() { closed_ = true; }
+
+  double explored_m3() const { return explored_m3_; }
+  /// Of the hull from the nearest obstacle, where that is near.
+  const std::optional<double>& hull_clearance_m() const { return hull_clearance_m_; }
+  /// For how long nothing has come into the map.
+  TimeNs blind_for() const { return onboard_.now() - last_seen_; }
+  /// On the ground there is nothing to see.
+  void see_nothing_needed() { last_seen_ = onboard_.now(); }
+
+ private:
+  void note_localization(const LoamPose& pose, bool accepted);
+  void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
+  void map_scan(std::shared_ptr<const LidarScan> scan);
+  void integrate(std::function<std::vector<Ray>()> make_rays);
+
+  Onboard& onboard_;
+  Wiring wiring_;
+  std::optional<Laned<Loam>> loam_;  // on vehicles that a LiDAR locates
+  bool closed_ = false;
+  double explored_m3_ = 0;
+  std::optional<double> hull_clearance_m_;
+  TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
+  int pictures_lost_ = 0;                                // not kept
+  std::string localization_state_, believed_ = "lidar";  // as last noted in the events
+};
+
+}  // namespace karst::core

@@ -1,0 +1,28 @@
+// How long the vehicle has kept to one place.
+#pragma once
+#include "core_stack/common/geometry.h"
+#include "core_stack/common/time.h"
+
+namespace karst::core {
+
+class StillWatch {
+ public:
+  void restart(const Vec3& here, TimeNs now) {
+    place_ = here;
+    since_ = now;
+  }
+  /// The clock alone begins anew.
+  void wait(TimeNs now) { since_ = now; }
+  /// For how long it has been within 0.5 m of one place; 0 once it is farther away.
+  TimeNs still_for(const Vec3& here, TimeNs now) {
+    constexpr double kPlace_m = 0.5;
+    if ((here - place_).norm() > kPlace_m) restart(here, now);
+    return now - since_;
+  }
+
+ private:
+  Vec3 place_ = Vec3::Zero();
+  TimeNs since_ = 0;
+};
+
+}  // namespace karst::core
