@@ -142,7 +142,9 @@ void Flight::brake(TimeNs now) {
   braking_ = true;
 }
 
-void Flight::land_now(TimeNs now) noexcept { emergency_landing_.begin(trajectory_, now); }
+void Flight::land_now(TimeNs now, double longest_way_m) noexcept {
+  emergency_landing_.begin(trajectory_, now, longest_way_m);
+}
 
 void Flight::disarm() noexcept {
   motors_ = Motors::off;

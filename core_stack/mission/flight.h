@@ -50,8 +50,11 @@ class Flight {
   void look_around(TimeNs now, double turn_rad);
   /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
   void brake(TimeNs now);
-  /// Brakes and comes straight down, whatever else it is told from now on. Needs no memory.
-  void land_now(TimeNs now) noexcept;
+  /// The way to where it can come down, from where it would stop if it had to land now; for land_now().
+  void prepare_landing(std::span<const Vec3> way) noexcept { emergency_landing_.prepare(way); }
+  /// Brakes, flies that way unless it is longer than `longest_way_m`, and comes straight down, whatever else
+  /// it is told from now on. Needs no memory.
+  void land_now(TimeNs now, double longest_way_m = std::numeric_limits<double>::infinity()) noexcept;
   /// Motors off, for good: on the ground.
   void disarm() noexcept;
 

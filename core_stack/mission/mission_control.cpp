@@ -1,6 +1,7 @@
 #include "core_stack/mission/mission_control.h"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -16,6 +17,17 @@ constexpr TimeNs kControlMissed = 100 * kMillisecond, kSupervisionMissed = 500 *
 constexpr TimeNs kSettling = kSecond;             // on the ground, for the estimate
 constexpr double kOverdue_s = 600;                // beyond the time limit: then it is given up
 constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to come in
+
+/// How far back along the way flown a vehicle that has to land may look for ground: at 0.6 m/s on average
+/// (EmergencyLanding), and with time to come down.
+double way_back_down_m(const BatteryStatus& battery) {
+  constexpr double kFarthest_m = 55, kMean_mps = 0.6, kDescent_s = 15;
+  return std::clamp(kMean_mps * (battery.seconds_left - kDescent_s), 0.0, kFarthest_m);
+}
+
+/// Sideways on a pose that may not hold any more.
+constexpr double kDoubtfulWay_m = 4.5;
+constexpr double kAnyWay_m = std::numeric_limits<double>::infinity();
 
 /// What the widest camera sees without turning need not be turned to; a little is seen twice.
 double turn_to_see_all_around(const VehicleDescription& vehicle) {
@@ -77,6 +89,7 @@ Exploration::Wiring MissionControl::exploration_wiring() {
 
 ReturnHome::Wiring MissionControl::home_wiring() {
   return {.enter = [this](Phase phase, const std::string& reason) { enter(phase, reason); },
+          .land_here = [this](const std::string& reason) { land_here(reason); },
           .in_company = [this] { return team_ && team_->member.in_company(); },
           .give_up_goals =
               [this] {
@@ -155,10 +168,12 @@ MissionResult MissionControl::end() {
   return *result_;
 }
 
-void MissionControl::land_now(const char* reason) noexcept {
+void MissionControl::land_now(const char* reason) noexcept { end_flight(reason, kDoubtfulWay_m); }
+
+void MissionControl::end_flight(const char* reason, double longest_way_m) noexcept {
   if (emergency_ || result_) return;
   emergency_.emplace();
-  onboard_.flight.land_now(now());
+  onboard_.flight.land_now(now(), longest_way_m);
   sensors_.close();
   phases_.enter(Phase::land, now());
   try {  // telling of it may fail, too
@@ -214,7 +229,7 @@ void MissionControl::tell_watcher() {
     onboard_.recorder.event(now(), "overrun", {{"count", overruns - overruns_}});
     overruns_ = overruns;
   }
-  if (!watch_(status)) land_now("stopped by the operator");
+  if (!watch_(status)) end_flight("stopped by the operator", kAnyWay_m);
 }
 
 void MissionControl::control() {
@@ -279,6 +294,13 @@ void MissionControl::take_off() {
   enter(Phase::look, "");
 }
 
+/// As it would in an emergency: where the ground is fit to land on, as far as that is known.
+void MissionControl::land_here(const std::string& reason) {
+  const bool lost = onboard_.flight.estimator().diagnose(now()).health == Health::lost;
+  onboard_.flight.land_now(now(), lost ? kDoubtfulWay_m : kAnyWay_m);
+  enter(Phase::land, reason);
+}
+
 void MissionControl::land() {
   if (standing_) return touch_down(now());  // it had not left the ground yet
   if (!onboard_.flight.at_rest(now())) return;
@@ -292,6 +314,10 @@ MapQuestion MissionControl::map_question() const {
   const bool takes_off = phases_.in(Phase::takeoff);
   if (takes_off || phases_.under_way())  // of what it takes off from, the ground is near
     question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
+  if (takes_off || phases_.in(Phase::look) || phases_.under_way())
+    question.way_down =
+        WayDownQuery{onboard_.flight.until_stop(now()).points.back(),
+                     way_flown_.back(way_back_down_m(endurance_.battery())), onboard_.vehicle.radius_m};
   question.narrow_places = path_.narrow_places();
   question.touch_only = path_.as_come();
   question.frontier = goals_.frontier();
@@ -301,6 +327,7 @@ MapQuestion MissionControl::map_question() const {
 void MissionControl::on_map(const MapNews& news) {
   onboard_.recorder.map_changes(now(), news.changes);
   goals_.note_frontier(news.frontier, news.frontier_open);
+  onboard_.flight.prepare_landing(news.way_down);
   if (!news.blocked_after_m || path_.blocked() || onboard_.flight.at_rest(now())) return;
   if (phases_.in(Phase::takeoff) && take_off_.below_roof()) return;
   goals_.drop_next(GoalFate::unreachable, kPathForbidden, now());
@@ -333,7 +360,7 @@ void MissionControl::react(const SafetyVerdict& verdict) {
   if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * share);
   if (verdict.action == SafetyAction::land) {
     path_.brake(now());
-    enter(Phase::land, verdict.reason);
+    land_here(verdict.reason);
   } else if (verdict.action == SafetyAction::home && phases_.in(Phase::explore)) {
     return_home_.begin(verdict.reason);
   } else if (verdict.action == SafetyAction::brake && under_way && !onboard_.flight.at_rest(now())) {

@@ -101,6 +101,8 @@ class MissionControl final : public VehicleSink {
   void keep_safe();
   void react(const SafetyVerdict& verdict);
   void take_off();
+  void end_flight(const char* reason, double longest_way_m) noexcept;
+  void land_here(const std::string& reason);
   void land();
   MapQuestion map_question() const;
   void on_map(const MapNews& news);

@@ -123,7 +123,7 @@ void ReturnHome::watch_patience(bool at_home) {
   if (at_home || still <= (wiring_.in_company() ? kPatienceInCompany : kPatience)) return;
   constexpr const char* kReason = "no way home, and waiting does not help";
   onboard_.recorder.event(now, "safety", {{"action", "land"}, {"reason", kReason}});
-  wiring_.enter(Phase::land, kReason);
+  wiring_.land_here(kReason);
 }
 
 void ReturnHome::plan() {

@@ -19,6 +19,7 @@ class ReturnHome {
  public:
   struct Wiring {
     std::function<void(Phase, const std::string& reason)> enter;
+    std::function<void(const std::string& reason)> land_here;  // not where it should
     std::function<bool()>
         in_company;  // another vehicle flies near: what is in the way may be gone in a moment
     std::function<void()> give_up_goals;  // tells the team that it explores no more

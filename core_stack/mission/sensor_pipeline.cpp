@@ -161,6 +161,7 @@ void SensorPipeline::integrate(std::function<std::vector<Ray>()> make_rays) {
             news.blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
         }
         out.hull_clearance_m = explorer.hull_clearance_m(here);
+        if (question.way_down) news.way_down = way_down(explorer.map(), *question.way_down);
         news.frontier = question.frontier;
         if (news.frontier != 0) news.frontier_open = explorer.cluster_alive(news.frontier);
         return out;

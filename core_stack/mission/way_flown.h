@@ -21,6 +21,18 @@ class WayFlown {
   }
   const std::vector<Vec3>& points() const { return points_; }
   double length_m() const { return length_m_; }
+  /// The last `length_m` of it, from the last pose back: a pose a metre.
+  std::vector<Vec3> back(double length_m) const {
+    constexpr double kApart_m = 1;
+    std::vector<Vec3> out;
+    for (std::size_t i = points_.size(); i-- > 0 && length_m > 0;) {
+      const double step_m = out.empty() ? 0 : (points_[i] - out.back()).norm();
+      if (!out.empty() && i > 0 && step_m < kApart_m) continue;
+      out.push_back(points_[i]);
+      length_m -= step_m;
+    }
+    return out;
+  }
 
  private:
   std::vector<Vec3> points_;
