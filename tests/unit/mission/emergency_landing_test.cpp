@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace karst::core {
 namespace {
@@ -72,6 +73,45 @@ TEST(EmergencyLanding, FromAHoverComesDownAtOnceAndIsNotBegunTwice) {
   const TrajectorySample down = landing.trajectory(later).at(later);
   EXPECT_LT((down.position - Vec3(1, 2, 3 - 1.5 * kDescent_mps)).norm(), 1e-6);
   EXPECT_NEAR(down.heading_rad, 0.5, 1e-12);
+}
+
+/// Where it comes down, and when it has come to rest above it.
+TEST(EmergencyLanding, FliesTheWayToKnownGroundNotFasterThanAMetrePerSecondAndThenComesDown) {
+  Trajectory hover;
+  hover.samples = {{{0, 0, 1}, 0.5}};
+  const std::vector<Vec3> way{{0.1, 0, 1}, {2, 0, 1}, {2, 2, 1.5}};
+  EmergencyLanding landing({}, kDescent_mps);
+  landing.prepare(way);
+  landing.begin(hover, kNow);
+  landing.prepare(std::vector<Vec3>{{0, 0, 1}, {-9, 0, 1}});  // too late
+  Vec3 before = landing.trajectory(kNow).at(kNow).position;
+  double length_m = 0;
+  TimeNs t = kNow;
+  for (; before.z() > 0.9 && t < kNow + 60 * kSecond; t += 10 * kMillisecond) {
+    const Vec3 p = landing.trajectory(t).at(t).position;
+    EXPECT_LT((p - before).norm() / 0.01, 1.02) << "no step, and not too fast";
+    length_m += (p - before).norm();
+    before = p;
+  }
+  EXPECT_LT((before - way.back()).head<2>().norm(), 1e-9);
+  EXPECT_NEAR(length_m, 2 + std::sqrt(4.25) + 0.6, 0.05);
+}
+
+TEST(EmergencyLanding, FliesNoWayOfAnotherMomentOrLongerThanItMay) {
+  Trajectory hover;
+  hover.samples = {{{0, 0, 1}, 0}};
+  for (const auto& [way, longest_m] :
+       {std::pair{std::vector<Vec3>{{3, 0, 1}, {4, 0, 1}}, 100.0},
+        std::pair{std::vector<Vec3>{{0, 0, 1}, {6, 0, 1}}, 5.0},
+        std::pair{std::vector<Vec3>(100, Vec3(1, 0, 1)), 100.0}, std::pair{std::vector<Vec3>{}, 100.0}}) {
+    EmergencyLanding landing({}, kDescent_mps);
+    landing.prepare(way);
+    landing.begin(hover, kNow, longest_m);
+    for (TimeNs t = kNow; t < kNow + 10 * kSecond; t += kSecond)
+      EXPECT_LT(landing.trajectory(t).at(t).position.head<2>().norm(), 1e-9);
+    const TimeNs late = kNow + 10 * kSecond;
+    EXPECT_LT(landing.trajectory(late).at(late).position.z(), -1);
+  }
 }
 
 }  // namespace

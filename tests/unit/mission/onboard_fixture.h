@@ -1,0 +1,96 @@
+// What the parts of a mission work with, for tests of one part: a vehicle that is always where its reference
+// says, in an empty map.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "core_stack/mission/endurance.h"
+#include "core_stack/mission/goal_tracker.h"
+#include "core_stack/mission/onboard.h"
+#include "core_stack/mission/path_execution.h"
+#include "core_stack/mission/way_flown.h"
+
+namespace karst::core {
+
+/// A policy that does as the test says.
+struct ScriptedPolicy final : PolicyPort {
+  std::function<Decision(const DecisionRequest&)> script = [](const DecisionRequest&) { return Decision{}; };
+  std::vector<PolicyEvent> heard;
+  std::string name() const override { return "scripted"; }
+  Decision decide(const DecisionRequest& r) override { return script(r); }
+  void notify(const PolicyEvent& e) override { heard.push_back(e); }
+};
+
+class OnboardTest : public ::testing::Test {
+ protected:
+  static std::filesystem::path fresh_run() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    const auto dir = std::filesystem::path(KARST_BINARY_DIR) / "test_runs" /
+                     (std::string("onboard_") + test->test_suite_name() + "_" + test->name());
+    std::filesystem::remove_all(dir);
+    return dir;
+  }
+  static VehicleDescription with_lidar() {
+    VehicleDescription v;
+    auto lidar = std::make_shared<LidarModel>();
+    lidar->columns = 8;
+    lidar->elevation_rad = {0.5f, -0.5f};
+    v.lidar = lidar;
+    return v;
+  }
+  static CoreOptions by_pose_sensor() {
+    CoreOptions o;
+    o.localization.source = "pose_sensor";
+    return o;
+  }
+
+  /// Runs all that is due in the next `s` seconds, with a control cycle every 10 ms.
+  void advance(double s) {
+    for (const TimeNs end = executive.now() + from_seconds(s); executive.now() < end;) {
+      executive.run_until(executive.now() + 10 * kMillisecond, [] { return false; });
+      onboard.flight.control(executive.now());
+    }
+  }
+  TimeNs now() const { return executive.now(); }
+  /// Hovers `height_m` up.
+  void hover(double height_m = 1) {
+    onboard.flight.climb(now(), height_m, 0.5);
+    advance(2 * height_m + 3);
+    way_flown.begin(onboard.flight.reference().position);
+  }
+  /// Flies straight ahead, for that far.
+  void fly_ahead(double metres) {
+    const Vec3 from = onboard.flight.reference().position;
+    onboard.flight.follow({from, from + Vec3(metres, 0, 0)}, 0, now(), {});
+  }
+  std::string events() {
+    recorder.flush();
+    std::ifstream in(run / "events.jsonl");
+    std::ostringstream all;
+    all << in.rdbuf();
+    return all.str();
+  }
+  std::size_t told(const std::string& part) {
+    const std::string all = events();
+    std::size_t n = 0;
+    for (std::size_t at = all.find(part); at != std::string::npos; at = all.find(part, at + 1)) ++n;
+    return n;
+  }
+
+  std::filesystem::path run = fresh_run();
+  Recorder recorder{run};
+  Executive executive{1};
+  ScriptedPolicy policy;
+  Onboard onboard{by_pose_sensor(), with_lidar(), executive, recorder, policy};
+  PhaseMachine phases;
+  GoalTracker goals{recorder};
+  PathExecution path{onboard};
+  WayFlown way_flown;
+  Endurance endurance{300};
+};
+
+}  // namespace karst::core

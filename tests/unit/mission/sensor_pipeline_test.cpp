@@ -1,0 +1,97 @@
+#include "core_stack/mission/sensor_pipeline.h"
+
+#include "tests/unit/mission/onboard_fixture.h"
+
+namespace karst::core {
+namespace {
+
+class SensorPipelineTest : public OnboardTest {
+ protected:
+  /// A scan of a sphere of that radius around the vehicle.
+  std::shared_ptr<const LidarScan> scan(TimeNs stamp, float range_m = 3) const {
+    auto s = std::make_shared<LidarScan>();
+    s->stamp = stamp;
+    s->model = onboard.vehicle.lidar;
+    const std::size_t beams = s->model->elevation_rad.size() * static_cast<std::size_t>(s->model->columns);
+    s->range_m.assign(beams, range_m);
+    s->intensity.assign(beams, 0.5f);
+    return s;
+  }
+  void stand_still(double s) {
+    for (const TimeNs end = now() + from_seconds(s); now() < end;) {
+      executive.run_until(now() + 10 * kMillisecond, [] { return false; });
+      onboard.flight.on_imu({now(), Vec3(0, 0, 9.81), Vec3::Zero()});
+      PoseSample pose;
+      pose.stamp = now();
+      sensors.on_pose(pose);
+    }
+  }
+
+  MapQuestion question;
+  std::vector<MapNews> news;
+  std::vector<MovingBody> others;
+  SensorPipeline sensors{onboard,
+                         {.ask = [this] { return question; },
+                          .tell = [this](const MapNews& n) { news.push_back(n); },
+                          .others = [this](TimeNs) { return others; }}};
+};
+
+TEST_F(SensorPipelineTest, AScanIsInTheMapWhenItsBudgetIsOver) {
+  stand_still(1);
+  sensors.on_lidar(scan(now()));
+  EXPECT_TRUE(news.empty());
+  EXPECT_EQ(sensors.blind_for(), now());
+  advance(seconds(kMappingBudget) + 0.01);
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_FALSE(news[0].changes.empty());
+  EXPECT_GT(sensors.explored_m3(), 0);
+  EXPECT_LT(sensors.blind_for(), 2 * kMappingBudget);
+}
+
+TEST_F(SensorPipelineTest, AScanOfTheFutureAndWhateverComesAfterTheEndAreNotMapped) {
+  stand_still(1);
+  sensors.on_lidar(scan(now() + 1));
+  advance(0.2);
+  EXPECT_TRUE(news.empty());
+  sensors.close();
+  sensors.on_lidar(scan(now()));
+  advance(0.2);
+  EXPECT_TRUE(news.empty());
+}
+
+TEST_F(SensorPipelineTest, WhatIsAskedIsLookedUpInTheMapThatHoldsTheScan) {
+  stand_still(1);
+  question.ahead = {Vec3(0, 0, 0), Vec3(6, 0, 0)};  // through the rock that the scan shows, and beyond
+  question.frontier = 9;                            // there is none of that number
+  sensors.on_lidar(scan(now()));
+  advance(0.2);
+  ASSERT_EQ(news.size(), 1u);
+  ASSERT_TRUE(news[0].blocked_after_m);
+  EXPECT_NEAR(*news[0].blocked_after_m, 6, 1e-9) << "in the only segment";
+  EXPECT_EQ(news[0].frontier, 9u);
+  EXPECT_FALSE(news[0].frontier_open);
+}
+
+TEST_F(SensorPipelineTest, WhatIsSeenOfAnotherVehicleIsNoRock) {
+  const auto rock = [this] {
+    std::size_t n = 0;
+    for (const CellChange& c : news.back().changes) n += c.after == Cell::occupied;
+    return n;
+  };
+  stand_still(1);
+  others = {{Vec3::Zero(), 4.0}};  // all around
+  sensors.on_lidar(scan(now()));
+  advance(0.2);
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_EQ(rock(), 0u);
+  others.clear();
+  for (int i = 0; i < 3; ++i) sensors.on_lidar(scan(now()));
+  advance(0.2);
+  std::size_t seen = 0;
+  for (const MapNews& n : news)
+    for (const CellChange& c : n.changes) seen += c.after == Cell::occupied;
+  EXPECT_GT(seen, 0u);
+}
+
+}  // namespace
+}  // namespace karst::core
