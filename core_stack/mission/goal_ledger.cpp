@@ -23,12 +23,12 @@ void GoalLedger::close(const VoxelMap& map, const Vec3& place, TimeNs now, const
   entry->why = why;
 }
 
-std::optional<std::string> GoalLedger::closed(const VoxelMap& map, const Vec3& place, TimeNs now,
-                                              bool by_pause_alone) const {
+std::optional<std::string> GoalLedger::closed(const VoxelMap& map, const Vec3& place,
+                                              const ClosureRules& rules) const {
   for (const Entry& e : entries_) {
     if ((e.place - place).norm() >= kSamePlace_m) continue;
-    const bool unchanged = !by_pause_alone && map.revision_near(e.place, kMapRadius_m) == e.revision;
-    if (now < e.closed_until || unchanged) return e.why;
+    const bool unchanged = !rules.ignore_map_change && map.revision_near(e.place, kMapRadius_m) == e.revision;
+    if (rules.at < e.closed_until || unchanged) return e.why;
   }
   return std::nullopt;
 }

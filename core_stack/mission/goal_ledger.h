@@ -1,4 +1,4 @@
-// Places that were tried in vain: they are not offered or accepted again until the map there has changed,
+// Places that were tried and failed: they are not offered or accepted again until the map there has changed,
 // and then only after a pause that doubles with every attempt.
 #pragma once
 #include <optional>
@@ -9,14 +9,18 @@
 
 namespace karst::core {
 
+/// How a decision cycle judges whether a place is closed.
+struct ClosureRules {
+  TimeNs at = 0;                   // the pause must be over then; later than now waives some of it
+  bool ignore_map_change = false;  // the pause alone decides
+};
+
 class GoalLedger {
  public:
   /// Notes that `place` was tried at `now` and why it is closed.
   void close(const VoxelMap& map, const Vec3& place, TimeNs now, const std::string& why);
-  /// Why the place is closed, or nothing if it is open. The pause alone may decide, whether or not the map
-  /// has changed.
-  std::optional<std::string> closed(const VoxelMap& map, const Vec3& place, TimeNs now,
-                                    bool by_pause_alone = false) const;
+  /// Why the place is closed, or nothing if it is open.
+  std::optional<std::string> closed(const VoxelMap& map, const Vec3& place, const ClosureRules& rules) const;
 
  private:
   struct Entry {

@@ -1,4 +1,4 @@
-#include "core_stack/mission/reach.h"
+#include "core_stack/mission/clearance_roadmap.h"
 
 #include <gtest/gtest.h>
 
@@ -23,20 +23,20 @@ VoxelMap two_rooms() {
 
 const Vec3 kHere(2, 2, 1.4), kThere(9, 2, 1.4);
 
-TEST(NarrowReach, LeadsWhereTheUsualClearanceDoesNot) {
+TEST(NarrowRoadmap, LeadsWhereTheUsualClearanceDoesNot) {
   const VoxelMap map = two_rooms();
   PlanningOptions options;
   options.narrow_margin_m = 0.08;
-  Reach usual = narrow_reach(map, options, options.clearance_m);
+  ClearanceRoadmap usual = narrow_roadmap(map, options, options.clearance_m);
   usual.update(map, kHere);
-  EXPECT_FALSE(plan(map, usual.roadmap, kHere, kThere, usual.planning).found());
-  EXPECT_FALSE(usual.way_home.length_m(map, usual.roadmap, kThere));
+  EXPECT_FALSE(plan(map, usual.roadmap(), kHere, kThere, usual.planning()).found());
+  EXPECT_FALSE(usual.home_length_m(map, kThere));
 
   const auto clearance_m = narrow_clearance_m(options, 0.3);
   ASSERT_TRUE(clearance_m);
-  Reach narrow = narrow_reach(map, options, *clearance_m);
+  ClearanceRoadmap narrow = narrow_roadmap(map, options, *clearance_m);
   narrow.update(map, kHere);
-  Path path = plan(map, narrow.roadmap, kHere, kThere, narrow.planning);
+  Path path = plan(map, narrow.roadmap(), kHere, kThere, narrow.planning());
   ASSERT_TRUE(path.found()) << path.reason;
   mark_narrow_places(map, options.clearance_m, path);
   ASSERT_TRUE(path.narrow());
@@ -47,10 +47,10 @@ TEST(NarrowReach, LeadsWhereTheUsualClearanceDoesNot) {
   }
   EXPECT_GE(path.clear_by_m, 0.3);
   for (const Vec3& p : path.narrow_places) EXPECT_NEAR(p.x(), 5.5, 2.6) << "only the corridor is narrow";
-  EXPECT_NEAR(narrow.way_home.length_m(map, narrow.roadmap, kThere).value_or(0), 7, 1);
+  EXPECT_NEAR(narrow.home_length_m(map, kThere).value_or(0), 7, 1);
 }
 
-TEST(NarrowReach, IsThereOnlyIfTheOptionsAskForLessThanTheUsualClearance) {
+TEST(NarrowRoadmap, IsThereOnlyIfTheOptionsAskForLessThanTheUsualClearance) {
   PlanningOptions options;
   EXPECT_FALSE(narrow_clearance_m(options, 0.3)) << "off by default";
   options.narrow_margin_m = 0.08;
@@ -72,16 +72,16 @@ TEST(NarrowPlaces, AreFoundAllAlongALongSegment) {
 
 TEST(RoadmapPlaces, NearAPointAreClearNodesWithinReach) {
   const VoxelMap map = two_rooms();
-  Reach narrow = narrow_reach(map, PlanningOptions{}, 0.38);
+  ClearanceRoadmap narrow = narrow_roadmap(map, PlanningOptions{}, 0.38);
   narrow.update(map, kHere);
-  const std::vector<Vec3> all = narrow.roadmap.places_near(Vec3(5.5, 2, 1.5), 100);
-  EXPECT_EQ(all.size(), narrow.roadmap.node_count());
-  const std::vector<Vec3> near = narrow.roadmap.places_near(Vec3(5.5, 2, 1.5), 1.5);
+  const std::vector<Vec3> all = narrow.roadmap().places_near(Vec3(5.5, 2, 1.5), 100);
+  EXPECT_EQ(all.size(), narrow.roadmap().node_count());
+  const std::vector<Vec3> near = narrow.roadmap().places_near(Vec3(5.5, 2, 1.5), 1.5);
   EXPECT_EQ(near.size(), static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](const Vec3& p) {
               return (p - Vec3(5.5, 2, 1.5)).norm() <= 1.5;
             })));
   EXPECT_GE(near.size(), 2u) << "the corridor has nodes";
-  EXPECT_TRUE(narrow.roadmap.places_near(Vec3(1e9, 0, 0), 1).empty());
+  EXPECT_TRUE(narrow.roadmap().places_near(Vec3(1e9, 0, 0), 1).empty());
 }
 
 }  // namespace
