@@ -54,9 +54,10 @@ void compare_radio_with_belief(const Mission& mission) {
 
 }  // namespace
 
-/// What a flight is made of, in the order in which it is made.
+/// What a flight is made of, in the order in which it is made: it is taken apart in the opposite one.
 struct MissionFlight::Running {
-  std::vector<std::unique_ptr<RunClaim>> claims;  // the flight's first, then the members' own
+  std::optional<RunClaim> claim;
+  std::vector<std::unique_ptr<RunClaim>> own_claims;  // of a team's members, in folders below
   std::vector<std::unique_ptr<core::Recorder>> recorders;
   Vehicles vehicles;
   std::optional<host::RecordingPolicy> recording;
@@ -88,10 +89,10 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   const fs::path& run_dir = request_.run_dir;
   running_ = std::make_unique<Running>();
   Running& r = *running_;
-  r.claims.push_back(std::make_unique<RunClaim>(run_dir));
+  r.claim.emplace(run_dir);
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const fs::path own = member_run_dir(run_dir, mission_, i);
-    if (own != run_dir) r.claims.push_back(std::make_unique<RunClaim>(own));
+    if (own != run_dir) r.own_claims.push_back(std::make_unique<RunClaim>(own));
     r.recorders.push_back(std::make_unique<core::Recorder>(own));
   }
   r.vehicles = make_vehicles(mission_, members_, run_dir);
@@ -104,7 +105,8 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   } else if (interrupted) {
     throw core::InputError("karst fly", "", "stopped by the operator before take-off");
   }
-  for (const auto& claim : r.claims) claim->keep();
+  r.claim->keep();
+  for (const auto& own : r.own_claims) own->keep();
 }
 
 std::vector<Seat> MissionFlight::seats() const {
