@@ -25,13 +25,6 @@ void describe(OptionTable& t, TeamOptions& o) {
         "64 hexadecimal digits, as from openssl rand -hex 32: the key that frames on the radio are "
         "authenticated "
         "with, one for each mission; none: a key of the seed, which is for simulation only");
-  t.add("lost_robot", o.lost_robot, 0, kMostRobots - 1,
-        "for tests: the number of a robot that never comes back");
-  t.add("lost_after", o.lost_after_s, "s", 0, 7200,
-        "from its start: then it is lost, if it is in the air by then");
-  t.add("silent_relay", o.silent_relay, 0, kMostRobots - 1,
-        "for tests: the number of a robot whose radio fails");
-  t.add("silent_after", o.silent_after_s, "s", 0, 7200, "behind its landing: then it is silent");
 }
 
 void describe(OptionTable& t, HomingOptions& o) {
@@ -46,14 +39,6 @@ void describe(OptionTable& t, HomingOptions& o) {
 }
 
 void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source) {
-  for (const auto& [key, robot] :
-       {std::pair{"team.lost_robot", team.lost_robot}, std::pair{"team.silent_relay", team.silent_relay}})
-    if (robot > 0 && team.robots == 1)
-      throw InputError(source, key, "a vehicle alone is no team: team.robots is 1");
-    else if (robot > team.robots)
-      throw InputError(
-          source, key,
-          "there is no robot " + std::to_string(robot) + ": team.robots is " + std::to_string(team.robots));
   if (team.nodes > 0 && team.robots == 1)
     throw InputError(source, "team.nodes", "a vehicle alone is no team: team.robots is 1");
   if (team.robots * (1 + team.nodes) >= kMostRobots)

@@ -18,9 +18,6 @@ struct TeamOptions {
   double claim_age_s = 60;
   double linger_s = 60;
   std::string key_file;  // of the radio; none: a key of the mission's seed
-  // What a test of the team does to it; 0: nobody.
-  std::int64_t lost_robot = 0, silent_relay = 0;
-  double lost_after_s = 60, silent_after_s = 30;
 };
 void describe(OptionTable& t, TeamOptions& o);
 

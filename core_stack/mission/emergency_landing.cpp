@@ -56,7 +56,7 @@ void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double lon
     brake_.samples.push_back(under_way.at(now + from_seconds(flown_s)));
   }
   plan_move(brake_.end() + kStandStill, longest_way_m);
-  descent_.start = move_.end() + kStandStill;
+  descent_.start = move_.period > 0 ? move_.end() + kStandStill : move_.start;
   descent_.samples[0] = descent_.samples[1] = move_.samples.back();
   descent_.samples[1].position.z() -= kDeepest_m;
 }

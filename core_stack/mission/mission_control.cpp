@@ -63,7 +63,7 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
 
 std::optional<MissionControl::InTeam> MissionControl::in_team(Teamwork* team) {
   if (!team) return std::nullopt;
-  InTeam out{*team, TeamMember(onboard_, *team, {phases_, path_, endurance_}),
+  InTeam out{*team, TeamSharing(onboard_, *team, {phases_, path_, endurance_}),
              RightOfWay(onboard_, *team, {phases_, goals_, path_, way_flown_}), std::nullopt};
   if (team->lands_as_relay()) out.landing.emplace(onboard_, *team, phases_, endurance_);
   return out;
@@ -74,7 +74,7 @@ SensorPipeline::Wiring MissionControl::sensor_wiring() {
           .tell = [this](const MapNews& news) { on_map(news); },
           .others =
               [this](TimeNs stamp) {
-                return team_ ? team_->member.others_at(stamp) : std::vector<MovingBody>{};
+                return team_ ? team_->sharing.others_at(stamp) : std::vector<MovingBody>{};
               }};
 }
 
@@ -82,18 +82,18 @@ Exploration::Wiring MissionControl::exploration_wiring() {
   return {.go_home = [this](const std::string& reason) { return_home_.begin(reason); },
           .claim =
               [this](const Goal& goal) {
-                if (team_) team_->member.claim_goal(goal);
+                if (team_) team_->sharing.claim_goal(goal);
               },
-          .mates = [this] { return team_ ? team_->member.mates() : std::vector<HeardMate>{}; }};
+          .mates = [this] { return team_ ? team_->sharing.mates() : std::vector<HeardMate>{}; }};
 }
 
 ReturnHome::Wiring MissionControl::home_wiring() {
   return {.enter = [this](Phase phase, const std::string& reason) { enter(phase, reason); },
           .land_here = [this](const std::string& reason) { land_here(reason); },
-          .in_company = [this] { return team_ && team_->member.in_company(); },
+          .in_company = [this] { return team_ && team_->sharing.in_company(); },
           .give_up_goals =
               [this] {
-                if (team_) team_->member.give_up_goals();
+                if (team_) team_->sharing.give_up_goals();
               }};
 }
 
@@ -155,7 +155,7 @@ MissionResult MissionControl::end() {
   attempt([this] {
     if (!team_) return;
     const bool where_it_should = result_->outcome == "landed";
-    team_->member.become_relay(result_->stands,
+    team_->sharing.become_relay(result_->stands,
                                where_it_should ? std::optional(return_home_.hover()) : std::nullopt);
   });
   attempt([this] { vehicle_.finish(); });
@@ -250,7 +250,7 @@ void MissionControl::supervise() {
 void MissionControl::fly_phase() {
   switch (phase()) {
     case Phase::standby:
-      if (now() - phases_.since() < kSettling || (team_ && !team_->member.airspace_clear())) break;
+      if (now() - phases_.since() < kSettling || (team_ && !team_->sharing.airspace_clear())) break;
       take_off_.begin();
       enter(Phase::takeoff, "");
       break;
@@ -379,10 +379,10 @@ void MissionControl::record() {
                                return_home_.distance_m()});
   if (way_flown_.begun()) way_flown_.note(flight.reference().position);
   const bool each_second = now() % kSecond == 0;
-  if (team_) team_->member.report(team_->right_of_way.told_now());
+  if (team_) team_->sharing.report(team_->right_of_way.told_now());
   if (team_ && !emergency_ && each_second) {
     if (way_flown_.begun()) {
-      team_->member.share();
+      team_->sharing.share();
       return_home_.give_way_at_landing();
     }
     objects_.note_at_base();

@@ -4,7 +4,7 @@
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done      (core_stack/mission/phase.cpp)
 //
 // Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
-// PathExecution, ReturnHome and RelayLanding, TeamMember and RightOfWay, ObjectSearch. This class wires them.
+// PathExecution, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class wires them.
 #pragma once
 #include <functional>
 #include <optional>
@@ -17,7 +17,7 @@
 #include "core_stack/mission/sensor_pipeline.h"
 #include "core_stack/mission/step_watch.h"
 #include "core_stack/mission/take_off.h"
-#include "core_stack/mission/team_member.h"
+#include "core_stack/mission/team_sharing.h"
 
 namespace karst::core {
 
@@ -84,7 +84,7 @@ class MissionControl final : public VehicleSink {
   /// What it has as one of a team.
   struct InTeam {
     Teamwork& work;
-    TeamMember member;
+    TeamSharing sharing;
     RightOfWay right_of_way;
     std::optional<RelayLanding> landing;  // unless all land at their start
   };

@@ -1,58 +1,54 @@
-// What a vehicle does because it is one of a team: it tells the others where it is, what it explores and what
-// it finds, takes in what they tell, and drops communication nodes behind it.
+// One robot of a team: its knowledge of the others, its choice of a landing place, and the port through which
+// it exchanges both. Mission control works with its Teamwork; whoever runs the loop calls transmit() and
+// receive() ten times a second.
 #pragma once
 #include <optional>
-#include <vector>
 
-#include "core_stack/mapping/moving_bodies.h"
-#include "core_stack/mission/endurance.h"
-#include "core_stack/mission/onboard.h"
-#include "core_stack/mission/path_execution.h"
-#include "core_stack/mission/phase.h"
+#include "core_stack/mission/mission_options.h"
 #include "core_stack/mission/teamwork.h"
+#include "core_stack/vehicle/team_port.h"
+#include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {
 
+/// What all members of a team are given alike.
+struct TeamSetup {
+  Vec3 base = Vec3::Zero();  // the base's antenna, world frame
+  std::uint64_t seed = 1;
+  MissionKey key;
+};
+
+/// A communication node that was dropped.
+struct DroppedNode {
+  RobotId id = 0;
+  NodeDrop drop;
+};
+
 class TeamMember {
  public:
-  struct Parts {
-    const PhaseMachine& phases;
-    const PathExecution& path;
-    const Endurance& endurance;
-  };
-  TeamMember(Onboard& onboard, Teamwork& team, const Parts& parts)
-      : onboard_(onboard), team_(team), parts_(parts), nodes_left_(team.options().nodes) {}
+  /// `starts_at`: when the vehicle is switched on, by the team's clock. The port outlives the member.
+  TeamMember(RobotId id, const CoreOptions& options, const VehicleDescription& vehicle,
+             const TeamSetup& setup, TimeNs starts_at, TeamPort& port);
 
-  /// Ten times a second.
-  void report(TeamPhase told);
-  /// Once a second in the air: takes in what was heard, tells what was found since, and drops a node where
-  /// the others would be out of reach next.
-  void share();
-  void claim_goal(const Goal& goal);
-  void give_up_goals();
-  /// On the ground, for good. Called when nothing runs on the map lane any more. `hover`: above where it
-  /// stands.
-  void become_relay(bool stands, const std::optional<Vec3>& landed_below);
+  void transmit(TimeNs team_time);
+  void receive(TimeNs team_time);
+  /// Drops the communication node that mission control has asked for since the last call, if it has.
+  std::optional<DroppedNode> drop_due_node();
 
-  /// No other vehicle is near the place where it hovers first.
-  bool airspace_clear() const;
-  /// Another flies near: what is in the way may be gone in a moment.
-  bool in_company() const;
-  /// Where the others are that move, at `stamp`: those that stand, aside or landed, are obstacles like any
-  /// other.
-  std::vector<MovingBody> others_at(TimeNs stamp) const;
-  std::vector<HeardMate> mates() const { return team_.mates(onboard_.now()); }
+  RobotId id() const { return mate_.self(); }
+  const Teammate& mate() const { return mate_; }
+  Teamwork& teamwork() { return teamwork_; }
 
  private:
-  void tell_goal(const Vec3& position, bool given_up);
-  void drop_node(const NodeDrop& drop);
-  bool may_drop() const;
-
-  Onboard& onboard_;
-  Teamwork& team_;
-  Parts parts_;
-  std::int64_t nodes_left_;  // that it carries
-  std::optional<TimeNs> dropped_at_;
+  TeamPort& port_;
+  std::int64_t first_node_, nodes_dropped_ = 0;
+  Teammate mate_;
+  RelayHoming homing_;
+  Teamwork teamwork_;
 };
+
+/// Sends what `mate` has to say, and lets it hear what has come in.
+void transmit(Teammate& mate, RadioPort& radio, TimeNs team_time);
+void receive(Teammate& mate, RadioPort& radio, TimeNs team_time);
 
 }  // namespace karst::core

@@ -2,7 +2,7 @@
 
 namespace {
 
-class SimulatorPlugin final : public karst::core::TeamVehiclePlugin {
+class SimulatorPlugin final : public karst::sim::SimulatedWorldPlugin {
  public:
   void describe_options(karst::core::OptionTable& table) override {
     options_ = {};  // nothing of a mission read before
@@ -15,7 +15,7 @@ class SimulatorPlugin final : public karst::core::TeamVehiclePlugin {
     radio_ = {};
     describe(table, radio_);
   }
-  std::unique_ptr<karst::core::TeamVehicles> create_team(const karst::core::TeamSetup& setup) override {
+  std::unique_ptr<karst::sim::SimulatedWorld> create_world(const karst::sim::WorldSetup& setup) override {
     return std::make_unique<karst::sim::SimulatedTeam>(options_, radio_, setup);
   }
 

@@ -99,7 +99,7 @@ std::optional<Vec3> fallen(const cave::RayScene& scene, const Vec3& from, const 
 }
 
 SimulatedTeam::SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio,
-                             const core::TeamSetup& setup)
+                             const WorldSetup& setup)
     : radius_m_(options.body.radius_m),
       cave_(cave_for_team(options.objects, setup.world)),
       starts_(start_places(cave_, setup.seeds.size(), radius_m_, setup.world.climb_m)),
@@ -208,13 +208,22 @@ void SimulatedTeam::wreck(std::size_t robot, const std::string& reason) {
   if (robots_.at(robot)->airborne()) robots_[robot]->end_flight("lost", reason);
 }
 
-std::vector<std::vector<std::uint8_t>> SimulatedTeam::receive(std::size_t radio, TimeNs until) {
+SimulatedTeam::Port& SimulatedTeam::port_of(std::size_t radio) {
+  return ports_.try_emplace(radio, *this, radio).first->second;
+}
+
+void SimulatedTeam::Port::send(std::span<const std::uint8_t> frame, TimeNs now) {
+  team_.radio_.send(team_.cave_.scene, static_cast<int>(radio_), frame, now);
+}
+
+std::vector<std::vector<std::uint8_t>> SimulatedTeam::Port::receive(TimeNs until) {
   std::vector<std::vector<std::uint8_t>> out;
-  for (RadioPacket& p : radio_.receive(static_cast<int>(radio), until)) out.push_back(std::move(p.bytes));
+  for (RadioPacket& p : team_.radio_.receive(static_cast<int>(radio_), until))
+    out.push_back(std::move(p.bytes));
   return out;
 }
 
-core::RadioTraffic SimulatedTeam::traffic(std::size_t radio) const {
+RadioTraffic SimulatedTeam::traffic(std::size_t radio) const {
   const RadioCounts& c = radio_.counts(static_cast<int>(radio));
   return {c.bytes_sent, c.bytes_dropped, c.bytes_heard,   c.bytes_lost,
           c.bytes_weak, c.packets_sent,  c.packets_heard, c.packets_corrupted};

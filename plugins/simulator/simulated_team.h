@@ -1,12 +1,13 @@
 // Several simulated vehicles in one cave: each a sphere in the others' sight, and a radio on each.
 #pragma once
 #include <fstream>
+#include <map>
 #include <memory>
 #include <vector>
 
-#include "core_stack/vehicle/team_vehicles.h"
 #include "plugins/simulator/radio.h"
 #include "plugins/simulator/simulated_vehicle.h"
+#include "plugins/simulator/simulated_world.h"
 
 namespace karst::sim {
 
@@ -24,23 +25,20 @@ bool touched(const core::Vec3& a0, const core::Vec3& a1, const core::Vec3& b0, c
 std::optional<core::Vec3> fallen(const cave::RayScene& scene, const core::Vec3& from,
                                  const core::Vec3& velocity_mps);
 
-class SimulatedTeam final : public core::TeamVehicles {
+class SimulatedTeam final : public SimulatedWorld {
  public:
   /// Throws InputError on a bad cave or start, or one without room for all.
-  SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio, const core::TeamSetup& setup);
+  SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio, const WorldSetup& setup);
 
   core::Vehicle& robot(std::size_t i) override { return *robots_.at(i); }
+  core::TeamPort& port(std::size_t robot) override { return port_of(robot + 1); }
+  core::RadioPort& radio(std::size_t number) override { return port_of(number); }
   std::string start_of(std::size_t i) const override;
   core::Vec3 base() const override { return cave_.description.start.position; }
   void meet(core::TimeNs now) override;
   void silence(std::size_t radio) override { radio_.set_on(static_cast<int>(radio), false); }
   void wreck(std::size_t robot, const std::string& reason) override;
-  void drop_node(std::size_t robot, std::size_t radio) override;
-  void send(std::size_t radio, std::span<const std::uint8_t> bytes, core::TimeNs now) override {
-    radio_.send(cave_.scene, static_cast<int>(radio), bytes, now);
-  }
-  std::vector<std::vector<std::uint8_t>> receive(std::size_t radio, core::TimeNs until) override;
-  core::RadioTraffic traffic(std::size_t radio) const override;
+  RadioTraffic traffic(std::size_t radio) const override;
   void finish() override;
 
  private:
@@ -49,6 +47,21 @@ class SimulatedTeam final : public core::TeamVehicles {
     core::Vec3 position;
   };
 
+  /// One radio of the team, the base's and the nodes' among them.
+  class Port final : public core::TeamPort {
+   public:
+    Port(SimulatedTeam& team, std::size_t radio) : team_(team), radio_(radio) {}
+    void send(std::span<const std::uint8_t> frame, core::TimeNs now) override;
+    std::vector<std::vector<std::uint8_t>> receive(core::TimeNs until) override;
+    void drop_node(std::size_t radio) override { team_.drop_node(radio_ - 1, radio); }
+
+   private:
+    SimulatedTeam& team_;
+    std::size_t radio_;
+  };
+
+  Port& port_of(std::size_t radio);
+  void drop_node(std::size_t robot, std::size_t radio);
   void count_contacts(core::TimeNs now);
   void log(core::TimeNs now);
 
@@ -58,6 +71,7 @@ class SimulatedTeam final : public core::TeamVehicles {
   std::vector<std::unique_ptr<SimulatedVehicle>> robots_;
   std::vector<core::Vec3> last_;  // positions at the last meeting
   Radio radio_;
+  std::map<std::size_t, Port> ports_;  // made when first asked for
   std::vector<Node> nodes_;
   std::ofstream truth_;  // team_truth.jsonl: contacts, and who could hear whom
   std::string truth_file_;

@@ -198,7 +198,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   for (const char* key :
        {"data_at_base_share", "robots_landed", "robots_connected", "exploration_time_1_s",
         "exploration_time_2_s", "exploration_time_3_s", "exploration_time_4_s", "exploration_time_5_s"})
-    m[key] = nullptr;  // of a team: sdk/tools/team_metrics.h
+    m[key] = nullptr;  // of a team: sdk/flight/team_metrics.h
   return m;
 }
 

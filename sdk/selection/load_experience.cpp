@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_place.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/campaign/hash.h"
 #include "sdk/campaign/store.h"
@@ -56,6 +57,12 @@ Experience load_experience(const std::vector<std::string>& files,
 std::string mesh_hash_of(const std::string& cave_file, const std::string& start) {
   if (source_of(cave_file) != Source::mesh) return "";
   return campaign::sha256_of_file(cave::describe_cave(cave_file, start).mesh_path);
+}
+
+std::string installed_experience() {
+  const std::filesystem::path file =
+      core::plugin_root().parent_path().parent_path() / "share" / "karst" / "experience.info";
+  return std::filesystem::is_regular_file(file) ? file.string() : "";
 }
 
 }  // namespace karst::selection

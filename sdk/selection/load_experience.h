@@ -17,4 +17,7 @@ Experience load_experience(const std::vector<std::string>& files,
 /// SHA-256 of a cave's mesh, as campaigns tell caves apart by; "" of what is no mesh. Throws InputError.
 std::string mesh_hash_of(const std::string& cave_file, const std::string& start);
 
+/// The experience that comes with this installation; "" if it has none.
+std::string installed_experience();
+
 }  // namespace karst::selection

@@ -11,7 +11,7 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/printable.h"
 #include "sdk/evaluation/metric_definitions.h"
-#include "sdk/tools/terminal.h"
+#include "sdk/terminal/terminal.h"
 
 namespace karst::tools {
 namespace {

@@ -13,10 +13,10 @@
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
+#include "sdk/selection/cave_facts.h"
 #include "sdk/selection/describe.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/cave_facts.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -120,7 +120,7 @@ void generate(const GenerateArguments& args) {
   double length_m = 0;
   for (const auto& way : cave.ways)
     for (std::size_t i = 1; i < way.size(); ++i) length_m += (way[i] - way[i - 1]).norm();
-  const MeshFacts facts = mesh_facts(cave.mesh);
+  const selection::MeshFacts facts = selection::mesh_facts(cave.mesh);
   const Vec3 extent = facts.high - facts.low;
   print_out("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", info_path.c_str(),
             cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.ways.size(), length_m);
@@ -132,14 +132,14 @@ void generate(const GenerateArguments& args) {
             info_path.c_str(), info_path.c_str());
 }
 
-ordered_json json_of(const InfoArguments& args, const MeshFacts& m) {
+ordered_json json_of(const InfoArguments& args, const selection::MeshFacts& m) {
   const auto vector = [](const Vec3& v) { return ordered_json{v.x(), v.y(), v.z()}; };
   return {{"file", args.file},        {"triangles", m.triangles},   {"low_m", vector(m.low)},
           {"high_m", vector(m.high)}, {"closed", m.odd_edges == 0}, {"edges", m.edges},
           {"odd_edges", m.odd_edges}};
 }
 
-void print_mesh(const InfoArguments& args, const MeshFacts& m) {
+void print_mesh(const InfoArguments& args, const selection::MeshFacts& m) {
   const Vec3 e = m.high - m.low;
   print_out("%s\n", args.file.c_str());
   print_out("  triangles          %zu\n", m.triangles);
@@ -156,7 +156,7 @@ void info(const InfoArguments& args) {
   const bool bare = std::filesystem::path(args.file).extension() != ".info";
   if (bare && args.start.empty()) {
     if (!std::filesystem::exists(args.file)) throw InputError(args.file, "", "no such cave file");
-    const MeshFacts facts = mesh_facts(cave::load_mesh(args.file));
+    const selection::MeshFacts facts = selection::mesh_facts(cave::load_mesh(args.file));
     if (args.json) {
       print_json(json_of(args, facts));
     } else {
@@ -166,12 +166,12 @@ void info(const InfoArguments& args) {
     return;
   }
   const cave::Cave cave = cave::load_cave(args.file, args.start);
-  const MeshFacts facts = mesh_facts(cave.scene.mesh());
+  const selection::MeshFacts facts = selection::mesh_facts(cave.scene.mesh());
   const Vec3 start = cave.description.start.position;
   const double clearance_m = cave.scene.distance_to_rock(start, 100);
   const evaluation::Reachable r =
       evaluation::find_reachable(cave.scene.mesh(), start, args.options, cave.description.mesh_path);
-  const PassageFacts passages = passage_facts(cave.scene, r);
+  const selection::PassageFacts passages = selection::passage_facts(cave.scene, r);
   double lowest = 1e9, highest = -1e9;
   r.flyable.for_each([&](const core::CellKey& k) {
     const double z = (k.z + 0.5) * r.options.resolution_m;

@@ -9,9 +9,9 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/output_file.h"
 #include "sdk/check/run_check.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {

@@ -14,18 +14,18 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/campaign.h"
+#include "sdk/campaign/campaign_page.h"
 #include "sdk/campaign/export.h"
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/campaign/slurm.h"
 #include "sdk/campaign/verdict.h"
 #include "sdk/evaluation/whole_file.h"
+#include "sdk/flight/run_files.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/campaign_page.h"
 #include "sdk/tools/campaign_progress.h"
 #include "sdk/tools/interrupt.h"
 #include "sdk/tools/results_text.h"
-#include "sdk/tools/run_files.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -151,7 +151,7 @@ int compare(const CompareArguments& args) {
     c = from_file(args);
   }
   if (options.folder.empty()) options.folder = fs::path("runs") / c->name;
-  refuse_run(options.folder);
+  flight::refuse_run(options.folder);
   options.karst = fs::read_symlink("/proc/self/exe");
   options.executor = args.executor;
   options.sbatch = args.sbatch;
@@ -177,7 +177,8 @@ int compare(const CompareArguments& args) {
   }
   const campaign::CampaignResults results = campaign::read_results(options.folder);
   print_results(results, args.metric);
-  print_out("Look next at:\n  %s   the report\n", write_campaign_page(options.folder, args.metric).c_str());
+  print_out("Look next at:\n  %s   the report\n",
+            campaign::write_campaign_page(options.folder, args.metric).c_str());
   print_out("  karst results %s --csv results.csv   every trial in a line\n", options.folder.c_str());
   print_out("  sqlite3 %s   the store\n", campaign::store_file(options.folder).c_str());
   return 0;

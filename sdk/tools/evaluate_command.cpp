@@ -12,8 +12,8 @@
 #include "sdk/evaluation/map_reference.h"
 #include "sdk/evaluation/report.h"
 #include "sdk/evaluation/whole_file.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core_stack/common/options.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/compare_command.h"
 #include "sdk/tools/evaluate_command.h"
@@ -13,7 +14,6 @@
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
-#include "sdk/tools/terminal.h"
 #include "sdk/tools/tune_command.h"
 
 namespace {
@@ -35,7 +35,7 @@ std::string wrong_command(const CLI::App& app) {
 int exit_code(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_name() == "RuntimeError") return e.get_exit_code();
   const std::string wrong = e.get_exit_code() == 0 ? "" : wrong_command(app);
-  if (!wrong.empty()) karst::tools::print_error("karst: %s\n", wrong.c_str());
+  if (!wrong.empty()) karst::print_error("karst: %s\n", wrong.c_str());
   return app.exit(e) == 0 ? 0 : 1;
 }
 
@@ -76,10 +76,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     code = exit_code(app, e);
   } catch (const std::exception& e) {
-    karst::tools::print_error("karst: %s\n", e.what());
+    karst::print_error("karst: %s\n", e.what());
     code = 1;
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  karst::tools::print_error("karst: standard output cannot be written\n");
+  karst::print_error("karst: standard output cannot be written\n");
   return code == 0 ? 1 : code;
 }

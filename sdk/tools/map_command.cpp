@@ -10,10 +10,10 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "sdk/evaluation/map_inputs.h"
 #include "sdk/evaluation/whole_file.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/map_inputs.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr int kRefused = 2;  // exit code: read well, but not to be put together
+constexpr int kNotMerged = 2;  // exit code: read well, but not to be put together
 
 struct MergeArguments {
   std::vector<std::string> maps, settings;
@@ -31,7 +31,7 @@ struct MergeArguments {
 };
 
 struct Placed {
-  const MapInput* map;
+  const evaluation::MapInput* map;
   core::MapRegistration registration;
 };
 
@@ -79,11 +79,11 @@ std::string stem_of(const std::string& out) {
                                                                 : out;
 }
 
-std::vector<MapInput> read_all(const MergeArguments& args) {
-  std::vector<MapInput> maps;
+std::vector<evaluation::MapInput> read_all(const MergeArguments& args) {
+  std::vector<evaluation::MapInput> maps;
   for (const std::string& name : args.maps) {
-    maps.push_back(read_map_input(name, args.resolution_m));
-    const MapInput &first = maps.front(), &last = maps.back();
+    maps.push_back(evaluation::read_map_input(name, args.resolution_m));
+    const evaluation::MapInput &first = maps.front(), &last = maps.back();
     if (first.piece.cells && last.piece.cells &&
         std::abs(first.piece.resolution_m / last.piece.resolution_m - 1) > 0.01)
       throw core::InputError(last.file, "res",
@@ -96,14 +96,14 @@ std::vector<MapInput> read_all(const MergeArguments& args) {
 
 /// Each map is laid on all that were put together before it; one that does not fit waits until more are
 /// there.
-std::vector<Placed> place_all(const std::vector<MapInput>& maps, const core::MapRegistrationOptions& options,
-                              MergedMap& merged) {
+std::vector<Placed> place_all(const std::vector<evaluation::MapInput>& maps,
+                              const core::MapRegistrationOptions& options, evaluation::MergedMap& merged) {
   std::vector<Placed> placed;
-  std::vector<const MapInput*> waiting;
+  std::vector<const evaluation::MapInput*> waiting;
   for (std::size_t i = 1; i < maps.size(); ++i) waiting.push_back(&maps[i]);
   while (!waiting.empty()) {
     std::vector<Placed> refused;
-    for (const MapInput* map : waiting) {
+    for (const evaluation::MapInput* map : waiting) {
       print_error("registering %s ...\n", map->name.c_str());
       const Placed p{map, core::register_maps(merged.piece(), map->piece, options)};
       if (p.registration.trusted) {
@@ -155,8 +155,8 @@ int merge(const MergeArguments& args) {
       if (fs::exists(stem + ending))
         throw core::InputError(stem + ending, "", "is there already; choose another --out, or --force");
   check_can_write(stem);
-  const std::vector<MapInput> maps = read_all(args);
-  MergedMap merged(maps.front());
+  const std::vector<evaluation::MapInput> maps = read_all(args);
+  evaluation::MergedMap merged(maps.front());
   const std::vector<Placed> placed = place_all(maps, options, merged);
   const bool all =
       std::all_of(placed.begin(), placed.end(), [](const Placed& p) { return p.registration.trusted; });
@@ -176,7 +176,7 @@ int merge(const MergeArguments& args) {
     for (const fs::path& f : files) print_out("%s\n", f.c_str());
   }
   if (!all) print_error("karst: not all maps could be put together; nothing was written\n");
-  return all ? 0 : kRefused;
+  return all ? 0 : kNotMerged;
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "sdk/host/discovery.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/check_command.h"
 #include "sdk/tools/policy_new.h"
 #include "sdk/tools/request_replay_command.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {

@@ -16,10 +16,10 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/output_file.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/policy_name.h"
 #include "sdk/tools/policy_templates.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {

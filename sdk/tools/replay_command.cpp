@@ -10,12 +10,12 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/printable.h"
 #include "plugins/replay/decimal_time.h"
+#include "sdk/flight/finish_run.h"
+#include "sdk/flight/run_files.h"
+#include "sdk/replay/replay_run.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
-#include "sdk/tools/replay_run.h"
-#include "sdk/tools/report_command.h"
-#include "sdk/tools/run_files.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -50,14 +50,14 @@ class ReplayLine {
   std::size_t scans_;
 };
 
-core::OptionTable table_of(ReplayOptions& options) {
+core::OptionTable table_of(replay::ReplayOptions& options) {
   core::OptionTable table;
   describe(table, options);
   return table;
 }
 
-ReplayOptions options_of(const ReplayArguments& args) {
-  ReplayOptions options;
+replay::ReplayOptions options_of(const ReplayArguments& args) {
+  replay::ReplayOptions options;
   core::OptionTable table = table_of(options);
   for (const std::string& s : args.settings) {
     const auto equals = s.find('=');
@@ -69,7 +69,8 @@ ReplayOptions options_of(const ReplayArguments& args) {
 }
 
 /// All settings as resolved, and what the recording said of itself.
-void write_settings(const fs::path& run_dir, const replay::Recording& recording, ReplayOptions options) {
+void write_settings(const fs::path& run_dir, const replay::Recording& recording,
+                    replay::ReplayOptions options) {
   pt::ptree tree = table_of(options).resolved();
   core::OptionTable declared;
   replay::RecordingInfo info = recording.info;
@@ -88,7 +89,7 @@ void write_settings(const fs::path& run_dir, const replay::Recording& recording,
   }
 }
 
-void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir,
+void print_summary(const replay::ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir,
                    bool report) {
   print_out("%zu scans, %zu of them lost", s.scans, s.lost);
   if (s.lost > 0) print_out(" (the last: %s)", s.last_problem.c_str());
@@ -114,7 +115,7 @@ void print_summary(const ReplaySummary& s, const nlohmann::json& metrics, const 
 
 int replay_scans(const ReplayArguments& args) {
   if (args.keys) {
-    ReplayOptions options;
+    replay::ReplayOptions options;
     replay::RecordingInfo info;
     core::OptionTable declared;
     describe(declared, info);
@@ -124,14 +125,14 @@ int replay_scans(const ReplayArguments& args) {
   }
   if (args.scans.empty() || args.out.empty())
     throw core::InputError("karst replay", "", "needs SCANS and --out DIR; see karst replay --help");
-  const ReplayOptions options = options_of(args);
+  const replay::ReplayOptions options = options_of(args);
   const replay::Recording recording = replay::open_recording(args.scans, args.info);
   replay::read_sweep(recording, 0);  // what is wrong with all of them shows before anything is written
   replay::open_imu(recording);
 
   const std::atomic<bool>& interrupted = watch_for_interrupt();
-  const fs::path run_dir = run_dir_of(args.out);
-  RunClaim claim(run_dir);
+  const fs::path run_dir = flight::run_dir_of(args.out);
+  flight::RunClaim claim(run_dir);
   std::error_code error;
   fs::create_directories(run_dir, error);
   if (error)
@@ -139,20 +140,22 @@ int replay_scans(const ReplayArguments& args) {
   write_settings(run_dir, recording, options);
   claim.keep();
 
-  ReplaySummary summary;
+  replay::ReplaySummary summary;
   std::string damage;
   const ReplayLine line(args.quiet || args.json, recording.files.size());
   try {
-    summary = replay_recording(recording, options, run_dir,
-                               [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
-                                 line.show(scan, pose, map);
-                                 return !interrupted;
-                               });
+    summary = replay::replay_recording(
+        recording, options, run_dir,
+        [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
+          line.show(scan, pose, map);
+          return !interrupted;
+        });
   } catch (const core::InputError& e) {
     damage = e.what();
   }
   line.end();
-  const nlohmann::json metrics = finish_run(run_dir, "", "", !args.no_report);
+  const nlohmann::json metrics =
+      flight::finish_run(run_dir, {"", "", args.no_report ? flight::Report::none : flight::Report::written});
   if (!damage.empty()) {
     print_error("karst: %s\nkarst: what came before it stands in %s\n", damage.c_str(), run_dir.c_str());
     return 1;

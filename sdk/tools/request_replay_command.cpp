@@ -11,8 +11,8 @@
 #include "core_stack/common/json_text.h"
 #include "sdk/host/hosted_policy.h"
 #include "sdk/host/request_log.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {

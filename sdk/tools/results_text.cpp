@@ -10,7 +10,7 @@
 #include "core_stack/common/options.h"
 #include "sdk/campaign/verdict.h"
 #include "sdk/evaluation/metric_definitions.h"
-#include "sdk/tools/terminal.h"
+#include "sdk/terminal/terminal.h"
 
 namespace karst::tools {
 namespace {

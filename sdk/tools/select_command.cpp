@@ -12,9 +12,8 @@
 #include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/install_place.h"
-#include "sdk/tools/terminal.h"
 
 namespace karst::tools {
 namespace {
@@ -25,7 +24,7 @@ using selection::Experience;
 using selection::Selected;
 
 constexpr std::size_t kManyCaves = 30;  // a share of fewer caves may be off by 18 points and more
-constexpr int kRefused = 3;             // exit code: nothing similar was flown
+constexpr int kNothingSimilar = 3;      // exit code: nothing similar was flown
 
 struct SelectArguments {
   std::string cave, start, out, preset;
@@ -40,7 +39,8 @@ void tell(const std::string& message) { print_error("%s\n", message.c_str()); }
 
 Experience experience_of(const SelectArguments& args) {
   std::vector<std::string> files = args.results;
-  if (files.empty() && !installed_experience().empty()) files = {installed_experience()};
+  if (files.empty() && !selection::installed_experience().empty())
+    files = {selection::installed_experience()};
   if (files.empty())
     throw InputError("karst select", "--results",
                      "give the store of a campaign, or an experience that --learn wrote: none is installed");
@@ -132,7 +132,7 @@ int select_for(const SelectArguments& args) {
     print_json(to_json(e, cave.figures, s, args));
   else
     print(e, cave.figures, s, args);
-  if (s.refused) return kRefused;
+  if (s.refused) return kNothingSimilar;
   if (!args.preset.empty()) {
     const selection::Preset& first = e.contestants[s.ranking.front().contestant];
     evaluation::write_whole_file(args.preset,
@@ -219,12 +219,6 @@ int run(const SelectArguments& args) {
 }
 
 }  // namespace
-
-std::string installed_experience() {
-  const std::filesystem::path file =
-      plugin_root().parent_path().parent_path() / "share" / "karst" / "experience.info";
-  return std::filesystem::is_regular_file(file) ? file.string() : "";
-}
 
 void add_select_command(CLI::App& app) {
   auto args = std::make_shared<SelectArguments>();

@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "core_stack/common/json_file.h"
-#include "sdk/tools/terminal.h"
+#include "sdk/terminal/terminal.h"
 
 namespace karst::tools {
 namespace {

@@ -11,11 +11,11 @@
 #include "core_stack/common/options.h"
 #include "sdk/campaign/run_campaign.h"
 #include "sdk/evaluation/whole_file.h"
+#include "sdk/flight/run_files.h"
 #include "sdk/selection/preset.h"
+#include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
-#include "sdk/tools/run_files.h"
-#include "sdk/tools/terminal.h"
 #include "sdk/tuning/tune.h"
 
 namespace karst::tools {
@@ -143,7 +143,7 @@ int finish(const TuneArguments& args, const tuning::TuneOptions& o, const TuneRe
 }
 
 int tune(const TuneArguments& args) {
-  refuse_run(args.out);
+  flight::refuse_run(args.out);
   if (fs::exists(fs::path(args.out) / "campaign.sqlite"))
     throw InputError(args.out, "campaign.sqlite", "is that of a campaign; choose another --out");
   const tuning::TuneOptions o = options_of(args);

@@ -82,6 +82,13 @@ TEST(BadInput, AFlightIsRefusedWhereCaveInfoRefuses) {
   EXPECT_FALSE(fs::exists(dir / "run"));
 }
 
+TEST(BadInput, ATeamWithoutRoomToStandLeavesNoFolderBehind) {
+  const fs::path dir = fresh_folder("bad_team_room");
+  const std::string cave = draw_cave(dir, {{{0, 0, 0}, {3, 2, 3}}}, {1, 1, 1});
+  expect_refused(fly(dir, "--cave " + cave + " --set team.robots=12"), {"room for", "vehicles side by side"});
+  EXPECT_FALSE(fs::exists(dir / "run"));
+}
+
 TEST(BadInput, ACaveCacheThatIsNoFolder) {
   const fs::path dir = fresh_folder("bad_cache");
   const std::string mesh = written(dir / "box.stl", box_stl(4)), file = written(dir / "taken", "a file");

@@ -1,13 +1,13 @@
 // Teams flown while somebody forges frames beside them: a vehicle that is not there, told of to those that
 // are.
 #include <atomic>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core_stack/common/random.h"
 #include "core_stack/homing/messages.h"
-#include "core_stack/vehicle/team_vehicles.h"
-#include "sdk/tools/fly_team.h"
+#include "sdk/flight/fly.h"
 #include "tests/closed_loop/command.h"
 #include "tests/closed_loop/drawn_cave.h"
 
@@ -24,38 +24,54 @@ struct Forger {
   std::uint64_t seed = 1;
 };
 
-/// The simulated team, and on its radio a forger who hears all. Every quarter of a second it says of the
+/// The simulated world, and on its radio a forger who hears all. Every quarter of a second it says of the
 /// phantom that it is about to land 2 to 4 m from a robot, for five seconds, then by another.
-class ForgedTeam final : public TeamVehicles {
+class ForgedWorld final : public sim::SimulatedWorld {
  public:
-  ForgedTeam(std::unique_ptr<TeamVehicles> team, const Forger& forger, const MissionKey& listens_with)
-      : team_(std::move(team)), forger_(forger), listens_with_(listens_with), random_(forger.seed) {}
+  ForgedWorld(std::unique_ptr<sim::SimulatedWorld> world, const Forger& forger,
+              const MissionKey& listens_with)
+      : world_(std::move(world)), forger_(forger), listens_with_(listens_with), random_(forger.seed) {}
 
-  Vehicle& robot(std::size_t i) override { return team_->robot(i); }
-  std::string start_of(std::size_t i) const override { return team_->start_of(i); }
-  Vec3 base() const override { return team_->base(); }
-  void meet(TimeNs now) override { team_->meet(now); }
-  void silence(std::size_t radio) override { team_->silence(radio); }
-  void wreck(std::size_t robot, const std::string& reason) override { team_->wreck(robot, reason); }
-  void drop_node(std::size_t robot, std::size_t radio) override { team_->drop_node(robot, radio); }
-  RadioTraffic traffic(std::size_t radio) const override { return team_->traffic(radio); }
-  void finish() override { team_->finish(); }
+  Vehicle& robot(std::size_t i) override { return world_->robot(i); }
+  TeamPort& port(std::size_t robot) override { return port_of(robot + 1); }
+  RadioPort& radio(std::size_t number) override { return port_of(number); }
+  std::string start_of(std::size_t i) const override { return world_->start_of(i); }
+  Vec3 base() const override { return world_->base(); }
+  void meet(TimeNs now) override { world_->meet(now); }
+  void silence(std::size_t radio) override { world_->silence(radio); }
+  void wreck(std::size_t robot, const std::string& reason) override { world_->wreck(robot, reason); }
+  sim::RadioTraffic traffic(std::size_t radio) const override { return world_->traffic(radio); }
+  void finish() override { world_->finish(); }
 
-  void send(std::size_t radio, std::span<const std::uint8_t> bytes, TimeNs now) override {
-    team_->send(radio, bytes, now);
+ private:
+  class Port final : public TeamPort {
+   public:
+    Port(ForgedWorld& world, std::size_t radio) : world_(world), radio_(radio) {}
+    void send(std::span<const std::uint8_t> frame, TimeNs now) override { world_.send(radio_, frame, now); }
+    std::vector<Bytes> receive(TimeNs until) override { return world_.receive(radio_, until); }
+    void drop_node(std::size_t radio) override { world_.world_->port(radio_ - 1).drop_node(radio); }
+
+   private:
+    ForgedWorld& world_;
+    std::size_t radio_;
+  };
+
+  Port& port_of(std::size_t radio) { return ports_.try_emplace(radio, *this, radio).first->second; }
+
+  void send(std::size_t radio, std::span<const std::uint8_t> bytes, TimeNs now) {
+    world_->radio(radio).send(bytes, now);
     Refusal why{};
     const auto frame = read_frame(bytes, listens_with_, why);
     if (frame && !frame->states.empty() && in_the_air(frame->states.front().phase))
       flying_[radio] = frame->states.front().position;
     if (now % (kSecond / 4) == 0 && told_at_ != now) forge(now);
   }
-  std::vector<std::vector<std::uint8_t>> receive(std::size_t radio, TimeNs until) override {
-    auto out = team_->receive(radio, until);
+  std::vector<Bytes> receive(std::size_t radio, TimeNs until) {
+    auto out = world_->radio(radio).receive(until);
     if (told_at_ == until && !lie_.empty()) out.push_back(lie_);
     return out;
   }
 
- private:
   void forge(TimeNs now) {
     told_at_ = now, lie_.clear();
     if (flying_.empty()) return;
@@ -70,7 +86,8 @@ class ForgedTeam final : public TeamVehicles {
     lie_ = *write_frame(frame, forger_.key);
   }
 
-  std::unique_ptr<TeamVehicles> team_;
+  std::unique_ptr<sim::SimulatedWorld> world_;
+  std::map<std::size_t, Port> ports_;
   Forger forger_;
   MissionKey listens_with_;
   Random random_;
@@ -81,19 +98,19 @@ class ForgedTeam final : public TeamVehicles {
   std::uint16_t sequence_ = 0;
 };
 
-class ForgedPlugin final : public TeamVehiclePlugin {
+class ForgedPlugin final : public sim::SimulatedWorldPlugin {
  public:
   ForgedPlugin(VehiclePlugin& plugin, const Forger& forger)
-      : plugin_(dynamic_cast<TeamVehiclePlugin&>(plugin)), forger_(forger) {}
+      : plugin_(dynamic_cast<sim::SimulatedWorldPlugin&>(plugin)), forger_(forger) {}
   void describe_options(OptionTable& table) override { plugin_.describe_options(table); }
   void describe_radio(OptionTable& table) override { plugin_.describe_radio(table); }
   std::unique_ptr<Vehicle> create(const VehicleSetup& setup) override { return plugin_.create(setup); }
-  std::unique_ptr<TeamVehicles> create_team(const TeamSetup& setup) override {
-    return std::make_unique<ForgedTeam>(plugin_.create_team(setup), forger_, key_of_seed(setup.world.seed));
+  std::unique_ptr<sim::SimulatedWorld> create_world(const sim::WorldSetup& setup) override {
+    return std::make_unique<ForgedWorld>(plugin_.create_world(setup), forger_, key_of_seed(setup.world.seed));
   }
 
  private:
-  TeamVehiclePlugin& plugin_;
+  sim::SimulatedWorldPlugin& plugin_;
   Forger forger_;
 };
 
@@ -119,7 +136,7 @@ std::vector<json> lines_of(const std::filesystem::path& file) {
 /// by.
 Flown fly(const std::string& name, std::uint64_t seed, RobotId phantom, const MissionKey& key) {
   const auto folder = fresh_folder(name + std::to_string(seed));
-  tools::MissionOverrides overrides;
+  flight::MissionOverrides overrides;
   overrides.cave = draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -1.5, 0}, {60, 1.5, 3}}}, {0, 0, 1});
   overrides.policy = "nearest_frontier";
   overrides.settings = {"seed=" + std::to_string(seed),
@@ -132,16 +149,17 @@ Flown fly(const std::string& name, std::uint64_t seed, RobotId phantom, const Mi
                         "localization.source=pose_sensor",
                         "radio.propagation=distance",
                         "radio.range=60m"};
-  tools::Mission mission = tools::read_mission("", overrides);
+  flight::Mission mission = flight::read_mission("", overrides);
   ForgedPlugin plugin(*mission.vehicle_plugin, {phantom, key, seed});
   mission.vehicle_plugin = &plugin;
-  tools::FlightArguments args;
-  const std::atomic<bool> interrupted = false;
-  args.run_dir = folder / "run", args.quiet = args.no_report = true, args.interrupted = &interrupted;
-  fly_team(mission, args, "");
+  flight::FlightRequest request;
+  request.run_dir = folder / "run";
+  request.report = flight::Report::none;
+  request.notes = request.status_line = false;
+  flight::MissionFlight(mission, request).fly(std::atomic<bool>{false});
   Flown f;
-  f.metrics = json::parse(bytes_of(args.run_dir / "metrics.json"));
-  f.truth = lines_of(args.run_dir / "team_truth.jsonl"), f.log = lines_of(args.run_dir / "team.jsonl");
+  f.metrics = json::parse(bytes_of(request.run_dir / "metrics.json"));
+  f.truth = lines_of(request.run_dir / "team_truth.jsonl"), f.log = lines_of(request.run_dir / "team.jsonl");
   for (const json& e : f.log)
     if (e["kind"] == "traffic") f.refused += e["frames_refused"].get<std::uint64_t>();
   return f;

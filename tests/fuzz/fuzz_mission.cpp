@@ -1,7 +1,7 @@
-#include "sdk/tools/mission_file.h"
+#include "sdk/flight/mission_file.h"
 #include "tests/fuzz/as_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return karst::fuzz::read_as_file(data, size, ".info",
-                                   [](const std::string& path) { karst::tools::read_mission(path, {}); });
+                                   [](const std::string& path) { karst::flight::read_mission(path, {}); });
 }

@@ -9,7 +9,7 @@
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/cave.h"
-#include "sdk/tools/cave_facts.h"
+#include "sdk/selection/cave_facts.h"
 #include "tests/unit/cave/boxes.h"
 
 namespace {
@@ -115,13 +115,13 @@ TEST(CaveCommand, BadArgumentsNameTheReason) {
 TEST(MeshFacts, CountsEdgesOfAHoleAndOfAFlippedTriangle) {
   std::set<std::array<int, 3>> cells{{0, 0, 0}};
   auto mesh = karst::test::lattice_mesh(cells, 1.0, {0, 0, 0});
-  EXPECT_EQ(karst::tools::mesh_facts(mesh).edges, 18u);
-  EXPECT_EQ(karst::tools::mesh_facts(mesh).odd_edges, 0u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).edges, 18u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 0u);
   auto open = mesh;
   open.triangles.pop_back();
-  EXPECT_EQ(karst::tools::mesh_facts(open).odd_edges, 3u);
+  EXPECT_EQ(karst::selection::mesh_facts(open).odd_edges, 3u);
   std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
-  EXPECT_EQ(karst::tools::mesh_facts(mesh).odd_edges, 3u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 3u);
 }
 
 }  // namespace

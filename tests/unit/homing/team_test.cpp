@@ -46,19 +46,7 @@ TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
   HomingOptions homing;
   team.robots = 3;
   EXPECT_NO_THROW(check(team, homing, "mission.info"));
-  team.lost_robot = 4;
-  try {
-    check(team, homing, "mission.info");
-    FAIL() << "robot 4 of 3";
-  } catch (const InputError& e) {
-    const std::string text = e.what();
-    for (const char* part : {"mission.info", "team.lost_robot", "4", "3"})
-      EXPECT_NE(text.find(part), std::string::npos) << text;
-  }
-  team.robots = team.lost_robot = 1;
-  EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "nobody would be lost";
-  team.lost_robot = 0;
-  team.nodes = 1;
+  team.robots = team.nodes = 1;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "no team";
   team.robots = 5, team.nodes = 5;  // 30 radios and the base's
   EXPECT_NO_THROW(check(team, homing, "mission.info"));

@@ -56,8 +56,12 @@ TEST_F(ExplorationTest, AnAcceptedGoalIsFlownToClaimedAndReached) {
   steps(1.5);
   ASSERT_TRUE(goals.goal()) << events();
   EXPECT_EQ(claimed, std::vector<Vec3>{place});
-  steps(8);
-  EXPECT_LT((onboard.flight.reference().position - place).norm(), 0.6);
+  double nearest_m = 9;
+  for (int i = 0; i < 80; ++i) {
+    steps(0.1);
+    nearest_m = std::min(nearest_m, (onboard.flight.reference().position - place).norm());
+  }
+  EXPECT_LT(nearest_m, 0.6);
   EXPECT_EQ(told("\"reached\""), 1u);
 }
 

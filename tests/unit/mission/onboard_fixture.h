@@ -53,6 +53,12 @@ class OnboardTest : public ::testing::Test {
     for (const TimeNs end = executive.now() + from_seconds(s); executive.now() < end;) {
       executive.run_until(executive.now() + 10 * kMillisecond, [] { return false; });
       onboard.flight.control(executive.now());
+      const Reference& r = onboard.flight.reference();
+      onboard.flight.on_imu({executive.now(), r.acceleration_mps2 + Vec3(0, 0, 9.81), Vec3::Zero()});
+      PoseSample pose;
+      pose.stamp = executive.now();
+      pose.T_world_body.position = r.position;
+      onboard.flight.on_pose(pose);
     }
   }
   TimeNs now() const { return executive.now(); }

@@ -17,16 +17,6 @@ class SensorPipelineTest : public OnboardTest {
     s->intensity.assign(beams, 0.5f);
     return s;
   }
-  void stand_still(double s) {
-    for (const TimeNs end = now() + from_seconds(s); now() < end;) {
-      executive.run_until(now() + 10 * kMillisecond, [] { return false; });
-      onboard.flight.on_imu({now(), Vec3(0, 0, 9.81), Vec3::Zero()});
-      PoseSample pose;
-      pose.stamp = now();
-      sensors.on_pose(pose);
-    }
-  }
-
   MapQuestion question;
   std::vector<MapNews> news;
   std::vector<MovingBody> others;
@@ -37,7 +27,7 @@ class SensorPipelineTest : public OnboardTest {
 };
 
 TEST_F(SensorPipelineTest, AScanIsInTheMapWhenItsBudgetIsOver) {
-  stand_still(1);
+  advance(1);
   sensors.on_lidar(scan(now()));
   EXPECT_TRUE(news.empty());
   EXPECT_EQ(sensors.blind_for(), now());
@@ -49,7 +39,7 @@ TEST_F(SensorPipelineTest, AScanIsInTheMapWhenItsBudgetIsOver) {
 }
 
 TEST_F(SensorPipelineTest, AScanOfTheFutureAndWhateverComesAfterTheEndAreNotMapped) {
-  stand_still(1);
+  advance(1);
   sensors.on_lidar(scan(now() + 1));
   advance(0.2);
   EXPECT_TRUE(news.empty());
@@ -59,15 +49,34 @@ TEST_F(SensorPipelineTest, AScanOfTheFutureAndWhateverComesAfterTheEndAreNotMapp
   EXPECT_TRUE(news.empty());
 }
 
+TEST_F(SensorPipelineTest, APoseSensorLocatesTheVehicleOnlyWhereNoLidarDoes) {
+  PoseSample pose;
+  pose.T_world_body.position = {0.5, 0, 0};
+  const auto feed = [&](SensorPipeline& to) {
+    for (int i = 0; i < 300; ++i) {
+      executive.run_until(now() + 10 * kMillisecond, [] { return false; });
+      onboard.flight.on_imu({now(), Vec3(0, 0, 9.81), Vec3::Zero()});
+      pose.stamp = now();
+      to.on_pose(pose);
+    }
+    return onboard.flight.state().position.x();
+  };
+  Onboard by_lidar{CoreOptions{}, with_lidar(), executive, recorder, policy};
+  SensorPipeline located_by_lidar{by_lidar, {}};
+  feed(located_by_lidar);
+  EXPECT_EQ(by_lidar.flight.state().position.x(), 0) << "its poses are not taken";
+  EXPECT_NEAR(feed(sensors), 0.5, 0.1);
+}
+
 TEST_F(SensorPipelineTest, WhatIsAskedIsLookedUpInTheMapThatHoldsTheScan) {
-  stand_still(1);
+  advance(1);
   question.ahead = {Vec3(0, 0, 0), Vec3(6, 0, 0)};  // through the rock that the scan shows, and beyond
   question.frontier = 9;                            // there is none of that number
   sensors.on_lidar(scan(now()));
   advance(0.2);
   ASSERT_EQ(news.size(), 1u);
   ASSERT_TRUE(news[0].blocked_after_m);
-  EXPECT_NEAR(*news[0].blocked_after_m, 6, 1e-9) << "in the only segment";
+  EXPECT_EQ(*news[0].blocked_after_m, 0) << "from the beginning of the only segment on";
   EXPECT_EQ(news[0].frontier, 9u);
   EXPECT_FALSE(news[0].frontier_open);
 }
@@ -78,7 +87,7 @@ TEST_F(SensorPipelineTest, WhatIsSeenOfAnotherVehicleIsNoRock) {
     for (const CellChange& c : news.back().changes) n += c.after == Cell::occupied;
     return n;
   };
-  stand_still(1);
+  advance(1);
   others = {{Vec3::Zero(), 4.0}};  // all around
   sensors.on_lidar(scan(now()));
   advance(0.2);

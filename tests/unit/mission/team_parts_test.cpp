@@ -1,7 +1,7 @@
 // The parts of a mission that only a robot of a team has.
 #include "core_stack/mission/relay_landing.h"
 #include "core_stack/mission/right_of_way.h"
-#include "core_stack/mission/team_member.h"
+#include "core_stack/mission/team_sharing.h"
 #include "tests/unit/mission/onboard_fixture.h"
 
 namespace karst::core {
@@ -39,7 +39,7 @@ class TeamPartsTest : public OnboardTest {
                      onboard.options.motion,
                      onboard.vehicle.radius_m};
   Teamwork work{mate, homing, onboard.options.team, 0};
-  TeamMember member{onboard, work, {phases, path, endurance}};
+  TeamSharing sharing{onboard, work, {phases, path, endurance}};
   RightOfWay right_of_way{onboard, work, {phases, goals, path, way_flown}};
   RelayLanding landing{onboard, work, phases, endurance};
 };
@@ -75,39 +75,40 @@ TEST_F(TeamPartsTest, OnceItLandsNobodyHasTheRightOfWayOverIt) {
 }
 
 TEST_F(TeamPartsTest, AnotherIsInCompanyNearByAndLeftOutOfTheMapWhereItShouldBe) {
-  EXPECT_FALSE(member.in_company());
+  EXPECT_FALSE(sharing.in_company());
   hear_first_robot_at(here() + Vec3(5, 0, 0), Vec3(1, 0, 0));
-  EXPECT_TRUE(member.in_company());
-  const auto bodies = member.others_at(now() - kSecond / 2);
+  EXPECT_TRUE(sharing.in_company());
+  const auto bodies = sharing.others_at(now() - kSecond / 2);
   ASSERT_EQ(bodies.size(), 1u);
   EXPECT_NEAR(bodies[0].position.x() - here().x(), 4.5, 0.03) << "half a second ago, at 1 m/s";
+  advance(1);
   hear_first_robot_at(here() + Vec3(50, 0, 0));
-  EXPECT_FALSE(member.in_company());
+  EXPECT_FALSE(sharing.in_company());
 }
 
 TEST_F(TeamPartsTest, ItStaysOnTheGroundWhileAnotherIsWhereItWouldHover) {
-  EXPECT_TRUE(member.airspace_clear());
+  EXPECT_TRUE(sharing.airspace_clear());
   hear_first_robot_at(Vec3(1, 0, 1));
-  EXPECT_FALSE(member.airspace_clear());
+  EXPECT_FALSE(sharing.airspace_clear());
 }
 
 TEST_F(TeamPartsTest, AClaimedGoalIsToldToTheOthersUntilItIsGivenUp) {
   Goal goal;
   goal.position = {7, 1, 2};
-  member.claim_goal(goal);
-  const auto tell = [this] {
+  sharing.claim_goal(goal);
+  const auto tell = [this](TeamPhase phase) {
     for (int i = 0; i < 30; ++i) {
       advance(0.1);
+      sharing.report(phase);
       for (const Bytes& frame : mate.speak(now())) first.hear(frame, now());
+      hear_first_robot_at({30, 0, 0});
     }
   };
-  member.report(TeamPhase::explore);
-  tell();
+  tell(TeamPhase::explore);
   ASSERT_EQ(first.claimed_goals(now()).size(), 1u);
   EXPECT_LT((first.claimed_goals(now())[0] - goal.position).norm(), 0.02);
-  member.give_up_goals();
-  member.report(TeamPhase::home);
-  tell();
+  sharing.give_up_goals();
+  tell(TeamPhase::home);
   EXPECT_TRUE(first.claimed_goals(now()).empty());
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-VehicleDescription lidar_vehicle(double half_fov_rad) {
+VehicleDescription vehicle_with_fov(double half_fov_rad) {
   auto lidar = std::make_shared<LidarModel>();
   lidar->elevation_rad = {static_cast<float>(half_fov_rad), static_cast<float>(-half_fov_rad)};
   VehicleDescription v;
@@ -25,7 +25,7 @@ std::vector<Vec3> line(const Vec3& from, const Vec3& to) {
 }
 
 TEST(SteepestView, IsTheLidarsHighestRingOrTheCameraThatFacesUp) {
-  VehicleDescription v = lidar_vehicle(15.5 * kDegree);
+  VehicleDescription v = vehicle_with_fov(15.5 * kDegree);
   EXPECT_NEAR(steepest_view(v).up_rad, 15 * kDegree, 1e-6);
   EXPECT_NEAR(steepest_view(v).down_rad, 15 * kDegree, 1e-6);
   auto up = std::make_shared<CameraModel>();

@@ -60,7 +60,7 @@ TEST(IncludeDirection, TheCheckKnowsTheHostOnly) {
   expect_none("sdk/check", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation", "sdk/campaign"});
   expect_none("sdk/host", {"sdk/check"});
 }
-// evaluation <- campaign <- selection, tuning <- tools
+// evaluation <- campaign <- selection <- flight <- tools; tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
   expect_none("sdk/evaluation", {"sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/tools"});
   expect_none("sdk/campaign", {"sdk/selection", "sdk/tuning", "sdk/tools"});
@@ -69,6 +69,21 @@ TEST(IncludeDirection, SelectionAndTuningKnowNoCommandAndNotEachOther) {
   expect_none("sdk/selection",
               {"sdk/tuning", "sdk/tools", "sdk/host", "plugins/replay", "plugins/simulator/cave_generator"});
   expect_none("sdk/tuning", {"sdk/selection", "sdk/tools", "plugins/"});
+}
+TEST(IncludeDirection, TheFlightKnowsNoCommandAndNobodyBelowKnowsTheFlight) {
+  expect_none("sdk/flight", {"sdk/tools", "sdk/tuning", "sdk/check", "sdk/campaign", "policies/", "CLI/"});
+  for (const char* below : {"sdk/host", "sdk/check", "sdk/evaluation", "sdk/campaign", "sdk/selection",
+                            "sdk/tuning", "sdk/replay"})
+    expect_none(below, {"sdk/flight", "sdk/tools", "CLI/"});
+  expect_none("sdk/terminal", {"sdk/tools", "sdk/flight", "sdk/host", "plugins/", "CLI/"});
+}
+// Of the simulator the flight knows the world's interface and the cave: what flies it loads by name.
+TEST(IncludeDirection, TheFlightKnowsOfTheSimulatorOnlyItsInterface) {
+  for (const Include& i : includes_below("sdk/flight"))
+    if (i.target.starts_with("plugins/"))
+      EXPECT_TRUE(i.target == "plugins/simulator/simulated_world.h" ||
+                  i.target.starts_with("plugins/simulator/cave/"))
+          << i.file << " includes " << i.target;
 }
 TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
   expect_none("plugins",

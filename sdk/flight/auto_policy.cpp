@@ -1,0 +1,136 @@
+#include "sdk/flight/auto_policy.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/info_lines.h"
+#include "sdk/selection/describe.h"
+#include "sdk/selection/load_experience.h"
+#include "sdk/selection/preset.h"
+#include "sdk/selection/select.h"
+#include "sdk/terminal/terminal.h"
+
+namespace karst::flight {
+namespace {
+
+using boost::property_tree::ptree;
+using core::InputError;
+using selection::Source;
+
+struct AutoOptions {
+  std::string description, survey, survey_start, results, otherwise;
+  selection::SelectOptions select;
+};
+
+void describe(core::OptionTable& t, AutoOptions& o) {
+  t.add("description", o.description, {},
+        "what is known of the cave: INFO file of figures, or a map of a flight");
+  t.add("survey", o.survey, {}, "a survey of the cave: a mesh, or a cave's .info file");
+  t.add("survey_start", o.survey_start, {}, "\"x y z\" in the survey, of a mesh");
+  t.add("results", o.results, {}, "store of a campaign, or an experience; empty: what is installed");
+  t.add("metric", o.select.metric, {}, "the figure to do best in");
+  t.add("otherwise", o.otherwise, {}, "the policy if nothing similar was flown; empty: no flight");
+}
+
+void take(Mission& m, const std::string& policy, const ptree& parameters, const std::string& why) {
+  m.policy = policy;
+  for (const auto& [key, value] : parameters)  // those given to the mission itself win
+    if (m.policy_parameters.count(key) == 0) m.policy_parameters.push_back({key, value});
+  m.policy_selection = why;
+}
+
+/// The mission's own table; true if it has this cave.
+bool settled(Mission& m) {
+  const std::string name = std::filesystem::path(m.cave).stem().string();
+  bool found = false;
+  for (const auto& [key, entry] : m.auto_policy) {
+    if (key != "cave") continue;
+    const std::string where = "policy.auto.cave ";  // the name follows
+    selection::PolicyPreset preset;
+    std::string cave, file;
+    for (const auto& [field, value] : entry) {
+      if (field == "name")
+        cave = value.data();
+      else if (field == "policy")
+        preset.policy = value.data();
+      else if (field == "parameters")
+        preset.parameters = value;
+      else if (field == "preset")
+        file = value.data();
+      else
+        throw InputError(m.file, "policy.auto.cave." + field,
+                         "no such key; there are name, policy, parameters, preset");
+    }
+    if (cave.empty()) throw InputError(m.file, where, "lacks its name");
+    if (preset.policy.empty() == file.empty())
+      throw InputError(m.file, where + cave, "expected either a policy or a preset");
+    if (cave != name) continue;
+    if (found) throw InputError(m.file, where + cave, "is there twice");
+    if (!file.empty()) preset = selection::read_preset(core::beside(m.file, file));
+    take(m, preset.policy, preset.parameters, "the mission's table says so for the cave " + name);
+    found = true;
+  }
+  return found;
+}
+
+AutoOptions options_of(const Mission& m) {
+  AutoOptions o;
+  core::OptionTable table;
+  table.under("policy.auto", [&o](core::OptionTable& t) { describe(t, o); });
+  ptree rest = m.auto_policy, tree;
+  rest.erase("cave");
+  tree.put_child("policy.auto", rest);
+  if (!rest.empty()) table.read(m.file, tree);
+  for (std::string* path : {&o.description, &o.survey, &o.results}) *path = core::beside(m.file, *path);
+  return o;
+}
+
+selection::CaveFigures known_of(const Mission& m, const AutoOptions& o) {
+  if (o.description.empty() == o.survey.empty())
+    throw InputError(
+        m.file, "policy.auto",
+        o.survey.empty()
+            ? "nothing is known of the cave: give policy.auto.description (figures, or the map of an earlier "
+              "flight) or policy.auto.survey, or an entry policy.auto.cave for it"
+            : "give a description or a survey, not both");
+  if (!o.survey.empty()) {
+    if (selection::source_of(o.survey) != Source::mesh)
+      throw InputError(m.file, "policy.auto.survey",
+                       o.survey + " is no mesh: give it as policy.auto.description");
+    return selection::describe_file(o.survey, o.survey_start).figures;
+  }
+  if (selection::source_of(o.description) == Source::mesh)
+    throw InputError(
+        m.file, "policy.auto.description",
+        o.description + " is the cave itself: if it is known beforehand, give it as policy.auto.survey");
+  return selection::describe_file(o.description, "").figures;
+}
+
+}  // namespace
+
+void settle_policy(Mission& m) {
+  if (m.policy != kAutoPolicy) return;
+  const AutoOptions o = options_of(m);
+  if (settled(m)) return;
+  const selection::CaveFigures figures = known_of(m, o);
+  const std::string results = o.results.empty() ? selection::installed_experience() : o.results;
+  if (results.empty())
+    throw InputError(m.file, "policy.auto.results",
+                     "no experience is installed: name a store or an experience");
+  const selection::Experience e =
+      selection::load_experience({results}, [](const std::string& s) { print_error("%s\n", s.c_str()); });
+  const selection::Selected s =
+      selection::select(e, figures, o.select, m.file,
+                        o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));
+  if (s.refused) {
+    if (o.otherwise.empty() || o.otherwise == kAutoPolicy)
+      throw InputError(m.file, "policy.auto",
+                       s.reason + "; policy.auto.otherwise can name a policy for such caves");
+    return take(m, o.otherwise, {}, "otherwise: " + s.reason);
+  }
+  const selection::Preset& first = e.contestants[s.ranking.front().contestant];
+  take(m, first.policy, first.parameters, s.reason);
+}
+
+}  // namespace karst::flight

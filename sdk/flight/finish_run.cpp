@@ -1,0 +1,137 @@
+#include "sdk/flight/finish_run.h"
+
+#include <boost/property_tree/ptree.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/json_file.h"
+#include "core_stack/common/options.h"
+#include "core_stack/mapping/voxel_map.h"
+#include "plugins/simulator/cave/cave.h"
+#include "sdk/evaluation/flight_figures.h"
+#include "sdk/evaluation/imaged_rock.h"
+#include "sdk/evaluation/metrics.h"
+#include "sdk/evaluation/object_figures.h"
+#include "sdk/evaluation/reachable_file.h"
+#include "sdk/evaluation/report.h"
+#include "sdk/evaluation/surface.h"
+#include "sdk/evaluation/team_metrics.h"
+#include "sdk/evaluation/team_report.h"
+#include "sdk/evaluation/whole_file.h"
+#include "sdk/terminal/terminal.h"
+
+namespace karst::flight {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Farther from rock than this, a map cell is simply wrong; the search for its nearest rock ends here.
+constexpr double kRockSearch_m = 20.0;
+
+double cell_size_m(const fs::path& run_dir) {
+  core::MapOptions map;
+  core::OptionTable table;
+  table.section("map", map);
+  const auto tree = core::read_info((run_dir / "mission.info").string());
+  if (const auto text = tree.get_optional<std::string>("map.resolution"))
+    table.set((run_dir / "mission.info").string(), "map.resolution", *text);
+  return map.resolution_m;
+}
+
+/// What the cave's mesh says. Holds the cave that its functions look into.
+evaluation::Truth truth_of(const Finishing& how, double resolution_m,
+                           const std::vector<evaluation::PicturePose>& pictures) {
+  const auto cave = std::make_shared<cave::Cave>(cave::load_cave(how.cave, how.start));
+  evaluation::ReachableOptions options;  // its clearance is not the mission's: coverage compares missions
+  options.resolution_m = resolution_m;
+  const auto reachable = std::make_shared<evaluation::Reachable>(evaluation::find_reachable_once(
+      cave->scene.mesh(), cave->description.start.position, options, how.cave, how.cave_cache));
+  evaluation::Truth truth;
+  truth.reachable_volume_m3 = reachable->volume_m3();
+  truth.is_reachable = [reachable, resolution_m](const core::Vec3& p) {
+    const Eigen::Vector3d k = (p / resolution_m).array().floor();
+    return reachable->contains({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())});
+  };
+  truth.surface = evaluation::surface_cells(*reachable);
+  if (!pictures.empty()) truth.imaged_rock = evaluation::imaged_rock(cave->scene, pictures, resolution_m);
+  truth.distance_to_rock = [cave](const core::Vec3& p) {
+    return cave->scene.distance_to_rock(p, kRockSearch_m);
+  };
+  return truth;
+}
+
+/// What only the cave's mesh can say stays as it was last written, if the cave can no longer be read.
+void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
+  const auto before = core::json_of_file<nlohmann::ordered_json>(run_dir / "metrics.json");
+  if (!before.is_object()) return;
+  std::string kept;
+  for (const char* key : evaluation::kCaveFigures) {
+    const auto value = before.find(key);
+    if (value == before.end() || !value->is_number() || !metrics[key].is_null()) continue;
+    metrics[key] = *value;
+    kept += (kept.empty() ? "" : ", ") + std::string(key);
+  }
+  if (!kept.empty()) print_error("karst: kept from the metrics.json there was: %s\n", kept.c_str());
+}
+
+/// Says why if the cave cannot be read.
+evaluation::Truth truth_if_known(const fs::path& run_dir, const Finishing& how,
+                                 std::vector<std::string>& problems, bool& lost_cave) {
+  if (how.cave.empty()) return {};
+  try {
+    return truth_of(how, cell_size_m(run_dir),
+                    evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems));
+  } catch (const core::InputError& e) {
+    lost_cave = true;
+    print_error("karst: coverage is not known: %s\n", e.what());
+    return {};
+  }
+}
+
+/// In the columns of a run's, so that what reads how a run's volume grew reads a team's.
+void write_team_telemetry(const evaluation::TeamRecord& team) {
+  std::string text = "t_s,phase,explored_m3\n";
+  const auto* t_s = team.merged.telemetry.times();
+  const auto* volume = team.merged.telemetry.column("explored_m3");
+  const double begin_s = evaluation::flight_begin_s(team.merged);
+  for (std::size_t i = 0; t_s && volume && i < t_s->size(); ++i) {
+    char line[64];
+    std::snprintf(line, sizeof line, "%.0f,%s,%.3f\n", (*t_s)[i], (*t_s)[i] < begin_s ? "standby" : "flying",
+                  (*volume)[i]);
+    text += line;
+  }
+  evaluation::write_whole_file(team.directory / "telemetry.csv", text);
+}
+
+}  // namespace
+
+nlohmann::json finish_run(const fs::path& run_dir, const Finishing& how) {
+  std::vector<std::string> problems, run_problems;
+  bool lost_cave = false;
+  const evaluation::Truth truth = truth_if_known(run_dir, how, problems, lost_cave);
+  nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &run_problems);
+  problems.insert(problems.end(), run_problems.begin(), run_problems.end());
+  if (lost_cave) keep_known(metrics, run_dir);
+  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+  evaluation::write_metrics(run_dir, metrics);
+  if (how.report == Report::written) evaluation::write_report(run_dir);
+  return metrics;
+}
+
+void finish_team(const fs::path& run_dir, const Finishing& how, nlohmann::ordered_json& metrics) {
+  evaluation::TeamRecord team = evaluation::read_team(run_dir);
+  std::vector<std::string> problems;
+  bool lost_cave = false;
+  const evaluation::Truth truth = truth_if_known(run_dir, how, problems, lost_cave);
+  metrics.update(evaluation::team_map_figures(team, truth));
+  evaluation::set_figures(metrics, evaluation::team_object_figures(team, team.problems));
+  problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are told already
+  if (lost_cave) keep_known(metrics, run_dir);
+  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+  evaluation::write_metrics(run_dir, metrics);
+  write_team_telemetry(team);
+  if (how.report == Report::written) evaluation::write_team_report(team, metrics);
+}
+
+}  // namespace karst::flight

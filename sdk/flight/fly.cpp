@@ -1,0 +1,221 @@
+#include "sdk/flight/fly.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/stall_watch.h"
+#include "sdk/evaluation/metrics.h"
+#include "sdk/flight/run_files.h"
+#include "sdk/flight/status_line.h"
+#include "sdk/flight/team_metrics.h"
+#include "sdk/flight/timing.h"
+#include "sdk/host/request_log.h"
+#include "sdk/terminal/terminal.h"
+
+namespace karst::flight {
+namespace {
+
+namespace fs = std::filesystem;
+
+// How long a step or job may take before the flight is given up: longer than any decision or plan takes, on
+// any machine.
+constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};
+
+/// Ends the process, as the step or job `running` does not return: what hangs holds what would have to be
+/// torn down. The record is complete up to the last second.
+[[noreturn]] void end_stalled(const std::string& running, const fs::path& run_dir) {
+  std::fprintf(stderr,
+               "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
+               running.empty() ? "a step" : ("\"" + running + "\"").c_str(), run_dir.c_str());
+  std::_Exit(kNotLanded);
+}
+
+void refuse_for_team(const FlightRequest& request) {
+  if (request.clock == core::Clock::real_time)
+    throw core::InputError("karst fly", "--real-time",
+                           "a team flies in lockstep only: its vehicles share a world");
+  if (request.record_requests)
+    throw core::InputError("karst fly", "--record-requests", "of a team no requests are recorded");
+}
+
+/// Whoever sets one of the two easily forgets the other, and lands out of reach, or nearer than need be.
+void compare_radio_with_belief(const Mission& mission) {
+  const std::string believed = mission.resolved.get("homing.landing.link.range", "");
+  const std::string real = mission.resolved.get("radio.range", believed);
+  if (believed != real)
+    print_error(
+        "karst: note: the radio reaches %s (radio.range), and the robots land as if it were %s "
+        "(homing.landing.link.range)\n",
+        real.c_str(), believed.c_str());
+}
+
+}  // namespace
+
+/// What a flight is made of, in the order in which it is made: it is taken apart in the opposite one.
+struct MissionFlight::Running {
+  std::optional<RunClaim> claim;
+  std::vector<std::unique_ptr<RunClaim>> own_claims;  // of a team's members, in folders below
+  std::vector<std::unique_ptr<core::Recorder>> recorders;
+  Vehicles vehicles;
+  std::optional<host::RecordingPolicy> recording;
+  std::optional<TeamFlight> team;
+  std::optional<Lockstep> lockstep;
+};
+
+MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& request)
+    : mission_(mission), request_(request), members_(missions_of_members(mission)) {
+  if (is_team(mission_)) refuse_for_team(request_);
+  for (const Mission& member : members_)
+    policies_.push_back(host::load_policy(policy_choice(member, request_)));
+  if (is_team(mission_)) key_ = radio_key(mission_);
+}
+
+MissionFlight::~MissionFlight() = default;
+
+boost::property_tree::ptree MissionFlight::as_flown(const Mission& mission) const {
+  return recorded_mission(mission, policies_.front()->parameters(), policies_.front()->version());
+}
+
+void MissionFlight::check(const fs::path& mission_file) const {
+  make_vehicles(mission_, members_, "");  // looks at the cave and the starts
+  write_mission(mission_file, as_flown(mission_));
+}
+
+/// Everything that can be wrong shows here: what was written by then is taken away again.
+void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
+  const fs::path& run_dir = request_.run_dir;
+  running_ = std::make_unique<Running>();
+  Running& r = *running_;
+  r.claim.emplace(run_dir);
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const fs::path own = member_run_dir(run_dir, mission_, i);
+    if (own != run_dir) r.own_claims.push_back(std::make_unique<RunClaim>(own));
+    r.recorders.push_back(std::make_unique<core::Recorder>(own));
+  }
+  r.vehicles = make_vehicles(mission_, members_, run_dir);
+  write_mission(run_dir / "mission.info", as_flown(mission_));
+  if (r.vehicles.world) {
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      members_[i].start = r.vehicles.world->start_of(i);
+      write_mission(member_run_dir(run_dir, mission_, i) / "mission.info", as_flown(members_[i]));
+    }
+  } else if (interrupted) {
+    throw core::InputError("karst fly", "", "stopped by the operator before take-off");
+  }
+  r.claim->keep();
+  for (const auto& own : r.own_claims) own->keep();
+}
+
+std::vector<Seat> MissionFlight::seats() const {
+  Running& r = *running_;
+  std::vector<Seat> seats;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Seat seat{&r.vehicles[i], policies_[i].get(), r.recorders[i].get()};
+    if (r.recording) seat.policy = &*r.recording;
+    if (r.team) {
+      seat.teamwork = &r.team->teamwork(i);
+      seat.starts_at = r.team->starts_at(i);
+    }
+    seats.push_back(seat);
+  }
+  return seats;
+}
+
+void MissionFlight::assemble() {
+  Running& r = *running_;
+  LockstepOptions how{request_.threads, request_.clock};
+  if (r.vehicles.world) {
+    r.team.emplace(TeamFlightSetup{mission_.core, mission_.faults, static_cast<std::uint64_t>(mission_.seed),
+                                   *key_, request_.run_dir},
+                   *r.vehicles.world);
+    how.linger = core::from_seconds(mission_.core.team.linger_s);
+    r.lockstep.emplace(r.team->options(), how, seats(), &*r.team);
+  } else {
+    if (!mission_.policy_selection.empty())
+      r.recorders.front()->event(0, "selection",
+                                 {{"policy", mission_.policy}, {"reason", mission_.policy_selection}});
+    host::HostedPolicy& policy = *policies_.front();
+    if (request_.record_requests)
+      r.recording.emplace(policy, request_.run_dir / host::kRequestLogName,
+                          host::RequestLogHeader{policy.name(), policy.version(), policy_seed(mission_),
+                                                 policy.parameters()});
+    r.lockstep.emplace(mission_.core, how, seats());
+  }
+}
+
+/// Returns when the flight is over, by its clock.
+core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) const {
+  std::optional<StatusLine> line;
+  if (request_.status_line) line.emplace(members_.size());
+  std::vector<const core::Executive*> executives;
+  for (std::size_t i = 0; i < members_.size(); ++i) executives.push_back(&running_->lockstep->executive(i));
+  const core::StallWatch stall(
+      executives, request_.clock == core::Clock::real_time ? kStallInRealTime : kStallInLockstep,
+      [this](const std::string& running) { end_stalled(running, request_.run_dir); });
+  const core::TimeNs end = running_->lockstep->run([&](core::TimeNs now, const auto& all) {
+    if (line) line->show(now, all);
+    return !interrupted.load();
+  });
+  if (line) line->end();
+  return end;
+}
+
+nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, double wall_s) const {
+  const fs::path& run_dir = request_.run_dir;
+  const core::MissionResult& result = *running_->lockstep->state(0).ended;
+  write_timing(run_dir, running_->lockstep->executive(0), wall_s);
+  const nlohmann::json metrics =
+      finish_run(run_dir, {mission_.cave, mission_.start, request_.report, request_.cave_cache});
+  outcome.landed = result.outcome == "landed";
+  outcome.record_problem = result.record_problem;
+  return nlohmann::ordered_json(metrics);
+}
+
+nlohmann::ordered_json MissionFlight::finish_members(FlightOutcome& outcome, double wall_s) const {
+  const fs::path& run_dir = request_.run_dir;
+  const Finishing how{mission_.cave, mission_.start, request_.report, request_.cave_cache};
+  // First what the flight itself knows: should the evaluation be killed, as for want of memory, it is not
+  // lost.
+  std::vector<nlohmann::json> own(members_.size());
+  evaluation::write_metrics(run_dir, team_metrics(mission_, *outcome.team, own));
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const fs::path folder = member_run_dir(run_dir, mission_, i);
+    write_timing(folder, running_->lockstep->executive(i), wall_s);
+    own[i] = finish_run(folder, how);
+  }
+  nlohmann::ordered_json metrics = team_metrics(mission_, *outcome.team, own);
+  evaluation::write_metrics(run_dir, metrics);
+  write_team_timing(run_dir, {outcome.team->duration_s, wall_s, request_.threads});
+  finish_team(run_dir, how, metrics);
+  outcome.landed = metrics["outcome"] == "landed";
+  outcome.record_problem = outcome.team->record_problem;
+  return metrics;
+}
+
+FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
+  if (is_team(mission_) && request_.notes) compare_radio_with_belief(mission_);
+  prepare(interrupted);
+  assemble();
+  FlightOutcome outcome;
+  try {
+    const auto begin = std::chrono::steady_clock::now();
+    const core::TimeNs end = run(interrupted);
+    if (running_->team) outcome.team = running_->team->result(*running_->lockstep, end);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    outcome.metrics =
+        outcome.team ? finish_members(outcome, wall.count()) : finish_alone(outcome, wall.count());
+  } catch (const std::exception& e) {  // a full disk: it flew all the same
+    outcome.record_problem = e.what();
+  }
+  outcome.landed &= outcome.record_problem.empty();
+  return outcome;
+}
+
+bool MissionFlight::hangs() const {
+  return std::any_of(policies_.begin(), policies_.end(), [](const auto& p) { return p->abandoned(); });
+}
+
+}  // namespace karst::flight

@@ -1,0 +1,205 @@
+#include "sdk/flight/mission_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/info_lines.h"
+#include "core_stack/common/info_reader.h"
+#include "core_stack/common/install_place.h"
+#include "core_stack/common/random.h"
+#include "core_stack/vehicle/load_vehicle.h"
+#include "plugins/simulator/simulated_world.h"
+#include "sdk/flight/auto_policy.h"
+#include "sdk/selection/preset.h"
+
+namespace karst::flight {
+namespace {
+
+namespace pt = boost::property_tree;
+using core::InputError;
+using core::OptionTable;
+
+constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
+                     *kSelection = "policy.selection";
+constexpr const char *kPolicyVersion = "policy.version", *kKarstVersion = "karst.version";
+
+void describe_mission(OptionTable& t, Mission& m) {
+  t.add("seed", m.seed, 0, 9e15, "seed of every random stream of the mission");
+  t.add("vehicle", m.vehicle, {}, "the vehicle's plugin");
+  t.under("cave", [&m](OptionTable& c) {
+    c.add("file", m.cave, {},
+          "cave .info file, or a mesh (STL, PLY, OBJ, DAE); relative to the mission file");
+    c.add("start", m.start, {},
+          "\"x y z [heading_deg]\" above the floor to start from; empty: the cave's own");
+  });
+  t.under("policy", [&m](OptionTable& p) {
+    p.add("name", m.policy, {},
+          "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
+    p.add("stream", m.policy_stream, 0, 9e15,
+          "gives the policy other random numbers, and nothing else: for comparing a policy with itself");
+    p.add("isolation", m.policy_isolation, {"in_process", "process"},
+          "process: the policy runs in a process of its own, where a crash costs the policy and not the "
+          "vehicle");
+    p.add("cpu_limit", m.policy_cpu_limit_s, "s", 0.1, 3600,
+          "processor time a call may take: of its thread, or of all threads of the policy's own process");
+    p.add("hang_limit", m.policy_hang_limit_s, "s", 0.1, 3600,
+          "by the wall clock, for calls that wait for ever; with --real-time cpu_limit if that is less, "
+          "mission.decision_period of a policy in a process of its own");
+    p.add("memory_limit_mib", m.policy_memory_limit_mib, 256, 1 << 20,
+          "address space of a policy in a process of its own, in MiB");
+  });
+  describe(t, m.core);
+  t.section("team", m.core.team);
+  t.section("team", m.faults);
+  t.section("homing", m.core.homing);
+}
+
+void describe_radio(OptionTable& table, core::VehiclePlugin& plugin) {
+  if (auto* teams = dynamic_cast<sim::SimulatedWorldPlugin*>(&plugin))
+    table.under("radio", [teams](OptionTable& t) { teams->describe_radio(t); });
+}
+
+/// The sections that matter to a team only.
+constexpr const char* kTeamSections[] = {"team", "homing", "radio"};
+
+/// Puts the settings below `prefix` into `tree`, and says whether `key` was one of them.
+bool put_below(const std::string& prefix, const std::string& key, const std::string& value, pt::ptree& tree) {
+  if (!key.starts_with(prefix + ".")) return false;
+  tree.put(key.substr(prefix.size() + 1), value);
+  return true;
+}
+
+/// A path given on the command line is relative to where that is run, not to the mission file.
+std::string as_given(const std::string& key, const std::string& value) {
+  const bool path =
+      key == "policy.auto.description" || key == "policy.auto.survey" || key == "policy.auto.results";
+  return path && !value.empty() ? std::filesystem::absolute(value).string() : value;
+}
+
+/// Takes the subtree "section.name" out of `tree`, and with it a section that holds nothing else.
+pt::ptree take(pt::ptree& tree, const std::string& key) {
+  const auto found = tree.get_child_optional(key);
+  if (!found) return {};
+  pt::ptree taken = *found;
+  const std::string section = key.substr(0, key.find('.'));
+  pt::ptree& rest = tree.get_child(section);
+  rest.erase(key.substr(section.size() + 1));
+  if (rest.empty() && rest.data().empty()) tree.erase(section);
+  return taken;
+}
+
+std::pair<std::string, std::string> split_setting(const std::string& setting) {
+  const auto equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError("--set", setting, "expected key=value, such as motion.max_speed=1.5");
+  return {setting.substr(0, equals), setting.substr(equals + 1)};
+}
+
+}  // namespace
+
+Mission read_mission(const std::string& file, const MissionOverrides& overrides) {
+  Mission m;
+  m.file = file.empty() ? "command line" : file;
+  pt::ptree tree = file.empty() ? pt::ptree() : core::read_including_info(file);
+  m.policy_parameters = take(tree, kParameters);  // the policy itself says which keys it knows
+  if (!m.policy_parameters.data().empty())
+    throw InputError(m.file, kParameters,
+                     "expected a block { ... }, got \"" + m.policy_parameters.data() + "\"");
+  m.auto_policy = take(tree, kAuto);
+  if (!m.auto_policy.data().empty())
+    throw InputError(m.file, kAuto, "expected a block { ... }, got \"" + m.auto_policy.data() + "\"");
+  m.policy_selection = take(tree, kSelection).data();
+  for (const char* fact : {kPolicyVersion, kKarstVersion}) take(tree, fact);
+
+  std::vector<std::pair<std::string, std::string>> settings;
+  for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
+  settings.insert(settings.end(), overrides.values.begin(), overrides.values.end());
+
+  const auto set_to = [&settings](const char* wanted) {
+    return std::any_of(settings.begin(), settings.end(), [&](const auto& s) { return s.first == wanted; });
+  };
+  const auto refuse_both = [&](const std::string& option, const char* flag, const char* key) {
+    if (!option.empty() && set_to(key))
+      throw InputError("--set", key, std::string("is given by ") + flag + " as well");
+  };
+  refuse_both(overrides.cave, "--cave", "cave.file");
+  refuse_both(overrides.start, "--start", "cave.start");
+  refuse_both(overrides.policy, "--policy", "policy.name");
+  refuse_both(overrides.preset, "--preset", "policy.name");
+  if (!overrides.policy.empty() && !overrides.preset.empty())
+    throw InputError("--preset", overrides.preset, "names a policy, and --policy one as well");
+
+  // The vehicle comes first: its plugin adds its own section to the table.
+  m.vehicle = tree.get("vehicle", m.vehicle);
+  for (const auto& [key, value] : settings)
+    if (key == "vehicle") m.vehicle = value;
+  m.vehicle_plugin = &core::load_vehicle(m.vehicle, core::plugin_root() / "vehicles");
+  OptionTable table;
+  describe_mission(table, m);
+  table.under(m.vehicle, [&m](OptionTable& t) { m.vehicle_plugin->describe_options(t); });
+  describe_radio(table, *m.vehicle_plugin);
+
+  table.read(m.file, tree);
+  m.cave = core::beside(file, m.cave);
+  m.core.team.key_file = core::beside(file, m.core.team.key_file);
+  const std::string recorded_policy = m.policy;
+  for (const auto& [key, value] : settings)
+    if (!put_below(kParameters, key, value, m.policy_parameters) &&
+        !put_below(kAuto, key, as_given(key, value), m.auto_policy))
+      table.set("--set", key, value);
+  if (!overrides.cave.empty()) {
+    m.cave = overrides.cave;
+    if (!set_to("cave.start")) m.start = "";  // another cave, another start
+  }
+  if (!overrides.start.empty()) m.start = overrides.start;
+  const auto other_policy = [&](const std::string& name, const pt::ptree& parameters) {
+    m.policy = name;
+    m.policy_parameters = parameters;  // another policy, other parameters
+    for (const auto& [key, value] : settings) put_below(kParameters, key, value, m.policy_parameters);
+  };
+  if (!overrides.policy.empty() && overrides.policy != m.policy) other_policy(overrides.policy, {});
+  if (!overrides.preset.empty()) {
+    const selection::PolicyPreset preset = selection::read_preset(overrides.preset);
+    other_policy(preset.policy, preset.parameters);
+    m.policy_selection.clear();
+  }
+  if (m.policy != recorded_policy) m.policy_selection.clear();
+  m.resolved = table.resolved();
+  if (m.core.team.robots == 1)
+    for (const char* section : kTeamSections) m.resolved.erase(section);
+  return m;
+}
+
+std::uint64_t policy_seed(const Mission& m) {
+  const auto seed = static_cast<std::uint64_t>(m.seed);
+  if (m.policy_stream == 0) return seed;
+  return core::Random::stream(seed, "policy stream " + std::to_string(m.policy_stream)).bits();
+}
+
+pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
+                           const std::string& policy_version) {
+  pt::ptree tree = m.resolved;
+  tree.put("cave.file", m.cave.empty() ? "" : std::filesystem::absolute(m.cave).lexically_normal().string());
+  tree.put("cave.start", m.start);
+  if (const std::string& key = m.core.team.key_file; !key.empty() && tree.get_child_optional("team"))
+    tree.put("team.key_file", std::filesystem::absolute(key).lexically_normal().string());
+  tree.put("policy.name", m.policy);
+  if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);
+  tree.put(kPolicyVersion, policy_version);
+  if (!m.policy_selection.empty()) tree.put(kSelection, m.policy_selection);
+  tree.put(kKarstVersion, KARST_VERSION);
+  return tree;
+}
+
+std::string mission_help(const std::string& vehicle) {
+  Mission m;
+  OptionTable table;
+  describe_mission(table, m);
+  core::VehiclePlugin& plugin = core::load_vehicle(vehicle, core::plugin_root() / "vehicles");
+  table.under(vehicle, [&plugin](OptionTable& t) { plugin.describe_options(t); });
+  describe_radio(table, plugin);
+  return table.help();
+}
+
+}  // namespace karst::flight

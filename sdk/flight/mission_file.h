@@ -1,0 +1,60 @@
+// A mission file: everything `karst fly` needs to know, in Boost.PropertyTree INFO.
+//
+//   seed 7
+//   cave { file caves/demo.info }
+//   policy { name nearest_frontier  parameters { horizon "60 m" } }
+//   motion { max_speed "1.5 m/s" }
+#pragma once
+#include <boost/property_tree/ptree.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/vehicle/vehicle.h"
+#include "sdk/flight/team_faults.h"
+
+namespace karst::flight {
+
+/// What the command line adds to, or sets against, a mission file.
+struct MissionOverrides {
+  std::string cave, start, policy, preset;                  // "" leaves the file's
+  std::vector<std::string> settings;                        // "key=value"
+  std::vector<std::pair<std::string, std::string>> values;  // further keys with values
+};
+
+struct Mission {
+  std::string file;  // as named, for messages
+  std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
+  std::int64_t seed = 1, policy_stream = 0;
+  std::string policy_isolation = "in_process";  // or "process" (docs/isolation.md)
+  double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;
+  std::int64_t policy_memory_limit_mib = 2048;
+  core::CoreOptions core;
+  TeamFaults faults;
+  core::VehiclePlugin* vehicle_plugin = nullptr;
+  boost::property_tree::ptree policy_parameters;
+  boost::property_tree::ptree auto_policy;  // policy.auto, as given (auto_policy.h)
+  std::string policy_selection;             // why this policy, if it was selected; "" if it was named
+  boost::property_tree::ptree resolved;     // every setting but the policy's parameters
+};
+
+/// The seed of the policy's own random stream: the mission's, or with another `policy.stream` another one,
+/// while noise, gusts and faults stay as they are.
+std::uint64_t policy_seed(const Mission& mission);
+
+/// A mission as its run directory keeps it, every setting resolved: `mission.info`. It can be flown again as
+/// it is.
+boost::property_tree::ptree recorded_mission(const Mission& mission,
+                                             const boost::property_tree::ptree& policy_parameters,
+                                             const std::string& policy_version);
+
+/// Reads, overrides, checks. `file` may be "" for a mission given on the command line alone. Facts recorded
+/// in the file are passed over. Throws core::InputError naming file, key, what was expected and the nearest
+/// key.
+Mission read_mission(const std::string& file, const MissionOverrides& overrides);
+
+/// Every key with unit, range, default and a line of help, for a vehicle.
+std::string mission_help(const std::string& vehicle);
+
+}  // namespace karst::flight

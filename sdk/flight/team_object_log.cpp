@@ -1,0 +1,38 @@
+#include "sdk/flight/team_object_log.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mission/json_point.h"
+#include "core_stack/vehicle/object_detection.h"
+
+namespace karst::flight {
+
+void TeamObjectLog::robot(core::TimeNs now, const core::Teammate& robot, TeamLog& log) {
+  news(now, "object", robot.objects(), robot.self(), told_, log);
+}
+
+void TeamObjectLog::base(core::TimeNs now, const core::Teammate& base, TeamLog& log) {
+  news(now, "object_known", base.objects(), core::kBase, known_, log);
+}
+
+/// Of one robot, or, for the base, of all.
+void TeamObjectLog::news(core::TimeNs now, const char* kind, const core::ToldObjects& objects,
+                         core::RobotId of, core::ToldObjects& noted, TeamLog& log) {
+  for (const auto& [key, seen] : objects) {
+    if (of != core::kBase && key.first != of) continue;
+    const auto before = noted.find(key);
+    if (before != noted.end() && before->second.stamp == seen.stamp && before->second.kind == seen.kind)
+      continue;
+    const char* state = seen.kind == 0 ? "withdrawn" : before == noted.end() ? "found" : "revised";
+    nlohmann::json fields{{"robot", key.first}, {"number", key.second}, {"state", state}};
+    if (seen.kind != 0) {
+      fields["what"] = core::name_of(static_cast<core::ObjectKind>(seen.kind));
+      fields["position"] = core::rounded_list(seen.position);
+      fields["deviation"] = core::rounded(seen.deviation_m);
+    }
+    log.event(now, kind, fields);
+    noted[key] = seen;
+  }
+}
+
+}  // namespace karst::flight

@@ -1,0 +1,21 @@
+// team.jsonl's lines about objects of interest: when a robot told of one, and when the base knew.
+#pragma once
+#include "sdk/flight/team_log.h"
+
+namespace karst::flight {
+
+class TeamObjectLog {
+ public:
+  /// To be called after every exchange: a line `object` for what `robot` told since, and a line
+  /// `object_known` for what has come to the base.
+  void robot(core::TimeNs now, const core::Teammate& robot, TeamLog& log);
+  void base(core::TimeNs now, const core::Teammate& base, TeamLog& log);
+
+ private:
+  void news(core::TimeNs now, const char* kind, const core::ToldObjects& objects, core::RobotId of,
+            core::ToldObjects& noted, TeamLog& log);
+
+  core::ToldObjects told_, known_;  // as last noted
+};
+
+}  // namespace karst::flight

@@ -1,0 +1,18 @@
+// timing.json: what depends on the machine, kept apart from metrics.json.
+#pragma once
+#include <filesystem>
+
+#include "core_stack/common/executive.h"
+
+namespace karst::flight {
+
+void write_timing(const std::filesystem::path& run_dir, const core::Executive& executive, double wall_s);
+
+struct TeamTiming {
+  double simulated_s = 0, wall_s = 0;
+  int threads = 1;
+};
+/// Of a team as a whole; its robots' jobs are in theirs.
+void write_team_timing(const std::filesystem::path& run_dir, const TeamTiming& t);
+
+}  // namespace karst::flight

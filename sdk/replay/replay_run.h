@@ -1,0 +1,42 @@
+// Localization and mapping on recorded scans, one after another: what `karst replay` does.
+#pragma once
+#include <filesystem>
+#include <functional>
+
+#include "core_stack/localization/estimator.h"
+#include "core_stack/localization/loam.h"
+#include "core_stack/mapping/voxel_map.h"
+#include "plugins/replay/recording.h"
+
+namespace karst::replay {
+
+struct ReplayOptions {
+  core::LoamOptions loam;
+  core::EstimatorOptions estimator;
+  core::MapOptions map;
+  double mapping_range_m = 30;
+  bool level = true;     // the start's attitude from the IMU's first moment, if it has one
+  double still_s = 0.3;  // length of that moment
+};
+void describe(core::OptionTable& t, ReplayOptions& o);
+
+/// What became of a recording.
+struct ReplaySummary {
+  std::size_t scans = 0, lost = 0, imu_samples = 0, degenerate = 0;
+  std::size_t points = 0, dropped_points = 0;
+  bool without_times = false;
+  double path_m = 0, slowest_s = 0, localization_s = 0;  // of wall clock: the slowest scan's, and all
+  std::string last_problem;
+};
+
+/// Called after each scan, with its number from 1.
+using ReplayProgress =
+    std::function<bool(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map)>;
+
+/// Writes trajectory.tum in the recording's own time, map files and events into `run_dir`, which must be
+/// fresh. Memory does not grow with the recording, but for the map. Stops early when `progress` returns
+/// false. Throws InputError when a file is damaged; what was written up to there is complete.
+ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& options,
+                               const std::filesystem::path& run_dir, const ReplayProgress& progress);
+
+}  // namespace karst::replay
