@@ -341,16 +341,5 @@ TEST(Explorer, TakesWhatIsAskedForWhereTheLeastSpeedIsAboveTheGreatest) {
   EXPECT_TRUE(r.goal);
 }
 
-TEST(Explorer, BelowALowRoofHoversWhereThereIsRoomAboveAndBelow) {
-  // The vehicle stands at z = 1, its hull of 0.3 m touches the ground. A roof's cells begin at their lower
-  // face.
-  const auto hover_m = [](double height_m, double highest_m) {
-    return Room({}, Vec3(8, 6, height_m)).explorer->hover_below(Vec3(3, 3, highest_m)).z();
-  };
-  EXPECT_EQ(hover_m(4, 2), 2) << "room enough";
-  EXPECT_NEAR(hover_m(2.6, 2), 1.8, 0.06) << "0.6 m to the middle of the roof's cells, half a cell beyond";
-  EXPECT_NEAR(hover_m(1.8, 1.3), 1.15, 0.06) << "in the middle, for want of that";
-}
-
 }  // namespace
 }  // namespace karst::core
