@@ -11,6 +11,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kFarthest_m = 4, kRing_m = 0.5;
+constexpr double kNearlyThere_m = 2;  // of where it is to land: there it lands, whatever else is fit
 constexpr int kDirections = 16;
 constexpr double kBesideHull_m = 0.15;  // kept free on the line there, and in the column below
 
@@ -24,6 +25,9 @@ class Search {
   Search(const VoxelMap& map, const WayDownQuery& query) : map_(map), query_(query) {}
 
   std::vector<Vec3> find() const {
+    if (query_.landing_hover && (*query_.landing_hover - query_.from).norm() < kNearlyThere_m &&
+        clear_to(*query_.landing_hover))
+      return {query_.from, *query_.landing_hover};
     for (const GroundOptions& ground : kGround) {
       if (fit(query_.from, ground)) return {query_.from};
       if (auto way = straight(ground); !way.empty()) return way;
@@ -37,14 +41,16 @@ class Search {
     return ground_below(map_, place, query_.vehicle_radius_m, ground).verdict == GroundVerdict::good;
   }
 
+  bool clear_to(const Vec3& place) const {
+    return segment_clear(map_, query_.from, place, query_.vehicle_radius_m + kBesideHull_m);
+  }
+
   std::vector<Vec3> straight(const GroundOptions& ground) const {
-    const double clearance_m = query_.vehicle_radius_m + kBesideHull_m;
     for (double r = kRing_m; r <= kFarthest_m; r += kRing_m) {
       for (int i = 0; i < kDirections; ++i) {
         const double angle = 2 * std::numbers::pi * i / kDirections;
         const Vec3 place = query_.from + r * Vec3(std::cos(angle), std::sin(angle), 0);
-        if (fit(place, ground) && segment_clear(map_, query_.from, place, clearance_m))
-          return {query_.from, place};
+        if (fit(place, ground) && clear_to(place)) return {query_.from, place};
       }
     }
     return {};

@@ -1,5 +1,6 @@
 // Where a vehicle that has to land at once can come down: straight below, or a few metres away.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core_stack/mapping/voxel_map.h"
@@ -12,11 +13,14 @@ struct WayDownQuery {
   /// The way it came, from `from` back: poses that were flown without touching anything.
   std::vector<Vec3> flown_back;
   double vehicle_radius_m = 0.3;
+  /// The hover above where it is to land anyway, if it has come to hover.
+  std::optional<Vec3> landing_hover;
 };
 
-/// From `from` to above ground that the vehicle can stand on: `from` alone if that is below it; else along a
-/// clear straight line; else back along the way flown. The ground may be steeper than a chosen landing place
-/// is, but less so than a vehicle slides or topples. Empty: no such ground is known.
+/// From `from` to above ground that the vehicle can stand on: to `landing_hover` if that is near and in
+/// sight; `from` alone if there is such ground below it; else along a clear straight line; else back along
+/// the way flown. The ground may be steeper than a chosen landing place is, but less so than a vehicle slides
+/// or topples. Empty: no such ground is known.
 std::vector<Vec3> way_down(const VoxelMap& map, const WayDownQuery& query);
 
 }  // namespace karst::core

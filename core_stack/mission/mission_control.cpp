@@ -156,7 +156,7 @@ MissionResult MissionControl::end() {
     if (!team_) return;
     const bool where_it_should = result_->outcome == "landed";
     team_->sharing.become_relay(result_->stands,
-                               where_it_should ? std::optional(return_home_.hover()) : std::nullopt);
+                                where_it_should ? std::optional(return_home_.hover()) : std::nullopt);
   });
   attempt([this] { vehicle_.finish(); });
   attempt([this] {
@@ -317,7 +317,8 @@ MapQuestion MissionControl::map_question() const {
   if (takes_off || phases_.in(Phase::look) || phases_.under_way())
     question.way_down =
         WayDownQuery{onboard_.flight.until_stop(now()).points.back(),
-                     way_flown_.back(way_back_down_m(endurance_.battery())), onboard_.vehicle.radius_m};
+                     way_flown_.back(way_back_down_m(endurance_.battery())), onboard_.vehicle.radius_m,
+                     way_flown_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
   question.narrow_places = path_.narrow_places();
   question.touch_only = path_.as_come();
   question.frontier = goals_.frontier();
