@@ -4,7 +4,8 @@
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done      (core_stack/mission/phase.cpp)
 //
 // Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
-// PathExecution, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class wires them.
+// PathExecution, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class wires
+// them.
 #pragma once
 #include <functional>
 #include <optional>
