@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core_stack/localization/state.h"
-#include "core_stack/planning/trajectory.h"
+#include "core_stack/planning/trajectory/trajectory.h"
 
 namespace karst::core {
 

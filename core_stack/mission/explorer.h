@@ -7,16 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "core_stack/homing/relay_homing.h"
-#include "core_stack/homing/waiting_place.h"
-#include "core_stack/mission/clearance_checks.h"
-#include "core_stack/mission/decision_cycle.h"
-#include "core_stack/mission/home_estimator.h"
+#include "core_stack/mission/decision/decision_cycle.h"
+#include "core_stack/mission/decision/round.h"
 #include "core_stack/mission/mission_options.h"
-#include "core_stack/mission/policy_port.h"
-#include "core_stack/mission/round.h"
-#include "core_stack/mission/team_membership.h"
-#include "core_stack/mission/world_model.h"
+#include "core_stack/mission/policy/policy_port.h"
+#include "core_stack/mission/team/team_membership.h"
+#include "core_stack/mission/world_model/clearance_checks.h"
+#include "core_stack/mission/world_model/home_estimator.h"
+#include "core_stack/mission/world_model/world_model.h"
+#include "core_stack/team/relay_homing.h"
+#include "core_stack/team/right_of_way/waiting_place.h"
 
 namespace karst::core {
 

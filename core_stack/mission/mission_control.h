@@ -1,7 +1,7 @@
 // Mission control: the top loop. Sensor messages come in, the policy's goals become paths, paths become
 // commands; and whatever happens, the vehicle comes home and lands.
 //
-//   standby -> takeoff -> (look) -> explore -> home -> land -> done      (core_stack/mission/phase.cpp)
+//   standby -> takeoff -> (look) -> explore -> home -> land -> done       (phases/phase.cpp)
 //
 // Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
 // PathExecution, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class wires
@@ -11,14 +11,14 @@
 #include <optional>
 #include <string>
 
-#include "core_stack/mission/exploration.h"
+#include "core_stack/mission/flight/step_watch.h"
 #include "core_stack/mission/object_search.h"
-#include "core_stack/mission/return_home.h"
-#include "core_stack/mission/right_of_way.h"
+#include "core_stack/mission/phases/exploration.h"
+#include "core_stack/mission/phases/return_home.h"
+#include "core_stack/mission/phases/take_off.h"
 #include "core_stack/mission/sensor_pipeline.h"
-#include "core_stack/mission/step_watch.h"
-#include "core_stack/mission/take_off.h"
-#include "core_stack/mission/team_sharing.h"
+#include "core_stack/mission/team/right_of_way.h"
+#include "core_stack/mission/team/team_sharing.h"
 
 namespace karst::core {
 

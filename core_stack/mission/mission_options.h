@@ -2,15 +2,15 @@
 #pragma once
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
-#include "core_stack/homing/team_options.h"
 #include "core_stack/localization/localization_options.h"
-#include "core_stack/mapping/frontiers.h"
-#include "core_stack/mapping/voxel_map.h"
-#include "core_stack/mission/safety.h"
+#include "core_stack/mapping/frontiers/frontiers.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mission/flight/safety.h"
 #include "core_stack/objects/object_options.h"
 #include "core_stack/perception/intensity_filter.h"
-#include "core_stack/planning/path.h"
-#include "core_stack/planning/trajectory.h"
+#include "core_stack/planning/path/path.h"
+#include "core_stack/planning/trajectory/trajectory.h"
+#include "core_stack/team/team_options.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core_stack/mission/json_point.h"
-#include "core_stack/mission/object_log.h"
+#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/mission/recording/object_log.h"
 
 namespace karst::core {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "core_stack/mission/onboard.h"
-#include "core_stack/mission/teamwork.h"
+#include "core_stack/mission/team/teamwork.h"
 #include "core_stack/objects/object_map.h"
 
 namespace karst::core {

@@ -2,8 +2,8 @@
 #pragma once
 #include "core_stack/common/laned.h"
 #include "core_stack/mission/explorer.h"
-#include "core_stack/mission/flight.h"
-#include "core_stack/mission/recorder.h"
+#include "core_stack/mission/flight/flight.h"
+#include "core_stack/mission/recording/recorder.h"
 
 namespace karst::core {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mission/picture_file.h"
+#include "core_stack/mission/recording/picture_file.h"
 #include "core_stack/perception/intensity_filter.h"
 
 namespace karst::core {

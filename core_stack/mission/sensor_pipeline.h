@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/homing/way_down.h"
+#include "core_stack/homing/landing/way_down.h"
 #include "core_stack/localization/loam.h"
-#include "core_stack/mapping/moving_bodies.h"
+#include "core_stack/mapping/occupancy/moving_bodies.h"
 #include "core_stack/mission/onboard.h"
 #include "core_stack/vehicle/vehicle.h"
 

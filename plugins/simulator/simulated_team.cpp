@@ -8,7 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/preflight.h"
-#include "plugins/simulator/object_placing.h"
+#include "plugins/simulator/environment/object_placing.h"
 
 namespace karst::sim {
 

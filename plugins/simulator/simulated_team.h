@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "plugins/simulator/radio.h"
+#include "plugins/simulator/radio/radio.h"
 #include "plugins/simulator/simulated_vehicle.h"
 #include "plugins/simulator/simulated_world.h"
 

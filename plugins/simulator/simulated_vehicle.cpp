@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "plugins/simulator/cave/preflight.h"
-#include "plugins/simulator/object_placing.h"
+#include "plugins/simulator/environment/object_placing.h"
 
 namespace karst::sim {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core_stack/vehicle/vehicle.h"
-#include "plugins/simulator/launch_site.h"
-#include "plugins/simulator/loose_rocks.h"
-#include "plugins/simulator/object_detector.h"
-#include "plugins/simulator/quadrotor.h"
-#include "plugins/simulator/sensor_faults.h"
+#include "plugins/simulator/cameras/object_detector.h"
+#include "plugins/simulator/dynamics/quadrotor.h"
+#include "plugins/simulator/environment/launch_site.h"
+#include "plugins/simulator/environment/loose_rocks.h"
+#include "plugins/simulator/sensors/sensor_faults.h"
 #include "plugins/simulator/simulator_options.h"
 #include "plugins/simulator/truth_log.h"
 

@@ -1,18 +1,18 @@
 // Everything that can be set in the mission file's section `simulator`.
 #pragma once
-#include "plugins/simulator/autopilot.h"
-#include "plugins/simulator/barometer.h"
-#include "plugins/simulator/battery.h"
-#include "plugins/simulator/cave_air.h"
-#include "plugins/simulator/depth_camera.h"
-#include "plugins/simulator/imu.h"
-#include "plugins/simulator/lidar.h"
-#include "plugins/simulator/magnetometer.h"
-#include "plugins/simulator/motors.h"
-#include "plugins/simulator/object_options.h"
-#include "plugins/simulator/pose_sensor.h"
-#include "plugins/simulator/rgb_camera.h"
-#include "plugins/simulator/wind.h"
+#include "plugins/simulator/cameras/depth_camera.h"
+#include "plugins/simulator/cameras/rgb_camera.h"
+#include "plugins/simulator/dynamics/autopilot.h"
+#include "plugins/simulator/dynamics/battery.h"
+#include "plugins/simulator/dynamics/motors.h"
+#include "plugins/simulator/dynamics/wind.h"
+#include "plugins/simulator/environment/cave_air.h"
+#include "plugins/simulator/environment/object_options.h"
+#include "plugins/simulator/sensors/barometer.h"
+#include "plugins/simulator/sensors/imu.h"
+#include "plugins/simulator/sensors/lidar.h"
+#include "plugins/simulator/sensors/magnetometer.h"
+#include "plugins/simulator/sensors/pose_sensor.h"
 
 namespace karst::sim {
 

@@ -7,7 +7,7 @@
 #include "core_stack/common/time.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
 #include "plugins/simulator/cave/cave.h"
-#include "plugins/simulator/rigid_body.h"
+#include "plugins/simulator/dynamics/rigid_body.h"
 
 namespace karst::sim {
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "core_stack/mapping/frontiers.h"
-#include "core_stack/mission/policy_port.h"
-#include "core_stack/mission/viewpoints.h"
+#include "core_stack/mapping/frontiers/frontiers.h"
+#include "core_stack/mission/decision/viewpoints.h"
+#include "core_stack/mission/policy/policy_port.h"
 
 namespace karst::check {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sdk/host/snapshot.h"
+#include "sdk/host/services/snapshot.h"
 #include "sdk/host/text.h"
 
 namespace karst::check {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sdk/host/process_state.h"
+#include "sdk/host/plugin/process_state.h"
 
 namespace karst::check {
 

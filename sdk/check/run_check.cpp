@@ -11,8 +11,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/options.h"
-#include "sdk/host/probe.h"
-#include "sdk/host/process.h"
+#include "sdk/host/isolation/process.h"
+#include "sdk/host/plugin/probe.h"
 
 namespace karst::check {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "sdk/check/progress.h"
 #include "sdk/host/decision_box.h"
-#include "sdk/host/plugin_file.h"
-#include "sdk/host/session.h"
+#include "sdk/host/plugin/plugin_file.h"
+#include "sdk/host/services/session.h"
 
 namespace karst::check {
 

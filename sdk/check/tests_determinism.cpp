@@ -8,7 +8,7 @@
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
 #include "sdk/check/watched_host.h"
-#include "sdk/host/process.h"
+#include "sdk/host/isolation/process.h"
 
 namespace karst::check {
 namespace {

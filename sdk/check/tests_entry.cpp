@@ -6,7 +6,7 @@
 #include "sdk/check/elf_exports.h"
 #include "sdk/check/process_view.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/across.h"
+#include "sdk/host/plugin/across.h"
 #include "sdk/host/text.h"
 
 namespace karst::check {

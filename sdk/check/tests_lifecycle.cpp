@@ -4,7 +4,7 @@
 
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/parameters.h"
+#include "sdk/host/plugin/parameters.h"
 #include "sdk/host/text.h"
 
 namespace karst::check {

@@ -1,7 +1,7 @@
 // state: what it remembers, through the extension "karst.state/1".
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/across.h"
+#include "sdk/host/plugin/across.h"
 #include "sdk/host/text.h"
 
 namespace karst::check {

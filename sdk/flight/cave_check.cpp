@@ -2,7 +2,7 @@
 
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave/preflight.h"
-#include "sdk/evaluation/reachable.h"
+#include "sdk/evaluation/reachable/reachable.h"
 
 namespace karst::flight {
 

@@ -7,7 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
-#include "sdk/host/file_access.h"
+#include "sdk/host/isolation/file_access.h"
 
 namespace karst::flight {
 namespace {

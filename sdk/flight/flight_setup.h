@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/homing/mission_key.h"
+#include "core_stack/team/communication/mission_key.h"
 #include "plugins/simulator/simulated_world.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/mission_file.h"

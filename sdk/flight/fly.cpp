@@ -7,12 +7,12 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/stall_watch.h"
-#include "sdk/evaluation/metrics.h"
+#include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/flight/run_files.h"
 #include "sdk/flight/status_line.h"
 #include "sdk/flight/team_metrics.h"
 #include "sdk/flight/timing.h"
-#include "sdk/host/request_log.h"
+#include "sdk/host/serialization/request_log.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::flight {

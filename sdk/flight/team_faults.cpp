@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core_stack/common/error.h"
-#include "core_stack/homing/messages.h"
+#include "core_stack/team/communication/messages.h"
 
 namespace karst::flight {
 

@@ -5,8 +5,8 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mission/json_point.h"
-#include "core_stack/mission/object_log.h"
+#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/mission/recording/object_log.h"
 
 namespace karst::flight {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/mission/team_member.h"
+#include "core_stack/mission/team/team_member.h"
 #include "plugins/simulator/simulated_world.h"
 #include "sdk/flight/lockstep.h"
 #include "sdk/flight/team_faults.h"

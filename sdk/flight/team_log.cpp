@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mission/json_point.h"
+#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::flight {
 

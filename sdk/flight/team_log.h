@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core_stack/common/time.h"
-#include "core_stack/homing/homing_tree.h"
-#include "core_stack/homing/teammate.h"
+#include "core_stack/homing/way_home/homing_tree.h"
+#include "core_stack/team/teammate.h"
 #include "plugins/simulator/simulated_world.h"
 
 namespace karst::flight {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::flight {
 namespace {

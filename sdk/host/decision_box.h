@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core_stack/mission/policy_port.h"
+#include "core_stack/mission/policy/policy_port.h"
 #include "sdk/abi/karst_abi_policy.h"
 
 namespace karst::host {

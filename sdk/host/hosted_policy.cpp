@@ -1,8 +1,8 @@
 #include "sdk/host/hosted_policy.h"
 
-#include "sdk/host/isolated_policy.h"
+#include "sdk/host/isolation/isolated_policy.h"
 #include "sdk/host/loaded_policy.h"
-#include "sdk/host/selection.h"
+#include "sdk/host/plugin/selection.h"
 
 namespace karst::host {
 

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/mission/policy_port.h"
-#include "sdk/host/discovery.h"
+#include "core_stack/mission/policy/policy_port.h"
+#include "sdk/host/plugin/discovery.h"
 
 namespace karst::host {
 

@@ -3,11 +3,11 @@
 #include <cstdio>
 
 #include "core_stack/common/error.h"
-#include "sdk/host/across.h"
+#include "sdk/host/plugin/across.h"
+#include "sdk/host/plugin/process_state.h"
 #include "sdk/host/policy_state.h"
-#include "sdk/host/process_state.h"
+#include "sdk/host/services/translation.h"
 #include "sdk/host/text.h"
-#include "sdk/host/translation.h"
 
 namespace karst::host {
 

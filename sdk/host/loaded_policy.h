@@ -5,11 +5,11 @@
 
 #include "sdk/host/decision_box.h"
 #include "sdk/host/decision_thread.h"
-#include "sdk/host/flat_answer.h"
 #include "sdk/host/hosted_policy.h"
-#include "sdk/host/parameters.h"
-#include "sdk/host/plugin_file.h"
-#include "sdk/host/session.h"
+#include "sdk/host/plugin/parameters.h"
+#include "sdk/host/plugin/plugin_file.h"
+#include "sdk/host/serialization/flat_answer.h"
+#include "sdk/host/services/session.h"
 
 namespace karst::host {
 

@@ -1,6 +1,6 @@
 #include "sdk/host/policy_state.h"
 
-#include "sdk/host/across.h"
+#include "sdk/host/plugin/across.h"
 #include "sdk/host/text.h"
 
 namespace karst::host {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mapping/rays.h"
-#include "core_stack/mission/recorder.h"
+#include "core_stack/mapping/occupancy/rays.h"
+#include "core_stack/mission/recording/recorder.h"
 #include "plugins/replay/decimal_time.h"
 #include "sdk/replay/imu_prediction.h"
 

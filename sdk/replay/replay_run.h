@@ -5,7 +5,7 @@
 
 #include "core_stack/localization/estimator.h"
 #include "core_stack/localization/loam.h"
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 #include "plugins/replay/recording.h"
 
 namespace karst::replay {

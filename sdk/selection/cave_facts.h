@@ -4,7 +4,7 @@
 #include <string>
 
 #include "plugins/simulator/cave/ray_scene.h"
-#include "sdk/evaluation/reachable.h"
+#include "sdk/evaluation/reachable/reachable.h"
 
 namespace karst::selection {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <bit>
 
-#include "sdk/evaluation/cell_set.h"
+#include "sdk/evaluation/reachable/cell_set.h"
 
 namespace karst::selection {
 

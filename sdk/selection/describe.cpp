@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/selection/geodesic.h"
 #include "sdk/selection/passage_graph.h"

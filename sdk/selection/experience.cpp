@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "sdk/campaign/verdict.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/campaign/verdict/verdict.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::selection {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sdk/campaign/results.h"
+#include "sdk/campaign/store/results.h"
 #include "sdk/selection/cave_figures.h"
 
 namespace karst::selection {

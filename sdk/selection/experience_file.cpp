@@ -15,7 +15,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/selection/experience.h"
 
 namespace karst::selection {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mapping/obstacle_tree.h"
-#include "core_stack/mapping/voxel_reader.h"
-#include "sdk/evaluation/reachable.h"
+#include "core_stack/mapping/obstacles/obstacle_tree.h"
+#include "core_stack/mapping/occupancy/voxel_reader.h"
+#include "sdk/evaluation/reachable/reachable.h"
 #include "sdk/selection/cell_index.h"
 
 namespace karst::selection {

@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 #include "plugins/simulator/cave/ray_scene.h"
-#include "sdk/evaluation/cell_set.h"
+#include "sdk/evaluation/reachable/cell_set.h"
 
 namespace karst::selection {
 

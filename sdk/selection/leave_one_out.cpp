@@ -5,7 +5,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::selection {
 namespace {

@@ -5,8 +5,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_place.h"
 #include "plugins/simulator/cave/cave.h"
-#include "sdk/campaign/hash.h"
-#include "sdk/campaign/store.h"
+#include "sdk/campaign/plan/hash.h"
+#include "sdk/campaign/store/store.h"
 #include "sdk/selection/describe.h"
 
 namespace karst::selection {

@@ -9,7 +9,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/selection/prediction.h"
 #include "sdk/selection/select_words.h"
 

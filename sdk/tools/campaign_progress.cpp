@@ -10,7 +10,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/printable.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::tools {

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "sdk/campaign/results.h"
-#include "sdk/campaign/run_campaign.h"
+#include "sdk/campaign/run/run_campaign.h"
+#include "sdk/campaign/store/results.h"
 
 namespace karst::tools {
 

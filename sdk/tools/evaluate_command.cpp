@@ -9,9 +9,9 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
-#include "sdk/evaluation/map_reference.h"
-#include "sdk/evaluation/report.h"
-#include "sdk/evaluation/whole_file.h"
+#include "sdk/evaluation/accuracy/map_reference.h"
+#include "sdk/evaluation/record/whole_file.h"
+#include "sdk/evaluation/report/report.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 

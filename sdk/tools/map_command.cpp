@@ -10,8 +10,8 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
-#include "sdk/evaluation/map_inputs.h"
-#include "sdk/evaluation/whole_file.h"
+#include "sdk/evaluation/record/whole_file.h"
+#include "sdk/map_merge/map_inputs.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "sdk/host/discovery.h"
+#include "sdk/host/plugin/discovery.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/check_command.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "sdk/host/discovery.h"
+#include "sdk/host/plugin/discovery.h"
 
 namespace karst::tools {
 namespace {

@@ -8,8 +8,8 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
-#include "sdk/campaign/verdict.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/campaign/verdict/verdict.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::tools {

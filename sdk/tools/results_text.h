@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "sdk/campaign/results.h"
+#include "sdk/campaign/store/results.h"
 
 namespace karst::tools {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "sdk/evaluation/whole_file.h"
+#include "sdk/evaluation/record/whole_file.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"

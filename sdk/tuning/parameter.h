@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sdk/host/discovery.h"
+#include "sdk/host/plugin/discovery.h"
 
 namespace karst::tuning {
 

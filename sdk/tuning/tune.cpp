@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core_stack/common/error.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::tuning {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sdk/campaign/campaign.h"
-#include "sdk/campaign/verdict.h"
+#include "sdk/campaign/plan/campaign.h"
+#include "sdk/campaign/verdict/verdict.h"
 #include "sdk/tuning/parameter.h"
 #include "sdk/tuning/search.h"
 

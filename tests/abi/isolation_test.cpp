@@ -16,9 +16,9 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
-#include "sdk/host/file_access.h"
-#include "sdk/host/isolated_policy.h"
-#include "sdk/host/sandbox.h"
+#include "sdk/host/isolation/file_access.h"
+#include "sdk/host/isolation/isolated_policy.h"
+#include "sdk/host/isolation/sandbox.h"
 #include "tests/abi/room.h"
 
 namespace karst::test {

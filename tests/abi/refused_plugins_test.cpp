@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
-#include "sdk/host/plugin_file.h"
+#include "sdk/host/plugin/plugin_file.h"
 #include "tests/abi/room.h"
 
 namespace karst::test {

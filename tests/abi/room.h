@@ -3,7 +3,7 @@
 #include <boost/property_tree/ptree.hpp>
 #include <string>
 
-#include "core_stack/mission/policy_port.h"
+#include "core_stack/mission/policy/policy_port.h"
 #include "sdk/host/hosted_policy.h"
 
 namespace karst::test {

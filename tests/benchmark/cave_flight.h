@@ -12,8 +12,8 @@
 
 #include "core_stack/common/so3.h"
 #include "plugins/simulator/cave/cave.h"
-#include "plugins/simulator/imu.h"
-#include "plugins/simulator/pose_track.h"
+#include "plugins/simulator/sensors/imu.h"
+#include "plugins/simulator/sensors/pose_track.h"
 
 namespace karst::bench {
 

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 #include "plugins/simulator/cave/cave.h"
-#include "sdk/evaluation/triangle_cells.h"
+#include "sdk/evaluation/reachable/triangle_cells.h"
 
 namespace karst::core::bench {
 

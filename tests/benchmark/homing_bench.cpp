@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core_stack/homing/home.h"
-#include "core_stack/planning/planner.h"
+#include "core_stack/homing/way_home/home.h"
+#include "core_stack/planning/path/planner.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <queue>
 
-#include "core_stack/homing/homing_tree.h"
+#include "core_stack/homing/way_home/homing_tree.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
 

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "core_stack/mapping/voxel_classes.h"
+#include "core_stack/mapping/occupancy/voxel_classes.h"
 #include "sdk/host/decision_box.h"
-#include "sdk/host/flat_request.h"
 #include "sdk/host/hosted_policy.h"
+#include "sdk/host/serialization/flat_request.h"
 #include "tests/benchmark/times.h"
 
 namespace {

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/homing/landing_ground.h"
-#include "core_stack/homing/link_estimate.h"
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/homing/landing/landing_ground.h"
+#include "core_stack/homing/landing/link_estimate.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 #include "plugins/simulator/cave/cave.h"
-#include "plugins/simulator/radio_link.h"
-#include "sdk/evaluation/poses.h"
+#include "plugins/simulator/radio/radio_link.h"
+#include "sdk/evaluation/record/poses.h"
 
 namespace karst {
 namespace {

@@ -16,7 +16,7 @@
 #include "core_stack/localization/estimator.h"
 #include "core_stack/localization/loam.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
-#include "plugins/simulator/lidar.h"
+#include "plugins/simulator/sensors/lidar.h"
 #include "tests/benchmark/cave_flight.h"
 #include "tests/benchmark/pcl_registration.h"
 #include "tests/benchmark/times.h"

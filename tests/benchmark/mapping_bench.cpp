@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "core_stack/common/random.h"
-#include "core_stack/mapping/frontiers.h"
-#include "core_stack/mapping/obstacle_tree.h"
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/frontiers/frontiers.h"
+#include "core_stack/mapping/obstacles/obstacle_tree.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 
 namespace {
 

@@ -11,9 +11,9 @@
 #include <cstring>
 
 #include "core_stack/common/random.h"
-#include "core_stack/mapping/map_registration.h"
-#include "core_stack/mapping/merge_maps.h"
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
+#include "sdk/map_merge/map_registration.h"
+#include "sdk/map_merge/merge_maps.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include "core_stack/perception/intensity_filter.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
-#include "plugins/simulator/lidar.h"
+#include "plugins/simulator/sensors/lidar.h"
 #include "tests/benchmark/times.h"
 
 using namespace karst;

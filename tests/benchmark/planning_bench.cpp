@@ -6,13 +6,13 @@
 #include <queue>
 #include <unordered_map>
 
-#include "core_stack/mapping/obstacle_tree.h"
-#include "core_stack/planning/free_tiles.h"
-#include "core_stack/planning/grid_planner.h"
-#include "core_stack/planning/planner.h"
-#include "core_stack/planning/polynomial_trajectory.h"
-#include "core_stack/planning/refine.h"
-#include "core_stack/planning/trajectory.h"
+#include "core_stack/mapping/obstacles/obstacle_tree.h"
+#include "core_stack/planning/free_space/free_tiles.h"
+#include "core_stack/planning/path/planner.h"
+#include "core_stack/planning/path/refine.h"
+#include "core_stack/planning/search/grid_planner.h"
+#include "core_stack/planning/trajectory/polynomial_trajectory.h"
+#include "core_stack/planning/trajectory/trajectory.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
 

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "core_stack/planning/free_tiles.h"
-#include "core_stack/planning/grid_planner.h"
-#include "core_stack/planning/ompl_search.h"
-#include "core_stack/planning/planner.h"
-#include "core_stack/planning/refine.h"
+#include "core_stack/planning/free_space/free_tiles.h"
+#include "core_stack/planning/path/planner.h"
+#include "core_stack/planning/path/refine.h"
+#include "core_stack/planning/search/grid_planner.h"
+#include "core_stack/planning/search/ompl_search.h"
 #include "tests/benchmark/cave_map.h"
 #include "tests/benchmark/taut_string.h"
 #include "tests/benchmark/times.h"

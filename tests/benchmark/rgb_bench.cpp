@@ -1,10 +1,10 @@
 // What a picture of the colour camera costs, and the account of what it shows, next to a LiDAR sweep of the
 // same place in the same run.
-#include "core_stack/mapping/imaged_surface.h"
-#include "core_stack/mission/picture_file.h"
+#include "core_stack/mapping/frontiers/imaged_surface.h"
+#include "core_stack/mission/recording/picture_file.h"
+#include "plugins/simulator/cameras/rgb_camera.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
-#include "plugins/simulator/lidar.h"
-#include "plugins/simulator/rgb_camera.h"
+#include "plugins/simulator/sensors/lidar.h"
 #include "tests/benchmark/times.h"
 
 using namespace karst;

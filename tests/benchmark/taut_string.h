@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core_stack/common/random.h"
-#include "core_stack/planning/free_tiles.h"
-#include "core_stack/planning/path.h"
+#include "core_stack/planning/free_space/free_tiles.h"
+#include "core_stack/planning/path/path.h"
 
 namespace karst::core::bench {
 

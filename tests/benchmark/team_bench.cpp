@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <limits>
 
-#include "core_stack/homing/relay_graph.h"
-#include "core_stack/homing/relay_homing.h"
+#include "core_stack/team/communication/relay_graph.h"
+#include "core_stack/team/relay_homing.h"
 #include "tests/benchmark/times.h"
-#include "tests/unit/homing/lossy_network.h"
 #include "tests/unit/planning/test_maps.h"
+#include "tests/unit/team/communication/lossy_network.h"
 
 namespace karst::core {
 namespace {

@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/random.h"
-#include "sdk/campaign/store.h"
-#include "sdk/campaign/verdict.h"
-#include "sdk/evaluation/coverage_curve.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/campaign/store/store.h"
+#include "sdk/campaign/verdict/verdict.h"
+#include "sdk/evaluation/metrics/coverage_curve.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "sdk/check/run_check.h"
-#include "sdk/host/process.h"
+#include "sdk/host/isolation/process.h"
 
 namespace karst::check {
 namespace {

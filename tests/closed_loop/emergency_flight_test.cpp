@@ -3,9 +3,9 @@
 #include <cstdlib>
 #include <new>
 
-#include "core_stack/homing/mission_key.h"
-#include "core_stack/homing/relay_homing.h"
 #include "core_stack/mission/mission_control.h"
+#include "core_stack/team/communication/mission_key.h"
+#include "core_stack/team/relay_homing.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "plugins/simulator/simulated_vehicle.h"
 #include "tests/closed_loop/command.h"

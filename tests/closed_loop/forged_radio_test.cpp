@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core_stack/common/random.h"
-#include "core_stack/homing/messages.h"
+#include "core_stack/team/communication/messages.h"
 #include "sdk/flight/fly.h"
 #include "tests/closed_loop/command.h"
 #include "tests/closed_loop/drawn_cave.h"

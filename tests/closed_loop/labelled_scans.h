@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "plugins/simulator/cave_air.h"
-#include "plugins/simulator/lidar.h"
+#include "plugins/simulator/environment/cave_air.h"
+#include "plugins/simulator/sensors/lidar.h"
 
 namespace karst::test {
 

@@ -1,4 +1,4 @@
-#include "sdk/campaign/campaign.h"
+#include "sdk/campaign/plan/campaign.h"
 #include "tests/fuzz/as_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 // written and comes out again as it is. The first byte says which message.
 #include <cstdlib>
 
-#include "sdk/host/flat_answer.h"
+#include "sdk/host/serialization/flat_answer.h"
 
 using namespace karst::host;
 

@@ -6,9 +6,9 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_reader.h"
-#include "sdk/campaign/plan.h"
-#include "sdk/campaign/plan_text.h"
-#include "sdk/campaign/results.h"
+#include "sdk/campaign/plan/plan.h"
+#include "sdk/campaign/plan/plan_text.h"
+#include "sdk/campaign/store/results.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace karst;

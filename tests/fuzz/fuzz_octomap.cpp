@@ -1,4 +1,4 @@
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 #include "tests/fuzz/as_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

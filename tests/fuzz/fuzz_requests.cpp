@@ -4,8 +4,8 @@
 #include <cstring>
 #include <span>
 
-#include "sdk/host/flat_request.h"
-#include "sdk/host/request_log.h"
+#include "sdk/host/serialization/flat_request.h"
+#include "sdk/host/serialization/request_log.h"
 #include "tests/fuzz/as_file.h"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <filesystem>
 
-#include "sdk/evaluation/run_record.h"
+#include "sdk/evaluation/record/run_record.h"
 #include "tests/fuzz/as_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "sdk/evaluation/poses.h"
+#include "sdk/evaluation/record/poses.h"
 #include "tests/fuzz/as_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

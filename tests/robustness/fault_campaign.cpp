@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
-#include "sdk/evaluation/whole_file.h"
+#include "sdk/evaluation/record/whole_file.h"
 #include "tests/robustness/fly_trial.h"
 #include "tests/robustness/tables.h"
 #include "tests/robustness/trial_cave.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sdk/host/process.h"
+#include "sdk/host/isolation/process.h"
 #include "tests/robustness/trial.h"
 
 namespace karst::robustness {

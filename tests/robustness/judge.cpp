@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core_stack/common/error.h"
-#include "sdk/evaluation/flight_figures.h"
-#include "sdk/evaluation/team_folders.h"
+#include "sdk/evaluation/metrics/flight_figures.h"
+#include "sdk/evaluation/team/team_folders.h"
 
 namespace karst::robustness {
 namespace {

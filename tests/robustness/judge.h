@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "sdk/evaluation/run_record.h"
-#include "sdk/host/process.h"
+#include "sdk/evaluation/record/run_record.h"
+#include "sdk/host/isolation/process.h"
 
 namespace karst::robustness {
 

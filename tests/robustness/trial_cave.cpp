@@ -8,7 +8,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
 #include "plugins/simulator/cave/cave.h"
-#include "sdk/host/process.h"
+#include "sdk/host/isolation/process.h"
 
 namespace karst::robustness {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/json_text.h"
-#include "sdk/evaluation/lines.h"
+#include "sdk/evaluation/record/lines.h"
 
 namespace karst::robustness {
 namespace {

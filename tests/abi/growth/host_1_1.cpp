@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "sdk/host/plugin_file.h"
+#include "sdk/host/plugin/plugin_file.h"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "sdk/evaluation/coverage_curve.h"
-#include "sdk/evaluation/metric_definitions.h"
-#include "sdk/evaluation/run_record.h"
+#include "sdk/evaluation/metrics/coverage_curve.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
+#include "sdk/evaluation/record/run_record.h"
 
 namespace karst::test {
 namespace {

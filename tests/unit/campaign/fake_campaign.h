@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "sdk/campaign/results.h"
+#include "sdk/campaign/store/results.h"
 
 namespace karst::test {
 

@@ -1,1 +1,1 @@
-karst_test(verdict_test verdict_test.cpp drawn_campaign.cpp LINK karst_verdict rapidcheck)
+karst_test(verdict_test verdict/verdict_test.cpp verdict/drawn_campaign.cpp LINK karst_verdict rapidcheck)

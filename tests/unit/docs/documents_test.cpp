@@ -133,7 +133,7 @@ TEST(Reference, NamesEveryConstantOfTheHeaders) {
 TEST(Goals, QuoteTheReasonsThatTheSourcesGive) {
   std::string sources;
   for (const char* folder : {"core_stack/mission", "sdk/host"})
-    for (const auto& e : fs::directory_iterator(root / folder))
+    for (const auto& e : fs::recursive_directory_iterator(root / folder))
       if (e.path().extension() == ".cpp") sources += text_of(e.path());
   const std::string page = text_of(root / "docs/goals.md");
   std::size_t reasons = 0;

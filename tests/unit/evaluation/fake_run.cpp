@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core_stack/common/random.h"
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 
 namespace karst::test {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "sdk/evaluation/report.h"
+#include "sdk/evaluation/report/report.h"
 #include "tests/unit/evaluation/fake_run.h"
 
 int main(int argc, char** argv) {

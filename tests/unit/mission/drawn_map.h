@@ -1,6 +1,6 @@
 // Maps for the mission's tests: a box of free space cut into unknown space, with walls where asked.
 #pragma once
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 
 namespace karst::core {
 

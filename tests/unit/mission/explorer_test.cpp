@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "core_stack/planning/grid_planner.h"
+#include "core_stack/planning/search/grid_planner.h"
 #include "tests/unit/mission/drawn_map.h"
 
 namespace karst::core {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/mission/world_model.h"
+#include "core_stack/mission/world_model/world_model.h"
 #include "tests/unit/mission/drawn_map.h"
 
 namespace karst::core {

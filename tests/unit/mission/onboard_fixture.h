@@ -8,11 +8,11 @@
 #include <functional>
 #include <sstream>
 
-#include "core_stack/mission/endurance.h"
-#include "core_stack/mission/goal_tracker.h"
+#include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/onboard.h"
-#include "core_stack/mission/path_execution.h"
-#include "core_stack/mission/way_flown.h"
+#include "core_stack/mission/phases/endurance.h"
+#include "core_stack/mission/phases/goal_tracker.h"
+#include "core_stack/mission/phases/way_flown.h"
 
 namespace karst::core {
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "core_stack/mapping/voxel_map.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 
 namespace karst::core::testing {
 

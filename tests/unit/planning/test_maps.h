@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core_stack/common/random.h"
-#include "core_stack/mapping/voxel_map.h"
-#include "core_stack/planning/path.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/planning/path/path.h"
 
 namespace karst::core {
 

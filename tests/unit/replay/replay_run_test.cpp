@@ -7,9 +7,9 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 #include "plugins/replay/decimal_time.h"
-#include "sdk/evaluation/poses.h"
+#include "sdk/evaluation/record/poses.h"
 #include "tests/unit/replay/folder.h"
 
 namespace karst::replay {

@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mapping/octomap_io.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
-#include "tests/unit/cave/boxes.h"
+#include "tests/unit/evaluation/reachable/boxes.h"
 #include "tests/unit/selection/drawn_space.h"
 
 namespace {

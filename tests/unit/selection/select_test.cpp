@@ -6,12 +6,12 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
-#include "sdk/campaign/store.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/campaign/store/store.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
-#include "tests/unit/cave/boxes.h"
+#include "tests/unit/evaluation/reachable/boxes.h"
 #include "tests/unit/selection/experiences.h"
 
 namespace {

@@ -60,9 +60,15 @@ TEST(IncludeDirection, TheCheckKnowsTheHostOnly) {
   expect_none("sdk/check", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation", "sdk/campaign"});
   expect_none("sdk/host", {"sdk/check"});
 }
+// Maps are merged offline: nobody but a command asks for it.
+TEST(IncludeDirection, MapMergingKnowsNothingOfCampaignsAndFlights) {
+  expect_none("sdk/map_merge",
+              {"sdk/host", "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools"});
+}
 // evaluation <- campaign <- selection <- flight <- tools; tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
-  expect_none("sdk/evaluation", {"sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/tools"});
+  expect_none("sdk/evaluation",
+              {"sdk/map_merge", "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/tools"});
   expect_none("sdk/campaign", {"sdk/selection", "sdk/tuning", "sdk/tools"});
 }
 TEST(IncludeDirection, SelectionAndTuningKnowNoCommandAndNotEachOther) {
@@ -102,8 +108,9 @@ TEST(IncludeDirection, FewSourcesAndNoHeaderIncludePcl) {
 }
 
 TEST(IncludeDirection, CoreModulesUseOnlyThoseAboveThem) {
-  const std::vector<std::string> order = {"common",   "vehicle", "perception", "localization", "mapping",
-                                          "planning", "control", "objects",    "homing",       "mission"};
+  const std::vector<std::string> order = {"common",  "vehicle",  "perception", "localization",
+                                          "mapping", "planning", "control",    "objects",
+                                          "homing",  "team",     "mission"};
   std::map<std::string, std::size_t> rank;
   for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
   for (const std::string& module : order)

@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mapping/merge_maps.h"
-#include "core_stack/mapping/octomap_io.h"
-#include "sdk/evaluation/metrics.h"
-#include "sdk/evaluation/report.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
+#include "sdk/evaluation/metrics/metrics.h"
+#include "sdk/evaluation/report/report.h"
+#include "sdk/map_merge/merge_maps.h"
 #include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/map_command.h"
 #include "tests/unit/evaluation/fake_run.h"
-#include "tests/unit/mapping/tunnels.h"
+#include "tests/unit/map_merge/tunnels.h"
 
 namespace karst::tools {
 namespace {

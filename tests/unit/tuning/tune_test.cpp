@@ -6,7 +6,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
-#include "sdk/evaluation/metric_definitions.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace {
 

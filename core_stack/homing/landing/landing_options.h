@@ -1,0 +1,17 @@
+// The mission file's section `homing.landing`: where a robot may land as a relay.
+#pragma once
+#include "core_stack/homing/landing/landing_ground.h"
+#include "core_stack/homing/landing/link_estimate.h"
+
+namespace karst::core {
+
+struct LandingOptions {
+  GroundOptions ground;
+  LinkEstimateOptions link;
+  double keep_apart_m = 2.0;       // from places that others stand at or claim
+  double passage_reach_m = 3.0;    // others must get by within that
+  double landing_speed_mps = 0.4;  // mission.landing_speed
+};
+void describe(OptionTable& t, LandingOptions& o);
+
+}  // namespace karst::core

@@ -1,0 +1,281 @@
+#include "core_stack/mapping/frontiers/frontiers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core_stack/mapping/occupancy/packed_cell.h"
+#include "core_stack/mapping/occupancy/voxel_reader.h"
+
+namespace karst::core {
+namespace {
+
+std::int32_t floor_div(std::int32_t a, std::int32_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+template <class Key>
+void sort_unique(std::vector<Key>& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+/// The cells around a cell, each direction with a reader of its own: from cell to cell it stays in its block.
+class FaceReaders {
+ public:
+  explicit FaceReaders(const VoxelMap& map) : readers_(kFaces.size(), VoxelReader(map)) {}
+  bool unknown(const CellKey& k, std::size_t face) {
+    return readers_[face].at(k + kFaces[face]) == Cell::unknown;
+  }
+  bool any_unknown(const CellKey& k) {
+    for (std::size_t face = 0; face < kFaces.size(); ++face)
+      if (unknown(k, face)) return true;
+    return false;
+  }
+
+ private:
+  std::vector<VoxelReader> readers_;
+};
+
+/// Cells in both of two sorted lists.
+std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b) {
+  std::size_t n = 0;
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j)
+      ++n, ++i, ++j;
+    else if (*i < *j)
+      ++i;
+    else
+      ++j;
+  }
+  return n;
+}
+
+/// The box in which a cluster's free and unknown cells are counted.
+struct CellBox {
+  CellKey low, high;
+  CellBox(const VoxelMap& map, const FrontierCluster& c, double reach_m)
+      : low(map.key_of(c.centroid - Vec3::Constant(reach_m))),
+        high(map.key_of(c.centroid + Vec3::Constant(reach_m))) {}
+};
+
+void count_around(const VoxelMap& map, double reach_m, FrontierCluster& c) {
+  const CellBox box(map, c, reach_m);
+  const CellCounts counts = VoxelReader(map).count(box.low, box.high);
+  c.free_cells = counts.free;
+  c.unknown_cells = counts.unknown;
+}
+
+}  // namespace
+
+void describe(OptionTable& t, FrontierOptions& o) {
+  t.add("tile", o.tile_m, "m", 0.4, 12.8, "edge of the tiles that bound a cluster's size");
+  t.add("min_cells", o.min_cells, 1, 1000, "clusters of fewer cells are not offered");
+  t.add("neighbourhood", o.neighbourhood_m, "m", 0.2, 10,
+        "half edge of the box in which free and unknown cells are counted");
+}
+
+Frontiers::Frontiers(const FrontierOptions& options) : options_(options) {}
+
+CellKey Frontiers::tile_of(const CellKey& k) const {
+  return {floor_div(k.x, edge_), floor_div(k.y, edge_), floor_div(k.z, edge_)};
+}
+std::size_t Frontiers::row_of(const CellKey& k, const CellKey& t) const {
+  return static_cast<std::size_t>((k.x - t.x * edge_) * edge_ + k.y - t.y * edge_);
+}
+std::uint64_t Frontiers::bit_of(const CellKey& k, const CellKey& t) const {
+  return std::uint64_t{1} << (k.z - t.z * edge_);
+}
+
+bool Frontiers::is_frontier(const CellKey& k) const {
+  if (edge_ == 0) return false;
+  const CellKey t = tile_of(k);
+  const auto tile = tiles_.find(t);
+  return tile != tiles_.end() && (tile->second.rows[row_of(k, t)] & bit_of(k, t)) != 0;
+}
+
+void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes) {
+  if (changes.empty()) return;
+  if (edge_ == 0)
+    edge_ = std::clamp(static_cast<std::int32_t>(std::lround(options_.tile_m / map.resolution_m())), 1, 64);
+  std::set<std::uint32_t> stale;  // clusters to count around again
+  for (const CellKey& t : update_cells(map, changes)) {
+    Tile& tile = tiles_.at(t);
+    std::vector<Part> parts = components(t);
+    name(parts, tile.parts);
+    for (const Part& p : tile.parts) clusters_.erase(p.id);
+    for (const Part& p : parts) {
+      publish(map, p);
+      stale.insert(p.id);
+    }
+    tile.parts = std::move(parts);
+    if (tile.parts.empty()) tiles_.erase(t);
+  }
+  add_clusters_near(map, changes, stale);
+  for (const std::uint32_t id : stale)
+    if (const auto c = clusters_.find(id); c != clusters_.end())
+      count_around(map, options_.neighbourhood_m, c->second);
+}
+
+/// Brings the frontier bits up to date; returns the tiles to cluster again, sorted. Those are also the tiles
+/// of cells that were and are frontier but see less of the unknown than before.
+std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<const CellChange> changes) {
+  // Only a cell that leaves the unknown matters to its neighbours.
+  std::vector<PackedCell> candidates;
+  candidates.reserve(7 * changes.size());
+  for (const CellChange& c : changes) {
+    candidates.push_back(pack(c.key));
+    if (c.before != Cell::unknown) continue;
+    for (const CellKey& f : kFaces) candidates.push_back(pack(c.key + f));
+  }
+  sort_unique(candidates);
+
+  std::vector<CellKey> dirty;
+  VoxelReader reader(map);
+  FaceReaders faces(map);
+  for (const PackedCell candidate : candidates) {
+    const CellKey k = unpack(candidate);
+    const bool now = reader.at(k) == Cell::free && faces.any_unknown(k);
+    const bool before = is_frontier(k);
+    if (!now && !before) continue;
+    const CellKey t = tile_of(k);
+    if (dirty.empty() || dirty.back() != t) dirty.push_back(t);
+    if (now == before) continue;
+    Tile& tile = tiles_[t];
+    if (tile.rows.empty()) tile.rows.resize(static_cast<std::size_t>(edge_) * edge_);
+    tile.rows[row_of(k, t)] ^= bit_of(k, t);
+    cell_count_ = now ? cell_count_ + 1 : cell_count_ - 1;
+  }
+  sort_unique(dirty);
+  return dirty;
+}
+
+/// The tile's frontier cells as 26-connected components, in the order of their lowest cells.
+std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
+  const std::vector<std::uint64_t>& rows = tiles_.at(t).rows;
+  std::vector<std::uint64_t> left = rows;
+  const auto index_of = [&](std::size_t row, int z) {
+    return row * static_cast<std::size_t>(edge_) + static_cast<std::size_t>(z);
+  };
+  std::vector<std::uint32_t> part_of(rows.size() * static_cast<std::size_t>(edge_));
+  struct Run {  // cells of one row
+    std::int32_t x, y;
+    std::uint64_t cells;
+  };
+  std::vector<Run> stack;
+  std::vector<Part> parts;
+  const auto take = [&](std::int32_t x, std::int32_t y, std::uint64_t cells) {
+    const auto row = static_cast<std::size_t>(x * edge_ + y);
+    cells &= left[row];
+    if (cells == 0) return;
+    left[row] &= ~cells;
+    stack.push_back({x, y, cells});
+    for (; cells != 0; cells &= cells - 1)
+      part_of[index_of(row, std::countr_zero(cells))] = static_cast<std::uint32_t>(parts.size() - 1);
+  };
+  const auto flood = [&] {
+    while (!stack.empty()) {
+      const Run run = stack.back();
+      stack.pop_back();
+      const std::uint64_t around = run.cells | run.cells << 1 | run.cells >> 1;
+      for (std::int32_t x = std::max(run.x - 1, 0); x <= std::min(run.x + 1, edge_ - 1); ++x)
+        for (std::int32_t y = std::max(run.y - 1, 0); y <= std::min(run.y + 1, edge_ - 1); ++y)
+          take(x, y, around);
+    }
+  };
+  // In the order of keys, so that each part's cells come out sorted.
+  for (std::int32_t x = 0; x < edge_; ++x)
+    for (std::int32_t y = 0; y < edge_; ++y) {
+      const auto row = static_cast<std::size_t>(x * edge_ + y);
+      for (std::uint64_t cells = rows[row]; cells != 0; cells &= cells - 1) {
+        const auto z = std::countr_zero(cells);
+        if (left[row] >> z & 1) {
+          parts.emplace_back();
+          take(x, y, std::uint64_t{1} << z);
+          flood();
+        }
+        parts[part_of[index_of(row, z)]].cells.push_back({t.x * edge_ + x, t.y * edge_ + y, t.z * edge_ + z});
+      }
+    }
+  return parts;
+}
+
+/// Each part inherits the id of the former part with which it shares most cells, each id going to one heir;
+/// larger shares choose first. The others get new ids.
+void Frontiers::name(std::vector<Part>& parts, const std::vector<Part>& former) {
+  struct Claim {
+    std::size_t cells, part, former;
+  };
+  std::vector<Claim> claims;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (std::size_t j = 0; j < former.size(); ++j)
+      if (const std::size_t n = shared(parts[i].cells, former[j].cells); n > 0) claims.push_back({n, i, j});
+  std::stable_sort(claims.begin(), claims.end(),
+                   [](const Claim& a, const Claim& b) { return a.cells > b.cells; });
+  std::vector<bool> inherited(former.size());
+  for (const Claim& c : claims) {
+    if (parts[c.part].id != 0 || inherited[c.former]) continue;
+    parts[c.part].id = former[c.former].id;
+    inherited[c.former] = true;
+  }
+  for (Part& p : parts)
+    if (p.id == 0) p.id = ++last_id_;
+}
+
+/// Everything of a cluster but the counts.
+void Frontiers::publish(const VoxelMap& map, const Part& part) {
+  if (static_cast<std::int64_t>(part.cells.size()) < options_.min_cells) return;
+  FrontierCluster c;
+  c.id = part.id;
+  c.cells = part.cells;
+  FaceReaders faces(map);
+  CellKey sum, into_unknown;
+  CellKey low = part.cells.front(), high = low;
+  for (const CellKey& k : part.cells) {
+    sum = sum + k;
+    low = {std::min(low.x, k.x), std::min(low.y, k.y), std::min(low.z, k.z)};
+    high = {std::max(high.x, k.x), std::max(high.y, k.y), std::max(high.z, k.z)};
+    for (std::size_t face = 0; face < kFaces.size(); ++face)
+      if (faces.unknown(k, face)) into_unknown = into_unknown + kFaces[face];
+  }
+  const Vec3 half = Vec3::Constant(map.resolution_m() / 2);
+  c.centroid = (Vec3(sum.x, sum.y, sum.z) / static_cast<double>(part.cells.size()) + Vec3::Constant(0.5)) *
+               map.resolution_m();
+  c.low = map.center_of(low) - half;
+  c.high = map.center_of(high) + half;
+  if (into_unknown != CellKey{}) c.normal = Vec3(into_unknown.x, into_unknown.y, into_unknown.z).normalized();
+  clusters_[c.id] = std::move(c);
+}
+
+/// Clusters in whose box a cell may have changed.
+void Frontiers::add_clusters_near(const VoxelMap& map, std::span<const CellChange> changes,
+                                  std::set<std::uint32_t>& ids) const {
+  std::vector<CellKey> changed;
+  for (const CellChange& c : changes)
+    if (const CellKey t = tile_of(c.key); changed.empty() || changed.back() != t) changed.push_back(t);
+  sort_unique(changed);
+  // A cluster's box reaches from its centroid, which lies in its tile, over so many tiles.
+  const auto reach =
+      static_cast<std::int32_t>(std::ceil(options_.neighbourhood_m / (edge_ * map.resolution_m())));
+  std::vector<PackedCell> near;
+  for (const CellKey& t : changed)
+    for (std::int32_t dx = -reach; dx <= reach; ++dx)
+      for (std::int32_t dy = -reach; dy <= reach; ++dy)
+        for (std::int32_t dz = -reach; dz <= reach; ++dz) near.push_back(pack(t + CellKey{dx, dy, dz}));
+  sort_unique(near);
+  for (const PackedCell t : near) {
+    const auto tile = tiles_.find(unpack(t));
+    if (tile == tiles_.end()) continue;
+    for (const Part& p : tile->second.parts) {
+      const auto c = clusters_.find(p.id);
+      if (c == clusters_.end()) continue;
+      const CellBox box(map, c->second, options_.neighbourhood_m);
+      const CellKey low = tile_of(box.low), high = tile_of(box.high);
+      const bool touched = std::any_of(changed.begin(), changed.end(), [&](const CellKey& k) {
+        return k.x >= low.x && k.x <= high.x && k.y >= low.y && k.y <= high.y && k.z >= low.z &&
+               k.z <= high.z;
+      });
+      if (touched) ids.insert(p.id);
+    }
+  }
+}
+
+}  // namespace karst::core

@@ -1,0 +1,13 @@
+// The cells a vehicle must keep away from; private to mapping.
+#pragma once
+#include <vector>
+
+#include "core_stack/mapping/occupancy/voxel_map.h"
+
+namespace karst::core {
+
+/// Occupied cells in the closed box, and its unknown cells that share a face with a free one (in the box or
+/// beside it). Sorted by block.
+std::vector<CellKey> obstacle_cells(const VoxelMap& map, const CellKey& low, const CellKey& high);
+
+}  // namespace karst::core

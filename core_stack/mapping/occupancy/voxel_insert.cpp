@@ -1,0 +1,183 @@
+// Writing to the map: one scan's rays, or a ball declared free.
+#include <bit>
+
+#include "core_stack/mapping/occupancy/cell_walk.h"
+#include "core_stack/mapping/occupancy/voxel_storage.h"
+
+namespace karst::core {
+namespace {
+
+/// Rays seen so far, by the cell of their origin and the half cell (an eighth of the volume) of their end.
+/// Rays alike in both pass the same cells but for a few in ten thousand. The table grows with what it holds,
+/// a fraction of the rays, so that it stays in the cache.
+class RaySet {
+ public:
+  /// True if no such ray was there before. A sweep starts from few cells; the rays of one that starts from
+  /// more than kOrigins count as new beyond that.
+  bool add(const CellKey& origin, const CellKey& end_in_half_cells, bool hit) {
+    const std::optional<std::uint64_t> from = number_of(pack(origin));
+    if (!from) return true;
+    const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v + 2 * kWorldCells); };
+    const std::uint64_t ray = (*from + 1) << 52 | std::uint64_t{hit} << 51 | part(end_in_half_cells.x) << 34 |
+                              part(end_in_half_cells.y) << 17 | part(end_in_half_cells.z);
+    if (ray == last_) return false;
+    last_ = ray;
+    if (!place(ray)) return false;
+    if (++count_ * 2 > slots_.size()) grow();
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kOrigins = 64;
+
+  std::optional<std::size_t> number_of(PackedCell origin) {
+    if (current_ < origins_.size() && origins_[current_] == origin) return current_;
+    current_ =
+        static_cast<std::size_t>(std::find(origins_.begin(), origins_.end(), origin) - origins_.begin());
+    if (current_ == kOrigins) return std::nullopt;
+    if (current_ == origins_.size()) origins_.push_back(origin);
+    return current_;
+  }
+  bool place(std::uint64_t ray) {
+    for (std::size_t i = slot_of(ray, slots_.size());; i = (i + 1) & (slots_.size() - 1)) {
+      if (slots_[i] == ray) return false;
+      if (slots_[i] == 0) return slots_[i] = ray, true;
+    }
+  }
+  void grow() {
+    std::vector<std::uint64_t> former(2 * slots_.size());
+    former.swap(slots_);
+    for (const std::uint64_t ray : former)
+      if (ray != 0) place(ray);
+  }
+
+  std::vector<PackedCell> origins_;  // those numbered so far
+  std::size_t current_ = 0, count_ = 0;
+  std::uint64_t last_ = 0;
+  std::vector<std::uint64_t> slots_ = std::vector<std::uint64_t>(4096);
+};
+
+/// Marks cells in the blocks' bitsets and remembers which blocks it touched.
+class Marker {
+ public:
+  explicit Marker(BlockTable& blocks) : blocks_(blocks) {}
+
+  void hit(PackedCell p) { block(p).hit[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p); }
+  /// All cells of the walk but the last.
+  void miss(CellWalk walk) {
+    for (std::int32_t left = walk.steps(); left > 0; --left, walk.advance()) {
+      const PackedCell p = walk.cell();
+      block(p).miss[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p);
+    }
+  }
+  const std::vector<Block*>& touched() const { return touched_; }
+
+ private:
+  Block& block(PackedCell p) {
+    if ((p & ~kInBlock) != id_) [[unlikely]]
+      enter(p & ~kInBlock);
+    return *last_;
+  }
+  void enter(BlockId id) {
+    id_ = id;
+    last_ = &blocks_.find_or_add(id);
+    if (!last_->touched) last_->touched = true, touched_.push_back(last_);
+  }
+
+  BlockTable& blocks_;
+  BlockId id_ = ~BlockId{0};
+  Block* last_ = nullptr;
+  std::vector<Block*> touched_;
+};
+
+/// `p` in cells; false for NaN.
+bool inside(const Vec3& p) {
+  const auto in = [](double v) { return v >= -kWorldCells && v < kWorldCells; };
+  return in(p.x()) && in(p.y()) && in(p.z());
+}
+CellKey cell_at(const Vec3& p) {
+  const auto floor_of = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
+  return {floor_of(p.x()), floor_of(p.y()), floor_of(p.z())};
+}
+
+template <class Visit>
+void for_each_bit(const std::array<std::uint64_t, 8>& bits, Visit&& visit) {
+  for (std::uint32_t w = 0; w < bits.size(); ++w)
+    for (std::uint64_t rest = bits[w]; rest != 0; rest &= rest - 1)
+      visit(w * 64 + static_cast<std::uint32_t>(std::countr_zero(rest)));
+}
+
+}  // namespace
+
+std::vector<CellChange> VoxelMap::insert(std::span<const Ray> rays) {
+  Storage& s = *storage_;
+  ++s.revision;
+  RaySet seen;
+  Marker marker(s.blocks);
+  for (const Ray& ray : rays) {
+    const Vec3 from = ray.origin.cast<double>() * s.cells_per_m, to = ray.end.cast<double>() * s.cells_per_m;
+    if (!inside(from) || !inside(to)) continue;
+    if (!seen.add(cell_at(from), cell_at(2.0 * to), ray.hit)) continue;
+    marker.miss(CellWalk(from, to));
+    if (ray.hit) marker.hit(pack(cell_at(to)));
+  }
+
+  std::vector<CellChange> changes;
+  for (Block* b : marker.touched()) {
+    const CellKey corner = corner_of(b->id);
+    const auto add = [&](std::uint32_t i, std::int16_t step, std::int16_t bound) {
+      const std::int16_t v = b->log_odds[i];
+      if (v == bound) return;  // as sure as it may become: most cells of a place seen before
+      const int sum = (v == kUnknown ? 0 : v) + step;
+      s.set(*b, corner, i, static_cast<std::int16_t>(std::clamp<int>(sum, s.low, s.high)), changes);
+    };
+    for (std::size_t w = 0; w < b->miss.size(); ++w) b->miss[w] &= ~b->hit[w];
+    for_each_bit(b->hit, [&](std::uint32_t i) { add(i, s.hit, s.high); });
+    for_each_bit(b->miss, [&](std::uint32_t i) { add(i, s.miss, s.low); });
+    b->hit.fill(0), b->miss.fill(0), b->touched = false;
+  }
+  sort_by_key(changes);
+  return changes;
+}
+
+std::vector<CellChange> VoxelMap::declare_free(const Vec3& center, double radius_m) {
+  Storage& s = *storage_;
+  ++s.revision;
+  std::vector<CellChange> changes;
+  const Vec3 reach = Vec3::Constant(radius_m);
+  const CellKey low = key_of(center - reach), high = key_of(center + reach);
+  if (!in_world(low) || !in_world(high)) return changes;
+  for (std::int32_t x = low.x; x <= high.x; ++x)
+    for (std::int32_t y = low.y; y <= high.y; ++y)
+      for (std::int32_t z = low.z; z <= high.z; ++z) {
+        const CellKey k{x, y, z};
+        if ((center_of(k) - center).norm() > radius_m || at(k) != Cell::unknown) continue;
+        const BlockId id = block_of(k);
+        s.set(s.blocks.find_or_add(id), corner_of(id), local_of(k), s.miss, changes);
+      }
+  sort_by_key(changes);
+  return changes;
+}
+
+void VoxelMap::assign(const CellKey& low, std::int32_t edge_cells, float log_odds) {
+  Storage& s = *storage_;
+  ++s.revision;
+  const float limit = kLogOddsScale * 8 - 1;
+  const auto value =
+      static_cast<std::int16_t>(std::clamp(std::round(log_odds * kLogOddsScale), -limit, limit));
+  const auto clamped = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -kWorldCells, kWorldCells));
+  };
+  const CellKey from{clamped(low.x), clamped(low.y), clamped(low.z)};
+  const auto end = [&](std::int32_t v) { return clamped(std::int64_t{v} + edge_cells); };
+  std::vector<CellChange> changes;
+  for (std::int32_t x = from.x; x < end(low.x); ++x)
+    for (std::int32_t y = from.y; y < end(low.y); ++y)
+      for (std::int32_t z = from.z; z < end(low.z); ++z) {
+        const BlockId id = block_of({x, y, z});
+        s.set(s.blocks.find_or_add(id), corner_of(id), local_of({x, y, z}), value, changes);
+        changes.clear();
+      }
+}
+
+}  // namespace karst::core

@@ -1,0 +1,55 @@
+// A decision cycle: the policy is offered the open frontiers, and the first of its goals that can be flown to
+// is taken. Narrow passages are offered when there is nothing else in reach.
+//
+// It lives on the map lane.
+#pragma once
+#include <vector>
+
+#include "core_stack/mission/decision/chosen_frontiers.h"
+#include "core_stack/mission/decision/frontier_offers.h"
+#include "core_stack/mission/decision/goal_selection.h"
+#include "core_stack/mission/decision/round.h"
+#include "core_stack/mission/policy/policy_with_fallback.h"
+
+namespace karst::core {
+
+class DecisionCycle {
+ public:
+  /// All but the options and the vehicle outlive it.
+  DecisionCycle(const CoreOptions& options, const VehicleDescription& vehicle, PolicyPort& policy,
+                WorldModel& world, HomeEstimator& home);
+  DecisionCycle(const DecisionCycle&) = delete;  // its parts refer to each other
+  DecisionCycle& operator=(const DecisionCycle&) = delete;
+
+  RoundResult decide(const RoundInput& input, const Claims& claims);
+  /// Tells the policy what happened to its goals. The places of those abandoned are closed.
+  void tell(const std::vector<PolicyEvent>& events, TimeNs now);
+  /// True if the cluster is still open enough to be worth flying to.
+  bool cluster_alive(std::uint32_t id) const;
+
+ private:
+  /// Asked of the policy about one roadmap.
+  struct Question {
+    DecisionRequest request;
+    GoalQuery goals;
+  };
+
+  Question ask_about(const ClearanceRoadmap& roadmap, const RoundInput& input, const Claims& claims);
+  DecisionRequest request(const ClearanceRoadmap& roadmap, const RoundInput& input);
+  void answer(const Question& question, DecidedBy by, RoundResult& result);
+  void choose(const Question& question, const PolicyAnswer& answer, RoundResult& result);
+  void note_chosen(const Goal& goal, const RoundInput& input);
+
+  VehicleDescription vehicle_;
+  double max_speed_mps_;
+  WorldModel* world_;
+  HomeEstimator* home_;
+  GoalLedger ledger_;
+  ChosenFrontiers chosen_;
+  FrontierOffers offers_;
+  GoalSelection selection_;
+  PolicyWithFallback policy_;
+  std::uint32_t sequence_ = 0;  // of the last request
+};
+
+}  // namespace karst::core

@@ -1,0 +1,111 @@
+#include "core_stack/mission/decision/frontier_offers.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace karst::core {
+namespace {
+
+/// Viewpoints are looked for as far as this from a cluster; a viewpoint holds until the map changes there.
+constexpr double kViewpointReach_m = 4.6;
+
+/// When no other place is left, the pauses of failed places are waived: those of the first three attempts.
+constexpr TimeNs kPauseWaived = 40 * kSecond;
+/// In a narrow passage the next place to look at is never far from the last ones: the pauses of two attempts
+/// more are waived, even if the map has not changed there.
+constexpr TimeNs kNarrowPauseWaived = 160 * kSecond;
+
+ClosureRules last_resort_rules(Passages passages, TimeNs now) {
+  if (passages == Passages::narrow) return {.at = now + kNarrowPauseWaived, .ignore_map_change = true};
+  return {.at = now + kPauseWaived};
+}
+
+}  // namespace
+
+FrontierOffers::FrontierOffers(const CoreOptions& options, const VehicleDescription& vehicle,
+                               const WorldModel& world, const GoalLedger& ledger)
+    : min_open_cells_(options.mission.min_open_cells), vehicle_(vehicle), world_(&world), ledger_(&ledger) {}
+
+Offers FrontierOffers::find(const OfferQuery& query) {
+  Offers open;
+  open.rules = {.at = query.now};
+  open.frontiers = find_by(open.rules, query.claims, query);
+  // Rather where another vehicle is about to look than nowhere.
+  if (open.frontiers.empty() && !query.claims.goals.empty()) open.frontiers = find_by(open.rules, {}, query);
+  if (open.frontiers.empty()) {
+    open.rules = last_resort_rules(query.roadmap->passages(), query.now);
+    open.frontiers = find_by(open.rules, {}, query);
+  }
+  return open;
+}
+
+std::vector<UnseenFrontier> FrontierOffers::take_unseen() { return std::exchange(unseen_, {}); }
+
+std::vector<FrontierOffer> FrontierOffers::find_by(const ClosureRules& rules, const Claims& claims,
+                                                   const OfferQuery& query) {
+  const VoxelMap& map = world_->map();
+  std::vector<FrontierOffer> open;
+  std::vector<Vec3> viewpoints;
+  Viewpoints kept;
+  for (const auto& [id, cluster] : world_->frontiers().clusters()) {
+    if (query.leave_out == id || claims.hold(cluster.centroid) ||
+        ledger_->closed(map, cluster.centroid, rules))
+      continue;
+    const KnownViewpoint& entry = kept.emplace(id, viewpoint_for(cluster, *query.roadmap)).first->second;
+    if (!entry.viewpoint || ledger_->closed(map, entry.viewpoint->position, rules)) continue;
+    FrontierOffer offer;
+    offer.cluster = &cluster;
+    offer.viewpoint = entry.viewpoint->position;
+    offer.viewpoint_heading_rad = entry.viewpoint->heading_rad;
+    open.push_back(offer);
+    viewpoints.push_back(offer.viewpoint);
+  }
+  known(query.roadmap->passages()) = std::move(kept);
+
+  const std::vector<double> lengths =
+      query.roadmap->roadmap().distances(map, query.from, viewpoints, map.resolution_m());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i].path_length_m = lengths[i];
+  return open;
+}
+
+/// As found before, if nothing has changed near the cluster.
+FrontierOffers::KnownViewpoint FrontierOffers::viewpoint_for(const FrontierCluster& cluster,
+                                                             const ClearanceRoadmap& roadmap) {
+  const VoxelMap& map = world_->map();
+  KnownViewpoint entry{map.revision_near(cluster.centroid, kViewpointReach_m), cluster.cells, std::nullopt};
+  const Viewpoints& before = known(roadmap.passages());
+  if (const auto it = before.find(cluster.id);
+      it != before.end() && it->second.revision == entry.revision && it->second.cells == entry.cells) {
+    entry.viewpoint = it->second.viewpoint;
+    return entry;
+  }
+  if (open_cells(map, cluster) < min_open_cells_) return entry;
+  const bool narrow = roadmap.passages() == Passages::narrow;
+  entry.viewpoint =
+      find_viewpoint(map, cluster, vehicle_, roadmap.clearance_m(), narrow ? &roadmap.roadmap() : nullptr);
+  if (!entry.viewpoint && !explained_.contains(cluster.id)) explain_unseen(cluster, roadmap.clearance_m());
+  return entry;
+}
+
+/// If a vehicle that sees in all directions could look into the frontier, then it is the sensors that forbid
+/// it.
+void FrontierOffers::explain_unseen(const FrontierCluster& cluster, double clearance_m) {
+  auto sphere = std::make_shared<LidarModel>();
+  sphere->elevation_rad = {std::numbers::pi_v<float> / 2, -std::numbers::pi_v<float> / 2};
+  VehicleDescription all_seeing = vehicle_;
+  all_seeing.lidar = sphere;
+  const auto from = find_viewpoint(world_->map(), cluster, all_seeing, clearance_m);
+  if (!from) return;
+  explained_.insert(cluster.id);
+  const double rise_m = cluster.centroid.z() - from->position.z();
+  const std::string where = std::abs(rise_m) < world_->map().resolution_m() ? "beside"
+                            : rise_m > 0                                    ? "above"
+                                                                            : "below";
+  unseen_.push_back(
+      {cluster.id, cluster.centroid,
+       "no sensor of the vehicle sees what lies " + where + " it there, and it flies into nothing unseen"});
+}
+
+}  // namespace karst::core

@@ -1,0 +1,78 @@
+// The frontiers a policy may choose from, each with a viewpoint and the length of the path there.
+//
+// It lives on the map lane.
+#pragma once
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core_stack/mission/decision/goal_ledger.h"
+#include "core_stack/mission/decision/viewpoints.h"
+#include "core_stack/mission/policy/policy_port.h"
+#include "core_stack/mission/team/team_membership.h"
+#include "core_stack/mission/world_model/world_model.h"
+
+namespace karst::core {
+
+/// A frontier that no sensor of the vehicle could see from where it could fly to.
+struct UnseenFrontier {
+  std::uint32_t id = 0;
+  Vec3 position = Vec3::Zero();
+  std::string reason;
+};
+
+struct OfferQuery {
+  const ClearanceRoadmap* roadmap = nullptr;  // up to date; viewpoints are clear by its clearance
+  Vec3 from = Vec3::Zero();                   // where a new path would begin
+  TimeNs now = 0;
+  std::optional<std::uint32_t> leave_out;  // a frontier that will have been looked at by then
+  Claims claims;                           // of other vehicles
+};
+
+struct Offers {
+  std::vector<FrontierOffer> frontiers;  // by id; they point to the world's clusters
+  ClosureRules rules;                    // by which places are open: to judge the policy's goals by
+};
+
+class FrontierOffers {
+ public:
+  /// `world` and `ledger` outlive it.
+  FrontierOffers(const CoreOptions& options, const VehicleDescription& vehicle, const WorldModel& world,
+                 const GoalLedger& ledger);
+
+  /// The open frontiers that have an open viewpoint. If there are none, those that other vehicles claim; if
+  /// there are still none, those as well that were tried a few times and must otherwise wait.
+  Offers find(const OfferQuery& query);
+
+  /// The frontiers that find() had to leave out because no sensor of the vehicle sees them; each frontier is
+  /// returned once in a flight.
+  std::vector<UnseenFrontier> take_unseen();
+
+ private:
+  struct KnownViewpoint {
+    std::uint64_t revision;  // of the map near the cluster
+    std::vector<CellKey> cells;
+    std::optional<Viewpoint> viewpoint;
+  };
+  using Viewpoints = std::map<std::uint32_t, KnownViewpoint>;  // by frontier
+
+  std::vector<FrontierOffer> find_by(const ClosureRules& rules, const Claims& claims,
+                                     const OfferQuery& query);
+  KnownViewpoint viewpoint_for(const FrontierCluster& cluster, const ClearanceRoadmap& roadmap);
+  Viewpoints& known(Passages passages) {
+    return passages == Passages::narrow ? narrow_viewpoints_ : usual_viewpoints_;
+  }
+  void explain_unseen(const FrontierCluster& cluster, double clearance_m);
+
+  std::int64_t min_open_cells_;
+  VehicleDescription vehicle_;
+  const WorldModel* world_;
+  const GoalLedger* ledger_;
+  Viewpoints usual_viewpoints_, narrow_viewpoints_;
+  std::set<std::uint32_t> explained_;   // in this flight
+  std::vector<UnseenFrontier> unseen_;  // yet to be returned
+};
+
+}  // namespace karst::core

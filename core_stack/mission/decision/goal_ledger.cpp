@@ -1,0 +1,36 @@
+#include "core_stack/mission/decision/goal_ledger.h"
+
+#include <algorithm>
+
+namespace karst::core {
+namespace {
+
+constexpr double kSamePlace_m = 0.8;
+constexpr double kMapRadius_m = 1.5;
+constexpr double kFirstPause_s = 10.0;
+constexpr int kMostDoublings = 6;
+
+}  // namespace
+
+void GoalLedger::close(const VoxelMap& map, const Vec3& place, TimeNs now, const std::string& why) {
+  const auto same = [&](const Entry& e) { return (e.place - place).norm() < kSamePlace_m; };
+  auto entry = std::find_if(entries_.begin(), entries_.end(), same);
+  if (entry == entries_.end()) entry = entries_.insert(entry, Entry{place, 0, 0, 0, ""});
+  const double pause_s = kFirstPause_s * (1 << std::min(entry->attempts, kMostDoublings));
+  entry->revision = map.revision_near(place, kMapRadius_m);
+  entry->closed_until = now + from_seconds(pause_s);
+  entry->attempts += 1;
+  entry->why = why;
+}
+
+std::optional<std::string> GoalLedger::closed(const VoxelMap& map, const Vec3& place,
+                                              const ClosureRules& rules) const {
+  for (const Entry& e : entries_) {
+    if ((e.place - place).norm() >= kSamePlace_m) continue;
+    const bool unchanged = !rules.ignore_map_change && map.revision_near(e.place, kMapRadius_m) == e.revision;
+    if (rules.at < e.closed_until || unchanged) return e.why;
+  }
+  return std::nullopt;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,91 @@
+#include "core_stack/mission/decision/goal_selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core_stack/homing/way_home/home.h"
+#include "core_stack/planning/search/grid_planner.h"
+
+namespace karst::core {
+namespace {
+
+/// A cycle tries no more plans than this for one list: the rest of the list waits for the next cycle.
+constexpr int kMaxPlans = 5;
+
+/// A path flown at next to no speed would hold the vehicle until the battery calls it home.
+std::optional<std::string> too_slow(const Goal& goal, const MotionLimits& limits) {
+  const double least_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  if (goal.max_speed_mps == 0 || goal.max_speed_mps >= least_mps) return std::nullopt;
+  char text[96];
+  std::snprintf(text, sizeof text, "its speed limit of %.2g m/s is below motion.min_speed, %g m/s",
+                goal.max_speed_mps, least_mps);
+  return text;
+}
+
+}  // namespace
+
+GoalSelection::GoalSelection(const CoreOptions& options, const VehicleDescription& vehicle,
+                             const WorldModel& world, HomeEstimator& home, GoalLedger& ledger)
+    : motion_(options.motion),
+      view_(steepest_view(vehicle)),
+      world_(&world),
+      home_(&home),
+      ledger_(&ledger) {}
+
+GoalChoice GoalSelection::choose(const GoalQuery& query, const std::vector<Goal>& goals) {
+  const RoundInput& input = *query.input;
+  GoalChoice choice;
+  int plans = 0, closed = 0;
+  std::size_t too_far = 0;
+  for (const Goal& goal : goals) {
+    if (plans == kMaxPlans) {
+      choice.more_to_try = closed > 0;
+      break;
+    }
+    if (const auto problem = objection(query, goal)) {
+      choice.rejected.push_back({goal, *problem});
+      continue;
+    }
+    ++plans;
+    const Path path = world_->plan(*query.roadmap, input.from, goal.position);
+    const std::optional<std::string> failure =
+        path.found() ? blind_climb(view_, input.way_come, path.points) : "no path: " + path.reason;
+    if (failure) {
+      ledger_->close(world_->map(), goal.position, input.now, *failure);
+      ++closed;
+      choice.rejected.push_back({goal, *failure});
+    } else if (affordable(input, goal, path)) {
+      choice.goal = goal;
+      choice.path = path;
+      break;
+    } else {
+      ++too_far;
+      choice.rejected.push_back(
+          {goal, "the battery, or the time allowed, does not last for going there and home"});
+    }
+  }
+  choice.all_too_far = too_far > 0 && too_far == choice.rejected.size();
+  return choice;
+}
+
+std::optional<std::string> GoalSelection::objection(const GoalQuery& query, const Goal& goal) const {
+  const VoxelMap& map = world_->map();
+  const Vec3& p = goal.position;
+  if (!p.allFinite()) return "its position is not finite";
+  if (std::isinf(goal.heading_rad)) return "its heading is not finite";
+  if (const auto why = too_slow(goal, motion_)) return why;
+  if (map.at(p) != Cell::free)
+    return map.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
+  if (!is_clear(map, p, query.roadmap->clearance_m())) return "it is too near to rock or unknown space";
+  if (const auto why = ledger_->closed(map, p, query.rules)) return "it was tried before: " + *why;
+  return std::nullopt;
+}
+
+bool GoalSelection::affordable(const RoundInput& input, const Goal& goal, const Path& path) const {
+  const HomeEstimate home = home_->estimate(goal.position, input.way_come_m + path.length_m);
+  const double there_s = flight_time_s(path.length_m, motion_);
+  return home_->slack_s(input.seconds_left - there_s, home) > 0;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,130 @@
+#include "core_stack/mission/decision/viewpoints.h"
+
+#include <array>
+#include <cmath>
+
+#include "core_stack/planning/search/grid_planner.h"
+
+namespace karst::core {
+namespace {
+
+/// Distances tried, metres. A little back is best: near enough for a dense scan, far enough to see around.
+constexpr std::array kShells = {1.0, 1.8, 2.8, 4.0, 0.4};
+constexpr std::array kElevations = {0.0, -0.35, 0.35, -0.8, 0.8, -1.4, 1.4};
+constexpr int kAzimuths = 12;
+
+/// LiDAR rings spread with range: beyond this a scan is too sparse to close a frontier.
+constexpr double kLidarViewRange_m = 10.0;
+
+/// Cells of the cluster that can be seen along a free line, out of at most eight looked at.
+int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const VehicleDescription& vehicle,
+               const Viewpoint& from) {
+  const std::size_t stride = std::max<std::size_t>(1, cluster.cells.size() / 8);
+  int seen = 0;
+  for (std::size_t i = stride / 2; i < cluster.cells.size(); i += stride) {
+    const Vec3 cell = map.center_of(cluster.cells[i]);
+    if (in_view(vehicle, from, cell, kLidarViewRange_m) && !map.first_not_free(from.position, cell)) ++seen;
+  }
+  return seen;
+}
+
+/// `p`, or the nearest point half a cell from it in some axes, that is clear. In a narrow passage clear
+/// points lie along a thread, which candidates that keep their distance to the cluster mostly miss.
+std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double clearance_m) {
+  const double step_m = map.resolution_m() / 2;
+  // Clearance changes no faster than the place: from here no point that near could be clear.
+  if (!is_clear(map, p, clearance_m - std::sqrt(3.0) * step_m - 1e-6)) return std::nullopt;
+  std::optional<Vec3> best;
+  int least = 4;
+  for (int i = 0; i < 27; ++i) {
+    const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1, d = x * x + y * y + z * z;
+    if (d >= least) continue;
+    if (const Vec3 q = p + step_m * Vec3(x, y, z); is_clear(map, q, clearance_m)) best = q, least = d;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target,
+             double lidar_range_m) {
+  const Pose T_world_body{from.position, from_heading(from.heading_rad)};
+  const Vec3 target_body = T_world_body.inverse() * target;
+  if (vehicle.lidar) {
+    const Vec3 p = vehicle.lidar->T_body_lidar.inverse() * target_body;
+    const double elevation = std::atan2(p.z(), std::hypot(p.x(), p.y()));
+    if (p.norm() <= lidar_range_m && elevation <= vehicle.lidar->elevation_rad.front() &&
+        elevation >= vehicle.lidar->elevation_rad.back())
+      return true;
+  }
+  for (const auto& camera : vehicle.cameras) {
+    const Vec3 p = camera->T_body_camera.inverse() * target_body;
+    if (p.x() > 0 && p.norm() <= 0.9 * camera->max_range_m &&
+        std::abs(p.y()) <= p.x() * std::tan(camera->horizontal_fov_rad / 2) &&
+        std::abs(p.z()) <= p.x() * std::tan(camera->vertical_fov_rad / 2))
+      return true;
+  }
+  return false;
+}
+
+int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
+  int open = 0;
+  for (const CellKey& k : cluster.cells) {
+    bool rock = false;
+    for (int i = 0; i < 27 && !rock; ++i)
+      rock = map.at(k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}) == Cell::occupied;
+    open += !rock;
+  }
+  return open;
+}
+
+std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
+                                        const VehicleDescription& vehicle, double clearance_m,
+                                        const Roadmap* roadmap) {
+  // The frontier cell nearest the centroid stands for the cluster: the centroid itself may lie in rock.
+  Vec3 target = cluster.centroid;
+  double least = 1e9;
+  for (const CellKey& k : cluster.cells) {
+    const double d = (map.center_of(k) - cluster.centroid).squaredNorm();
+    if (d < least) least = d, target = map.center_of(k);
+  }
+  std::optional<Viewpoint> best;
+  double best_value = 0;
+  const auto consider = [&](const Vec3& position, double azimuth) {
+    const Viewpoint v{position, azimuth};
+    if (!in_view(vehicle, v, target, kLidarViewRange_m) || map.first_not_free(position, target)) return;
+    // Facing the opening squarely counts as one more cell seen.
+    const Vec3 away = position - target;
+    const double value =
+        cells_seen(map, cluster, vehicle, v) - away.normalized().dot(cluster.normal) - 0.2 * away.norm();
+    if (!best || value > best_value) best = v, best_value = value;
+  };
+  for (const bool narrow : {false, true}) {
+    for (const double radius : kShells) {
+      for (const double elevation : kElevations) {
+        const int azimuths = std::abs(elevation) > 1.2 ? 4 : kAzimuths;
+        for (int i = 0; i < azimuths; ++i) {
+          const double azimuth = 2 * std::numbers::pi * i / azimuths;
+          const Vec3 away(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                          std::sin(elevation));
+          const Vec3 position = target + radius * away;
+          const double heading_rad = std::atan2(-away.y(), -away.x());
+          if (map.at(position) != Cell::free) continue;
+          if (!narrow) {
+            if (is_clear(map, position, clearance_m)) consider(position, heading_rad);
+          } else if (const auto clear = clear_near(map, position, clearance_m)) {
+            consider(*clear, heading_rad);
+          }
+        }
+      }
+      if (best) return best;
+    }
+  }
+  if (roadmap == nullptr) return best;
+  for (const Vec3& place : roadmap->places_near(target, kShells[3]))
+    if (const auto clear = clear_near(map, place, clearance_m))
+      consider(*clear, std::atan2(target.y() - clear->y(), target.x() - clear->x()));
+  return best;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,107 @@
+#include "core_stack/mission/decision/visibility.h"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "core_stack/mission/decision/viewpoints.h"
+
+namespace karst::core {
+namespace {
+
+/// A ledge or the height of a chamber may be climbed blind: every cell of the way has been seen, after all.
+constexpr double kLedge_m = 3.0;
+constexpr double kStep_m = 0.5;  // of the way looked at
+constexpr double kDegree_rad = std::numbers::pi / 180;
+
+/// Levels are not new this near, horizontally, to where the vehicle was as high, or as low.
+constexpr double kBeside_m = 4.0;
+/// A way back is not flown to the centimetre. Only where the vehicle was more than kClimbWindow_m of way ago:
+/// else it could go down a shaft by this much at a time.
+constexpr double kSameLevel_m = 0.5;
+
+/// Points of the polyline about kStep_m apart, its end included.
+std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (out.empty() || i + 1 == points.size() || (points[i] - out.back()).norm() >= kStep_m)
+      out.push_back(points[i]);
+  return out;
+}
+
+/// The lowest and the highest level flown beside `p`.
+struct Levels {
+  double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+};
+Levels levels_beside(const Vec3& p, const std::vector<Vec3>& flown, std::size_t long_ago) {
+  Levels l;
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    if ((flown[i] - p).head<2>().norm() > kBeside_m) continue;
+    const double same_m = i < long_ago ? kSameLevel_m : 0;
+    l = {std::min(l.low_m, flown[i].z() - same_m), std::max(l.high_m, flown[i].z() + same_m)};
+  }
+  return l;
+}
+
+/// How many of the points lie more than kClimbWindow_m of way before the last one.
+std::size_t before_the_window(const std::vector<Vec3>& way) {
+  double run_m = 0;
+  std::size_t i = way.size();
+  while (i > 1 && run_m <= kClimbWindow_m) --i, run_m += (way[i] - way[i - 1]).norm();
+  return run_m > kClimbWindow_m ? i : 0;
+}
+
+}  // namespace
+
+SteepestView steepest_view(const VehicleDescription& vehicle) {
+  constexpr double kNear_m = 1.5, kFar_m = 30;  // for cameras of any range; for a LiDAR that sits on a mast
+  SteepestView view;
+  for (int degree = 0; degree <= 90; ++degree) {
+    const double e = degree * kDegree_rad;
+    const auto sees = [&](double sign) {
+      const Vec3 direction(std::cos(e), 0, sign * std::sin(e));
+      return in_view(vehicle, {}, kNear_m * direction, 0) ||
+             in_view(vehicle, {}, kFar_m * direction, 2 * kFar_m);
+    };
+    if (sees(1)) view.up_rad = e;
+    if (sees(-1)) view.down_rad = e;
+  }
+  return view;
+}
+
+std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& way_come,
+                                       const std::vector<Vec3>& path) {
+  const std::vector<Vec3> before = thinned(way_come), after = thinned(path);
+  std::vector<Vec3> way = before;
+  way.insert(way.end(), after.begin(), after.end());
+  const std::size_t long_ago = before_the_window(before);
+  for (std::size_t to = before.size(); to < way.size(); ++to) {
+    std::optional<Levels> flown;  // beside there, when it is first asked for
+    Vec3 low = way[to], high = way[to];
+    double run_m = 0;
+    for (std::size_t from = to; from-- > 0;) {
+      run_m += (way[from + 1] - way[from]).norm();
+      if (run_m > kClimbWindow_m) break;
+      low = low.cwiseMin(way[from]), high = high.cwiseMax(way[from]);
+      const double rise_m = way[to].z() - way[from].z(), extent_m = (high - low).head<2>().norm();
+      const double limit_rad = rise_m > 0 ? view.up_rad : view.down_rad;
+      if (std::abs(rise_m) <= kLedge_m || limit_rad > 89.5 * kDegree_rad ||
+          extent_m * std::tan(limit_rad) >= std::abs(rise_m))
+        continue;
+      if (!flown) flown = levels_beside(way[to], before, long_ago);
+      if (rise_m > 0 ? flown->high_m >= way[to].z() : flown->low_m <= way[to].z()) continue;
+      char text[200];
+      std::snprintf(
+          text, sizeof text,
+          "it leads %.1f m %s within %.1f m at (%.1f, %.1f, %.1f), and no sensor of the vehicle looks "
+          "steeper %s than %.0f deg",
+          std::abs(rise_m), rise_m > 0 ? "up" : "down", extent_m, way[to].x(), way[to].y(), way[to].z(),
+          rise_m > 0 ? "up" : "down", limit_rad / kDegree_rad);
+      return text;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,196 @@
+#include "core_stack/mission/flight/flight.h"
+
+#include <algorithm>
+
+namespace karst::core {
+namespace {
+
+constexpr double kControlPeriod_s = 0.01;
+constexpr double kOffGround_m = 0.15;
+constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: commands stand in until the next
+
+/// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
+constexpr double kBrakingShare = 0.8;
+/// A brake is not followed by anything that could be missed for a delay: it may use nearly all there is.
+constexpr double kEmergencyShare = 0.95;
+
+/// Of the greatest rate of turning, while looking around: what is left makes up for getting up to it.
+constexpr double kTurningShare = 0.9;
+
+/// Trajectories keep below the tracker's limits. Were they sampled at the limits themselves, the virtual
+/// vehicle could never make up for a delay: it would fall ever further behind, and cut the corners.
+MotionLimits with_room_to_catch_up(MotionLimits limits) {
+  limits.max_speed_mps *= 0.93;
+  limits.max_acceleration_mps2 *= 0.75;
+  limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  return limits;
+}
+
+}  // namespace
+
+MotionLimits slowed(MotionLimits limits, double max_speed_mps) {
+  if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
+  limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  return limits;
+}
+
+Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
+    : limits_(with_room_to_catch_up(options.motion)),
+      emergency_(limits_),
+      estimator_(options.localization.estimator, vehicle.T_world_start),
+      tracker_(options.tracker, options.motion),
+      controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps),
+      mass_(vehicle.mass_kg),
+      emergency_landing_(options.motion, options.mission.landing_speed_mps) {
+  emergency_.max_acceleration_mps2 = kEmergencyShare * options.motion.max_acceleration_mps2;
+  const Pose& start = vehicle.T_world_start;
+  trajectory_.samples = {{start.position, heading_of(start.orientation)}};
+  tracker_.reset(0, start.position, heading_of(start.orientation));
+}
+
+AttitudeRateCommand Flight::control(TimeNs now) {
+  if (motors_ != Motors::armed) return {};
+  if (now - estimator_.last_imu() > kImuMissed) estimator_.bridge(expected_imu(now));
+  mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
+  controller_.set_mass_kg(mass_.mass_kg());
+  const Trajectory& wanted = emergency_landing_.begun() ? emergency_landing_.trajectory(now) : trajectory_;
+  command_ = controller_.update(state(), tracker_.step(wanted, now), kControlPeriod_s);
+  command_.armed = true;
+  return command_;
+}
+
+/// What the IMU should measure while the vehicle does as it was told.
+ImuSample Flight::expected_imu(TimeNs now) const {
+  return {now, Vec3(0, 0, command_.thrust_n / mass_.mass_kg()), command_.body_rate_radps};
+}
+
+void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
+                    const HeadingPlan& heading, double max_speed_mps, const SlowPlaces& slow,
+                    const Trajectory* ready) {
+  heading_ = heading;
+  path_speed_mps_ = max_speed_mps;
+  slow_ = slow;
+  braking_ = false;
+  trajectory_ = ready
+                    ? *ready
+                    : sample_trajectory(points, start_speed_mps, start, limits(max_speed_mps), heading, slow);
+}
+
+MotionLimits Flight::limits(double max_speed_mps) const {
+  MotionLimits limits = limits_;
+  limits.max_speed_mps = std::min(limits.max_speed_mps, speed_cap_mps_);
+  return slowed(limits, max_speed_mps);
+}
+
+void Flight::cap_speed(TimeNs now, double max_speed_mps) {
+  if (max_speed_mps == speed_cap_mps_) return;
+  speed_cap_mps_ = max_speed_mps;
+  if (at_rest(now) || braking_) return;
+  const Onward left = until_end(now);
+  HeadingPlan heading = heading_;
+  heading.start_heading_rad = left.heading_rad;
+  follow(left.points, left.speed_mps, now, heading, path_speed_mps_, slow_);
+}
+
+TimeNs Flight::time_nearest(const Vec3& p) const {
+  const auto& samples = trajectory_.samples;
+  const auto nearest = std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
+    return (a.position - p).squaredNorm() < (b.position - p).squaredNorm();
+  });
+  return trajectory_.start + trajectory_.period * static_cast<TimeNs>(nearest - samples.begin());
+}
+
+void Flight::climb(TimeNs now, double height_m, double speed_mps) {
+  if (motors_ == Motors::off) return;
+  if (motors_ == Motors::idle) {
+    // The estimate has settled while standing: begin from it, not from the pose that was declared.
+    tracker_.reset(now, state().position, heading_of(state().orientation));
+    controller_.reset();
+    mass_.reset();
+    ground_m_ = state().position.z();
+    motors_ = Motors::armed;
+  }
+  const Vec3 from = reference().position;
+  MotionLimits slow = limits_;
+  slow.max_speed_mps = speed_mps;
+  slow.min_speed_mps = std::min(limits_.min_speed_mps, speed_mps);
+  HeadingPlan keep;
+  keep.along_path = false;
+  keep.start_heading_rad = reference().heading_rad;
+  trajectory_ = sample_trajectory({from, from + Vec3(0, 0, height_m)}, 0, now, slow, keep);
+}
+
+void Flight::look_around(TimeNs now, double turn_rad) {
+  const Vec3 here = reference().position;
+  const double heading = reference().heading_rad;
+  const double rate = kTurningShare * limits_.max_heading_rate_radps;
+  Trajectory turn;
+  turn.start = now;
+  const int steps = static_cast<int>(std::ceil(turn_rad / (rate * seconds(turn.period))));
+  for (int i = 0; i <= steps; ++i)
+    turn.samples.push_back({here, wrap_angle(heading + turn_rad * i / std::max(1, steps))});
+  trajectory_ = std::move(turn);
+}
+
+void Flight::brake(TimeNs now) {
+  const double v = velocity_at(now).norm();
+  const Onward stop = onward(now, v * v / (2 * emergency_.max_acceleration_mps2));
+  HeadingPlan keep;
+  keep.along_path = false;
+  keep.start_heading_rad = stop.heading_rad;
+  trajectory_ = sample_trajectory(stop.points, stop.speed_mps, now, emergency_, keep);
+  braking_ = true;
+}
+
+void Flight::land_now(TimeNs now, double longest_way_m) noexcept {
+  emergency_landing_.begin(trajectory_, now, longest_way_m);
+}
+
+void Flight::disarm() noexcept {
+  motors_ = Motors::off;
+  trajectory_.samples.resize(1);
+}
+
+Vec3 Flight::velocity_at(TimeNs t) const {
+  constexpr TimeNs dt = 50 * kMillisecond;
+  return (trajectory_.at(t + dt).position - trajectory_.at(t).position) / seconds(dt);
+}
+
+Departure Flight::departure_at(TimeNs t) const {
+  const TimeNs period = trajectory_.period;
+  const Vec3 before = trajectory_.at(t - period).position, here = trajectory_.at(t).position,
+             after = trajectory_.at(t + period).position;
+  const double dt = seconds(period);
+  return {(after - before) / (2 * dt), (after - 2 * here + before) / (dt * dt)};
+}
+
+State Flight::expected(TimeNs t) const {
+  const TrajectorySample sample = trajectory_.at(t);
+  return {t, sample.position, velocity_at(t), from_heading(sample.heading_rad), Vec3::Zero()};
+}
+
+Flight::Onward Flight::onward(TimeNs t, double length_m) const {
+  Onward out{
+      {trajectory_.at(t).position}, velocity_at(t).norm(), trajectory_.at(t).heading_rad, departure_at(t)};
+  double length = 0;
+  for (std::size_t i = 0; i < trajectory_.samples.size() && length < length_m; ++i) {
+    if (trajectory_.start + trajectory_.period * static_cast<TimeNs>(i) <= t) continue;
+    const Vec3& next = trajectory_.samples[i].position;
+    const double step = (next - out.points.back()).norm();
+    if (step < 1e-6) continue;
+    length += step;
+    out.points.push_back(next);
+  }
+  return out;
+}
+
+Flight::Onward Flight::until_stop(TimeNs t) const {
+  const double v = velocity_at(t).norm();
+  return onward(t, v * v / (2 * kBrakingShare * limits_.max_acceleration_mps2));
+}
+
+Flight::Onward Flight::until_end(TimeNs t) const {
+  return onward(t, std::numeric_limits<double>::infinity());
+}
+
+}  // namespace karst::core

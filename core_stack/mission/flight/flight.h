@@ -1,0 +1,108 @@
+// The inner loop: state estimate, trajectory, MPC reference, SE(3) command. Mission control hands it paths.
+#pragma once
+#include <limits>
+#include <vector>
+
+#include "core_stack/control/mass_estimate.h"
+#include "core_stack/control/mpc_tracker.h"
+#include "core_stack/control/se3_controller.h"
+#include "core_stack/localization/estimator.h"
+#include "core_stack/mission/flight/emergency_landing.h"
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/planning/trajectory/minimum_snap.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+/// The limits of a path with a speed limit of its own; 0: none.
+MotionLimits slowed(MotionLimits limits, double max_speed_mps);
+
+class Flight {
+ public:
+  Flight(const CoreOptions& options, const VehicleDescription& vehicle);
+
+  void on_imu(const ImuSample& s) {
+    estimator_.on_imu(s);
+    mass_.on_specific_force(s.specific_force_mps2.z());
+  }
+  void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
+  /// False if the estimate refuses it.
+  bool on_lidar_pose(const PoseMeasurement& p) { return estimator_.on_lidar_pose(p); }
+  void on_barometer(const BarometerSample& s) { estimator_.on_barometer(s); }
+  void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
+
+  /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.
+  AttitudeRateCommand control(TimeNs now);
+
+  /// Flies along `points` from `start` on (not before now); the first point is where the reference will be
+  /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0. `ready` is the
+  /// trajectory if it was made beforehand, where the map is.
+  void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
+              const HeadingPlan& heading, double max_speed_mps = 0, const SlowPlaces& slow = {},
+              const Trajectory* ready = nullptr);
+  /// The limits `follow` keeps.
+  MotionLimits limits(double max_speed_mps) const;
+  /// Flies no faster than this, from now on and along what is left of the present path.
+  void cap_speed(TimeNs now, double max_speed_mps);
+  /// Straight up or down at `speed_mps` by `height_m` from the present reference.
+  void climb(TimeNs now, double height_m, double speed_mps);
+  /// Turns by `turn_rad` on the spot: a camera's first look.
+  void look_around(TimeNs now, double turn_rad);
+  /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
+  void brake(TimeNs now);
+  /// The way to where it can come down, from where it would stop if it had to land now; for land_now().
+  void prepare_landing(std::span<const Vec3> way) noexcept { emergency_landing_.prepare(way); }
+  /// Brakes, flies that way unless it is longer than `longest_way_m`, and comes straight down, whatever else
+  /// it is told from now on. Needs no memory.
+  void land_now(TimeNs now, double longest_way_m = std::numeric_limits<double>::infinity()) noexcept;
+  /// Motors off, for good: on the ground.
+  void disarm() noexcept;
+
+  /// The trajectory's course from `t` on, for planning ahead.
+  struct Onward {
+    std::vector<Vec3> points;  // from the position at t to where it may turn off; at least one point
+    double speed_mps = 0;      // at t
+    double heading_rad = 0;    // at t
+    Departure departure;       // at t: the velocity and acceleration, for polynomials
+  };
+  /// Up to where the vehicle could have stopped.
+  Onward until_stop(TimeNs t) const;
+  /// Up to the trajectory's end.
+  Onward until_end(TimeNs t) const;
+
+  bool airborne() const { return motors_ == Motors::armed; }
+  bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
+  /// The state in which the trajectory will be at `t`, level.
+  State expected(TimeNs t) const;
+  /// When the trajectory comes nearest to `p`.
+  TimeNs time_nearest(const Vec3& p) const;
+  double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }
+  const State& state() const { return estimator_.state(); }
+  const Estimator& estimator() const { return estimator_; }
+  const Reference& reference() const { return tracker_.reference(); }
+  double mass_kg() const { return mass_.mass_kg(); }
+
+ private:
+  Onward onward(TimeNs t, double length_m) const;
+  Vec3 velocity_at(TimeNs t) const;
+  ImuSample expected_imu(TimeNs now) const;
+  Departure departure_at(TimeNs t) const;
+
+  MotionLimits limits_, emergency_;  // of paths, and of the brake
+  Estimator estimator_;
+  MpcTracker tracker_;
+  Se3Controller controller_;
+  MassEstimate mass_;
+  AttitudeRateCommand command_;
+  double ground_m_ = 0;  // height of the vehicle's centre before take-off
+  Trajectory trajectory_;
+  HeadingPlan heading_;  // of the path under way, as are its own speed limit and its slow places
+  SlowPlaces slow_;
+  double path_speed_mps_ = 0;  // 0: none
+  double speed_cap_mps_ = std::numeric_limits<double>::infinity();
+  EmergencyLanding emergency_landing_;
+  enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: they never run again
+  bool braking_ = false;                                          // a brake is not slowed down any further
+};
+
+}  // namespace karst::core

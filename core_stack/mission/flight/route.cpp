@@ -1,0 +1,53 @@
+#include "core_stack/mission/flight/route.h"
+
+#include <cmath>
+
+#include "core_stack/planning/search/grid_planner.h"
+#include "core_stack/planning/trajectory/join.h"
+
+namespace karst::core {
+namespace {
+
+bool near_line(const std::vector<Vec3>& line, const Vec3& place) {
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if (near_narrow_place({place}, line[i], line[std::min(i + 1, line.size() - 1)])) return true;
+  return false;
+}
+
+}  // namespace
+
+Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleDescription& vehicle,
+                 const RouteStart& start, const Path& path, const std::optional<Goal>& goal) {
+  Route out;
+  out.path = path;
+  const auto clear = [&, usual_m = options.planning.clearance_m](const Vec3& a, const Vec3& b) {
+    return segment_clear(map, a, b, usual_m) ||
+           (near_narrow_place(path.narrow_places, a, b) && segment_clear(map, a, b, path.clear_by_m));
+  };
+  const Flight::Onward& lead = start.lead;
+  out.points = join_paths(lead.points, path.points, start.most_cut_m, clear);
+  out.heading.along_path = !vehicle.lidar;
+  out.heading.start_heading_rad = lead.heading_rad;
+  if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
+  // A vehicle that sees all around sees what the passed goal is for anyway.
+  if (out.heading.along_path && start.passed && std::isfinite(start.passed->heading_rad))
+    out.heading.passing = {start.passed->position, start.passed->heading_rad};
+  out.start_speed_mps = lead.speed_mps;
+  out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options.motion.max_speed_mps;
+  // The lead may still lead through the narrow places of the path before.
+  out.slow = {path.narrow_places, kNarrowReach_m, options.safety.slow_share * options.motion.max_speed_mps};
+  for (const Vec3& place : start.narrow_places)
+    if (near_line(lead.points, place)) out.slow.places.push_back(place);
+  if (options.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0 &&
+      out.slow.places.empty()) {
+    MotionLimits limits = start.limits;
+    limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
+    out.polynomial = polynomial_trajectory(out.points, lead.departure, start.at, limits, out.heading, clear);
+  }
+  out.limits = slowed(start.limits, out.max_speed_mps);
+  if (!out.polynomial || !out.polynomial->fell_back.empty())
+    out.sampled = sample_trajectory(out.points, out.start_speed_mps, 0, out.limits, out.heading, out.slow);
+  return out;
+}
+
+}  // namespace karst::core

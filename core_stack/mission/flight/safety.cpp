@@ -1,0 +1,58 @@
+#include "core_stack/mission/flight/safety.h"
+
+namespace karst::core {
+namespace {
+
+constexpr TimeNs kKept = kSecond;
+
+}  // namespace
+
+const char* name_of(SafetyAction action) {
+  static constexpr const char* kNames[] = {"none", "slow", "brake", "home", "land"};
+  return kNames[static_cast<int>(action)];
+}
+
+void describe(OptionTable& t, SafetyOptions& o) {
+  t.add("slow_share", o.slow_share, "", 0.1, 1, "share of motion.max_speed while slowed for safety");
+  t.add("tracking_slow", o.tracking_slow_m, "m", 0.1, 10, "tracking error at which the vehicle slows down");
+  t.add("tracking_brake", o.tracking_brake_m, "m", 0.1, 10, "tracking error at which it brakes to a hover");
+  t.add("hull_clearance", o.hull_clearance_m, "m", 0, 1, "it slows down nearer to obstacles than this");
+  t.add("blind_brake", o.blind_brake_s, "s", 0.3, 60, "it brakes after this long without a scan or an image");
+  t.add("blind_home", o.blind_home_s, "s", 0.3, 600, "it goes home through the known map after this long");
+  t.add("degraded_home", o.degraded_home_s, "s", 0, 600,
+        "it goes home when the state estimate is degraded for this long");
+  t.add("battery_land", o.battery_land_s, "s", 3, 600,
+        "with less battery time than this it lands wherever it is");
+}
+
+SafetyVerdict SafetySupervisor::worst(const SafetyObservation& o) const {
+  const std::string why = o.estimate.reason;
+  if (o.estimate.health == Health::lost) return {SafetyAction::land, "the state estimate is lost: " + why};
+  if (o.battery_s < options_.battery_land_s) return {SafetyAction::land, "the battery ends"};
+  if (degraded_since_ && seconds(o.now - *degraded_since_) > options_.degraded_home_s)
+    return {SafetyAction::home, "the state estimate stays degraded"};
+  if (o.blind_s > options_.blind_home_s) return {SafetyAction::home, "no sensor sees the cave any more"};
+  if (o.blind_s > options_.blind_brake_s) return {SafetyAction::brake, "no sensor sees the cave"};
+  if (o.tracking_error_m > options_.tracking_brake_m) return {SafetyAction::brake, "far from the reference"};
+  if (o.tracking_error_m > options_.tracking_slow_m) return {SafetyAction::slow, "off the reference"};
+  if (o.estimate.health == Health::degraded)
+    return {SafetyAction::slow, "the state estimate is degraded: " + why};
+  if (o.hull_clearance_m && *o.hull_clearance_m < options_.hull_clearance_m)
+    return {SafetyAction::slow, "close to rock"};
+  return {};
+}
+
+const SafetyVerdict& SafetySupervisor::judge(const SafetyObservation& o) {
+  if (o.estimate.health == Health::good) degraded_since_.reset();
+  if (o.estimate.health != Health::good && !degraded_since_) degraded_since_ = o.now;
+  const SafetyVerdict now = worst(o);
+  if (now.action >= verdict_.action) {
+    verdict_ = now;
+    cause_seen_ = o.now;
+  } else if (o.now - cause_seen_ >= kKept) {
+    verdict_ = now;
+  }
+  return verdict_;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,223 @@
+#include "core_stack/mission/phases/exploration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core_stack/common/json_text.h"
+#include "core_stack/mission/recording/json_point.h"
+
+namespace karst::core {
+namespace {
+
+/// Between two rounds: time for a scan or two to come in at a place just reached.
+constexpr TimeNs kPause = 400 * kMillisecond;
+constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
+
+/// A drawing's fields in the event. Made on the map lane: a hundred thousand points take a fifth of a second.
+std::string text_of(const Drawing& d) {
+  static constexpr const char* kShapes[] = {"points", "lines", "text"};
+  return json_text(nlohmann::json{{"shape", kShapes[static_cast<int>(d.kind)]},
+                                  {"points", list(d.points)},
+                                  {"rgb", d.rgb},
+                                  {"text", d.text}});
+}
+
+bool reached(const Reference& r, const Goal& goal) {
+  return (r.position - goal.position).norm() < goal.tolerance_m &&
+         (!std::isfinite(goal.heading_rad) ||
+          std::abs(wrap_angle(r.heading_rad - goal.heading_rad)) < kFacing_rad);
+}
+
+struct Round {
+  RoundResult result;
+  Route route;
+};
+
+/// On the map lane. Whatever fails here: the way home must not depend on it.
+Round decide(Explorer& explorer, const RoundInput& input, const RouteStart& start, const CoreOptions& options,
+             const VehicleDescription& vehicle) {
+  Round round;
+  RoundResult& result = round.result;
+  try {
+    result = explorer.decide(input);
+    for (const Drawing& d : std::exchange(result.drawings, {})) result.drawing_texts.push_back(text_of(d));
+    if (result.goal)
+      round.route = make_route(explorer.map(), options, vehicle, start, result.path, result.goal);
+  } catch (const std::exception& e) {
+    result.goal.reset();
+    result.outcome = Outcome::go_home;
+    result.reason = std::string("an error of the core: ") + e.what();
+  }
+  return round;
+}
+
+}  // namespace
+
+void Exploration::begin() { still_.restart(onboard_.flight.reference().position, onboard_.now()); }
+
+void Exploration::step() {
+  pass_goal();
+  if (parts_.path.yields()) return;
+  watch_progress();
+  if (round_running_ || parts_.path.held()) return;
+  choose();
+}
+
+void Exploration::pass_goal() {
+  const TimeNs now = onboard_.now();
+  const GoalTracker& goals = parts_.goals;
+  if (!goals.next() || !goals.goal() || now < onboard_.flight.time_nearest(goals.goal()->position)) return;
+  parts_.goals.pass(now);
+  append_tried_ = false;
+}
+
+/// Whether it is time for a new goal.
+void Exploration::choose() {
+  const TimeNs now = onboard_.now();
+  const Flight& flight = onboard_.flight;
+  const MissionOptions& o = onboard_.options.mission;
+  PathExecution& path = parts_.path;
+  const GoalTracker& goals = parts_.goals;
+  if (path.detour_due() && !flight.at_rest(now)) return begin_round(Joins::at_stop);
+  if (now - last_round_ < kPause) return;
+  if (flight.at_rest(now)) {
+    path.take_no_detour();
+    // The sensors look before the next goal is chosen.
+    return goals.goal() && !path.blocked() ? reach_goal(now) : begin_round(Joins::at_stop);
+  }
+  if (path.blocked() || goals.next()) return;  // it waits for the brake, or for the goal to be passed
+  if (goals.goal() && reached(flight.reference(), *goals.goal())) return reach_goal(now);
+  if (goals.goal() && !goals.frontier_open()) return begin_round(Joins::at_stop);
+  if (flight.remaining_s(now) < o.append_before_s) {
+    // What is appended is flown at its own speed limit, from here on: not where the present path has one.
+    if (o.append && !append_tried_ && !path.speed_limited()) begin_round(Joins::at_end);
+    append_tried_ = true;
+  } else if (now - last_round_ > from_seconds(o.decision_period_s)) {
+    begin_round(Joins::at_stop);
+  }
+}
+
+void Exploration::reach_goal(TimeNs now) {
+  parts_.goals.settle(GoalFate::reached, "", now);
+  last_round_ = now;
+}
+
+RoundInput Exploration::round_input(const RouteStart& start, Joins joins) {
+  const Flight& flight = onboard_.flight;
+  RoundInput input;
+  input.now = onboard_.now();
+  input.deadline = start.at;
+  input.state = flight.expected(input.deadline);
+  input.from = start.lead.points.back();
+  const Vec3 velocity = flight.reference().velocity_mps;
+  const double heading_rad = start.lead.heading_rad;
+  input.direction =
+      velocity.norm() > 0.2 ? velocity.normalized() : Vec3(std::cos(heading_rad), std::sin(heading_rad), 0);
+  input.seconds_left = parts_.endurance.seconds_left(input.now);
+  input.way_come_m = parts_.way_flown.length_m();
+  input.way_come = parts_.way_flown.points();
+  input.way_come.insert(input.way_come.end(), start.lead.points.begin(), start.lead.points.end());
+  input.standing = flight.at_rest(input.now);
+  input.appending = joins == Joins::at_end;
+  parts_.goals.tell(input);
+  input.mates = wiring_.mates();
+  return input;
+}
+
+void Exploration::begin_round(Joins joins) {
+  round_running_ = true;
+  last_round_ = onboard_.now();
+  const TimeNs budget = from_seconds(onboard_.options.mission.decision_budget_s);
+  const TimeNs deadline = onboard_.now() + budget;
+  const bool appending = joins == Joins::at_end;
+  RouteStart start = appending ? parts_.path.start_at_end(deadline) : parts_.path.start_at_stop(deadline);
+  const RoundInput input = round_input(start, joins);
+  if (appending) start.passed = parts_.goals.goal();  // the lead of an appended path ends at a goal
+  if (start.passed) start.most_cut_m = std::min(start.most_cut_m, start.passed->tolerance_m);
+  onboard_.map.job(
+      "decision", budget,
+      [this, input, start](Explorer& explorer) {
+        return decide(explorer, input, start, onboard_.options, onboard_.vehicle);
+      },
+      [this, input](const Round& round) { on_round(input, round.result, round.route); });
+}
+
+void Exploration::on_round(const RoundInput& input, const RoundResult& result, const Route& route) {
+  round_running_ = false;
+  record_round(input, result);
+  const TimeNs now = onboard_.now();
+  const bool at_rest = onboard_.flight.at_rest(now);
+  PathExecution& path = parts_.path;
+  if (!parts_.phases.in(Phase::explore) || (path.blocked() && !at_rest) || path.outdated(input.now)) return;
+  if (result.goal) return fly_to(input, result, route);
+  if (input.appending) return;  // it is asked again on arrival
+  if (result.outcome == Outcome::explored && at_rest) {
+    wiring_.go_home((result.out_of_time ? "" : "explored: ") + result.reason);
+  } else if (result.outcome == Outcome::go_home) {
+    wiring_.go_home("the policy asked for it: " + result.reason);
+  } else if (path.blocked() && at_rest) {
+    parts_.goals.settle(GoalFate::unreachable, result.reason, now);
+    path.unblock();
+  } else if (!result.rejected.empty() && !parts_.goals.goal()) {
+    parts_.goals.refuse(result.rejected.front().goal);
+  }
+}
+
+void Exploration::fly_to(const RoundInput& input, const RoundResult& result, const Route& route) {
+  const TimeNs now = onboard_.now();
+  GoalTracker& goals = parts_.goals;
+  PathExecution& path = parts_.path;
+  const bool keeps_to_it = goals.is_under_way(*result.goal) && !input.appending;
+  if (keeps_to_it && !path.blocked() && !path.detour_due()) return;
+  if (input.appending && goals.goal()) {
+    goals.append(*result.goal, now);
+  } else {
+    goals.accept(*result.goal, now);
+    append_tried_ = false;
+  }
+  wiring_.claim(*result.goal);
+  path.follow(route, now);
+}
+
+void Exploration::watch_progress() {
+  const TimeNs now = onboard_.now();
+  const Vec3& here = onboard_.flight.reference().position;
+  if (!parts_.goals.goal()) return still_.restart(here, now);
+  if (still_.still_for(here, now) < from_seconds(onboard_.options.mission.goal_timeout_s)) return;
+  parts_.goals.settle(GoalFate::abandoned, "no progress towards it", now);
+  parts_.goals.drop_next(GoalFate::superseded, "the goal before it was abandoned", now);
+  parts_.path.stop(now);
+}
+
+void Exploration::record_round(const RoundInput& input, const RoundResult& result) {
+  static constexpr const char* kOutcomes[] = {"goals", "hold", "explored", "go_home"};
+  const TimeNs now = onboard_.now();
+  Recorder& recorder = onboard_.recorder;
+  recorder.decision_cost(now, result.decide_ms, result.plan_ms);
+  recorder.event(now, "decision",
+                 {{"policy", result.policy},
+                  {"outcome", kOutcomes[static_cast<int>(result.outcome)]},
+                  {"goals", result.goals_proposed},
+                  {"reason", result.reason},
+                  {"appending", input.appending},
+                  {"frontiers", result.frontiers.size()}});
+  nlohmann::json clusters = nlohmann::json::array();
+  for (const FrontierCluster& c : result.frontiers)
+    clusters.push_back({c.id, c.centroid.x(), c.centroid.y(), c.centroid.z(), c.unknown_cells});
+  recorder.event(now, "frontiers", {{"clusters", clusters}});
+  if (!result.policy_failure.empty())
+    recorder.event(now, "safety",
+                   {{"action", "fallback"}, {"reason", "the policy failed: " + result.policy_failure}});
+  for (const UnseenFrontier& u : result.unseen)
+    recorder.event(
+        now, "frontier",
+        {{"id", u.id}, {"position", list(u.position)}, {"state", "refused"}, {"reason", u.reason}});
+  for (const RejectedGoal& r : result.rejected)
+    recorder.event(now, "goal", to_json(r.goal, "rejected", r.reason));
+  for (const std::string& drawing : result.drawing_texts) recorder.event_of_text(now, "drawing", drawing);
+  for (const std::string& text : result.log) recorder.event(now, "log", {{"text", text}});
+}
+
+}  // namespace karst::core

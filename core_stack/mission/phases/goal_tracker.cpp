@@ -1,0 +1,119 @@
+#include "core_stack/mission/phases/goal_tracker.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core_stack/mission/recording/json_point.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kSameGoal_m = 0.3;
+
+struct Told {
+  PolicyEvent::Kind kind;
+  const char* state;
+};
+
+/// How a goal's end is told: to the policy, and in the events.
+Told told(GoalFate fate) {
+  switch (fate) {
+    case GoalFate::reached:
+      return {PolicyEvent::Kind::goal_reached, "reached"};
+    case GoalFate::unreachable:
+      return {PolicyEvent::Kind::goal_unreachable, "unreachable"};
+    case GoalFate::abandoned:
+      return {PolicyEvent::Kind::goal_abandoned, "abandoned"};
+    case GoalFate::superseded:
+      return {PolicyEvent::Kind::goal_superseded, "superseded"};
+    case GoalFate::rejected:
+    case GoalFate::none:
+    case GoalFate::under_way:
+      break;
+  }
+  return {PolicyEvent::Kind::goal_rejected, "rejected"};
+}
+
+}  // namespace
+
+nlohmann::json to_json(const Goal& goal, const char* state, const std::string& reason) {
+  nlohmann::json j{{"position", list(goal.position)},
+                   {"frontier", goal.frontier_id},
+                   {"score", goal.score},
+                   {"why", goal.why},
+                   {"state", state},
+                   {"reason", reason}};
+  j["heading"] = std::isfinite(goal.heading_rad) ? nlohmann::json(goal.heading_rad) : nlohmann::json();
+  return j;
+}
+
+bool GoalTracker::is_under_way(const Goal& goal) const {
+  return goal_ && (goal_->position - goal.position).norm() < kSameGoal_m;
+}
+
+void GoalTracker::accept(const Goal& goal, TimeNs now) {
+  recorder_.event(now, "goal", to_json(goal, "accepted", ""));
+  if (!is_under_way(goal))
+    settle(GoalFate::superseded, frontier_open_ ? "the policy chose another" : "its frontier has been seen",
+           now);
+  goal_ = goal;
+  frontier_open_ = true;
+}
+
+void GoalTracker::append(const Goal& goal, TimeNs now) {
+  recorder_.event(now, "goal", to_json(goal, "accepted", ""));
+  next_ = goal;
+  frontier_open_ = true;
+}
+
+void GoalTracker::pass(TimeNs now) {
+  settle(GoalFate::reached, "passed on the way to the next", now);
+  goal_ = std::exchange(next_, std::nullopt);
+}
+
+void GoalTracker::tell_of(const Goal& goal, GoalFate fate, const std::string& reason, TimeNs now) {
+  const Told how = told(fate);
+  recorder_.event(now, "goal", to_json(goal, how.state, reason));
+  events_.push_back({how.kind, now, goal, reason});
+}
+
+void GoalTracker::settle(GoalFate fate, const std::string& reason, TimeNs now) {
+  if (!goal_) return;
+  tell_of(*goal_, fate, reason, now);
+  if (goal_->frontier_id != 0 && (fate == GoalFate::reached || !frontier_open_))
+    looked_at_.push_back(goal_->frontier_id);
+  last_fate_ = fate;
+  last_ = std::exchange(goal_, std::nullopt);
+}
+
+void GoalTracker::drop_next(GoalFate fate, const std::string& reason, TimeNs now) {
+  if (!next_) return;
+  tell_of(*next_, fate, reason, now);
+  next_.reset();
+}
+
+void GoalTracker::refuse(const Goal& goal) {
+  last_fate_ = GoalFate::rejected;
+  last_ = goal;
+}
+
+void GoalTracker::note_frontier(std::uint32_t id, bool open) {
+  const bool of_this_goal = goal_ && goal_->frontier_id == id;
+  frontier_open_ = open || !of_this_goal;
+}
+
+void GoalTracker::note_homing(const std::string& reason, TimeNs now) {
+  events_.push_back({PolicyEvent::Kind::homing, now, {}, reason});
+}
+
+void GoalTracker::tell(RoundInput& input) {
+  input.last_fate = goal_ ? GoalFate::under_way : last_fate_;
+  input.last_goal = goal_ ? goal_ : last_;
+  input.events = take_events();
+  input.looked_at = std::exchange(looked_at_, {});
+}
+
+std::vector<PolicyEvent> GoalTracker::take_events() { return std::exchange(events_, {}); }
+
+}  // namespace karst::core

@@ -1,0 +1,46 @@
+#include "core_stack/mission/phases/phase.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace karst::core {
+namespace {
+
+constexpr std::array kTransitions{
+    Transition{Phase::standby, Phase::takeoff, "the estimate has settled, and no vehicle is near the hover"},
+    Transition{Phase::takeoff, Phase::look, "it hovers, and its cameras see one side only"},
+    Transition{Phase::takeoff, Phase::explore, "it hovers, and its LiDAR sees all around"},
+    Transition{Phase::look, Phase::explore, "it has turned around once"},
+    Transition{
+        Phase::explore, Phase::home,
+        "nothing is left to explore, the policy or the safety supervisor asks for it, the time left only "
+        "just suffices, or the record cannot be written"},
+    Transition{Phase::home, Phase::land, "it hovers where it lands, or no way leads there"},
+    Transition{{}, Phase::land, "the safety supervisor, an error or the operator ends the flight"},
+    Transition{{}, Phase::done, "it stands, or is lost"},
+};
+
+}  // namespace
+
+const char* name_of(Phase phase) {
+  constexpr std::array kNames{"standby", "takeoff", "look", "explore", "home", "land", "done"};
+  return kNames[static_cast<std::size_t>(phase)];
+}
+
+std::span<const Transition> transitions() { return kTransitions; }
+
+void PhaseMachine::enter(Phase to, TimeNs now) {
+  const bool begins =
+      in(Phase::standby) && to == Phase::standby;  // the first phase is told as the others are
+  const bool follows = std::any_of(kTransitions.begin(), kTransitions.end(), [&](const Transition& t) {
+    return t.to == to && (!t.from || *t.from == phase_);
+  });
+  if (!begins && !follows)
+    throw std::logic_error(std::string("phase ") + name_of(to) + " does not follow " + name_of(phase_));
+  phase_ = to;
+  since_ = now;
+}
+
+}  // namespace karst::core

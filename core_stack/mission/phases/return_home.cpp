@@ -1,0 +1,209 @@
+#include "core_stack/mission/phases/return_home.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace karst::core {
+namespace {
+
+constexpr double kAboveHome_m = 0.4;
+constexpr int kMostFailures = 3;
+constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
+constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
+// Without progress, it lands where it is. A cave that shuts it in does not open again while it hovers, and
+// the dust under a hovering vehicle does not settle; another vehicle goes away.
+constexpr TimeNs kPatience = 12 * kSecond, kPatienceInCompany = 60 * kSecond;
+constexpr TimeNs kAgain = kSecond;
+
+}  // namespace
+
+const Vec3& ReturnHome::hover() const {
+  return parts_.landing && parts_.landing->spot() ? parts_.landing->spot()->hover : home_;
+}
+
+std::optional<LandingSpot> ReturnHome::landing_spot() const {
+  return parts_.landing ? parts_.landing->spot() : std::nullopt;
+}
+
+void ReturnHome::set_home(const Vec3& hover) {
+  home_ = hover;
+  onboard_.map.job("home", kMappingBudget, [hover](Explorer& explorer) { explorer.set_home(hover); });
+}
+
+void ReturnHome::begin(const std::string& reason) {
+  const TimeNs now = onboard_.now();
+  parts_.goals.drop_next(GoalFate::superseded, "going home", now);
+  parts_.goals.settle(GoalFate::superseded, "going home", now);
+  parts_.goals.note_homing(reason, now);
+  onboard_.map.job(
+      "farewell", kEstimateBudget,
+      [events = parts_.goals.take_events(), now](Explorer& explorer) { explorer.tell(events, now); });
+  parts_.path.ask_for_detour();
+  wiring_.enter(Phase::home, reason);
+  still_.restart(onboard_.flight.reference().position, now);
+  reason_ = reason;
+  wiring_.give_up_goals();
+  if (parts_.landing) choose_landing();
+}
+
+void ReturnHome::watch_time() {
+  if (onboard_.now() % kSecond != 0) return;
+  onboard_.map.job(
+      "home estimate", kEstimateBudget,
+      [from = onboard_.flight.reference().position, come_m = parts_.way_flown.length_m()](
+          Explorer& explorer) { return explorer.estimate_home(from, come_m); },
+      [this](const HomeEstimate& estimate) { on_estimate(estimate); });
+}
+
+void ReturnHome::on_estimate(const HomeEstimate& estimate) {
+  if (!parts_.phases.in(Phase::explore)) return;
+  const MissionOptions& o = onboard_.options.mission;
+  const double seconds_left = parts_.endurance.seconds_left(onboard_.now());
+  distance_m_ = estimate.length_m;
+  const double slack_s = home_slack_s(seconds_left, estimate.time_s, o.home_margin, o.home_reserve_s);
+  if (!turn_back_.due(slack_s)) return;
+  const bool by_time = seconds_left < parts_.endurance.battery().seconds_left;
+  onboard_.recorder.event(onboard_.now(), "homing",
+                          {{"reason", by_time ? "time limit" : "battery"},
+                           {"distance", distance_m_},
+                           {"seconds_left", seconds_left},
+                           {"seconds_needed", seconds_left - slack_s}});
+  begin("the time left only just suffices for the way home");
+}
+
+void ReturnHome::step() {
+  const TimeNs now = onboard_.now();
+  if (parts_.path.held())
+    return still_.wait(now);  // it does not wait for a way, but for what it is to see or to follow
+  if (planning_) return;
+  if (parts_.path.yields()) {
+    if (parts_.landing) parts_.landing->stop_listening();
+    return still_.wait(now);
+  }
+  const bool at_home = (onboard_.flight.reference().position - hover()).norm() < kAboveHome_m;
+  if (!at_home && parts_.landing && parts_.landing->look_again_due()) return choose_landing();
+  if (at_home && onboard_.flight.at_rest(now - kSecond)) {
+    if (landing_spot()) return arrive();
+    wiring_.enter(Phase::land, "");
+  } else if (parts_.path.blocked() || parts_.path.detour_due() ||
+             (!at_home && onboard_.flight.at_rest(now))) {
+    find_way();
+  }
+  watch_patience(at_home);
+}
+
+/// It hovers above the landing place.
+void ReturnHome::arrive() {
+  std::string why;
+  switch (parts_.landing->listen(why)) {
+    case RelayLanding::Heard::lands:
+      return wiring_.enter(Phase::land, why);
+    case RelayLanding::Heard::nobody:
+      return give_up_landing("nobody who reaches the base is heard there",
+                             RelayLanding::Because::nobody_heard);
+    case RelayLanding::Heard::waits:
+      return;
+  }
+}
+
+void ReturnHome::find_way() {
+  const TimeNs now = onboard_.now();
+  if (failures_ < kMostFailures) {
+    if (now >= retry_) plan();
+  } else if (landing_spot()) {
+    give_up_landing("there is no way there", RelayLanding::Because::not_to_be_had);
+  } else if (onboard_.flight.at_rest(now)) {
+    fly_back_as_come();
+  }
+}
+
+void ReturnHome::watch_patience(bool at_home) {
+  const TimeNs now = onboard_.now();
+  const TimeNs still = still_.still_for(onboard_.flight.reference().position, now);
+  if (at_home || still <= (wiring_.in_company() ? kPatienceInCompany : kPatience)) return;
+  constexpr const char* kReason = "no way home, and waiting does not help";
+  onboard_.recorder.event(now, "safety", {{"action", "land"}, {"reason", kReason}});
+  wiring_.land_here(kReason);
+}
+
+void ReturnHome::plan() {
+  planning_ = true;
+  const TimeNs begun = onboard_.now();
+  onboard_.map.job(
+      "home plan", kPlanningBudget,
+      [this, start = start(begun + kPlanningBudget), to = hover()](Explorer& explorer) {
+        Route route;
+        route.path = explorer.plan_to(start.lead.points.back(), to);
+        if (!route.path.found()) return route;
+        return make_route(explorer.map(), onboard_.options, onboard_.vehicle, start, route.path, {});
+      },
+      [this, begun](const Route& route) { on_plan(route, begun); });
+}
+
+void ReturnHome::on_plan(const Route& route, TimeNs begun) {
+  planning_ = false;
+  const TimeNs now = onboard_.now();
+  PathExecution& path = parts_.path;
+  if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
+  if (route.path.found()) {
+    path.fly_by_map();
+    return path.follow(route, now);
+  }
+  if (wiring_.in_company())
+    retry_ = now + kAgain;  // it makes room
+  else
+    ++failures_;
+  path.block();
+  path.take_no_detour();
+  onboard_.recorder.event(now, "log", {{"text", "no path home: " + route.path.reason}});
+  path.stop(now);
+}
+
+/// The way come was flown without touching anything.
+void ReturnHome::fly_back_as_come() {
+  planning_ = true;
+  const TimeNs begun = onboard_.now();
+  std::vector<Vec3> flown = parts_.way_flown.points();
+  flown.push_back(onboard_.flight.reference().position);
+  RouteStart from_here = start(begun);
+  from_here.at = 0;  // no polynomial is made for it
+  onboard_.map.job(
+      "way back", kPlanningBudget,
+      [this, flown = std::move(flown), from_here](Explorer& explorer) {
+        Path back;
+        back.points = explorer.way_back(flown);
+        return make_route(explorer.map(), onboard_.options, onboard_.vehicle, from_here, back, {});
+      },
+      [this, begun](const Route& route) {
+        planning_ = false;
+        if (!parts_.phases.in(Phase::home) || parts_.path.outdated(begun)) return;
+        const TimeNs now = onboard_.now();
+        onboard_.recorder.event(
+            now, "safety", {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
+        parts_.path.follow(route, now);
+        parts_.path.fly_as_come();
+        failures_ = 0;
+      });
+}
+
+void ReturnHome::choose_landing() {
+  planning_ = true;
+  parts_.landing->choose(
+      parts_.way_flown.length_m(), [this] { planning_ = false; },
+      [this] {
+        failures_ = 0;
+        parts_.path.ask_for_detour();
+      });
+}
+
+void ReturnHome::give_up_landing(const std::string& reason, RelayLanding::Because because) {
+  parts_.landing->give_up(reason, because);
+  choose_landing();
+}
+
+void ReturnHome::give_way_at_landing() {
+  if (parts_.landing && parts_.phases.in(Phase::home) && parts_.landing->overruled())
+    give_up_landing("another claimed it before", RelayLanding::Because::not_to_be_had);
+}
+
+}  // namespace karst::core

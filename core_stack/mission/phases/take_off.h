@@ -1,0 +1,30 @@
+// The take-off: up to the first hover, and below a low roof to where there is room.
+#pragma once
+#include "core_stack/mission/flight/path_execution.h"
+
+namespace karst::core {
+
+class TakeOff {
+ public:
+  TakeOff(Onboard& onboard, const PhaseMachine& phases, const PathExecution& path)
+      : onboard_(onboard), phases_(phases), path_(path) {}
+
+  void begin();
+  enum class State { climbs, hovers, does_not_lift };
+  State step(bool standing);
+  /// It comes down again from below a roof: what is in the map above the ground is no reason to stop.
+  bool below_roof() const { return below_roof_; }
+  /// Below this height the ground is near.
+  double ground_m() const;
+
+ private:
+  void choose_hover();
+  void on_hover(const Vec3& hover);
+
+  Onboard& onboard_;
+  const PhaseMachine& phases_;
+  const PathExecution& path_;
+  bool below_roof_ = false;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,113 @@
+// What mission control asks of an exploration policy, in core types. The host implements it over the ABI;
+// a test implements it in five lines.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core_stack/localization/state.h"
+#include "core_stack/mapping/frontiers/frontiers.h"
+#include "core_stack/mapping/frontiers/imaged_surface.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/planning/roadmap/roadmap.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+/// A frontier cluster as offered to the policy.
+struct FrontierOffer {
+  const FrontierCluster* cluster = nullptr;
+  Vec3 viewpoint =
+      Vec3::Zero();  // a clear, reachable place from which the cluster is seen; NaN if none was found
+  double viewpoint_heading_rad = 0;
+  double path_length_m = 0;  // from where a new path would begin to the viewpoint; +inf if no way is known
+};
+
+/// Another vehicle of the team, as last heard.
+struct OtherVehicle {
+  std::uint32_t id = 0;  // 1, 2, ...
+  TimeNs heard = 0;      // when this was true, by one's own clock: negative before one's own start
+  Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
+  std::optional<Vec3> goal;          // that it has claimed
+  double seconds_before_homing = 0;  // about; 0: it explores no more; NaN: no way home from there is known
+};
+
+enum class GoalFate { none, under_way, reached, rejected, unreachable, abandoned, superseded };
+
+struct DecisionRequest {
+  TimeNs stamp = 0;
+  TimeNs deadline = 0;                       // the result is used at this time
+  std::uint32_t sequence = 0;                // 1, 2, ...
+  State state;                               // expected at the deadline
+  Vec3 direction_of_flight = Vec3::UnitX();  // unit, world frame; heading when it stands
+  Pose T_world_start;
+  double seconds_before_homing = 0;
+  double max_speed_mps = 0, clearance_m = 0, vehicle_radius_m = 0;
+  GoalFate last_fate = GoalFate::none;
+  Vec3 last_goal = Vec3::Zero();
+  const VoxelMap* map = nullptr;
+  const Roadmap* roadmap = nullptr;
+  const ImagedSurface* imaged = nullptr;  // by the colour camera; null if there is none
+  const VehicleDescription* vehicle = nullptr;
+  std::vector<FrontierOffer> frontiers;  // by id
+  std::vector<OtherVehicle> teammates;   // by id
+};
+
+struct Goal {
+  Vec3 position = Vec3::Zero();
+  double heading_rad = 0;         // NaN: any
+  double tolerance_m = 0.5;       // reached when nearer than this
+  double max_speed_mps = 0;       // 0: the mission's; a greater one is cut to it
+  std::uint32_t frontier_id = 0;  // 0: none
+  double score = 0;
+  std::string why;  // one line for the report
+};
+
+enum class Outcome { goals, hold, explored, go_home };
+
+/// Something a policy drew into the report.
+struct Drawing {
+  enum class Kind { points, lines, text } kind = Kind::points;
+  std::vector<Vec3> points;  // lines: pairs
+  std::uint32_t rgb = 0xffffff;
+  std::string text;
+};
+
+struct Decision {
+  Outcome outcome = Outcome::hold;
+  std::vector<Goal> goals;  // best first
+  std::string reason;       // for hold, explored and go_home
+  std::vector<Drawing> drawings;
+  std::vector<std::string> log;
+};
+
+struct PolicyEvent {
+  enum class Kind {
+    goal_reached,
+    goal_rejected,
+    goal_unreachable,
+    goal_abandoned,
+    goal_superseded,
+    homing
+  } kind;
+  TimeNs stamp = 0;
+  Goal goal;
+  std::string reason;
+};
+
+class PolicyPort {
+ public:
+  virtual ~PolicyPort() = default;
+  virtual std::string name() const = 0;
+  /// Called on the map lane, never concurrently. Throws PolicyFailure when the policy failed for good
+  /// (late beyond recovery, error, garbage): mission control then asks the fallback.
+  virtual Decision decide(const DecisionRequest& request) = 0;
+  virtual void notify(const PolicyEvent& event) = 0;
+};
+
+struct PolicyFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,130 @@
+#include "core_stack/mission/recording/recorder.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
+
+namespace karst::core {
+namespace {
+
+template <class... Numbers>
+std::string formatted(const char* format, Numbers... numbers) {
+  std::array<char, 512> line;
+  const int n = std::snprintf(line.data(), line.size(), format, numbers...);
+  return {line.data(), static_cast<std::size_t>(n)};
+}
+
+std::ofstream open(const std::filesystem::path& path) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  if (!out) throw InputError(path.string(), "", "cannot be written");
+  return out;
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& run_dir) : directory_(run_dir) {
+  std::error_code error;
+  std::filesystem::create_directories(run_dir, error);
+  if (error) throw InputError(run_dir.string(), "", "the run directory cannot be made: " + error.message());
+  if (std::filesystem::exists(run_dir / "events.jsonl"))
+    throw InputError(run_dir.string(), "", "holds another run already; choose another --out or remove it");
+  events_ = open(run_dir / "events.jsonl");
+  trajectory_ = open(run_dir / "trajectory.tum");
+  telemetry_ = open(run_dir / "telemetry.csv");
+  localization_ = open(run_dir / "localization.csv");
+  growth_ = open(run_dir / "map_growth.bin");
+  decisions_ = open(run_dir / "decisions.csv");
+  telemetry_ << "t_s,phase,x,y,z,vx,vy,vz,heading_rad,ref_x,ref_y,ref_z,battery_fraction,seconds_left,"
+                "explored_m3,home_distance_m\n";
+  localization_
+      << "stamp_s,used_s,accepted,free_directions,edges,planes,residual_m,position_sigma_m,heading_sigma_rad,"
+         "believed,problem\n";
+  decisions_ << "t_s,decide_ms,plan_ms\n";
+}
+
+void Recorder::event(TimeNs t, const std::string& kind, const nlohmann::json& fields) {
+  nlohmann::ordered_json line{{"t", seconds(t)}, {"kind", kind}};
+  line.update(fields);
+  events_ << json_text(line) << '\n';
+}
+
+void Recorder::event_of_text(TimeNs t, const std::string& kind, const std::string& fields) {
+  std::string head = json_text(nlohmann::ordered_json{{"t", seconds(t)}, {"kind", kind}});
+  head.back() = ',';
+  events_ << head << std::string_view(fields).substr(1) << '\n';
+}
+
+void Recorder::pose(const State& s) {
+  const Quat& q = s.orientation;
+  trajectory_ << formatted("%.4f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", seconds(s.stamp), s.position.x(),
+                           s.position.y(), s.position.z(), q.x(), q.y(), q.z(), q.w());
+}
+
+void Recorder::telemetry(const Telemetry& r) {
+  const Vec3 &p = r.state.position, &v = r.state.velocity_mps;
+  telemetry_ << formatted("%.2f,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.4f,%.4f,%.4f,%.5f,%.1f,%.3f,%.2f\n",
+                          seconds(r.stamp), r.phase.c_str(), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
+                          heading_of(r.state.orientation), r.reference.x(), r.reference.y(), r.reference.z(),
+                          r.battery_fraction, r.battery_seconds_left, r.explored_m3, r.home_distance_m);
+}
+
+void Recorder::located(const Located& r) {
+  const LoamPose& p = r.pose;
+  localization_ << formatted("%.3f,%.3f,%d,%d,%d,%d,%.4f,%.4f,%.5f,%s,", seconds(p.stamp), seconds(r.used_at),
+                             r.accepted, p.free_directions, p.edges, p.planes, p.rms_residual_m,
+                             r.position_sigma_m, r.heading_sigma_rad, r.believed.c_str())
+                << p.problem << '\n';
+}
+
+void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
+  const auto ms = static_cast<std::int32_t>(t / kMillisecond);
+  for (const CellChange& c : changes) {
+    if (c.before != Cell::occupied && c.after != Cell::occupied) continue;
+    const std::array<std::int32_t, 4> record{c.key.x, c.key.y, c.key.z, c.after == Cell::occupied ? ms : -ms};
+    growth_.write(reinterpret_cast<const char*>(record.data()), sizeof record);
+  }
+}
+
+void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& file) {
+  if (!frames_.is_open()) {
+    frames_.open(directory_ / "frames.csv", std::ios::binary | std::ios::trunc);  // flush() tells if it fails
+    frames_ << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n";
+  }
+  const CameraModel& c = frame.model->camera;
+  const Quat& q = T.orientation;
+  frames_ << formatted("%.3f,", seconds(frame.stamp)) << file
+          << formatted(",%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.7f,%d,%d,%.4f,%.4f,%.2f,%.2f\n", T.position.x(),
+                       T.position.y(), T.position.z(), q.x(), q.y(), q.z(), q.w(), c.width, c.height,
+                       c.width / 2.0 / std::tan(c.horizontal_fov_rad / 2),
+                       c.height / 2.0 / std::tan(c.vertical_fov_rad / 2), c.width / 2.0, c.height / 2.0);
+}
+
+void Recorder::objects(const nlohmann::ordered_json& objects) {
+  open(directory_ / "objects.json") << json_text(objects, 2) << '\n';
+}
+
+void Recorder::decision_cost(TimeNs t, double decide_ms, double plan_ms) {
+  decisions_ << formatted("%.2f,%.3f,%.3f\n", seconds(t), decide_ms, plan_ms);
+}
+
+void Recorder::final_map(const VoxelMap& map) {
+  write_octomap(map, (directory_ / "map").string());
+  write_ply(map, (directory_ / "map.ply").string());
+}
+
+bool Recorder::flush() {
+  bool good = true;
+  for (std::ofstream* f :
+       {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_}) {
+    f->flush();
+    good = good && f->good();
+  }
+  return good;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,68 @@
+// The run directory, written as the flight goes: complete up to the last second whatever happens.
+// docs/run_directory.md describes every file.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+
+#include "core_stack/localization/loam.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/vehicle/rgb_camera_model.h"
+
+namespace karst::core {
+
+/// One line of telemetry.csv.
+struct Telemetry {
+  TimeNs stamp = 0;
+  std::string phase;
+  State state;
+  Vec3 reference = Vec3::Zero();
+  double battery_fraction = 0, battery_seconds_left = 0;
+  double explored_m3 = 0;
+  double home_distance_m = 0;  // by path; NaN while unknown
+};
+
+/// One line of localization.csv: a scan, and what the estimate made of its pose.
+struct Located {
+  TimeNs used_at = 0;
+  LoamPose pose;
+  bool accepted = false;
+  double position_sigma_m = 0, heading_sigma_rad = 0;  // of the estimate, after it
+  std::string believed;
+};
+
+class Recorder {
+ public:
+  /// Creates the directory; throws InputError if it cannot be written or holds another run's files.
+  explicit Recorder(const std::filesystem::path& run_dir);
+
+  /// A line of events.jsonl: {"t": ..., "kind": kind, ...fields}.
+  void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
+  /// The same of fields that were made into text elsewhere, where there is time for it: a JSON object.
+  void event_of_text(TimeNs t, const std::string& kind, const std::string& fields);
+  void pose(const State& state);
+  void telemetry(const Telemetry& row);
+  void located(const Located& row);
+  void map_changes(TimeNs t, std::span<const CellChange> changes);
+  /// A line of frames.csv, made with the first; `file` is relative to the directory, "" if no picture is
+  /// kept.
+  void frame(const RgbFrame& frame, const Pose& T_world_camera, const std::string& file);
+  /// objects.json: objects of interest as known at the end.
+  void objects(const nlohmann::ordered_json& objects);
+  /// Wall-clock costs of a decision, apart from what must replay byte for byte.
+  void decision_cost(TimeNs t, double decide_ms, double plan_ms);
+  /// Final map in all its formats.
+  void final_map(const VoxelMap& map);
+  /// Pushes what is buffered to the file system; false once a write has failed (disk full, removed).
+  bool flush();
+
+  const std::filesystem::path& directory() const { return directory_; }
+
+ private:
+  std::filesystem::path directory_;
+  std::ofstream events_, trajectory_, telemetry_, localization_, growth_, decisions_, frames_;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,54 @@
+// One robot of a team: its knowledge of the others, its choice of a landing place, and the port through which
+// it exchanges both. Mission control works with its Teamwork; whoever runs the loop calls transmit() and
+// receive() ten times a second.
+#pragma once
+#include <optional>
+
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/team/teamwork.h"
+#include "core_stack/vehicle/team_port.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+/// What all members of a team are given alike.
+struct TeamSetup {
+  Vec3 base = Vec3::Zero();  // the base's antenna, world frame
+  std::uint64_t seed = 1;
+  MissionKey key;
+};
+
+/// A communication node that was dropped.
+struct DroppedNode {
+  RobotId id = 0;
+  NodeDrop drop;
+};
+
+class TeamMember {
+ public:
+  /// `starts_at`: when the vehicle is switched on, by the team's clock. The port outlives the member.
+  TeamMember(RobotId id, const CoreOptions& options, const VehicleDescription& vehicle,
+             const TeamSetup& setup, TimeNs starts_at, TeamPort& port);
+
+  void transmit(TimeNs team_time);
+  void receive(TimeNs team_time);
+  /// Drops the communication node that mission control has asked for since the last call, if it has.
+  std::optional<DroppedNode> drop_due_node();
+
+  RobotId id() const { return mate_.self(); }
+  const Teammate& mate() const { return mate_; }
+  Teamwork& teamwork() { return teamwork_; }
+
+ private:
+  TeamPort& port_;
+  std::int64_t first_node_, nodes_dropped_ = 0;
+  Teammate mate_;
+  RelayHoming homing_;
+  Teamwork teamwork_;
+};
+
+/// Sends what `mate` has to say, and lets it hear what has come in.
+void transmit(Teammate& mate, RadioPort& radio, TimeNs team_time);
+void receive(Teammate& mate, RadioPort& radio, TimeNs team_time);
+
+}  // namespace karst::core

@@ -1,0 +1,76 @@
+// A robot's part in its team, as its mission control sees it. Times here are the vehicle's own; the team's
+// clock is ahead of them by when the vehicle was switched on.
+#pragma once
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core_stack/team/relay_homing.h"
+
+namespace karst::core {
+
+/// A communication node leaves the vehicle about `from` and should come to lie on `ground`.
+struct NodeDrop {
+  Vec3 from = Vec3::Zero(), ground = Vec3::Zero();
+};
+
+class Teamwork {
+ public:
+  Teamwork(Teammate& mate, RelayHoming& homing, const TeamOptions& options, TimeNs ahead)
+      : mate_(&mate), homing_(&homing), options_(options), ahead_(ahead) {}
+
+  /// To be touched on the map lane only.
+  RelayHoming* homing() const { return homing_; }
+  const TeamOptions& options() const { return options_; }
+  bool lands_as_relay() const { return options_.strategy != "return_to_base"; }
+  RobotId self() const { return mate_->self(); }
+  TimeNs team_time(TimeNs own) const { return own + ahead_; }
+
+  void report(TeamState state, TimeNs now) {
+    state.stamp = team_time(now);
+    mate_->set_state(state);
+  }
+  /// What was heard since the last call.
+  TeamNews take_news(TimeNs now, double seconds_left) {
+    return {team_time(now),
+            mate_->take_facts(),
+            mate_->relays(),
+            mate_->taken_ground(),
+            mate_->claimed_goals(team_time(now)),
+            team_time(now) + from_seconds(seconds_left)};
+  }
+  /// That robot is on the way to a landing place that it has claimed, and its battery lasts yet.
+  bool lands_soon(RobotId robot, TimeNs now) const {
+    const std::vector<Relay> relays = mate_->relays();
+    return std::any_of(relays.begin(), relays.end(), [&](const Relay& r) {
+      return r.robot == robot && r.stands_by && *r.stands_by > team_time(now);
+    });
+  }
+  std::uint32_t publish(const Record& record) { return mate_->publish(record); }
+  /// How many of its own records the base is known to hold.
+  std::uint32_t known_at_base() const { return mate_->gossip().known_at_base(); }
+  std::vector<TeamObject> objects() const { return merged(mate_->objects()); }
+  bool hears_base(TimeNs now, TimeNs since) const {
+    return mate_->hears_base(team_time(now), team_time(since));
+  }
+  void drop_node(const NodeDrop& drop) { drop_ = drop; }
+  /// What was dropped since the last call.
+  std::optional<NodeDrop> take_drop() { return std::exchange(drop_, std::nullopt); }
+  bool overruled() const { return mate_->overruled(); }
+  /// The others as last heard of, by this vehicle's own clock.
+  std::vector<HeardMate> mates(TimeNs now) const {
+    std::vector<HeardMate> all = mate_->mates(team_time(now));
+    for (HeardMate& m : all) m.heard -= ahead_;
+    return all;
+  }
+  std::vector<Neighbour> neighbours(TimeNs now) const { return mate_->neighbours(team_time(now)); }
+
+ private:
+  Teammate* mate_;
+  RelayHoming* homing_;
+  TeamOptions options_;
+  TimeNs ahead_;
+  std::optional<NodeDrop> drop_;
+};
+
+}  // namespace karst::core

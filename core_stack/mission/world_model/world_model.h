@@ -1,0 +1,66 @@
+// What is known of the cave: the map with its frontiers, the rock surface imaged, the roadmaps made from the
+// map, and home. It takes in rays and plans paths.
+//
+// It lives on the map lane and does not change within a decision cycle.
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core_stack/mapping/frontiers/frontiers.h"
+#include "core_stack/mapping/frontiers/imaged_surface.h"
+#include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/world_model/clearance_roadmap.h"
+
+namespace karst::core {
+
+class WorldModel {
+ public:
+  WorldModel(const CoreOptions& options, const VehicleDescription& vehicle);
+
+  /// Takes one sensor's rays into the map; returns what changed.
+  std::vector<CellChange> integrate(const std::vector<Ray>& rays);
+  std::vector<CellChange> declare_launch_site(const Vec3& hover_point);
+  /// A picture was taken from there, by the vehicle's colour camera.
+  void note_picture(const Pose& T_world_camera);
+
+  const VoxelMap& map() const { return map_; }
+  const Frontiers& frontiers() const { return frontiers_; }
+  /// Null if the vehicle has no colour camera.
+  const ImagedSurface* imaged() const { return rgb_ ? &imaged_ : nullptr; }
+  const Vec3& home() const { return home_; }
+  void set_home(const Vec3& hover_point) { home_ = hover_point; }
+
+  // Each brings the roadmap that it returns up to date.
+
+  const ClearanceRoadmap& usual();
+  bool allows_narrow() const { return narrow_clearance_m_.has_value(); }
+  /// Made when it is first asked for; null if the mission does not allow narrow passages.
+  const ClearanceRoadmap* narrow();
+  /// The same, but null as long as nobody has needed it.
+  const ClearanceRoadmap* narrow_if_made() { return narrow_ ? narrow() : nullptr; }
+  /// The roadmap to plan on from `from`: the one for narrow passages inside of one.
+  const ClearanceRoadmap& roadmap_at(const Vec3& from);
+
+  /// Along one roadmap; it must be up to date.
+  Path plan(const ClearanceRoadmap& on, const Vec3& from, const Vec3& to) const;
+  /// For going home or around a new obstacle; through narrow passages if there is no other path.
+  Path plan_to(const Vec3& from, const Vec3& to);
+  /// Length of those parts of `path` that lead through narrow passages, where flight is slow.
+  double narrow_length_m(const Path& path) const;
+
+ private:
+  std::vector<CellChange> take_in(std::vector<CellChange> changes);
+
+  double launch_clear_radius_m_;
+  std::shared_ptr<const RgbCameraModel> rgb_;
+  VoxelMap map_;
+  Frontiers frontiers_;
+  ImagedSurface imaged_;
+  ClearanceRoadmap usual_;
+  std::optional<double> narrow_clearance_m_;  // if narrow passages may be flown
+  std::optional<ClearanceRoadmap> narrow_;
+  Vec3 home_;
+};
+
+}  // namespace karst::core

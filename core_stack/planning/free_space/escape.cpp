@@ -1,0 +1,53 @@
+#include "core_stack/planning/free_space/escape.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace karst::core {
+
+std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& free, const Vec3& start,
+                                             double clearance_m) {
+  struct Visit {
+    double length_m, distance_m;  // of the way so far; to the nearest obstacle
+    CellKey parent;
+  };
+  const double res = free.resolution_m(), reach_m = 2 * clearance_m + 2 * res;
+  free.load_near(map, start, reach_m + clearance_m);
+  const CellKey first = free.key_of(start);
+  if (!free.at(first)) return std::nullopt;
+
+  std::map<CellKey, Visit> visits{{first, {0, free.nearest(start, clearance_m).distance_m, first}}};
+  std::set<std::pair<double, CellKey>> open{{0.0, first}};
+  while (!open.empty()) {
+    const CellKey k = open.begin()->second;
+    open.erase(open.begin());
+    const Visit at = visits.at(k);
+    const Vec3 p = k == first ? start : free.center_of(k);
+    if (!(k == first) && free.is_clear(p, clearance_m)) {
+      std::vector<Vec3> out;
+      for (CellKey c = k; !(c == first); c = visits.at(c).parent) out.push_back(free.center_of(c));
+      out.push_back(start);
+      std::reverse(out.begin(), out.end());
+      return out;
+    }
+    for (int i = 0; i < 27; ++i) {
+      const CellKey n = k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      const Vec3 q = free.center_of(n);
+      if (n == first || (q - start).norm() > reach_m || !free.at(n)) continue;
+      const double distance = free.nearest(q, clearance_m).distance_m;
+      const double length = at.length_m + (q - p).norm();
+      const auto known = visits.find(n);
+      // Between two cells the distance may dip by a fraction of a cell below that of both.
+      if (distance < at.distance_m || (known != visits.end() && known->second.length_m <= length) ||
+          !free.segment_clear(p, q, std::max(0.0, at.distance_m - 0.25 * res)))
+        continue;
+      if (known != visits.end()) open.erase({known->second.length_m, n});
+      visits[n] = {length, distance, k};
+      open.insert({length, n});
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace karst::core

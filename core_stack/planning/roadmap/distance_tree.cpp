@@ -1,0 +1,236 @@
+#include "core_stack/planning/roadmap/distance_tree.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core_stack/planning/roadmap/roadmap_way.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
+/// Names of what comes next on the way that are no node's place.
+constexpr CellKey kNothing{std::numeric_limits<std::int32_t>::max(), 0, 0};
+constexpr CellKey kRoot{std::numeric_limits<std::int32_t>::min(), 0, 0};
+
+/// A tile of the roadmap as the tree last saw it. A node's name is its place: no two hold the same cell.
+struct TreeTile {
+  std::uint64_t seen = 0;
+  std::vector<RoadmapNode> nodes;
+  std::vector<double> length_m;  // to the root
+  std::vector<CellKey> next;     // the place of the next node on the way
+};
+
+struct PastNode {
+  std::uint32_t tile;
+  RoadmapNode node;
+};
+
+struct Entry {
+  double length_m;
+  NodeRef node;
+  bool operator<(const Entry& o) const {
+    if (length_m != o.length_m) return length_m > o.length_m;
+    return node.tile != o.node.tile ? node.tile > o.node.tile : node.local > o.node.local;
+  }
+};
+
+}  // namespace
+
+struct DistanceTree::Tree {
+  std::optional<Vec3> root;
+  std::vector<Join> joins;      // of the root
+  std::vector<CellKey> joined;  // places of their nodes
+  std::vector<TreeTile> tiles;
+  std::size_t touched = 0;
+
+  double& length(const NodeRef& n) { return tiles[n.tile].length_m[n.local]; }
+  double length(const NodeRef& n) const { return tiles[n.tile].length_m[n.local]; }
+  CellKey& next(const NodeRef& n) { return tiles[n.tile].next[n.local]; }
+  const CellKey& next(const NodeRef& n) const { return tiles[n.tile].next[n.local]; }
+
+  void update(const RoadmapGraph& g);
+  void take_over(const RoadmapGraph& g, std::uint32_t tile, std::vector<PastNode>& gone,
+                 std::vector<NodeRef>& lost);
+  void check_joins(const RoadmapGraph& g, std::vector<PastNode>& gone, std::vector<NodeRef>& lost);
+  void forget_ways_through(const RoadmapGraph& g, std::vector<PastNode> gone, std::vector<NodeRef>& lost);
+  void settle(const RoadmapGraph& g, const std::vector<NodeRef>& lost);
+  void forget(const NodeRef& n, std::vector<PastNode>& gone, std::vector<NodeRef>& lost) {
+    length(n) = kUnreached_m, next(n) = kNothing;
+    lost.push_back(n);
+    gone.push_back({n.tile, tiles[n.tile].nodes[n.local]});
+  }
+  std::optional<Join> best_join(const RoadmapGraph& g, const Vec3& from, double& length_m) const;
+};
+
+/// Copies the tile's nodes as they are now; those that were there before keep what they know.
+void DistanceTree::Tree::take_over(const RoadmapGraph& g, std::uint32_t tile, std::vector<PastNode>& gone,
+                                   std::vector<NodeRef>& lost) {
+  const TreeTile before = std::exchange(tiles[tile], {});
+  TreeTile& now = tiles[tile];
+  now.seen = g.updates;
+  now.nodes = g.tiles[tile].nodes;
+  now.length_m.assign(now.nodes.size(), kUnreached_m);
+  now.next.assign(now.nodes.size(), kNothing);
+  std::vector<char> kept(before.nodes.size(), false);
+  for (std::uint32_t i = 0; i < now.nodes.size(); ++i) {
+    const auto same =
+        std::find(before.nodes.begin(), before.nodes.end(), now.nodes[i]) - before.nodes.begin();
+    const auto k = static_cast<std::size_t>(same);
+    if (k < before.nodes.size()) {
+      now.length_m[i] = before.length_m[k], now.next[i] = before.next[k], kept[k] = true;
+    } else {
+      lost.push_back({tile, i});
+    }
+  }
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (!kept[k] && before.length_m[k] < kUnreached_m) gone.push_back({tile, before.nodes[k]});
+}
+
+/// Nodes that led straight to the root and no longer do, or not as they did, forget it.
+void DistanceTree::Tree::check_joins(const RoadmapGraph& g, std::vector<PastNode>& gone,
+                                     std::vector<NodeRef>& lost) {
+  const std::vector<Join> old_joins = std::exchange(joins, {});
+  const std::vector<CellKey> old_joined = std::exchange(joined, {});
+  if (g.free.is_clear(*root, g.clearance_m)) joins = g.joins(*root);
+  for (const Join& j : joins) joined.push_back(g.cell_of(j.node));
+  for (std::size_t i = 0; i < old_joins.size(); ++i) {
+    bool stands = false;
+    for (std::size_t k = 0; k < joins.size(); ++k)
+      stands |= joined[k] == old_joined[i] && joins[k].length_m == old_joins[i].length_m;
+    if (stands) continue;
+    g.for_each_node_in_block(old_joined[i], [&](const NodeRef& n, const RoadmapNode& node) {
+      if (node.place == old_joined[i] && next(n) == kRoot) forget(n, gone, lost);
+    });
+  }
+}
+
+void DistanceTree::Tree::forget_ways_through(const RoadmapGraph& g, std::vector<PastNode> gone,
+                                             std::vector<NodeRef>& lost) {
+  while (!gone.empty()) {
+    const PastNode past = gone.back();
+    gone.pop_back();
+    g.for_each_touching(past.tile, past.node, [&](const NodeRef& n) {
+      if (next(n) == past.node.place) forget(n, gone, lost);
+    });
+  }
+}
+
+/// Dijkstra's algorithm, from what the neighbours of the lost nodes and the root's joins offer.
+void DistanceTree::Tree::settle(const RoadmapGraph& g, const std::vector<NodeRef>& lost) {
+  std::vector<Entry> heap;
+  const auto offer = [&](const NodeRef& n, double length_m, const CellKey& by) {
+    // Of equally long ways the one by the least place is kept: it does not depend on the map's history.
+    if (length_m == length(n) && by < next(n)) next(n) = by;
+    if (length_m >= length(n)) return;
+    length(n) = length_m, next(n) = by;
+    heap.push_back({length_m, n});
+    std::push_heap(heap.begin(), heap.end());
+  };
+  for (std::size_t i = 0; i < joins.size(); ++i) offer(joins[i].node, joins[i].length_m, kRoot);
+  // Neighbours' offers are gathered first: one that stands on another lost node's offer would do no harm, but
+  // push entries that go stale.
+  std::vector<std::pair<double, CellKey>> offers(lost.size(), {kUnreached_m, kNothing});
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const Vec3 p = g.position_of(lost[i]);
+    g.for_each_neighbour(lost[i], [&](const NodeRef& m) {
+      if (length(m) == kUnreached_m) return;
+      offers[i] = std::min(offers[i], {length(m) + (g.position_of(m) - p).norm(), g.cell_of(m)});
+    });
+  }
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    if (offers[i].first < kUnreached_m) offer(lost[i], offers[i].first, offers[i].second);
+
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Entry top = heap.back();
+    heap.pop_back();
+    if (top.length_m != length(top.node)) continue;
+    ++touched;
+    const Vec3 p = g.position_of(top.node);
+    const CellKey place = g.cell_of(top.node);
+    g.for_each_neighbour(
+        top.node, [&](const NodeRef& m) { offer(m, top.length_m + (g.position_of(m) - p).norm(), place); });
+  }
+}
+
+void DistanceTree::Tree::update(const RoadmapGraph& g) {
+  tiles.resize(g.tiles.size());
+  std::vector<PastNode> gone;
+  std::vector<NodeRef> lost;  // nodes that know no way at present
+  for (std::uint32_t i = 0; i < tiles.size(); ++i)
+    if (g.tiles[i].changed > tiles[i].seen) take_over(g, i, gone, lost);
+  check_joins(g, gone, lost);
+  forget_ways_through(g, std::move(gone), lost);
+  touched = lost.size();
+  settle(g, lost);
+}
+
+std::optional<Join> DistanceTree::Tree::best_join(const RoadmapGraph& g, const Vec3& from,
+                                                  double& length_m) const {
+  std::optional<Join> best;
+  length_m = kUnreached_m;
+  for (const Join& j : g.joins(from))
+    if (j.length_m + length(j.node) < length_m) length_m = j.length_m + length(j.node), best = j;
+  return best;
+}
+
+DistanceTree::DistanceTree() : tree_(std::make_unique<Tree>()) {}
+DistanceTree::~DistanceTree() = default;
+DistanceTree::DistanceTree(DistanceTree&&) noexcept = default;
+DistanceTree& DistanceTree::operator=(DistanceTree&&) noexcept = default;
+
+void DistanceTree::update(const Roadmap& roadmap, const Vec3& root) {
+  if (!roadmap.graph().rule) return;
+  if (tree_->root != root) *tree_ = Tree{};
+  tree_->root = root;
+  tree_->update(roadmap.graph());
+}
+
+std::size_t DistanceTree::touched() const { return tree_->touched; }
+
+std::optional<double> DistanceTree::length_m(const VoxelMap& map, const Roadmap& roadmap,
+                                             const Vec3& from) const {
+  const RoadmapGraph& g = roadmap.graph();
+  if (!tree_->root || !g.rule) return std::nullopt;
+  const std::vector<Vec3> way_out = way_to_clear(map, g, from);
+  double length_m = kUnreached_m;
+  if (way_out.empty() || !tree_->best_join(g, way_out.back(), length_m)) return std::nullopt;
+  return path_length_m(way_out) + length_m;
+}
+
+Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const {
+  const RoadmapGraph& g = roadmap.graph();
+  Path path;
+  const auto fail = [&path](PlanStatus status, const char* reason) {
+    path = Path{};
+    path.status = status, path.reason = reason;
+    return path;
+  };
+  if (!tree_->root || !g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");
+  path.points = way_to_clear(map, g, from);
+  if (path.points.empty())
+    return fail(PlanStatus::start_blocked,
+                "the start is nearer to an obstacle than the clearance and no way leads out");
+  path.escape_points = path.points.size() - 1;
+  double length_m = kUnreached_m;
+  const std::optional<Join> out = tree_->best_join(g, path.points.back(), length_m);
+  if (!out) return fail(PlanStatus::no_path, "no way through known free space leads home");
+
+  std::vector<NodeRef> nodes{out->node};
+  for (CellKey next = tree_->next(out->node); next != kRoot; next = tree_->next(nodes.back())) {
+    const std::size_t before = nodes.size();
+    g.for_each_node_in_block(next, [&](const NodeRef& n, const RoadmapNode& node) {
+      if (node.place == next) nodes.push_back(n);
+    });
+    if (nodes.size() == before) return fail(PlanStatus::no_path, "the way home is out of date");
+  }
+  for (std::size_t i = 0; i < tree_->joins.size(); ++i)
+    if (tree_->joined[i] == g.cell_of(nodes.back()))
+      append_way(g, *out, nodes, tree_->joins[i], *tree_->root, path.points);
+  path.status = PlanStatus::found;
+  measure(path, kUnreached_m);
+  return path;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,275 @@
+#include "core_stack/planning/roadmap/roadmap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core_stack/planning/roadmap/roadmap_graph.h"
+#include "core_stack/planning/roadmap/roadmap_way.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+/// Goals as near as this are looked at directly: the graph's zigzag would matter there.
+constexpr double kDirect_m = 5.0;
+
+/// A place to stand near a goal that is not clear is looked for this far first.
+constexpr double kFirstShell_m = 1.6;
+
+/// Of 4 x 4 x 4 cells, in the cube around a ball.
+double blocks_within(double reach_m, double resolution_m) {
+  return std::pow(2 * reach_m / (4 * resolution_m) + 2, 3);
+}
+
+/// One run over the graph from several joins, by least length plus least possible rest.
+class GraphSearch {
+ public:
+  explicit GraphSearch(const RoadmapGraph& graph) : graph_(graph) {
+    std::uint32_t count = 0;
+    for (const RoadmapTile& t : graph.tiles) {
+      base_.push_back(count);
+      count += static_cast<std::uint32_t>(t.nodes.size());
+    }
+    length_.assign(count, kInf);
+    parent_.assign(count, kNone);
+    done_.assign(count, false);
+  }
+
+  /// Runs until `settled(index, length)` returns true. With a target the search is drawn towards it.
+  template <class Settled>
+  void run(const std::vector<Join>& from, const std::optional<Vec3>& target, Settled&& settled) {
+    const auto rest = [&](const Vec3& p) { return target ? (*target - p).norm() : 0.0; };
+    for (const Join& j : from) {
+      const std::uint32_t i = index_of(j.node);
+      if (j.length_m >= length_[i]) continue;
+      length_[i] = j.length_m;
+      push({j.length_m + rest(graph_.position_of(j.node)), i, j.node});
+    }
+    while (!heap_.empty()) {
+      std::pop_heap(heap_.begin(), heap_.end());
+      const Entry top = heap_.back();
+      heap_.pop_back();
+      if (done_[top.index]) continue;
+      done_[top.index] = true;
+      if (settled(top.index, length_[top.index])) return;
+      const Vec3 p = graph_.position_of(top.node);
+      graph_.for_each_neighbour(top.node, [&](const NodeRef& n) {
+        const std::uint32_t i = index_of(n);
+        if (done_[i]) return;
+        const Vec3 q = graph_.position_of(n);
+        const double length = length_[top.index] + (q - p).norm();
+        if (length >= length_[i]) return;
+        length_[i] = length;
+        parent_[i] = top.index;
+        push({length + rest(q), i, n});
+      });
+    }
+  }
+
+  std::uint32_t index_of(const NodeRef& n) const { return base_[n.tile] + n.local; }
+  NodeRef node_at(std::uint32_t index) const {
+    // The last tile that begins at or before the index holds it: tiles without nodes begin where the next
+    // does.
+    const auto tile = std::upper_bound(base_.begin(), base_.end(), index) - base_.begin() - 1;
+    return {static_cast<std::uint32_t>(tile), index - base_[static_cast<std::size_t>(tile)]};
+  }
+  double length(std::uint32_t index) const { return length_[index]; }
+  std::uint32_t parent(std::uint32_t index) const { return parent_[index]; }
+
+ private:
+  struct Entry {
+    double estimate;
+    std::uint32_t index;
+    NodeRef node;
+    bool operator<(const Entry& o) const {
+      return estimate != o.estimate ? estimate > o.estimate : index > o.index;
+    }
+  };
+  void push(const Entry& e) {
+    heap_.push_back(e);
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+
+  const RoadmapGraph& graph_;
+  std::vector<std::uint32_t> base_, parent_;
+  std::vector<double> length_;
+  std::vector<char> done_;
+  std::vector<Entry> heap_;
+};
+
+}  // namespace
+
+Roadmap::Roadmap(const PlanningOptions& options) : graph_(std::make_unique<RoadmapGraph>(options)) {}
+Roadmap::~Roadmap() = default;
+Roadmap::Roadmap(Roadmap&&) noexcept = default;
+Roadmap& Roadmap::operator=(Roadmap&&) noexcept = default;
+
+void Roadmap::update(const VoxelMap& map, std::span<const CellChange> changes) {
+  graph_->update(map, changes);
+}
+
+const PlanningOptions& Roadmap::options() const { return graph_->options; }
+
+std::size_t Roadmap::node_count() const {
+  std::size_t n = 0;
+  for (const RoadmapTile& t : graph_->tiles) n += t.nodes.size();
+  return n;
+}
+
+bool Roadmap::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const {
+  return graph_->rule && graph_->free.segment_clear(a, b, clearance_m);
+}
+
+std::vector<Vec3> Roadmap::places_near(const Vec3& p, double reach_m) const {
+  const RoadmapGraph& g = *graph_;
+  std::vector<Vec3> out;
+  if (!g.rule || !(p.cwiseAbs().maxCoeff() < 1e6) || !(reach_m > 0)) return out;
+  const Vec3 reach = Vec3::Constant(reach_m);
+  const CellKey low = g.free.key_of(p - reach), high = g.free.key_of(p + reach);
+  const auto near = [&](const NodeRef& n) { return (g.position_of(n) - p).norm() <= reach_m; };
+  if (blocks_within(reach_m, g.free.resolution_m()) <= static_cast<double>(g.tiles.size())) {
+    for (std::int32_t z = low.z & ~3; z <= high.z; z += 4)
+      for (std::int32_t y = low.y & ~3; y <= high.y; y += 4)
+        for (std::int32_t x = low.x & ~3; x <= high.x; x += 4)
+          g.for_each_node_in_block({x, y, z}, [&](const NodeRef& n, const RoadmapNode&) {
+            if (near(n)) out.push_back(g.position_of(n));
+          });
+    return out;
+  }
+  // Wider than all that is known: the tiles that there are, in the order of the loops above.
+  std::vector<NodeRef> found;
+  const TileKey first = tile_of(low), last = tile_of(high);
+  for (std::uint32_t i = 0; i < g.tiles.size(); ++i) {
+    const TileKey& t = g.table.keys()[i];
+    if (t.x < first.x || t.y < first.y || t.z < first.z || t.x > last.x || t.y > last.y || t.z > last.z)
+      continue;
+    for (std::uint32_t n = 0; n < g.tiles[i].nodes.size(); ++n)
+      if (near({i, n})) found.push_back({i, n});
+  }
+  const auto block = [&g](const NodeRef& n) {
+    const CellKey& k = g.cell_of(n);
+    return std::array{k.z >> 2, k.y >> 2, k.x >> 2};
+  };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const NodeRef& a, const NodeRef& b) { return block(a) < block(b); });
+  for (const NodeRef& n : found) out.push_back(g.position_of(n));
+  return out;
+}
+
+std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, double tolerance_m,
+                                      WorkBudget* work) const {
+  const RoadmapGraph& g = *graph_;
+  if (!g.rule) return std::nullopt;
+  if (g.free.is_clear(goal, g.clearance_m)) return goal;
+  if (map.at(goal) != Cell::free) return std::nullopt;  // nothing sees it through free cells
+  struct Place {
+    Vec3 position;
+    double away_m;
+  };
+  // Shell by shell, the nearest first: where there is one, it is mostly near.
+  double beyond_m = -1;
+  for (double reach_m = std::min(kFirstShell_m, tolerance_m);; reach_m = std::min(2 * reach_m, tolerance_m)) {
+    std::vector<Place> shell;
+    for (const Vec3& p : places_near(goal, reach_m))
+      if (const double away_m = (p - goal).norm(); away_m > beyond_m) shell.push_back({p, away_m});
+    std::stable_sort(shell.begin(), shell.end(),
+                     [](const Place& a, const Place& b) { return a.away_m < b.away_m; });
+    const double looked_at = std::min(blocks_within(reach_m, g.free.resolution_m()),
+                                      static_cast<double>(g.tiles.size() + node_count()));
+    if (work && !work->spend(static_cast<std::uint64_t>(looked_at))) return std::nullopt;
+    for (const Place& place : shell) {
+      const double cells = 1 + 2 * place.away_m / g.free.resolution_m();  // of the line, about
+      if (work && !work->spend(static_cast<std::uint64_t>(cells))) return std::nullopt;
+      if (!map.first_not_free(place.position, goal)) return place.position;
+    }
+    if (!(reach_m < tolerance_m)) return std::nullopt;
+    beyond_m = reach_m;
+  }
+}
+
+std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
+                                       double goal_tolerance_m, double most_m, WorkBudget* work) const {
+  const RoadmapGraph& g = *graph_;
+  std::vector<double> out(goals.size(), kInf);
+  if (!g.rule) return out;
+  const std::vector<Vec3> way_out = way_to_clear(map, g, from);
+  if (way_out.empty()) return out;
+  const Vec3 start = way_out.back();
+  const double escape_m = path_length_m(way_out);
+
+  GraphSearch search(g);
+  std::vector<std::vector<Join>> goal_joins(goals.size());
+  std::vector<std::uint32_t> wanted;
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const std::optional<Vec3> goal = approach(map, goals[i], goal_tolerance_m, work);
+    if (work && work->exhausted()) return out;
+    if (!goal) continue;
+    const double straight = (*goal - start).norm();
+    if (straight <= kDirect_m && g.free.segment_clear(start, *goal, g.clearance_m)) {
+      out[i] = escape_m + straight;
+      continue;
+    }
+    goal_joins[i] = g.joins(*goal);
+    for (const Join& j : goal_joins[i]) wanted.push_back(search.index_of(j.node));
+  }
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  std::size_t left = wanted.size();
+  if (left > 0)
+    search.run(g.joins(start), std::nullopt, [&](std::uint32_t node, double length_m) {
+      return length_m > most_m || (std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0);
+    });
+  for (std::size_t i = 0; i < goals.size(); ++i)
+    for (const Join& j : goal_joins[i])
+      if (const double length_m = search.length(search.index_of(j.node)); length_m <= most_m)
+        out[i] = std::min(out[i], escape_m + length_m + j.length_m);
+  return out;
+}
+
+Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const {
+  const RoadmapGraph& g = *graph_;
+  Path path;
+  const auto fail = [&path](PlanStatus status, const char* reason) {
+    path = Path{};
+    path.status = status, path.reason = reason;
+    return path;
+  };
+  if (!g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");
+  if (!g.free.is_clear(goal, g.clearance_m))
+    return fail(PlanStatus::goal_blocked, "the goal is nearer to an obstacle than the clearance");
+  path.points = way_to_clear(map, g, from);
+  if (path.points.empty())
+    return fail(PlanStatus::start_blocked,
+                "the start is nearer to an obstacle than the clearance and no way leads out");
+  path.escape_points = path.points.size() - 1;
+  const Vec3 start = path.points.back();
+
+  GraphSearch search(g);
+  const std::vector<Join> outs = g.joins(start), ins = g.joins(goal);
+  const Join* in = nullptr;
+  double best = kInf;
+  search.run(outs, goal, [&](std::uint32_t node, double length) {
+    for (const Join& j : ins)
+      if (search.index_of(j.node) == node && length + j.length_m < best) best = length + j.length_m, in = &j;
+    // No later node can lead to a shorter way than the least estimate settled so far.
+    return length + (g.position_of(search.node_at(node)) - goal).norm() >= best;
+  });
+  if (in == nullptr) return fail(PlanStatus::no_path, "no way through known free space leads to the goal");
+
+  std::vector<NodeRef> nodes;
+  for (std::uint32_t i = search.index_of(in->node); i != kNone; i = search.parent(i))
+    nodes.push_back(search.node_at(i));
+  std::reverse(nodes.begin(), nodes.end());
+  for (const Join& j : outs)
+    if (search.index_of(j.node) == search.index_of(nodes.front()))
+      append_way(g, j, nodes, *in, goal, path.points);
+  path.status = PlanStatus::found;
+  measure(path, kInf);
+  return path;
+}
+
+}  // namespace karst::core

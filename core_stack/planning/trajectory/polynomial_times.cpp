@@ -1,0 +1,121 @@
+#include "core_stack/planning/trajectory/polynomial_times.h"
+
+#include <nlopt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace karst::core {
+namespace {
+
+/// Weight of a second of flight against snap (m^2/s^7): high, so that it is the limits that decide.
+constexpr double kTimeWeight = 300.0;
+/// A limit reached costs this, and e times as much for every kSoftness of it beyond.
+constexpr double kLimitWeight = 10.0, kSoftness = 0.05;
+/// Each duration may change by this factor up or down.
+constexpr double kMostChange = 3.0;
+constexpr int kMostStretches = 60;
+/// Places in a piece where limits are looked at, its ends among them: by the optimizer, and in the end.
+constexpr int kLooks = 9, kCloseLooks = 33;
+
+/// Rows of derivatives of the powers of normalized time.
+Eigen::MatrixXd looks_at(int order, int looks) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(looks, 8);
+  for (int i = 0; i < looks; ++i)
+    for (int k = order; k < 8; ++k) {
+      double factor = 1;
+      for (int r = 0; r < order; ++r) factor *= k - r;
+      out(i, k) = factor * std::pow(static_cast<double>(i) / (looks - 1), k - order);
+    }
+  return out;
+}
+
+/// Greatest speed, acceleration and jerk in a piece, each as a share of its limit.
+template <int kCount>
+Vec3 shares_of_limits(const PolynomialPiece& piece, const MotionLimits& limits) {
+  using Looks = Eigen::Matrix<double, kCount, 8>;
+  static const Looks looks[] = {looks_at(1, kCount), looks_at(2, kCount), looks_at(3, kCount)};
+  const double most[] = {limits.max_speed_mps, limits.max_acceleration_mps2, limits.max_jerk_mps3};
+  Vec3 out;
+  double scale = 1;
+  for (int k = 0; k < 3; ++k) {
+    scale *= piece.duration_s;
+    const Eigen::Matrix<double, kCount, 3> values = looks[k] * piece.coefficients;
+    out[k] = std::sqrt(values.rowwise().squaredNorm().maxCoeff()) / scale / most[k];
+  }
+  return out;
+}
+
+struct Problem {
+  const std::vector<Vec3>& waypoints;
+  const std::vector<double>& first_guess_s;
+  const Departure& departure;
+  const MotionLimits& limits;
+  std::vector<double> durations_s;
+
+  /// Unknowns are the logarithms of how much longer than guessed each piece lasts.
+  double cost(const double* x, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) durations_s[i] = first_guess_s[i] * std::exp(x[i]);
+    const Polynomial polynomial = minimum_snap(waypoints, durations_s, departure);
+    double sum = polynomial.snap_cost + kTimeWeight * polynomial.duration_s();
+    for (const PolynomialPiece& piece : polynomial.pieces) {
+      const Vec3 shares = shares_of_limits<kLooks>(piece, limits);
+      for (int k = 0; k < 3; ++k) sum += kLimitWeight * std::exp(std::min((shares[k] - 1) / kSoftness, 50.0));
+    }
+    return std::isfinite(sum) ? sum : 1e30;
+  }
+};
+
+}  // namespace
+
+std::vector<double> optimized_times(const std::vector<Vec3>& waypoints, std::vector<double> durations_s,
+                                    const Departure& departure, const MotionLimits& limits, int evaluations) {
+  const std::size_t n = std::min(durations_s.size(), kMostOptimized);
+  Problem problem{waypoints, durations_s, departure, limits, durations_s};
+  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
+      nlopt_create(NLOPT_LN_SBPLX, static_cast<unsigned>(n)), nlopt_destroy);
+  nlopt_set_min_objective(
+      opt.get(),
+      [](unsigned size, const double* x, double*, void* data) {
+        return static_cast<Problem*>(data)->cost(x, size);
+      },
+      &problem);
+  nlopt_set_lower_bounds1(opt.get(), -std::log(kMostChange));
+  nlopt_set_upper_bounds1(opt.get(), std::log(kMostChange));
+  nlopt_set_initial_step1(opt.get(), 0.1);
+  nlopt_set_maxeval(opt.get(), evaluations);
+  std::vector<double> x(n, 0.0);
+  double least = 0;
+  // A failure for rounding leaves the best so far in x, and the guess is no worse than what it was.
+  nlopt_optimize(opt.get(), x.data(), &least);
+  for (std::size_t i = 0; i < n; ++i) durations_s[i] *= std::exp(x[i]);
+  return durations_s;
+}
+
+std::optional<Polynomial> within_limits(const std::vector<Vec3>& waypoints, std::vector<double> durations_s,
+                                        const Departure& departure, const MotionLimits& limits) {
+  for (int round = 0; round < kMostStretches; ++round) {
+    Polynomial polynomial = minimum_snap(waypoints, durations_s, departure);
+    double worst = 0;
+    std::vector<double>
+        ratios;  // of time, that would bring each piece to its limits were all stretched alike
+    for (const PolynomialPiece& piece : polynomial.pieces) {
+      const Vec3 shares = shares_of_limits<kCloseLooks>(piece, limits);
+      if (!shares.allFinite()) return std::nullopt;
+      worst = std::max(worst, shares.maxCoeff());
+      ratios.push_back(std::max({shares[0], std::sqrt(shares[1]), std::cbrt(shares[2])}));
+    }
+    if (worst <= 1 + kLimitTolerance) return polynomial;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      // What is too fast in one piece is often due to its neighbours.
+      double stretch = ratios[i];
+      if (i > 0) stretch = std::max(stretch, std::sqrt(ratios[i - 1]));
+      if (i + 1 < ratios.size()) stretch = std::max(stretch, std::sqrt(ratios[i + 1]));
+      durations_s[i] *= std::clamp(stretch, 1.0, 1.5);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace karst::core

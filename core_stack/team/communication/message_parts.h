@@ -1,0 +1,107 @@
+// The parts that messages are made of, each with its range checked. Private to team.
+#pragma once
+#include <cmath>
+
+#include "core_stack/team/communication/messages.h"
+
+namespace karst::core {
+
+class PartWriter : public WireWriter {
+ public:
+  using WireWriter::WireWriter;
+
+  bool fine() const { return fine_; }
+  void refuse() { fine_ = false; }
+  void count(std::size_t n) {
+    if (n > 255) refuse();
+    byte(static_cast<std::uint8_t>(n));
+  }
+  void robot(RobotId r) {
+    if (r >= kMostRobots) refuse();
+    byte(r);
+  }
+  void limited(std::uint32_t v, std::uint32_t below) {
+    if (v >= below) refuse();
+    compact(v);
+  }
+  void node_id(const NodeId& id) { robot(id.robot), limited(id.number, kMostNumber); }
+  /// Milliseconds in four bytes: 49 days.
+  void time(TimeNs t) {
+    if (t < 0 || t / kMillisecond > 0xffffffffll) refuse();
+    number(static_cast<std::uint64_t>(t / kMillisecond), 4);
+  }
+  void place(const Vec3& p) {
+    for (int i = 0; i < 3; ++i) scaled(p[i], 0.01, kMostReach_m * 100, 3);
+  }
+  /// v in steps, no farther from 0 than `most` of them.
+  void scaled(double v, double step, double most, int bytes) {
+    const double steps = std::round(v / step);
+    if (!(std::abs(steps) <= most)) return refuse();
+    number(static_cast<std::uint64_t>(static_cast<std::int64_t>(steps)), bytes);
+  }
+
+ private:
+  bool fine_ = true;
+};
+
+class PartReader : public WireReader {
+ public:
+  using WireReader::WireReader;
+
+  bool fine() const { return !bad() && !refused_; }
+  bool finished() const { return fine() && left() == 0; }
+  Refusal why() const { return refused_ ? *refused_ : Refusal::truncated; }
+  /// The first reason counts, unless it came of reading past the end.
+  void refuse(Refusal why) {
+    if (fine()) refused_ = why;
+  }
+  /// How many parts of at least `least_bytes` follow: no more than there is room for.
+  std::size_t count(std::size_t least_bytes) {
+    const std::size_t n = byte();
+    if (n * least_bytes <= left()) return n;
+    refuse(Refusal::truncated);
+    return 0;
+  }
+  template <class Enum>
+  Enum one_of(std::uint8_t below) {
+    const std::uint8_t v = byte();
+    if (v < below) return static_cast<Enum>(v);
+    refuse(Refusal::kind);
+    return Enum{};
+  }
+  bool yes_or_no() {
+    const std::uint8_t v = byte();
+    if (v > 1) refuse(Refusal::kind);
+    return v == 1;
+  }
+  RobotId robot() {
+    const RobotId r = byte();
+    if (r < kMostRobots) return r;
+    refuse(Refusal::range);
+    return 0;
+  }
+  std::uint32_t limited(std::uint32_t below) {
+    const std::uint32_t v = compact();
+    if (v < below) return v;
+    refuse(Refusal::range);
+    return 0;
+  }
+  NodeId node_id() {
+    const RobotId r = robot();
+    return {r, limited(kMostNumber)};
+  }
+  TimeNs time() { return static_cast<TimeNs>(number(4)) * kMillisecond; }
+  Vec3 place() {
+    Vec3 p;
+    // Divided, not multiplied by 0.01: the same number as to_centimetres() gives.
+    for (int i = 0; i < 3; ++i) p[i] = static_cast<double>(whole(3)) / 100.0;
+    if (p.cwiseAbs().maxCoeff() <= kMostReach_m) return p;
+    refuse(Refusal::range);
+    return Vec3::Zero();
+  }
+
+ private:
+  std::optional<Refusal> refused_;
+};
+
+}  // namespace karst::core

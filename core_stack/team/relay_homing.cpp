@@ -1,0 +1,284 @@
+#include "core_stack/team/relay_homing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/way_home/map_rays.h"
+#include "core_stack/planning/search/grid_planner.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kPlaceReach_m = 3.0;     // of a landing place from the pose that it is judged for
+constexpr std::size_t kJudgedBehind = 3;  // poses: by then the ground there has been seen
+constexpr double kRecheckMargin_m = 1.0;
+constexpr double kRockMargin_m = 0.1;   // beyond the vehicle's radius: nearer rock closes a ray
+constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing route are on it
+/// Kept for hearing whether it is in contact there, and for a step nearer if it is not.
+constexpr double kConfirm_s = 6.0;
+/// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
+constexpr double kClaimed_s = 10.0;
+/// With each place where a node was not heard the next must have so much more to spare of it: those beside it
+/// would be in vain, too.
+constexpr double kDoubt_db = 3.0;
+constexpr double kMostFall_m = 5.0;  // of a node that is dropped
+/// It is dropped with less than that to spare a second on: nobody looks whether it is heard before it lies
+/// there.
+constexpr double kNodeSpare_db = 1.0;
+constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
+constexpr TimeNs kSurelyBefore = 30 * kSecond;
+
+void append(TreeFacts& to, const TreeFacts& more) {
+  to.nodes.insert(to.nodes.end(), more.nodes.begin(), more.nodes.end());
+  to.rays.insert(to.rays.end(), more.rays.begin(), more.rays.end());
+  to.lives.insert(to.lives.end(), more.lives.begin(), more.lives.end());
+}
+
+/// Where a node that is dropped falls to: on with the vehicle's speed for as long as it takes. It may come to
+/// lie on a slope or among stones.
+std::optional<Vec3> ground_of_node(const VoxelMap& map, const Release& release) {
+  constexpr double kGravity_mps2 = 9.81;
+  Vec3 at = release.position;
+  Ground below;
+  for (int i = 0; i < 3; ++i) {  // the ground there may be lower than the ground below the vehicle
+    below = ground_below(map, at, 0, {.margin_m = 0, .most_drop_m = kMostFall_m});
+    if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
+      return std::nullopt;
+    const double up_mps = release.velocity_mps.z(), height_m = at.z() - below.ground.z();
+    const double fall_s =
+        (up_mps + std::sqrt(up_mps * up_mps + 2 * kGravity_mps2 * height_m)) / kGravity_mps2;
+    at.head<2>() = (release.position + fall_s * release.velocity_mps).head<2>();
+  }
+  return below.ground;
+}
+
+}  // namespace
+
+RelayHoming::RelayHoming(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
+                         const PlanningOptions& planning, const MotionLimits& limits, double vehicle_radius_m)
+    : self_(self),
+      strategy_(team.strategy),
+      options_(homing),
+      planning_(planning),
+      limits_(limits),
+      radius_m_(vehicle_radius_m),
+      keep_apart_m_(homing.landing.keep_apart_m),
+      tree_(homing.tree, cruise_speed_mps(limits)) {
+  const FreeRay unseen = [](const Vec3&, const Vec3&) { return false; };
+  tree_.insert_communication({kBase, 1}, to_centimetres(base), 0, unseen);
+  relays_ = {{kBase, base, base}};
+}
+
+TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here,
+                              const TeamNews& news, std::span<const CellKey> closed) {
+  relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
+  std::erase_if(relays_, [&](const Relay& r) {
+    return r.stands_by &&
+           (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends || in_vain(r));
+  });
+  const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
+  const TimeNs stamp = to_milliseconds(news.stamp);
+  TreeFacts out;
+  tree_.apply(news.facts);
+  for (const TreeNode& n : news.facts.nodes) append(out, tree_.look_from(n.id, stamp, free));
+
+  const TreeFacts own = tree_.insert_pose({self_, nodes_made_ + 1}, to_centimetres(here), stamp, free);
+  if (!own.nodes.empty()) {
+    ++nodes_made_;
+    append(out, own);
+  }
+  // Also where others have made nodes: of their ground it knows nothing.
+  const bool judged = std::any_of(passed_.begin(), passed_.end(), [&](const Vec3& p) {
+    return (p - here).norm() < options_.tree.least_edge_m;
+  });
+  if (!judged) passed_.push_back(here), to_judge_.push_back(here);
+  if (!closed.empty()) {
+    Vec3 low = map.center_of(closed.front()), high = low;
+    for (const CellKey& k : closed)
+      low = low.cwiseMin(map.center_of(k)), high = high.cwiseMax(map.center_of(k));
+    append(out, tree_.recheck(low, high, kRecheckMargin_m, stamp, free,
+                              rock_rays(map, radius_m_ + kRockMargin_m)));
+  }
+  while (to_judge_.size() > kJudgedBehind) {
+    judge(map, roadmap, to_judge_.front());
+    to_judge_.erase(to_judge_.begin());
+  }
+  find_links(map);
+  return out;
+}
+
+double RelayHoming::margin_db(const VoxelMap& map, const Vec3& ground, const Relay& to) const {
+  return expected_margin_db(map, ground + Vec3(0, 0, radius_m_), to.antenna, options_.landing.link) -
+         doubt_db_[to.robot];
+}
+
+double RelayHoming::down_s(const Place& place) const {
+  return (place.hover - place.ground).z() / options_.landing.landing_speed_mps;
+}
+
+void RelayHoming::look_around(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here) {
+  to_judge_.push_back(here);
+  for (const Vec3& pose : std::exchange(to_judge_, {})) judge(map, roadmap, pose);
+  find_links(map);
+}
+
+/// The place near a pose that is reached and landed on soonest.
+void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose) {
+  std::vector<Place> candidates;
+  for (const Vec3& p : roadmap.places_near(pose, kPlaceReach_m)) {
+    if (!is_clear(map, p, planning_.clearance_m)) continue;  // by the search's alone no way may lead there
+    const Ground ground = ground_below(map, p, radius_m_, options_.landing.ground);
+    if (ground.verdict == GroundVerdict::good) candidates.push_back({p, ground.ground, std::nullopt});
+  }
+  const auto cost_s = [&](const Place& p) {
+    return (p.hover - pose).norm() / cruise_speed_mps(limits_) + down_s(p);
+  };
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const Place& a, const Place& b) { return cost_s(a) < cost_s(b); });
+  for (const Place& p : candidates) {
+    const Vec3 standing = p.ground + Vec3(0, 0, radius_m_);
+    if (!others_get_by(map, standing, radius_m_ + kAsMapped_m,
+                       search_clearance_m(planning_, map.resolution_m()), options_.landing.passage_reach_m))
+      continue;
+    const bool there = std::any_of(places_.begin(), places_.end(), [&](const Place& o) {
+      return (o.ground - p.ground).norm() < options_.tree.least_edge_m / 2;
+    });
+    if (!there) places_.push_back(p);
+    return;
+  }
+}
+
+/// The node of the best link to each place, as far as the map tells; of those yet to land if there is no
+/// other. A link that was counted on stands while half of what is to spare is left: otherwise a relay that
+/// came down a few centimetres from where it meant to takes a place away from who is far out, and relies on
+/// it.
+void RelayHoming::find_links(const VoxelMap& map) {
+  for (Place& p : places_) {
+    double best_db = -std::numeric_limits<double>::infinity();
+    const std::optional<RobotId> before = std::exchange(p.node, std::nullopt);
+    for (const Relay& r : relays_) {
+      if (r.stands_by && p.node && !p.claimed) break;                                   // these come last
+      if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
+      const double db = margin_db(map, p.ground, r);
+      const double least_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
+      if (db >= least_db && db >= best_db)
+        best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
+    }
+  }
+}
+
+void RelayHoming::not_heard(const LandingSpot& spot) {
+  give_up(spot.hover);
+  const auto relay =
+      std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == spot.node; });
+  if (relay != relays_.end() && relay->stands_by)
+    awaited_in_vain_[spot.node] = relay->antenna;
+  else if (relay != relays_.end() || !spot.claimed)
+    doubt_db_[spot.node] += kDoubt_db;
+  std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && in_vain(r); });
+  for (Place& p : places_)
+    if (p.node == spot.node) p.node.reset();  // no link is counted on because it was before
+}
+
+bool RelayHoming::in_vain(const Relay& relay) const {
+  const auto& antenna = awaited_in_vain_[relay.robot];
+  return antenna && (*antenna - relay.antenna).norm() < 1e-3;
+}
+
+bool RelayHoming::free_to_take(const Place& place) const {
+  const auto near = [&](const std::vector<Vec3>& all, const Vec3& p, double within_m) {
+    return std::any_of(all.begin(), all.end(), [&](const Vec3& o) { return (o - p).norm() < within_m; });
+  };
+  return !near(taken_, place.ground, keep_apart_m_) && !near(given_up_, place.hover, 1e-3);
+}
+
+/// Nearest first by the straight line, which no way is shorter than: most places are never asked for a way.
+std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const Roadmap& roadmap,
+                                                      const Vec3& from, double sooner_than_s) const {
+  struct Candidate {
+    const Place* place;
+    double least_s;
+  };
+  const auto time_s = [this](const Place& p, double length_m) {
+    return flight_time_s(length_m, limits_) + kConfirm_s + (p.claimed ? kClaimed_s : 0.0) + down_s(p);
+  };
+  std::vector<Candidate> open;
+  for (const Place& p : places_)
+    if (p.node && free_to_take(p)) open.push_back({&p, time_s(p, (p.hover - from).norm())});
+  std::stable_sort(open.begin(), open.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.least_s < b.least_s; });
+  std::optional<LandingSpot> best;
+  double best_s = sooner_than_s;
+  for (std::size_t first = 0, round = kFirstRound; first < open.size(); first += round, round = open.size()) {
+    std::vector<Vec3> hovers;
+    for (std::size_t i = first; i < std::min(first + round, open.size()) && open[i].least_s < best_s; ++i)
+      hovers.push_back(open[i].place->hover);
+    if (hovers.empty()) break;
+    const std::vector<double> lengths =
+        roadmap.distances(map, from, hovers, 0.0, best_s * cruise_speed_mps(limits_));
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      const Place& p = *open[first + i].place;
+      const double s = time_s(p, lengths[i]);
+      if (s < best_s) best_s = s, best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], s};
+    }
+  }
+  return best;
+}
+
+/// The first place beside the homing route from which the route's own node is in reach.
+std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const Roadmap& roadmap,
+                                                    const Vec3& from) const {
+  const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
+  const auto route = tree_.route(from, free);
+  if (!route || route->nodes.empty()) return std::nullopt;
+  const RobotId node = route->nodes.back().robot;
+  const auto relay =
+      std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == node; });
+  if (relay == relays_.end()) return std::nullopt;
+  double length_m = 0;
+  for (std::size_t i = 0; i < route->points.size(); ++i) {
+    const Vec3& p = route->points[i];
+    if (i > 0) length_m += (p - route->points[i - 1]).norm();
+    const Place* best = nullptr;
+    for (const Place& place : places_)
+      if ((place.hover - p).norm() < kBesideRoute_m && free_to_take(place) &&
+          margin_db(map, place.ground, *relay) >= 0 &&
+          (!best || (place.hover - p).norm() < (best->hover - p).norm()))
+        best = &place;
+    if (!best) continue;
+    const double all_m = length_m + (best->hover - p).norm();
+    return LandingSpot{best->hover, best->ground, node,
+                       false,       all_m,        flight_time_s(all_m, limits_) + kConfirm_s + down_s(*best)};
+  }
+  return std::nullopt;
+}
+
+std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roadmap& roadmap,
+                                                  const Vec3& from, double sooner_than_s) const {
+  if (strategy_ == "relay_chain") return nearest_place(map, roadmap, from, sooner_than_s);
+  const auto spot = strategy_ == "relay_tree" ? up_the_tree(map, roadmap, from) : std::nullopt;
+  return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
+}
+
+std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Release& here,
+                                            const Release& ahead) const {
+  const auto in_reach = [&](const Vec3& ground, double least_db) {
+    return std::any_of(relays_.begin(), relays_.end(),
+                       [&](const Relay& r) { return !r.stands_by && margin_db(map, ground, r) >= least_db; });
+  };
+  const std::optional<Vec3> ground = ground_of_node(map, here);
+  if (!ground || !in_reach(*ground, 0)) return std::nullopt;
+  const Vec3 next = ground_of_node(map, ahead).value_or(*ground + ahead.position - here.position);
+  return in_reach(next, kNodeSpare_db) ? std::nullopt : ground;
+}
+
+TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {
+  const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
+  return tree_.insert_communication({self_, ++nodes_made_}, to_centimetres(hover), to_milliseconds(stamp),
+                                    free);
+}
+
+}  // namespace karst::core

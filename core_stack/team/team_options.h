@@ -1,0 +1,43 @@
+// The mission file's sections `team` and `homing`: how many fly, and how they come to the ground.
+#pragma once
+#include "core_stack/common/options.h"
+#include "core_stack/homing/landing/landing_options.h"
+#include "core_stack/homing/way_home/homing_tree.h"
+#include "core_stack/team/communication/gossip.h"
+#include "core_stack/team/communication/relay_graph.h"
+
+namespace karst::core {
+
+struct TeamOptions {
+  std::int64_t robots = 1;
+  std::int64_t nodes = 0;  // that each carries
+  double stagger_s = 60;
+  std::string strategy = "relay_chain";
+  double keep_apart_m = 3.0;
+  double claim_radius_m = 4.0;
+  double claim_age_s = 60;
+  double linger_s = 60;
+  std::string key_file;  // of the radio; none: a key of the mission's seed
+};
+void describe(OptionTable& t, TeamOptions& o);
+
+struct HomingOptions {
+  double arrival_probability = 0.99;
+  // Of flown over estimated time. Flights home took 0.82 to 0.91 of the estimate.
+  double flown_mean = 0.87, flown_deviation = 0.04;
+  HomingTreeOptions tree;
+  LandingOptions landing;
+  RelayOptions relay;
+  GossipOptions gossip;
+};
+void describe(OptionTable& t, HomingOptions& o);
+
+/// Throws InputError naming `source` if options that are fine by themselves do not fit together.
+void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source);
+
+/// The share to add to an estimated flight time so that the flight takes no longer with the probability asked
+/// for: mean + z(p) deviation - 1, flown over estimated time being normal. Negative where flights are faster
+/// than estimated.
+double homing_margin(const HomingOptions& o);
+
+}  // namespace karst::core

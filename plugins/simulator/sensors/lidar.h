@@ -1,0 +1,55 @@
+// A spinning multi-channel LiDAR.
+#pragma once
+#include "core_stack/common/options.h"
+#include "core_stack/common/random.h"
+#include "core_stack/vehicle/messages.h"
+#include "plugins/simulator/environment/clouds.h"
+#include "plugins/simulator/sensors/pose_track.h"
+
+namespace karst::sim {
+
+struct LidarOptions {
+  std::string unit = "os0_32";
+  std::int64_t columns = 512;
+  double rate_hz = 10;
+  double noise_m = 0.02;  // standard deviation of a range
+  double dust_share = 0;  // of beams that dust or droplets near the vehicle send back
+  double mast_m = 0.1;    // height above the vehicle's centre
+};
+void describe(core::OptionTable& t, LidarOptions& o);
+
+/// vlp16, os0_32, os0_64, os1_64 and os0_128: channels, vertical field of view and reach of well-known units.
+std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o);
+
+class Lidar {
+ public:
+  explicit Lidar(const LidarOptions& o);
+  const std::shared_ptr<const core::LidarModel>& model() const { return model_; }
+
+  /// The sweep that ends at `stamp`, each column cast from where the sensor was when it fired. Const: sweeps
+  /// may be computed on any thread. What clouds leave of an echo may be too weak to be noticed, or a cloud's
+  /// own echo may be reported in its place; if there is neither, that is no measurement (NaN).
+  core::LidarScan sweep(const cave::Cave& cave, const PoseTrack& T_world_body, core::TimeNs stamp,
+                        core::Random random, Air air = {}) const;
+
+ private:
+  struct Return {
+    float range_m, intensity;
+  };
+  /// What becomes of a beam's return in clear air: of all echoes the strongest is reported.
+  Return through(const CloudyWay& way, const Return& clear, core::Random& random) const;
+
+  LidarOptions options_;
+  std::shared_ptr<const core::LidarModel> model_;
+  std::vector<core::Vec3f> beams_;  // unit vectors in the lidar frame, channel-major
+};
+
+/// Returned share of light: reflectivity * cos(incidence) / (1 + (range / 25 m)^2).
+float return_intensity(double reflectivity, float cos_incidence, float range_m);
+
+/// Light that the receiver gathers, up to a factor of the unit: reflectivity / range^2. Nearer than 2 m its
+/// view and the beam overlap in part only, and no more comes in than from there (the crossover function of
+/// Hahner et al.; units differ, their makers do not say).
+double received_light(double reflectivity, double range_m);
+
+}  // namespace karst::sim

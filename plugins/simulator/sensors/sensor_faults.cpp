@@ -1,0 +1,58 @@
+#include "plugins/simulator/sensors/sensor_faults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace karst::sim {
+
+using Kind = cave::Fault::Kind;
+
+namespace {
+
+std::string in_words(const cave::Fault& fault) {
+  constexpr const char* kSensors[] = {"lidar", "imu", "magnetometer", "barometer", "camera", "pose"};
+  constexpr const char* kKinds[] = {"lost", "nan", "three_points", "stamp_back", "stamp_ahead"};
+  char text[80];
+  std::snprintf(text, sizeof text, "%s %s for %.3f s", kSensors[static_cast<int>(fault.sensor)],
+                kKinds[static_cast<int>(fault.kind)], fault.lasts_s);
+  return text;
+}
+
+}  // namespace
+
+bool SensorFaults::Strike::lost() const {
+  return std::find(kinds.begin(), kinds.end(), Kind::lost) != kinds.end();
+}
+
+SensorFaults::Strike SensorFaults::strike(cave::Fault::Sensor sensor, double t_s) {
+  Strike strike;
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const cave::Fault& f = faults_[i];
+    if (f.sensor != sensor || t_s < f.after_s || (begun_[i] && t_s >= f.after_s + f.lasts_s)) continue;
+    strike.kinds.push_back(f.kind);
+    if (!begun_[i]) strike.begun.push_back(in_words(f));
+    begun_[i] = true;
+  }
+  return strike;
+}
+
+void spoil(core::LidarScan& scan, Kind kind) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr core::TimeNs kOff = 250 * core::kMillisecond;
+  if (kind == Kind::nan) {
+    for (std::size_t i = 0; i < scan.range_m.size(); i += 2) scan.range_m[i] = kNan;
+    for (std::size_t i = 0; i < scan.intensity.size(); i += 3) scan.intensity[i] = kNan;
+  } else if (kind == Kind::three_points) {
+    int left = 3;
+    for (float& r : scan.range_m)
+      if (!std::isfinite(r) || left-- <= 0) r = kNan;
+  } else if (kind == Kind::stamp_back) {
+    scan.stamp -= kOff;
+  } else if (kind == Kind::stamp_ahead) {
+    scan.stamp += kOff;
+  }
+}
+
+}  // namespace karst::sim

@@ -1,0 +1,214 @@
+// The verdict in words.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core_stack/common/counted.h"
+#include "sdk/campaign/verdict/verdict_parts.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
+
+namespace karst::campaign {
+namespace {
+
+using core::counted;
+
+using evaluation::Forecast;
+using evaluation::MetricDefinition;
+
+/// How one sentence says it of one figure; figures without a phrase are named.
+struct Phrase {
+  std::string_view metric;
+  std::string_view more, less;  // "A ... than B" if A has more of it, and if it has less
+  std::string_view subject;     // "no difference shown in ..."
+};
+constexpr std::array kPhrases = {
+    Phrase{"completed", "completes more flights than", "completes fewer flights than", "flights completed"},
+    Phrase{"contacts", "touches rock more often than", "touches rock less often than", "contacts"},
+    Phrase{"path_length_m", "flies farther than", "flies less far than", "path length"},
+    Phrase{"mean_speed_mps", "flies faster than", "flies slower than", "mean speed"},
+    Phrase{"exploring_speed_mps", "explores at a higher speed than", "explores at a lower speed than",
+           "exploring speed"},
+    Phrase{"standing_share", "stands more than", "stands less than", "standing"},
+    Phrase{"energy_wh", "draws more energy than", "draws less energy than", "energy"},
+    Phrase{"explored_volume_m3", "explores more than", "explores less than", "explored volume"},
+    Phrase{"coverage", "ends with more coverage than", "ends with less coverage than", "final coverage"},
+    Phrase{"coverage_auc", "covers more, averaged over the flight, than",
+           "covers less, averaged over the flight, than", "coverage averaged over the flight"},
+    Phrase{"restricted_t50_s", "covers 50 % later than", "covers 50 % sooner than", "time to 50 % coverage"},
+    Phrase{"restricted_t90_s", "covers 90 % later than", "covers 90 % sooner than", "time to 90 % coverage"},
+    Phrase{"restricted_t95_s", "covers 95 % later than", "covers 95 % sooner than", "time to 95 % coverage"},
+    Phrase{"surface_seen", "sees more of the surface than", "sees less of the surface than", "surface seen"},
+    Phrase{"surface_imaged", "takes pictures of more of the surface than",
+           "takes pictures of less of the surface than", "surface in pictures"},
+    Phrase{"depth_m", "comes deeper than", "comes less deep than", "depth reached"},
+    Phrase{"min_clearance_m", "keeps farther from rock than", "comes nearer to rock than", "least clearance"},
+};
+
+const MetricDefinition& definition(int metric) {
+  return evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
+}
+
+const Phrase* phrase_of(std::string_view metric) {
+  const auto p = std::find_if(kPhrases.begin(), kPhrases.end(), [&](auto& k) { return k.metric == metric; });
+  return p == kPhrases.end() ? nullptr : p;
+}
+
+std::string verb(const MetricDefinition& d, bool more) {
+  if (const Phrase* p = phrase_of(d.name)) return std::string(more ? p->more : p->less);
+  return std::string(more ? "has more " : "has less ") + std::string(d.name) + " than";
+}
+
+std::string subject(const MetricDefinition& d) {
+  const Phrase* p = phrase_of(d.name);
+  return std::string(p ? p->subject : d.name);
+}
+
+/// Shares are told in percentage points.
+bool is_share(std::string_view name) {
+  constexpr std::array kShares = {"completed",      "standing_share", "coverage",          "coverage_auc",
+                                  "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
+                                  "surface_imaged", "battery_left",   "data_at_base_share"};
+  return std::find(kShares.begin(), kShares.end(), name) != kShares.end();
+}
+
+std::string unit_of(const MetricDefinition& d) {
+  return is_share(d.name) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
+}
+
+/// With as many decimals as two significant digits of `scale` need.
+std::string number(double v, double scale) {
+  const double magnitude = scale > 0 ? std::floor(std::log10(scale)) : 0;
+  const int decimals = std::clamp(1 - static_cast<int>(magnitude), 0, 6);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, v);
+  const std::string_view zero("-0.000000", static_cast<std::size_t>(decimals ? decimals + 3 : 2));
+  return text.data() == zero ? std::string(text.data() + 1) : text.data();
+}
+
+std::string p_text(double p) {
+  if (p < 0.001) return "p < 0.001";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), p < 0.1 ? "p = %.3f" : "p = %.2f", p);
+  return text.data();
+}
+
+/// "6 caves x 10 seeds", or "57 pairs in 6 caves" where caves differ in their number.
+std::string sample(const Comparison& c) {
+  const bool even = std::all_of(c.per_cave.begin(), c.per_cave.end(),
+                                [&](auto& cave) { return cave.pairs == c.per_cave.front().pairs; });
+  if (even) return counted(c.caves, "cave") + " x " + counted(c.per_cave.front().pairs, "seed");
+  return counted(c.pairs, "pair") + " in " + counted(c.caves, "cave");
+}
+
+std::string failures(const Comparison& c, const CampaignResults& results) {
+  std::string text;
+  for (const auto& [contestant, failed] : {std::pair(c.a, c.failed_a), std::pair(c.b, c.failed_b)})
+    if (failed > 0)
+      text += (text.empty() ? "" : ", ") + counted(failed, "trial") + " of " +
+              results.contestants[contestant].name + " failed";
+  return text.empty() ? "" : "; " + text;
+}
+
+/// What the difference is, with its interval, turned so that the mean is positive.
+std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
+  const MetricDefinition& d = definition(c.metric);
+  const double factor = is_share(d.name) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
+  double low = sign * c.interval.low, high = sign * c.interval.high;
+  if (low > high) std::swap(low, high);
+  const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
+  const bool corrected = results.contestants.size() > 2;
+  std::string text = number(sign * c.difference, scale) + unit_of(d) + " (";
+  if (!std::isnan(low))
+    text += number(100 * (1 - options.alpha), 10) + " % CI " + number(low, scale) + " to " +
+            number(high, scale) + unit_of(d) + (c.few_seeds ? " over caves; " : "; ");
+  return text + sample(c) + ", " + p_text(c.p_corrected) + (corrected ? " after correction" : "") +
+         failures(c, results) + ")";
+}
+
+/// Why none is shown, where the interval alone would not tell.
+std::string why_none(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
+  // All pairs falling one way have p = 2 / 2^pairs, times the pairs of contestants after correction.
+  const auto contestants = static_cast<double>(results.contestants.size());
+  const double least_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
+  if (least_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
+  if (c.interval.excludes(0) && c.p_corrected >= options.alpha)
+    return "; the means differ, but pairs fall either way: who is ahead depends on the cave";
+  return "";
+}
+
+std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
+  const Forecast& f = c.forecast_worthwhile;
+  const MetricDefinition& d = definition(c.metric);
+  const double factor = is_share(d.name) ? 100 : 1, effect = factor * c.worthwhile;
+  const std::string difference = "a difference of " + number(100 * options.worthwhile, 10) + " % (" +
+                                 number(effect, effect) + unit_of(d) + ")";
+  if (options.simulations == 0) return "";
+  if (c.few_seeds) return "; two seeds a cave or more would tell how many show " + difference;
+  if (f.seeds >= Forecast::kNever) return "; " + difference + " would need a thousand seeds a cave or more";
+  int flown = Forecast::kNever;
+  for (const CaveComparison& cave : c.per_cave) flown = std::min(flown, static_cast<int>(cave.pairs));
+  if (f.seeds <= flown) return "; " + difference + " would most likely have been shown";
+  const auto more = [&](int seeds) { return std::to_string(std::max(0, seeds - flown)); };
+  return "; about " + more(f.seeds) + " more seed" + (f.seeds - flown == 1 ? "" : "s") + " a cave (" +
+         more(f.low) + " to " + (f.high >= Forecast::kNever ? "a thousand" : more(f.high)) + ") would show " +
+         difference;
+}
+
+std::string names_of(const std::vector<Place>& places, const CampaignResults& results) {
+  std::string text;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    text += (i == 0                   ? ""
+             : i + 1 == places.size() ? " and "
+                                      : ", ") +
+            results.contestants[places[i].contestant].name;
+  return text;
+}
+
+}  // namespace
+
+std::string sentence_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
+  const MetricDefinition& d = definition(c.metric);
+  const std::string &a = results.contestants[c.a].name, &b = results.contestants[c.b].name;
+  if (c.pairs == 0)
+    return "nothing to compare in " + subject(d) + ": no cave and seed of which it is known of both " + a +
+           " and " + b;
+  const bool a_has_more = c.difference > 0;
+  if (c.shown == Shown::no_difference) {
+    const std::string between = "no difference shown between " + a + " and " + b + " in " + subject(d);
+    if (c.difference == 0 && c.test.positive + c.test.negative == 0)
+      return between + ": all " + counted(c.pairs, "pair") + " equal";
+    const bool primary = d.name == options.metric;
+    return between + ": " + a + " " + (a_has_more ? "more" : "less") + " by " + size_of(c, results, options) +
+           why_none(c, results, options) + (primary ? seeds_text(c, options) : "");
+  }
+  // The better one speaks first; of figures without a better, the one with more.
+  const bool a_first = c.shown == Shown::a_better || c.shown == Shown::a_more;
+  return (a_first ? a : b) + " " + verb(d, a_first == a_has_more) + " " + (a_first ? b : a) + ": " +
+         size_of(c, results, options);
+}
+
+std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results) {
+  const std::vector<Place>& ranking = verdicts.ranking;
+  if (ranking.size() < 2) return "nothing to compare: a verdict needs two contestants";
+  if (ranking.size() == 2) return verdicts.find(0, 1, verdicts.metric)->sentence;
+  const std::string by = " in " + subject(definition(verdicts.metric));
+  std::vector<Place> first;  // those that nobody is shown to be better than
+  std::copy_if(ranking.begin(), ranking.end(), std::back_inserter(first),
+               [](const Place& p) { return p.best == 1; });
+  if (first.size() == ranking.size() && ranking.front().worst == static_cast<int>(ranking.size()))
+    return "no difference shown" + by + " between any two of " + names_of(ranking, results);
+  if (first.empty())  // a better than b, b than c, c than a: where they did not all fly the same
+    return "each of " + names_of(ranking, results) + " is shown worse than another" + by;
+  if (first.size() > 1) return "nobody is shown to be better" + by + " than " + names_of(first, results);
+  const std::size_t best = first.front().contestant;
+  const Place& second = ranking[ranking[0].contestant == best ? 1 : 0];
+  const Comparison* next = verdicts.find(best, second.contestant, verdicts.metric);
+  const bool over_all = first.front().worst == 1;
+  return results.contestants[best].name + " is best" + by +
+         (over_all ? ", shown better than all others; the next: "
+                   : ", though not shown better than all others; ") +
+         next->sentence;
+}
+
+}  // namespace karst::campaign

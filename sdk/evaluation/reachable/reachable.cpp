@@ -1,0 +1,139 @@
+#include "sdk/evaluation/reachable/reachable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "core_stack/common/error.h"
+#include "sdk/evaluation/reachable/open_cave.h"
+#include "sdk/evaluation/reachable/sight.h"
+#include "sdk/evaluation/reachable/triangle_cells.h"
+
+namespace karst::evaluation {
+namespace {
+
+using core::InputError;
+using core::Vec3;
+
+constexpr double kStartSearchM = 3;
+constexpr double kMaxBlocks = 1e8;
+
+std::string number_text(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", v);
+  return text;
+}
+
+std::string place_text(const Vec3& p) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.1f %.1f %.1f", p.x(), p.y(), p.z());
+  return text;
+}
+
+CellKey key_of(const Vec3& p, double resolution_m) {
+  const auto k = [&](double v) { return static_cast<std::int32_t>(std::floor(v / resolution_m)); };
+  return {k(p.x()), k(p.y()), k(p.z())};
+}
+
+Triangle triangle(const cave::TriangleMesh& mesh, std::size_t i) {
+  const auto& t = mesh.triangles[i];
+  return {mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(),
+          mesh.vertices[t[2]].cast<double>()};
+}
+
+/// Bounds with more than a block to spare on all sides, so that the outermost blocks hold no rock.
+CellSet empty_set_around(const cave::TriangleMesh& mesh, double resolution_m, const std::string& name) {
+  if (mesh.triangles.empty()) throw InputError(name, "", "the mesh has no triangles");
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) {
+      low = low.cwiseMin(mesh.vertices[v].cast<double>());
+      high = high.cwiseMax(mesh.vertices[v].cast<double>());
+    }
+  const double block_m = CellSet::kEdge * resolution_m;
+  const Vec3 blocks = (high - low) / block_m + Vec3::Constant(4);
+  if (!blocks.allFinite() || !(blocks.prod() < kMaxBlocks) ||
+      !(low.cwiseAbs().maxCoeff() + high.cwiseAbs().maxCoeff() < 1e9 * resolution_m))
+    throw InputError(name, "", "the mesh is too large for cells of " + number_text(resolution_m) + " m");
+  const Vec3 spare = Vec3::Constant(2 * block_m);
+  return CellSet(key_of(low - spare, resolution_m), key_of(high + spare, resolution_m));
+}
+
+std::optional<CellKey> flyable_near(const Vec3& start, const CellSet& clear, const Reachable& r) {
+  const double edge = r.options.resolution_m;
+  std::optional<CellKey> best;
+  double best_distance = kStartSearchM;
+  const CellKey low = key_of(start - Vec3::Constant(kStartSearchM), edge),
+                high = key_of(start + Vec3::Constant(kStartSearchM), edge);
+  for (std::int32_t z = low.z; z <= high.z; ++z)
+    for (std::int32_t y = low.y; y <= high.y; ++y)
+      for (std::int32_t x = low.x; x <= high.x; ++x) {
+        const CellKey k{x, y, z};
+        if (!clear.contains(k)) continue;
+        const Vec3 center = center_of(k, edge);
+        const double distance = (center - start).norm();
+        if (distance >= best_distance) continue;
+        // Points half a cell apart do: a wall in between is at least one cell of rock thick.
+        const int points = 1 + static_cast<int>(2 * distance / edge);
+        bool open = true;
+        for (int i = 0; i <= points && open; ++i)
+          open = r.free.contains(key_of(start + (center - start) * i / points, edge));
+        if (!open) continue;
+        best = k;
+        best_distance = distance;
+      }
+  return best;
+}
+
+/// All but what can only be seen.
+Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
+                       const std::string& name) {
+  const double edge = options.resolution_m;
+  CellSet rock = empty_set_around(mesh, edge, name);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) insert_touched(rock, triangle(mesh, i), edge);
+
+  const std::string where = "start " + place_text(start);
+  const CellKey seed = key_of(start, edge);
+  if (!rock.has_place(rock.block_of(seed))) throw InputError(name, where, "outside the mesh");
+  if (rock.contains(seed)) throw InputError(name, where, "in rock");
+
+  Reachable r;
+  r.options = options;
+  bool escaped = false;
+  r.free = flood(rock, true, seed, escaped);
+  if (escaped)
+    throw InputError(
+        name, where,
+        "free space leads outside the mesh near " + place_text(center_of(find_opening(rock, seed), edge)));
+
+  CellSet clear = r.free;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    remove_near(clear, triangle(mesh, i), edge, options.clearance_m);
+  const auto first = flyable_near(start, clear, r);
+  if (!first)
+    throw InputError(name, where,
+                     "no place with " + number_text(options.clearance_m) +
+                         " m to rock in a straight line within " + number_text(kStartSearchM) + " m");
+  r.flyable = flood(clear, false, *first, escaped);
+  r.free_cells = r.free.size();
+  r.flyable_cells = r.flyable.size();
+  return r;
+}
+
+}  // namespace
+
+Reachable find_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
+                         const std::string& name) {
+  Reachable r = find_flyable(mesh, start, options, name);
+  r.reachable = seen_from(r.flyable, r.free, options.sight_m / options.resolution_m);
+  r.reachable_cells = r.reachable.size();
+  return r;
+}
+
+void check_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
+                     const std::string& name) {
+  find_flyable(mesh, start, options, name);
+}
+
+}  // namespace karst::evaluation

@@ -1,0 +1,71 @@
+// A run directory read back (docs/run_directory.md). A run that was cut short, or whose files are damaged,
+// still gives a record of what is there; `problems` says what is not.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sdk/evaluation/record/map_growth.h"
+#include "sdk/evaluation/record/poses.h"
+#include "sdk/evaluation/record/table.h"
+
+namespace karst::evaluation {
+
+/// No mission lasts longer: a day's flight, and a day to start late and to come home. Later times are
+/// damaged.
+constexpr double kLongestRun_s = 2 * 86400.0;
+
+struct Setting {
+  std::string key, value;  // "map.resolution", "0.2 m"
+};
+
+struct Phase {
+  std::string name;  // standby, takeoff, look, explore, home, land
+  double begin_s = 0, end_s = 0;
+};
+
+struct RunRecord {
+  std::filesystem::path directory;
+  std::vector<Setting> settings;              // mission.info, in its order
+  std::vector<nlohmann::json> events;         // each an object with "t" and "kind", in the file's order
+  std::vector<nlohmann::json> truth_events;   // the simulator's: each an object with "time_s" and "event"
+  std::vector<nlohmann::json> truth_objects;  // likewise, of objects of interest
+  std::vector<StampedPose> estimate, truth;
+  Table telemetry, truth_table, decisions;
+  std::vector<OccupiedSpan> growth;
+  nlohmann::json timing;      // null if absent
+  nlohmann::json evaluation;  // null if absent
+  std::vector<Phase> phases;  // consecutive; "done" is where the last one ends
+  std::vector<std::string> problems;
+
+  /// The text of a setting, "" if there is none of this key.
+  std::string setting(const std::string& key) const;
+  /// The number a setting begins with.
+  std::optional<double> number(const std::string& key) const;
+  double map_resolution_m() const;  // 0.2 if the settings do not say
+  /// The last event of a kind, or null.
+  const nlohmann::json* last_event(const std::string& kind) const;
+  /// The latest time found anywhere in the record, seconds.
+  double last_time_s() const;
+};
+
+/// A text field of an event, "" if there is none.
+std::string event_text(const nlohmann::json& event, const char* key);
+/// A number field of an event; none if there is none.
+std::optional<double> event_number(const nlohmann::json& event, const char* key);
+
+/// The leaves of an INFO file, and a JSON file; nothing, and a problem if it is damaged, where it is not to
+/// be had.
+std::vector<Setting> read_settings(const std::filesystem::path& file, std::vector<std::string>& problems);
+nlohmann::json read_json(const std::filesystem::path& file, std::vector<std::string>& problems);
+/// One JSON object a line, each with a number and a text of the given names; other lines are left out and
+/// reported.
+std::vector<nlohmann::json> read_events(const std::filesystem::path& file, const char* time, const char* kind,
+                                        std::vector<std::string>& problems);
+
+/// Throws InputError only if `run_dir` is no directory.
+RunRecord read_run(const std::filesystem::path& run_dir);
+
+}  // namespace karst::evaluation

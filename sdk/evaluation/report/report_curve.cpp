@@ -1,0 +1,27 @@
+#include "sdk/evaluation/report/report_curve.h"
+
+#include <cmath>
+
+#include "sdk/evaluation/page/decimate.h"
+
+namespace karst::evaluation {
+namespace {
+
+constexpr std::size_t kMaxPlotSamples = 1600;
+
+double thousandths(double v) { return std::round(v * 1000) / 1000; }
+
+}  // namespace
+
+nlohmann::ordered_json report_curve(const std::vector<double>* t_s, const std::vector<double>* y,
+                                    double scale) {
+  if (!t_s || !y) return nullptr;
+  const Curve c = decimate(*t_s, *y, kMaxPlotSamples);
+  if (c.x.empty()) return nullptr;
+  nlohmann::ordered_json points = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < c.x.size(); ++i)
+    points.push_back({thousandths(c.x[i]), thousandths(scale * c.y[i])});
+  return points;
+}
+
+}  // namespace karst::evaluation

@@ -1,0 +1,111 @@
+#include "sdk/evaluation/report/report_goals.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace karst::evaluation {
+namespace {
+
+using core::Vec3;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr double kSameGoal_m = 0.75;
+
+struct GoalSpan {
+  double t_s = 0;
+  std::optional<double> until_s;
+  std::optional<Vec3> position;
+  std::optional<double> heading_rad, score;
+  std::string why, fate, fate_reason;
+};
+
+std::optional<Vec3> position_of(const json& event) {
+  const auto p = event.find("position");
+  if (p == event.end() || !p->is_array() || p->size() != 3) return std::nullopt;
+  if (!std::all_of(p->begin(), p->end(), [](const json& v) { return v.is_number(); })) return std::nullopt;
+  return Vec3((*p)[0].get<double>(), (*p)[1].get<double>(), (*p)[2].get<double>());
+}
+
+double distance(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
+  return a && b ? (*a - *b).norm() : std::numeric_limits<double>::infinity();
+}
+
+class GoalSpans {
+ public:
+  void accept(const GoalSpan& goal) {
+    std::erase_if(open_, [&](std::size_t i) {  // the same goal again, on another path
+      const bool same = distance(spans_[i].position, goal.position) < kSameGoal_m;
+      if (same) close(i, goal.t_s, "planned anew", "");
+      return same;
+    });
+    while (open_.size() > 1) close_last(goal.t_s);  // the one appended before is replaced
+    open_.push_back(spans_.size());
+    spans_.push_back(goal);
+  }
+  /// Ends the open goal at `position`, and those accepted before it; without a position, the oldest.
+  void end(double t_s, const std::optional<Vec3>& position, const std::string& fate,
+           const std::string& reason) {
+    if (open_.empty()) return;
+    const auto nearest = std::min_element(open_.begin(), open_.end(), [&](std::size_t a, std::size_t b) {
+      return distance(spans_[a].position, position) < distance(spans_[b].position, position);
+    });
+    if (position && !(distance(spans_[*nearest].position, position) < kSameGoal_m)) return;  // ended before
+    for (auto i = open_.begin(); i != nearest; ++i) close(*i, t_s, "superseded", "");
+    close(*nearest, t_s, fate, reason);
+    open_.erase(open_.begin(), nearest + 1);
+  }
+  void end_all(double t_s) {
+    while (!open_.empty()) close_last(t_s);
+  }
+  const std::vector<GoalSpan>& spans() const { return spans_; }
+
+ private:
+  void close(std::size_t i, double t_s, const std::string& fate, const std::string& reason) {
+    spans_[i].until_s = t_s;
+    spans_[i].fate = fate;
+    spans_[i].fate_reason = reason;
+  }
+  void close_last(double t_s) {
+    close(open_.back(), t_s, "superseded", "");
+    open_.pop_back();
+  }
+
+  std::vector<GoalSpan> spans_;
+  std::vector<std::size_t> open_;  // indices, oldest first
+};
+
+ordered_json number_or_null(const std::optional<double>& v) { return v ? ordered_json(*v) : nullptr; }
+
+}  // namespace
+
+ordered_json goal_spans(const RunRecord& run) {
+  GoalSpans goals;
+  for (const json& e : run.events) {
+    const double t_s = e["t"];
+    const std::string state = event_text(e, "state");
+    if (e["kind"] == "phase" && event_text(e, "phase") != "explore") goals.end_all(t_s);
+    if (e["kind"] != "goal") continue;
+    if (state == "accepted")
+      goals.accept({t_s, std::nullopt, position_of(e), event_number(e, "heading"), event_number(e, "score"),
+                    event_text(e, "why"), "", ""});
+    if (state == "reached" || state == "unreachable" || state == "abandoned" || state == "superseded")
+      goals.end(t_s, position_of(e), state, event_text(e, "reason"));
+  }
+  ordered_json list = ordered_json::array();
+  for (const GoalSpan& g : goals.spans()) {
+    const ordered_json position =
+        g.position ? ordered_json{g.position->x(), g.position->y(), g.position->z()} : ordered_json(nullptr);
+    list.push_back({{"t", g.t_s},
+                    {"until", number_or_null(g.until_s)},
+                    {"position", position},
+                    {"heading", number_or_null(g.heading_rad)},
+                    {"score", number_or_null(g.score)},
+                    {"why", g.why},
+                    {"fate", g.fate},
+                    {"fate_reason", g.fate_reason}});
+  }
+  return list;
+}
+
+}  // namespace karst::evaluation

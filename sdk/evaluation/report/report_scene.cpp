@@ -1,0 +1,185 @@
+#include "sdk/evaluation/report/report_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sdk/evaluation/page/base64.h"
+#include "sdk/evaluation/report/cloud.h"
+
+namespace karst::evaluation {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxCloudPoints = 300000;
+constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, all moments together
+
+double centimetres(double metres) { return std::round(metres * 100) / 100; }
+
+/// A list of number lists, each at least `least` long, as rounded numbers; others are left out.
+ordered_json rounded_points(const json& event, const char* key, std::size_t least) {
+  ordered_json points = ordered_json::array();
+  const auto list = event.find(key);
+  if (list == event.end() || !list->is_array()) return points;
+  for (const json& p : *list) {
+    const auto number = [](const json& v) { return v.is_number(); };
+    if (!p.is_array() || p.size() < least || !std::all_of(p.begin(), p.end(), number)) continue;
+    ordered_json point = ordered_json::array();
+    for (const json& v : p) point.push_back(centimetres(v.get<double>()));
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+struct Moment {
+  double t_s;
+  ordered_json content;
+  std::size_t marks;
+};
+
+/// [[t, content], ...]; if there are too many marks, only every second, third ... moment.
+ordered_json thinned(std::vector<Moment> moments, const char* what, std::vector<std::string>& problems) {
+  std::size_t total = 0;
+  for (const Moment& m : moments) total += m.marks;
+  const std::size_t stride = total / kMaxMarks + 1;
+  if (stride > 1)
+    problems.push_back("report: of the " + std::string(what) + ", one moment in " + std::to_string(stride) +
+                       " is shown, to keep the page small");
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < moments.size(); i += stride)
+    list.push_back({moments[i].t_s, std::move(moments[i].content)});
+  return list;
+}
+
+}  // namespace
+
+CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double least_cell_m, double tick_ms,
+                         std::vector<std::string>& problems) {
+  const auto& poses = run.estimate.empty() ? run.truth : run.estimate;
+  const Cloud cloud = make_cloud(run.growth, run.map_resolution_m(), max_points, poses, least_cell_m);
+  CloudArrays arrays;
+  arrays.cell_m = cloud.cell_m;
+  arrays.tick_s = 1e-3 * tick_ms;
+  if (cloud.points.empty()) return arrays;
+
+  const core::CellKey base = cloud.points[cloud.points.size() / 2].key;
+  const auto centre = [&](std::int32_t k) { return (k + 0.5) * cloud.cell_m; };
+  arrays.origin = {centre(base.x), centre(base.y), centre(base.z)};
+  const auto tick = [&](std::int32_t t_ms) {
+    return static_cast<std::uint16_t>(std::clamp(std::lround(t_ms / tick_ms), 0l, 65534l));
+  };
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const OccupiedSpan& p = cloud.points[i];
+    const std::int64_t offset[3] = {std::int64_t{p.key.x} - base.x, std::int64_t{p.key.y} - base.y,
+                                    std::int64_t{p.key.z} - base.z};
+    if (std::any_of(offset, offset + 3, [](std::int64_t d) { return std::abs(d) > 32767; })) {
+      ++far;
+      continue;
+    }
+    for (const std::int64_t d : offset) arrays.cells.push_back(static_cast<std::int16_t>(d));
+    arrays.from.push_back(tick(p.from_ms));
+    arrays.until.push_back(p.until_ms == OccupiedSpan::kNever ? 65535 : tick(p.until_ms));
+    arrays.normals.insert(arrays.normals.end(), cloud.normals[i].begin(), cloud.normals[i].end());
+  }
+  if (far > 0)
+    problems.push_back("map_growth.bin: " + std::to_string(far) + " cells lie kilometres away; left out");
+  return arrays;
+}
+
+ordered_json scene_cloud(const RunRecord& run, double duration_s, std::vector<std::string>& problems) {
+  const double tick_ms = std::max(1.0, duration_s * 1000) / 65534.0;
+  const CloudArrays cloud = cloud_arrays(run, kMaxCloudPoints, 0, tick_ms, problems);
+  if (cloud.cells.empty()) return nullptr;
+  if (cloud.cell_m > run.map_resolution_m())
+    problems.push_back("report: the map is drawn with cells of " + std::to_string(cloud.cell_m).substr(0, 4) +
+                       " m, to keep the page small");
+  return {{"count", cloud.from.size()},      {"cell_m", cloud.cell_m},
+          {"origin", cloud.origin},          {"tick_s", cloud.tick_s},
+          {"cells", base64_of(cloud.cells)}, {"from", base64_of(cloud.from)},
+          {"until", base64_of(cloud.until)}, {"normals", base64_of(cloud.normals)}};
+}
+
+ordered_json scene_track(const std::vector<StampedPose>& poses, std::size_t max_poses) {
+  if (poses.empty()) return nullptr;
+  const std::size_t stride = poses.size() / max_poses + 1;
+  std::vector<float> t, xyz, heading;
+  const auto add = [&](const StampedPose& p) {
+    t.push_back(static_cast<float>(p.t_s));
+    for (int a = 0; a < 3; ++a) xyz.push_back(static_cast<float>(p.T_world_body.position[a]));
+    heading.push_back(static_cast<float>(core::heading_of(p.T_world_body.orientation)));
+  };
+  for (std::size_t i = 0; i < poses.size(); i += stride) add(poses[i]);
+  if ((poses.size() - 1) % stride != 0) add(poses.back());
+  return {{"count", t.size()}, {"t", base64_of(t)}, {"xyz", base64_of(xyz)}, {"heading", base64_of(heading)}};
+}
+
+ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& problems) {
+  std::vector<Moment> moments;
+  for (const json& e : run.events) {
+    if (e["kind"] != "frontiers") continue;
+    ordered_json clusters = rounded_points(e, "clusters", 5);
+    for (ordered_json& c : clusters) c.erase(c.begin());  // the id
+    const std::size_t count = clusters.size();
+    moments.push_back({e["t"], std::move(clusters), count});
+  }
+  return thinned(std::move(moments), "frontiers", problems);
+}
+
+ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problems) {
+  std::vector<Moment> moments;
+  for (const json& e : run.events) {
+    if (e["kind"] != "plan") continue;
+    ordered_json points = rounded_points(e, "points", 3);
+    const std::size_t count = points.size();
+    moments.push_back({e["t"], std::move(points), count});
+  }
+  return thinned(std::move(moments), "plans", problems);
+}
+
+ordered_json scene_objects(const RunRecord& run) {
+  std::map<double, ordered_json> found;  // by number
+  ordered_json moments = ordered_json::array();
+  for (const json& e : run.events) {
+    const std::string state = event_text(e, "state");
+    if (e["kind"] != "object" || state == "reported") continue;
+    const double number = event_number(e, "number").value_or(-1);
+    json place;
+    place["at"] = json::array({e.value("position", json())});
+    const ordered_json at = rounded_points(place, "at", 3);
+    if (state == "withdrawn" || at.empty()) {
+      found.erase(number);
+    } else {
+      found[number] = at[0];
+      found[number].push_back(event_text(e, "what"));
+    }
+    ordered_json all = ordered_json::array();
+    for (const auto& [n, object] : found) all.push_back(object);
+    moments.push_back({e["t"], all});
+  }
+  return moments;
+}
+
+ordered_json scene_drawings(const RunRecord& run, std::vector<std::string>& problems) {
+  std::vector<Moment> moments;
+  for (const json& e : run.events) {
+    // A decision without drawings clears those of the one before.
+    const bool drawing = e["kind"] == "drawing", decision = e["kind"] == "decision";
+    if (!drawing && !decision) continue;
+    if (moments.empty() || moments.back().t_s != e["t"].get<double>())
+      moments.push_back({e["t"], ordered_json::array(), 0});
+    if (!drawing) continue;
+    ordered_json points = rounded_points(e, "points", 3);
+    moments.back().marks += points.size();
+    const double rgb = event_number(e, "rgb").value_or(0xffffff);
+    moments.back().content.push_back({{"shape", event_text(e, "shape")},
+                                      {"rgb", std::clamp(rgb, 0.0, double{0xffffff})},
+                                      {"text", event_text(e, "text")},
+                                      {"points", std::move(points)}});
+  }
+  return thinned(std::move(moments), "policy's drawings", problems);
+}
+
+}  // namespace karst::evaluation

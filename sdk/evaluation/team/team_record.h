@@ -1,0 +1,26 @@
+// A team's run directory read back: every robot's record in the team's time, what the base knew, and all
+// robots as if they had been one. What is missing or damaged stands in `problems`, each robot's in its own.
+#pragma once
+#include "sdk/evaluation/record/run_record.h"
+
+namespace karst::evaluation {
+
+struct TeamRecord {
+  std::filesystem::path directory;
+  std::vector<nlohmann::json> events;  // team.jsonl: each an object with "t" and "kind"
+  std::vector<RunRecord> robots;       // robot 1 first; all their times are the team's
+  std::vector<double> starts_s;        // when each was switched on
+  /// Settings, all poses, the union of the maps' growth, and a telemetry of t_s and explored_m3
+  /// (team_volume_curve). Flies from the first take-off on, for as long as the last robot could.
+  RunRecord merged;
+  std::optional<core::VoxelMap> map;  // the final maps in one, log-odds added; none if any robot has none
+  double duration_s = 0;
+  std::vector<Setting> settings;  // the team's mission.info
+  nlohmann::json timing;          // the team's; null if absent
+  std::vector<std::string> problems;
+};
+
+/// Throws InputError if `run_dir` is no directory, or lacks team.jsonl or a robot's folder.
+TeamRecord read_team(const std::filesystem::path& run_dir);
+
+}  // namespace karst::evaluation

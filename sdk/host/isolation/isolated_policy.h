@@ -1,0 +1,52 @@
+// A policy in a process of its own, behind the core's port (docs/isolation.md).
+//
+// Whatever becomes of that process, decide() returns or throws PolicyFailure. The first time the process
+// breaks, decide() answers HOLD and a new one is started that goes on with the state the policy saved last,
+// if it offers that; the second time is a PolicyFailure.
+#pragma once
+#include <memory>
+
+#include "sdk/host/hosted_policy.h"
+#include "sdk/host/isolation/policy_process.h"
+#include "sdk/host/serialization/flat_answer.h"
+
+namespace karst::host {
+
+class IsolatedPolicy final : public HostedPolicy {
+ public:
+  /// Starts the policy of `file`. Throws core::InputError, as in process.
+  IsolatedPolicy(const std::string& file, const PolicyChoice& choice);
+  ~IsolatedPolicy() override;
+
+  std::string name() const override { return choice_.name; }
+  const std::string& version() const override { return ready_.version; }
+  const std::string& file() const override { return file_; }
+  const boost::property_tree::ptree& parameters() const override { return ready_.parameters; }
+  bool abandoned() const override { return false; }
+
+  core::Decision decide(const core::DecisionRequest& request) override;
+  void notify(const core::PolicyEvent& event) override;
+
+  /// Of the policy's process; -1 if there is none.
+  pid_t process_id() const { return process_ ? process_->id() : -1; }
+
+ private:
+  void start();
+  core::Decision ask(const core::DecisionRequest& request);
+  RingMessage question(const char* call, Said kind, const Bytes& body, const core::DecisionRequest* request);
+  /// Starts anew the first time. Throws PolicyFailure the second.
+  void recover(const std::string& why);
+  core::Decision hold(const std::string& why);
+
+  std::string file_;
+  PolicyChoice choice_;
+  ReadyReport ready_;
+  PolicyLegacy legacy_;
+  std::unique_ptr<PolicyProcess> process_;
+  const core::VoxelMap* map_sent_ = nullptr;
+  std::uint64_t revision_sent_ = 0;
+  bool restarted_ = false;
+  std::string broke_between_;  // why it broke in an event, until the next decision tells
+};
+
+}  // namespace karst::host

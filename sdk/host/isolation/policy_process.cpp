@@ -1,0 +1,198 @@
+#include "sdk/host/isolation/policy_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+
+#include "core_stack/common/error.h"
+#include "sdk/host/isolation/file_access.h"
+#include "sdk/host/isolation/policy_child.h"
+#include "sdk/host/isolation/process.h"
+
+namespace karst::host {
+namespace {
+
+constexpr std::size_t kMostThreads = 64;
+
+/// Closed when it goes out of scope.
+struct Descriptor {
+  int value;
+  explicit Descriptor(int d) : value(d) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(value); }
+};
+
+/// A copy far above those the child gets.
+int raised(int descriptor) { return fcntl(descriptor, F_DUPFD_CLOEXEC, 100); }
+
+pid_t spawn(const std::string& program, int requests, int answers) {
+  const Descriptor read_end(raised(requests)), write_end(raised(answers));
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, read_end.value, kRequestsDescriptor);
+  posix_spawn_file_actions_adddup2(&files, write_end.value, kAnswersDescriptor);
+  posix_spawn_file_actions_addclosefrom_np(&files, kAnswersDescriptor + 1);
+  // A group of its own: Ctrl-C on a terminal ends the mission in order, and must not end the policy before.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none, all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                                           POSIX_SPAWN_SETPGROUP));
+  const std::string host = std::to_string(getpid());
+  char* const argv[] = {const_cast<char*>(program.c_str()), const_cast<char*>(host.c_str()),  // NOLINT
+                        nullptr};
+  pid_t id = -1;
+  const int code = posix_spawn(&id, program.c_str(), &files, &attributes, argv, environ);
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (code != 0)
+    throw core::InputError(program, "", std::string("cannot be run for the policy: ") + std::strerror(code));
+  return id;
+}
+
+/// Directories in /proc/PID/task, by their links; 0 if it is gone.
+std::size_t threads_of(pid_t id) {
+  struct stat s {};
+  const std::string path = "/proc/" + std::to_string(id) + "/task";
+  return stat(path.c_str(), &s) == 0 && s.st_nlink > 2 ? s.st_nlink - 2 : 0;
+}
+
+}  // namespace
+
+std::string policy_child_program() {
+  const auto self = std::filesystem::read_symlink("/proc/self/exe");
+  return (self.parent_path().parent_path() / "lib/karst/karst-policy-child").string();
+}
+
+StartingThread::StartingThread(const std::function<pid_t()>& start) {
+  const auto started = std::make_shared<std::promise<pid_t>>();
+  thread_ = std::thread([started, start, released = release_.get_future()] {
+    try {
+      started->set_value(start());
+    } catch (...) {
+      started->set_exception(std::current_exception());
+    }
+    released.wait();
+  });
+  try {
+    process_ = started->get_future().get();
+  } catch (...) {
+    end();
+    throw;
+  }
+}
+
+StartingThread::~StartingThread() { end(); }
+
+void StartingThread::end() {
+  release_.set_value();
+  thread_.join();
+}
+
+PolicyProcess::PolicyProcess(const std::string& program, CallLimits limits)
+    : limits_(limits), ring_(ours_, theirs_, [this] { watch(); }) {
+  const Descriptor requests(ours_.read_only_descriptor());
+  if (landlock_version() == 0) hide_this_process();
+  started_by_.emplace([&] { return spawn(program, requests.value, theirs_.descriptor()); });
+  id_ = started_by_->process();
+  ours_.close_descriptor(), theirs_.close_descriptor();
+}
+
+PolicyProcess::~PolicyProcess() {
+  if (id_ > 0) end_process(id_);
+}
+
+double PolicyProcess::cpu_s() const {
+  clockid_t clock{};
+  timespec t{};
+  if (id_ <= 0 || clock_getcpuclockid(id_, &clock) != 0 || clock_gettime(clock, &t) != 0)
+    return cpu_before_s_;
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+void PolicyProcess::begin_call(const char* name) {
+  call_ = name;
+  call_began_ = std::chrono::steady_clock::now();
+  cpu_before_s_ = cpu_s();
+  // The kernel's own limit stands behind watch(), and also ends a process that computes while nobody waits.
+  rlimit cpu{};
+  if (id_ <= 0 || prlimit(id_, RLIMIT_CPU, nullptr, &cpu) != 0) return;
+  cpu.rlim_cur =
+      static_cast<rlim_t>(std::ceil(cpu_before_s_ + std::max(0.0, limits_.cpu_s - spent_cpu_s_)) + 1);
+  prlimit(id_, RLIMIT_CPU, &cpu, nullptr);
+}
+
+void PolicyProcess::end_call() {
+  spent_wall_s_ += waited_s();
+  spent_cpu_s_ += cpu_s() - cpu_before_s_;
+}
+
+double PolicyProcess::waited_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - call_began_).count();
+}
+
+void PolicyProcess::watch() {
+  if (id_ <= 0) throw ProcessBroken("its process has ended");
+  int status = 0;
+  const pid_t changed = waitpid(id_, &status, WNOHANG | WUNTRACED);
+  const std::string in_call = std::string(" in ") + call_ + "()";
+  if (changed == id_ && WIFSTOPPED(status)) throw ProcessBroken("its process stopped itself" + in_call);
+  if (changed != 0) {
+    id_ = -1;
+    ProcessEnd end;
+    end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+    end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    throw ProcessBroken("its process ended" + in_call + ": " + describe(end));
+  }
+  const std::string which =
+      passed(limits_, spent_wall_s_ + waited_s(), spent_cpu_s_ + cpu_s() - cpu_before_s_);
+  if (!which.empty()) throw ProcessBroken(std::string(call_) + "() " + which);
+  if (threads_of(id_) > kMostThreads)
+    throw ProcessBroken("it ran more than " + std::to_string(kMostThreads) + " threads" + in_call);
+}
+
+void PolicyProcess::send(std::uint32_t kind, std::span<const std::byte> body) {
+  try {
+    ring_.send(kind, body);
+  } catch (const RingBroken& e) {
+    throw ProcessBroken(std::string("garbage came from its process in ") + call_ + "(): " + e.what());
+  }
+}
+
+RingMessage PolicyProcess::receive(std::size_t most_bytes) {
+  try {
+    return ring_.receive(most_bytes);
+  } catch (const RingBroken& e) {
+    throw ProcessBroken(std::string("garbage came from its process in ") + call_ + "(): " + e.what());
+  }
+}
+
+void PolicyProcess::expect_end() noexcept {
+  for (int i = 0; i < 200 && id_ > 0; ++i) {
+    if (waitpid(id_, nullptr, WNOHANG) == id_)
+      id_ = -1;
+    else
+      usleep(5000);
+  }
+}
+
+}  // namespace karst::host

@@ -1,0 +1,26 @@
+// From a policy's name to the file that offers it.
+#pragma once
+#include <string>
+
+#include "sdk/host/plugin/discovery.h"
+#include "sdk/host/plugin/plugin_file.h"
+
+namespace karst::host {
+
+struct Selection {
+  PluginFile plugin;
+  const karst_policy_t* policy = nullptr;
+};
+
+/// The first file on the path that offers `name`, not opened in this process. A file named explicitly must be
+/// sound. Throws core::InputError with what there is, the nearest name, broken candidates and the folders
+/// searched.
+PolicyListing find_policy(const std::string& name, const SearchPath& path);
+
+/// Opens a file that was found to offer `name`.
+Selection open_policy(const std::string& file, const std::string& name);
+
+/// Opens the file that find_policy() finds, and no other.
+Selection select_policy(const std::string& name, const SearchPath& path);
+
+}  // namespace karst::host

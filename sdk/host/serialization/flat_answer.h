@@ -1,0 +1,79 @@
+// What the host and a policy's process say to each other besides requests, as bytes.
+//
+// What comes from the policy's process may be anything: whoever reads an answer gets core types that keep the
+// rules an answer in process keeps, or a FlatError.
+#pragma once
+#include <boost/property_tree/ptree.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core_stack/mission/policy/policy_port.h"
+#include "sdk/host/serialization/flat_bytes.h"
+#include "sdk/host/services/path_question.h"
+
+namespace karst::host {
+
+/// Kinds of messages. Each of the host's but `end` is answered by one of the policy's; between, the policy's
+/// process may ask for lengths.
+enum class Said : std::uint32_t {
+  start = 1,          // StartOrder -> ready, refused
+  decide = 2,         // a request (flat_request.h) -> decided, gave_up
+  event = 3,          // -> noted
+  lengths = 4,        // the answer to asks_lengths
+  end = 5,            // deactivate, destroy, exit
+  ready = 101,        // ReadyReport
+  refused = 102,      // a text: bad input
+  decided = 103,      // DecisionReport
+  gave_up = 104,      // a text: a PolicyFailure
+  noted = 105,        // nothing
+  asks_lengths = 106  // LengthsQuestion
+};
+
+constexpr std::size_t kMostAnswerBytes = 32u << 20;  // a state of 16 MiB, drawings of 5 MB, texts
+
+/// What a policy's object leaves to the one that is started in its place.
+struct PolicyLegacy {
+  std::uint64_t numbers_drawn = 0;  // from the host's random stream
+  std::optional<Bytes> state;       // "karst.state/1"
+};
+
+struct StartOrder {
+  std::string file, policy, source;
+  boost::property_tree::ptree parameters;
+  std::uint64_t seed = 1;
+  int failures_allowed = 2;
+  std::uint64_t memory_limit_bytes = 0;
+  PolicyLegacy legacy;
+};
+struct ReadyReport {
+  std::string version;
+  boost::property_tree::ptree parameters;
+};
+struct DecisionReport {
+  core::Decision decision;
+  PolicyLegacy legacy;
+};
+struct LengthsQuestion {
+  core::Vec3 from = core::Vec3::Zero();
+  std::vector<core::Vec3> goals;
+  double tolerance_m = 0;
+};
+
+Bytes flatten(const StartOrder& order);
+StartOrder read_start_order(std::span<const std::byte> bytes);
+Bytes flatten(const ReadyReport& report);
+ReadyReport read_ready_report(std::span<const std::byte> bytes);
+Bytes flatten(const DecisionReport& report);
+DecisionReport read_decision_report(std::span<const std::byte> bytes);
+Bytes flatten(const core::PolicyEvent& event);
+core::PolicyEvent read_event(std::span<const std::byte> bytes);
+Bytes flatten(const LengthsQuestion& question);
+LengthsQuestion read_lengths_question(std::span<const std::byte> bytes);
+Bytes flatten(const PathAnswer& answer);
+PathAnswer read_path_answer(std::span<const std::byte> bytes);
+Bytes flatten(const std::string& text);
+/// Cleaned: one line of UTF-8.
+std::string read_text(std::span<const std::byte> bytes);
+
+}  // namespace karst::host

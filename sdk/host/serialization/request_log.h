@@ -1,0 +1,95 @@
+// What a policy was asked, told and what it answered, in one file: `karst fly --record-requests` writes it,
+// `karst policy replay` reads it.
+//
+// Records follow one another: four bytes of magic, kind, length, sum of the payload, payload. First a header,
+// then events and requests as they came, each request followed by its answer. A request is flat_request.h's,
+// its map as what changed since the request before. All other payloads are JSON. What a killed flight leaves
+// ends within a record at most: that last piece is passed over, and counted.
+#pragma once
+#include <boost/property_tree/ptree.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "core_stack/mission/policy/policy_port.h"
+#include "sdk/host/serialization/flat_request.h"
+
+namespace karst::host {
+
+constexpr const char* kRequestLogName = "requests.bin";  // in a run directory
+
+/// Before each record's payload. A request has a sum of its own: `sum` is 0.
+struct RecordFrame {
+  std::uint32_t magic, kind;
+  std::uint64_t length, sum;
+};
+constexpr std::uint32_t kRequestRecord = 2;  // its kind
+RecordFrame frame_of(std::uint32_t kind, std::span<const std::byte> payload);
+
+/// Whom the requests were put to.
+struct RequestLogHeader {
+  std::string policy, version;
+  std::uint64_t seed = 1;  // of its random stream
+  boost::property_tree::ptree parameters;
+};
+
+/// An answer as JSON, the same text for the same answer: every digit, but neither drawings nor log.
+std::string answer_text(const core::Decision& decision);
+/// An answer in a line for people; what is none stays as it is.
+std::string answer_line(const std::string& answer_text);
+
+/// Asks another policy, and writes down what went to and fro. A request is in the file before the policy sees
+/// it.
+class RecordingPolicy final : public core::PolicyPort {
+ public:
+  /// Throws core::InputError if the file cannot be written, now and whenever the disk is full.
+  RecordingPolicy(core::PolicyPort& policy, const std::filesystem::path& file,
+                  const RequestLogHeader& header);
+  std::string name() const override { return policy_.name(); }
+  core::Decision decide(const core::DecisionRequest& request) override;
+  void notify(const core::PolicyEvent& event) override;
+
+ private:
+  void write(std::uint32_t kind, std::span<const std::byte> payload);
+  void write(std::uint32_t kind, const std::string& payload);
+
+  core::PolicyPort& policy_;
+  std::string file_;
+  std::ofstream out_;
+  std::uint64_t map_revision_ = 0;  // of the last request's map; 0: none
+};
+
+/// Reads such a file from its beginning.
+class RequestLogReader {
+ public:
+  /// Throws core::InputError with file, byte and reason: also later, from next().
+  explicit RequestLogReader(const std::filesystem::path& file);
+
+  const RequestLogHeader& header() const { return header_; }
+  enum class Kind { request, answer, event, end };
+  /// The next record, which can then be looked at.
+  Kind next();
+  const core::DecisionRequest& request() const { return requests_.request(); }
+  const std::string& answer() const { return answer_; }
+  const core::PolicyEvent& event() const { return event_; }
+  /// At the end: bytes of a last record that is not whole.
+  std::uint64_t passed_over() const { return passed_over_; }
+
+ private:
+  struct Record {
+    std::uint32_t kind;
+    Bytes payload;
+  };
+  std::optional<Record> read();
+  [[noreturn]] void fail(const std::string& why) const;
+
+  std::string file_;
+  std::ifstream in_;
+  std::uint64_t size_ = 0, at_ = 0, record_ = 0, passed_over_ = 0;
+  RequestLogHeader header_;
+  RequestReader requests_{true};
+  std::string answer_;
+  core::PolicyEvent event_{};
+};
+
+}  // namespace karst::host

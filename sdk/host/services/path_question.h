@@ -1,0 +1,39 @@
+// The path service's question, answered from a request's map and roadmap: the same in the host's process, and
+// for a policy in a process of its own.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core_stack/planning/roadmap/roadmap.h"
+
+namespace karst::host {
+
+/// Of one question: blocks, nodes and cells looked at to find a place near goals that are not clear. About
+/// half a second.
+constexpr std::uint64_t kMostPathWork = 20'000'000;
+
+struct PathAnswer {
+  enum class Status : std::uint32_t { answered, no_roadmap, too_much } status = Status::no_roadmap;
+  std::vector<double> lengths_m;  // a goal each, if answered
+};
+
+/// Lengths of ways through the request's map.
+using PathLengths =
+    std::function<PathAnswer(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m)>;
+
+/// As core::Roadmap::distances gives them, or `too_much` if goals and tolerance would cost more than
+/// kMostPathWork: counted, so that it is the same in every run.
+inline PathAnswer path_lengths(const core::VoxelMap& map, const core::Roadmap& roadmap,
+                               const core::Vec3& from, std::span<const core::Vec3> goals,
+                               double tolerance_m) {
+  core::WorkBudget work(kMostPathWork);
+  constexpr double any_m = std::numeric_limits<double>::infinity();
+  std::vector<double> lengths_m = roadmap.distances(map, from, goals, tolerance_m, any_m, &work);
+  if (work.exhausted()) return {PathAnswer::Status::too_much, {}};
+  return {PathAnswer::Status::answered, std::move(lengths_m)};
+}
+
+}  // namespace karst::host

@@ -1,0 +1,104 @@
+#include "sdk/host/services/snapshot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace karst::host {
+namespace {
+
+using core::Cell;
+using core::CellKey;
+
+/// The keys of the cells whose centres lie in a box. Whole numbers kept as doubles: a box may reach far
+/// beyond any key.
+struct KeyBox {
+  Eigen::Array3d low, high;
+
+  KeyBox(const karst_box_t& box, double resolution_m)
+      : low((to_core(box.low).array() / resolution_m - 0.5).ceil()),
+        high((to_core(box.high).array() / resolution_m - 0.5).floor()) {}
+
+  bool empty() const { return (low > high).any(); }
+  bool too_large() const { return !((high - low + 1).prod() < 0x1p63); }
+  std::uint64_t cells() const { return (high - low + 1).cast<std::uint64_t>().prod(); }
+  CellKey low_key() const { return key(low); }
+  CellKey high_key() const { return key(high); }
+
+ private:
+  /// Clamped, still far outside of the world.
+  static CellKey key(const Eigen::Array3d& v) {
+    const Eigen::Array3i k = v.max(-1e9).min(1e9).cast<int>();
+    return {k.x(), k.y(), k.z()};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Snapshot> copy_of(const Snapshot& original) {
+  core::MapOptions options;
+  options.resolution_m = original.map->resolution_m();
+  auto copy = std::make_unique<core::VoxelMap>(options);
+  original.map->for_each_known([&](const CellKey& k, Cell, float log_odds) { copy->assign(k, 1, log_odds); });
+  auto s = std::make_unique<Snapshot>();
+  s->map = copy.get();
+  s->revision = original.revision;
+  s->copy = std::move(copy);
+  return s;
+}
+
+karst_map_info_t info_of(const Snapshot& s) {
+  return {s.map->resolution_m(), s.revision, s.map->free_cells(), s.map->occupied_cells()};
+}
+
+karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, bool through_unknown) {
+  const core::Vec3 from = to_core(ray.from), to = to_core(ray.to);
+  CellKey end = map.key_of(from);
+  // Until traverse() has begun: from too far outside the world it does not, and all is unknown there.
+  Cell stopped_by = through_unknown ? Cell::free : Cell::unknown;
+  core::traverse(from, to, map.resolution_m(), [&](const CellKey& k) {
+    end = k;
+    const Cell c = map.at(k);
+    stopped_by = c == Cell::unknown && through_unknown ? Cell::free : c;
+    return stopped_by == Cell::free;
+  });
+  const core::Vec3 center = map.center_of(end);
+  karst_ray_end_t out{};
+  out.center = to_abi(center);
+  out.length_m = (center - from).norm();
+  out.state = static_cast<karst_cell_t>(stopped_by);
+  return out;
+}
+
+std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const karst_box_t& box) {
+  karst_cell_counts_t out{};
+  const KeyBox keys(box, map.resolution_m());
+  if (keys.empty()) return out;
+  if (keys.too_large()) return std::nullopt;
+  map.for_each_in_box(keys.low_key(), keys.high_key(), [&](const CellKey&, Cell c) {
+    if (c == Cell::free) ++out.free;
+    if (c == Cell::occupied) ++out.occupied;
+  });
+  out.unknown = keys.cells() - out.free - out.occupied;
+  return out;
+}
+
+std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box) {
+  std::vector<CellKey> surface;
+  const KeyBox keys(box, map.resolution_m());
+  if (keys.empty()) return {};
+  constexpr CellKey faces[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+  map.for_each_in_box(keys.low_key(), keys.high_key(), [&](const CellKey& k, Cell c) {
+    const auto is_free = [&](const CellKey& face) { return map.at(k + face) == Cell::free; };
+    if (c == Cell::occupied && std::any_of(std::begin(faces), std::end(faces), is_free)) surface.push_back(k);
+  });
+  std::sort(surface.begin(), surface.end(), [](const CellKey& a, const CellKey& b) {
+    return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
+  });
+  std::vector<karst_vec3_t> out;
+  out.reserve(surface.size());
+  for (const CellKey& k : surface) out.push_back(to_abi(map.center_of(k)));
+  return out;
+}
+
+}  // namespace karst::host

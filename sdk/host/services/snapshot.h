@@ -1,0 +1,31 @@
+// A map as a policy holds it, and what can be asked of it.
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "sdk/abi/karst_abi_services.h"
+
+namespace karst::host {
+
+/// The core's map during one decide(), or a copy.
+struct Snapshot {
+  const core::VoxelMap* map = nullptr;
+  std::uint64_t revision = 0;  // the core's, also of a copy
+  std::unique_ptr<const core::VoxelMap> copy;
+};
+
+/// An independent map with the same classes and log-odds.
+std::unique_ptr<Snapshot> copy_of(const Snapshot& original);
+
+karst_map_info_t info_of(const Snapshot& s);
+karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, bool through_unknown);
+/// None if the box holds 2^63 cells or more.
+std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const karst_box_t& box);
+std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box);
+
+inline core::Vec3 to_core(const karst_vec3_t& v) { return {v.x, v.y, v.z}; }
+inline karst_vec3_t to_abi(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace karst::host

@@ -1,0 +1,150 @@
+#include "sdk/map_merge/coarse_match.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "sdk/map_merge/map_overlay.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kThin_m = 0.4;        // of what descriptors are made of
+constexpr double kRough_m = 0.4;       // cells of the quick look: rock counts as thickened to 1.2 m
+constexpr std::size_t kScored = 1500;  // source points of the quick look
+constexpr int kLeastPoints = 60;       // a place with less rock around looks like nothing in particular
+
+struct Places {
+  std::vector<PlaceFrame> frames;
+  std::vector<PlaceDescriptor> descriptors;
+};
+
+/// Any turn that brings the z axis to `axis`.
+Quat axis_frame(const Vec3& axis) { return Quat::FromTwoVectors(Vec3::UnitZ(), axis).normalized(); }
+
+/// Rock points about `spacing_m` apart with their axes; with `both_sides` each twice, with the axis turned
+/// over.
+std::vector<PlaceFrame> frames_of(const MapPiece& piece, double spacing_m, bool gravity_known,
+                                  bool both_sides) {
+  std::vector<PlaceFrame> frames;
+  for (const Vec3f& p : thinned_out(piece.surface, spacing_m)) {
+    const std::uint32_t i = piece.tree->nearest(p.cast<double>())->index;
+    const Vec3 position = piece.surface[i].cast<double>();
+    if (gravity_known) {
+      frames.push_back({position, Quat::Identity()});
+      continue;
+    }
+    const Vec3 normal = piece.normals[i].cast<double>();
+    frames.push_back({position, axis_frame(normal)});
+    if (both_sides) frames.push_back({position, axis_frame(-normal)});
+  }
+  return frames;
+}
+
+Places places_of(const MapPiece& piece, double cell_m, double spacing_m, std::size_t most, bool gravity_known,
+                 bool both_sides) {
+  std::vector<PlaceFrame> frames = frames_of(piece, spacing_m, gravity_known, both_sides);
+  for (; frames.size() > 4 * most; frames = frames_of(piece, spacing_m, gravity_known, both_sides))
+    spacing_m *= 1.5;
+  const PointTree thin(thinned_out(piece.surface, kThin_m));
+  Places places;
+  const double stride = std::max(1.0, static_cast<double>(frames.size()) / static_cast<double>(most));
+  for (double at = 0; at < static_cast<double>(frames.size()); at += stride) {
+    const PlaceFrame& f = frames[static_cast<std::size_t>(at)];
+    PlaceDescriptor d(thin, f, cell_m);
+    if (d.count() < kLeastPoints) continue;
+    places.frames.push_back(f);
+    places.descriptors.push_back(std::move(d));
+  }
+  return places;
+}
+
+using Invariants = Eigen::Matrix<float, PlaceDescriptor::kInvariants, Eigen::Dynamic>;
+Invariants stacked(const Places& places) {
+  Invariants all(PlaceDescriptor::kInvariants, static_cast<Eigen::Index>(places.frames.size()));
+  for (std::size_t i = 0; i < places.frames.size(); ++i)
+    all.col(static_cast<Eigen::Index>(i)) = places.descriptors[i].invariants();
+  return all;
+}
+
+/// The `count` largest entries' indices, larger first, then lower index.
+std::vector<std::size_t> largest(const Eigen::VectorXf& values, std::size_t count) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  count = std::min(count, order.size());
+  const auto more = [&](std::size_t a, std::size_t b) {
+    const float va = values[static_cast<Eigen::Index>(a)], vb = values[static_cast<Eigen::Index>(b)];
+    return va != vb ? va > vb : a < b;
+  };
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(), more);
+  order.resize(count);
+  return order;
+}
+
+/// The pose of the whole map that each match of two places means.
+std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, double cell_m,
+                                const CoarseOptions& options) {
+  // Where free space is not known a normal's sign is not, either; one side of the pair tries both.
+  const bool both_sides = !(target.knows_free_space() && source.knows_free_space());
+  const Places to =
+      places_of(target, cell_m, options.spacing_m, options.most_target_places, options.gravity_known, false);
+  const Places from = places_of(source, cell_m, 1.5 * options.spacing_m, options.most_source_places,
+                                options.gravity_known, both_sides);
+  if (to.frames.empty() || from.frames.empty()) return {};
+  const Invariants to_all = stacked(to);
+  std::vector<Pose> poses;
+  for (std::size_t s = 0; s < from.frames.size(); ++s) {
+    const Eigen::VectorXf likeness = to_all.transpose() * from.descriptors[s].invariants();
+    for (const std::size_t t : largest(likeness, options.candidates)) {
+      const double turn = to.descriptors[t].turn_of(from.descriptors[s]).angle_rad;
+      const Quat R = (to.frames[t].orientation * from_heading(turn) * from.frames[s].orientation.conjugate())
+                         .normalized();
+      poses.push_back({to.frames[t].position - R * from.frames[s].position, R});
+    }
+  }
+  return poses;
+}
+
+}  // namespace
+
+bool alike(const Pose& a, const Pose& b, const Vec3& middle, double metres, double radians) {
+  return (a * middle - b * middle).norm() < metres && a.orientation.angularDistance(b.orientation) < radians;
+}
+
+std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& source,
+                                     const CoarseOptions& options) {
+  const RoughTarget rough(target, std::max(kRough_m, 2 * target.resolution_m));
+  std::vector<Vec3> sample;
+  const std::size_t stride = source.surface.size() / kScored + 1;
+  for (std::size_t i = 0; i < source.surface.size(); i += stride)
+    sample.push_back(source.surface[i].cast<double>());
+
+  std::vector<CoarsePose> poses;
+  for (const double cell_m : options.cells_m)
+    for (const Pose& T : matched_poses(target, source, cell_m, options))
+      poses.push_back({T, rough.score(sample, T)});
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
+
+  const Vec3 middle =
+      std::accumulate(sample.begin(), sample.end(), Vec3(Vec3::Zero())) / static_cast<double>(sample.size());
+  // Poses that say the same are one, with as many votes as there are. Rock of a small overlap scores less
+  // than walls laid on any walls, but its places agree with each other.
+  std::vector<CoarsePose> distinct;
+  for (const CoarsePose& p : poses) {
+    const auto known = std::find_if(distinct.begin(), distinct.end(), [&](const CoarsePose& k) {
+      return alike(p.T_target_source, k.T_target_source, middle, options.distinct_m, options.distinct_rad);
+    });
+    if (known != distinct.end()) {
+      ++known->votes;
+    } else {
+      distinct.push_back(p);
+    }
+  }
+  const std::size_t by_score = std::min(distinct.size(), options.kept / 2);
+  const auto rest = distinct.begin() + static_cast<std::ptrdiff_t>(by_score);
+  std::stable_sort(rest, distinct.end(), [](const auto& a, const auto& b) { return a.votes > b.votes; });
+  distinct.resize(std::min(distinct.size(), options.kept));
+  return distinct;
+}
+
+}  // namespace karst::core

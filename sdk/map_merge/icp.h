@@ -1,0 +1,29 @@
+// Iterative closest point with PCL: point to plane, from far to near.
+#pragma once
+#include <memory>
+
+#include "sdk/map_merge/map_piece.h"
+
+namespace karst::core {
+
+/// One round: pairs of points up to `reach_m` apart, of the source's points an even pick.
+struct IcpRound {
+  double reach_m;
+  int iterations;
+  std::size_t most_points;
+};
+
+/// Holds the target's search tree; PCL stays in icp.cpp.
+class Icp {
+ public:
+  explicit Icp(const MapPiece& target);
+  ~Icp();
+  /// Where ICP ends. Nothing is said of whether that is right: PCL calls failures converged, too.
+  Pose refine(const MapPiece& source, const Pose& T_target_source, const std::vector<IcpRound>& rounds) const;
+
+ private:
+  struct Storage;
+  std::unique_ptr<Storage> storage_;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,34 @@
+// Maps to merge: as read, as they grow together, as written.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "sdk/map_merge/map_registration.h"
+
+namespace karst::evaluation {
+
+struct MapInput {
+  std::string name, file;  // as named on the command line, and what was read
+  core::MapPiece piece;
+};
+
+/// A run directory (its map.ot, map.bt or map.ply), a .bt or .ot file, or a cloud (.ply, .pcd, .bin), thinned
+/// out to `resolution_m`. Throws InputError.
+MapInput read_map_input(const std::string& name, double resolution_m);
+
+/// All maps so far, in the frame of the first.
+class MergedMap {
+ public:
+  explicit MergedMap(const MapInput& first);
+  void add(const MapInput& map, const core::Pose& T_first_map);
+  const core::MapPiece& piece() const { return piece_; }
+  /// STEM.ot, STEM.bt and STEM.ply; STEM.ply alone if any of the maps was a cloud. All or, with an
+  /// InputError, nothing.
+  std::vector<std::filesystem::path> write(const std::string& stem) const;
+
+ private:
+  core::MapPiece piece_;
+};
+
+}  // namespace karst::evaluation

@@ -1,0 +1,94 @@
+#include "sdk/map_merge/map_piece.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <stdexcept>
+
+#include "core_stack/mapping/occupancy/packed_cell.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kNormalRadiusCells = 4;
+
+Vec3f normal_at(const PointTree& tree, const Vec3f& p, double radius_m) {
+  Vec3 sum = Vec3::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  double n = 0;
+  for (const std::uint32_t i : tree.within(p.cast<double>(), radius_m)) {
+    const Vec3 d = (tree.points()[i] - p).cast<double>();
+    sum += d, squares += d * d.transpose(), n += 1;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(squares / n - (sum / n) * (sum / n).transpose());
+  return solver.eigenvectors().col(0).cast<float>();
+}
+
+/// The side on which more of the cells two and three steps away are free.
+bool points_to_free(const VoxelMap& map, const Vec3f& p, const Vec3f& normal) {
+  int free = 0;
+  for (const float steps : {-3.0f, -2.0f, 2.0f, 3.0f}) {
+    const Vec3 at = (p + steps * static_cast<float>(map.resolution_m()) * normal).cast<double>();
+    if (map.at(at) == Cell::free) free += steps > 0 ? 1 : -1;
+  }
+  return free >= 0;
+}
+
+void complete(MapPiece& piece) {
+  if (piece.surface.empty()) throw std::invalid_argument("the map holds no rock");
+  piece.tree = std::make_shared<PointTree>(piece.surface);
+  piece.normals.reserve(piece.surface.size());
+  for (const Vec3f& p : piece.surface) {
+    Vec3f n = normal_at(*piece.tree, p, kNormalRadiusCells * piece.resolution_m);
+    if (piece.cells && !points_to_free(*piece.cells, p, n)) n = -n;
+    piece.normals.push_back(n);
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3f> thinned_out(const std::vector<Vec3f>& points, double cell_m) {
+  struct Entry {
+    PackedCell cell;
+    std::uint32_t index;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d k = (points[i].cast<double>() / cell_m).array().floor();
+    if (!points[i].allFinite() || k.cwiseAbs().maxCoeff() >= kPackedLimit) continue;
+    entries.push_back({pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.index < b.index;
+  });
+  std::vector<Vec3f> thin;
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    Vec3 sum = Vec3::Zero();
+    for (; end < entries.size() && entries[end].cell == entries[begin].cell; ++end)
+      sum += points[entries[end].index].cast<double>();
+    thin.push_back((sum / static_cast<double>(end - begin)).cast<float>());
+  }
+  return thin;
+}
+
+MapPiece piece_of(std::shared_ptr<const VoxelMap> map) {
+  MapPiece piece;
+  piece.resolution_m = map->resolution_m();
+  map->for_each_known([&](const CellKey& k, Cell c, float) {
+    if (c == Cell::occupied) piece.surface.push_back(map->center_of(k).cast<float>());
+  });
+  piece.cells = std::move(map);
+  complete(piece);
+  return piece;
+}
+
+MapPiece piece_of(const std::vector<Vec3f>& cloud, double resolution_m) {
+  MapPiece piece;
+  piece.resolution_m = resolution_m;
+  piece.surface = thinned_out(cloud, resolution_m);
+  complete(piece);
+  return piece;
+}
+
+}  // namespace karst::core

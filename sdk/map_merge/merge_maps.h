@@ -1,0 +1,13 @@
+// Several occupancy maps in one: log-odds of independent observations add.
+#pragma once
+#include "core_stack/mapping/occupancy/voxel_map.h"
+
+namespace karst::core {
+
+/// Adds `source`, moved, to `target`: each cell of `target` whose centre lies in a known cell of `source`
+/// gets that cell's log-odds added, clamped to the probabilities of `options`. The edges of the cells must
+/// agree to 1 %.
+void add_map(VoxelMap& target, const VoxelMap& source, const Pose& T_target_source,
+             const MapOptions& options);
+
+}  // namespace karst::core

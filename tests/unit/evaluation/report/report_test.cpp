@@ -1,0 +1,240 @@
+#include "sdk/evaluation/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "core_stack/common/error.h"
+#include "sdk/evaluation/metrics/metrics.h"
+#include "sdk/evaluation/report/report_goals.h"
+#include "tests/unit/evaluation/fake_run.h"
+
+namespace karst::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::TemporaryDirectory;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+/// The data inside the page.
+json data_of(const std::string& page) {
+  const std::string mark = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t begin = page.find(mark) + mark.size();
+  return json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+bool mentions(const json& problems, const std::string& text) {
+  for (const json& p : problems)
+    if (p.get<std::string>().find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST(Report, IsOneFileThatLoadsNothing) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  write_report(dir.path());
+  const std::string page = bytes_of(dir.path() / "report.html");
+  EXPECT_LT(page.size(), 10u << 20);
+  // In the markup, that is outside scripts, nothing refers to another file.
+  const std::string markup = std::regex_replace(page.substr(0, page.find("<style>")), std::regex("\n"), " ");
+  EXPECT_FALSE(std::regex_search(markup, std::regex("(src|href)=\"(?!data:)")));
+  EXPECT_EQ(page.find("<script src"), std::string::npos);
+  EXPECT_EQ(page.find("<link rel=\"stylesheet\""), std::string::npos);
+  EXPECT_EQ(page.find("@import"), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);  // and the browser is told to load nothing
+  EXPECT_EQ(page.find("@data@"), std::string::npos);
+}
+
+TEST(Report, HoldsTheRunsData) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  write_report(dir.path());
+  const json d = data_of(bytes_of(dir.path() / "report.html"));
+  EXPECT_EQ(d["metrics"]["policy"], "lateral");
+  const auto growth_cells = fs::file_size(dir.path() / "map_growth.bin") / 16;
+  EXPECT_EQ(d["cloud"]["count"], growth_cells);
+  EXPECT_EQ(d["cloud"]["cells"].get<std::string>().size(), (growth_cells * 6 + 2) / 3 * 4);
+  EXPECT_GT(d["goals"].size(), 5u);
+  EXPECT_EQ(d["phases"].size(), 4u);
+  EXPECT_FALSE(d["curves"]["volume"].empty());
+}
+
+TEST(Report, UsesTheMetricsThatWereWritten) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  dir.write("metrics.json", R"({"policy": "as written", "outcome": "landed"})");
+  write_report(dir.path());
+  EXPECT_EQ(data_of(bytes_of(dir.path() / "report.html"))["metrics"]["policy"], "as written");
+}
+
+TEST(Report, IsNotBrokenByTextFromAPolicy) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl",
+            "{\"t\": 1, \"kind\": \"log\", \"text\": \"</script><script>alert(1)</script> <!-- \xff\"}\n");
+  dir.write("mission.info", "policy\n{\nname \"</script><b>@scripts@\"\n}\n");
+  write_report(dir.path());
+  const std::string page = bytes_of(dir.path() / "report.html");
+  EXPECT_EQ(page.find("alert(1)</script>"), std::string::npos);
+  EXPECT_EQ(data_of(page)["metrics"]["policy"], "</script><b>@scripts@");
+}
+
+TEST(Report, OfARunCutShortAnywhereShowsWhatThereIs) {
+  TemporaryDirectory whole;
+  test::FakeRunOptions small;
+  small.length_m = 12;
+  small.map_resolution_m = 0.5;
+  test::write_fake_run(whole.path(), small);
+  for (const auto& entry : fs::directory_iterator(whole.path())) {
+    const std::string name = entry.path().filename().string();
+    const std::string bytes = bytes_of(entry.path());
+    for (const double share : {0.0, 0.001, 0.3337, 0.77}) {
+      TemporaryDirectory cut;
+      for (const auto& other : fs::directory_iterator(whole.path()))
+        fs::copy_file(other.path(), cut.path() / other.path().filename());
+      cut.write(name,
+                bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size())) | 3));
+      ASSERT_NO_THROW(write_report(cut.path())) << name << " cut at " << share;
+      const json d = data_of(bytes_of(cut.path() / "report.html"));
+      const bool cut_in_a_line = share == 0.3337 && name != "timing.json" && name != "mission.info";
+      EXPECT_TRUE(!cut_in_a_line || mentions(d["problems"], name)) << name;
+    }
+    TemporaryDirectory without;
+    for (const auto& other : fs::directory_iterator(whole.path()))
+      if (other.path() != entry.path()) fs::copy_file(other.path(), without.path() / other.path().filename());
+    ASSERT_NO_THROW(write_report(without.path())) << "without " << name;
+  }
+}
+
+TEST(Report, OfDamagedFilesNamesThem) {
+  TemporaryDirectory dir;
+  dir.write("mission.info", "a { b\n");
+  dir.write("events.jsonl", "nonsense\n{\"t\": \"x\", \"kind\": \"goal\"}\n[1]\n");
+  dir.write("timing.json", "{");
+  dir.write("map.bt", "not a map");
+  std::vector<std::string> problems;
+  evaluate_run(dir.path(), {}, &problems);
+  for (const char* name : {"mission.info", "events.jsonl: line 1", "timing.json", "map.bt"})
+    EXPECT_TRUE(mentions(problems, name)) << name;
+  EXPECT_NO_THROW(write_report(dir.path()));
+}
+
+// As it was: a crash for want of stack.
+TEST(Report, OfAnEventAHundredThousandLevelsDeepLeavesOutItsDepth) {
+  TemporaryDirectory dir;
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  dir.write("events.jsonl", R"({"t": 1, "kind": "phase", "phase": "explore", "more": )" + deep + "}\n");
+  dir.write("timing.json", deep);
+  dir.write("metrics.json", "{\"a\": " + deep + "}");
+  write_report(dir.path());
+  const std::string page = bytes_of(dir.path() / "report.html");
+  EXPECT_NE(page.find("\"phase\":\"explore\""), std::string::npos);
+  EXPECT_EQ(page.find(std::string(200, '[')), std::string::npos);
+}
+
+TEST(Report, OfEmptyFilesOrDirectoriesInTheirPlaceNamesThem) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  const auto problems = [&dir] {
+    std::vector<std::string> all;
+    evaluate_run(dir.path(), {}, &all);
+    return all;
+  };
+  const auto text = {"telemetry.csv", "events.jsonl", "truth.csv", "trajectory.tum", "ground_truth.tum"};
+  for (const char* name : text) dir.write(name, "");
+  for (const char* name : text) EXPECT_TRUE(mentions(problems(), std::string(name) + ": is empty")) << name;
+  const auto all = {"telemetry.csv", "events.jsonl", "map_growth.bin",
+                    "map.bt",        "timing.json",  "mission.info"};
+  for (const char* name : all) {
+    fs::remove(dir.path() / name);
+    fs::create_directories(dir.path() / name);
+  }
+  for (const char* name : all)
+    EXPECT_TRUE(mentions(problems(), std::string(name) + ": is a directory")) << name;
+}
+
+TEST(Report, ToleratesEventsWithWrongFields) {
+  TemporaryDirectory dir;
+  std::string events;
+  for (const char* kind :
+       {"phase", "goal", "decision", "plan", "drawing", "log", "frontiers", "homing", "outcome"})
+    for (const char* value : {"null", "\"x\"", "3", "[1]", "[[1, 2]]", "[[\"a\", 2, 3]]", "{}"})
+      events += std::string("{\"t\": 1, \"kind\": \"") + kind + "\", \"phase\": " + value +
+                ", \"state\": \"accepted\"" + ", \"position\": " + value + ", \"points\": " + value +
+                ", \"clusters\": " + value + ", \"rgb\": " + value + ", \"outcome\": " + value +
+                ", \"text\": " + value + ", \"why\": " + value + "}\n";
+  dir.write("events.jsonl", events);
+  EXPECT_NO_THROW(write_report(dir.path()));
+}
+
+TEST(Report, IsRefusedForWhatIsNoRunDirectory) {
+  EXPECT_THROW(write_report("/nowhere/at/all"), core::InputError);
+}
+
+json goals_of(const std::string& events) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", events);
+  return goal_spans(read_run(dir.path()));
+}
+std::string goal_line(double t, double x, const std::string& state) {
+  return json({{"t", t}, {"kind", "goal"}, {"position", {x, 0, 0}}, {"state", state}, {"reason", "r"}})
+             .dump() +
+         "\n";
+}
+
+TEST(Goals, OfTwoOpenAtOnceTheEarlierEndsFirst) {
+  const json g = goals_of(goal_line(1, 10, "accepted") + goal_line(3, 20, "accepted") +
+                          goal_line(5, 10, "reached") + goal_line(9, 20, "unreachable"));
+  ASSERT_EQ(g.size(), 2u);
+  EXPECT_EQ(g[0]["until"], 5.0);
+  EXPECT_EQ(g[0]["fate"], "reached");
+  EXPECT_EQ(g[1]["until"], 9.0);
+  EXPECT_EQ(g[1]["fate_reason"], "r");
+}
+
+TEST(Goals, AreSupersededInWhicheverOrderTheEventsCome) {
+  for (const std::string& events :
+       {goal_line(1, 10, "accepted") + goal_line(3, 20, "accepted") + goal_line(3, 10, "superseded"),
+        goal_line(1, 10, "accepted") + goal_line(3, 10, "superseded") + goal_line(3, 20, "accepted")}) {
+    const json g = goals_of(events);
+    ASSERT_EQ(g.size(), 2u);
+    EXPECT_EQ(g[0]["fate"], "superseded");
+    EXPECT_EQ(g[0]["until"], 3.0);
+    EXPECT_TRUE(g[1]["until"].is_null());
+  }
+}
+
+TEST(Goals, AreNotEndedByTheEndOfAnother) {
+  const json g = goals_of(goal_line(1, 10, "accepted") + goal_line(2, 20, "accepted") +
+                          goal_line(3, 30, "accepted") + goal_line(4, 20, "reached"));
+  ASSERT_EQ(g.size(), 3u);
+  EXPECT_EQ(g[1]["until"], 3.0);  // the third took its place behind the first
+  EXPECT_TRUE(g[0]["until"].is_null());
+  EXPECT_TRUE(g[2]["until"].is_null());
+}
+
+TEST(Goals, AcceptedAgainAtTheSamePlaceArePlannedAnew) {
+  const json g =
+      goals_of(goal_line(1, 10, "accepted") + goal_line(2, 10.2, "accepted") + goal_line(5, 10.2, "reached"));
+  ASSERT_EQ(g.size(), 2u);
+  EXPECT_EQ(g[0]["fate"], "planned anew");
+  EXPECT_EQ(g[0]["until"], 2.0);
+  EXPECT_EQ(g[1]["fate"], "reached");
+}
+
+TEST(Goals, EndWithTheExploration) {
+  const json g =
+      goals_of(goal_line(1, 10, "accepted") + "{\"t\": 4, \"kind\": \"phase\", \"phase\": \"home\"}\n");
+  EXPECT_EQ(g[0]["until"], 4.0);
+}
+
+}  // namespace
+}  // namespace karst::evaluation

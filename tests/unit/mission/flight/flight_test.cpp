@@ -1,0 +1,173 @@
+#include "core_stack/mission/flight/flight.h"
+
+#include <gtest/gtest.h>
+
+namespace karst::core {
+namespace {
+
+/// A vehicle that is always where its reference says: enough for the bookkeeping of trajectories.
+struct IdealFlight {
+  VehicleDescription vehicle;
+  Flight flight{CoreOptions{}, vehicle};
+  TimeNs now = 0;
+
+  void advance(double s) {
+    for (const TimeNs end = now + from_seconds(s); now < end;) {
+      now += 10 * kMillisecond;
+      flight.control(now);
+    }
+  }
+};
+
+TEST(Flight, IsDisarmedUntilItClimbs) {
+  IdealFlight f;
+  EXPECT_FALSE(f.flight.control(10 * kMillisecond).armed);
+  f.flight.climb(10 * kMillisecond, 1.0, 0.5);
+  EXPECT_TRUE(f.flight.control(20 * kMillisecond).armed);
+  f.flight.disarm();
+  EXPECT_FALSE(f.flight.control(30 * kMillisecond).armed);
+}
+
+TEST(Flight, MotorsThatWereSwitchedOffStayOff) {
+  IdealFlight f;
+  f.flight.climb(0, 1.0, 0.5);
+  f.advance(3);
+  f.flight.disarm();
+  f.flight.climb(f.now, 1.0, 0.5);
+  f.flight.follow({Vec3::Zero(), Vec3(5, 0, 0)}, 0, f.now, {});
+  f.flight.land_now(f.now);
+  EXPECT_FALSE(f.flight.control(f.now + 10 * kMillisecond).armed);
+  EXPECT_FALSE(f.flight.airborne());
+}
+
+TEST(Flight, LandsAtOnceWhateverElseItIsTold) {
+  IdealFlight f;
+  f.flight.climb(0, 2.0, 0.5);
+  f.advance(6);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.advance(4);
+  const Vec3 at = f.flight.reference().position;
+  const double speed = f.flight.reference().velocity_mps.norm();
+  ASSERT_GT(speed, 1.5);
+  f.flight.land_now(f.now);
+  f.flight.follow({at, at + Vec3(0, 20, 0)}, 0, f.now, heading);
+  f.advance(1);
+  f.flight.brake(f.now);
+  f.flight.cap_speed(f.now, 0.5);
+  f.flight.climb(f.now, 5, 0.5);
+  f.advance(4);
+  const Vec3 end = f.flight.reference().position;
+  EXPECT_LT(end.x() - at.x(), speed * speed / MotionLimits{}.max_acceleration_mps2 + 0.5);
+  EXPECT_NEAR(end.y(), from.y(), 0.02);
+  EXPECT_NEAR(f.flight.reference().velocity_mps.z(), -MissionOptions{}.landing_speed_mps, 0.02);
+  EXPECT_LT(end.z(), at.z() - 0.8);
+}
+
+TEST(Flight, ClimbsToTheHeightAndRests) {
+  IdealFlight f;
+  f.flight.climb(0, 1.0, 0.5);
+  f.advance(6);
+  EXPECT_TRUE(f.flight.at_rest(f.now));
+  EXPECT_NEAR(f.flight.reference().position.z(), 1.0, 0.02);
+}
+
+TEST(Flight, BrakesOnThePathAndWithinTheStoppingDistance) {
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.advance(5);
+  const Vec3 at_brake = f.flight.reference().position;
+  const double speed = f.flight.reference().velocity_mps.norm();
+  ASSERT_GT(speed, 1.5);
+  f.flight.brake(f.now);
+  f.advance(5);
+  const Vec3 stop = f.flight.reference().position;
+  const double limit = MotionLimits{}.max_acceleration_mps2;
+  EXPECT_LT((stop - at_brake).norm(), speed * speed / limit + 0.5);
+  EXPECT_NEAR(stop.y(), from.y(), 0.02);
+  EXPECT_NEAR(f.flight.reference().velocity_mps.norm(), 0, 0.02);
+}
+
+TEST(Flight, TheStretchUntilStopBeginsWhereTheReferenceWillBe) {
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.advance(4);
+  const Flight::Onward ahead = f.flight.until_stop(f.now + 300 * kMillisecond);
+  const Flight::Onward all = f.flight.until_end(f.now + 300 * kMillisecond);
+  f.advance(0.3);
+  EXPECT_LT((f.flight.reference().position - ahead.points.front()).norm(), 0.25) << "tracking lag only";
+  EXPECT_NEAR((all.points.back() - from).norm(), 20, 1e-6);
+  const double lead = (ahead.points.back() - ahead.points.front()).norm();
+  EXPECT_GT(lead, ahead.speed_mps * ahead.speed_mps / (2 * MotionLimits{}.max_acceleration_mps2));
+}
+
+TEST(Flight, ACapOnSpeedHoldsUntilItIsLifted) {
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  f.flight.follow({from, from + Vec3(30, 0, 0)}, 0, f.now, heading);
+  f.advance(4);
+  ASSERT_GT(f.flight.reference().velocity_mps.norm(), 1.7);
+  f.flight.cap_speed(f.now, 0.8);
+  f.advance(2);
+  EXPECT_LT(f.flight.reference().velocity_mps.norm(), 0.85);
+  f.advance(2);
+  EXPECT_GT(f.flight.reference().velocity_mps.norm(), 0.7);
+  f.flight.cap_speed(f.now, 2.0);
+  f.advance(3);
+  EXPECT_GT(f.flight.reference().velocity_mps.norm(), 1.7);
+  f.advance(15);
+  EXPECT_NEAR(f.flight.reference().position.x(), 30, 0.02);
+}
+
+TEST(Flight, ABrakeForgetsTheHeadingThatThePathWasToEndWith) {
+  // As it was: slowed down while braking, it turned to the goal's heading on the spot before it was at rest.
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  const Vec3 from = f.flight.reference().position;
+  HeadingPlan heading;
+  heading.along_path = false;
+  heading.goal_heading_rad = 3.0;
+  f.flight.follow({from, from + Vec3(30, 0, 0)}, 0, f.now, heading);
+  f.advance(1);
+  f.flight.brake(f.now);
+  f.advance(0.2);
+  f.flight.cap_speed(f.now, 1.0);
+  f.advance(4);
+  EXPECT_LT(f.flight.reference().heading_rad, 1.5) << "the turn under way is ended, not completed";
+}
+
+TEST(Flight, LooksOnceAround) {
+  IdealFlight f;
+  f.flight.climb(0, 0.5, 0.5);
+  f.advance(4);
+  f.flight.look_around(f.now, 2 * std::numbers::pi);
+  double turned = 0, last = f.flight.reference().heading_rad;
+  for (int i = 0; i < 200 && !f.flight.at_rest(f.now); ++i) {
+    f.advance(0.1);
+    turned += wrap_angle(f.flight.reference().heading_rad - last);
+    last = f.flight.reference().heading_rad;
+  }
+  f.advance(2);
+  turned += wrap_angle(f.flight.reference().heading_rad - last);
+  EXPECT_NEAR(turned, 2 * M_PI, 0.1);
+}
+
+}  // namespace
+}  // namespace karst::core

@@ -1,0 +1,126 @@
+#include "core_stack/mission/phases/exploration.h"
+
+#include "tests/unit/mission/drawn_map.h"
+#include "tests/unit/mission/onboard_fixture.h"
+
+namespace karst::core {
+namespace {
+
+class ExplorationTest : public OnboardTest {
+ protected:
+  void begin() {
+    // A hall around the vehicle, open at one end.
+    onboard.map.while_idle().integrate(
+        box_rays(VoxelMap{MapOptions{}}, Vec3(-3, -3, -1), Vec3(20, 6, 4), {"x+"}));
+    hover();
+    onboard.map.while_idle().set_home(onboard.flight.reference().position);
+    phases.enter(Phase::takeoff, now());
+    phases.enter(Phase::explore, now());
+    exploration.begin();
+    policy.script = [this](const DecisionRequest& request) {
+      ++asked;
+      return answer(request);
+    };
+  }
+  void steps(double s) {
+    for (double t = 0; t < s; t += 0.1) {
+      exploration.step();
+      advance(0.1);
+    }
+  }
+  static Decision go_to(const Vec3& place) {
+    Decision d;
+    d.outcome = Outcome::goals;
+    Goal goal;
+    goal.position = place;
+    goal.heading_rad = std::numeric_limits<double>::quiet_NaN();
+    d.goals = {goal};
+    return d;
+  }
+
+  int asked = 0;
+  std::function<Decision(const DecisionRequest&)> answer = [](const DecisionRequest&) { return Decision{}; };
+  std::string went_home;
+  std::vector<Vec3> claimed;
+  Exploration exploration{onboard,
+                          {phases, goals, path, way_flown, endurance},
+                          {.go_home = [this](const std::string& reason) { went_home = reason; },
+                           .claim = [this](const Goal& g) { claimed.push_back(g.position); },
+                           .mates = [] { return std::vector<HeardMate>{}; }}};
+};
+
+TEST_F(ExplorationTest, AnAcceptedGoalIsFlownToClaimedAndReached) {
+  begin();
+  const Vec3 place(6, 0, 1);
+  answer = [&](const DecisionRequest&) { return asked == 1 ? go_to(place) : Decision{}; };
+  steps(1.5);
+  ASSERT_TRUE(goals.goal()) << events();
+  EXPECT_EQ(claimed, std::vector<Vec3>{place});
+  double nearest_m = 9;
+  for (int i = 0; i < 80; ++i) {
+    steps(0.1);
+    nearest_m = std::min(nearest_m, (onboard.flight.reference().position - place).norm());
+  }
+  EXPECT_LT(nearest_m, 0.6);
+  EXPECT_EQ(told("\"reached\""), 1u);
+}
+
+TEST_F(ExplorationTest, ThePolicysWishToGoHomeIsFollowedAtTheEndOfTheRound) {
+  begin();
+  answer = [](const DecisionRequest&) {
+    Decision d;
+    d.outcome = Outcome::go_home;
+    d.reason = "tea";
+    return d;
+  };
+  exploration.step();
+  EXPECT_EQ(went_home, "");
+  steps(1.5);
+  EXPECT_EQ(went_home, "the policy asked for it: tea");
+}
+
+TEST_F(ExplorationTest, WhatWasDecidedBeforeABrakeIsNotFlown) {
+  begin();
+  answer = [&](const DecisionRequest&) { return go_to({6, 0, 1}); };
+  for (int i = 0; i < 30 && asked == 0; ++i) steps(0.1);
+  ASSERT_EQ(asked, 1);
+  path.brake(now());
+  advance(onboard.options.mission.decision_budget_s + 0.05);
+  EXPECT_FALSE(goals.goal());
+  EXPECT_TRUE(claimed.empty());
+  EXPECT_EQ(told("\"decision\""), 1u) << "it is recorded all the same";
+}
+
+TEST_F(ExplorationTest, NobodyIsAskedWhileTheSupervisorHoldsItOrAnotherVehicleGoesFirst) {
+  begin();
+  path.obey(SafetyAction::brake);
+  steps(5);
+  EXPECT_EQ(asked, 0);
+  path.obey(SafetyAction::none);
+  path.yield(true);
+  steps(5);
+  EXPECT_EQ(asked, 0);
+  path.yield(false);
+  steps(1.5);
+  EXPECT_GT(asked, 0);
+}
+
+TEST_F(ExplorationTest, AGoalWithoutProgressIsAbandoned) {
+  begin();
+  answer = [&](const DecisionRequest&) { return asked == 1 ? go_to({6, 0, 1}) : Decision{}; };
+  steps(1.0);
+  ASSERT_TRUE(goals.goal()) << events();
+  onboard.flight.brake(now());
+  path.block();  // it stands before a closed place, and no other way is found
+  answer = [&](const DecisionRequest&) { return go_to({6, 0, 1}); };
+  for (double t = 0; t < 2 * onboard.options.mission.goal_timeout_s && goals.goal(); t += 0.1) {
+    exploration.step();
+    advance(0.1);
+    onboard.flight.brake(now());
+    path.block();
+  }
+  EXPECT_EQ(told("no progress towards it"), 1u);
+}
+
+}  // namespace
+}  // namespace karst::core

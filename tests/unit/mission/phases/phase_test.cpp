@@ -1,0 +1,56 @@
+#include "core_stack/mission/phases/phase.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace karst::core {
+namespace {
+
+constexpr Phase kAll[] = {Phase::standby, Phase::takeoff, Phase::look, Phase::explore,
+                          Phase::home,    Phase::land,    Phase::done};
+
+TEST(PhaseMachine, GoesFromPhaseToPhaseAsTheMissionDoesAndNoOtherWay) {
+  const std::set<std::pair<Phase, Phase>> allowed{
+      {Phase::standby, Phase::takeoff}, {Phase::takeoff, Phase::look}, {Phase::takeoff, Phase::explore},
+      {Phase::look, Phase::explore},    {Phase::explore, Phase::home}, {Phase::standby, Phase::standby}};
+  const std::map<Phase, std::vector<Phase>> way_there{
+      {Phase::standby, {}},
+      {Phase::takeoff, {Phase::takeoff}},
+      {Phase::look, {Phase::takeoff, Phase::look}},
+      {Phase::explore, {Phase::takeoff, Phase::explore}},
+      {Phase::home, {Phase::takeoff, Phase::explore, Phase::home}},
+      {Phase::land, {Phase::land}},
+      {Phase::done, {Phase::done}}};
+  for (const Phase from : kAll) {
+    for (const Phase to : kAll) {
+      PhaseMachine m;
+      for (const Phase p : way_there.at(from)) m.enter(p, 1);
+      const bool ends = to == Phase::land || to == Phase::done;  // from whatever phase it is
+      if (ends || allowed.contains({from, to})) {
+        EXPECT_NO_THROW(m.enter(to, 7)) << name_of(from) << " -> " << name_of(to);
+        EXPECT_TRUE(m.in(to));
+        EXPECT_EQ(m.since(), 7);
+      } else {
+        EXPECT_THROW(m.enter(to, 7), std::logic_error) << name_of(from) << " -> " << name_of(to);
+        EXPECT_TRUE(m.in(from)) << "a refused transition changes nothing";
+      }
+    }
+  }
+}
+
+TEST(PhaseMachine, EveryPhaseButTheFirstCanBeReachedAndSaysWhen) {
+  std::set<Phase> reached;
+  for (const Transition& t : transitions()) {
+    EXPECT_STRNE(t.when, "");
+    reached.insert(t.to);
+  }
+  EXPECT_EQ(reached.size(), std::size(kAll) - 1);
+  EXPECT_FALSE(reached.contains(Phase::standby));
+}
+
+}  // namespace
+}  // namespace karst::core

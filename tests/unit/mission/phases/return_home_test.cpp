@@ -1,0 +1,117 @@
+#include "core_stack/mission/phases/return_home.h"
+
+#include "tests/unit/mission/onboard_fixture.h"
+
+namespace karst::core {
+namespace {
+
+class ReturnHomeTest : public OnboardTest {
+ protected:
+  void explore_and_go_home(double away_m) {
+    hover();
+    home.set_home(onboard.flight.reference().position);
+    phases.enter(Phase::takeoff, now());
+    phases.enter(Phase::explore, now());
+    fly_ahead(away_m);
+    const double fly_s = away_m + 4;
+    for (double t = 0; t < fly_s; t += 0.1) {
+      advance(0.1);
+      way_flown.note(onboard.flight.reference().position);
+    }
+    home.begin("enough");
+  }
+  /// Steps ten times a second; stops when `until` holds.
+  double steps(double at_most_s, const std::function<bool()>& until) {
+    double t = 0;
+    for (; t < at_most_s && !until(); t += 0.1) {
+      home.step();
+      advance(0.1);
+    }
+    return t;
+  }
+
+  bool company = false;
+  std::string landed_here, landed = "no";
+  ReturnHome home{onboard,
+                  {phases, goals, path, way_flown, endurance, nullptr},
+                  {.enter =
+                       [this](Phase to, const std::string& reason) {
+                         phases.enter(to, now());
+                         if (to == Phase::land) landed = reason;
+                       },
+                   .land_here =
+                       [this](const std::string& reason) {
+                         phases.enter(Phase::land, now());
+                         landed_here = reason;
+                       },
+                   .in_company = [this] { return company; },
+                   .give_up_goals = [] {}}};
+};
+
+TEST_F(ReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome) {
+  explore_and_go_home(6);
+  EXPECT_EQ(home.reason(), "enough");
+  steps(60, [this] { return phases.in(Phase::land); });
+  EXPECT_EQ(landed, "");
+  EXPECT_EQ(landed_here, "");
+  EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
+  EXPECT_GE(told("no path home"), 3u);
+  EXPECT_EQ(told("back the way it came"), 1u);
+}
+
+TEST_F(ReturnHomeTest, HeldInPlaceItsPatienceDoesNotRunOut) {
+  explore_and_go_home(6);
+  path.obey(SafetyAction::brake);
+  steps(40, [this] { return phases.in(Phase::land); });
+  EXPECT_TRUE(phases.in(Phase::home));
+}
+
+TEST_F(ReturnHomeTest, ThatGetsNowhereLandsWhereItIsAndLaterWithOthersNear) {
+  for (const bool others : {false, true}) {
+    if (others) phases = PhaseMachine{};
+    company = others;
+    landed_here = "";
+    if (!others) explore_and_go_home(6);
+    if (others) {
+      phases.enter(Phase::takeoff, now());
+      phases.enter(Phase::explore, now());
+      home.begin("again");
+    }
+    // It is told to fly, and does not get away: the reference is put back each time.
+    const double t = steps(100, [this] {
+      path.block();
+      onboard.flight.brake(now());
+      return phases.in(Phase::land);
+    });
+    EXPECT_NE(landed_here, "");
+    EXPECT_GT(t, others ? 59 : 11);
+    EXPECT_LT(t, others ? 75 : 25);
+  }
+}
+
+TEST_F(ReturnHomeTest, TurnsBackWhenTheTimeLeftOnlyJustSufficesAndNotBefore) {
+  hover();
+  home.set_home(onboard.flight.reference().position);
+  phases.enter(Phase::takeoff, now());
+  phases.enter(Phase::explore, now());
+  const double least_s = onboard.options.mission.home_reserve_s;
+  for (double left_s = 60; left_s > least_s + 12; left_s -= 1) {
+    endurance.note({.seconds_left = left_s});
+    advance(1 - seconds(now() % kSecond));
+    home.watch_time();
+    advance(0.2);
+    ASSERT_TRUE(phases.in(Phase::explore)) << left_s;
+  }
+  for (double left_s = least_s + 12; phases.in(Phase::explore) && left_s > 0; left_s -= 1) {
+    endurance.note({.seconds_left = left_s});
+    advance(1 - seconds(now() % kSecond));
+    home.watch_time();
+    advance(0.2);
+  }
+  EXPECT_TRUE(phases.in(Phase::home));
+  EXPECT_GT(endurance.seconds_left(now()), least_s - 3);
+  EXPECT_EQ(told("\"battery\""), 1u);
+}
+
+}  // namespace
+}  // namespace karst::core

@@ -1,0 +1,82 @@
+#include "core_stack/mission/policy/policy_with_fallback.h"
+
+#include <gtest/gtest.h>
+
+namespace karst::core {
+namespace {
+
+struct Counting final : PolicyPort {
+  int asked = 0, told = 0;
+  bool fails = false;
+  Decision answer;
+  std::string name() const override { return "counting"; }
+  Decision decide(const DecisionRequest&) override {
+    ++asked;
+    if (fails) throw PolicyFailure("it hangs");
+    return answer;
+  }
+  void notify(const PolicyEvent&) override { ++told; }
+};
+
+TEST(PolicyWithFallback, AsksThePolicyInItsTurn) {
+  Counting policy;
+  policy.answer.reason = "as it says";
+  PolicyWithFallback asked(policy);
+  const PolicyAnswer answer = asked.ask({}, DecidedBy::policy);
+  EXPECT_EQ(answer.by, DecidedBy::policy);
+  EXPECT_EQ(answer.name, "counting");
+  EXPECT_EQ(answer.decision.reason, "as it says");
+  EXPECT_EQ(answer.failure, "");
+  EXPECT_EQ(asked.ask({}, DecidedBy::fallback).name, "fallback");
+  EXPECT_EQ(asked.ask_fallback({}).by, DecidedBy::fallback);
+  EXPECT_EQ(policy.asked, 1);
+}
+
+TEST(PolicyWithFallback, APolicyThatFailsIsNeitherAskedNorToldAgain) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  asked.notify({PolicyEvent::Kind::homing, 0, {}, ""});
+  policy.fails = true;
+  const PolicyAnswer first = asked.ask({}, DecidedBy::policy), second = asked.ask({}, DecidedBy::policy);
+  EXPECT_EQ(first.by, DecidedBy::fallback);
+  EXPECT_EQ(first.name, "fallback");
+  EXPECT_EQ(first.failure, "it hangs");
+  EXPECT_EQ(second.by, DecidedBy::fallback);
+  EXPECT_EQ(second.failure, "") << "said once";
+  asked.notify({PolicyEvent::Kind::homing, 0, {}, ""});
+  EXPECT_EQ(policy.asked, 1);
+  EXPECT_EQ(policy.told, 1);
+}
+
+TEST(PolicyWithFallback, TwoSecondsOfStandingIdleCostThePolicyOneTurn) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  std::string turns;
+  for (int half_seconds = 0; half_seconds < 11; ++half_seconds) {
+    const TimeNs now = half_seconds * kSecond / 2;
+    turns += asked.begin_cycle(now) == DecidedBy::policy ? 'p' : 'f';
+    asked.note_idle(now);
+  }
+  EXPECT_EQ(turns, "ppppfpppfpp") << "idle since its first cycle, and again since the fallback's";
+}
+
+TEST(PolicyWithFallback, AVehicleThatIsBusyIsNotIdle) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  asked.note_idle(0);
+  asked.note_busy();
+  asked.note_idle(kSecond);
+  EXPECT_EQ(asked.begin_cycle(3 * kSecond - 1), DecidedBy::policy);
+  EXPECT_EQ(asked.begin_cycle(3 * kSecond), DecidedBy::fallback);
+}
+
+TEST(PolicyWithFallback, LimitsWhatThePolicyDrawsInAFlight) {
+  Counting policy;
+  policy.answer.drawings.resize(OutputLimits{}.drawings);
+  PolicyWithFallback asked(policy);
+  EXPECT_EQ(asked.ask({}, DecidedBy::policy).decision.drawings.size(), OutputLimits{}.drawings);
+  EXPECT_EQ(asked.ask({}, DecidedBy::policy).decision.drawings.size(), 0u);
+}
+
+}  // namespace
+}  // namespace karst::core

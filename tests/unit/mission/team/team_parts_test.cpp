@@ -1,0 +1,148 @@
+// The parts of a mission that only a robot of a team has.
+#include "core_stack/mission/team/relay_landing.h"
+#include "core_stack/mission/team/right_of_way.h"
+#include "core_stack/mission/team/team_sharing.h"
+#include "tests/unit/mission/onboard_fixture.h"
+
+namespace karst::core {
+namespace {
+
+class TeamPartsTest : public OnboardTest {
+ protected:
+  TeamPartsTest() {
+    onboard.map.while_idle().join(&homing, onboard.options.team.claim_radius_m);
+    hover();
+    phases.enter(Phase::takeoff, now());
+    phases.enter(Phase::explore, now());
+  }
+  Teammate teammate(RobotId id) {
+    return Teammate(id, onboard.options.team, onboard.options.homing, Vec3::Zero(), 1, key_of_seed(1));
+  }
+  /// Robot 1, which goes before robot 2, says that it is there.
+  void hear_first_robot_at(const Vec3& place, const Vec3& velocity_mps = Vec3::Zero()) {
+    TeamState state;
+    state.position = place;
+    state.velocity_mps = velocity_mps;
+    state.phase = TeamPhase::explore;
+    state.stamp = now();
+    first.set_state(state);
+    for (const Bytes& frame : first.speak(now())) mate.hear(frame, now());
+  }
+  const Vec3& here() { return onboard.flight.reference().position; }
+
+  Teammate mate = teammate(2), first = teammate(1);
+  RelayHoming homing{2,
+                     onboard.options.team,
+                     onboard.options.homing,
+                     Vec3::Zero(),
+                     onboard.options.planning,
+                     onboard.options.motion,
+                     onboard.vehicle.radius_m};
+  Teamwork work{mate, homing, onboard.options.team, 0};
+  TeamSharing sharing{onboard, work, {phases, path, endurance}};
+  RightOfWay right_of_way{onboard, work, {phases, goals, path, way_flown}};
+  RelayLanding landing{onboard, work, phases, endurance};
+};
+
+TEST_F(TeamPartsTest, ItYieldsToARobotThatGoesFirstAndGoesOnOnceThatIsAway) {
+  right_of_way.step();
+  EXPECT_FALSE(path.yields());
+  fly_ahead(20);
+  advance(2);
+  hear_first_robot_at(here() + Vec3(4, 0, 0), Vec3(-1, 0, 0));
+  right_of_way.step();
+  EXPECT_TRUE(path.yields());
+  EXPECT_TRUE(path.blocked());
+  EXPECT_TRUE(path.has_braked());
+  EXPECT_EQ(told("give way"), 1u);
+  for (int i = 0; i < 300 && path.yields(); ++i) {
+    advance(0.1);
+    hear_first_robot_at(here() + Vec3(40, 0, 0));
+    right_of_way.step();
+  }
+  EXPECT_FALSE(path.yields());
+  EXPECT_EQ(told("go on"), 1u);
+}
+
+TEST_F(TeamPartsTest, OnceItLandsNobodyHasTheRightOfWayOverIt) {
+  hear_first_robot_at(here() + Vec3(2, 0, 0));
+  right_of_way.step();
+  ASSERT_TRUE(path.yields());
+  phases.enter(Phase::land, now());
+  right_of_way.step();
+  EXPECT_FALSE(path.yields());
+  EXPECT_EQ(right_of_way.told_now(), TeamPhase::landing);
+}
+
+TEST_F(TeamPartsTest, AnotherIsInCompanyNearByAndLeftOutOfTheMapWhereItShouldBe) {
+  EXPECT_FALSE(sharing.in_company());
+  hear_first_robot_at(here() + Vec3(5, 0, 0), Vec3(1, 0, 0));
+  EXPECT_TRUE(sharing.in_company());
+  const auto bodies = sharing.others_at(now() - kSecond / 2);
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_NEAR(bodies[0].position.x() - here().x(), 4.5, 0.03) << "half a second ago, at 1 m/s";
+  advance(1);
+  hear_first_robot_at(here() + Vec3(50, 0, 0));
+  EXPECT_FALSE(sharing.in_company());
+}
+
+TEST_F(TeamPartsTest, ItStaysOnTheGroundWhileAnotherIsWhereItWouldHover) {
+  EXPECT_TRUE(sharing.airspace_clear());
+  hear_first_robot_at(Vec3(1, 0, 1));
+  EXPECT_FALSE(sharing.airspace_clear());
+}
+
+TEST_F(TeamPartsTest, AClaimedGoalIsToldToTheOthersUntilItIsGivenUp) {
+  Goal goal;
+  goal.position = {7, 1, 2};
+  sharing.claim_goal(goal);
+  const auto tell = [this](TeamPhase phase) {
+    for (int i = 0; i < 30; ++i) {
+      advance(0.1);
+      sharing.report(phase);
+      for (const Bytes& frame : mate.speak(now())) first.hear(frame, now());
+      hear_first_robot_at({30, 0, 0});
+    }
+  };
+  tell(TeamPhase::explore);
+  ASSERT_EQ(first.claimed_goals(now()).size(), 1u);
+  EXPECT_LT((first.claimed_goals(now())[0] - goal.position).norm(), 0.02);
+  sharing.give_up_goals();
+  tell(TeamPhase::home);
+  EXPECT_TRUE(first.claimed_goals(now()).empty());
+}
+
+TEST_F(TeamPartsTest, WithoutARelayNearerThanTheStartItHasNoLandingPlace) {
+  phases.enter(Phase::home, now());
+  bool over = false, changed = false;
+  landing.choose(
+      0, [&] { over = true; }, [&] { changed = true; });
+  EXPECT_FALSE(over);
+  advance(0.3);
+  EXPECT_TRUE(over);
+  EXPECT_TRUE(changed);
+  EXPECT_FALSE(landing.spot());
+  EXPECT_EQ(told("no landing place is nearer"), 1u);
+}
+
+TEST_F(TeamPartsTest, AChoiceThatComesAfterItBeganToLandChangesNothing) {
+  phases.enter(Phase::home, now());
+  bool over = false, changed = false;
+  landing.choose(
+      0, [&] { over = true; }, [&] { changed = true; });
+  phases.enter(Phase::land, now());
+  advance(0.3);
+  EXPECT_TRUE(over);
+  EXPECT_FALSE(changed);
+}
+
+TEST(ToldPhase, TellsWhoCannotStopForOthers) {
+  EXPECT_EQ(told(Phase::takeoff), TeamPhase::landing);
+  EXPECT_EQ(told(Phase::land), TeamPhase::landing);
+  EXPECT_EQ(told(Phase::look), TeamPhase::explore);
+  EXPECT_EQ(told(Phase::home), TeamPhase::home);
+  EXPECT_EQ(told(Phase::done), TeamPhase::landed);
+}
+
+}  // namespace
+}  // namespace karst::core

@@ -1,0 +1,70 @@
+#include "core_stack/planning/trajectory/join.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace karst::core {
+namespace {
+
+std::vector<Vec3> line(const Vec3& from, const Vec3& to) {
+  std::vector<Vec3> points;
+  const int n = static_cast<int>(std::lround((to - from).norm() / 0.1));
+  for (int i = 0; i <= n; ++i) points.push_back(from + (to - from) * i / n);
+  return points;
+}
+
+double sharpest_turn_rad(const std::vector<Vec3>& points) {
+  double most = 0;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Vec3 a = points[i] - points[i - 1], b = points[i + 1] - points[i];
+    if (a.norm() > 1e-9 && b.norm() > 1e-9) most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)));
+  }
+  return most;
+}
+
+const auto everywhere = [](const Vec3&, const Vec3&) { return true; };
+
+TEST(JoinPaths, ACornerBecomesACurveThatPassesItClosely) {
+  const std::vector<Vec3> lead = line({0, 0, 0}, {3, 0, 0}),
+                          path = line({3, 0, 0}, {3 + 3 * std::cos(0.4), 3 * std::sin(0.4), 0});
+  const std::vector<Vec3> way = join_paths(lead, path, 0.3, everywhere);
+  EXPECT_LT(sharpest_turn_rad(way), 0.03);
+  EXPECT_EQ(way.front(), lead.front());
+  EXPECT_EQ(way.back(), path.back());
+  double nearest = 1e9;
+  for (const Vec3& p : way) nearest = std::min(nearest, (p - lead.back()).norm());
+  EXPECT_LT(nearest, 0.3);
+}
+
+TEST(JoinPaths, WhereNoCurveIsClearTheCornerStays) {
+  const std::vector<Vec3> lead = line({0, 0, 0}, {3, 0, 0}), path = line({3, 0, 0}, {3, 3, 0});
+  const auto nowhere = [](const Vec3&, const Vec3&) { return false; };
+  EXPECT_EQ(join_paths(lead, path, 0.3, nowhere).size(), lead.size() + path.size() - 1);
+}
+
+TEST(JoinPaths, NeverLeavesWhatIsClear) {
+  // A pillar inside of the bend: only short curves pass it.
+  const Vec3 pillar(2.6, 0.4, 0);
+  const auto clear = [&](const Vec3& a, const Vec3& b) {
+    return (a - pillar).norm() > 0.35 && (b - pillar).norm() > 0.35;
+  };
+  const std::vector<Vec3> way =
+      join_paths(line({0, 0, 0}, {3, 0, 0}), line({3, 0, 0}, {3, 3, 0}), 0.3, clear);
+  EXPECT_LT(sharpest_turn_rad(way), 1.0);
+  for (std::size_t i = 1; i < way.size(); ++i) EXPECT_TRUE(clear(way[i - 1], way[i])) << i;
+}
+
+TEST(JoinPaths, AShortLeadOrATurnBackIsLeftAlone) {
+  const std::vector<Vec3> path = line({3, 0, 0}, {0, 0.2, 0});
+  EXPECT_EQ(join_paths({{3, 0, 0}}, path, 0.3, everywhere).size(), path.size());
+  const std::vector<Vec3> lead = line({0, 0, 0}, {3, 0, 0});
+  const std::vector<Vec3> way = join_paths(lead, path, 0.3, everywhere);
+  double nearest = 1e9;
+  for (const Vec3& p : way) nearest = std::min(nearest, (p - lead.back()).norm());
+  EXPECT_LE(nearest, 0.3) << "the goal that was turned back at";
+}
+
+}  // namespace
+}  // namespace karst::core
