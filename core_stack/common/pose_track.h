@@ -17,11 +17,11 @@ Pose pose_on_track(const Track& track, Time t, StampOf stamp_of, PoseOf pose_of)
   if (after == track.begin()) return std::invoke(pose_of, track.front());
   if (after == track.end()) return std::invoke(pose_of, track.back());
   const auto before = after - 1;
-  const double share =
+  const double fraction =
       static_cast<double>(t - stamp(*before)) / static_cast<double>(stamp(*after) - stamp(*before));
   const Pose a = std::invoke(pose_of, *before), b = std::invoke(pose_of, *after);
-  return {a.position + share * (b.position - a.position),
-          a.orientation.slerp(share, b.orientation).normalized()};
+  return {a.position + fraction * (b.position - a.position),
+          a.orientation.slerp(fraction, b.orientation).normalized()};
 }
 
 }  // namespace karst::core

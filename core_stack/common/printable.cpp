@@ -23,9 +23,9 @@ Character first_of(std::string_view text) {
     if ((byte(i) & 0xC0) != 0x80) return {};
     code = code << 6 | (byte(i) & 0x3F);
   }
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // below: an overlong form
+  constexpr std::uint32_t kMin[] = {0, 0, 0x80, 0x800, 0x10000};  // below: an overlong form
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-  return code < kLeast[bytes] || surrogate || code > 0x10FFFF ? Character{} : Character{code, bytes};
+  return code < kMin[bytes] || surrogate || code > 0x10FFFF ? Character{} : Character{code, bytes};
 }
 
 bool is_obeyed(std::uint32_t c) {

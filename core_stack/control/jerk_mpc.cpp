@@ -18,13 +18,14 @@ constexpr double kViolation = 4e-7;      // of a limit, as a share of it, beyond
 constexpr double kJerkTolerance = 3e-3;  // last Newton step, as a share of the jerk limit
 // With multipliers of 1e4 and slacks of 1e-5 rounding moves single jerks about; then the cost has settled
 // long before.
-constexpr double kSettledJerk = 0.1, kSettledCost = 1e-5;  // of the limit and of the cost, after a whole step
+constexpr double kConvergedJerk = 0.1,
+                 kConvergedCost = 1e-5;  // of the limit and of the cost, after a whole step
 constexpr int kMaxIterations = 40;
 constexpr double kCreeping = 0.05;  // share of a Newton step; so short four times in a row, a start was bad
 constexpr double kGoodExcess = 0.005;  // over a limit, as a share of it, that a plan given up early may have
 constexpr double kToBoundary = 0.99;
 // A shifted plan touches its limits; the iteration starts a little inside, with products near a small mu.
-constexpr double kWarmShare = 1e-3;                    // of the mu of a cold start
+constexpr double kWarmFraction = 1e-3;                 // of the mu of a cold start
 constexpr double kWarmSlack = 1e-3, kColdSlack = 0.1;  // least slack, as a share of the limit
 constexpr double kWarmSpread = 1e4;  // how far above mu a kept multiplier may put its product
 
@@ -71,13 +72,13 @@ JerkMpc::JerkMpc(const JerkMpcSetup& setup)
 
 /// The old plan's acceleration, read at the new nodes, gives the new jerks.
 void JerkMpc::shift(double elapsed_s, const Motion& start) {
-  const double share = std::clamp(elapsed_s / setup_.step_s, 0.0, 1.0);
+  const double fraction = std::clamp(elapsed_s / setup_.step_s, 0.0, 1.0);
   const std::size_t n = stages_.size();
   Vec3 before = start.acceleration_mps2;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3& a = plan_.motion[k].acceleration_mps2;
     const Vec3& b = plan_.motion[std::min(k + 1, n - 1)].acceleration_mps2;
-    const Vec3 at_node = (1 - share) * a + share * b;
+    const Vec3 at_node = (1 - fraction) * a + fraction * b;
     plan_.jerk_mps3[k] = (at_node - before) / setup_.step_s;
     before = at_node;
   }
@@ -97,7 +98,7 @@ void JerkMpc::start_multipliers(bool warm, std::span<const MotionTarget> targets
     cost_ += setup_.position_weight / 2 * (plan_.motion[i].position - targets[i].position).squaredNorm();
   const double cold_mu = std::max(0.1, cost_ / (3.0 * static_cast<double>(stages_.size())));
   const auto begin = [&](Ball& ball, const Vec3& y, double limit) {
-    const double mu = warm ? std::max(kFinalMu, kWarmShare * cold_mu) : cold_mu;
+    const double mu = warm ? std::max(kFinalMu, kWarmFraction * cold_mu) : cold_mu;
     const double value = ball_value(y, limit);
     const double floor = (warm ? kWarmSlack : kColdSlack) * limit;
     ball.inside = value >= floor;
@@ -259,8 +260,8 @@ bool JerkMpc::iterate(const Motion& start, std::span<const MotionTarget> targets
     // Short steps mean products far apart: go back towards the central path before going on.
     shrink = length > 0.9 ? 0.1 : length > 0.4 ? 0.3 : length > 0.1 ? 1.0 : 10.0;
     creeping = length < kCreeping ? creeping + 1 : 0;
-    const bool settled = whole_step && std::abs(cost_ - last_cost) < kSettledCost * cost_;
-    const double tolerance = (settled ? kSettledJerk : kJerkTolerance) * setup_.max_jerk_mps3;
+    const bool converged = whole_step && std::abs(cost_ - last_cost) < kConvergedCost * cost_;
+    const double tolerance = (converged ? kConvergedJerk : kJerkTolerance) * setup_.max_jerk_mps3;
     whole_step = length > 0.9;
     if (whole_step && mu < 2 * good_mu && residual < kResidual && jerk_step < tolerance &&
         excess() < kViolation + (softness_ == kSoft ? bought : 0)) {

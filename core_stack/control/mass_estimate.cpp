@@ -10,8 +10,8 @@ constexpr double kLag_s = 0.2;
 /// The lagged values are of the air only after this long.
 constexpr double kSettled_s = 0.5;
 /// Averaged over the time in the air at first, over this long later: gusts come and go within seconds.
-constexpr double kLeastMemory_s = 0.5, kMostMemory_s = 20.0;
-constexpr double kLeastShare = 0.5, kMostShare = 2.0;  // of the mass described
+constexpr double kMinMemory_s = 0.5, kMaxMemory_s = 20.0;
+constexpr double kMinFraction = 0.5, kMaxFraction = 2.0;  // of the mass described
 
 }  // namespace
 
@@ -33,14 +33,14 @@ void MassEstimate::update(double thrust_n, bool airborne, double dt_s) {
     airborne_s_ = 0;
     return;
   }
-  const double share = airborne_s_ == 0 ? 1 : dt_s / (kLag_s + dt_s);
-  thrust_n_ += share * (thrust_n - thrust_n_);
-  force_mps2_ += share * (force_mps2 - force_mps2_);
+  const double fraction = airborne_s_ == 0 ? 1 : dt_s / (kLag_s + dt_s);
+  thrust_n_ += fraction * (thrust_n - thrust_n_);
+  force_mps2_ += fraction * (force_mps2 - force_mps2_);
   airborne_s_ += dt_s;
   if (airborne_s_ < kSettled_s || force_mps2_ < 1) return;
-  const double memory_s = std::clamp(airborne_s_ - kSettled_s, kLeastMemory_s, kMostMemory_s);
+  const double memory_s = std::clamp(airborne_s_ - kSettled_s, kMinMemory_s, kMaxMemory_s);
   mass_kg_ += dt_s / memory_s * (thrust_n_ / force_mps2_ - mass_kg_);
-  mass_kg_ = std::clamp(mass_kg_, kLeastShare * described_kg_, kMostShare * described_kg_);
+  mass_kg_ = std::clamp(mass_kg_, kMinFraction * described_kg_, kMaxFraction * described_kg_);
 }
 
 }  // namespace karst::core

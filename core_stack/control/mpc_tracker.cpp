@@ -10,7 +10,7 @@ namespace {
 
 // Limits hold softly: what is asked of the solver is less by this.
 constexpr double kTightening = 0.985;
-constexpr double kReachMargin_s = 0.3;
+constexpr double kReachableMargin_s = 0.3;
 
 JerkMpcSetup setup_of(const MpcOptions& o, const MotionLimits& limits) {
   JerkMpcSetup s;
@@ -108,10 +108,10 @@ const Reference& MpcTracker::step(const Trajectory& trajectory, TimeNs now) {
     const TimeNs t = now + s.step * static_cast<TimeNs>(k + 1);
     // A target out of reach is drawn in: it pulls the same way, with a force that keeps the problem well
     // scaled.
-    const double reach_m = s.max_speed_mps * (seconds(t - now) + kReachMargin_s);
+    const double reachable_m = s.max_speed_mps * (seconds(t - now) + kReachableMargin_s);
     const Vec3 offset = s.target_at(trajectory, t).position - s.motion.position;
     s.targets[k].position =
-        s.motion.position + offset * std::min(1.0, reach_m / std::max(offset.norm(), 1e-9));
+        s.motion.position + offset * std::min(1.0, reachable_m / std::max(offset.norm(), 1e-9));
     s.targets[k].velocity_mps = (s.target_at(trajectory, t + s.step / 2).position -
                                  s.target_at(trajectory, t - s.step / 2).position) /
                                 seconds(s.step);

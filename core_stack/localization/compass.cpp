@@ -9,9 +9,9 @@ namespace {
 /// Samples until the field counts as known, and over how many it is averaged in the long run.
 constexpr int kKnown = 20, kAverage = 3000;
 /// The earth's field differs by less within a cave; noise and tilt errors included.
-constexpr double kStrengthShare = 0.08, kDip_rad = 0.07;
+constexpr double kStrengthFraction = 0.08, kDip_rad = 0.07;
 /// Towards the poles the horizontal part is too weak to steer by.
-constexpr double kLeastHorizontal_ut = 5;
+constexpr double kMinHorizontal_ut = 5;
 /// Without a sample for so long it is not trusted.
 constexpr TimeNs kSilent = kSecond / 5;
 
@@ -21,9 +21,9 @@ double bearing(const Vec3& field) { return std::atan2(field.y(), field.x()); }
 }  // namespace
 
 bool Compass::fits(const Vec3& field) const {
-  return std::abs(field.norm() - field_world_ut_.norm()) < kStrengthShare * field_world_ut_.norm() &&
+  return std::abs(field.norm() - field_world_ut_.norm()) < kStrengthFraction * field_world_ut_.norm() &&
          std::abs(dip(field) - dip(field_world_ut_)) < kDip_rad &&
-         field_world_ut_.head<2>().norm() > kLeastHorizontal_ut;
+         field_world_ut_.head<2>().norm() > kMinHorizontal_ut;
 }
 
 Compass::Reading Compass::read(const MagnetometerSample& sample, const Quat& orientation) {

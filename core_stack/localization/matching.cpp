@@ -15,7 +15,7 @@ constexpr double kPlanePoints = 12, kPlaneSpread = 0.3 /* voxels */,
 constexpr double kLinePoints = 8, kLineSpread = 0.5 /* voxels */, kLineThickness = 0.3 /* of the spread */;
 // What a distance's deviation is, next to the noise of the means: a share of the rock's roughness in the
 // window, and what no model knows.
-constexpr double kRoughShare = 0.2, kLeastDeviation = 0.003;
+constexpr double kRoughFraction = 0.2, kMinDeviation = 0.003;
 
 /// A plane match and the sweep's voxel it was made in.
 struct PlaneMatch {
@@ -37,7 +37,7 @@ bool match_plane(const VoxelGrid& map, const VoxelGrid& sweep, const Vec3f& plac
   out.match.normals = 1;
   out.match.p = means.b, out.match.q = means.a, out.match.n1 = s.axes.col(0);
   out.match.variance_m2 =
-      thick * thick * (2 / means.points + kRoughShare * kRoughShare) + kLeastDeviation * kLeastDeviation;
+      thick * thick * (2 / means.points + kRoughFraction * kRoughFraction) + kMinDeviation * kMinDeviation;
   out.voxel = static_cast<std::size_t>(voxel - sweep.voxels().data());
   return true;
 }
@@ -50,7 +50,7 @@ bool match_line(const VoxelGrid& map, const Vec3f& place, Match& m) {
     return false;
   m.normals = 2;
   m.p = place.cast<double>(), m.q = s.mean, m.n1 = s.axes.col(0), m.n2 = s.axes.col(1);
-  m.variance_m2 = thick * thick + kLeastDeviation * kLeastDeviation;
+  m.variance_m2 = thick * thick + kMinDeviation * kMinDeviation;
   return true;
 }
 

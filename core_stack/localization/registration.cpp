@@ -51,10 +51,10 @@ NormalEquations sums_of(const Match* first, const Match* end, const Pose& T, dou
 void describe(OptionTable& t, RegistrationOptions& o) {
   t.add("max_passes", o.max_passes, 1, 20, "how often matches are looked for at most");
   t.add("max_steps", o.max_steps, 1, 100, "Gauss-Newton steps at most, each time");
-  t.add("degenerate_share", o.degenerate_share, "", 0, 0.3,
+  t.add("degenerate_fraction", o.degenerate_fraction, "", 0, 0.3,
         "a direction is free if the mean squared cosine between it and the surfaces' normals is less");
   t.add("min_matches", o.min_matches, 6, 100'000, "that a valid pose needs");
-  t.add("min_matched_share", o.min_matched_share, "", 0, 1,
+  t.add("min_matched_fraction", o.min_matched_fraction, "", 0, 1,
         "of a sweep's features that must match for a valid pose");
 }
 
@@ -75,7 +75,7 @@ NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world
   return sums;
 }
 
-Step solve(const NormalEquations& equations, double degenerate_share) {
+Step solve(const NormalEquations& equations, double degenerate_fraction) {
   const double length = std::sqrt(equations.squared_distance / equations.weight);  // L
   Vector6 unit;
   unit << 1, 1, 1, 1 / length, 1 / length, 1 / length;
@@ -85,7 +85,7 @@ Step solve(const NormalEquations& equations, double degenerate_share) {
   Vector6 inverse, variance;
   for (int i = 0; i < 6; ++i) {
     const double value = solver.eigenvalues()[i];
-    const bool free = value < degenerate_share * equations.weight;
+    const bool free = value < degenerate_fraction * equations.weight;
     step.free_directions += free;
     inverse[i] = free ? 0 : 1 / value;
     variance[i] = free ? kFreeDeviation * kFreeDeviation : 1 / value;
@@ -105,16 +105,17 @@ Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, 
     const double voxel_m = map.surfaces()[level].voxel_m();
     const Matches matches = find_matches(cloud_body, map, fit.T_world_body, level, threads, scratch);
     fit.edges = matches.edges, fit.planes = matches.planes;
-    fit.matched_share = (matches.edges + matches.planes) / std::max(1.0, static_cast<double>(matches.places));
+    fit.matched_fraction =
+        (matches.edges + matches.planes) / std::max(1.0, static_cast<double>(matches.places));
     fit.good = matches.edges + matches.planes >= options.min_matches &&
-               fit.matched_share >= options.min_matched_share;
+               fit.matched_fraction >= options.min_matched_fraction;
     if (static_cast<std::int64_t>(matches.all.size()) < std::min<std::int64_t>(options.min_matches, 6))
       return fit;
 
     double moved = 0, width_m = voxel_m;
     for (std::int64_t i = 0; i < options.max_steps; ++i) {
       const NormalEquations equations = linearize(matches.all, fit.T_world_body, width_m, threads);
-      const Step step = solve(equations, options.degenerate_share);
+      const Step step = solve(equations, options.degenerate_fraction);
       Pose& T = fit.T_world_body;
       T.position += step.change.head<3>();
       T.orientation = (T.orientation * exp_so3(step.change.tail<3>())).normalized();

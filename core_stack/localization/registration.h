@@ -24,9 +24,9 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 struct RegistrationOptions {
   std::int64_t max_passes = 4;
   std::int64_t max_steps = 6;
-  double degenerate_share = 0.002;
+  double degenerate_fraction = 0.002;
   std::int64_t min_matches = 60;
-  double min_matched_share = 0.25;
+  double min_matched_fraction = 0.25;
 };
 void describe(OptionTable& t, RegistrationOptions& o);
 
@@ -36,8 +36,8 @@ struct Fit {
   int free_directions = 0;
   bool good = false;
   int edges = 0, planes = 0;
-  double matched_share = 0;   // of the places that were looked for
-  double rms_residual_m = 0;  // with robust weights
+  double matched_fraction = 0;  // of the places that were looked for
+  double rms_residual_m = 0;    // with robust weights
 };
 
 /// Starts from `guess` with surfaces of `first_level` and goes on to the finest.
@@ -61,6 +61,6 @@ struct Step {
   Matrix6 covariance = Matrix6::Zero();
   int free_directions = 0;
 };
-Step solve(const NormalEquations& equations, double degenerate_share);
+Step solve(const NormalEquations& equations, double degenerate_fraction);
 
 }  // namespace karst::core

@@ -15,8 +15,8 @@ struct Beams {
                                                                     static_cast<float>(model.columns));
       cos_azimuth.push_back(std::cos(azimuth));
       sin_azimuth.push_back(std::sin(azimuth));
-      const double share = static_cast<double>(j + 1) / model.columns;
-      time_s.push_back(static_cast<float>(seconds(model.period) * (share - 1)));
+      const double fraction = static_cast<double>(j + 1) / model.columns;
+      time_s.push_back(static_cast<float>(seconds(model.period) * (fraction - 1)));
     }
   }
 };

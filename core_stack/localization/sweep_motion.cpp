@@ -44,9 +44,9 @@ SweepMotion::SweepMotion(double length_s, const Pose& T_body_lidar,
   for (int knot = 0; knot < kKnots; ++knot) {
     const Pose far = T_end_body(-length_s * (knot + 1) / kKnots) * T_body_lidar;
     for (int i = 0; i < kEach; ++i) {
-      const double share = static_cast<double>(i) / kEach;
-      const Quat q = near.orientation.slerp(share, far.orientation);
-      const Vec3 p = near.position + share * (far.position - near.position);
+      const double fraction = static_cast<double>(i) / kEach;
+      const Quat q = near.orientation.slerp(fraction, far.orientation);
+      const Vec3 p = near.position + fraction * (far.position - near.position);
       steps_.push_back({q.toRotationMatrix().cast<float>(), p.cast<float>()});
     }
     near = far;

@@ -22,7 +22,7 @@ std::vector<CellChange> Explorer::declare_launch_site(const Vec3& hover_point) {
 
 void Explorer::note_picture(const Pose& T_world_camera) { world_.note_picture(T_world_camera); }
 
-RoundResult Explorer::decide(const RoundInput& input) { return cycle_.decide(input, team_.claims()); }
+CycleResult Explorer::decide(const CycleInput& input) { return cycle_.decide(input, team_.claims()); }
 
 void Explorer::tell(const std::vector<PolicyEvent>& events, TimeNs now) { cycle_.tell(events, now); }
 
@@ -30,11 +30,11 @@ bool Explorer::cluster_alive(std::uint32_t id) const { return cycle_.cluster_ali
 
 Path Explorer::plan_to(const Vec3& from, const Vec3& to) { return world_.plan_to(from, to); }
 
-HomeEstimate Explorer::estimate_home(const Vec3& from, double way_come_m) {
-  return home_estimator_.estimate(from, way_come_m);
+HomeEstimate Explorer::estimate_home(const Vec3& from, double flown_length_m) {
+  return home_estimator_.estimate(from, flown_length_m);
 }
 
-std::vector<Vec3> Explorer::way_back(const std::vector<Vec3>& flown) const {
+std::vector<Vec3> Explorer::path_back(const std::vector<Vec3>& flown) const {
   std::vector<Vec3> back = flown_back(world_.map(), limits_, flown);
   back.push_back(world_.home());
   return back;
@@ -62,19 +62,19 @@ TreeFacts Explorer::share(const Vec3& here, const TeamNews& news) {
   return team_.share(world_.map(), world_.usual().roadmap(), here, news);
 }
 
-std::optional<Vec3> Explorer::reach_ends(const Release& here, const Release& ahead) const {
-  return team_.homing()->reach_ends(world_.map(), here, ahead);
+std::optional<Vec3> Explorer::relay_drop_site(const Release& here, const Release& ahead) const {
+  return team_.homing()->relay_drop_site(world_.map(), here, ahead);
 }
 
-std::optional<LandingSpot> Explorer::landing_spot(const Vec3& from, double way_come_m) {
-  return home_estimator_.landing_spot(from, way_come_m);
+std::optional<LandingSpot> Explorer::landing_spot(const Vec3& from, double flown_length_m) {
+  return home_estimator_.landing_spot(from, flown_length_m);
 }
 
 TreeFacts Explorer::land(const Vec3& hover, TimeNs team_time) {
   return team_.homing()->land(world_.map(), world_.usual().roadmap(), hover, team_time);
 }
 
-std::optional<Refuge> Explorer::refuge(RoomQuery query) {
+std::optional<WaitingPlace> Explorer::find_waiting_place(RoomQuery query) {
   query.vehicle_radius_m = limits_.hull_radius_m;
   return waiting_place(world_.map(), world_.usual().roadmap(), query);
 }

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "core_stack/mission/decision/cycle.h"
 #include "core_stack/mission/decision/decision_cycle.h"
-#include "core_stack/mission/decision/round.h"
 #include "core_stack/mission/mission_options.h"
 #include "core_stack/mission/policy/policy_port.h"
 #include "core_stack/mission/team/team_membership.h"
@@ -34,14 +34,14 @@ class Explorer {
   /// A picture was taken from there, by the vehicle's colour camera.
   void note_picture(const Pose& T_world_camera);
 
-  RoundResult decide(const RoundInput& input);
+  CycleResult decide(const CycleInput& input);
   /// A path from `from` to `to` for going home or around a new obstacle.
   Path plan_to(const Vec3& from, const Vec3& to);
-  /// Through the map, or if no path is known there, `way_come_m` long.
-  HomeEstimate estimate_home(const Vec3& from, double way_come_m);
+  /// Through the map, or if no path is known there, `flown_length_m` long.
+  HomeEstimate estimate_home(const Vec3& from, double flown_length_m);
   /// Back along poses flown, from the last to the first and home, leaving out loops where the map shows a
   /// clear line.
-  std::vector<Vec3> way_back(const std::vector<Vec3>& flown) const;
+  std::vector<Vec3> path_back(const std::vector<Vec3>& flown) const;
   /// What happened to its goals, and that it is over.
   void tell(const std::vector<PolicyEvent>& events, TimeNs now);
   /// Index of the first segment of `points` nearer to an obstacle's cell than the vehicle's radius, or -1.
@@ -61,14 +61,14 @@ class Explorer {
   void join(RelayHoming* homing, double claim_radius_m);
   /// Takes in what was heard; returns what to report.
   TreeFacts share(const Vec3& here, const TeamNews& news);
-  /// See RelayHoming::reach_ends.
-  std::optional<Vec3> reach_ends(const Release& here, const Release& ahead) const;
+  /// See RelayHoming::relay_drop_site.
+  std::optional<Vec3> relay_drop_site(const Release& here, const Release& ahead) const;
   /// Where to land as a relay, if that takes less time than the path to the start.
-  std::optional<LandingSpot> landing_spot(const Vec3& from, double way_come_m);
+  std::optional<LandingSpot> landing_spot(const Vec3& from, double flown_length_m);
   /// It landed below `hover`: what to report.
   TreeFacts land(const Vec3& hover, TimeNs team_time);
   /// Where it makes room for another vehicle; the vehicle's radius is filled in.
-  std::optional<Refuge> refuge(RoomQuery query);
+  std::optional<WaitingPlace> find_waiting_place(RoomQuery query);
 
   const VoxelMap& map() const { return world_.map(); }
   const Vec3& home() const { return world_.home(); }

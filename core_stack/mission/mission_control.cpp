@@ -20,14 +20,14 @@ constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the 
 
 /// How far back along the way flown a vehicle that has to land may look for ground: at 0.6 m/s on average
 /// (EmergencyLanding), and with time to come down.
-double way_back_down_m(const BatteryStatus& battery) {
+double path_back_m(const BatteryStatus& battery) {
   constexpr double kFarthest_m = 55, kMean_mps = 0.6, kDescent_s = 15;
   return std::clamp(kMean_mps * (battery.seconds_left - kDescent_s), 0.0, kFarthest_m);
 }
 
 /// Sideways on a pose that may not hold any more.
-constexpr double kDoubtfulWay_m = 4.5;
-constexpr double kAnyWay_m = std::numeric_limits<double>::infinity();
+constexpr double kDoubtfulPath_m = 4.5;
+constexpr double kAnyPath_m = std::numeric_limits<double>::infinity();
 
 /// What the widest camera sees without turning need not be turned to; a little is seen twice.
 double turn_to_see_all_around(const VehicleDescription& vehicle) {
@@ -49,9 +49,9 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       take_off_(onboard_, phases_, path_),
       team_(in_team(team)),
       sensors_(onboard_, sensor_wiring()),
-      exploration_(onboard_, {phases_, goals_, path_, way_flown_, endurance_}, exploration_wiring()),
+      exploration_(onboard_, {phases_, goals_, path_, flown_path_, endurance_}, exploration_wiring()),
       return_home_(onboard_,
-                   {phases_, goals_, path_, way_flown_, endurance_,
+                   {phases_, goals_, path_, flown_path_, endurance_,
                     team_ && team_->landing ? &*team_->landing : nullptr},
                    home_wiring()),
       objects_(onboard_, team),
@@ -64,7 +64,7 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
 std::optional<MissionControl::InTeam> MissionControl::in_team(Teamwork* team) {
   if (!team) return std::nullopt;
   InTeam out{*team, TeamSharing(onboard_, *team, {phases_, path_, endurance_}),
-             RightOfWay(onboard_, *team, {phases_, goals_, path_, way_flown_}), std::nullopt};
+             RightOfWay(onboard_, *team, {phases_, goals_, path_, flown_path_}), std::nullopt};
   if (team->lands_as_relay()) out.landing.emplace(onboard_, *team, phases_, endurance_);
   return out;
 }
@@ -84,7 +84,7 @@ Exploration::Wiring MissionControl::exploration_wiring() {
               [this](const Goal& goal) {
                 if (team_) team_->sharing.claim_goal(goal);
               },
-          .mates = [this] { return team_ ? team_->sharing.mates() : std::vector<HeardMate>{}; }};
+          .teammates = [this] { return team_ ? team_->sharing.teammates() : std::vector<TeammateState>{}; }};
 }
 
 ReturnHome::Wiring MissionControl::home_wiring() {
@@ -117,7 +117,7 @@ void MissionControl::begin(const Watch& watch) {
   vehicle_.start(onboard_.executive, *this);
   onboard_.executive.every("control", kControlPeriod, kControlPeriod, [this] { control(); });
   onboard_.executive.every("supervise", kSupervisionPeriod, kSupervisionPeriod, [this] { supervise(); });
-  onboard_.executive.every("watch", kSecond, kSecond, [this] { tell_watcher(); });
+  onboard_.executive.every("watch", kSecond, kSecond, [this] { report_to_watcher(); });
 }
 
 /// Whatever fails, the steps go on: the vehicle has to come down.
@@ -168,12 +168,12 @@ MissionResult MissionControl::end() {
   return *result_;
 }
 
-void MissionControl::land_now(const char* reason) noexcept { end_flight(reason, kDoubtfulWay_m); }
+void MissionControl::land_now(const char* reason) noexcept { end_flight(reason, kDoubtfulPath_m); }
 
-void MissionControl::end_flight(const char* reason, double longest_way_m) noexcept {
+void MissionControl::end_flight(const char* reason, double max_path_m) noexcept {
   if (emergency_ || result_) return;
   emergency_.emplace();
-  onboard_.flight.land_now(now(), longest_way_m);
+  onboard_.flight.land_now(now(), max_path_m);
   sensors_.close();
   phases_.enter(Phase::land, now());
   try {  // telling of it may fail, too
@@ -191,7 +191,7 @@ void MissionControl::finish(const std::string& outcome, const std::string& reaso
   result_->outcome = outcome;
   result_->reason = reason;
   enter(Phase::done, reason);
-  objects_.settle(outcome == "landed" || (team_ && result_->stands));
+  objects_.finish(outcome == "landed" || (team_ && result_->stands));
   onboard_.recorder.event(now(), "outcome",
                           {{"outcome", outcome}, {"reason", reason}, {"mass_kg", onboard_.flight.mass_kg()}});
   onboard_.recorder.flush();
@@ -216,7 +216,7 @@ void MissionControl::watch_steps() {
   if (emergency_ && !result_ && control_watch_.since(now()) > kControlPeriod) control();
 }
 
-void MissionControl::tell_watcher() {
+void MissionControl::report_to_watcher() {
   const BatteryStatus& battery = endurance_.battery();
   const MissionStatus status{now(),
                              phase(),
@@ -229,7 +229,7 @@ void MissionControl::tell_watcher() {
     onboard_.recorder.event(now(), "overrun", {{"count", overruns - overruns_}});
     overruns_ = overruns;
   }
-  if (!watch_(status)) end_flight("stopped by the operator", kAnyWay_m);
+  if (!watch_(status)) end_flight("stopped by the operator", kAnyPath_m);
 }
 
 void MissionControl::control() {
@@ -286,7 +286,7 @@ void MissionControl::take_off() {
       break;
   }
   const Vec3& hover = onboard_.flight.reference().position;
-  way_flown_.begin(hover);
+  flown_path_.begin(hover);
   return_home_.set_home(hover);
   // A vehicle that sees all around already has nothing to look around for.
   if (onboard_.vehicle.lidar) return enter(Phase::explore, "");
@@ -297,7 +297,7 @@ void MissionControl::take_off() {
 /// As it would in an emergency: where the ground is fit to land on, as far as that is known.
 void MissionControl::land_here(const std::string& reason) {
   const bool lost = onboard_.flight.estimator().diagnose(now()).health == Health::lost;
-  onboard_.flight.land_now(now(), lost ? kDoubtfulWay_m : kAnyWay_m);
+  onboard_.flight.land_now(now(), lost ? kDoubtfulPath_m : kAnyPath_m);
   enter(Phase::land, reason);
 }
 
@@ -315,10 +315,9 @@ MapQuestion MissionControl::map_question() const {
   if (takes_off || phases_.under_way())  // of what it takes off from, the ground is near
     question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
   if (takes_off || phases_.in(Phase::look) || phases_.under_way())
-    question.way_down =
-        WayDownQuery{onboard_.flight.until_stop(now()).points.back(),
-                     way_flown_.back(way_back_down_m(endurance_.battery())), onboard_.vehicle.radius_m,
-                     way_flown_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
+    question.descent_path = DescentQuery{
+        onboard_.flight.until_stop(now()).points.back(), flown_path_.back(path_back_m(endurance_.battery())),
+        onboard_.vehicle.radius_m, flown_path_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
   question.narrow_places = path_.narrow_places();
   question.touch_only = path_.as_come();
   question.frontier = goals_.frontier();
@@ -328,7 +327,7 @@ MapQuestion MissionControl::map_question() const {
 void MissionControl::on_map(const MapNews& news) {
   onboard_.recorder.map_changes(now(), news.changes);
   goals_.note_frontier(news.frontier, news.frontier_open);
-  onboard_.flight.prepare_landing(news.way_down);
+  onboard_.flight.prepare_landing(news.descent_path);
   if (!news.blocked_after_m || path_.blocked() || onboard_.flight.at_rest(now())) return;
   if (phases_.in(Phase::takeoff) && take_off_.below_roof()) return;
   goals_.drop_next(GoalFate::unreachable, kPathForbidden, now());
@@ -357,8 +356,8 @@ void MissionControl::keep_safe() {
 
 void MissionControl::react(const SafetyVerdict& verdict) {
   const bool under_way = phases_.under_way();
-  const double share = verdict.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_share;
-  if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * share);
+  const double fraction = verdict.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_fraction;
+  if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * fraction);
   if (verdict.action == SafetyAction::land) {
     path_.brake(now());
     land_here(verdict.reason);
@@ -378,11 +377,11 @@ void MissionControl::record() {
   onboard_.recorder.telemetry({now(), name_of(phase()), flight.state(), flight.reference().position,
                                battery.fraction_left, battery.seconds_left, sensors_.explored_m3(),
                                return_home_.distance_m()});
-  if (way_flown_.begun()) way_flown_.note(flight.reference().position);
+  if (flown_path_.begun()) flown_path_.note(flight.reference().position);
   const bool each_second = now() % kSecond == 0;
-  if (team_) team_->sharing.report(team_->right_of_way.told_now());
+  if (team_) team_->sharing.report(team_->right_of_way.phase_to_report());
   if (team_ && !emergency_ && each_second) {
-    if (way_flown_.begun()) {
+    if (flown_path_.begun()) {
       team_->sharing.share();
       return_home_.give_way_at_landing();
     }
@@ -394,7 +393,7 @@ void MissionControl::record() {
 
 void MissionControl::on_ground(TimeNs stamp, bool standing) {
   standing_ = standing;
-  const bool takes_off = !way_flown_.begun() && !phases_.in(Phase::land);  // it may touch once more
+  const bool takes_off = !flown_path_.begun() && !phases_.in(Phase::land);  // it may touch once more
   if (standing && !takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 

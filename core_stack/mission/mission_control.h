@@ -98,11 +98,11 @@ class MissionControl final : public VehicleSink {
   void supervise();
   void fly_phase();
   void watch_steps();
-  void tell_watcher();
+  void report_to_watcher();
   void keep_safe();
   void react(const SafetyVerdict& verdict);
   void take_off();
-  void end_flight(const char* reason, double longest_way_m) noexcept;
+  void end_flight(const char* reason, double max_path_m) noexcept;
   void land_here(const std::string& reason);
   void land();
   MapQuestion map_question() const;
@@ -117,7 +117,7 @@ class MissionControl final : public VehicleSink {
   Onboard onboard_;
   Vehicle& vehicle_;
   PhaseMachine phases_;
-  WayFlown way_flown_;
+  FlownPath flown_path_;
   Endurance endurance_;
   GoalTracker goals_;
   PathExecution path_;

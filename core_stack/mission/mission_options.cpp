@@ -54,11 +54,10 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
     refuse("localization.source", "the vehicle " + vehicle.name + " has no pose sensor" +
                                       (vehicle.lidar ? "" : ", nor a LiDAR to locate itself with"));
   // Obstacles are cells, whose surface may lie half an edge nearer than their centre.
-  const double least_m = vehicle.radius_m + o.map.resolution_m / 2;
-  if (o.planning.clearance_m < least_m)
+  const double min_m = vehicle.radius_m + o.map.resolution_m / 2;
+  if (o.planning.clearance_m < min_m)
     refuse("planning.clearance", metres(o.planning.clearance_m) +
-                                     " is less than the vehicle's radius and half a cell, " +
-                                     metres(least_m));
+                                     " is less than the vehicle's radius and half a cell, " + metres(min_m));
   // Not silently off: whoever asks for a margin wants narrower passages flown than the clearance allows.
   // Where refining cannot lift a narrow path to its clearance, a quarter of a cell less must do.
   if (const double least = o.map.resolution_m / 4;
@@ -71,12 +70,12 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
     refuse("planning.narrow_margin", "with the vehicle's radius it makes " + metres(narrow_m) +
                                          ", which is no less than planning.clearance, " +
                                          metres(o.planning.clearance_m));
-  constexpr double kMostCells = 14;  // that planning on bits can keep clear
+  constexpr double kMaxCells = 14;  // that planning on bits can keep clear
   for (const auto& [key, clearance_m] :
        {std::pair{"planning.clearance", o.planning.clearance_m},
         std::pair{"planning.preferred_clearance", o.planning.preferred_clearance_m}})
-    if (clearance_m > kMostCells * o.map.resolution_m)
-      refuse(key, metres(clearance_m) + " is more than " + std::to_string(static_cast<int>(kMostCells)) +
+    if (clearance_m > kMaxCells * o.map.resolution_m)
+      refuse(key, metres(clearance_m) + " is more than " + std::to_string(static_cast<int>(kMaxCells)) +
                       " cells of map.resolution (" + metres(o.map.resolution_m) +
                       "): choose coarser cells or less clearance");
 }

@@ -29,7 +29,7 @@ void ObjectSearch::on_objects(const ObjectDetections& look) {
   if (look.stamp > onboard_.now() || !look.camera) return;
   const auto& known = onboard_.flight.estimator().history().states();
   if (known.empty() || look.stamp < known.front().stamp) {  // where the camera was then is not known any more
-    if (!std::exchange(late_looks_told_, true))
+    if (!std::exchange(late_looks_reported_, true))
       onboard_.recorder.event(onboard_.now(), "log",
                               {{"text", "the object detector is too slow: its news is dropped"}});
     return;
@@ -37,12 +37,12 @@ void ObjectSearch::on_objects(const ObjectDetections& look) {
   const Pose T_world_camera =
       onboard_.flight.estimator().history().pose_at(look.stamp) * look.camera->T_body_camera;
   objects_.note(look, T_world_camera, onboard_.flight.estimator().active().position_sigma_m());
-  tell(Told::what_changed);
+  report(Report::what_changed);
 }
 
 /// Into the events, and to the team.
-void ObjectSearch::tell(Told which) {
-  for (const ObjectNews& news : objects_.take_news(onboard_.now(), which == Told::all)) {
+void ObjectSearch::report(Report which) {
+  for (const ObjectNews& news : objects_.take_news(onboard_.now(), which == Report::all)) {
     const FoundObject& o = news.object;
     const bool withdrawn = news.state == ObjectNews::State::withdrawn;
     onboard_.recorder.event(onboard_.now(), "object",
@@ -76,9 +76,9 @@ void ObjectSearch::note_at_base() {
 
 /// At the end of the flight. A vehicle that flies alone reports where it landed, at the start; of a team, one
 /// that crashed tells nothing any more.
-void ObjectSearch::settle(bool landed) {
+void ObjectSearch::finish(bool landed) {
   if (team_ && !landed) return;
-  tell(Told::all);
+  report(Report::all);
   if (team_) return note_at_base();
   if (!landed) return;
   for (const FoundObject& o : objects_.objects())

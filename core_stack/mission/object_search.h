@@ -20,18 +20,18 @@ class ObjectSearch {
   /// In a team: tells of each object once that the base knows it.
   void note_at_base();
   /// The flight is over. `landed`: it can report where it stands.
-  void settle(bool landed);
+  void finish(bool landed);
   void write() const;
 
  private:
-  enum class Told { what_changed, all };
-  void tell(Told which);
+  enum class Report { what_changed, all };
+  void report(Report which);
 
   Onboard& onboard_;
   Teamwork* team_;
   ObjectMap objects_;
   std::map<std::uint32_t, std::uint32_t> records_;  // by object: that told of it first; 0 once the base knows
-  bool late_looks_told_ = false;
+  bool late_looks_reported_ = false;
 };
 
 }  // namespace karst::core

@@ -1,6 +1,6 @@
 // What every part of a mission works with on board one vehicle.
 #pragma once
-#include "core_stack/common/laned.h"
+#include "core_stack/common/lane_bound.h"
 #include "core_stack/mission/explorer.h"
 #include "core_stack/mission/flight/flight.h"
 #include "core_stack/mission/recording/recorder.h"
@@ -27,7 +27,7 @@ struct Onboard {
   Executive& executive;
   Recorder& recorder;
   Flight flight;
-  Laned<Explorer> map;  // on the map lane
+  LaneBound<Explorer> map;  // on the map lane
 };
 
 }  // namespace karst::core

@@ -15,7 +15,7 @@ namespace {
 constexpr TimeNs kLocalizationBudget = 60 * kMillisecond;
 /// In real time, where mapping falls behind: what is seen beyond so many waiting messages is not mapped. In
 /// lockstep no more than a budget's worth waits.
-constexpr int kMostWaiting = 16;
+constexpr int kMaxWaiting = 16;
 /// Returns within this margin around the vehicle are the vehicle.
 constexpr double kSelfMargin_m = 0.05;
 
@@ -108,7 +108,7 @@ void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
   onboard_.map.job("imaged surface", kMappingBudget,
                    [T_world_camera](Explorer& explorer) { explorer.note_picture(T_world_camera); });
   std::string file;
-  if (!frame->rgb.empty() && onboard_.executive.under_way("picture file") < kMostWaiting) {
+  if (!frame->rgb.empty() && onboard_.executive.under_way("picture file") < kMaxWaiting) {
     std::array<char, 40> name;
     std::snprintf(name.data(), name.size(), "frames/%09.3f.jpg", seconds(frame->stamp));
     file = name.data();
@@ -139,7 +139,7 @@ void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
 }
 
 void SensorPipeline::integrate(std::function<std::vector<Ray>()> make_rays) {
-  if (closed_ || onboard_.executive.under_way("mapping") >= kMostWaiting) return;
+  if (closed_ || onboard_.executive.under_way("mapping") >= kMaxWaiting) return;
   struct Mapped {
     MapNews news;
     double explored_m3 = 0;
@@ -161,7 +161,7 @@ void SensorPipeline::integrate(std::function<std::vector<Ray>()> make_rays) {
             news.blocked_after_m = path_length_m({ahead.begin(), ahead.begin() + blocked + 1});
         }
         out.hull_clearance_m = explorer.hull_clearance_m(here);
-        if (question.way_down) news.way_down = way_down(explorer.map(), *question.way_down);
+        if (question.descent_path) news.descent_path = descent_path(explorer.map(), *question.descent_path);
         news.frontier = question.frontier;
         if (news.frontier != 0) news.frontier_open = explorer.cluster_alive(news.frontier);
         return out;

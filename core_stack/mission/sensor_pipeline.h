@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/homing/landing/way_down.h"
+#include "core_stack/homing/landing/descent_path.h"
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/moving_bodies.h"
 #include "core_stack/mission/onboard.h"
@@ -17,17 +17,17 @@ namespace karst::core {
 
 /// What is looked up in the map as soon as new rays are in it.
 struct MapQuestion {
-  std::vector<Vec3> ahead;               // the trajectory that has to be clear; empty: none
-  std::vector<Vec3> narrow_places;       // near which less clearance will do
-  bool touch_only = false;               // only what the vehicle would touch is in its way
-  std::uint32_t frontier = 0;            // of the goal under way; 0: none
-  std::optional<WayDownQuery> way_down;  // for a vehicle that may have to land at once
+  std::vector<Vec3> ahead;                   // the trajectory that has to be clear; empty: none
+  std::vector<Vec3> narrow_places;           // near which less clearance will do
+  bool touch_only = false;                   // only what the vehicle would touch is in its way
+  std::uint32_t frontier = 0;                // of the goal under way; 0: none
+  std::optional<DescentQuery> descent_path;  // for a vehicle that may have to land at once
 };
 
 struct MapNews {
   std::vector<CellChange> changes;
   std::optional<double> blocked_after_m;  // along `ahead`
-  std::vector<Vec3> way_down;             // as asked
+  std::vector<Vec3> descent_path;         // as asked
   std::uint32_t frontier = 0;             // as asked
   bool frontier_open = true;              // it is worth flying to
 };
@@ -66,7 +66,7 @@ class SensorPipeline {
 
   Onboard& onboard_;
   Wiring wiring_;
-  std::optional<Laned<Loam>> loam_;  // on vehicles that a LiDAR locates
+  std::optional<LaneBound<Loam>> loam_;  // on vehicles that a LiDAR locates
   bool closed_ = false;
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;

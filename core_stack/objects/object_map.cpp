@@ -53,7 +53,7 @@ void ObjectMap::note(const ObjectDetections& look, const Pose& T_world_camera, d
   });
   std::set<std::uint32_t> seen;  // in this image: each detection is of another object
   for (const ObjectDetection& d : look.found) {
-    if (d.kind == ObjectKind::none || d.confidence < options_.least_confidence || !d.direction.allFinite() ||
+    if (d.kind == ObjectKind::none || d.confidence < options_.min_confidence || !d.direction.allFinite() ||
         !(d.range_m > 0) || !std::isfinite(d.range_m) || !std::isfinite(d.range_sigma_m) ||
         !std::isfinite(d.bearing_sigma_rad))
       continue;
@@ -104,10 +104,10 @@ void ObjectMap::merge_into(Track& kept) {
     kept.last_seen = std::max(kept.last_seen, o->last_seen);
     if (o->number != 0 && (kept.number == 0 || o->number < kept.number)) {
       std::swap(kept.number, o->number);
-      std::swap(kept.told, o->told);
-      std::swap(kept.told_at, o->told_at);
+      std::swap(kept.reported, o->reported);
+      std::swap(kept.reported_at, o->reported_at);
     }
-    if (o->told) withdrawn_.push_back({ObjectNews::State::withdrawn, *o->told});
+    if (o->reported) withdrawn_.push_back({ObjectNews::State::withdrawn, *o->reported});
     for (const auto& [a, b] : std::set(apart_))
       if (a == o->id || b == o->id) apart_.insert(std::minmax(a == o->id ? b : a, kept.id));
     o->id = 0;
@@ -127,12 +127,12 @@ std::vector<FoundObject> ObjectMap::objects() const {
 /// Better known: moved by more than half of what it was told to be off by, or sure to within half of that.
 bool ObjectMap::worth_telling(const Track& t, TimeNs now, bool all) const {
   if (t.number == 0) return false;
-  if (!t.told) return true;
+  if (!t.reported) return true;
   const FoundObject is = found(t);
-  const double moved_m = (is.position - t.told->position).norm(), told_m = t.told->deviation_m;
-  if (all) return moved_m > 0.01 || is.deviation_m < 0.95 * told_m;
-  return now - t.told_at >= from_seconds(options_.retell_after_s) &&
-         (moved_m > 0.5 * told_m || is.deviation_m < 0.5 * told_m);
+  const double moved_m = (is.position - t.reported->position).norm(), reported_m = t.reported->deviation_m;
+  if (all) return moved_m > 0.01 || is.deviation_m < 0.95 * reported_m;
+  return now - t.reported_at >= from_seconds(options_.retell_after_s) &&
+         (moved_m > 0.5 * reported_m || is.deviation_m < 0.5 * reported_m);
 }
 
 std::vector<ObjectNews> ObjectMap::take_news(TimeNs now, bool all) {
@@ -140,9 +140,9 @@ std::vector<ObjectNews> ObjectMap::take_news(TimeNs now, bool all) {
   withdrawn_.clear();
   for (Track& t : tracks_) {
     if (!worth_telling(t, now, all)) continue;
-    news.push_back({t.told ? ObjectNews::State::revised : ObjectNews::State::found, found(t)});
-    t.told = news.back().object;
-    t.told_at = now;
+    news.push_back({t.reported ? ObjectNews::State::revised : ObjectNews::State::found, found(t)});
+    t.reported = news.back().object;
+    t.reported_at = now;
   }
   return news;
 }

@@ -56,8 +56,8 @@ class ObjectMap {
     double own_variance_m2 = 0;          // of the vehicle's position, mean over the looks, in each axis
     std::uint32_t sightings = 0;
     TimeNs first_seen = 0, last_seen = 0;
-    std::optional<FoundObject> told;
-    TimeNs told_at = 0;
+    std::optional<FoundObject> reported;
+    TimeNs reported_at = 0;
   };
 
   FoundObject found(const Track& t) const;

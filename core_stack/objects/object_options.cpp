@@ -4,7 +4,7 @@ namespace karst::core {
 
 void describe(OptionTable& t, ObjectOptions& o) {
   t.add("confirm_after", o.confirm_after, 1, 100, "an object counts as found when it was seen so many times");
-  t.add("least_confidence", o.least_confidence, "", 0, 1,
+  t.add("min_confidence", o.min_confidence, "", 0, 1,
         "detections of which the detector is less sure are dropped");
   t.add("spread", o.spread_m, "m", 0.05, 5,
         "deviation, in each axis, that is added when two places are compared: for the object's own size and "

@@ -6,7 +6,7 @@ namespace karst::core {
 
 struct ObjectOptions {
   std::int64_t confirm_after = 3;
-  double least_confidence = 0.4;
+  double min_confidence = 0.4;
   double spread_m = 0.25;
   double forget_after_s = 60;
   double retell_after_s = 5;

@@ -6,10 +6,10 @@
 namespace karst::core {
 
 Sighting locate(const ObjectDetection& d, const Pose& T_world_camera) {
-  constexpr double kLeast_m = 0.01;  // no look is better: the covariance stays regular
+  constexpr double kMin_m = 0.01;  // no look is better: the covariance stays regular
   const Vec3 u = T_world_camera.orientation * d.direction;
-  const double along = std::max(d.range_sigma_m, kLeast_m);
-  const double across = std::max(d.bearing_sigma_rad * d.range_m, kLeast_m);
+  const double along = std::max(d.range_sigma_m, kMin_m);
+  const double across = std::max(d.bearing_sigma_rad * d.range_m, kMin_m);
   const Mat3 sight = u * u.transpose();
   return {d.kind, T_world_camera.position + d.range_m * u,
           along * along * sight + across * across * (Mat3::Identity() - sight)};

@@ -17,31 +17,31 @@ void describe(OptionTable& t, LonelyReturnOptions& o) {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr int kMostColumns = 4, kMostRows = 2;
+constexpr int kMaxColumns = 4, kMaxRows = 2;
 constexpr double kWindow_rad = 0.06;
 constexpr float kTolerancePerMetre = 0.006f, kSlope = 0.3f;
-constexpr int kLeastNeighbours = 3;
+constexpr int kMinNeighbours = 3;
 constexpr float kIntensityRange_m = 25;  // where a unit's intensity has fallen to half
 
 /// The ranges with a margin of what no beam measured; rows are closed to rings.
 class Ranges {
  public:
   explicit Ranges(const LidarScan& scan)
-      : width_(static_cast<std::size_t>(scan.model->columns) + 2 * kMostColumns),
-        range_(width_ * (scan.model->elevation_rad.size() + 2 * kMostRows), kNan) {
+      : width_(static_cast<std::size_t>(scan.model->columns) + 2 * kMaxColumns),
+        range_(width_ * (scan.model->elevation_rad.size() + 2 * kMaxRows), kNan) {
     const auto columns = static_cast<std::size_t>(scan.model->columns);
     for (std::size_t row = 0; row < scan.model->elevation_rad.size(); ++row) {
       const float* from = scan.range_m.data() + row * columns;
-      float* to = range_.data() + (row + kMostRows) * width_;
-      std::transform(from, from + columns, to + kMostColumns,
+      float* to = range_.data() + (row + kMaxRows) * width_;
+      std::transform(from, from + columns, to + kMaxColumns,
                      [](float r) { return std::isfinite(r) && r > 0 ? r : kNan; });
-      std::copy_n(to + columns, kMostColumns, to);
-      std::copy_n(to + kMostColumns, kMostColumns, to + kMostColumns + columns);
+      std::copy_n(to + columns, kMaxColumns, to);
+      std::copy_n(to + kMaxColumns, kMaxColumns, to + kMaxColumns + columns);
     }
   }
   /// The first beam of a row, and columns before and after it as far as the window reaches.
   const float* row(std::size_t row, int up) const {
-    return range_.data() + (row + kMostRows + static_cast<std::size_t>(up)) * width_ + kMostColumns;
+    return range_.data() + (row + kMaxRows + static_cast<std::size_t>(up)) * width_ + kMaxColumns;
   }
 
  private:
@@ -62,11 +62,11 @@ std::vector<Offset> window(const LidarModel& model) {
                              ? 1.0
                              : static_cast<double>(model.elevation_rad.front() - model.elevation_rad.back()) /
                                    static_cast<double>(channels - 1);
-  const auto reach = [](double step_rad, int most) {
+  const auto half_window = [](double step_rad, int most) {
     return std::clamp(static_cast<int>(std::lround(kWindow_rad / step_rad)), 1, most);
   };
-  const int columns = reach(column_rad, std::min(kMostColumns, (model.columns - 1) / 2)),
-            rows = reach(row_rad, kMostRows);
+  const int columns = half_window(column_rad, std::min(kMaxColumns, (model.columns - 1) / 2)),
+            rows = half_window(row_rad, kMaxRows);
   std::vector<Offset> offsets;
   const auto add = [&](int r, int c) {
     offsets.push_back({r, c, static_cast<float>(std::hypot(r * row_rad, c * column_rad))});
@@ -111,8 +111,8 @@ void drop_lonely_returns(LidarScan& scan, const LonelyReturnOptions& options) {
   const auto columns = static_cast<std::size_t>(scan.model->columns), rows = scan.model->elevation_rad.size();
   if (columns * rows != scan.range_m.size()) return;
   const std::vector<Offset> offsets = window(*scan.model);
-  const auto radius_m = static_cast<float>(options.radius_m), share = static_cast<float>(options.agreement),
-             bright = static_cast<float>(options.bright),
+  const auto radius_m = static_cast<float>(options.radius_m),
+             fraction = static_cast<float>(options.agreement), bright = static_cast<float>(options.bright),
              tolerance_m = static_cast<float>(options.tolerance_m);
   std::vector<float> there(columns), first_there(scan.range_m.size()), agree(columns);
   // What the first round drops agrees with nobody in the second, but is still there: clumps of dust dissolve.
@@ -127,7 +127,7 @@ void drop_lonely_returns(LidarScan& scan, const LonelyReturnOptions& options) {
         const float x = range_m / kIntensityRange_m;
         const float reflectivity = scan.intensity[row * columns + j] * (1 + x * x);
         if (!(range_m < radius_m) || reflectivity >= bright) continue;
-        if (neighbours[j] < kLeastNeighbours || agree[j] < share * neighbours[j]) range_m = kNan;
+        if (neighbours[j] < kMinNeighbours || agree[j] < fraction * neighbours[j]) range_m = kNan;
       }
     }
   }

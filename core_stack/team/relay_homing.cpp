@@ -5,14 +5,14 @@
 #include <limits>
 #include <utility>
 
-#include "core_stack/homing/way_home/home.h"
-#include "core_stack/homing/way_home/map_rays.h"
+#include "core_stack/homing/path_home/home.h"
+#include "core_stack/homing/path_home/map_rays.h"
 #include "core_stack/planning/search/grid_planner.h"
 
 namespace karst::core {
 namespace {
 
-constexpr double kPlaceReach_m = 3.0;     // of a landing place from the pose that it is judged for
+constexpr double kSiteRadius_m = 3.0;     // of a landing place from the pose that it is judged for
 constexpr std::size_t kJudgedBehind = 3;  // poses: by then the ground there has been seen
 constexpr double kRecheckMargin_m = 1.0;
 constexpr double kRockMargin_m = 0.1;   // beyond the vehicle's radius: nearer rock closes a ray
@@ -24,11 +24,11 @@ constexpr double kClaimed_s = 10.0;
 /// With each place where a node was not heard the next must have so much more to spare of it: those beside it
 /// would be in vain, too.
 constexpr double kDoubt_db = 3.0;
-constexpr double kMostFall_m = 5.0;  // of a node that is dropped
+constexpr double kMaxFall_m = 5.0;  // of a node that is dropped
 /// It is dropped with less than that to spare a second on: nobody looks whether it is heard before it lies
 /// there.
 constexpr double kNodeSpare_db = 1.0;
-constexpr std::size_t kFirstRound = 8;  // of places that are asked for a way
+constexpr std::size_t kFirstBatch = 8;  // of places that are asked for a way
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
 void append(TreeFacts& to, const TreeFacts& more) {
@@ -44,7 +44,7 @@ std::optional<Vec3> ground_of_node(const VoxelMap& map, const Release& release) 
   Vec3 at = release.position;
   Ground below;
   for (int i = 0; i < 3; ++i) {  // the ground there may be lower than the ground below the vehicle
-    below = ground_below(map, at, 0, {.margin_m = 0, .most_drop_m = kMostFall_m});
+    below = ground_below(map, at, 0, {.margin_m = 0, .max_drop_m = kMaxFall_m});
     if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
       return std::nullopt;
     const double up_mps = release.velocity_mps.z(), height_m = at.z() - below.ground.z();
@@ -65,7 +65,7 @@ RelayHoming::RelayHoming(RobotId self, const TeamOptions& team, const HomingOpti
       planning_(planning),
       limits_(limits),
       radius_m_(vehicle_radius_m),
-      keep_apart_m_(homing.landing.keep_apart_m),
+      separation_m_(homing.landing.separation_m),
       tree_(homing.tree, cruise_speed_mps(limits)) {
   const FreeRay unseen = [](const Vec3&, const Vec3&) { return false; };
   tree_.insert_communication({kBase, 1}, to_centimetres(base), 0, unseen);
@@ -77,7 +77,7 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
   relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
   std::erase_if(relays_, [&](const Relay& r) {
     return r.stands_by &&
-           (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends || in_vain(r));
+           (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends || has_failed(r));
   });
   const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
   const TimeNs stamp = to_milliseconds(news.stamp);
@@ -92,7 +92,7 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
   }
   // Also where others have made nodes: of their ground it knows nothing.
   const bool judged = std::any_of(passed_.begin(), passed_.end(), [&](const Vec3& p) {
-    return (p - here).norm() < options_.tree.least_edge_m;
+    return (p - here).norm() < options_.tree.min_edge_m;
   });
   if (!judged) passed_.push_back(here), to_judge_.push_back(here);
   if (!closed.empty()) {
@@ -115,8 +115,8 @@ double RelayHoming::margin_db(const VoxelMap& map, const Vec3& ground, const Rel
          doubt_db_[to.robot];
 }
 
-double RelayHoming::down_s(const Place& place) const {
-  return (place.hover - place.ground).z() / options_.landing.landing_speed_mps;
+double RelayHoming::down_s(const LandingSite& site) const {
+  return (site.hover - site.ground).z() / options_.landing.landing_speed_mps;
 }
 
 void RelayHoming::look_around(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here) {
@@ -127,26 +127,27 @@ void RelayHoming::look_around(const VoxelMap& map, const Roadmap& roadmap, const
 
 /// The place near a pose that is reached and landed on soonest.
 void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose) {
-  std::vector<Place> candidates;
-  for (const Vec3& p : roadmap.places_near(pose, kPlaceReach_m)) {
+  std::vector<LandingSite> candidates;
+  for (const Vec3& p : roadmap.places_near(pose, kSiteRadius_m)) {
     if (!is_clear(map, p, planning_.clearance_m)) continue;  // by the search's alone no way may lead there
     const Ground ground = ground_below(map, p, radius_m_, options_.landing.ground);
     if (ground.verdict == GroundVerdict::good) candidates.push_back({p, ground.ground, std::nullopt});
   }
-  const auto cost_s = [&](const Place& p) {
+  const auto cost_s = [&](const LandingSite& p) {
     return (p.hover - pose).norm() / cruise_speed_mps(limits_) + down_s(p);
   };
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [&](const Place& a, const Place& b) { return cost_s(a) < cost_s(b); });
-  for (const Place& p : candidates) {
+                   [&](const LandingSite& a, const LandingSite& b) { return cost_s(a) < cost_s(b); });
+  for (const LandingSite& p : candidates) {
     const Vec3 standing = p.ground + Vec3(0, 0, radius_m_);
-    if (!others_get_by(map, standing, radius_m_ + kAsMapped_m,
-                       search_clearance_m(planning_, map.resolution_m()), options_.landing.passage_reach_m))
+    if (!keeps_passage_open(map, standing, radius_m_ + kAsMapped_m,
+                            search_clearance_m(planning_, map.resolution_m()),
+                            options_.landing.passage_radius_m))
       continue;
-    const bool there = std::any_of(places_.begin(), places_.end(), [&](const Place& o) {
-      return (o.ground - p.ground).norm() < options_.tree.least_edge_m / 2;
+    const bool there = std::any_of(sites_.begin(), sites_.end(), [&](const LandingSite& o) {
+      return (o.ground - p.ground).norm() < options_.tree.min_edge_m / 2;
     });
-    if (!there) places_.push_back(p);
+    if (!there) sites_.push_back(p);
     return;
   }
 }
@@ -156,71 +157,70 @@ void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
 /// came down a few centimetres from where it meant to takes a place away from who is far out, and relies on
 /// it.
 void RelayHoming::find_links(const VoxelMap& map) {
-  for (Place& p : places_) {
+  for (LandingSite& p : sites_) {
     double best_db = -std::numeric_limits<double>::infinity();
     const std::optional<RobotId> before = std::exchange(p.node, std::nullopt);
     for (const Relay& r : relays_) {
       if (r.stands_by && p.node && !p.claimed) break;                                   // these come last
       if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
       const double db = margin_db(map, p.ground, r);
-      const double least_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
-      if (db >= least_db && db >= best_db)
-        best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
+      const double min_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
+      if (db >= min_db && db >= best_db) best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
     }
   }
 }
 
-void RelayHoming::not_heard(const LandingSpot& spot) {
+void RelayHoming::no_contact_at(const LandingSpot& spot) {
   give_up(spot.hover);
   const auto relay =
       std::find_if(relays_.begin(), relays_.end(), [&](const Relay& r) { return r.robot == spot.node; });
   if (relay != relays_.end() && relay->stands_by)
-    awaited_in_vain_[spot.node] = relay->antenna;
+    failed_antennas_[spot.node] = relay->antenna;
   else if (relay != relays_.end() || !spot.claimed)
     doubt_db_[spot.node] += kDoubt_db;
-  std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && in_vain(r); });
-  for (Place& p : places_)
+  std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && has_failed(r); });
+  for (LandingSite& p : sites_)
     if (p.node == spot.node) p.node.reset();  // no link is counted on because it was before
 }
 
-bool RelayHoming::in_vain(const Relay& relay) const {
-  const auto& antenna = awaited_in_vain_[relay.robot];
+bool RelayHoming::has_failed(const Relay& relay) const {
+  const auto& antenna = failed_antennas_[relay.robot];
   return antenna && (*antenna - relay.antenna).norm() < 1e-3;
 }
 
-bool RelayHoming::free_to_take(const Place& place) const {
+bool RelayHoming::free_to_take(const LandingSite& site) const {
   const auto near = [&](const std::vector<Vec3>& all, const Vec3& p, double within_m) {
     return std::any_of(all.begin(), all.end(), [&](const Vec3& o) { return (o - p).norm() < within_m; });
   };
-  return !near(taken_, place.ground, keep_apart_m_) && !near(given_up_, place.hover, 1e-3);
+  return !near(taken_, site.ground, separation_m_) && !near(given_up_, site.hover, 1e-3);
 }
 
 /// Nearest first by the straight line, which no way is shorter than: most places are never asked for a way.
 std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const Roadmap& roadmap,
                                                       const Vec3& from, double sooner_than_s) const {
   struct Candidate {
-    const Place* place;
-    double least_s;
+    const LandingSite* site;
+    double min_s;
   };
-  const auto time_s = [this](const Place& p, double length_m) {
+  const auto time_s = [this](const LandingSite& p, double length_m) {
     return flight_time_s(length_m, limits_) + kConfirm_s + (p.claimed ? kClaimed_s : 0.0) + down_s(p);
   };
   std::vector<Candidate> open;
-  for (const Place& p : places_)
+  for (const LandingSite& p : sites_)
     if (p.node && free_to_take(p)) open.push_back({&p, time_s(p, (p.hover - from).norm())});
   std::stable_sort(open.begin(), open.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.least_s < b.least_s; });
+                   [](const Candidate& a, const Candidate& b) { return a.min_s < b.min_s; });
   std::optional<LandingSpot> best;
   double best_s = sooner_than_s;
-  for (std::size_t first = 0, round = kFirstRound; first < open.size(); first += round, round = open.size()) {
+  for (std::size_t first = 0, batch = kFirstBatch; first < open.size(); first += batch, batch = open.size()) {
     std::vector<Vec3> hovers;
-    for (std::size_t i = first; i < std::min(first + round, open.size()) && open[i].least_s < best_s; ++i)
-      hovers.push_back(open[i].place->hover);
+    for (std::size_t i = first; i < std::min(first + batch, open.size()) && open[i].min_s < best_s; ++i)
+      hovers.push_back(open[i].site->hover);
     if (hovers.empty()) break;
     const std::vector<double> lengths =
         roadmap.distances(map, from, hovers, 0.0, best_s * cruise_speed_mps(limits_));
     for (std::size_t i = 0; i < lengths.size(); ++i) {
-      const Place& p = *open[first + i].place;
+      const LandingSite& p = *open[first + i].site;
       const double s = time_s(p, lengths[i]);
       if (s < best_s) best_s = s, best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], s};
     }
@@ -242,12 +242,12 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
   for (std::size_t i = 0; i < route->points.size(); ++i) {
     const Vec3& p = route->points[i];
     if (i > 0) length_m += (p - route->points[i - 1]).norm();
-    const Place* best = nullptr;
-    for (const Place& place : places_)
-      if ((place.hover - p).norm() < kBesideRoute_m && free_to_take(place) &&
-          margin_db(map, place.ground, *relay) >= 0 &&
-          (!best || (place.hover - p).norm() < (best->hover - p).norm()))
-        best = &place;
+    const LandingSite* best = nullptr;
+    for (const LandingSite& site : sites_)
+      if ((site.hover - p).norm() < kBesideRoute_m && free_to_take(site) &&
+          margin_db(map, site.ground, *relay) >= 0 &&
+          (!best || (site.hover - p).norm() < (best->hover - p).norm()))
+        best = &site;
     if (!best) continue;
     const double all_m = length_m + (best->hover - p).norm();
     return LandingSpot{best->hover, best->ground, node,
@@ -263,16 +263,16 @@ std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roa
   return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
 }
 
-std::optional<Vec3> RelayHoming::reach_ends(const VoxelMap& map, const Release& here,
-                                            const Release& ahead) const {
-  const auto in_reach = [&](const Vec3& ground, double least_db) {
+std::optional<Vec3> RelayHoming::relay_drop_site(const VoxelMap& map, const Release& here,
+                                                 const Release& ahead) const {
+  const auto in_range = [&](const Vec3& ground, double min_db) {
     return std::any_of(relays_.begin(), relays_.end(),
-                       [&](const Relay& r) { return !r.stands_by && margin_db(map, ground, r) >= least_db; });
+                       [&](const Relay& r) { return !r.stands_by && margin_db(map, ground, r) >= min_db; });
   };
   const std::optional<Vec3> ground = ground_of_node(map, here);
-  if (!ground || !in_reach(*ground, 0)) return std::nullopt;
+  if (!ground || !in_range(*ground, 0)) return std::nullopt;
   const Vec3 next = ground_of_node(map, ahead).value_or(*ground + ahead.position - here.position);
-  return in_reach(next, kNodeSpare_db) ? std::nullopt : ground;
+  return in_range(next, kNodeSpare_db) ? std::nullopt : ground;
 }
 
 TreeFacts RelayHoming::land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp) {

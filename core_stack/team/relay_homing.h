@@ -16,8 +16,8 @@
 
 #include "core_stack/planning/roadmap/roadmap.h"
 #include "core_stack/planning/trajectory/trajectory.h"
+#include "core_stack/team/team_node.h"
 #include "core_stack/team/team_options.h"
-#include "core_stack/team/teammate.h"
 
 namespace karst::core {
 
@@ -66,21 +66,21 @@ class RelayHoming {
   void give_up(const Vec3& hover) { given_up_.push_back(hover); }
   /// Nobody was heard there. The map promises more of that node's link than there is; and one that should
   /// have landed by now has not, or not there. Links are to be found anew: update() or look_around().
-  void not_heard(const LandingSpot& spot);
+  void no_contact_at(const LandingSpot& spot);
 
   /// Where a communication node that is dropped `here` would come to lie, if by the map a relay is in reach
   /// of it there, and none would be of one dropped `ahead`.
-  std::optional<Vec3> reach_ends(const VoxelMap& map, const Release& here, const Release& ahead) const;
+  std::optional<Vec3> relay_drop_site(const VoxelMap& map, const Release& here, const Release& ahead) const;
 
   /// It has landed: its communication node, above where it stands.
   TreeFacts land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp);
 
   const HomingTree& tree() const { return tree_; }
   const std::vector<Vec3>& others_goals() const { return goals_; }
-  std::size_t places() const { return places_.size(); }
+  std::size_t places() const { return sites_.size(); }
 
  private:
-  struct Place {
+  struct LandingSite {
     Vec3 hover, ground;
     std::optional<RobotId> node;  // in reach by the map
     bool claimed = false;
@@ -88,12 +88,12 @@ class RelayHoming {
 
   void judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose);
   void find_links(const VoxelMap& map);
-  bool in_vain(const Relay& relay) const;
-  bool free_to_take(const Place& place) const;
+  bool has_failed(const Relay& relay) const;
+  bool free_to_take(const LandingSite& site) const;
   std::optional<LandingSpot> nearest_place(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
                                            double sooner_than_s) const;
   std::optional<LandingSpot> up_the_tree(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
-  double down_s(const Place& place) const;
+  double down_s(const LandingSite& site) const;
   /// To spare of the link between who stands on `ground` and a relay, as far as the map tells.
   double margin_db(const VoxelMap& map, const Vec3& ground, const Relay& to) const;
 
@@ -102,15 +102,15 @@ class RelayHoming {
   HomingOptions options_;
   PlanningOptions planning_;
   MotionLimits limits_;
-  double radius_m_, keep_apart_m_;
+  double radius_m_, separation_m_;
   HomingTree tree_;
   std::uint32_t nodes_made_ = 0;
   std::vector<Vec3> passed_;    // poses whose ground is judged, or will be
   std::vector<Vec3> to_judge_;  // of these, yet to be seen from farther on
-  std::vector<Place> places_;
+  std::vector<LandingSite> sites_;
   std::vector<Vec3> given_up_;
-  std::array<double, kMostRobots> doubt_db_{};                      // of each node's links
-  std::array<std::optional<Vec3>, kMostRobots> awaited_in_vain_{};  // antennas, where they were to stand
+  std::array<double, kMaxRobots> doubt_db_{};                      // of each node's links
+  std::array<std::optional<Vec3>, kMaxRobots> failed_antennas_{};  // antennas, where they were to stand
   std::vector<Relay> relays_;
   std::vector<Vec3> taken_, goals_;
 };

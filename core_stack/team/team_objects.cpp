@@ -7,33 +7,34 @@ namespace karst::core {
 namespace {
 
 constexpr double kSize_m = 1.0, kFarthest_m = 3.0, kDeviations = 3.0;
-constexpr double kLeastDeviation_m = 0.05;  // they are told in steps of 0.1 m
+constexpr double kMinDeviation_m = 0.05;  // they are told in steps of 0.1 m
 
 bool from(const TeamObject& o, RobotId finder) {
-  return std::any_of(o.told_by.begin(), o.told_by.end(),
+  return std::any_of(o.reported_by.begin(), o.reported_by.end(),
                      [&](const auto& key) { return key.first == finder; });
 }
 
 }  // namespace
 
-void note(ToldObjects& objects, RobotId finder, const ObjectSeen& seen) {
+void note(ReportedObjects& objects, RobotId finder, const ObjectSeen& seen) {
   const auto [known, fresh] = objects.try_emplace({finder, seen.object}, seen);
   if (!fresh && seen.stamp >= known->second.stamp) known->second = seen;
 }
 
-std::vector<TeamObject> merged(const ToldObjects& told) {
+std::vector<TeamObject> merged(const ReportedObjects& reports) {
   std::vector<TeamObject> all;
-  for (const auto& [key, seen] : told) {
+  for (const auto& [key, seen] : reports) {
     if (seen.kind == 0) continue;
-    const double deviation_m = std::max(seen.deviation_m, kLeastDeviation_m);
+    const double deviation_m = std::max(seen.deviation_m, kMinDeviation_m);
     TeamObject* nearest = nullptr;
-    double least_m = kFarthest_m;
+    double min_m = kFarthest_m;
     for (TeamObject& o : all) {
       if (o.kind != seen.kind || from(o, key.first)) continue;
-      const double apart_m = (o.position - seen.position).norm();
-      if (apart_m > kSize_m + kDeviations * std::hypot(o.deviation_m, deviation_m) || apart_m > least_m)
+      const double separation_m = (o.position - seen.position).norm();
+      if (separation_m > kSize_m + kDeviations * std::hypot(o.deviation_m, deviation_m) ||
+          separation_m > min_m)
         continue;
-      least_m = apart_m, nearest = &o;
+      min_m = separation_m, nearest = &o;
     }
     if (!nearest) {
       all.push_back({seen.kind, seen.position, deviation_m, {key}});
@@ -42,7 +43,7 @@ std::vector<TeamObject> merged(const ToldObjects& told) {
     const double a = 1 / (nearest->deviation_m * nearest->deviation_m), b = 1 / (deviation_m * deviation_m);
     nearest->position = (a * nearest->position + b * seen.position) / (a + b);
     nearest->deviation_m = 1 / std::sqrt(a + b);
-    nearest->told_by.push_back(key);
+    nearest->reported_by.push_back(key);
   }
   return all;
 }

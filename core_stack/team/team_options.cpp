@@ -8,13 +8,13 @@
 namespace karst::core {
 
 void describe(OptionTable& t, TeamOptions& o) {
-  t.add("robots", o.robots, 1, kMostRobots - 1, "1: one vehicle alone, and no team");
-  t.add("nodes", o.nodes, 0, kMostRobots / 2 - 2,
+  t.add("robots", o.robots, 1, kMaxRobots - 1, "1: one vehicle alone, and no team");
+  t.add("nodes", o.nodes, 0, kMaxRobots / 2 - 2,
         "communication nodes that each robot carries, and drops where it comes out of reach");
   t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts; whole seconds");
   t.add("strategy", o.strategy, {"return_to_base", "relay_tree", "relay_chain"},
         "where a robot lands when its battery runs low (docs/homing.md)");
-  t.add("keep_apart", o.keep_apart_m, "m", 1.0, 20,
+  t.add("separation", o.separation_m, "m", 1.0, 20,
         "of two vehicles nearer than this, and what they need to stop, one gives way: to who lands or has no "
         "room, "
         "then to who goes home, else the higher number");
@@ -41,16 +41,16 @@ void describe(OptionTable& t, HomingOptions& o) {
 void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source) {
   if (team.nodes > 0 && team.robots == 1)
     throw InputError(source, "team.nodes", "a vehicle alone is no team: team.robots is 1");
-  if (team.robots * (1 + team.nodes) >= kMostRobots)
+  if (team.robots * (1 + team.nodes) >= kMaxRobots)
     throw InputError(source, "team.nodes",
                      std::to_string(team.robots) + " robots that carry " + std::to_string(team.nodes) +
                          " each are " + std::to_string(team.robots * (1 + team.nodes)) +
-                         " radios, and messages can name " + std::to_string(kMostRobots - 1) +
-                         " beside the base's: " + std::to_string((kMostRobots - 1) / team.robots - 1) +
+                         " radios, and messages can name " + std::to_string(kMaxRobots - 1) +
+                         " beside the base's: " + std::to_string((kMaxRobots - 1) / team.robots - 1) +
                          " each at most");
-  if (homing.tree.longest_edge_m <= homing.tree.least_edge_m)
+  if (homing.tree.longest_edge_m <= homing.tree.min_edge_m)
     throw InputError(source, "homing.tree.longest_edge",
-                     "is no longer than homing.tree.least_edge: no two nodes would be joined");
+                     "is no longer than homing.tree.min_edge: no two nodes would be joined");
 }
 
 double homing_margin(const HomingOptions& o) {

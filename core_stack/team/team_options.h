@@ -2,7 +2,7 @@
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/homing/landing/landing_options.h"
-#include "core_stack/homing/way_home/homing_tree.h"
+#include "core_stack/homing/path_home/homing_tree.h"
 #include "core_stack/team/communication/gossip.h"
 #include "core_stack/team/communication/relay_graph.h"
 
@@ -13,7 +13,7 @@ struct TeamOptions {
   std::int64_t nodes = 0;  // that each carries
   double stagger_s = 60;
   std::string strategy = "relay_chain";
-  double keep_apart_m = 3.0;
+  double separation_m = 3.0;
   double claim_radius_m = 4.0;
   double claim_age_s = 60;
   double linger_s = 60;

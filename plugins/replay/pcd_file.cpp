@@ -82,10 +82,9 @@ PcdHeader read_header(const std::string& path, std::string_view bytes, const Fie
   if (fields.empty() || sizes.size() != fields.size() || kinds.size() != fields.size() ||
       header.counts.size() != fields.size())
     throw InputError(path, "header", "FIELDS, SIZE, TYPE and COUNT must have as many entries each");
-  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+  constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max();
   if (!has_points) {
-    if (height != 0 && width > kMost / height)
-      throw InputError(path, "header", "WIDTH x HEIGHT is too large");
+    if (height != 0 && width > kMax / height) throw InputError(path, "header", "WIDTH x HEIGHT is too large");
     header.points = width * height;
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {

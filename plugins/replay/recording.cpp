@@ -157,7 +157,7 @@ void times_by_azimuth(const Recording& r, Scan& scan) {
 }
 
 /// Times become seconds before the end of the sweep; returns the end's stamp.
-TimeNs settle_times(const Recording& r, const RecordedFile& f, bool by_azimuth, Scan& scan) {
+TimeNs assign_times(const Recording& r, const RecordedFile& f, bool by_azimuth, Scan& scan) {
   const bool known = scan.has_time && !r.info.compensated && !scan.points.empty();
   if (!known) {
     for (ScanPoint& p : scan.points) p.time = 0;
@@ -258,7 +258,7 @@ core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
   core::Sweep sweep;
   sweep.T_body_lidar = r.layout.T_body_lidar;
   sweep.compensated = r.info.compensated;
-  sweep.stamp = settle_times(r, f, by_azimuth, scan);
+  sweep.stamp = assign_times(r, f, by_azimuth, scan);
   order_points(scan);
   sweep.points.reserve(scan.points.size());
   for (const ScanPoint& p : scan.points)

@@ -78,10 +78,10 @@ std::vector<cave::StartPose> start_places(const cave::Cave& cave, std::size_t n,
 }
 
 bool touched(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double distance_m) {
-  const Vec3 from = a0 - b0, way = (a1 - b1) - from;  // of a as seen from b
-  const double length2 = way.squaredNorm();
-  const double t = length2 > 0 ? std::clamp(-from.dot(way) / length2, 0.0, 1.0) : 0.0;
-  return (from + t * way).norm() < distance_m;
+  const Vec3 from = a0 - b0, offset = (a1 - b1) - from;  // of a as seen from b
+  const double length2 = offset.squaredNorm();
+  const double t = length2 > 0 ? std::clamp(-from.dot(offset) / length2, 0.0, 1.0) : 0.0;
+  return (from + t * offset).norm() < distance_m;
 }
 
 std::optional<Vec3> fallen(const cave::RayScene& scene, const Vec3& from, const Vec3& velocity_mps) {

@@ -121,7 +121,7 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
     executive.at(now() + core::from_seconds(options_.motors.weak_after_s), [this] {
       char text[60];
       std::snprintf(text, sizeof text, "motor %d at %.0f %%", static_cast<int>(options_.motors.weak),
-                    100 * options_.motors.weak_share);
+                    100 * options_.motors.weak_fraction);
       log_.event(now(), "fault", quadrotor_.state(), text);
     });
   executive.every("vehicle", now() + kTick, kTick, [this] {
@@ -233,10 +233,10 @@ Random SimulatedVehicle::measurement_random(const std::string& sensor) {
   return Random::stream(seed_, sensor + " at " + std::to_string(now()));
 }
 
-SensorFaults::Strike SimulatedVehicle::faults_of(Sensor sensor) {
-  SensorFaults::Strike strike = faults_.strike(sensor, core::seconds(now() - start_time_));
-  for (const std::string& what : strike.begun) log_.event(now(), "fault", quadrotor_.state(), what);
-  return strike;
+SensorFaults::InjectedFaults SimulatedVehicle::faults_of(Sensor sensor) {
+  SensorFaults::InjectedFaults injected = faults_.inject(sensor, core::seconds(now() - start_time_));
+  for (const std::string& what : injected.begun) log_.event(now(), "fault", quadrotor_.state(), what);
+  return injected;
 }
 
 Air SimulatedVehicle::air_for(const std::string& beams) {
@@ -246,13 +246,13 @@ Air SimulatedVehicle::air_for(const std::string& beams) {
 }
 
 void SimulatedVehicle::fire_lidar() {
-  const SensorFaults::Strike strike = faults_of(Sensor::lidar);
-  if (strike.lost()) return;
+  const SensorFaults::InjectedFaults injected = faults_of(Sensor::lidar);
+  if (injected.lost()) return;
   auto scan = std::make_shared<core::LidarScan>();
   executive_->job(
       "lidar", Lane::sensing, kLidarBudget,
       [scan, lidar = lidar_, cave = seen_, track = track_, stamp = now(),
-       random = measurement_random("lidar"), air = air_for("lidar"), kinds = strike.kinds] {
+       random = measurement_random("lidar"), air = air_for("lidar"), kinds = injected.kinds] {
         *scan = lidar->sweep(*cave, track, stamp, random, air);
         for (const cave::Fault::Kind kind : kinds) spoil(*scan, kind);
       },

@@ -63,7 +63,7 @@ class SimulatedVehicle final : public core::Vehicle {
   double cave_time_s() const { return core::seconds(now() - start_time_) + cave_ahead_s_; }
   /// What the sensor's air is like now; `beams` names the random stream of its echoes.
   Air air_for(const std::string& beams);
-  SensorFaults::Strike faults_of(cave::Fault::Sensor sensor);
+  SensorFaults::InjectedFaults faults_of(cave::Fault::Sensor sensor);
   void log_truth();
   core::TimeNs now() const { return executive_->now(); }
   /// A random stream of its own for each measurement, so that it matters not which thread makes it when.

@@ -1,7 +1,7 @@
 // The frontier that shows the most unknown space for the time the flight to it takes.
 #include <karst/expected_gain.h>
 #include <karst/ranking.h>
-#include <karst/straight_way.h>
+#include <karst/straight_path.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -13,8 +13,8 @@ class InformationGain : public karst::Policy {
   void parameters(karst::Parameters& p) override {
     open_.parameters(p);
     gain_.parameters(p);
-    p.add("most_volume", most_volume_m3_, "m^3", 0.1, 10000, "more expected volume counts as this");
-    p.add("least_volume", least_volume_m3_, "m^3", 0, 100,
+    p.add("max_volume", max_volume_m3_, "m^3", 0.1, 10000, "more expected volume counts as this");
+    p.add("min_volume", min_volume_m3_, "m^3", 0, 100,
           "frontiers that show less are left until nothing else is to be had");
     p.add("stop_time", stop_s_, "s", 0.1, 60, "what a goal takes besides the flight to it");
     p.add("turn_time", turn_s_, "s", 0, 60, "what flying straight back costs; less for smaller turns");
@@ -48,12 +48,12 @@ class InformationGain : public karst::Policy {
                                        const std::vector<karst::OpenFrontiers::Candidate>& open) const {
     const bool sees_what_it_passes = karst::sees_all_around(request);
     std::vector<Candidate> out;
-    for (const auto& [f, reluctance_m] : open) {
-      const double t = stop_s_ + (f->path_length_m + reluctance_m) / (cruise_ * request.max_speed_mps) +
-                       turn_s_ * karst::turn_share(request, *f);
+    for (const auto& [f, revisit_penalty_m] : open) {
+      const double t = stop_s_ + (f->path_length_m + revisit_penalty_m) / (cruise_ * request.max_speed_mps) +
+                       turn_s_ * karst::turn_fraction(request, *f);
       const double passed = sees_what_it_passes ? passed_m3(request, *f) : 0;
       const double keep = karst::under_way(request, *f) ? 1 + keep_ : 1;
-      out.push_back({f, t, passed, keep * (most_volume_m3_ + passed) / t});
+      out.push_back({f, t, passed, keep * (max_volume_m3_ + passed) / t});
     }
     std::sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
       return a.most != b.most ? a.most > b.most : a.frontier->id < b.frontier->id;
@@ -63,11 +63,11 @@ class InformationGain : public karst::Policy {
 
   /// Behind openings that a flight to the viewpoint passes before those that are seen from there.
   double passed_m3(const karst::Request& request, const karst::Frontier& f) const {
-    const karst::StraightWay way(request.position(), f.viewpoint, f.path_length_m);
+    const karst::StraightPath path(request.position(), f.viewpoint, f.path_length_m);
     double sum_m3 = 0;
     for (const karst::Frontier& other : request.frontiers)
-      if (other.id != f.id && way.passes(other.centroid, passing_m_, gain_.range_m))
-        sum_m3 += std::min(gain_.behind_m3(request, other), most_volume_m3_);
+      if (other.id != f.id && path.passes(other.centroid, passing_m_, gain_.range_m))
+        sum_m3 += std::min(gain_.behind_m3(request, other), max_volume_m3_);
     return sum_m3;
   }
 
@@ -91,9 +91,9 @@ class InformationGain : public karst::Policy {
   }
 
   karst::Goal goal(const karst::Request& request, const Candidate& c, double volume_m3) const {
-    const double shown_m3 = std::min(volume_m3, most_volume_m3_) + c.passed_m3;
+    const double shown_m3 = std::min(volume_m3, max_volume_m3_) + c.passed_m3;
     double score = shown_m3 / c.time_s;
-    if (shown_m3 < least_volume_m3_) score *= 1e-3;
+    if (shown_m3 < min_volume_m3_) score *= 1e-3;
     if (karst::under_way(request, *c.frontier)) score *= 1 + keep_;
     char why[120];
     std::snprintf(why, sizeof why, "%.1f m^3 to be seen in %.1f s, %.1f of them in passing, %.1f m away",
@@ -103,8 +103,8 @@ class InformationGain : public karst::Policy {
 
   karst::OpenFrontiers open_;
   karst::ExpectedGain gain_;
-  double most_volume_m3_ = 40.0;
-  double least_volume_m3_ = 0.3;
+  double max_volume_m3_ = 40.0;
+  double min_volume_m3_ = 0.3;
   double stop_s_ = 1.5;
   double turn_s_ = 3.0;
   double cruise_ = 0.75;

@@ -46,9 +46,8 @@ class LateralFrontier : public karst::Policy, public karst::Restorable {
   double deviation_rad(const karst::Request& request, const karst::Frontier& f) const {
     const karst::Vec3 flight = request.direction_of_flight;
     const karst::Vec3 there = f.centroid - request.position();
-    constexpr double least_horizontal = 1e-3;
-    if (std::hypot(flight.x, flight.y) < least_horizontal || std::hypot(there.x, there.y) < 0.5)
-      return kPi / 2;
+    constexpr double min_horizontal = 1e-3;
+    if (std::hypot(flight.x, flight.y) < min_horizontal || std::hypot(there.x, there.y) < 0.5) return kPi / 2;
     const double bearing =
         std::atan2(flight.x * there.y - flight.y * there.x, flight.x * there.x + flight.y * there.y);
     if (side_ == "ahead") return std::abs(bearing);

@@ -18,11 +18,11 @@ class NearestFrontier : public karst::Policy, public karst::Restorable {
   karst::Decision decide(const karst::Request& request) override {
     return ranking_.decide(request, [&](const karst::Frontier& f) {
       const double all = f.unknown_cells + static_cast<double>(f.free_cells);
-      const double unknown_share = all > 0 ? f.unknown_cells / all : 0.0;
+      const double unknown_fraction = all > 0 ? f.unknown_cells / all : 0.0;
       char why[120];
       std::snprintf(why, sizeof why, "%.1f m away, %.0f %% unknown around it", f.path_length_m,
-                    100.0 * unknown_share);
-      return karst::Merit{opening_bonus_m_ * unknown_share, why};
+                    100.0 * unknown_fraction);
+      return karst::Merit{opening_bonus_m_ * unknown_fraction, why};
     });
   }
 

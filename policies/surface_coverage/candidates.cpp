@@ -70,18 +70,18 @@ std::vector<bool> clear_places(const karst::Request& request, const std::vector<
 std::vector<Viewpoint> places_for(const karst::Request& request, const ImagingCamera& camera,
                                   const Patch& patch, std::size_t most) {
   constexpr int kAzimuths = 16;
-  constexpr double kShares[] = {0.6, 0.4, 0.8};  // of the range
+  constexpr double kFractions[] = {0.6, 0.4, 0.8};  // of the range
   const karst::Sensor& s = camera.sensor;
   const double pitch = pitch_of(camera);
   const double low = pitch + s.low_elevation_rad + kMargin_rad,
                high = pitch + s.high_elevation_rad - kMargin_rad;
-  const double least_facing = std::cos(camera.max_incidence_rad - kMargin_rad);
+  const double min_facing = std::cos(camera.max_incidence_rad - kMargin_rad);
   const bool any_side = norm(patch.normal) == 0;
-  struct Place {
+  struct RankedView {
     Viewpoint at;
     double merit;
   };
-  std::vector<Place> places;
+  std::vector<RankedView> places;
   const double resolution_m = request.map.resolution_m();
   for (int e = 0; e <= 4; ++e) {
     const double elevation = low + (high - low) * e / 4;  // of the patch, seen from the place
@@ -90,24 +90,24 @@ std::vector<Viewpoint> places_for(const karst::Request& request, const ImagingCa
       const Vec3 there{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                        std::sin(elevation)};
       const double squareness = any_side ? 1 : -dot(there, patch.normal);
-      if (squareness < least_facing) continue;
-      for (const double share : kShares) {
-        const Vec3 eye = patch.center - share * s.max_range_m * there;
+      if (squareness < min_facing) continue;
+      for (const double fraction : kFractions) {
+        const Vec3 eye = patch.center - fraction * s.max_range_m * there;
         const double heading = heading_for(camera, azimuth);
         const Vec3 m = s.T_body_sensor.position;
         const double cos_h = std::cos(heading), sin_h = std::sin(heading);
         const Vec3 body = eye - Vec3(cos_h * m.x - sin_h * m.y, sin_h * m.x + cos_h * m.y, m.z);
-        places.push_back({{body, heading}, squareness - 0.5 * std::abs(share - 0.6)});
+        places.push_back({{body, heading}, squareness - 0.5 * std::abs(fraction - 0.6)});
       }
     }
   }
   std::stable_sort(places.begin(), places.end(),
-                   [](const Place& x, const Place& y) { return x.merit > y.merit; });
+                   [](const RankedView& x, const RankedView& y) { return x.merit > y.merit; });
 
   // What is cheap to know goes first: whether a place is free, then whether the patch is in sight, then
   // clearance.
   std::vector<Vec3> centers;
-  for (const Place& p : places) centers.push_back(p.at.position);
+  for (const RankedView& p : places) centers.push_back(p.at.position);
   const std::vector<karst::Cell> cells = request.map.cells(centers);
   const Vec3 target = patch.center + 0.9 * resolution_m * patch.normal;
   std::vector<Viewpoint> open;

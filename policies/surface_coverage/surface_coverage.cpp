@@ -1,6 +1,6 @@
 // Every wall in a picture: full coverage, the paper's mission without blind spots for a camera with a limited
 // field of view. docs/policies/surface_coverage.md
-#include <karst/place_memory.h>
+#include <karst/goal_history.h>
 #include <karst/policy.h>
 
 #include <algorithm>
@@ -84,12 +84,12 @@ class SurfaceCoverage : public karst::Policy {
     std::set<CellId> left;
     for (const SurfaceCell& c : account.unimaged(box)) left.insert(cell_id(c.center, resolution_m));
     for (const Vec3& c : tried_)
-      if (const CellId id = cell_id(c, resolution_m); left.count(id)) ++vain_[id];
+      if (const CellId id = cell_id(c, resolution_m); left.count(id)) ++misses_[id];
     tried_.clear();
   }
   bool given_up(const CellId& id) const {
-    const auto found = vain_.find(id);
-    return found != vain_.end() && found->second >= tries_;
+    const auto found = misses_.find(id);
+    return found != misses_.end() && found->second >= tries_;
   }
 
   double seconds_for(const karst::Request& request, double length_m, double turn_rad) const {
@@ -233,7 +233,7 @@ class SurfaceCoverage : public karst::Policy {
     for (const Stop& s : chosen)
       gain.push_back(s.gain), first_s.push_back(s.time_s), places.push_back(s.at.position);
     std::vector<std::vector<double>> between_s;
-    constexpr double kNoWay_s = 1e4;
+    constexpr double kNoPath_s = 1e4;
     for (const Stop& from : chosen) {
       const std::vector<double> lengths = request.path_lengths(from.at.position, places, 0.5);
       between_s.emplace_back();
@@ -241,7 +241,7 @@ class SurfaceCoverage : public karst::Policy {
         between_s.back().push_back(
             std::isfinite(lengths[j])
                 ? seconds_for(request, lengths[j], chosen[j].at.heading_rad - from.at.heading_rad)
-                : kNoWay_s);
+                : kNoPath_s);
     }
     std::vector<Stop> tour;
     for (const std::size_t i : best_order(gain, first_s, between_s, patience_s_))
@@ -272,15 +272,15 @@ class SurfaceCoverage : public karst::Policy {
   }
 
   void draw(const karst::Request& request, const std::vector<Stop>& tour) const {
-    std::vector<karst_segment_t> way, sights;
+    std::vector<karst_segment_t> path, sights;
     Vec3 from = request.position();
     for (const Stop& s : tour) {
-      way.push_back({from, s.at.position});
+      path.push_back({from, s.at.position});
       from = s.at.position;
       for (std::size_t i = 0; i < s.cells.size(); i += 1 + s.cells.size() / 12)
         sights.push_back({s.at.position, s.cells[i]});
     }
-    request.draw_lines(way, 0xffd23f);
+    request.draw_lines(path, 0xffd23f);
     request.draw_lines(sights, 0x8fd3ff);
   }
 
@@ -291,7 +291,7 @@ class SurfaceCoverage : public karst::Policy {
       return karst::Decision::hold("no picture is left to take: waiting for the map to settle");
     char text[120];
     std::snprintf(text, sizeof text, "every wall that can be seen is in a picture; %zu cells were given up",
-                  static_cast<std::size_t>(std::count_if(vain_.begin(), vain_.end(),
+                  static_cast<std::size_t>(std::count_if(misses_.begin(), misses_.end(),
                                                          [&](const auto& v) { return v.second >= tries_; })));
     return karst::Decision::explored(text);
   }
@@ -299,7 +299,7 @@ class SurfaceCoverage : public karst::Policy {
   double horizon_m_ = 20, patch_m_ = 1.2, frontier_worth_ = 2, patience_s_ = 12;
   int patches_ = 60, min_gain_ = 12, stops_ = 6, tries_ = 3;
   OwnMemory own_;
-  karst::PlaceMemory memory_;
+  karst::GoalHistory memory_;
   static constexpr std::size_t kRemembered = 32;
   std::vector<Stop> proposed_;  // of the last decisions, newest first
   std::vector<Vec3> tried_;     // cells that a picture just taken was for
@@ -308,7 +308,7 @@ class SurfaceCoverage : public karst::Policy {
     std::int64_t stamp_ns;
   };
   std::vector<Refusal> refused_;
-  std::map<CellId, int> vain_;  // pictures that did not show a cell they were taken for
+  std::map<CellId, int> misses_;  // pictures that did not show a cell they were taken for
   std::int64_t idle_since_ns_ = -1;
 };
 

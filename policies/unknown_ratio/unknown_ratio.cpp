@@ -18,7 +18,7 @@ class UnknownRatio : public karst::Policy, public karst::Restorable {
     p.add("half_edge", half_edge_m_, "m", 0.4, 10,
           "half the edge of the box around a frontier that is counted");
     p.add("ratio_worth", ratio_worth_m_, "m", 0, 1000, "worth of a ratio of one");
-    p.add("most_ratio", most_ratio_, "", 0.1, 1000,
+    p.add("max_ratio", max_ratio_, "", 0.1, 1000,
           "larger ratios count as this: niches in rock have the largest");
     ranking_.parameters(p);
   }
@@ -30,7 +30,7 @@ class UnknownRatio : public karst::Policy, public karst::Restorable {
       char why[120];
       std::snprintf(why, sizeof why, "%.2f unknown cells for each free one, %.1f m away", ratio,
                     f.path_length_m);
-      return karst::Merit{ratio_worth_m_ * std::min(ratio, most_ratio_), why};
+      return karst::Merit{ratio_worth_m_ * std::min(ratio, max_ratio_), why};
     });
   }
 
@@ -57,7 +57,7 @@ class UnknownRatio : public karst::Policy, public karst::Restorable {
 
   double half_edge_m_ = 3.0;
   double ratio_worth_m_ = 6.0;
-  double most_ratio_ = 4.0;
+  double max_ratio_ = 4.0;
   karst::Ranking ranking_;
 };
 

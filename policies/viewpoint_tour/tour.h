@@ -96,7 +96,7 @@ inline Order improved(const Problem& p, std::size_t fixed, Order order) {
 inline Order beginning_with(const Problem& p, std::size_t first) { return improved(p, 1, greedy(p, first)); }
 
 /// A good tour: the best that grew from the few best first stops.
-inline Order least_latency(const Problem& p) {
+inline Order min_latency(const Problem& p) {
   constexpr std::size_t starts = 3;
   Order firsts(p.size());
   std::iota(firsts.begin(), firsts.end(), std::size_t{0});

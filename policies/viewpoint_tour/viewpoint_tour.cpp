@@ -1,14 +1,14 @@
 // A tour over viewpoints of all frontiers, planned anew with each decision: what shows much comes soon.
 #include <karst/expected_gain.h>
 #include <karst/open_frontiers.h>
-#include <karst/straight_way.h>
+#include <karst/straight_path.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "path_lengths.h"
 #include "tour.h"
-#include "way_lengths.h"
 
 namespace {
 
@@ -17,8 +17,8 @@ class ViewpointTour : public karst::Policy {
   void parameters(karst::Parameters& p) override {
     open_.parameters(p);
     gain_.parameters(p);
-    p.add("most_volume", most_volume_m3_, "m^3", 0.1, 10000, "more expected volume counts as this");
-    p.add("least_volume", least_volume_m3_, "m^3", 0, 100, "less expected volume counts as this");
+    p.add("max_volume", max_volume_m3_, "m^3", 0.1, 10000, "more expected volume counts as this");
+    p.add("min_volume", min_volume_m3_, "m^3", 0, 100, "less expected volume counts as this");
     p.add("stop_time", stop_s_, "s", 0.1, 60, "what a stop takes besides the flight to it");
     p.add("turn_time", turn_s_, "s", 0, 60, "what flying straight back costs; less for smaller turns");
     p.add("cruise", cruise_, "", 0.1, 1, "mean speed of a flight, as a share of the greatest");
@@ -45,14 +45,14 @@ class ViewpointTour : public karst::Policy {
  private:
   struct Stop {
     const karst::Frontier* frontier;
-    double weight_m3, first_s, way_m;
+    double weight_m3, first_s, path_m;
   };
 
   /// Stops that a straight flight to the one after them passes are seen on the way.
   tour::Order without_passed(const karst::Request& request, const std::vector<Stop>& stops,
                              tour::Order order) const {
     const auto passed = [&](const Stop& stop, const Stop& next) {
-      return karst::StraightWay(request.position(), next.frontier->viewpoint, next.way_m)
+      return karst::StraightPath(request.position(), next.frontier->viewpoint, next.path_m)
           .passes(stop.frontier->viewpoint, passing_m_);
     };
     if (!karst::sees_all_around(request)) return order;
@@ -72,10 +72,10 @@ class ViewpointTour : public karst::Policy {
     const std::vector<double> volumes_m3 = gain_.volumes_m3(request, all);
     std::vector<Stop> stops;
     for (std::size_t i = 0; i < open.size(); ++i) {
-      const double way_m = all[i]->path_length_m + open[i].reluctance_m;
-      const double turn_s = turn_s_ * karst::turn_share(request, *all[i]);
-      stops.push_back({all[i], std::clamp(volumes_m3[i], least_volume_m3_, most_volume_m3_),
-                       flight_s(request, way_m) + turn_s, way_m});
+      const double path_m = all[i]->path_length_m + open[i].revisit_penalty_m;
+      const double turn_s = turn_s_ * karst::turn_fraction(request, *all[i]);
+      stops.push_back({all[i], std::clamp(volumes_m3[i], min_volume_m3_, max_volume_m3_),
+                       flight_s(request, path_m) + turn_s, path_m});
     }
     // The goal under way stands for what it sees: a stop that changes its name must not change the plan.
     std::sort(stops.begin(), stops.end(), [&](const Stop& a, const Stop& b) {
@@ -87,7 +87,7 @@ class ViewpointTour : public karst::Policy {
     std::vector<Stop> chosen;
     for (const Stop& s : stops) {
       const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const Stop& c) {
-        return karst::distance(c.frontier->viewpoint, s.frontier->viewpoint) < WayLengths::same_place_m &&
+        return karst::distance(c.frontier->viewpoint, s.frontier->viewpoint) < PathLengths::same_site_m &&
                alike(c.frontier->viewpoint_heading_rad, s.frontier->viewpoint_heading_rad);
       });
       if (near) continue;
@@ -107,9 +107,9 @@ class ViewpointTour : public karst::Policy {
       p.weight.push_back(s.weight_m3);
       p.first_s.push_back(s.first_s);
       places.push_back(s.frontier->viewpoint);
-      from_here_m.push_back(s.way_m);
+      from_here_m.push_back(s.path_m);
     }
-    p.leg_s = ways_.between(request, places, from_here_m);
+    p.leg_s = paths_.between(request, places, from_here_m);
     for (std::vector<double>& row : p.leg_s)
       for (double& leg : row) leg = flight_s(request, leg);
     return p;
@@ -117,7 +117,7 @@ class ViewpointTour : public karst::Policy {
 
   tour::Order tour_over(const karst::Request& request, const std::vector<Stop>& stops,
                         const tour::Problem& problem) const {
-    tour::Order best = tour::least_latency(problem);
+    tour::Order best = tour::min_latency(problem);
     if (!karst::under_way(request, *stops[0].frontier) || best.front() == 0) return best;
     const tour::Order kept = tour::beginning_with(problem, 0);
     return tour::latency(problem, kept) <= (1 + keep_) * tour::latency(problem, best) ? kept : best;
@@ -146,9 +146,9 @@ class ViewpointTour : public karst::Policy {
 
   karst::OpenFrontiers open_;
   karst::ExpectedGain gain_;
-  WayLengths ways_;
-  double most_volume_m3_ = 40.0;
-  double least_volume_m3_ = 0.2;
+  PathLengths paths_;
+  double max_volume_m3_ = 40.0;
+  double min_volume_m3_ = 0.2;
   double stop_s_ = 1.5;
   double turn_s_ = 3.0;
   double cruise_ = 0.75;

@@ -117,7 +117,7 @@ typedef struct karst_frontier_cluster {
 typedef struct karst_teammate {
   uint32_t id;
   uint32_t reserved;
-  int64_t heard_ns; /* when this was true */
+  int64_t stamp_ns; /* when this was true */
   karst_vec3_t position;
   karst_vec3_t velocity;
   karst_vec3_t goal; /* NaN if none is known */

@@ -37,8 +37,8 @@ void Cave::dig(std::uint64_t seed, const CaveShape& shape) {
     Ball ball{Vec3(0.05, 0.05, 0.05), shape.radius_m, 0};
     if (p > 0) ball = balls_[static_cast<std::size_t>(random.uniform() * static_cast<double>(balls_.size()))];
     double heading = random.uniform(-std::numbers::pi, std::numbers::pi), slope = random.uniform(-0.3, 0.3);
-    const double end_m = ball.way_m + passage_m;
-    while (ball.way_m < end_m) {
+    const double end_m = ball.path_m + passage_m;
+    while (ball.path_m < end_m) {
       balls_.push_back(ball);
       const double step_m = ball.radius_m / 3;
       heading += 0.15 * random.normal();
@@ -46,12 +46,12 @@ void Cave::dig(std::uint64_t seed, const CaveShape& shape) {
       ball.center += step_m * Vec3(std::cos(slope) * std::cos(heading), std::cos(slope) * std::sin(heading),
                                    std::sin(slope));
       ball.radius_m = shape.radius_m * (1 + std::clamp(0.15 * random.normal(), -0.3, 0.3));
-      ball.way_m += step_m;
+      ball.path_m += step_m;
     }
     length_m_ = std::max(length_m_, end_m);
   }
   std::stable_sort(balls_.begin(), balls_.end(),
-                   [](const Ball& a, const Ball& b) { return a.way_m < b.way_m; });
+                   [](const Ball& a, const Ball& b) { return a.path_m < b.path_m; });
   for (const Ball& b : balls_)
     for_each_cell(b, [&](const CellKey& k) {
       if (rock_.at(k) == Cell::unknown) rock_.assign(k, 1, kFree);
@@ -68,14 +68,14 @@ void Cave::for_each_cell(const Ball& ball, Visit&& visit) const {
         if ((rock_.center_of({x, y, z}) - ball.center).norm() <= ball.radius_m) visit(CellKey{x, y, z});
 }
 
-void Cave::reveal(double way_m) {
+void Cave::reveal(double path_m) {
   std::vector<core::CellChange> changes;
   const auto know = [&](const CellKey& k, Cell c) {
     if (map_.at(k) != Cell::unknown) return;
     map_.assign(k, 1, c == Cell::free ? kFree : kOccupied);
     changes.push_back({k, Cell::unknown, c});
   };
-  for (; revealed_ < balls_.size() && balls_[revealed_].way_m <= way_m; ++revealed_)
+  for (; revealed_ < balls_.size() && balls_[revealed_].path_m <= path_m; ++revealed_)
     for_each_cell(balls_[revealed_], [&](const CellKey& k) {
       know(k, Cell::free);
       for (const CellKey& face : kFaces)

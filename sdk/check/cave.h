@@ -23,7 +23,7 @@ class Cave {
 
   /// Makes known what lies up to `way_m` along the passages. Walls of what is free are occupied, the rest is
   /// unknown. Never less than before.
-  void reveal(double way_m);
+  void reveal(double path_m);
   double length_m() const { return length_m_; }
 
   const core::VoxelMap& map() const { return map_; }
@@ -39,7 +39,7 @@ class Cave {
  private:
   struct Ball {
     core::Vec3 center;
-    double radius_m, way_m;  // from the start, along the passages
+    double radius_m, path_m;  // from the start, along the passages
   };
   void dig(std::uint64_t seed, const CaveShape& shape);
   template <class Visit>

@@ -49,10 +49,10 @@ constexpr Happening kHappenings[] = {
 
 }  // namespace
 
-Flight::Flight(std::uint64_t seed, const CaveShape& shape, double known_share)
+Flight::Flight(std::uint64_t seed, const CaveShape& shape, double known_fraction)
     : random_(core::Random::stream(seed, "flight of a check")),
       cave_(seed, shape),
-      known_m_(known_share * cave_.length_m()),
+      known_m_(known_fraction * cave_.length_m()),
       vehicle_(a_vehicle()) {
   cave_.reveal(known_m_);
   core::DecisionRequest& r = request_;
@@ -78,8 +78,8 @@ const core::DecisionRequest& Flight::request() {
 }
 
 void Flight::fly_to(const Vec3& place) {
-  const Vec3 way = place - request_.state.position;
-  if (way.norm() > 1e-6) request_.direction_of_flight = way.normalized();
+  const Vec3 offset = place - request_.state.position;
+  if (offset.norm() > 1e-6) request_.direction_of_flight = offset.normalized();
   request_.state.position = place;
   if (!map_grows) return;
   known_m_ += random_.uniform(0, 0.04) * cave_.length_m();  // never all of it within a test
@@ -98,7 +98,7 @@ karst_event_t Flight::event_of(const core::Goal& g) {
 
 std::vector<karst_event_t> Flight::react(const Answer& answer) {
   texts_.clear();
-  texts_.reserve(host::kMostGoals + 1);  // events view them
+  texts_.reserve(host::kMaxGoals + 1);  // events view them
   std::vector<karst_event_t> events;
   const core::TimeNs pause = core::from_seconds(random_.uniform(0.5, 5));
   request_.stamp += pause;
@@ -136,8 +136,8 @@ std::vector<Answer> fly(Object& object, Flight& flight, int count) {
   std::vector<Answer> answers;
   for (int i = 0; i < count; ++i) {
     answers.push_back(object.decide(flight.request()));
-    demand(answers.back().failure);
-    for (const karst_event_t& e : flight.react(answers.back())) demand(object.event(e));
+    require(answers.back().failure);
+    for (const karst_event_t& e : flight.react(answers.back())) require(object.event(e));
   }
   return answers;
 }

@@ -15,8 +15,8 @@ inline const CaveShape kShape{.volume_m3 = 200, .radius_m = 1.6, .branches = 4, 
 
 class Flight {
  public:
-  /// The cave is known up to `known_share` of its length at first. Everything follows from the seed.
-  Flight(std::uint64_t seed, const CaveShape& shape, double known_share = 0.3);
+  /// The cave is known up to `known_fraction` of its length at first. Everything follows from the seed.
+  Flight(std::uint64_t seed, const CaveShape& shape, double known_fraction = 0.3);
   bool map_grows = true;
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "sdk/host/plugin/across.h"
+#include "sdk/host/plugin/call_plugin.h"
 #include "sdk/host/plugin/process_state.h"
 #include "sdk/host/policy_state.h"
 #include "sdk/host/services/translation.h"
@@ -14,7 +14,7 @@
 namespace karst::check {
 namespace {
 
-using host::across;
+using host::call_plugin;
 
 double cpu_now_s() {
   timespec t{};
@@ -48,7 +48,7 @@ std::string Answer::text() const {
 Object::Object(Context& context, host::Session& session, const karst_host_t* host)
     : context_(context), session_(session), host_(host == nullptr ? session.host() : host) {
   create_fault_ = call("create()", [&](karst_error_t& e) -> std::int32_t {
-    self_ = across(context_.policy->create, host_, &e);
+    self_ = call_plugin(context_.policy->create, host_, &e);
     return self_ == nullptr ? KARST_ERROR_FAILED : KARST_OK;
   });
 }
@@ -76,34 +76,35 @@ std::string Object::call(const std::string& slot, Work work) {
 
 std::string Object::init(const std::vector<karst_parameter_value_t>& values) {
   return call("init()", [&](karst_error_t& e) {
-    return across(context_.policy->init, self_, values.data(), values.size(), &e);
+    return call_plugin(context_.policy->init, self_, values.data(), values.size(), &e);
   });
 }
 std::string Object::activate() {
-  return call("activate()", [&](karst_error_t& e) { return across(context_.policy->activate, self_, &e); });
+  return call("activate()",
+              [&](karst_error_t& e) { return call_plugin(context_.policy->activate, self_, &e); });
 }
 std::string Object::deactivate() {
   return call("deactivate()", [&](karst_error_t&) -> std::int32_t {
-    across(context_.policy->deactivate, self_);
+    call_plugin(context_.policy->deactivate, self_);
     return KARST_OK;
   });
 }
 std::string Object::destroy() {
   if (self_ == nullptr) return "";
   return call("destroy()", [&](karst_error_t&) -> std::int32_t {
-    across(context_.policy->destroy, std::exchange(self_, nullptr));
+    call_plugin(context_.policy->destroy, std::exchange(self_, nullptr));
     return KARST_OK;
   });
 }
 std::string Object::event(const karst_event_t& event) {
   session_.set_now(event.stamp_ns);
   return call("on_event(), kind " + std::to_string(event.kind),
-              [&](karst_error_t& e) { return across(context_.policy->on_event, self_, &event, &e); });
+              [&](karst_error_t& e) { return call_plugin(context_.policy->on_event, self_, &event, &e); });
 }
 
 const karst_state_extension_t* Object::state() {
   const karst_state_extension_t* table = nullptr;
-  demand(call("extension()", [&](karst_error_t&) -> std::int32_t {
+  require(call("extension()", [&](karst_error_t&) -> std::int32_t {
     table = host::state_extension(*context_.policy, self_);
     return KARST_OK;
   }));
@@ -136,7 +137,7 @@ Answer Object::decide(const core::DecisionRequest& request) {
   const auto begin = std::chrono::steady_clock::now();
   const double cpu_begin_s = cpu_now_s();
   answer.failure = call("decide(), request " + std::to_string(request.sequence), [&](karst_error_t& e) {
-    return across(context_.policy->decide, self_, &pack.request(), &sink, &e);
+    return call_plugin(context_.policy->decide, self_, &pack.request(), &sink, &e);
   });
   answer.cpu_s = cpu_now_s() - cpu_begin_s;
   answer.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -162,9 +163,9 @@ std::vector<karst_parameter_value_t> defaults(const karst_policy_t& policy) {
 
 std::unique_ptr<Object> started(Context& context, host::Session& session, const karst_host_t* host) {
   auto object = std::make_unique<Object>(context, session, host);
-  demand(object->create_fault());
-  demand(object->init(defaults(*context.policy)));
-  demand(object->activate());
+  require(object->create_fault());
+  require(object->init(defaults(*context.policy)));
+  require(object->activate());
   return object;
 }
 
@@ -174,7 +175,7 @@ std::unique_ptr<host::Session> new_session(const Context& context) {
   return session;
 }
 
-void demand(const std::string& fault, const std::string& where) {
+void require(const std::string& fault, const std::string& where) {
   if (!fault.empty()) throw Failed{where.empty() ? fault : where + ": " + fault};
 }
 

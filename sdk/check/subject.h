@@ -94,6 +94,6 @@ std::unique_ptr<Object> started(Context& context, host::Session& session, const 
 /// A session of this test's seed, of which this thread is the decision thread.
 std::unique_ptr<host::Session> new_session(const Context& context);
 /// Throws Failed with `where` before it, unless `fault` is "".
-void demand(const std::string& fault, const std::string& where = "");
+void require(const std::string& fault, const std::string& where = "");
 
 }  // namespace karst::check

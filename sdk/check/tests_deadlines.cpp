@@ -20,7 +20,7 @@ constexpr double kLargeLimit_s =
 
 double round_ms(double s) { return std::round(s * 1e5) / 100; }
 
-void demand_time(Context& c, const std::vector<Answer>& answers, double limit_s) {
+void require_time(Context& c, const std::vector<Answer>& answers, double limit_s) {
   std::vector<double> times_s;
   for (const Answer& a : answers) times_s.push_back(a.cpu_s);
   std::sort(times_s.begin(), times_s.end());
@@ -41,7 +41,7 @@ void fly_in(Context& c, const CaveShape& shape, int decisions, double limit_s) {
   Flight flight(c.seed, shape, 0.9);
   c.figures["free_m3"] = std::round(flight.cave().map().free_volume_m3());
   const auto object = started(c, *session);
-  demand_time(c, fly(*object, flight, decisions), limit_s);
+  require_time(c, fly(*object, flight, decisions), limit_s);
 }
 
 void small(Context& c) { fly_in(c, {.volume_m3 = 1100, .radius_m = 2.0, .branches = 5}, 15, kBudget_s); }
@@ -52,7 +52,7 @@ void should_stop(Context& c) {
   WatchedHost host(*session->host());
   Flight flight(c.seed, {.volume_m3 = 1100, .radius_m = 2.0, .branches = 5}, 0.9);
   const auto object = started(c, *session, host.host());
-  demand(object->decide(flight.request()).failure);
+  require(object->decide(flight.request()).failure);
   host.stopping = true;
   host.before = [](const char*) { return std::int32_t{KARST_ERROR_ABANDONED}; };
   const Answer given_up = object->decide(flight.request());  // whatever it says

@@ -24,7 +24,7 @@ std::string answers(Context& c, const karst_host_t* host, host::Session& session
   return text_of(fly(*object, flight, count));
 }
 
-void demand_same(const std::string& a, const std::string& b, const std::string& when) {
+void require_same(const std::string& a, const std::string& b, const std::string& when) {
   if (a == b) return;
   std::size_t i = 0;
   while (i < a.size() && i < b.size() && a[i] == b[i]) ++i;
@@ -36,7 +36,7 @@ void demand_same(const std::string& a, const std::string& b, const std::string& 
 
 void repeat(Context& c) {
   const std::string first = answers_to_compare(c);
-  for (int i = 0; i < 2; ++i) demand_same(first, answers_to_compare(c), "when asked the same again");
+  for (int i = 0; i < 2; ++i) require_same(first, answers_to_compare(c), "when asked the same again");
 }
 
 void fresh_process(Context& c) {
@@ -65,7 +65,7 @@ void fresh_process(Context& c) {
   fs::remove(file);
   if (done.end.exit_code != 0 || done.end.signal != 0 || done.end.hung)
     throw Failed{"a second process that asks it: " + host::describe(done.end)};
-  demand_same(answers_to_compare(c), there, "in another process");
+  require_same(answers_to_compare(c), there, "in another process");
 }
 
 void slow_host(Context& c) {
@@ -78,7 +78,7 @@ void slow_host(Context& c) {
     if (++paused <= 20) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     return std::int32_t{KARST_OK};
   };
-  demand_same(fast, answers(c, slow.host(), *slow_session, 4), "when the host takes its time");
+  require_same(fast, answers(c, slow.host(), *slow_session, 4), "when the host takes its time");
 }
 
 }  // namespace

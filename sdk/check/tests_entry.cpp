@@ -6,7 +6,7 @@
 #include "sdk/check/elf_exports.h"
 #include "sdk/check/process_view.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/plugin/across.h"
+#include "sdk/host/plugin/call_plugin.h"
 #include "sdk/host/text.h"
 
 namespace karst::check {
@@ -30,11 +30,11 @@ const karst_plugin_t& opened(Context& c) {
 
 /// `fault_of(policy)` of each policy in the file.
 template <class Fault>
-void demand_of_all(Context& c, Fault&& fault_of) {
+void require_of_all(Context& c, Fault&& fault_of) {
   const karst_plugin_t& plugin = opened(c);
   c.progress->enter("asking for its policies");
   for (std::uint32_t i = 0; i < plugin.policy_count; ++i)
-    demand(fault_of(plugin.policy(i)), "policy " + std::to_string(i));
+    require(fault_of(plugin.policy(i)), "policy " + std::to_string(i));
   c.progress->leave();
 }
 
@@ -42,24 +42,24 @@ void opens(Context& c) { opened(c); }
 
 void handshake(Context& c) {
   const karst_plugin_t& plugin = opened(c);
-  demand(host::handshake_fault(plugin.abi_major, plugin.abi_minor));
+  require(host::handshake_fault(plugin.abi_major, plugin.abi_minor));
 }
 
 void tables(Context& c) {
   const karst_plugin_t& plugin = opened(c);
-  demand(host::plugin_fault(plugin));
-  demand_of_all(c, host::table_fault);
+  require(host::plugin_fault(plugin));
+  require_of_all(c, host::table_fault);
   for (std::uint32_t i = 0; i < plugin.policy_count; ++i)
     if (plugin.policy(i) != plugin.policy(i))
       throw Failed{"policy() gives another table each time it is asked"};
 }
 
 void descriptor(Context& c) {
-  demand_of_all(c, [](const karst_policy_t* p) { return host::descriptor_fault(*p->descriptor); });
+  require_of_all(c, [](const karst_policy_t* p) { return host::descriptor_fault(*p->descriptor); });
 }
 
 void parameters(Context& c) {
-  demand_of_all(c, [](const karst_policy_t* p) { return host::parameters_fault(*p->descriptor); });
+  require_of_all(c, [](const karst_policy_t* p) { return host::parameters_fault(*p->descriptor); });
 }
 
 void exports(Context& c) {
@@ -80,15 +80,15 @@ void quiet(Context& c) {
   const ProcessView before;
   const host::ProcessState state;
   opened(c);
-  demand(before.threads_since());
-  demand(before.output_since());
-  demand(before.signals_since());
+  require(before.threads_since());
+  require(before.output_since());
+  require(before.signals_since());
   if (const std::string changed = state.restore(); !changed.empty()) throw Failed{"it changed " + changed};
 }
 
 void described(Context& c) {
   const auto text = [](const karst_text_t& t) { return host::cleaned(t, host::kLogLineLimit); };
-  demand_of_all(c, [&](const karst_policy_t* p) -> std::string {
+  require_of_all(c, [&](const karst_policy_t* p) -> std::string {
     const karst_policy_descriptor_t& d = *p->descriptor;
     if (text(d.one_line).empty()) return "it does not say in one line what it does";
     const std::string version = text(d.version);

@@ -21,10 +21,10 @@ void look_at_answers(Context& c, Look&& look) {
     for (int k = 0; k < 12; ++k) {
       const core::DecisionRequest& r = flight.request();
       const Answer answer = object->decide(r);
-      demand(answer.failure);
+      require(answer.failure);
       goals += answer.box.decision().goals.size();
-      demand(look(r, answer), "flight " + std::to_string(i + 1) + ", request " + std::to_string(r.sequence));
-      for (const karst_event_t& e : flight.react(answer)) demand(object->event(e));
+      require(look(r, answer), "flight " + std::to_string(i + 1) + ", request " + std::to_string(r.sequence));
+      for (const karst_event_t& e : flight.react(answer)) require(object->event(e));
     }
   }
   c.figures["goals"] = goals;

@@ -20,9 +20,9 @@ void order(Context& c) {
   const auto session = new_session(c);
   Flight flight(c.seed, kSmall);
   const auto object = started(c, *session);
-  demand(object->decide(flight.request()).failure);
-  demand(object->deactivate());
-  demand(object->destroy());
+  require(object->decide(flight.request()).failure);
+  require(object->deactivate());
+  require(object->destroy());
 }
 
 void destroy_anywhere(Context& c) {
@@ -31,17 +31,17 @@ void destroy_anywhere(Context& c) {
   for (int stop = created; stop < end; ++stop) {
     const auto session = new_session(c);
     Object object(c, *session);
-    demand(object.create_fault());
-    if (stop >= initialized) demand(object.init(defaults(*c.policy)));
-    if (stop >= active) demand(object.activate());
+    require(object.create_fault());
+    if (stop >= initialized) require(object.init(defaults(*c.policy)));
+    if (stop >= active) require(object.activate());
     if (stop >= asked) {
       const Answer answer = object.decide(flight.request());
-      demand(answer.failure);
+      require(answer.failure);
       if (stop >= told)
-        for (const karst_event_t& e : flight.react(answer)) demand(object.event(e));
+        for (const karst_event_t& e : flight.react(answer)) require(object.event(e));
     }
-    if (stop >= rested) demand(object.deactivate());
-    demand(object.destroy());
+    if (stop >= rested) require(object.deactivate());
+    require(object.destroy());
   }
 }
 
@@ -51,10 +51,10 @@ void reactivate(Context& c) {
   const auto object = started(c, *session);
   for (int i = 0; i < 3; ++i) {
     fly(*object, flight, 3);
-    demand(object->deactivate());
-    demand(object->activate(), "after deactivate()");
-    demand(object->deactivate());
-    demand(object->activate(), "a second time in a row");
+    require(object->deactivate());
+    require(object->activate(), "after deactivate()");
+    require(object->deactivate());
+    require(object->activate(), "a second time in a row");
   }
   fly(*object, flight, 3);
 }
@@ -65,7 +65,7 @@ void events(Context& c) {
   const auto object = started(c, *session);
   const std::string reason = "never heard of it";
   for (karst_event_kind_t kind : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 1000u, 0xffffffffu}) {
-    demand(object->decide(flight.request()).failure);
+    require(object->decide(flight.request()).failure);
     karst_event_t e{};
     e.size = sizeof e;
     e.kind = kind;
@@ -75,11 +75,11 @@ void events(Context& c) {
     e.goal.position = {1e4, -1e4, 50};                              // nobody proposed that
     e.goal.frontier_id = 0xfffffff0u;
     e.reason = host::view_of(reason);
-    demand(object->event(e));
+    require(object->event(e));
     e.reason = {nullptr, 0};
-    demand(object->event(e));
+    require(object->event(e));
   }
-  demand(object->decide(flight.request()).failure, "after all kinds of events");
+  require(object->decide(flight.request()).failure, "after all kinds of events");
 }
 
 void two_objects(Context& c) {
@@ -106,11 +106,11 @@ void fly_with(Context& c, const std::vector<karst_parameter_value_t>& values, co
   const auto session = new_session(c);
   Flight flight(c.seed, kSmall);
   Object object(c, *session);
-  demand(object.create_fault());
+  require(object.create_fault());
   const std::string refused = object.init(values);
   if (refused.find("exception across the border") != std::string::npos) throw Failed{what + ": " + refused};
   if (!refused.empty()) return;
-  demand(object.activate(), what);
+  require(object.activate(), what);
   try {
     fly(object, flight, 3);
   } catch (const Failed& f) {

@@ -40,7 +40,7 @@ void returned(Context& c) {
     const auto session = new_session(c);
     const auto object = started(c, *session);
     fly(*object, flight, 2);
-    demand(object->deactivate());
+    require(object->deactivate());
   };
   for (int i = 0; i < warm; ++i) live();
   const std::size_t before = heap_bytes();
@@ -58,7 +58,7 @@ void peak(Context& c) {
   const auto object = started(c, *session);
   reset_peak();
   const std::size_t before = resident_bytes();
-  for (int i = 0; i < 3; ++i) demand(object->decide(flight.request()).failure);
+  for (int i = 0; i < 3; ++i) require(object->decide(flight.request()).failure);
   const std::size_t most = peak_bytes(), taken = most > before ? most - before : 0;
   c.figures["MiB"] = taken >> 20;
   if (taken > kPeakLimit_bytes)

@@ -16,15 +16,15 @@ std::vector<std::string> live(Context& c) {
   Flight flight(c.seed, kSmallShape);
   const auto object = started(c, *session);
   fly(*object, flight, 8);
-  demand(object->deactivate());
-  demand(object->destroy());
+  require(object->deactivate());
+  require(object->destroy());
   return object->changes();
 }
 
 void output(Context& c) {
   const ProcessView before;
   live(c);
-  demand(before.output_since());
+  require(before.output_since());
 }
 void arithmetic(Context& c) {
   if (const std::vector<std::string> changes = live(c); !changes.empty()) throw Failed{changes.front()};
@@ -32,12 +32,12 @@ void arithmetic(Context& c) {
 void signals(Context& c) {
   const ProcessView before;
   live(c);
-  demand(before.signals_since());
+  require(before.signals_since());
 }
 void leftovers(Context& c) {
   const ProcessView before;
   live(c);
-  demand(before.leftovers_since());
+  require(before.leftovers_since());
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ void ask_changed(Context& c, Flight& flight, int count, Change&& change) {
     flight.request();
     change(flight.edit(), i);
     const Answer answer = object->decide(flight.edit());
-    demand(answer.failure);
-    for (const karst_event_t& e : flight.react(answer)) demand(object->event(e));
+    require(answer.failure);
+    for (const karst_event_t& e : flight.react(answer)) require(object->event(e));
   }
 }
 

@@ -45,7 +45,7 @@ void fail(Context& c) {
       if (answer.failure.find("exception across the border") != std::string::npos)
         throw Failed{std::string(service) + " failed: " + answer.failure};
       host.before = nullptr;
-      demand(object->decide(flight.request()).failure, std::string("once ") + service + " worked again");
+      require(object->decide(flight.request()).failure, std::string("once ") + service + " worked again");
       if (!failed) break;  // it does not use this one
     }
 }
@@ -77,11 +77,11 @@ void threads(Context& c) {
   for (int life = 0; life < 2; ++life) {
     const auto object = started(c, *session, host.host());
     fly(*object, flight, 5);
-    demand(object->deactivate());
-    demand(object->destroy());
+    require(object->deactivate());
+    require(object->destroy());
   }
   host.close();
-  demand(before.threads_since(), "after destroy()");
+  require(before.threads_since(), "after destroy()");
   if (host.late_calls() > 0) throw Failed{"it called the host after it was destroyed"};
 }
 

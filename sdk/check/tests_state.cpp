@@ -1,7 +1,7 @@
 // state: what it remembers, through the extension "karst.state/1".
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/plugin/across.h"
+#include "sdk/host/plugin/call_plugin.h"
 #include "sdk/host/text.h"
 
 namespace karst::check {
@@ -22,7 +22,7 @@ void extensions(Context& c) {
   const auto object = started(c, *session);
   if (!KARST_HAS(karst_policy_t, c.policy, extension)) throw NotApplicable{"it offers no extension at all"};
   for (const char* id : {"", "karst.no_such_thing/1", "karst.state/9", "karst.state/", "karst"})
-    if (host::across(c.policy->extension, object->self(), host::view_of(id)) != nullptr)
+    if (host::call_plugin(c.policy->extension, object->self(), host::view_of(id)) != nullptr)
       throw Failed{std::string("asked for the extension \"") + id +
                    "\", which it cannot know, it returns a table"};
 }
@@ -43,16 +43,16 @@ void same_answers(Context& c) {
   std::vector<std::byte> bytes;
   for (int i = 0; i < kBefore; ++i) {  // saved after every decision, as in flight
     for (Answer& a : fly(*object, flight, 1)) before.push_back(std::move(a));
-    demand(object->save(bytes));
+    require(object->save(bytes));
   }
   const std::string first = text_of(before);
   if (!expected.starts_with(first)) throw Failed{"being asked for its state changes its answers"};
-  demand(object->destroy());
+  require(object->destroy());
   object = std::make_unique<Object>(c, *session);  // the same session: the host's random stream goes on
-  demand(object->create_fault());
-  demand(object->init(defaults(*c.policy)));
-  demand(object->restore(bytes));
-  demand(object->activate(), "after restore()");
+  require(object->create_fault());
+  require(object->init(defaults(*c.policy)));
+  require(object->restore(bytes));
+  require(object->activate(), "after restore()");
   if (first + text_of(fly(*object, flight, kAfter)) != expected)
     throw Failed{"restored after " + std::to_string(kBefore) +
                  " decisions it answers otherwise than if nothing had happened"};
@@ -66,7 +66,7 @@ void damage(Context& c) {
     Flight flight(c.seed, kShape);
     const auto object = restorable(c, *session);
     fly(*object, flight, kBefore);
-    demand(object->save(good));
+    require(object->save(good));
   }
   core::Random random = core::Random::stream(c.seed, "damaged states");
   int refused = 0, tries = 0;
@@ -74,15 +74,15 @@ void damage(Context& c) {
     ++tries;
     const auto session = new_session(c);
     Object object(c, *session);
-    demand(object.create_fault());
-    demand(object.init(defaults(*c.policy)));
+    require(object.create_fault());
+    require(object.init(defaults(*c.policy)));
     const std::string fault = object.restore(bytes);
     if (fault.find("exception across the border") != std::string::npos) throw Failed{what + ": " + fault};
     if (!fault.empty()) {
       ++refused;
       return;
     }
-    demand(object.activate(), what);  // it took them: then it must fly with them
+    require(object.activate(), what);  // it took them: then it must fly with them
     Flight flight(c.seed, kShape);
     try {
       fly(object, flight, 2);
@@ -116,7 +116,7 @@ void size(Context& c) {
   std::size_t most = 0;
   for (int i = 0; i < 60; ++i) {
     fly(*object, flight, 1);
-    demand(object->save(bytes));
+    require(object->save(bytes));
     most = std::max(most, bytes.size());
   }
   c.figures["bytes"] = most;

@@ -41,7 +41,7 @@ void take(Mission& m, const std::string& policy, const ptree& parameters, const 
 }
 
 /// The mission's own table; true if it has this cave.
-bool settled(Mission& m) {
+bool found_in_table(Mission& m) {
   const std::string name = std::filesystem::path(m.cave).stem().string();
   bool found = false;
   for (const auto& [key, entry] : m.auto_policy) {
@@ -109,10 +109,10 @@ selection::CaveFigures known_of(const Mission& m, const AutoOptions& o) {
 
 }  // namespace
 
-void settle_policy(Mission& m) {
+void choose_policy(Mission& m) {
   if (m.policy != kAutoPolicy) return;
   const AutoOptions o = options_of(m);
-  if (settled(m)) return;
+  if (found_in_table(m)) return;
   const selection::CaveFigures figures = known_of(m, o);
   const std::string results = o.results.empty() ? selection::installed_experience() : o.results;
   if (results.empty())

@@ -26,6 +26,6 @@ inline constexpr const char* kAutoPolicy = "auto";
 /// Gives the mission a policy with its parameters, and the reason (`policy_selection`), if it asks for
 /// `auto`. Throws InputError naming file, key and reason: also if nothing is known of the cave, and if
 /// nothing similar was flown.
-void settle_policy(Mission& mission);
+void choose_policy(Mission& mission);
 
 }  // namespace karst::flight

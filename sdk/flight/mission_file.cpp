@@ -6,7 +6,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_lines.h"
 #include "core_stack/common/info_reader.h"
-#include "core_stack/common/install_place.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
 #include "plugins/simulator/simulated_world.h"

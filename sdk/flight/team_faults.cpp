@@ -8,11 +8,11 @@
 namespace karst::flight {
 
 void describe(core::OptionTable& t, TeamFaults& f) {
-  t.add("lost_robot", f.lost_robot, 0, core::kMostRobots - 1,
+  t.add("lost_robot", f.lost_robot, 0, core::kMaxRobots - 1,
         "for tests: the number of a robot that never comes back");
   t.add("lost_after", f.lost_after_s, "s", 0, 7200,
         "from its start: then it is lost, if it is in the air by then");
-  t.add("silent_relay", f.silent_relay, 0, core::kMostRobots - 1,
+  t.add("silent_relay", f.silent_relay, 0, core::kMaxRobots - 1,
         "for tests: the number of a robot whose radio fails");
   t.add("silent_after", f.silent_after_s, "s", 0, 7200, "behind its landing: then it is silent");
 }

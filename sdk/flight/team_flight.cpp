@@ -27,11 +27,11 @@ core::CoreOptions for_team(core::CoreOptions o) {
 RobotId id_of(std::size_t robot) { return static_cast<RobotId>(robot + 1); }
 
 /// A node is a teammate that stands where it lies, and says so as any that landed.
-std::unique_ptr<core::Teammate> node_of(const core::DroppedNode& dropped, const core::CoreOptions& options,
+std::unique_ptr<core::TeamNode> node_of(const core::DroppedNode& dropped, const core::CoreOptions& options,
                                         const core::TeamSetup& setup, TimeNs now) {
   const auto& [id, drop] = dropped;
   auto node =
-      std::make_unique<core::Teammate>(id, options.team, options.homing, setup.base, setup.seed, setup.key);
+      std::make_unique<core::TeamNode>(id, options.team, options.homing, setup.base, setup.seed, setup.key);
   core::TeamState lies;
   lies.position = drop.ground;
   lies.phase = core::TeamPhase::relay;
@@ -101,8 +101,8 @@ void TeamFlight::talk(Lockstep& flight, TimeNs now) {
       log_.event(now, "error", {{"robot", radio}, {"reason", e.what()}});
     }
   };
-  const auto radio_of = [&](const core::Teammate& mate) -> core::RadioPort& {
-    return world_.radio(mate.self());
+  const auto radio_of = [&](const core::TeamNode& member) -> core::RadioPort& {
+    return world_.radio(member.self());
   };
   attempt(core::kBase, [&] { core::transmit(base_, radio_of(base_), now); });
   for (const auto& m : members_) attempt(m->id(), [&] { m->transmit(now); });
@@ -111,7 +111,7 @@ void TeamFlight::talk(Lockstep& flight, TimeNs now) {
   for (const auto& m : members_) attempt(m->id(), [&] { m->receive(now); });
   for (const auto& n : nodes_) attempt(n->self(), [&] { core::receive(*n, radio_of(*n), now); });
 
-  for (const auto& m : members_) object_log_.robot(now, m->mate(), log_);
+  for (const auto& m : members_) object_log_.robot(now, m->member(), log_);
   object_log_.base(now, base_, log_);
   if (now % kBaseLogPeriod == 0) {
     log_base(now);
@@ -132,7 +132,7 @@ void TeamFlight::on_phase(const Lockstep& flight, std::size_t robot, TimeNs now)
     world_.wreck(robot, state.ended->reason);  // what is left of it sends nothing
   log_.event(now, "phase", {{"robot", id_of(robot)}, {"phase", core::name_of(state.phase)}});
   if (!done) return;
-  const auto& claim = members_[robot]->mate().landing_of(id_of(robot));
+  const auto& claim = members_[robot]->member().landing_of(id_of(robot));
   log_.event(now, "end",
              {{"robot", id_of(robot)},
               {"outcome", state.ended->outcome},
@@ -162,7 +162,7 @@ void TeamFlight::inject_faults(const Lockstep& flight, TimeNs now) {
 
 RobotResult TeamFlight::result_of(const Lockstep& flight, std::size_t robot, TimeNs now) const {
   const SeatState& state = flight.state(robot);
-  const core::Teammate& mate = members_[robot]->mate();
+  const core::TeamNode& member = members_[robot]->member();
   const std::vector<RobotId> connected = base_.graph().connected(now);
   RobotResult r;
   r.mission =
@@ -172,22 +172,22 @@ RobotResult TeamFlight::result_of(const Lockstep& flight, std::size_t robot, Tim
   r.exploration_time_s = core::seconds(state.explored_for);
   r.homing_reason = state.homing_reason;
   r.battery_left = state.status.battery_fraction;
-  r.connected = std::find(connected.begin(), connected.end(), mate.self()) != connected.end();
-  r.records = mate.gossip().held(mate.self()).first();
-  r.records_at_base = base_.gossip().held(mate.self()).first();
+  r.connected = std::find(connected.begin(), connected.end(), member.self()) != connected.end();
+  r.records = member.gossip().held(member.self()).first();
+  r.records_at_base = base_.gossip().held(member.self()).first();
   return r;
 }
 
 /// Returns the bytes over the air in all.
 std::uint64_t TeamFlight::log_traffic(TimeNs now) {
   std::uint64_t bytes = 0;
-  const auto note = [&](const core::Teammate& mate) {
-    const sim::RadioTraffic traffic = world_.traffic(mate.self());
-    log_.traffic(now, mate.self(), traffic, mate.gossip().counts());
+  const auto note = [&](const core::TeamNode& member) {
+    const sim::RadioTraffic traffic = world_.traffic(member.self());
+    log_.traffic(now, member.self(), traffic, member.gossip().counts());
     bytes += traffic.bytes_sent;
   };
   note(base_);
-  for (const auto& m : members_) note(m->mate());
+  for (const auto& m : members_) note(m->member());
   for (const auto& n : nodes_) note(*n);
   return bytes;
 }

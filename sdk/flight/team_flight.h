@@ -73,10 +73,10 @@ class TeamFlight final : public StepHooks {
   TeamFaults faults_;
   core::TeamSetup setup_;
   sim::SimulatedWorld& world_;
-  core::Teammate base_;
+  core::TeamNode base_;
   std::vector<std::unique_ptr<core::TeamMember>> members_;
   std::vector<bool> struck_;                            // members that a fault has befallen
-  std::vector<std::unique_ptr<core::Teammate>> nodes_;  // dropped, in that order
+  std::vector<std::unique_ptr<core::TeamNode>> nodes_;  // dropped, in that order
   core::HomingTree base_tree_;                          // as the base was told, for the log
   TeamLog log_;
   TeamObjectLog object_log_;

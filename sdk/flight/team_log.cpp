@@ -19,14 +19,14 @@ void TeamLog::event(core::TimeNs t, const std::string& kind, const nlohmann::jso
   file_ << line.dump() << '\n';
 }
 
-void TeamLog::base(core::TimeNs t, const core::Teammate& base) {
+void TeamLog::base(core::TimeNs t, const core::TeamNode& base) {
   nlohmann::json links = nlohmann::json::array(), held = nlohmann::json::array(),
                  relays = nlohmann::json::array(), dead = nlohmann::json::array();
   for (const core::RelayLink& l : base.graph().links(t))
     links.push_back({l.a, l.b, core::rounded(l.transmissions)});
-  for (core::RobotId r = 1; r < core::kMostRobots; ++r) {
+  for (core::RobotId r = 1; r < core::kMaxRobots; ++r) {
     if (const std::uint32_t n = base.gossip().held(r).first(); n > 0) held.push_back({r, n});
-    if (base.told_dead(r)) dead.push_back(r);
+    if (base.reported_dead(r)) dead.push_back(r);
     const auto& landing = base.landing_of(r);
     if (landing && landing->state == core::LandingClaim::State::landed)
       relays.push_back({r, core::rounded_list(landing->ground)});
@@ -43,9 +43,9 @@ void TeamLog::tree(core::TimeNs t, const core::HomingTree& tree) {
   nlohmann::json changed = nlohmann::json::array();
   for (const core::TreeNode& n : tree.nodes()) {
     const std::optional<core::NodeId> next = tree.next(n.id);
-    const auto [told, is_new] = next_.try_emplace(n.id, next);
-    if (!is_new && told->second == next) continue;
-    told->second = next;
+    const auto [reported, is_new] = next_.try_emplace(n.id, next);
+    if (!is_new && reported->second == next) continue;
+    reported->second = next;
     nlohmann::json row{n.id.robot,
                        n.id.number,
                        core::rounded(n.position.x()),

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core_stack/common/time.h"
-#include "core_stack/homing/way_home/homing_tree.h"
-#include "core_stack/team/teammate.h"
+#include "core_stack/homing/path_home/homing_tree.h"
+#include "core_stack/team/team_node.h"
 #include "plugins/simulator/simulated_world.h"
 
 namespace karst::flight {
@@ -21,7 +21,7 @@ class TeamLog {
   /// A line {"t": ..., "kind": kind, ...fields}; t is the team's time.
   void event(core::TimeNs t, const std::string& kind, const nlohmann::json& fields);
   /// Who reaches the base over which links as it knows, what it holds of whom, and where relays stand.
-  void base(core::TimeNs t, const core::Teammate& base);
+  void base(core::TimeNs t, const core::TeamNode& base);
   /// The homing tree as the base knows it: nodes that are new, or whose way goes on elsewhere, since the last
   /// call. Writes nothing if there are none.
   void tree(core::TimeNs t, const core::HomingTree& tree);

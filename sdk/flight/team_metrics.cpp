@@ -65,12 +65,13 @@ ordered_json team_metrics(const Mission& mission, const TeamResult& result, cons
   ordered_json m = begin_team_metrics(
       {mission.policy, mission.cave, mission.seed, landed == n ? "landed" : "incomplete", reason}, robots);
   m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
-  std::uint64_t told = 0, at_base = 0;
+  std::uint64_t reported = 0, at_base = 0;
   for (const RobotResult& r : result.robots) {
-    told += r.records;
+    reported += r.records;
     at_base += r.records_at_base;
   }
-  if (told > 0) m["data_at_base_share"] = rounded(static_cast<double>(at_base) / static_cast<double>(told));
+  if (reported > 0)
+    m["data_at_base_share"] = rounded(static_cast<double>(at_base) / static_cast<double>(reported));
   m["robots_landed"] = rounded(static_cast<double>(landed) / static_cast<double>(n));
   m["robots_connected"] =
       landed > 0 ? ordered_json(rounded(static_cast<double>(connected) / static_cast<double>(landed)))

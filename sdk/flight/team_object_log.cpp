@@ -7,17 +7,17 @@
 
 namespace karst::flight {
 
-void TeamObjectLog::robot(core::TimeNs now, const core::Teammate& robot, TeamLog& log) {
-  news(now, "object", robot.objects(), robot.self(), told_, log);
+void TeamObjectLog::robot(core::TimeNs now, const core::TeamNode& robot, TeamLog& log) {
+  news(now, "object", robot.objects(), robot.self(), reported_, log);
 }
 
-void TeamObjectLog::base(core::TimeNs now, const core::Teammate& base, TeamLog& log) {
+void TeamObjectLog::base(core::TimeNs now, const core::TeamNode& base, TeamLog& log) {
   news(now, "object_known", base.objects(), core::kBase, known_, log);
 }
 
 /// Of one robot, or, for the base, of all.
-void TeamObjectLog::news(core::TimeNs now, const char* kind, const core::ToldObjects& objects,
-                         core::RobotId of, core::ToldObjects& noted, TeamLog& log) {
+void TeamObjectLog::news(core::TimeNs now, const char* kind, const core::ReportedObjects& objects,
+                         core::RobotId of, core::ReportedObjects& noted, TeamLog& log) {
   for (const auto& [key, seen] : objects) {
     if (of != core::kBase && key.first != of) continue;
     const auto before = noted.find(key);

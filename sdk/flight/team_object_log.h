@@ -8,14 +8,14 @@ class TeamObjectLog {
  public:
   /// To be called after every exchange: a line `object` for what `robot` told since, and a line
   /// `object_known` for what has come to the base.
-  void robot(core::TimeNs now, const core::Teammate& robot, TeamLog& log);
-  void base(core::TimeNs now, const core::Teammate& base, TeamLog& log);
+  void robot(core::TimeNs now, const core::TeamNode& robot, TeamLog& log);
+  void base(core::TimeNs now, const core::TeamNode& base, TeamLog& log);
 
  private:
-  void news(core::TimeNs now, const char* kind, const core::ToldObjects& objects, core::RobotId of,
-            core::ToldObjects& noted, TeamLog& log);
+  void news(core::TimeNs now, const char* kind, const core::ReportedObjects& objects, core::RobotId of,
+            core::ReportedObjects& noted, TeamLog& log);
 
-  core::ToldObjects told_, known_;  // as last noted
+  core::ReportedObjects reported_, known_;  // as last noted
 };
 
 }  // namespace karst::flight

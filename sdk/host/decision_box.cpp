@@ -45,7 +45,7 @@ std::string goal_fault(const karst_goal_t& g) {
 karst_decision_sink_t DecisionBox::sink() {
   karst_decision_sink_t s{};
   s.size = sizeof s;
-  s.max_goals = kMostGoals;
+  s.max_goals = kMaxGoals;
   s.context = this;
   s.add_goals = [](const karst_decision_sink_t* self, const karst_goal_t* goals, std::uint64_t count,
                    karst_error_t* error) noexcept {
@@ -64,9 +64,9 @@ std::int32_t DecisionBox::add(const karst_goal_t* goals, std::uint64_t count, ka
     fill_error(error, KARST_ERROR_ARGUMENT, fault_);
     return KARST_ERROR_ARGUMENT;
   }
-  if (count > kMostGoals || offered_ + count > kMostGoals) {
+  if (count > kMaxGoals || offered_ + count > kMaxGoals) {
     fault_ = "it offered " + std::to_string(offered_ + count) + " goals, the limit is " +
-             std::to_string(kMostGoals);
+             std::to_string(kMaxGoals);
     fill_error(error, KARST_ERROR_LIMIT, fault_);
     return KARST_ERROR_LIMIT;
   }

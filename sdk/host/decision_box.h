@@ -12,7 +12,7 @@
 
 namespace karst::host {
 
-constexpr std::uint32_t kMostGoals = 64;
+constexpr std::uint32_t kMaxGoals = 64;
 
 /// "" if the goal is well formed, otherwise what is wrong with it.
 std::string goal_fault(const karst_goal_t& goal);

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "core_stack/common/error.h"
-#include "sdk/host/plugin/across.h"
+#include "sdk/host/plugin/call_plugin.h"
 #include "sdk/host/plugin/process_state.h"
 #include "sdk/host/policy_state.h"
 #include "sdk/host/services/translation.h"
@@ -81,8 +81,9 @@ void LoadedPolicy::start(const PolicyLegacy& former) {
     end();
     create_and_init();
   }
-  require(call("activate",
-               [table = &table_, self = self_](Call& c) { return across(table->activate, self, &c.error); }));
+  require(call("activate", [table = &table_, self = self_](Call& c) {
+    return call_plugin(table->activate, self, &c.error);
+  }));
   active_ = true;
 }
 
@@ -90,7 +91,7 @@ void LoadedPolicy::create_and_init() {
   // What the thread writes is shared: it may write it long after this function has given up.
   auto made = std::make_shared<void*>(nullptr);
   require(call("create", [made, table = &table_](Call& c) -> std::int32_t {
-    *made = across(table->create, c.session->host(), &c.error);
+    *made = call_plugin(table->create, c.session->host(), &c.error);
     return *made == nullptr ? KARST_ERROR_FAILED : KARST_OK;
   }));
   self_ = *made;
@@ -99,7 +100,7 @@ void LoadedPolicy::create_and_init() {
       std::make_shared<ResolvedParameters>(*table_.descriptor, choice_.parameters, choice_.source);
   require(call("init", [parameters, table = &table_, self = self_](Call& c) {
     const std::vector<karst_parameter_value_t> values = parameters->values();
-    return across(table->init, self, values.data(), values.size(), &c.error);
+    return call_plugin(table->init, self, values.data(), values.size(), &c.error);
   }));
 }
 
@@ -133,8 +134,8 @@ PolicyLegacy LoadedPolicy::legacy() {
 void LoadedPolicy::end() noexcept {
   if (self_ == nullptr || thread_.hangs()) return;
   const auto quit = [table = &table_, self = self_, active = active_](Call&) -> std::int32_t {
-    if (active) across(table->deactivate, self);
-    across(table->destroy, self);
+    if (active) call_plugin(table->deactivate, self);
+    call_plugin(table->destroy, self);
     return KARST_OK;
   };
   call("destroy", quit);
@@ -166,7 +167,7 @@ core::Decision LoadedPolicy::decide(const core::DecisionRequest& request) {
   session_->begin_deciding(request, lengths_);
   const std::string fault = call("decide", [question, table = &table_, self = self_](Call& c) {
     const karst_decision_sink_t sink = question->box.sink();
-    return across(table->decide, self, &question->pack.request(), &sink, &c.error);
+    return call_plugin(table->decide, self, &question->pack.request(), &sink, &c.error);
   });
   session_->end_deciding();
   if (thread_.hangs()) throw core::PolicyFailure(name_ + ": " + fault);
@@ -195,7 +196,7 @@ void LoadedPolicy::notify(const core::PolicyEvent& event) {
   auto copy = std::make_shared<core::PolicyEvent>(event);
   const std::string fault = call("on_event", [copy, table = &table_, self = self_](Call& c) {
     const karst_event_t out = to_abi(*copy);
-    return across(table->on_event, self, &out, &c.error);
+    return call_plugin(table->on_event, self, &out, &c.error);
   });
   if (!fault.empty()) session_->note("warning: " + name_ + ": " + fault);
 }

@@ -10,7 +10,7 @@
 
 namespace karst::host {
 
-constexpr std::uint64_t kMostStateBytes = 16u << 20;
+constexpr std::uint64_t kMaxStateBytes = 16u << 20;
 
 /// The policy's table for it, or null: then it begins anew whenever it is started. A table with a slot
 /// missing counts as none.

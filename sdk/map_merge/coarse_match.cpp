@@ -11,7 +11,7 @@ namespace {
 constexpr double kThin_m = 0.4;        // of what descriptors are made of
 constexpr double kRough_m = 0.4;       // cells of the quick look: rock counts as thickened to 1.2 m
 constexpr std::size_t kScored = 1500;  // source points of the quick look
-constexpr int kLeastPoints = 60;       // a place with less rock around looks like nothing in particular
+constexpr int kMinPoints = 60;         // a place with less rock around looks like nothing in particular
 
 struct Places {
   std::vector<PlaceFrame> frames;
@@ -51,7 +51,7 @@ Places places_of(const MapPiece& piece, double cell_m, double spacing_m, std::si
   for (double at = 0; at < static_cast<double>(frames.size()); at += stride) {
     const PlaceFrame& f = frames[static_cast<std::size_t>(at)];
     PlaceDescriptor d(thin, f, cell_m);
-    if (d.count() < kLeastPoints) continue;
+    if (d.count() < kMinPoints) continue;
     places.frames.push_back(f);
     places.descriptors.push_back(std::move(d));
   }
@@ -86,8 +86,8 @@ std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, 
   // Where free space is not known a normal's sign is not, either; one side of the pair tries both.
   const bool both_sides = !(target.knows_free_space() && source.knows_free_space());
   const Places to =
-      places_of(target, cell_m, options.spacing_m, options.most_target_places, options.gravity_known, false);
-  const Places from = places_of(source, cell_m, 1.5 * options.spacing_m, options.most_source_places,
+      places_of(target, cell_m, options.spacing_m, options.max_target_places, options.gravity_known, false);
+  const Places from = places_of(source, cell_m, 1.5 * options.spacing_m, options.max_source_places,
                                 options.gravity_known, both_sides);
   if (to.frames.empty() || from.frames.empty()) return {};
   const Invariants to_all = stacked(to);

@@ -7,7 +7,7 @@ namespace karst::core {
 struct CoarseOptions {
   bool gravity_known = true;  // both maps' z axes point up
   double spacing_m = 1.0;     // between places of the target; wider in a very large map
-  std::size_t most_target_places = 12000, most_source_places = 500;
+  std::size_t max_target_places = 12000, max_source_places = 500;
   std::vector<double> cells_m = {
       1.0, 0.6};               // of descriptors: wide ones say more, small ones fit into less overlap
   std::size_t candidates = 8;  // places of the target looked at for each of the source

@@ -50,7 +50,7 @@ Pose Icp::refine(const MapPiece& source, const Pose& T_target_source,
   const Pose to_middle{-storage_->middle, Quat::Identity()};
   Pose T = to_middle * T_target_source;
   for (const IcpRound& round : rounds) {
-    PclCloud::Ptr moved = pcl_cloud(source, Vec3::Zero(), round.most_points);
+    PclCloud::Ptr moved = pcl_cloud(source, Vec3::Zero(), round.max_points);
     for (pcl::PointNormal& p : *moved) {
       p.getVector3fMap() = (T * p.getVector3fMap().cast<double>()).cast<float>();
       p.getNormalVector3fMap() = (T.orientation * p.getNormalVector3fMap().cast<double>()).cast<float>();
@@ -59,7 +59,7 @@ Pose Icp::refine(const MapPiece& source, const Pose& T_target_source,
     icp.setSearchMethodTarget(storage_->tree, true);
     icp.setInputTarget(storage_->target);
     icp.setInputSource(moved);
-    icp.setMaxCorrespondenceDistance(round.reach_m);
+    icp.setMaxCorrespondenceDistance(round.correspondence_m);
     icp.setMaximumIterations(round.iterations);
     icp.setTransformationEpsilon(1e-8);
     icp.setEuclideanFitnessEpsilon(1e-9);

@@ -8,9 +8,9 @@ namespace karst::core {
 
 /// One round: pairs of points up to `reach_m` apart, of the source's points an even pick.
 struct IcpRound {
-  double reach_m;
+  double correspondence_m;
   int iterations;
-  std::size_t most_points;
+  std::size_t max_points;
 };
 
 /// Holds the target's search tree; PCL stays in icp.cpp.

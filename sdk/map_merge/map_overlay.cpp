@@ -16,7 +16,7 @@ OverlayCounts count(const MapPiece& into, const MapPiece& from, const Pose& T_in
                     const OverlayOptions& options) {
   const double cell_m = std::max(into.resolution_m, from.resolution_m);
   const double near_m = options.near_cells * cell_m, free_m = options.free_cells * cell_m;
-  const std::size_t stride = from.surface.size() / options.most_points + 1;
+  const std::size_t stride = from.surface.size() / options.max_points + 1;
   OverlayCounts counts;
   for (std::size_t i = 0; i < from.surface.size(); i += stride) {
     ++counts.points;
@@ -32,7 +32,7 @@ OverlayCounts count(const MapPiece& into, const MapPiece& from, const Pose& T_in
   return counts;
 }
 
-double share(std::size_t part, std::size_t whole) {
+double fraction(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
@@ -53,11 +53,11 @@ VoxelMap rough_cells(const MapPiece& target, double cell_m) {
 
 }  // namespace
 
-double Overlay::source_overlap() const { return share(source_in_target.near, source_in_target.points); }
-double Overlay::target_overlap() const { return share(target_in_source.near, target_in_source.points); }
+double Overlay::source_overlap() const { return fraction(source_in_target.near, source_in_target.points); }
+double Overlay::target_overlap() const { return fraction(target_in_source.near, target_in_source.points); }
 
 double Overlay::agreement() const {
-  return share(near(), near() + source_in_target.in_free + target_in_source.in_free);
+  return fraction(near(), near() + source_in_target.in_free + target_in_source.in_free);
 }
 
 double Overlay::residual_m() const {
@@ -68,7 +68,7 @@ double Overlay::residual_m() const {
 
 double Overlay::score() const {
   const auto of = [](const OverlayCounts& c) {
-    return share(c.near, c.points) - kContradiction * share(c.in_free, c.points);
+    return fraction(c.near, c.points) - kContradiction * fraction(c.in_free, c.points);
   };
   return of(source_in_target) + of(target_in_source);
 }

@@ -27,9 +27,9 @@ struct Overlay {
 };
 
 struct OverlayOptions {
-  double near_cells = 1.75;         // of the coarser map: rock so near to rock is the same
-  double free_cells = 3.0;          // rock in a free cell, and so far from rock, contradicts
-  std::size_t most_points = 20000;  // of each map, evenly picked
+  double near_cells = 1.75;        // of the coarser map: rock so near to rock is the same
+  double free_cells = 3.0;         // rock in a free cell, and so far from rock, contradicts
+  std::size_t max_points = 20000;  // of each map, evenly picked
 };
 
 Overlay overlay(const MapPiece& target, const MapPiece& source, const Pose& T_target_source,

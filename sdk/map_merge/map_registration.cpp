@@ -145,7 +145,7 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
   const Icp icp(target);
   const Vec3 middle = middle_of(source);
   OverlayOptions glance = options.overlay;
-  glance.most_points = 2000;
+  glance.max_points = 2000;
   std::vector<Candidate> candidates;
   for (const CoarsePose& c : coarse) {
     const Pose T = icp.refine(source, c.T_target_source, options.quick);

@@ -18,7 +18,7 @@ std::vector<double> robust_scales(const std::vector<KnownCave>& caves) {
     std::vector<double> values;
     for (const KnownCave& c : caves)
       if (std::isfinite(c.figures.*f.value)) values.push_back(scaled(f, c.figures.*f.value));
-    double scale = f.least_scale;
+    double scale = f.min_scale;
     if (!values.empty()) {
       const double middle = median(values);
       for (double& v : values) v = std::abs(v - middle);

@@ -13,8 +13,8 @@ using core::Vec3f;
 std::array<double, 3> percentiles(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(share * double(values.size() - 1))];
+  const auto at = [&](double fraction) {
+    return values[static_cast<std::size_t>(fraction * double(values.size() - 1))];
   };
   return {at(0.1), at(0.5), at(0.9)};
 }

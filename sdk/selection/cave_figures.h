@@ -33,7 +33,7 @@ struct FigureDefinition {
   // itself.
   bool logarithmic;
   double offset;
-  double least_scale;  // differences are never magnified beyond this unit, however alike the known caves are
+  double min_scale;  // differences are never magnified beyond this unit, however alike the known caves are
   double weight;
   std::string_view meaning;
 };

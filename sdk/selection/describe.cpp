@@ -75,13 +75,13 @@ std::vector<Slice> measured(const FreeSpace& space, const CellIndex& cells, cons
 }
 
 /// The least value with at least `share` of all weight at or below it.
-double quantile(std::vector<std::pair<double, double>> value_weight, double share) {
+double quantile(std::vector<std::pair<double, double>> value_weight, double fraction) {
   if (value_weight.empty()) return kUnknown;
   std::sort(value_weight.begin(), value_weight.end());
   double total = 0, sum = 0;
   for (const auto& [value, weight] : value_weight) total += weight;
   for (const auto& [value, weight] : value_weight)
-    if ((sum += weight) >= share * total) return value;
+    if ((sum += weight) >= fraction * total) return value;
   return value_weight.back().first;
 }
 
@@ -106,8 +106,8 @@ double verticality(const std::vector<PassageNode>& nodes, const std::vector<Slic
     for (; done < steps && !nodes[at].below.empty(); ++done)
       at = static_cast<std::size_t>(nodes[at].below.front());
     if (done < steps) continue;
-    const Vec3 way = slices[i].centroid - slices[at].centroid;
-    up += std::abs(way.z()), all += way.norm();
+    const Vec3 along = slices[i].centroid - slices[at].centroid;
+    up += std::abs(along.z()), all += along.norm();
   }
   return all > 0 ? up / all : kUnknown;
 }
@@ -137,8 +137,8 @@ CaveFigures describe(const FreeSpace& space) {
   double log_heights = 0;
   for (const Slice& s : slices) {
     widths.emplace_back(s.width_m, 1.0);
-    log_heights +=
-        std::log(space.way_to_rock(s.middle, Vec3::UnitZ()) + space.way_to_rock(s.middle, -Vec3::UnitZ()));
+    log_heights += std::log(space.range_to_rock(s.middle, Vec3::UnitZ()) +
+                            space.range_to_rock(s.middle, -Vec3::UnitZ()));
   }
   f.width_m = quantile(widths, 0.5);
   f.width_spread = quantile(widths, 0.9) / quantile(widths, 0.1);
@@ -164,10 +164,10 @@ CaveFigures describe(const FreeSpace& space) {
       for (std::size_t c = 0; c < from.size(); ++c) nearest_source[c] = std::min(nearest_source[c], from[c]);
     }
     for (const Slice& s : slices) {
-      const double way = from[static_cast<std::size_t>(s.cell)] * edge;
-      if (way < 3 * f.width_m) continue;
+      const double along = from[static_cast<std::size_t>(s.cell)] * edge;
+      if (along < 3 * f.width_m) continue;
       const Vec3 line = centre(cells, s.cell, edge) - centre(cells, static_cast<std::int32_t>(source), edge);
-      ratios.emplace_back(way / line.norm(), 1.0);
+      ratios.emplace_back(along / line.norm(), 1.0);
     }
   }
   f.tortuosity = ratios.empty() ? 1.0 : std::max(1.0, quantile(std::move(ratios), 0.5));

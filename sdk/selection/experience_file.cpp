@@ -106,7 +106,7 @@ KnownCave cave_of(const pt::ptree& tree, const std::string& file) {
 }
 
 /// What a figure of flights can be at most; of those learned none is negative.
-double most_of(const std::string& metric, double horizon_s) {
+double max_of(const std::string& metric, double horizon_s) {
   const evaluation::MetricDefinition& m =
       evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(metric))];
   return m.if_failed == evaluation::IfFailed::horizon ? horizon_s : m.most;
@@ -174,7 +174,7 @@ Experience read_experience(const std::string& file) {
       Fared& there = e.at(k, c, static_cast<std::size_t>(metric - e.metrics.begin()));
       if (there.flights > 0) throw InputError(file, who + " in " + where, name + " is there twice");
       there =
-          fared_of(value.data(), most_of(name, e.flown.horizon_s), file, who + " in " + where + ": " + name);
+          fared_of(value.data(), max_of(name, e.flown.horizon_s), file, who + " in " + where + ": " + name);
     }
   }
   return e;

@@ -16,14 +16,14 @@ using core::CellKey;
 using core::Vec3;
 using evaluation::CellSet;
 
-constexpr double kFarM = 500;       // no passage is wider
-constexpr double kMostCells = 4e5;  // so that a description takes seconds
+constexpr double kFarM = 500;      // no passage is wider
+constexpr double kMaxCells = 4e5;  // so that a description takes seconds
 
 /// How many cells of `resolution_m` a coarse cell is long: as asked for, or longer if that would be too many
 /// cells.
 int coarse_edge(const FreeSpaceOptions& options, double resolution_m, std::size_t fine_cells) {
   int n = std::max(1, static_cast<int>(std::lround(options.coarse_m / resolution_m)));
-  while (static_cast<double>(fine_cells) / std::pow(n, 3) > kMostCells) ++n;
+  while (static_cast<double>(fine_cells) / std::pow(n, 3) > kMaxCells) ++n;
   return n;
 }
 
@@ -116,7 +116,7 @@ FreeSpace free_space_of(const cave::RayScene& scene, const Vec3& start, const Fr
   });
   space.volume_m3 = volume_with_halves(r.reachable_cells, faces, options.resolution_m);
   space.distance_to_rock = [scene](const Vec3& p) { return scene.distance_to_rock(p, kFarM); };
-  space.way_to_rock = [scene](const Vec3& from, const Vec3& d) {
+  space.range_to_rock = [scene](const Vec3& from, const Vec3& d) {
     return std::min(kFarM, scene.ray_cast(from, d, kFarM));
   };
   return space;
@@ -155,7 +155,7 @@ FreeSpace free_space_of(const core::VoxelMap& map, const FreeSpaceOptions& optio
                            "than the clearance");
   space.volume_m3 = volume_with_halves(free, faces, edge);
   space.distance_to_rock = [rock](const Vec3& p) { return std::min(kFarM, rock->distance(p)); };
-  space.way_to_rock = [filled](const Vec3& from, const Vec3& d) {
+  space.range_to_rock = [filled](const Vec3& from, const Vec3& d) {
     const auto end = filled->first_not_free(from, from + kFarM * d);
     // From the centre of the last free cell to that of the first of rock lies half a cell too much on
     // average.

@@ -23,7 +23,7 @@ struct FreeSpace {
   double volume_m3 = 0;         // with half of the cells the rock's surface runs through
   std::function<double(const core::Vec3&)> distance_to_rock;  // metres
   std::function<double(const core::Vec3& from, const core::Vec3& direction)>
-      way_to_rock;  // along a unit vector
+      range_to_rock;  // along a unit vector
 };
 
 /// `scene` must outlive the result. Throws InputError as evaluation::find_reachable does.

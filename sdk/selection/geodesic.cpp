@@ -19,13 +19,13 @@ struct Move {
   CellKey before, after;
 };
 
-std::vector<Move> moves(int reach) {
+std::vector<Move> moves(int radius) {
   std::vector<Move> all;
   const auto half_down = [](int v) { return static_cast<int>(std::floor(v / 2.0)); };
   const auto half_up = [](int v) { return static_cast<int>(std::ceil(v / 2.0)); };
-  for (int z = -reach; z <= reach; ++z)
-    for (int y = -reach; y <= reach; ++y)
-      for (int x = -reach; x <= reach; ++x) {
+  for (int z = -radius; z <= radius; ++z)
+    for (int y = -radius; y <= radius; ++y)
+      for (int x = -radius; x <= radius; ++x) {
         if (std::gcd(std::gcd(std::abs(x), std::abs(y)), std::abs(z)) != 1) continue;
         Move m{{x, y, z}, std::sqrt(static_cast<float>(x * x + y * y + z * z)), {}, {}};
         if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == 2) {

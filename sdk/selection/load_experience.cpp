@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/install_place.h"
+#include "core_stack/common/install_location.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/campaign/plan/hash.h"
 #include "sdk/campaign/store/store.h"

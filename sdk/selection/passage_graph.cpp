@@ -57,7 +57,7 @@ class Uniting {
   std::vector<int> below(int node) { return own(nodes_[static_cast<std::size_t>(node)].below); }
 
   /// Of all ways from `from` to `to` below band `top`, the one whose lowest band is highest.
-  std::vector<int> highest_way(int from, int to, int top) {
+  std::vector<int> highest_path(int from, int to, int top) {
     std::vector<int> came(nodes_.size(), -1);
     std::priority_queue<std::array<int, 3>> open;  // lowest band so far, node, where it came from
     open.push({band(from), from, from});
@@ -72,22 +72,22 @@ class Uniting {
         for (const int next : own(*side))
           if (band(next) < top) open.push({std::min(lowest, band(next)), next, node});
     }
-    std::vector<int> way{to};
-    while (way.back() != from) way.push_back(came[static_cast<std::size_t>(way.back())]);
-    return way;
+    std::vector<int> path{to};
+    while (path.back() != from) path.push_back(came[static_cast<std::size_t>(path.back())]);
+    return path;
   }
 
-  int lowest_band(const std::vector<int>& way) const {
+  int lowest_band(const std::vector<int>& path) const {
     int lowest = std::numeric_limits<int>::max();
-    for (const int n : way) lowest = std::min(lowest, band(n));
+    for (const int n : path) lowest = std::min(lowest, band(n));
     return lowest;
   }
 
   /// Unites the nodes of a way that are of one band.
-  void fold(const std::vector<int>& way) {
-    for (std::size_t i = 0; i < way.size(); ++i)
+  void fold(const std::vector<int>& path) {
+    for (std::size_t i = 0; i < path.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        if (band(way[i]) == band(way[j])) unite(way[i], way[j]);
+        if (band(path[i]) == band(path[j])) unite(path[i], path[j]);
   }
 
   std::vector<PassageNode> result() {
@@ -133,9 +133,9 @@ std::size_t degree(const PassageNode& n) { return n.below.size() + n.above.size(
 
 /// The nodes from a dead end up to, not including, the first junction; empty if it leads to another dead end.
 std::vector<int> dead_end(const std::vector<PassageNode>& nodes, int end) {
-  std::vector<int> way;
+  std::vector<int> path;
   for (int node = end, before = -1; degree(nodes[static_cast<std::size_t>(node)]) < 3;) {
-    way.push_back(node);
+    path.push_back(node);
     int next = -1;
     const PassageNode& n = nodes[static_cast<std::size_t>(node)];
     for (const auto* side : {&n.below, &n.above})
@@ -144,7 +144,7 @@ std::vector<int> dead_end(const std::vector<PassageNode>& nodes, int end) {
     if (next < 0) return {};
     before = node, node = next;
   }
-  return way;
+  return path;
 }
 
 }  // namespace
@@ -193,8 +193,8 @@ std::vector<PassageNode> without_short_loops(const std::vector<PassageNode>& nod
       std::vector<int> shortest;
       int lowest = -1;
       for (const int a : kept) {
-        std::vector<int> way = graph.highest_way(a, b, nodes[static_cast<std::size_t>(u)].band);
-        if (graph.lowest_band(way) > lowest) lowest = graph.lowest_band(way), shortest = std::move(way);
+        std::vector<int> path = graph.highest_path(a, b, nodes[static_cast<std::size_t>(u)].band);
+        if (graph.lowest_band(path) > lowest) lowest = graph.lowest_band(path), shortest = std::move(path);
       }
       if (!shortest.empty() && nodes[static_cast<std::size_t>(u)].band - lowest < least)
         graph.fold(shortest);
@@ -212,8 +212,8 @@ std::vector<PassageNode> without_short_ends(const std::vector<PassageNode>& node
     std::vector<int> shortest;
     for (int i = 0; i < static_cast<int>(kept.size()); ++i) {
       if (gone[static_cast<std::size_t>(i)] || degree(kept[static_cast<std::size_t>(i)]) != 1) continue;
-      std::vector<int> way = dead_end(kept, i);
-      if (!way.empty() && (shortest.empty() || way.size() < shortest.size())) shortest = std::move(way);
+      std::vector<int> path = dead_end(kept, i);
+      if (!path.empty() && (shortest.empty() || path.size() < shortest.size())) shortest = std::move(path);
     }
     if (shortest.empty() || static_cast<int>(shortest.size()) >= least) break;
     for (const int i : shortest) {

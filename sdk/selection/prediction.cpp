@@ -10,7 +10,7 @@
 namespace karst::selection {
 namespace {
 
-constexpr double kLeastShare = 0.25;  // of the weight that a contestant must have flown in
+constexpr double kMinFraction = 0.25;  // of the weight that a contestant must have flown in
 const std::array kBandwidths{0.5, 0.7, 1.0, 1.4, 2.0, 3.0, std::numeric_limits<double>::infinity()};
 
 double total_weight() {
@@ -65,7 +65,7 @@ double predict(const Values& v, const std::vector<double>& level, const std::vec
     if (const double x = v.at(k, c); !std::isnan(x))
       flown += weight[c], advantages += weight[c] * (x - level[c]);
   }
-  return all > 0 && flown >= kLeastShare * all ? levels / all + advantages / flown : kUnknown;
+  return all > 0 && flown >= kMinFraction * all ? levels / all + advantages / flown : kUnknown;
 }
 
 std::vector<double> kernel_weights(const std::vector<KnownCave>& caves, const CaveFigures& cave,

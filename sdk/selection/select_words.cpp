@@ -9,7 +9,7 @@
 namespace karst::selection {
 namespace {
 
-constexpr double kMostAlike = 1.5;  // times the weight each cave would have if all had the same
+constexpr double kMaxAlike = 1.5;  // times the weight each cave would have if all had the same
 
 std::string text(const char* format, auto... values) {
   std::array<char, 400> buffer;
@@ -66,7 +66,7 @@ std::string why_first(const Experience& e, const Selected& s, const SelectOption
   if (!std::isnan(first.low))
     out += text(", %.0f %% interval %.3g to %.3g", 100 * options.level, first.low, first.high);
   // A wide bandwidth weighs all nearly alike: that the nearest are like this cave then decides nothing.
-  const bool alike = s.near.front().weight < kMostAlike / static_cast<double>(e.caves.size());
+  const bool alike = s.near.front().weight < kMaxAlike / static_cast<double>(e.caves.size());
   out += std::isinf(s.bandwidth) || alike
              ? ") by all caves flown alike, for what these are like did not foretell which policy is best; "
                "nearest: "

@@ -47,11 +47,11 @@ std::string text(const char* format, auto... values) {
 /// One line that renews itself on a terminal, a line for each new step elsewhere.
 class Progress {
  public:
-  void operator()(const char* step, double share) {
+  void operator()(const char* step, double fraction) {
     const bool fresh = last_ != step;
     last_ = step;
     if (terminal_)
-      std::fprintf(stderr, "\r%-24s %3.0f %%", step, 100 * share);
+      std::fprintf(stderr, "\r%-24s %3.0f %%", step, 100 * fraction);
     else if (fresh)
       print_error("%s\n", step);
   }
@@ -109,8 +109,8 @@ void generate(const GenerateArguments& args) {
       throw InputError(path, "", "is there already; choose another --out, or give --force to overwrite it");
 
   Progress progress;
-  const cave::GeneratedCave cave =
-      cave::generate_cave(recipe, args.seed, [&](const char* step, double share) { progress(step, share); });
+  const cave::GeneratedCave cave = cave::generate_cave(
+      recipe, args.seed, [&](const char* step, double fraction) { progress(step, fraction); });
   cave::write_mesh(mesh_path, cave.mesh);
   write_info(info_path, stem.filename().string() + "." + args.format, cave, recipe, args);
   progress("measuring", 0.9);
@@ -118,12 +118,12 @@ void generate(const GenerateArguments& args) {
   progress.end();
 
   double length_m = 0;
-  for (const auto& way : cave.ways)
-    for (std::size_t i = 1; i < way.size(); ++i) length_m += (way[i] - way[i - 1]).norm();
+  for (const auto& points : cave.axes)
+    for (std::size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
   const selection::MeshFacts facts = selection::mesh_facts(cave.mesh);
   const Vec3 extent = facts.high - facts.low;
   print_out("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", info_path.c_str(),
-            cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.ways.size(), length_m);
+            cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.axes.size(), length_m);
   print_out("  %zu triangles; %zu fallen blocks, %zu speleothems\n", facts.triangles, cave.boulders,
             cave.speleothems);
   print_out("  on the map's grid: %.0f m3 to explore, %.0f m3 of it at least %.1f m from rock\n",

@@ -121,9 +121,9 @@ campaign::Keep keep_of(const std::string& text) {
 }
 
 /// Says so before it flies what no flight could show.
-void tell_too_few(const campaign::Plan& plan) {
+void print_too_few(const campaign::Plan& plan) {
   const std::size_t caves = plan.caves.size(), pairs = caves * plan.seeds.size(),
-                    least = campaign::least_pairs(plan.contestants.size(), campaign::VerdictOptions{}.alpha);
+                    least = campaign::min_pairs(plan.contestants.size(), campaign::VerdictOptions{}.alpha);
   if (pairs >= least) return;
   print_error(
       "karst: no difference can be shown by this campaign, whatever it finds: the test of %zu "
@@ -166,7 +166,7 @@ int compare(const CompareArguments& args) {
     CampaignProgress progress(args.quiet, args.jobs);
     bool told = false;
     options.progress = [&](const campaign::Plan& plan, const campaign::Progress& p) {
-      if (!std::exchange(told, true)) tell_too_few(plan);
+      if (!std::exchange(told, true)) print_too_few(plan);
       progress.show(plan, p);
     };
     done = campaign::run_campaign(c, options);

@@ -120,7 +120,7 @@ flight::Mission mission_of(const FlyArguments& args) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
-  flight::settle_policy(mission);
+  flight::choose_policy(mission);
   flight::check(mission.faults, mission.core.team.robots, mission.file);
   core::check(mission.core.team, mission.core.homing, mission.file);
   if (!mission.cave.empty()) flight::check_cave(mission.cave, mission.start);

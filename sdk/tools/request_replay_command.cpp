@@ -93,9 +93,9 @@ int replay(const ReplayArguments& args) {
     else
       print(log.request(), log.answer(), now);
   }
-  if (log.passed_over() > 0)
+  if (log.skipped_bytes() > 0)
     print_error("karst: %s: its last record is cut short, %llu bytes of it are passed over\n", file.c_str(),
-                static_cast<unsigned long long>(log.passed_over()));
+                static_cast<unsigned long long>(log.skipped_bytes()));
   if (args.json)
     print_json(ordered_json{{"schema", 1},
                             {"policy", policy->name()},

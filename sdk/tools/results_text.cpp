@@ -28,7 +28,7 @@ std::string number(double v) {
 }
 
 /// `means`: of each figure, each contestant's.
-void print_row(const CampaignResults& results, const campaign::Place& place,
+void print_row(const CampaignResults& results, const campaign::RankedContestant& place,
                const std::vector<std::vector<double>>& means) {
   int trials = 0, failed = 0;
   for (const campaign::TrialResult& t : results.trials)
@@ -72,7 +72,7 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   }
   print_out("%s: means over %s, of the flights that all have flown\n\n%s\n%s\n", results.name.c_str(),
             core::counted(results.caves.size(), "cave").c_str(), head.c_str(), rule.c_str());
-  for (const campaign::Place& place : verdicts.ranking) print_row(results, place, means);
+  for (const campaign::RankedContestant& place : verdicts.ranking) print_row(results, place, means);
   print_out("\n");
   for (const campaign::Comparison& c : verdicts.comparisons)
     if (c.metric == verdicts.metric) print_out("%s\n", c.sentence.c_str());

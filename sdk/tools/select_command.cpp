@@ -169,12 +169,13 @@ void leave_one_out(const SelectArguments& args) {
                             {"overall", e.contestants[c.overall].name},
                             {"overall_value", c.overall_value},
                             {"chance_value", c.chance_value}});
-    const auto shares = [&j](const char* name, const selection::LeaveOneOut::Shares& s) {
+    const auto fractions = [&j](const char* name, const selection::LeaveOneOut::Shares& s) {
       j[name] = {{"best", known(s.best)}, {"within_5_percent", known(s.within)}, {"lost", known(s.regret)}};
     };
-    shares("selected", l.selected), shares("overall_best", l.overall), shares("chance", l.chance);
-    shares("selected_answered", l.selected_answered), shares("overall_best_answered", l.overall_answered);
-    shares("chance_answered", l.chance_answered);
+    fractions("selected", l.selected), fractions("overall_best", l.overall), fractions("chance", l.chance);
+    fractions("selected_answered", l.selected_answered),
+        fractions("overall_best_answered", l.overall_answered);
+    fractions("chance_answered", l.chance_answered);
     print_json(j);
     return;
   }

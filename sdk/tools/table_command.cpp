@@ -83,9 +83,9 @@ std::string text_of(const std::optional<double>& number, const Column& column) {
 }
 
 /// The value that a share of the sorted values does not exceed (nearest rank); the least for 0.
-std::optional<double> quantile(const std::vector<double>& sorted, double share) {
+std::optional<double> quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::nullopt;
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
@@ -113,13 +113,13 @@ void print_spread(const std::vector<nlohmann::json>& runs) {
       if (const auto v = number_of(m, c)) values.push_back(*v);
     std::sort(values.begin(), values.end());
   }
-  for (const auto& [title, share] :
+  for (const auto& [title, fraction] :
        {std::pair{"least", 0.0}, std::pair{"5 %", 0.05}, std::pair{"median", 0.5}, std::pair{"95 %", 0.95},
         std::pair{"greatest", 1.0}}) {
     std::string line = std::string("| **") + title + "** | of " + std::to_string(runs.size()) + " | | " +
-                       (share == 0 ? counted : "") + " |";
+                       (fraction == 0 ? counted : "") + " |";
     for (std::size_t i = 0; i < kColumns.size(); ++i)
-      line += " " + text_of(quantile(sorted[i], share), kColumns[i]) + " |";
+      line += " " + text_of(quantile(sorted[i], fraction), kColumns[i]) + " |";
     print_out("%s\n", line.c_str());
   }
 }
@@ -138,10 +138,10 @@ void add_table_command(CLI::App& app) {
     print_out("%s\n%s\n", head.c_str(), rule.c_str());
     std::vector<std::string> problems;
     std::vector<nlohmann::json> all;
-    std::vector<std::string> passed_over;
+    std::vector<std::string> skipped;
     for (const std::string& run : *runs) {
       if (const std::string what = no_run(run); !what.empty()) {
-        passed_over.push_back(what);
+        skipped.push_back(what);
         continue;
       }
       std::string problem;
@@ -156,8 +156,8 @@ void add_table_command(CLI::App& app) {
     if (all.size() > 1) print_spread(all);
     std::fflush(stdout);
     for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
-    for (const std::string& p : passed_over) print_error("karst: passed over: %s\n", p.c_str());
-    if (!problems.empty() || passed_over.size() == runs->size()) throw CLI::RuntimeError(1);
+    for (const std::string& p : skipped) print_error("karst: passed over: %s\n", p.c_str());
+    if (!problems.empty() || skipped.size() == runs->size()) throw CLI::RuntimeError(1);
   });
 }
 

@@ -29,7 +29,7 @@ class ClearGrid {
   /// A way of at least `length_m` from the origin's cell: to the place farthest away, from there to the place
   /// that is farthest of those not yet near the way, and so on.
   std::vector<Vec3> tour(double length_m) {
-    std::vector<Vec3> way{origin_};
+    std::vector<Vec3> route{origin_};
     Key from{0, 0, 0};
     double length = 0;
     for (int leg = 0; length < length_m && leg < 30; ++leg) {
@@ -37,7 +37,7 @@ class ClearGrid {
       Key farthest = from;
       double most = 0;
       for (const auto& [k, node] : nodes_)
-        if (node.done && node.distance > most && !near(way, place(k), 15.0))
+        if (node.done && node.distance > most && !near(route, place(k), 15.0))
           most = node.distance, farthest = k;
       if (farthest == from) {  // everything was near the way already: back to the origin, or anywhere far
         for (const auto& [k, node] : nodes_)
@@ -47,10 +47,10 @@ class ClearGrid {
       std::vector<Vec3> back;
       for (Key k = farthest; k != from; k = nodes_[k].from) back.push_back(place(k));
       for (std::size_t i = 1; i < back.size(); ++i) length += (back[i] - back[i - 1]).norm();
-      way.insert(way.end(), back.rbegin(), back.rend());
+      route.insert(route.end(), back.rbegin(), back.rend());
       from = farthest;
     }
-    return way;
+    return route;
   }
 
  private:
@@ -64,8 +64,8 @@ class ClearGrid {
   Vec3 place(const Key& k) const {
     return origin_ + kStep * Vec3(std::get<0>(k), std::get<1>(k), std::get<2>(k));
   }
-  static bool near(const std::vector<Vec3>& way, const Vec3& p, double within) {
-    return std::any_of(way.begin(), way.end(), [&](const Vec3& w) { return (w - p).norm() < within; });
+  static bool near(const std::vector<Vec3>& route, const Vec3& p, double within) {
+    return std::any_of(route.begin(), route.end(), [&](const Vec3& w) { return (w - p).norm() < within; });
   }
   double clearance(const Key& k) {
     const auto [at, made] = clearances_.try_emplace(k, 0);
@@ -116,15 +116,15 @@ struct Flight {
   double length_m = 0;
 };
 
-inline std::vector<Vec3> resampled(const std::vector<Vec3>& way, double step) {
-  std::vector<Vec3> out{way.front()};
+inline std::vector<Vec3> resampled(const std::vector<Vec3>& route, double step) {
+  std::vector<Vec3> out{route.front()};
   double left = step;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    Vec3 a = way[i - 1];
-    double d = (way[i] - a).norm();
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    Vec3 a = route[i - 1];
+    double d = (route[i] - a).norm();
     while (d >= left) {
-      a += (way[i] - a) * (left / d);
-      out.push_back(a), d = (way[i] - a).norm(), left = step;
+      a += (route[i] - a) * (left / d);
+      out.push_back(a), d = (route[i] - a).norm(), left = step;
     }
     left -= d;
   }
@@ -137,9 +137,9 @@ inline double gently(double u) {
   return u * u * u * (10 + u * (6 * u - 15));
 }
 
-inline Flight fly_along(const std::vector<Vec3>& way, double heading_rad, double speed_mps, double still_s,
+inline Flight fly_along(const std::vector<Vec3>& route, double heading_rad, double speed_mps, double still_s,
                         const sim::ImuOptions& imu_options, std::uint64_t seed) {
-  std::vector<Vec3> points = resampled(way, speed_mps);
+  std::vector<Vec3> points = resampled(route, speed_mps);
   points.insert(points.begin(), 2, points.front());
   points.insert(points.end(), 3, points.back());
   const double flight_s = static_cast<double>(points.size() - 3);

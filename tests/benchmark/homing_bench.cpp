@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "core_stack/planning/path/planner.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
@@ -69,7 +69,7 @@ void run() {
   for (std::uint64_t i = 0; i < 8; ++i)
     lines.push_back(passage(map, lines[0][600 + 650 * i], i % 2 == 0 ? 1.4 : -1.4, 250, 10 + 5 * i, changes));
   Roadmap roadmap{options};
-  WayHome home;
+  PathHome home;
   const Vec3 start = lines[0][4];
   const double built_ms = cpu_ms([&] { roadmap.update(map, changes); });
   const double tree_ms = cpu_ms([&] { home.update(map, roadmap, start, options); });
@@ -89,12 +89,12 @@ void run() {
     double l = 0;
     length.ms.push_back(cpu_ms([&] { l = home.length_m(map, roadmap, p).value_or(-1); }));
     longest_m = std::max(longest_m, l);
-    Path way;
-    find.ms.push_back(cpu_ms([&] { way = home.find(map, roadmap, p); }));
+    Path path;
+    find.ms.push_back(cpu_ms([&] { path = home.find(map, roadmap, p); }));
     if (i >= 40) continue;
     Path found;
     search.ms.push_back(cpu_ms([&] { found = roadmap.find(map, p, start); }));
-    sum_m += way.length_m, sum_search_m += found.length_m;
+    sum_m += path.length_m, sum_search_m += found.length_m;
   }
   std::printf("from anywhere, up to %.0f m from home\n", longest_m);
   length.print("length of the way home");

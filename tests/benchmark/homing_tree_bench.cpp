@@ -5,7 +5,7 @@
 #include <map>
 #include <queue>
 
-#include "core_stack/homing/way_home/homing_tree.h"
+#include "core_stack/homing/path_home/homing_tree.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
 
@@ -55,7 +55,7 @@ struct FromScratch {
   void run() {
     using Entry = std::pair<double, std::uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    cost.assign(edges.size(), ShortestWays::unreachable);
+    cost.assign(edges.size(), ShortestPaths::unreachable);
     for (std::uint32_t i = 0; i < edges.size(); ++i)
       if (source[i]) cost[i] = 0, open.push({0, i});
     while (!open.empty()) {
@@ -71,7 +71,7 @@ struct FromScratch {
 void run() {
   const Passages cave(5);
   const FreeRay rays = [](const Vec3& a, const Vec3& b) { return Passages::free(a, b); };
-  HomingTree tree({.least_edge_m = 2.0}, kCruise);
+  HomingTree tree({.min_edge_m = 2.0}, kCruise);
   std::map<NodeId, std::uint32_t> index;
   FromScratch scratch;
   const auto mirror = [&](const TreeFacts& facts) {

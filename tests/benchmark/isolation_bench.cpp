@@ -54,7 +54,7 @@ core::Decision direct(const core::DecisionRequest& r) {
   return d;
 }
 
-struct Rounds {
+struct Cycles {
   core::bench::Times standing, moving;  // nothing changed in the map; ten scans between two requests
 };
 
@@ -82,7 +82,7 @@ int main() {
   std::printf("map of %.0f m^3, %zu known blocks; %zu clusters\n", gallery.map.free_volume_m3(),
               core::blocks_changed_after(gallery.map, 0).size(), clusters.size());
 
-  Rounds by_call, by_abi, by_child;
+  Cycles by_call, by_abi, by_child;
   core::bench::Times snapshot, whole_snapshot, restart;
   std::size_t changed = 0, bytes = 0, checksum = 0;
   const auto time = [&](core::bench::Times& times, auto&& ask) {
@@ -90,14 +90,14 @@ int main() {
     checksum += ask().goals.size();
     times.ms.push_back(elapsed_ms(begin));
   };
-  const auto ask_all = [&](core::bench::Times Rounds::*kind) {
+  const auto ask_all = [&](core::bench::Times Cycles::*kind) {
     ++request.sequence;
     time(by_call.*kind, [&] { return direct(request); });
     time(by_abi.*kind, [&] { return in_process->decide(request); });
     time(by_child.*kind, [&] { return in_child->decide(request); });
   };
   time(restart, [&] { return in_child->decide(request); });  // the whole map goes over
-  for (int i = 0; i < 1000; ++i) ask_all(&Rounds::standing);
+  for (int i = 0; i < 1000; ++i) ask_all(&Cycles::standing);
   constexpr int kMoves = 30;
   for (int i = 0; i < kMoves; ++i) {
     const std::uint64_t before = gallery.map.revision();
@@ -107,7 +107,7 @@ int main() {
     snapshot.ms.push_back(elapsed_ms(begin));
     bytes += flat.size();
     changed += core::blocks_changed_after(gallery.map, before).size();
-    ask_all(&Rounds::moving);
+    ask_all(&Cycles::moving);
   }
   for (int i = 0; i < 20; ++i) {
     const auto begin = Clock::now();

@@ -23,13 +23,13 @@ bool clouds = false;
 MapRegistrationOptions options;
 
 /// x below which a share of the rock lies.
-double quantile_x(const VoxelMap& map, double share) {
+double quantile_x(const VoxelMap& map, double fraction) {
   std::vector<double> x;
   map.for_each_known([&](const CellKey& k, Cell c, float) {
     if (c == Cell::occupied) x.push_back(map.center_of(k).x());
   });
   std::sort(x.begin(), x.end());
-  return x[std::min(x.size() - 1, static_cast<std::size_t>(share * static_cast<double>(x.size())))];
+  return x[std::min(x.size() - 1, static_cast<std::size_t>(fraction * static_cast<double>(x.size())))];
 }
 
 /// The part of a map with x in [low, high], moved.

@@ -176,12 +176,12 @@ void roadmap_updates() {
   // The cave is drawn along its line: equal shares of its changes are what scans at 2 m/s and 10 Hz would
   // bring.
   const auto scans = static_cast<std::size_t>(190 / 0.2);
-  const std::size_t share = changes.size() / scans;
-  std::printf("\nroadmap, %.0f m^3, %zu changes a scan\n", map.free_volume_m3(), share);
+  const std::size_t fraction = changes.size() / scans;
+  std::printf("\nroadmap, %.0f m^3, %zu changes a scan\n", map.free_volume_m3(), fraction);
   Roadmap roadmap{PlanningOptions{}};
   Times update, query;
-  for (std::size_t i = 0; i + share <= changes.size(); i += share)
-    update.ms.push_back(cpu_ms([&] { roadmap.update(map, std::span(changes).subspan(i, share)); }));
+  for (std::size_t i = 0; i + fraction <= changes.size(); i += fraction)
+    update.ms.push_back(cpu_ms([&] { roadmap.update(map, std::span(changes).subspan(i, fraction)); }));
   std::vector<Vec3> goals;
   for (std::size_t i = 0; i < 100; ++i) goals.push_back(cave.line[cave.line.size() * i / 100]);
   std::size_t reached = 0;

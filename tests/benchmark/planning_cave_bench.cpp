@@ -63,12 +63,12 @@ double shortest_m(const World& w, const Pair& pair, const std::vector<std::vecto
   PlanningOptions optimal;
   optimal.heuristic_weight = 1.0;
   optimal.max_expansions = 100000000;
-  std::vector<std::vector<Vec3>> ways = others;
-  ways.push_back(plan_on_grid(w.cave.map, pair.from, pair.to, optimal).points);
+  std::vector<std::vector<Vec3>> paths = others;
+  paths.push_back(plan_on_grid(w.cave.map, pair.from, pair.to, optimal).points);
   double best = std::numeric_limits<double>::infinity();
-  for (const std::vector<Vec3>& way : ways)
-    if (way.size() >= 2)
-      best = std::min(best, path_length_m(bench::taut_string(w.free, optimal.clearance_m, way, 6000)));
+  for (const std::vector<Vec3>& points : paths)
+    if (points.size() >= 2)
+      best = std::min(best, path_length_m(bench::taut_string(w.free, optimal.clearance_m, points, 6000)));
   return best;
 }
 
@@ -81,7 +81,7 @@ double mean_clearance_m(const World& w, const std::vector<Vec3>& points) {
   }
   return sum / length;
 }
-double least_clearance_m(const World& w, const Path& path) {
+double min_clearance_m(const World& w, const Path& path) {
   double least = 2;
   for (std::size_t i = path.escape_points; i < path.points.size(); ++i)
     least = std::min(least, w.free.nearest(path.points[i], 2.0).distance_m);
@@ -110,7 +110,7 @@ void row(const World& w, const std::vector<Pair>& pairs, const std::vector<doubl
     }
     raw_ratio.ms.push_back(raw.length_m / best_m[i]);
     ratio.ms.push_back(path.length_m / best_m[i]);
-    clearance += mean_clearance_m(w, path.points), least = std::min(least, least_clearance_m(w, path));
+    clearance += mean_clearance_m(w, path.points), least = std::min(least, min_clearance_m(w, path));
   }
   if (ratio.ms.empty()) {
     std::printf("  %-22s none of %zu found\n", name, pairs.size());
@@ -148,12 +148,12 @@ void table(const World& w, double length_m, int count, std::uint64_t seed, bool 
   double mean_m = 0;
   for (const Pair& p : pairs) {
     PlanningOptions o;
-    std::vector<std::vector<Vec3>> ways{plan(w.cave.map, w.roadmap, p.from, p.to, o).points};
+    std::vector<std::vector<Vec3>> paths{plan(w.cave.map, w.roadmap, p.from, p.to, o).points};
     if (std::getenv("KARST_BENCH_LONG")) {
       o.planner = "bit_star", o.planner_iterations = 30000;
-      ways.push_back(search_with_ompl(w.cave.map, w.roadmap, p.from, p.to, o, o.clearance_m).points);
+      paths.push_back(search_with_ompl(w.cave.map, w.roadmap, p.from, p.to, o, o.clearance_m).points);
     }
-    best_m.push_back(shortest_m(w, p, ways));
+    best_m.push_back(shortest_m(w, p, paths));
     mean_m += best_m.back() / count;
   }
   std::printf("\n%zu paths of %.0f m (%.1f m the shortest known, mean), seed %llu\n", pairs.size(), length_m,

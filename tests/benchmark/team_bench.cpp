@@ -76,7 +76,7 @@ void landing() {
     update.ms.push_back(cpu_ms([&] { homing.update(map, roadmap, p, news, {}); }));
     nearest.ms.push_back(
         cpu_ms([&] { homing.spot_from(map, roadmap, p, std::numeric_limits<double>::infinity()); }));
-    gets_by.ms.push_back(cpu_ms([&] { others_get_by(map, p, 0.3 + kAsMapped_m, 0.55, 3); }));
+    gets_by.ms.push_back(cpu_ms([&] { keeps_passage_open(map, p, 0.3 + kAsMapped_m, 0.55, 3); }));
   }
   std::printf("landing places along 200 m of a winding passage, each second\n");
   update.print("what is new is taken in, ground judged, links asked for");

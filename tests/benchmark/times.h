@@ -17,9 +17,9 @@ double cpu_ms(F&& f) {
 
 struct Times {
   std::vector<double> ms;
-  double at(double share) {
+  double at(double fraction) {
     std::sort(ms.begin(), ms.end());
-    return ms[std::min(ms.size() - 1, static_cast<std::size_t>(share * static_cast<double>(ms.size())))];
+    return ms[std::min(ms.size() - 1, static_cast<std::size_t>(fraction * static_cast<double>(ms.size())))];
   }
   double mean() const {
     double sum = 0;

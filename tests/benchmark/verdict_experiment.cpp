@@ -107,8 +107,8 @@ CampaignResults draw(const Figures& flown, int seeds, double factor, int metric,
 struct Share {
   double different = 0, right = 0;  // of the campaigns: any difference called; the true one called
 };
-Share share_shown(const Figures& flown, int seeds, double factor, int metric, double horizon_s,
-                  int campaigns) {
+Share fraction_shown(const Figures& flown, int seeds, double factor, int metric, double horizon_s,
+                     int campaigns) {
   const bool more =
       evaluation::metric_definitions()[static_cast<std::size_t>(metric)].better == evaluation::Better::more;
   campaign::VerdictOptions options{
@@ -116,16 +116,16 @@ Share share_shown(const Figures& flown, int seeds, double factor, int metric, do
   options.simulations = 0;
   options.resamples = 1000;
   core::Random random(17);
-  Share share;
+  Share fraction;
   for (int i = 0; i < campaigns; ++i) {
     options.seed = random.bits();
     const auto verdicts =
         campaign::compare_all(draw(flown, seeds, factor, metric, horizon_s, random), options);
     const auto shown = verdicts.find(0, 1, metric)->shown;
-    share.different += shown != campaign::Shown::no_difference;
-    share.right += shown == ((factor > 1) == more ? campaign::Shown::b_better : campaign::Shown::a_better);
+    fraction.different += shown != campaign::Shown::no_difference;
+    fraction.right += shown == ((factor > 1) == more ? campaign::Shown::b_better : campaign::Shown::a_better);
   }
-  return {share.different / campaigns, share.right / campaigns};
+  return {fraction.different / campaigns, fraction.right / campaigns};
 }
 
 void experiment(const Figures& flown, int metric, double horizon_s) {
@@ -134,13 +134,13 @@ void experiment(const Figures& flown, int metric, double horizon_s) {
   std::printf("  %zu flights in %zu caves\n", flights, flown.size());
   for (const int seeds : {3, 5, 10}) {
     std::printf("  %2d seeds: against itself different in %5.1f %% of 1000 campaigns", seeds,
-                100 * share_shown(flown, seeds, 1, metric, horizon_s, 1000).different);
+                100 * fraction_shown(flown, seeds, 1, metric, horizon_s, 1000).different);
     std::printf("; crippled by 20 %%: shown in %5.1f %% of 200\n",
-                100 * share_shown(flown, seeds, 0.8, metric, horizon_s, 200).right);
+                100 * fraction_shown(flown, seeds, 0.8, metric, horizon_s, 200).right);
   }
   int needed = 0;
   for (int seeds = 2; seeds <= 400 && needed == 0; seeds += 1 + seeds / 10) {
-    const double right = share_shown(flown, seeds, 1.05, metric, horizon_s, 400).right;
+    const double right = fraction_shown(flown, seeds, 1.05, metric, horizon_s, 400).right;
     if (right >= 0.8)
       needed = seeds, std::printf("  5 %% planted: %d seeds a cave show it in %.1f %% of 400 campaigns\n",
                                   seeds, 100 * right);

@@ -85,12 +85,12 @@ TEST_P(DustFilter, RemovesWhatIsFalseAndKeepsWhatIsTrueOnFlightsItWasNotTunedOn)
                         lonely =
                             test::judge(scans, [](core::LidarScan&s) { core::filter_low_intensity(s, {}); });
     std::printf("%-24s %13.2f | %8.1f %10.2f | %8.1f %10.2f | %8.1f %10.2f\n", c.air.name.c_str(),
-                100 * paper.dust_share, 100 * paper.removed, 100 * paper.rock_lost, 100 * wide.removed,
+                100 * paper.dust_fraction, 100 * paper.removed, 100 * paper.rock_lost, 100 * wide.removed,
                 100 * wide.rock_lost, 100 * lonely.removed, 100 * lonely.rock_lost);
     EXPECT_GE(lonely.removed, c.removed) << c.air.name;
     EXPECT_LE(lonely.rock_lost, c.lost) << c.air.name;
     if (c.air.name == "clear air") continue;
-    EXPECT_GT(paper.dust_share, 0.001) << c.air.name << " holds no dust to speak of";
+    EXPECT_GT(paper.dust_fraction, 0.001) << c.air.name << " holds no dust to speak of";
     EXPECT_GE(lonely.removed, paper.removed - 0.01) << c.air.name;
   }
 }

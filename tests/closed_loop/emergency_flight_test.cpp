@@ -89,7 +89,7 @@ class FaultyExecutive final : public Executive {
   void every(std::string name, TimeNs first, TimeNs period, std::function<void()> step) override {
     Executive::every(name, first, period, [this, name, step = std::move(step)] {
       const Starved starved(starves(name));
-      strike(name);
+      inject_fault(name);
       step();
     });
   }
@@ -99,7 +99,7 @@ class FaultyExecutive final : public Executive {
         name, lane, budget,
         [this, name, work = std::move(work)] {
           const Starved starved(starves(name));
-          strike(name);
+          inject_fault(name);
           if (name != fault_.left_out) work();
         },
         [this, name, publish = std::move(publish)] {
@@ -115,7 +115,7 @@ class FaultyExecutive final : public Executive {
   std::optional<TimeNs> struck_at() const { return struck_at_; }
 
  private:
-  void strike(const std::string& name) {
+  void inject_fault(const std::string& name) {
     if (name != fault_.name || (struck_at_ && !fault_.for_good) || (!struck_at_ && !due_())) return;
     if (!struck_at_) struck_at_ = now();
     throw std::runtime_error(kText);
@@ -216,13 +216,13 @@ struct Ended {
 /// from ahead at half a metre a second.
 class Oncoming {
  public:
-  Oncoming(Executive& executive, const sim::SimulatedVehicle& vehicle, Teammate& told, Teammate says)
+  Oncoming(Executive& executive, const sim::SimulatedVehicle& vehicle, TeamNode& told, TeamNode says)
       : vehicle_(vehicle), told_(told), says_(std::move(says)) {
-    executive.every("oncoming", 0, kSecond / 10, [this, &executive] { speak(executive.now()); });
+    executive.every("oncoming", 0, kSecond / 10, [this, &executive] { transmit(executive.now()); });
   }
 
  private:
-  void speak(TimeNs now) {
+  void transmit(TimeNs now) {
     constexpr double kSpeed_mps = 0.5, kFrom_m = 6;
     if (now < 8 * kSecond) return;
     if (!ahead_) ahead_ = vehicle_.velocity_mps().normalized();
@@ -231,12 +231,12 @@ class Oncoming {
     state.position = vehicle_.position() + std::max(1.0, kFrom_m - kSpeed_mps * (seconds(now) - 8)) * *ahead_;
     state.velocity_mps = -kSpeed_mps * *ahead_;
     says_.set_state(state);
-    for (const Bytes& frame : says_.speak(now)) told_.hear(frame, now);
+    for (const Bytes& frame : says_.transmit(now)) told_.receive(frame, now);
   }
 
   const sim::SimulatedVehicle& vehicle_;
-  Teammate& told_;
-  Teammate says_;
+  TeamNode& told_;
+  TeamNode says_;
   std::optional<Vec3> ahead_;
 };
 
@@ -276,15 +276,15 @@ Ended fly(const Fault& fault, int seed, const Scene& scene = {}) {
   const VehicleDescription described = vehicle.description();
   const Vec3& base = described.T_world_start.position;
   const auto teammate = [&](RobotId id) {
-    return Teammate(id, options.team, options.homing, base, setup.seed, key_of_seed(setup.seed));
+    return TeamNode(id, options.team, options.homing, base, setup.seed, key_of_seed(setup.seed));
   };
-  Teammate mate = teammate(2);
+  TeamNode node = teammate(2);
   RelayHoming homing(2, options.team, options.homing, base, options.planning, options.motion,
                      described.radius_m);
-  Teamwork team(mate, homing, options.team, 0);
+  Teamwork team(node, homing, options.team, 0);
   MissionControl control(options, vehicle, executive, policy, recorder, scene.in_team ? &team : nullptr);
   std::optional<Oncoming> other;
-  if (scene.meets_another) other.emplace(executive, simulated, mate, teammate(1));
+  if (scene.meets_another) other.emplace(executive, simulated, node, teammate(1));
   out.result = control.run([&](const MissionStatus&) { return !(fault.stopped && due()); });
   if (executive.struck_at()) out.struck_at_s = seconds(*executive.struck_at());
   out.ended_at_s = seconds(executive.now());

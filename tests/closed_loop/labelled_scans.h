@@ -80,10 +80,10 @@ inline std::vector<LabelledScan> scans_in(const BadAir& bad, const cave::Cave& c
 }
 
 struct FilterFigures {
-  double dust_share = 0;  // of all returns
-  double removed = 0;     // share of the dust's returns, removed
-  double rock_lost = 0;   // share of the rock's returns, removed
-  double dust_left = 0;   // false returns a scan left
+  double dust_fraction = 0;  // of all returns
+  double removed = 0;        // share of the dust's returns, removed
+  double rock_lost = 0;      // share of the rock's returns, removed
+  double dust_left = 0;      // false returns a scan left
 };
 
 /// `filter` takes a LidarScan& and makes NaN of what it drops.

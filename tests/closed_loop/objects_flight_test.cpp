@@ -45,7 +45,7 @@ json fly(const std::string& cave, const std::filesystem::path& run, const std::s
 }
 
 /// What must hold wherever vehicles came home: what was seen is known, where it is.
-void expect_known(const json& m, int placed, double most_off_m) {
+void expect_known(const json& m, int placed, double max_off_m) {
   ASSERT_TRUE(m.is_object());
   EXPECT_EQ(m["objects_placed"], placed);
   EXPECT_GE(m["objects_seen"], placed / 2) << "or the flight says little";
@@ -53,7 +53,7 @@ void expect_known(const json& m, int placed, double most_off_m) {
   EXPECT_EQ(m["objects_reported"], m["objects_found"]);
   EXPECT_EQ(m["objects_false"], 0);
   EXPECT_GT(m["object_report_time_s"], 0);
-  EXPECT_LT(m["object_error_m"], most_off_m);
+  EXPECT_LT(m["object_error_m"], max_off_m);
 }
 
 TEST(Objects, AreFoundAndReportedAtTheStart) {

@@ -2,7 +2,7 @@
 // is put right first, or the fuzzer would never get past it: so it speaks as one who holds the mission's key.
 #include <cstdlib>
 
-#include "core_stack/homing/way_home/homing_tree.h"
+#include "core_stack/homing/path_home/homing_tree.h"
 #include "core_stack/team/communication/gossip.h"
 #include "tests/unit/team/communication/test_radio.h"
 

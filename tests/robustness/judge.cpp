@@ -34,7 +34,7 @@ std::vector<Span> times_in_air(const RunRecord& run) {
   return spans;
 }
 
-Vec3 place_of(const nlohmann::json& e) {
+Vec3 position_of(const nlohmann::json& e) {
   return {event_number(e, "x").value_or(0), event_number(e, "y").value_or(0),
           event_number(e, "z").value_or(0)};
 }
@@ -59,7 +59,7 @@ Outcome outcome_of(const RunRecord& run) {
   const auto* last = last_of(run, {"take-off", "landed", "battery"});
   if (!last) return Outcome::home;  // it never left the ground
   if (event_text(*last, "event") != "landed") return Outcome::in_the_air;
-  const Vec3 off = place_of(*last) - place_of(*start);
+  const Vec3 off = position_of(*last) - position_of(*start);
   return off.head<2>().norm() <= kAtHome_m && std::abs(off.z()) <= kAtHome_m ? Outcome::home
                                                                              : Outcome::elsewhere;
 }

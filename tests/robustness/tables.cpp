@@ -18,9 +18,9 @@ std::vector<double> sorted_clearances(const std::vector<TrialLine>& trials) {
 }
 
 /// The least value that at least this share of the sorted values does not exceed.
-double quantile(const std::vector<double>& sorted, double share) {
+double quantile(const std::vector<double>& sorted, double fraction) {
   const auto n = static_cast<double>(sorted.size());
-  const auto rank = static_cast<std::size_t>(std::max(0.0, std::ceil(share * n) - 1));
+  const auto rank = static_cast<std::size_t>(std::max(0.0, std::ceil(fraction * n) - 1));
   return sorted[std::min(rank, sorted.size() - 1)];
 }
 
@@ -77,9 +77,9 @@ std::string summary(const std::vector<TrialLine>& trials) {
 }
 
 std::string clearance_plot(const std::vector<TrialLine>& trials) {
-  constexpr double kWidth = 640, kHeight = 320, kLeft = 50, kBottom = 280, kTop = 20, kMost_m = 1.5;
-  const auto x = [](double clearance_m) { return kLeft + (kWidth - kLeft - 20) * clearance_m / kMost_m; };
-  const auto y = [](double share) { return kBottom - (kBottom - kTop) * share; };
+  constexpr double kWidth = 640, kHeight = 320, kLeft = 50, kBottom = 280, kTop = 20, kMax_m = 1.5;
+  const auto x = [](double clearance_m) { return kLeft + (kWidth - kLeft - 20) * clearance_m / kMax_m; };
+  const auto y = [](double fraction) { return kBottom - (kBottom - kTop) * fraction; };
   char text[300];
   const auto print = [&text](const char* format, auto... values) {
     std::snprintf(text, sizeof text, format, values...);
@@ -102,7 +102,7 @@ std::string clearance_plot(const std::vector<TrialLine>& trials) {
   const auto c = sorted_clearances(trials);
   std::string path;
   for (std::size_t i = 0; i < c.size(); ++i) {
-    const double at = x(std::clamp(c[i], 0.0, kMost_m)), n = static_cast<double>(c.size());
+    const double at = x(std::clamp(c[i], 0.0, kMax_m)), n = static_cast<double>(c.size());
     if (i == 0) path = print("M%.1f %.1f", at, y(0));
     path += print("H%.1fV%.1f", at, y(static_cast<double>(i + 1) / n));
   }

@@ -74,9 +74,9 @@ class Pieces {
 Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radius_m,
                     const GroundOptions& options) {
   Ground out;
-  const double res = map.resolution_m(), reach_m = vehicle_radius_m + options.margin_m;
+  const double res = map.resolution_m(), radius_m = vehicle_radius_m + options.margin_m;
   const CellKey top = map.key_of(place);
-  const int most = static_cast<int>(std::ceil(options.most_drop_m / res));
+  const int most = static_cast<int>(std::ceil(options.max_drop_m / res));
   const auto floor = first_below(map, top, most);
   if (!floor || floor->z == top.z) return out;
   if (map.at(*floor) != Cell::occupied) {
@@ -86,15 +86,15 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
   out.ground = {place.x(), place.y(), map.center_of(*floor).z() + res / 2};
   // Ground may fall away by the whole of the step and slope; farther down there is none.
   const double fall_m =
-      options.most_step_m + 2 * reach_m * std::tan(options.most_slope_deg * std::numbers::pi / 180);
+      options.max_step_m + 2 * radius_m * std::tan(options.max_slope_deg * std::numbers::pi / 180);
   const int lowest = top.z - floor->z + static_cast<int>(std::ceil(fall_m / res));
-  const int reach = static_cast<int>(std::ceil(reach_m / res));
+  const int radius = static_cast<int>(std::ceil(radius_m / res));
   std::vector<Vec3> ground;
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx) {
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) {
       const CellKey column = top + CellKey{dx, dy, 0};
       const Vec3 c = map.center_of(column);
-      if ((c - place).head<2>().norm() > reach_m) continue;
+      if ((c - place).head<2>().norm() > radius_m) continue;
       const auto k = first_below(map, column, lowest);
       if (!k) return out.verdict = GroundVerdict::rough, out;
       if (map.at(*k) == Cell::unknown) return out.verdict = GroundVerdict::unknown, out;
@@ -102,19 +102,19 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
       ground.push_back({c.x(), c.y(), map.center_of(*k).z() + res / 2});
     }
   fit_plane(ground, out);
-  out.verdict = out.slope_rad > options.most_slope_deg * std::numbers::pi / 180 ? GroundVerdict::steep
-                : out.step_m > options.most_step_m                              ? GroundVerdict::rough
-                                                                                : GroundVerdict::good;
+  out.verdict = out.slope_rad > options.max_slope_deg * std::numbers::pi / 180 ? GroundVerdict::steep
+                : out.step_m > options.max_step_m                              ? GroundVerdict::rough
+                                                                               : GroundVerdict::good;
   return out;
 }
 
-bool others_get_by(const VoxelMap& map, const Vec3& standing, double vehicle_radius_m, double clearance_m,
-                   double reach_m) {
+bool keeps_passage_open(const VoxelMap& map, const Vec3& standing, double vehicle_radius_m,
+                        double clearance_m, double radius_m) {
   const double res = map.resolution_m();
   FreeTiles free(res);
   const ClearanceRule rule(clearance_m / res);
-  free.load_near(map, standing, reach_m + (rule.reach() + 1) * res);
-  const int half = static_cast<int>(std::ceil(reach_m / res)), edge = 2 * half + 1;
+  free.load_near(map, standing, radius_m + (rule.extent() + 1) * res);
+  const int half = static_cast<int>(std::ceil(radius_m / res)), edge = 2 * half + 1;
   const CellKey low = map.key_of(standing) + CellKey{-half, -half, -half};
   std::vector<char> before(static_cast<std::size_t>(edge * edge * edge));
   const TileKey first = tile_of(low), last = tile_of(low + CellKey{edge - 1, edge - 1, edge - 1});

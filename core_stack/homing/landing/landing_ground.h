@@ -7,10 +7,10 @@
 namespace karst::core {
 
 struct GroundOptions {
-  double margin_m = 0.2;       // beyond the vehicle's radius: ground looked at, and air above it
-  double most_slope_deg = 15;  // of the plane that fits the ground best
-  double most_step_m = 0.25;   // between the highest and the lowest of the ground above that plane
-  double most_drop_m = 2.0;    // from the place down to the ground
+  double margin_m = 0.2;      // beyond the vehicle's radius: ground looked at, and air above it
+  double max_slope_deg = 15;  // of the plane that fits the ground best
+  double max_step_m = 0.25;   // between the highest and the lowest of the ground above that plane
+  double max_drop_m = 2.0;    // from the place down to the ground
 };
 
 enum class GroundVerdict { good, no_floor, unknown, obstructed, steep, rough };
@@ -35,7 +35,7 @@ constexpr double kAsMapped_m = 0.3;
 /// around a landed one whose centre is at `standing`: what was connected within the cube by places clear by
 /// `clearance_m`, from one of its faces to another, still is when places within `clearance_m` of the landed
 /// vehicle's sphere are taken out.
-bool others_get_by(const VoxelMap& map, const Vec3& standing, double vehicle_radius_m, double clearance_m,
-                   double reach_m);
+bool keeps_passage_open(const VoxelMap& map, const Vec3& standing, double vehicle_radius_m,
+                        double clearance_m, double radius_m);
 
 }  // namespace karst::core

@@ -52,13 +52,13 @@ std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b)
 /// The box in which a cluster's free and unknown cells are counted.
 struct CellBox {
   CellKey low, high;
-  CellBox(const VoxelMap& map, const FrontierCluster& c, double reach_m)
-      : low(map.key_of(c.centroid - Vec3::Constant(reach_m))),
-        high(map.key_of(c.centroid + Vec3::Constant(reach_m))) {}
+  CellBox(const VoxelMap& map, const FrontierCluster& c, double radius_m)
+      : low(map.key_of(c.centroid - Vec3::Constant(radius_m))),
+        high(map.key_of(c.centroid + Vec3::Constant(radius_m))) {}
 };
 
-void count_around(const VoxelMap& map, double reach_m, FrontierCluster& c) {
-  const CellBox box(map, c, reach_m);
+void count_around(const VoxelMap& map, double radius_m, FrontierCluster& c) {
+  const CellBox box(map, c, radius_m);
   const CellCounts counts = VoxelReader(map).count(box.low, box.high);
   c.free_cells = counts.free;
   c.unknown_cells = counts.unknown;
@@ -253,13 +253,13 @@ void Frontiers::add_clusters_near(const VoxelMap& map, std::span<const CellChang
     if (const CellKey t = tile_of(c.key); changed.empty() || changed.back() != t) changed.push_back(t);
   sort_unique(changed);
   // A cluster's box reaches from its centroid, which lies in its tile, over so many tiles.
-  const auto reach =
+  const auto radius =
       static_cast<std::int32_t>(std::ceil(options_.neighbourhood_m / (edge_ * map.resolution_m())));
   std::vector<PackedCell> near;
   for (const CellKey& t : changed)
-    for (std::int32_t dx = -reach; dx <= reach; ++dx)
-      for (std::int32_t dy = -reach; dy <= reach; ++dy)
-        for (std::int32_t dz = -reach; dz <= reach; ++dz) near.push_back(pack(t + CellKey{dx, dy, dz}));
+    for (std::int32_t dx = -radius; dx <= radius; ++dx)
+      for (std::int32_t dy = -radius; dy <= radius; ++dy)
+        for (std::int32_t dz = -radius; dz <= radius; ++dz) near.push_back(pack(t + CellKey{dx, dy, dz}));
   sort_unique(near);
   for (const PackedCell t : near) {
     const auto tile = tiles_.find(unpack(t));

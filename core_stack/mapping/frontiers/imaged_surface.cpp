@@ -42,22 +42,22 @@ class View {
         half_height_(std::tan(model.camera.vertical_fov_rad / 2)),
         nearest_(static_cast<double>(model.camera.min_range_m) / resolution_m_),
         furthest_(static_cast<double>(model.camera.max_range_m) / resolution_m_),
-        least_facing_(std::cos(model.max_incidence_rad)) {}
+        min_facing_(std::cos(model.max_incidence_rad)) {}
 
   VoxelReader& cells() { return cells_; }
 
   /// A quick look before a cell's normal is worked out: may any of its faces be in the picture?
   bool may_see(const CellKey& k) const {
     const Vec3 p = to_camera_ * (center(k) - eye_);
-    const double reach = furthest_ + 1, margin = 1 + half_width_ + half_height_;
-    return p.squaredNorm() <= reach * reach && p.x() > -1 &&
+    const double radius = furthest_ + 1, margin = 1 + half_width_ + half_height_;
+    return p.squaredNorm() <= radius * radius && p.x() > -1 &&
            std::abs(p.y()) <= p.x() * half_width_ + margin &&
            std::abs(p.z()) <= p.x() * half_height_ + margin;
   }
 
   bool sees(const SurfaceCell& cell) {
     const Vec3 back = eye_ - center(cell.key);
-    const bool slanted = cell.normal.squaredNorm() > 0 && cell.normal.dot(back) < least_facing_ * back.norm();
+    const bool slanted = cell.normal.squaredNorm() > 0 && cell.normal.dot(back) < min_facing_ * back.norm();
     if (slanted) return false;
     for (const CellKey& face : kFaces) {
       const Vec3 out(face.x, face.y, face.z);
@@ -86,7 +86,7 @@ class View {
   double resolution_m_;
   Vec3 eye_;
   Eigen::Matrix3d to_camera_;
-  double half_width_, half_height_, nearest_, furthest_, least_facing_;
+  double half_width_, half_height_, nearest_, furthest_, min_facing_;
 };
 
 bool usable(const VoxelMap& map, const Pose& T_world_camera) {
@@ -98,8 +98,8 @@ bool usable(const VoxelMap& map, const Pose& T_world_camera) {
 /// The cells of the box around all that a camera there could see.
 std::array<CellKey, 2> box_around(const VoxelMap& map, const Pose& T_world_camera,
                                   const RgbCameraModel& model) {
-  const Vec3 reach = Vec3::Constant(static_cast<double>(model.camera.max_range_m) + map.resolution_m());
-  return {map.key_of(T_world_camera.position - reach), map.key_of(T_world_camera.position + reach)};
+  const Vec3 radius = Vec3::Constant(static_cast<double>(model.camera.max_range_m) + map.resolution_m());
+  return {map.key_of(T_world_camera.position - radius), map.key_of(T_world_camera.position + radius)};
 }
 
 }  // namespace

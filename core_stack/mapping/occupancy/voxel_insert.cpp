@@ -144,8 +144,8 @@ std::vector<CellChange> VoxelMap::declare_free(const Vec3& center, double radius
   Storage& s = *storage_;
   ++s.revision;
   std::vector<CellChange> changes;
-  const Vec3 reach = Vec3::Constant(radius_m);
-  const CellKey low = key_of(center - reach), high = key_of(center + reach);
+  const Vec3 radius = Vec3::Constant(radius_m);
+  const CellKey low = key_of(center - radius), high = key_of(center + radius);
   if (!in_world(low) || !in_world(high)) return changes;
   for (std::int32_t x = low.x; x <= high.x; ++x)
     for (std::int32_t y = low.y; y <= high.y; ++y)

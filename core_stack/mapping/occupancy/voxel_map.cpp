@@ -82,9 +82,9 @@ double VoxelMap::free_volume_m3() const {
 std::uint64_t VoxelMap::revision() const { return storage_->revision; }
 
 std::uint64_t VoxelMap::revision_near(const Vec3& center, double radius_m) const {
-  const Vec3 reach = Vec3::Constant(radius_m);
+  const Vec3 radius = Vec3::Constant(radius_m);
   std::uint64_t latest = 0;
-  for (const Block* b : blocks_in_box(storage_->blocks, key_of(center - reach), key_of(center + reach))) {
+  for (const Block* b : blocks_in_box(storage_->blocks, key_of(center - radius), key_of(center + radius))) {
     const CellKey c = corner_of(b->id);
     const Vec3 low = Vec3(c.x, c.y, c.z) * storage_->resolution_m;
     const Vec3 high = low + Vec3::Constant(kBlockEdge * storage_->resolution_m);

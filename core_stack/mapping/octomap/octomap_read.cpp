@@ -15,7 +15,7 @@ namespace karst::core {
 namespace {
 
 constexpr std::int32_t kWorldEdge = 65536;  // cells; OctoMap's trees have 16 levels
-constexpr double kMostCells = 3e8;          // 600 MB; more is a damaged file
+constexpr double kMaxCells = 3e8;           // 600 MB; more is a damaged file
 
 struct Header {
   bool binary = false;  // a .bt file: classes only
@@ -95,7 +95,7 @@ class Reader {
 
   void leaf(const CellKey& low, std::int32_t edge, float log_odds) {
     cells_ += std::pow(static_cast<double>(edge), 3);
-    if (cells_ > kMostCells) fail(place(), "says more than 300 million cells are known");
+    if (cells_ > kMaxCells) fail(place(), "says more than 300 million cells are known");
     leaves_.push_back({low, edge, log_odds});
   }
 

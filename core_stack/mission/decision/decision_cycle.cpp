@@ -12,7 +12,7 @@ double elapsed_ms(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
 }
 
-bool any_in_reach(const std::vector<FrontierOffer>& offers) {
+bool any_reachable(const std::vector<FrontierOffer>& offers) {
   return std::any_of(offers.begin(), offers.end(),
                      [](const FrontierOffer& o) { return std::isfinite(o.path_length_m); });
 }
@@ -30,7 +30,7 @@ std::vector<FrontierCluster> without_cells(const std::vector<FrontierOffer>& off
 
 /// None of the goals could be accepted. The fallback proposes every frontier in reach: if it has tried all of
 /// them, nothing is left to do.
-void give_up(const GoalChoice& tried, bool all_too_far, DecidedBy by, RoundResult& result) {
+void give_up(const GoalChoice& tried, bool all_too_far, DecidedBy by, CycleResult& result) {
   const bool last_resort = by == DecidedBy::fallback && !tried.more_to_try;
   result.outcome = last_resort ? Outcome::explored : Outcome::hold;
   result.out_of_time = last_resort && all_too_far;
@@ -52,8 +52,8 @@ DecisionCycle::DecisionCycle(const CoreOptions& options, const VehicleDescriptio
       selection_(options, vehicle, world, home, ledger_),
       policy_(policy) {}
 
-RoundResult DecisionCycle::decide(const RoundInput& input, const Claims& claims) {
-  RoundResult result;
+CycleResult DecisionCycle::decide(const CycleInput& input, const Claims& claims) {
+  CycleResult result;
   const auto begin = std::chrono::steady_clock::now();
   tell(input.events, input.now);
   // What was looked at and opens again right there is mostly noise at a wall: it may wait.
@@ -66,12 +66,12 @@ RoundResult DecisionCycle::decide(const RoundInput& input, const Claims& claims)
   const ClearanceRoadmap& first = world_->roadmap_at(input.from);
   const DecidedBy by = policy_.begin_cycle(input.now);
   const Question question = ask_about(first, input, claims);
-  const bool in_reach = any_in_reach(question.request.frontiers);
+  const bool in_range = any_reachable(question.request.frontiers);
   const bool may_be_narrow =
       first.passages() == Passages::usual && world_->allows_narrow() && !input.appending;
-  if (!may_be_narrow || in_reach) answer(question, by, result);
+  if (!may_be_narrow || in_range) answer(question, by, result);
   const bool nothing_left = result.outcome == Outcome::explored && !result.out_of_time;
-  if (may_be_narrow && (!in_reach || nothing_left))
+  if (may_be_narrow && (!in_range || nothing_left))
     answer(ask_about(*world_->narrow(), input, claims), by, result);
 
   if (result.goal || !input.standing) {
@@ -98,7 +98,7 @@ bool DecisionCycle::cluster_alive(std::uint32_t id) const {
   return it != clusters.end() && chosen_.worth_flying_to(it->second);
 }
 
-DecisionCycle::Question DecisionCycle::ask_about(const ClearanceRoadmap& roadmap, const RoundInput& input,
+DecisionCycle::Question DecisionCycle::ask_about(const ClearanceRoadmap& roadmap, const CycleInput& input,
                                                  const Claims& claims) {
   Question question{request(roadmap, input), {&roadmap, &input, {}}};
   OfferQuery query{&roadmap, input.from, input.now, std::nullopt, claims};
@@ -109,7 +109,7 @@ DecisionCycle::Question DecisionCycle::ask_about(const ClearanceRoadmap& roadmap
   return question;
 }
 
-DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const RoundInput& input) {
+DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const CycleInput& input) {
   DecisionRequest request;
   request.stamp = input.now;
   request.deadline = input.deadline;
@@ -118,7 +118,7 @@ DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const Ro
   request.direction_of_flight = input.direction;
   request.T_world_start = vehicle_.T_world_start;
   request.seconds_before_homing =
-      home_->slack_s(input.seconds_left, home_->estimate(input.from, input.way_come_m));
+      home_->slack_s(input.seconds_left, home_->estimate(input.from, input.flown_length_m));
   request.max_speed_mps = max_speed_mps_;
   request.clearance_m = roadmap.clearance_m();
   request.vehicle_radius_m = vehicle_.radius_m;
@@ -127,14 +127,14 @@ DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const Ro
   request.map = &world_->map();
   request.roadmap = &roadmap.roadmap();
   request.imaged = world_->imaged();
-  for (const HeardMate& mate : input.mates)
-    request.teammates.push_back(home_->seen_by_policy(mate, input.now));
+  for (const TeammateState& teammate : input.teammates)
+    request.teammates.push_back(home_->seen_by_policy(teammate, input.now));
   request.vehicle = &vehicle_;
   return request;
 }
 
 /// Of two questions in a cycle the last answer counts.
-void DecisionCycle::answer(const Question& question, DecidedBy by, RoundResult& result) {
+void DecisionCycle::answer(const Question& question, DecidedBy by, CycleResult& result) {
   const auto begin = std::chrono::steady_clock::now();
   PolicyAnswer answer = policy_.ask(question.request, by);
   result.decide_ms += elapsed_ms(begin);
@@ -150,8 +150,8 @@ void DecisionCycle::answer(const Question& question, DecidedBy by, RoundResult& 
   result.frontiers = without_cells(question.request.frontiers);
 }
 
-void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer, RoundResult& result) {
-  const RoundInput& input = *question.goals.input;
+void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer, CycleResult& result) {
+  const CycleInput& input = *question.goals.input;
   const GoalChoice own = selection_.choose(question.goals, answer.decision.goals);
   GoalChoice last = own;
   DecidedBy by = answer.by;
@@ -176,7 +176,7 @@ void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer,
 }
 
 /// A frontier chosen again counts as it was when it was chosen first.
-void DecisionCycle::note_chosen(const Goal& goal, const RoundInput& input) {
+void DecisionCycle::note_chosen(const Goal& goal, const CycleInput& input) {
   if (input.last_goal && input.last_goal->frontier_id == goal.frontier_id) return;
   const auto& clusters = world_->frontiers().clusters();
   if (const auto it = clusters.find(goal.frontier_id); it != clusters.end()) chosen_.note(it->second);

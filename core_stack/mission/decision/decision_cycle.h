@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core_stack/mission/decision/chosen_frontiers.h"
+#include "core_stack/mission/decision/cycle.h"
 #include "core_stack/mission/decision/frontier_offers.h"
 #include "core_stack/mission/decision/goal_selection.h"
-#include "core_stack/mission/decision/round.h"
 #include "core_stack/mission/policy/policy_with_fallback.h"
 
 namespace karst::core {
@@ -21,7 +21,7 @@ class DecisionCycle {
   DecisionCycle(const DecisionCycle&) = delete;  // its parts refer to each other
   DecisionCycle& operator=(const DecisionCycle&) = delete;
 
-  RoundResult decide(const RoundInput& input, const Claims& claims);
+  CycleResult decide(const CycleInput& input, const Claims& claims);
   /// Tells the policy what happened to its goals. The places of those abandoned are closed.
   void tell(const std::vector<PolicyEvent>& events, TimeNs now);
   /// True if the cluster is still open enough to be worth flying to.
@@ -34,11 +34,11 @@ class DecisionCycle {
     GoalQuery goals;
   };
 
-  Question ask_about(const ClearanceRoadmap& roadmap, const RoundInput& input, const Claims& claims);
-  DecisionRequest request(const ClearanceRoadmap& roadmap, const RoundInput& input);
-  void answer(const Question& question, DecidedBy by, RoundResult& result);
-  void choose(const Question& question, const PolicyAnswer& answer, RoundResult& result);
-  void note_chosen(const Goal& goal, const RoundInput& input);
+  Question ask_about(const ClearanceRoadmap& roadmap, const CycleInput& input, const Claims& claims);
+  DecisionRequest request(const ClearanceRoadmap& roadmap, const CycleInput& input);
+  void answer(const Question& question, DecidedBy by, CycleResult& result);
+  void choose(const Question& question, const PolicyAnswer& answer, CycleResult& result);
+  void note_chosen(const Goal& goal, const CycleInput& input);
 
   VehicleDescription vehicle_;
   double max_speed_mps_;

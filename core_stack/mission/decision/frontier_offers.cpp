@@ -9,7 +9,7 @@ namespace karst::core {
 namespace {
 
 /// Viewpoints are looked for as far as this from a cluster; a viewpoint holds until the map changes there.
-constexpr double kViewpointReach_m = 4.6;
+constexpr double kViewpointRange_m = 4.6;
 
 /// When no other place is left, the pauses of failed places are waived: those of the first three attempts.
 constexpr TimeNs kPauseWaived = 40 * kSecond;
@@ -74,7 +74,7 @@ std::vector<FrontierOffer> FrontierOffers::find_by(const ClosureRules& rules, co
 FrontierOffers::KnownViewpoint FrontierOffers::viewpoint_for(const FrontierCluster& cluster,
                                                              const ClearanceRoadmap& roadmap) {
   const VoxelMap& map = world_->map();
-  KnownViewpoint entry{map.revision_near(cluster.centroid, kViewpointReach_m), cluster.cells, std::nullopt};
+  KnownViewpoint entry{map.revision_near(cluster.centroid, kViewpointRange_m), cluster.cells, std::nullopt};
   const Viewpoints& before = known(roadmap.passages());
   if (const auto it = before.find(cluster.id);
       it != before.end() && it->second.revision == entry.revision && it->second.cells == entry.cells) {

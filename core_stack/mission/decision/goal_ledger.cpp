@@ -8,7 +8,7 @@ namespace {
 constexpr double kSamePlace_m = 0.8;
 constexpr double kMapRadius_m = 1.5;
 constexpr double kFirstPause_s = 10.0;
-constexpr int kMostDoublings = 6;
+constexpr int kMaxDoublings = 6;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ void GoalLedger::close(const VoxelMap& map, const Vec3& place, TimeNs now, const
   const auto same = [&](const Entry& e) { return (e.place - place).norm() < kSamePlace_m; };
   auto entry = std::find_if(entries_.begin(), entries_.end(), same);
   if (entry == entries_.end()) entry = entries_.insert(entry, Entry{place, 0, 0, 0, ""});
-  const double pause_s = kFirstPause_s * (1 << std::min(entry->attempts, kMostDoublings));
+  const double pause_s = kFirstPause_s * (1 << std::min(entry->attempts, kMaxDoublings));
   entry->revision = map.revision_near(place, kMapRadius_m);
   entry->closed_until = now + from_seconds(pause_s);
   entry->attempts += 1;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "core_stack/planning/search/grid_planner.h"
 
 namespace karst::core {
@@ -15,11 +15,11 @@ constexpr int kMaxPlans = 5;
 
 /// A path flown at next to no speed would hold the vehicle until the battery calls it home.
 std::optional<std::string> too_slow(const Goal& goal, const MotionLimits& limits) {
-  const double least_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
-  if (goal.max_speed_mps == 0 || goal.max_speed_mps >= least_mps) return std::nullopt;
+  const double min_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
+  if (goal.max_speed_mps == 0 || goal.max_speed_mps >= min_mps) return std::nullopt;
   char text[96];
   std::snprintf(text, sizeof text, "its speed limit of %.2g m/s is below motion.min_speed, %g m/s",
-                goal.max_speed_mps, least_mps);
+                goal.max_speed_mps, min_mps);
   return text;
 }
 
@@ -34,7 +34,7 @@ GoalSelection::GoalSelection(const CoreOptions& options, const VehicleDescriptio
       ledger_(&ledger) {}
 
 GoalChoice GoalSelection::choose(const GoalQuery& query, const std::vector<Goal>& goals) {
-  const RoundInput& input = *query.input;
+  const CycleInput& input = *query.input;
   GoalChoice choice;
   int plans = 0, closed = 0;
   std::size_t too_far = 0;
@@ -50,7 +50,7 @@ GoalChoice GoalSelection::choose(const GoalQuery& query, const std::vector<Goal>
     ++plans;
     const Path path = world_->plan(*query.roadmap, input.from, goal.position);
     const std::optional<std::string> failure =
-        path.found() ? blind_climb(view_, input.way_come, path.points) : "no path: " + path.reason;
+        path.found() ? blind_climb(view_, input.flown_path, path.points) : "no path: " + path.reason;
     if (failure) {
       ledger_->close(world_->map(), goal.position, input.now, *failure);
       ++closed;
@@ -82,8 +82,8 @@ std::optional<std::string> GoalSelection::objection(const GoalQuery& query, cons
   return std::nullopt;
 }
 
-bool GoalSelection::affordable(const RoundInput& input, const Goal& goal, const Path& path) const {
-  const HomeEstimate home = home_->estimate(goal.position, input.way_come_m + path.length_m);
+bool GoalSelection::affordable(const CycleInput& input, const Goal& goal, const Path& path) const {
+  const HomeEstimate home = home_->estimate(goal.position, input.flown_length_m + path.length_m);
   const double there_s = flight_time_s(path.length_m, motion_);
   return home_->slack_s(input.seconds_left - there_s, home) > 0;
 }

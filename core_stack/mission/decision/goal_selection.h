@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/mission/decision/cycle.h"
 #include "core_stack/mission/decision/goal_ledger.h"
-#include "core_stack/mission/decision/round.h"
 #include "core_stack/mission/decision/visibility.h"
 #include "core_stack/mission/world_model/home_estimator.h"
 #include "core_stack/mission/world_model/world_model.h"
@@ -18,7 +18,7 @@ namespace karst::core {
 
 struct GoalQuery {
   const ClearanceRoadmap* roadmap = nullptr;  // up to date; paths are planned on it
-  const RoundInput* input = nullptr;
+  const CycleInput* input = nullptr;
   ClosureRules rules;  // by which the goals were offered
 };
 
@@ -40,7 +40,7 @@ class GoalSelection {
 
  private:
   std::optional<std::string> objection(const GoalQuery& query, const Goal& goal) const;
-  bool affordable(const RoundInput& input, const Goal& goal, const Path& path) const;
+  bool affordable(const CycleInput& input, const Goal& goal, const Path& path) const;
 
   MotionLimits motion_;
   SteepestView view_;

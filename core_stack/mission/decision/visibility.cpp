@@ -45,10 +45,10 @@ Levels levels_beside(const Vec3& p, const std::vector<Vec3>& flown, std::size_t 
 }
 
 /// How many of the points lie more than kClimbWindow_m of way before the last one.
-std::size_t before_the_window(const std::vector<Vec3>& way) {
+std::size_t before_the_window(const std::vector<Vec3>& flight_path) {
   double run_m = 0;
-  std::size_t i = way.size();
-  while (i > 1 && run_m <= kClimbWindow_m) --i, run_m += (way[i] - way[i - 1]).norm();
+  std::size_t i = flight_path.size();
+  while (i > 1 && run_m <= kClimbWindow_m) --i, run_m += (flight_path[i] - flight_path[i - 1]).norm();
   return run_m > kClimbWindow_m ? i : 0;
 }
 
@@ -70,34 +70,35 @@ SteepestView steepest_view(const VehicleDescription& vehicle) {
   return view;
 }
 
-std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& way_come,
+std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& flown_path,
                                        const std::vector<Vec3>& path) {
-  const std::vector<Vec3> before = thinned(way_come), after = thinned(path);
-  std::vector<Vec3> way = before;
-  way.insert(way.end(), after.begin(), after.end());
+  const std::vector<Vec3> before = thinned(flown_path), after = thinned(path);
+  std::vector<Vec3> flight_path = before;
+  flight_path.insert(flight_path.end(), after.begin(), after.end());
   const std::size_t long_ago = before_the_window(before);
-  for (std::size_t to = before.size(); to < way.size(); ++to) {
+  for (std::size_t to = before.size(); to < flight_path.size(); ++to) {
     std::optional<Levels> flown;  // beside there, when it is first asked for
-    Vec3 low = way[to], high = way[to];
+    Vec3 low = flight_path[to], high = flight_path[to];
     double run_m = 0;
     for (std::size_t from = to; from-- > 0;) {
-      run_m += (way[from + 1] - way[from]).norm();
+      run_m += (flight_path[from + 1] - flight_path[from]).norm();
       if (run_m > kClimbWindow_m) break;
-      low = low.cwiseMin(way[from]), high = high.cwiseMax(way[from]);
-      const double rise_m = way[to].z() - way[from].z(), extent_m = (high - low).head<2>().norm();
+      low = low.cwiseMin(flight_path[from]), high = high.cwiseMax(flight_path[from]);
+      const double rise_m = flight_path[to].z() - flight_path[from].z(),
+                   extent_m = (high - low).head<2>().norm();
       const double limit_rad = rise_m > 0 ? view.up_rad : view.down_rad;
       if (std::abs(rise_m) <= kLedge_m || limit_rad > 89.5 * kDegree_rad ||
           extent_m * std::tan(limit_rad) >= std::abs(rise_m))
         continue;
-      if (!flown) flown = levels_beside(way[to], before, long_ago);
-      if (rise_m > 0 ? flown->high_m >= way[to].z() : flown->low_m <= way[to].z()) continue;
+      if (!flown) flown = levels_beside(flight_path[to], before, long_ago);
+      if (rise_m > 0 ? flown->high_m >= flight_path[to].z() : flown->low_m <= flight_path[to].z()) continue;
       char text[200];
       std::snprintf(
           text, sizeof text,
           "it leads %.1f m %s within %.1f m at (%.1f, %.1f, %.1f), and no sensor of the vehicle looks "
           "steeper %s than %.0f deg",
-          std::abs(rise_m), rise_m > 0 ? "up" : "down", extent_m, way[to].x(), way[to].y(), way[to].z(),
-          rise_m > 0 ? "up" : "down", limit_rad / kDegree_rad);
+          std::abs(rise_m), rise_m > 0 ? "up" : "down", extent_m, flight_path[to].x(), flight_path[to].y(),
+          flight_path[to].z(), rise_m > 0 ? "up" : "down", limit_rad / kDegree_rad);
       return text;
     }
   }

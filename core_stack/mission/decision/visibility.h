@@ -17,12 +17,12 @@ struct SteepestView {
 };
 SteepestView steepest_view(const VehicleDescription& vehicle);
 
-/// Why `path`, flown after `way_come` (all of it), is steeper than the vehicle sees; nothing if it is not. It
-/// is where within kClimbWindow_m of way it climbs or sinks by h, more than 3 m, and all of that stretch lies
-/// within less than h / tan(steepest view) horizontally; unless the vehicle was as high (as low) within 4 m
-/// of there already, or half a metre less if that was more than kClimbWindow_m of way ago: the way back is
-/// free.
-std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& way_come,
+/// Why `path`, flown after `flown_path` (all of it), is steeper than the vehicle sees; nothing if it is not.
+/// It is where within kClimbWindow_m of way it climbs or sinks by h, more than 3 m, and all of that stretch
+/// lies within less than h / tan(steepest view) horizontally; unless the vehicle was as high (as low) within
+/// 4 m of there already, or half a metre less if that was more than kClimbWindow_m of way ago: the way back
+/// is free.
+std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& flown_path,
                                        const std::vector<Vec3>& path);
 
 }  // namespace karst::core

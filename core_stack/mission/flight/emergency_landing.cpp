@@ -8,7 +8,7 @@ namespace {
 
 constexpr TimeNs kPeriod = 50 * kMillisecond;
 /// Nothing follows that could be missed for a delay: it may use nearly all the acceleration there is.
-constexpr double kShare = 0.95;
+constexpr double kFraction = 0.95;
 /// Between brake and descent: the vehicle itself is a little behind its reference.
 constexpr TimeNs kStandStill = 500 * kMillisecond;
 constexpr double kDeepest_m = 1000;
@@ -20,34 +20,33 @@ constexpr std::size_t kMoveSamples = 256;
 }  // namespace
 
 EmergencyLanding::EmergencyLanding(const MotionLimits& limits, double descent_mps)
-    : deceleration_mps2_(kShare * limits.max_acceleration_mps2),
-      most_samples_(2 + static_cast<std::size_t>(
-                            std::ceil(limits.max_speed_mps / (deceleration_mps2_ * seconds(kPeriod))))) {
+    : deceleration_mps2_(kFraction * limits.max_acceleration_mps2),
+      max_samples_(2 + static_cast<std::size_t>(
+                           std::ceil(limits.max_speed_mps / (deceleration_mps2_ * seconds(kPeriod))))) {
   brake_.period = kPeriod;
-  brake_.samples.reserve(most_samples_);
+  brake_.samples.reserve(max_samples_);
   move_.samples.resize(kMoveSamples);
   descent_.period = from_seconds(kDeepest_m / descent_mps);
   descent_.samples.resize(2);
 }
 
-void EmergencyLanding::prepare(std::span<const Vec3> way) noexcept {
+void EmergencyLanding::prepare(std::span<const Vec3> path) noexcept {
   if (begun_) return;
-  places_ = way.size() <= kMostPlaces ? way.size() : 0;
-  std::copy_n(way.begin(), places_, way_.begin());
+  places_ = path.size() <= kMaxPlaces ? path.size() : 0;
+  std::copy_n(path.begin(), places_, path_.begin());
 }
 
 /// The trajectory x is flown on ever more slowly: after t of the T = v / a that the brake takes, as far as it
 /// would have come in t - t^2 / (2 T). So it stays on its path, which is known to be free, and from the speed
 /// v comes to rest with the deceleration a.
-void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double longest_way_m) noexcept {
+void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double max_path_m) noexcept {
   if (begun_) return;
   begun_ = true;
   const double speed_mps =
       (under_way.at(now + kPeriod).position - under_way.at(now).position).norm() / seconds(kPeriod);
   const double wanted = std::ceil(speed_mps / (deceleration_mps2_ * seconds(kPeriod)));
   const double needed = std::isfinite(wanted) ? wanted : 0;
-  const auto steps =
-      static_cast<std::size_t>(std::clamp(needed, 0.0, static_cast<double>(most_samples_ - 1)));
+  const auto steps = static_cast<std::size_t>(std::clamp(needed, 0.0, static_cast<double>(max_samples_ - 1)));
   const double end_s = static_cast<double>(steps) * seconds(kPeriod);
   brake_.start = now;
   for (std::size_t i = 0; i <= steps; ++i) {
@@ -55,7 +54,7 @@ void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double lon
     const double flown_s = steps > 0 ? t - t * t / (2 * end_s) : 0;
     brake_.samples.push_back(under_way.at(now + from_seconds(flown_s)));
   }
-  plan_move(brake_.end() + kStandStill, longest_way_m);
+  plan_move(brake_.end() + kStandStill, max_path_m);
   descent_.start = move_.period > 0 ? move_.end() + kStandStill : move_.start;
   descent_.samples[0] = descent_.samples[1] = move_.samples.back();
   descent_.samples[1].position.z() -= kDeepest_m;
@@ -63,30 +62,30 @@ void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double lon
 
 /// Along the places from rest to rest: of the way L, the share 3 u^2 - 2 u^3 after the share u of the time
 /// 1.5 L / v, so never faster than v. Without a way it rests where it stopped.
-void EmergencyLanding::plan_move(TimeNs start, double longest_way_m) noexcept {
+void EmergencyLanding::plan_move(TimeNs start, double max_path_m) noexcept {
   const TrajectorySample stop = brake_.samples.back();
   move_.start = start;
   move_.period = 0;
   std::fill(move_.samples.begin(), move_.samples.end(), stop);
-  if (places_ < 2 || (way_[0] - stop.position).norm() > kStale_m) return;
-  way_[0] = stop.position;
+  if (places_ < 2 || (path_[0] - stop.position).norm() > kStale_m) return;
+  path_[0] = stop.position;
   double length_m = 0;
-  for (std::size_t i = 1; i < places_; ++i) length_m += (way_[i] - way_[i - 1]).norm();
-  if (length_m > longest_way_m) return;
+  for (std::size_t i = 1; i < places_; ++i) length_m += (path_[i] - path_[i - 1]).norm();
+  if (length_m > max_path_m) return;
   move_.period = from_seconds(1.5 * length_m / kMove_mps / static_cast<double>(kMoveSamples - 1));
   std::size_t leg = 1;
   double before_m = 0;  // the legs already passed
   for (std::size_t k = 0; k < kMoveSamples; ++k) {
     const double u = static_cast<double>(k) / static_cast<double>(kMoveSamples - 1);
-    const double way_m = length_m * u * u * (3 - 2 * u);
-    double leg_m = (way_[leg] - way_[leg - 1]).norm();
-    while (leg + 1 < places_ && before_m + leg_m < way_m) {
+    const double path_m = length_m * u * u * (3 - 2 * u);
+    double leg_m = (path_[leg] - path_[leg - 1]).norm();
+    while (leg + 1 < places_ && before_m + leg_m < path_m) {
       before_m += leg_m;
       ++leg;
-      leg_m = (way_[leg] - way_[leg - 1]).norm();
+      leg_m = (path_[leg] - path_[leg - 1]).norm();
     }
-    const double share = leg_m > 0 ? std::min(1.0, (way_m - before_m) / leg_m) : 1;
-    move_.samples[k].position = way_[leg - 1] + share * (way_[leg] - way_[leg - 1]);
+    const double fraction = leg_m > 0 ? std::min(1.0, (path_m - before_m) / leg_m) : 1;
+    move_.samples[k].position = path_[leg - 1] + fraction * (path_[leg] - path_[leg - 1]);
   }
 }
 

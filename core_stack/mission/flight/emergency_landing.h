@@ -16,23 +16,23 @@ class EmergencyLanding {
   EmergencyLanding(const MotionLimits& limits, double descent_mps);
 
   /// The way to above such ground from where the vehicle would stop, as long as no other is known: no more of
-  /// it than kMostPlaces is kept, and nothing of an empty one. Without a way it comes down where it stops.
-  void prepare(std::span<const Vec3> way) noexcept;
-  /// From `now` on; later calls change nothing. A way longer than `longest_way_m` is not flown.
+  /// it than kMaxPlaces is kept, and nothing of an empty one. Without a way it comes down where it stops.
+  void prepare(std::span<const Vec3> path) noexcept;
+  /// From `now` on; later calls change nothing. A way longer than `max_path_m` is not flown.
   void begin(const Trajectory& under_way, TimeNs now,
-             double longest_way_m = std::numeric_limits<double>::infinity()) noexcept;
+             double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
   bool begun() const { return begun_; }
   /// What to follow at `now`, once it has begun.
   const Trajectory& trajectory(TimeNs now) const;
 
  private:
-  static constexpr std::size_t kMostPlaces = 64;
-  void plan_move(TimeNs start, double longest_way_m) noexcept;
+  static constexpr std::size_t kMaxPlaces = 64;
+  void plan_move(TimeNs start, double max_path_m) noexcept;
 
   double deceleration_mps2_;
-  std::size_t most_samples_;
+  std::size_t max_samples_;
   bool begun_ = false;
-  std::array<Vec3, kMostPlaces> way_{};
+  std::array<Vec3, kMaxPlaces> path_{};
   std::size_t places_ = 0;
   Trajectory brake_, move_, descent_;
 };

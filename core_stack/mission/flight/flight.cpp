@@ -10,12 +10,12 @@ constexpr double kOffGround_m = 0.15;
 constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: commands stand in until the next
 
 /// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
-constexpr double kBrakingShare = 0.8;
+constexpr double kBrakingFraction = 0.8;
 /// A brake is not followed by anything that could be missed for a delay: it may use nearly all there is.
-constexpr double kEmergencyShare = 0.95;
+constexpr double kEmergencyFraction = 0.95;
 
 /// Of the greatest rate of turning, while looking around: what is left makes up for getting up to it.
-constexpr double kTurningShare = 0.9;
+constexpr double kTurningFraction = 0.9;
 
 /// Trajectories keep below the tracker's limits. Were they sampled at the limits themselves, the virtual
 /// vehicle could never make up for a delay: it would fall ever further behind, and cut the corners.
@@ -42,7 +42,7 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps),
       mass_(vehicle.mass_kg),
       emergency_landing_(options.motion, options.mission.landing_speed_mps) {
-  emergency_.max_acceleration_mps2 = kEmergencyShare * options.motion.max_acceleration_mps2;
+  emergency_.max_acceleration_mps2 = kEmergencyFraction * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   trajectory_.samples = {{start.position, heading_of(start.orientation)}};
   tracker_.reset(0, start.position, heading_of(start.orientation));
@@ -86,7 +86,7 @@ void Flight::cap_speed(TimeNs now, double max_speed_mps) {
   if (max_speed_mps == speed_cap_mps_) return;
   speed_cap_mps_ = max_speed_mps;
   if (at_rest(now) || braking_) return;
-  const Onward left = until_end(now);
+  const CommittedSegment left = until_end(now);
   HeadingPlan heading = heading_;
   heading.start_heading_rad = left.heading_rad;
   follow(left.points, left.speed_mps, now, heading, path_speed_mps_, slow_);
@@ -123,7 +123,7 @@ void Flight::climb(TimeNs now, double height_m, double speed_mps) {
 void Flight::look_around(TimeNs now, double turn_rad) {
   const Vec3 here = reference().position;
   const double heading = reference().heading_rad;
-  const double rate = kTurningShare * limits_.max_heading_rate_radps;
+  const double rate = kTurningFraction * limits_.max_heading_rate_radps;
   Trajectory turn;
   turn.start = now;
   const int steps = static_cast<int>(std::ceil(turn_rad / (rate * seconds(turn.period))));
@@ -134,7 +134,7 @@ void Flight::look_around(TimeNs now, double turn_rad) {
 
 void Flight::brake(TimeNs now) {
   const double v = velocity_at(now).norm();
-  const Onward stop = onward(now, v * v / (2 * emergency_.max_acceleration_mps2));
+  const CommittedSegment stop = committed_segment(now, v * v / (2 * emergency_.max_acceleration_mps2));
   HeadingPlan keep;
   keep.along_path = false;
   keep.start_heading_rad = stop.heading_rad;
@@ -142,8 +142,8 @@ void Flight::brake(TimeNs now) {
   braking_ = true;
 }
 
-void Flight::land_now(TimeNs now, double longest_way_m) noexcept {
-  emergency_landing_.begin(trajectory_, now, longest_way_m);
+void Flight::land_now(TimeNs now, double max_path_m) noexcept {
+  emergency_landing_.begin(trajectory_, now, max_path_m);
 }
 
 void Flight::disarm() noexcept {
@@ -169,8 +169,8 @@ State Flight::expected(TimeNs t) const {
   return {t, sample.position, velocity_at(t), from_heading(sample.heading_rad), Vec3::Zero()};
 }
 
-Flight::Onward Flight::onward(TimeNs t, double length_m) const {
-  Onward out{
+Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) const {
+  CommittedSegment out{
       {trajectory_.at(t).position}, velocity_at(t).norm(), trajectory_.at(t).heading_rad, departure_at(t)};
   double length = 0;
   for (std::size_t i = 0; i < trajectory_.samples.size() && length < length_m; ++i) {
@@ -184,13 +184,13 @@ Flight::Onward Flight::onward(TimeNs t, double length_m) const {
   return out;
 }
 
-Flight::Onward Flight::until_stop(TimeNs t) const {
+Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
   const double v = velocity_at(t).norm();
-  return onward(t, v * v / (2 * kBrakingShare * limits_.max_acceleration_mps2));
+  return committed_segment(t, v * v / (2 * kBrakingFraction * limits_.max_acceleration_mps2));
 }
 
-Flight::Onward Flight::until_end(TimeNs t) const {
-  return onward(t, std::numeric_limits<double>::infinity());
+Flight::CommittedSegment Flight::until_end(TimeNs t) const {
+  return committed_segment(t, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace karst::core

@@ -51,24 +51,24 @@ class Flight {
   /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
   void brake(TimeNs now);
   /// The way to where it can come down, from where it would stop if it had to land now; for land_now().
-  void prepare_landing(std::span<const Vec3> way) noexcept { emergency_landing_.prepare(way); }
-  /// Brakes, flies that way unless it is longer than `longest_way_m`, and comes straight down, whatever else
+  void prepare_landing(std::span<const Vec3> path) noexcept { emergency_landing_.prepare(path); }
+  /// Brakes, flies that way unless it is longer than `max_path_m`, and comes straight down, whatever else
   /// it is told from now on. Needs no memory.
-  void land_now(TimeNs now, double longest_way_m = std::numeric_limits<double>::infinity()) noexcept;
+  void land_now(TimeNs now, double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
   /// Motors off, for good: on the ground.
   void disarm() noexcept;
 
   /// The trajectory's course from `t` on, for planning ahead.
-  struct Onward {
+  struct CommittedSegment {
     std::vector<Vec3> points;  // from the position at t to where it may turn off; at least one point
     double speed_mps = 0;      // at t
     double heading_rad = 0;    // at t
     Departure departure;       // at t: the velocity and acceleration, for polynomials
   };
   /// Up to where the vehicle could have stopped.
-  Onward until_stop(TimeNs t) const;
+  CommittedSegment until_stop(TimeNs t) const;
   /// Up to the trajectory's end.
-  Onward until_end(TimeNs t) const;
+  CommittedSegment until_end(TimeNs t) const;
 
   bool airborne() const { return motors_ == Motors::armed; }
   bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
@@ -83,7 +83,7 @@ class Flight {
   double mass_kg() const { return mass_.mass_kg(); }
 
  private:
-  Onward onward(TimeNs t, double length_m) const;
+  CommittedSegment committed_segment(TimeNs t, double length_m) const;
   Vec3 velocity_at(TimeNs t) const;
   ImuSample expected_imu(TimeNs now) const;
   Departure departure_at(TimeNs t) const;

@@ -20,8 +20,11 @@ std::string why_sampled(const std::optional<PolynomialTrajectory>& polynomial) {
 
 }  // namespace
 
-RouteStart PathExecution::start(Flight::Onward lead, TimeNs at) const {
-  return {.at = at, .lead = std::move(lead), .limits = flight_.limits(0), .narrow_places = narrow_places_};
+RouteStart PathExecution::start(Flight::CommittedSegment committed, TimeNs at) const {
+  return {.at = at,
+          .committed = std::move(committed),
+          .limits = flight_.limits(0),
+          .narrow_places = narrow_places_};
 }
 
 RouteStart PathExecution::start_at_stop(TimeNs at) const { return start(flight_.until_stop(at), at); }
@@ -85,7 +88,7 @@ void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now
   const std::string reason = kPathForbidden;
   // What a decision and its plan take in flight, and then the stretch to stop in.
   const TimeNs decided = now + kMappingBudget + from_seconds(options_.mission.decision_budget_s);
-  const Flight::Onward until_decided = flight_.until_end(now), stop = flight_.until_stop(decided);
+  const Flight::CommittedSegment until_decided = flight_.until_end(now), stop = flight_.until_stop(decided);
   const double needed_m =
       seconds(decided - now) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
   const bool takes_off = phases.in(Phase::takeoff);

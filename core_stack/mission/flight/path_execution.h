@@ -66,7 +66,7 @@ class PathExecution {
   bool has_braked() const { return braked_at_.has_value(); }
 
  private:
-  RouteStart start(Flight::Onward lead, TimeNs at) const;
+  RouteStart start(Flight::CommittedSegment committed, TimeNs at) const;
 
   const CoreOptions& options_;
   Flight& flight_;

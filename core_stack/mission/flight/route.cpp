@@ -24,25 +24,27 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
     return segment_clear(map, a, b, usual_m) ||
            (near_narrow_place(path.narrow_places, a, b) && segment_clear(map, a, b, path.clear_by_m));
   };
-  const Flight::Onward& lead = start.lead;
-  out.points = join_paths(lead.points, path.points, start.most_cut_m, clear);
+  const Flight::CommittedSegment& committed = start.committed;
+  out.points = join_paths(committed.points, path.points, start.max_cut_m, clear);
   out.heading.along_path = !vehicle.lidar;
-  out.heading.start_heading_rad = lead.heading_rad;
+  out.heading.start_heading_rad = committed.heading_rad;
   if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
   // A vehicle that sees all around sees what the passed goal is for anyway.
   if (out.heading.along_path && start.passed && std::isfinite(start.passed->heading_rad))
     out.heading.passing = {start.passed->position, start.passed->heading_rad};
-  out.start_speed_mps = lead.speed_mps;
+  out.start_speed_mps = committed.speed_mps;
   out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options.motion.max_speed_mps;
   // The lead may still lead through the narrow places of the path before.
-  out.slow = {path.narrow_places, kNarrowReach_m, options.safety.slow_share * options.motion.max_speed_mps};
+  out.slow = {path.narrow_places, kNarrowRadius_m,
+              options.safety.slow_fraction * options.motion.max_speed_mps};
   for (const Vec3& place : start.narrow_places)
-    if (near_line(lead.points, place)) out.slow.places.push_back(place);
+    if (near_line(committed.points, place)) out.slow.places.push_back(place);
   if (options.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0 &&
       out.slow.places.empty()) {
     MotionLimits limits = start.limits;
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
-    out.polynomial = polynomial_trajectory(out.points, lead.departure, start.at, limits, out.heading, clear);
+    out.polynomial =
+        polynomial_trajectory(out.points, committed.departure, start.at, limits, out.heading, clear);
   }
   out.limits = slowed(start.limits, out.max_speed_mps);
   if (!out.polynomial || !out.polynomial->fell_back.empty())

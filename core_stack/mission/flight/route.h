@@ -11,12 +11,12 @@ namespace karst::core {
 
 /// Where and how a new path joins the trajectory under way. Taken on the loop's thread, used on the map lane.
 struct RouteStart {
-  TimeNs at = 0;                    // it will be followed from then on
-  Flight::Onward lead;              // the stretch the vehicle is committed to; the path begins at its end
-  MotionLimits limits;              // as they are now
-  std::vector<Vec3> narrow_places;  // that the lead may pass
-  double most_cut_m = 0.3;          // how far the joint may pass by the lead's end
-  std::optional<Goal> passed = {};  // the goal that the lead ends at, if any
+  TimeNs at = 0;                       // it will be followed from then on
+  Flight::CommittedSegment committed;  // the stretch the vehicle is committed to; the path begins at its end
+  MotionLimits limits;                 // as they are now
+  std::vector<Vec3> narrow_places;     // that the lead may pass
+  double max_cut_m = 0.3;              // how far the joint may pass by the lead's end
+  std::optional<Goal> passed = {};     // the goal that the lead ends at, if any
 };
 
 /// A path as it is flown.

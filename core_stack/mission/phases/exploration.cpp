@@ -30,27 +30,27 @@ bool reached(const Reference& r, const Goal& goal) {
           std::abs(wrap_angle(r.heading_rad - goal.heading_rad)) < kFacing_rad);
 }
 
-struct Round {
-  RoundResult result;
+struct Cycle {
+  CycleResult result;
   Route route;
 };
 
 /// On the map lane. Whatever fails here: the way home must not depend on it.
-Round decide(Explorer& explorer, const RoundInput& input, const RouteStart& start, const CoreOptions& options,
+Cycle decide(Explorer& explorer, const CycleInput& input, const RouteStart& start, const CoreOptions& options,
              const VehicleDescription& vehicle) {
-  Round round;
-  RoundResult& result = round.result;
+  Cycle cycle;
+  CycleResult& result = cycle.result;
   try {
     result = explorer.decide(input);
     for (const Drawing& d : std::exchange(result.drawings, {})) result.drawing_texts.push_back(text_of(d));
     if (result.goal)
-      round.route = make_route(explorer.map(), options, vehicle, start, result.path, result.goal);
+      cycle.route = make_route(explorer.map(), options, vehicle, start, result.path, result.goal);
   } catch (const std::exception& e) {
     result.goal.reset();
     result.outcome = Outcome::go_home;
     result.reason = std::string("an error of the core: ") + e.what();
   }
-  return round;
+  return cycle;
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void Exploration::step() {
   pass_goal();
   if (parts_.path.yields()) return;
   watch_progress();
-  if (round_running_ || parts_.path.held()) return;
+  if (cycle_running_ || parts_.path.held()) return;
   choose();
 }
 
@@ -80,73 +80,74 @@ void Exploration::choose() {
   const MissionOptions& o = onboard_.options.mission;
   PathExecution& path = parts_.path;
   const GoalTracker& goals = parts_.goals;
-  if (path.detour_due() && !flight.at_rest(now)) return begin_round(Joins::at_stop);
-  if (now - last_round_ < kPause) return;
+  if (path.detour_due() && !flight.at_rest(now)) return begin_cycle(Joins::at_stop);
+  if (now - last_cycle_ < kPause) return;
   if (flight.at_rest(now)) {
     path.take_no_detour();
     // The sensors look before the next goal is chosen.
-    return goals.goal() && !path.blocked() ? reach_goal(now) : begin_round(Joins::at_stop);
+    return goals.goal() && !path.blocked() ? reach_goal(now) : begin_cycle(Joins::at_stop);
   }
   if (path.blocked() || goals.next()) return;  // it waits for the brake, or for the goal to be passed
   if (goals.goal() && reached(flight.reference(), *goals.goal())) return reach_goal(now);
-  if (goals.goal() && !goals.frontier_open()) return begin_round(Joins::at_stop);
+  if (goals.goal() && !goals.frontier_open()) return begin_cycle(Joins::at_stop);
   if (flight.remaining_s(now) < o.append_before_s) {
     // What is appended is flown at its own speed limit, from here on: not where the present path has one.
-    if (o.append && !append_tried_ && !path.speed_limited()) begin_round(Joins::at_end);
+    if (o.append && !append_tried_ && !path.speed_limited()) begin_cycle(Joins::at_end);
     append_tried_ = true;
-  } else if (now - last_round_ > from_seconds(o.decision_period_s)) {
-    begin_round(Joins::at_stop);
+  } else if (now - last_cycle_ > from_seconds(o.decision_period_s)) {
+    begin_cycle(Joins::at_stop);
   }
 }
 
 void Exploration::reach_goal(TimeNs now) {
-  parts_.goals.settle(GoalFate::reached, "", now);
-  last_round_ = now;
+  parts_.goals.close_goal(GoalFate::reached, "", now);
+  last_cycle_ = now;
 }
 
-RoundInput Exploration::round_input(const RouteStart& start, Joins joins) {
+CycleInput Exploration::cycle_input(const RouteStart& start, Joins joins) {
   const Flight& flight = onboard_.flight;
-  RoundInput input;
+  CycleInput input;
   input.now = onboard_.now();
   input.deadline = start.at;
   input.state = flight.expected(input.deadline);
-  input.from = start.lead.points.back();
+  input.from = start.committed.points.back();
   const Vec3 velocity = flight.reference().velocity_mps;
-  const double heading_rad = start.lead.heading_rad;
+  const double heading_rad = start.committed.heading_rad;
   input.direction =
       velocity.norm() > 0.2 ? velocity.normalized() : Vec3(std::cos(heading_rad), std::sin(heading_rad), 0);
   input.seconds_left = parts_.endurance.seconds_left(input.now);
-  input.way_come_m = parts_.way_flown.length_m();
-  input.way_come = parts_.way_flown.points();
-  input.way_come.insert(input.way_come.end(), start.lead.points.begin(), start.lead.points.end());
+  input.flown_length_m = parts_.flown_path.length_m();
+  input.flown_path = parts_.flown_path.points();
+  input.flown_path.insert(input.flown_path.end(), start.committed.points.begin(),
+                          start.committed.points.end());
   input.standing = flight.at_rest(input.now);
   input.appending = joins == Joins::at_end;
   parts_.goals.tell(input);
-  input.mates = wiring_.mates();
+  input.teammates = wiring_.teammates();
   return input;
 }
 
-void Exploration::begin_round(Joins joins) {
-  round_running_ = true;
-  last_round_ = onboard_.now();
+void Exploration::begin_cycle(Joins joins) {
+  cycle_running_ = true;
+  last_cycle_ = onboard_.now();
   const TimeNs budget = from_seconds(onboard_.options.mission.decision_budget_s);
   const TimeNs deadline = onboard_.now() + budget;
   const bool appending = joins == Joins::at_end;
   RouteStart start = appending ? parts_.path.start_at_end(deadline) : parts_.path.start_at_stop(deadline);
-  const RoundInput input = round_input(start, joins);
+  const CycleInput input = cycle_input(start, joins);
   if (appending) start.passed = parts_.goals.goal();  // the lead of an appended path ends at a goal
-  if (start.passed) start.most_cut_m = std::min(start.most_cut_m, start.passed->tolerance_m);
+  if (start.passed) start.max_cut_m = std::min(start.max_cut_m, start.passed->tolerance_m);
   onboard_.map.job(
       "decision", budget,
       [this, input, start](Explorer& explorer) {
         return decide(explorer, input, start, onboard_.options, onboard_.vehicle);
       },
-      [this, input](const Round& round) { on_round(input, round.result, round.route); });
+      [this, input](const Cycle& cycle) { on_cycle(input, cycle.result, cycle.route); });
 }
 
-void Exploration::on_round(const RoundInput& input, const RoundResult& result, const Route& route) {
-  round_running_ = false;
-  record_round(input, result);
+void Exploration::on_cycle(const CycleInput& input, const CycleResult& result, const Route& route) {
+  cycle_running_ = false;
+  record_cycle(input, result);
   const TimeNs now = onboard_.now();
   const bool at_rest = onboard_.flight.at_rest(now);
   PathExecution& path = parts_.path;
@@ -158,14 +159,14 @@ void Exploration::on_round(const RoundInput& input, const RoundResult& result, c
   } else if (result.outcome == Outcome::go_home) {
     wiring_.go_home("the policy asked for it: " + result.reason);
   } else if (path.blocked() && at_rest) {
-    parts_.goals.settle(GoalFate::unreachable, result.reason, now);
+    parts_.goals.close_goal(GoalFate::unreachable, result.reason, now);
     path.unblock();
   } else if (!result.rejected.empty() && !parts_.goals.goal()) {
     parts_.goals.refuse(result.rejected.front().goal);
   }
 }
 
-void Exploration::fly_to(const RoundInput& input, const RoundResult& result, const Route& route) {
+void Exploration::fly_to(const CycleInput& input, const CycleResult& result, const Route& route) {
   const TimeNs now = onboard_.now();
   GoalTracker& goals = parts_.goals;
   PathExecution& path = parts_.path;
@@ -186,12 +187,12 @@ void Exploration::watch_progress() {
   const Vec3& here = onboard_.flight.reference().position;
   if (!parts_.goals.goal()) return still_.restart(here, now);
   if (still_.still_for(here, now) < from_seconds(onboard_.options.mission.goal_timeout_s)) return;
-  parts_.goals.settle(GoalFate::abandoned, "no progress towards it", now);
+  parts_.goals.close_goal(GoalFate::abandoned, "no progress towards it", now);
   parts_.goals.drop_next(GoalFate::superseded, "the goal before it was abandoned", now);
   parts_.path.stop(now);
 }
 
-void Exploration::record_round(const RoundInput& input, const RoundResult& result) {
+void Exploration::record_cycle(const CycleInput& input, const CycleResult& result) {
   static constexpr const char* kOutcomes[] = {"goals", "hold", "explored", "go_home"};
   const TimeNs now = onboard_.now();
   Recorder& recorder = onboard_.recorder;

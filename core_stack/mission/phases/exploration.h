@@ -6,9 +6,9 @@
 
 #include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/phases/endurance.h"
+#include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
 #include "core_stack/mission/phases/still_watch.h"
-#include "core_stack/mission/phases/way_flown.h"
 
 namespace karst::core {
 
@@ -16,14 +16,14 @@ class Exploration {
  public:
   struct Wiring {
     std::function<void(const std::string& reason)> go_home;
-    std::function<void(const Goal&)> claim;         // tells the team of an accepted goal
-    std::function<std::vector<HeardMate>()> mates;  // the others of a team
+    std::function<void(const Goal&)> claim;                 // tells the team of an accepted goal
+    std::function<std::vector<TeammateState>()> teammates;  // the others of a team
   };
   struct Parts {
     const PhaseMachine& phases;
     GoalTracker& goals;
     PathExecution& path;
-    const WayFlown& way_flown;
+    const FlownPath& flown_path;
     const Endurance& endurance;
   };
   Exploration(Onboard& onboard, const Parts& parts, Wiring wiring)
@@ -37,11 +37,11 @@ class Exploration {
   enum class Joins { at_stop, at_end };  // where the new path begins: appended, or as soon as it can
   void pass_goal();
   void choose();
-  void begin_round(Joins joins);
-  RoundInput round_input(const RouteStart& start, Joins joins);
-  void on_round(const RoundInput& input, const RoundResult& result, const Route& route);
-  void fly_to(const RoundInput& input, const RoundResult& result, const Route& route);
-  void record_round(const RoundInput& input, const RoundResult& result);
+  void begin_cycle(Joins joins);
+  CycleInput cycle_input(const RouteStart& start, Joins joins);
+  void on_cycle(const CycleInput& input, const CycleResult& result, const Route& route);
+  void fly_to(const CycleInput& input, const CycleResult& result, const Route& route);
+  void record_cycle(const CycleInput& input, const CycleResult& result);
   void watch_progress();
   void reach_goal(TimeNs now);
 
@@ -49,9 +49,9 @@ class Exploration {
   Parts parts_;
   Wiring wiring_;
   StillWatch still_;
-  bool round_running_ = false;
+  bool cycle_running_ = false;
   bool append_tried_ = false;  // behind the goal under way
-  TimeNs last_round_ = 0;
+  TimeNs last_cycle_ = 0;
 };
 
 }  // namespace karst::core

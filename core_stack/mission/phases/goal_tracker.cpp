@@ -11,13 +11,13 @@ namespace {
 
 constexpr double kSameGoal_m = 0.3;
 
-struct Told {
+struct FateEvent {
   PolicyEvent::Kind kind;
   const char* state;
 };
 
 /// How a goal's end is told: to the policy, and in the events.
-Told told(GoalFate fate) {
+FateEvent event_of(GoalFate fate) {
   switch (fate) {
     case GoalFate::reached:
       return {PolicyEvent::Kind::goal_reached, "reached"};
@@ -55,8 +55,8 @@ bool GoalTracker::is_under_way(const Goal& goal) const {
 void GoalTracker::accept(const Goal& goal, TimeNs now) {
   recorder_.event(now, "goal", to_json(goal, "accepted", ""));
   if (!is_under_way(goal))
-    settle(GoalFate::superseded, frontier_open_ ? "the policy chose another" : "its frontier has been seen",
-           now);
+    close_goal(GoalFate::superseded,
+               frontier_open_ ? "the policy chose another" : "its frontier has been seen", now);
   goal_ = goal;
   frontier_open_ = true;
 }
@@ -68,19 +68,19 @@ void GoalTracker::append(const Goal& goal, TimeNs now) {
 }
 
 void GoalTracker::pass(TimeNs now) {
-  settle(GoalFate::reached, "passed on the way to the next", now);
+  close_goal(GoalFate::reached, "passed on the way to the next", now);
   goal_ = std::exchange(next_, std::nullopt);
 }
 
-void GoalTracker::tell_of(const Goal& goal, GoalFate fate, const std::string& reason, TimeNs now) {
-  const Told how = told(fate);
+void GoalTracker::report(const Goal& goal, GoalFate fate, const std::string& reason, TimeNs now) {
+  const FateEvent how = event_of(fate);
   recorder_.event(now, "goal", to_json(goal, how.state, reason));
   events_.push_back({how.kind, now, goal, reason});
 }
 
-void GoalTracker::settle(GoalFate fate, const std::string& reason, TimeNs now) {
+void GoalTracker::close_goal(GoalFate fate, const std::string& reason, TimeNs now) {
   if (!goal_) return;
-  tell_of(*goal_, fate, reason, now);
+  report(*goal_, fate, reason, now);
   if (goal_->frontier_id != 0 && (fate == GoalFate::reached || !frontier_open_))
     looked_at_.push_back(goal_->frontier_id);
   last_fate_ = fate;
@@ -89,7 +89,7 @@ void GoalTracker::settle(GoalFate fate, const std::string& reason, TimeNs now) {
 
 void GoalTracker::drop_next(GoalFate fate, const std::string& reason, TimeNs now) {
   if (!next_) return;
-  tell_of(*next_, fate, reason, now);
+  report(*next_, fate, reason, now);
   next_.reset();
 }
 
@@ -107,7 +107,7 @@ void GoalTracker::note_homing(const std::string& reason, TimeNs now) {
   events_.push_back({PolicyEvent::Kind::homing, now, {}, reason});
 }
 
-void GoalTracker::tell(RoundInput& input) {
+void GoalTracker::tell(CycleInput& input) {
   input.last_fate = goal_ ? GoalFate::under_way : last_fate_;
   input.last_goal = goal_ ? goal_ : last_;
   input.events = take_events();

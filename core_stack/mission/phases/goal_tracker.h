@@ -30,7 +30,7 @@ class GoalTracker {
   /// The goal under way is passed, and the appended one takes its place.
   void pass(TimeNs now);
   /// The goal under way came to its end. Nothing happens if there is none.
-  void settle(GoalFate fate, const std::string& reason, TimeNs now);
+  void close_goal(GoalFate fate, const std::string& reason, TimeNs now);
   /// The appended goal is given up.
   void drop_next(GoalFate fate, const std::string& reason, TimeNs now);
   /// With no goal under way, one was proposed and refused.
@@ -40,12 +40,12 @@ class GoalTracker {
   void note_homing(const std::string& reason, TimeNs now);
 
   /// What a round of decision has to know; what is told here is not told again.
-  void tell(RoundInput& input);
+  void tell(CycleInput& input);
   /// What the policy has yet to be told.
   std::vector<PolicyEvent> take_events();
 
  private:
-  void tell_of(const Goal& goal, GoalFate fate, const std::string& reason, TimeNs now);
+  void report(const Goal& goal, GoalFate fate, const std::string& reason, TimeNs now);
 
   Recorder& recorder_;
   std::optional<Goal> goal_, next_, last_;

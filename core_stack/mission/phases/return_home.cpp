@@ -7,7 +7,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kAboveHome_m = 0.4;
-constexpr int kMostFailures = 3;
+constexpr int kMaxFailures = 3;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 // Without progress, it lands where it is. A cave that shuts it in does not open again while it hovers, and
@@ -33,7 +33,7 @@ void ReturnHome::set_home(const Vec3& hover) {
 void ReturnHome::begin(const std::string& reason) {
   const TimeNs now = onboard_.now();
   parts_.goals.drop_next(GoalFate::superseded, "going home", now);
-  parts_.goals.settle(GoalFate::superseded, "going home", now);
+  parts_.goals.close_goal(GoalFate::superseded, "going home", now);
   parts_.goals.note_homing(reason, now);
   onboard_.map.job(
       "farewell", kEstimateBudget,
@@ -50,7 +50,7 @@ void ReturnHome::watch_time() {
   if (onboard_.now() % kSecond != 0) return;
   onboard_.map.job(
       "home estimate", kEstimateBudget,
-      [from = onboard_.flight.reference().position, come_m = parts_.way_flown.length_m()](
+      [from = onboard_.flight.reference().position, come_m = parts_.flown_path.length_m()](
           Explorer& explorer) { return explorer.estimate_home(from, come_m); },
       [this](const HomeEstimate& estimate) { on_estimate(estimate); });
 }
@@ -61,7 +61,7 @@ void ReturnHome::on_estimate(const HomeEstimate& estimate) {
   const double seconds_left = parts_.endurance.seconds_left(onboard_.now());
   distance_m_ = estimate.length_m;
   const double slack_s = home_slack_s(seconds_left, estimate.time_s, o.home_margin, o.home_reserve_s);
-  if (!turn_back_.due(slack_s)) return;
+  if (!return_trigger_.due(slack_s)) return;
   const bool by_time = seconds_left < parts_.endurance.battery().seconds_left;
   onboard_.recorder.event(onboard_.now(), "homing",
                           {{"reason", by_time ? "time limit" : "battery"},
@@ -87,7 +87,7 @@ void ReturnHome::step() {
     wiring_.enter(Phase::land, "");
   } else if (parts_.path.blocked() || parts_.path.detour_due() ||
              (!at_home && onboard_.flight.at_rest(now))) {
-    find_way();
+    find_path();
   }
   watch_patience(at_home);
 }
@@ -99,16 +99,15 @@ void ReturnHome::arrive() {
     case RelayLanding::Heard::lands:
       return wiring_.enter(Phase::land, why);
     case RelayLanding::Heard::nobody:
-      return give_up_landing("nobody who reaches the base is heard there",
-                             RelayLanding::Because::nobody_heard);
+      return give_up_landing("nobody who reaches the base is heard there", RelayLanding::Because::no_contact);
     case RelayLanding::Heard::waits:
       return;
   }
 }
 
-void ReturnHome::find_way() {
+void ReturnHome::find_path() {
   const TimeNs now = onboard_.now();
-  if (failures_ < kMostFailures) {
+  if (failures_ < kMaxFailures) {
     if (now >= retry_) plan();
   } else if (landing_spot()) {
     give_up_landing("there is no way there", RelayLanding::Because::not_to_be_had);
@@ -133,7 +132,7 @@ void ReturnHome::plan() {
       "home plan", kPlanningBudget,
       [this, start = start(begun + kPlanningBudget), to = hover()](Explorer& explorer) {
         Route route;
-        route.path = explorer.plan_to(start.lead.points.back(), to);
+        route.path = explorer.plan_to(start.committed.points.back(), to);
         if (!route.path.found()) return route;
         return make_route(explorer.map(), onboard_.options, onboard_.vehicle, start, route.path, {});
       },
@@ -163,7 +162,7 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
 void ReturnHome::fly_back_as_come() {
   planning_ = true;
   const TimeNs begun = onboard_.now();
-  std::vector<Vec3> flown = parts_.way_flown.points();
+  std::vector<Vec3> flown = parts_.flown_path.points();
   flown.push_back(onboard_.flight.reference().position);
   RouteStart from_here = start(begun);
   from_here.at = 0;  // no polynomial is made for it
@@ -171,7 +170,7 @@ void ReturnHome::fly_back_as_come() {
       "way back", kPlanningBudget,
       [this, flown = std::move(flown), from_here](Explorer& explorer) {
         Path back;
-        back.points = explorer.way_back(flown);
+        back.points = explorer.path_back(flown);
         return make_route(explorer.map(), onboard_.options, onboard_.vehicle, from_here, back, {});
       },
       [this, begun](const Route& route) {
@@ -189,7 +188,7 @@ void ReturnHome::fly_back_as_come() {
 void ReturnHome::choose_landing() {
   planning_ = true;
   parts_.landing->choose(
-      parts_.way_flown.length_m(), [this] { planning_ = false; },
+      parts_.flown_path.length_m(), [this] { planning_ = false; },
       [this] {
         failures_ = 0;
         parts_.path.ask_for_detour();

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/phases/endurance.h"
+#include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
 #include "core_stack/mission/phases/still_watch.h"
-#include "core_stack/mission/phases/way_flown.h"
 #include "core_stack/mission/team/relay_landing.h"
 
 namespace karst::core {
@@ -28,7 +28,7 @@ class ReturnHome {
     const PhaseMachine& phases;
     GoalTracker& goals;
     PathExecution& path;
-    const WayFlown& way_flown;
+    const FlownPath& flown_path;
     const Endurance& endurance;
     RelayLanding* landing;  // null: it lands at its start
   };
@@ -58,7 +58,7 @@ class ReturnHome {
  private:
   void on_estimate(const HomeEstimate& estimate);
   void arrive();
-  void find_way();
+  void find_path();
   void plan();
   void on_plan(const Route& route, TimeNs begun);
   void fly_back_as_come();
@@ -71,7 +71,7 @@ class ReturnHome {
   Parts parts_;
   Wiring wiring_;
   StillWatch still_;
-  TurnBack turn_back_;
+  ReturnTrigger return_trigger_;
   Vec3 home_ = Vec3::Zero();
   double distance_m_ = 0;
   std::string reason_;

@@ -18,7 +18,7 @@ nlohmann::json list_of(const std::vector<TeamObject>& objects) {
     all.push_back({{"what", name(o.kind)},
                    {"position", rounded_list(o.position)},
                    {"deviation", rounded(o.deviation_m)},
-                   {"told_by", o.told_by}});
+                   {"told_by", o.reported_by}});
   return all;
 }
 

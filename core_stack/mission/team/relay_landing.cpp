@@ -17,13 +17,13 @@ constexpr TimeNs kLandingAgain = 2 * kSecond;
 
 /// For a place that it comes to too late it flies, and looks again: who took the place before is a relay as
 /// soon as the rest of that news is there.
-void RelayLanding::choose(double way_come_m, std::function<void()> over, std::function<void()> changed) {
+void RelayLanding::choose(double flown_length_m, std::function<void()> over, std::function<void()> changed) {
   const std::optional<LandingSpot> before = std::exchange(spot_, std::nullopt);
   unheard_since_.reset();
   onboard_.map.job(
       "landing place", kChoiceBudget,
-      [from = onboard_.flight.reference().position, way_come_m](Explorer& explorer) {
-        return explorer.landing_spot(from, way_come_m);
+      [from = onboard_.flight.reference().position, flown_length_m](Explorer& explorer) {
+        return explorer.landing_spot(from, flown_length_m);
       },
       [this, before, over = std::move(over),
        changed = std::move(changed)](const std::optional<LandingSpot>& spot) {
@@ -64,8 +64,8 @@ void RelayLanding::give_up(const std::string& reason, Because because) {
   team_.publish(
       LandingClaim{team_.team_time(now), spot_->ground, spot_->hover, LandingClaim::State::given_up});
   onboard_.map.job("give up", kChoiceBudget, [homing = team_.homing(), spot = *spot_, because](Explorer&) {
-    if (because == Because::nobody_heard)
-      homing->not_heard(spot);
+    if (because == Because::no_contact)
+      homing->no_contact_at(spot);
     else
       homing->give_up(spot.hover);
   });
@@ -76,7 +76,7 @@ void RelayLanding::give_up(const std::string& reason, Because because) {
 RelayLanding::Heard RelayLanding::listen(std::string& why) {
   const TimeNs now = onboard_.now();
   if (!unheard_since_) unheard_since_ = now;
-  if (team_.hears_base(now, *unheard_since_ - kHeardHere)) {
+  if (team_.base_in_contact(now, *unheard_since_ - kHeardHere)) {
     why = "in contact";
     return Heard::lands;
   }

@@ -20,7 +20,7 @@ class RelayLanding {
   const std::optional<LandingSpot>& spot() const { return spot_; }
   /// Looks for a place; if the start is nearer in time, there is none. `over` is called when the choice is
   /// made, and then `changed` if it leads elsewhere than the one before.
-  void choose(double way_come_m, std::function<void()> over, std::function<void()> changed);
+  void choose(double flown_length_m, std::function<void()> over, std::function<void()> changed);
   /// It comes too late to the place that it flies to: time to look for another.
   bool look_again_due() const { return look_again_ && onboard_.now() >= *look_again_; }
   /// Another robot claimed it before.
@@ -32,7 +32,7 @@ class RelayLanding {
   /// It does not hover there any more.
   void stop_listening() { unheard_since_.reset(); }
 
-  enum class Because { not_to_be_had, nobody_heard };
+  enum class Because { not_to_be_had, no_contact };
   void give_up(const std::string& reason, Because because);
 
  private:

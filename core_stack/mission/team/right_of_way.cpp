@@ -10,11 +10,11 @@ namespace karst::core {
 namespace {
 
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
-constexpr double kAtRefuge_m = 0.5;
+constexpr double kAtWaitingPlace_m = 0.5;
 
 }  // namespace
 
-TeamPhase told(Phase phase) {
+TeamPhase phase_for_team(Phase phase) {
   switch (phase) {
     case Phase::standby:
       return TeamPhase::standby;
@@ -32,56 +32,56 @@ TeamPhase told(Phase phase) {
   return TeamPhase::lost;
 }
 
-TeamPhase RightOfWay::told_now() const {
-  return encounter_.told(told(parts_.phases.phase()), onboard_.now());
+TeamPhase RightOfWay::phase_to_report() const {
+  return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
 void RightOfWay::step() {
   if (!parts_.phases.under_way()) {
-    refuges_in_vain_.clear();
-    encounter_.forget();
-    return parts_.path.yield(encounter_.holds());
+    failed_places_.clear();
+    yield_state_.forget();
+    return parts_.path.yield(yield_state_.holds());
   }
   const TimeNs now = onboard_.now();
   note_arrival();
   const State& s = onboard_.flight.state();
   const std::vector<Neighbour> others = team_.neighbours(now);
-  const bool held = encounter_.holds();
-  const RobotId held_for = encounter_.with();
+  const bool held = yield_state_.holds();
+  const RobotId held_for = yield_state_.with();
   const auto action =
-      encounter_.update({.distance_m = team_.options().keep_apart_m},
-                        {team_.self(), s.position, s.velocity_mps, told(parts_.phases.phase())}, others, now,
-                        onboard_.flight.at_rest(now));
+      yield_state_.update({.distance_m = team_.options().separation_m},
+                          {team_.self(), s.position, s.velocity_mps, phase_for_team(parts_.phases.phase())},
+                          others, now, onboard_.flight.at_rest(now));
   on_change(held, held_for);
-  if (action == Encounter::Action::stop) {
-    onboard_.recorder.event(now, "team", {{"action", "stop"}, {"robot", encounter_.with()}});
+  if (action == YieldState::Action::stop) {
+    onboard_.recorder.event(now, "team", {{"action", "stop"}, {"robot", yield_state_.with()}});
     parts_.path.stop(now);
   }
-  if (action == Encounter::Action::make_room && !planning_) make_room(others);
-  parts_.path.yield(encounter_.holds());
+  if (action == YieldState::Action::make_room && !planning_) make_room(others);
+  parts_.path.yield(yield_state_.holds());
 }
 
 void RightOfWay::note_arrival() {
   const TimeNs now = onboard_.now();
-  if (!encounter_.on_the_way() || planning_ || !onboard_.flight.at_rest(now)) return;
-  const bool there = (onboard_.flight.reference().position - refuge_.place).norm() < kAtRefuge_m;
-  encounter_.arrived(there && refuge_.others_get_by, now);
-  onboard_.recorder.event(now, "team",
-                          {{"action", "wait"}, {"others_get_by", there && refuge_.others_get_by}});
+  if (!yield_state_.on_the_way() || planning_ || !onboard_.flight.at_rest(now)) return;
+  const bool there = (onboard_.flight.reference().position - waiting_place_.place).norm() < kAtWaitingPlace_m;
+  yield_state_.arrived(there && waiting_place_.keeps_passage_open, now);
+  onboard_.recorder.event(
+      now, "team", {{"action", "wait"}, {"others_get_by", there && waiting_place_.keeps_passage_open}});
 }
 
 /// It was held for that robot, and is not any more; or it is held for another one.
 void RightOfWay::on_change(bool held, RobotId held_for) {
   const TimeNs now = onboard_.now();
-  const bool holds = encounter_.holds(), same = held && holds && encounter_.with() == held_for;
+  const bool holds = yield_state_.holds(), same = held && holds && yield_state_.with() == held_for;
   if (held && !same) {
     onboard_.recorder.event(now, "team", {{"action", "go on"}, {"robot", held_for}});
-    refuges_in_vain_.clear();
+    failed_places_.clear();
     parts_.path.block();  // from wherever that led: a new way is due
     if (!holds) parts_.path.stop(now);
   }
   if (holds && !same) {
-    onboard_.recorder.event(now, "team", {{"action", "give way"}, {"robot", encounter_.with()}});
+    onboard_.recorder.event(now, "team", {{"action", "give way"}, {"robot", yield_state_.with()}});
     parts_.goals.drop_next(GoalFate::superseded, "another vehicle is in the way", now);
     parts_.path.block();
     parts_.path.stop(now);
@@ -93,7 +93,7 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
   RoomQuery query;
   bool there = false;
   for (const Neighbour& o : others) {
-    if (o.robot == encounter_.with()) {
+    if (o.robot == yield_state_.with()) {
       query.other = o.position;
       there = true;
     } else {
@@ -102,11 +102,11 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
   }
   if (!there) return;
   planning_ = true;
-  if (encounter_.stands_aside())
-    refuges_in_vain_.push_back(refuge_.place);  // it waits there, and the other does not get by
-  query.flown = parts_.way_flown.points();
-  query.in_vain = refuges_in_vain_;
-  query.apart_m = team_.options().keep_apart_m / 2;
+  if (yield_state_.stands_aside())
+    failed_places_.push_back(waiting_place_.place);  // it waits there, and the other does not get by
+  query.flown = parts_.flown_path.points();
+  query.failed = failed_places_;
+  query.separation_m = team_.options().separation_m / 2;
   const TimeNs begun = onboard_.now();
   onboard_.map.job(
       "make room", kAsideBudget,
@@ -117,35 +117,35 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
 }
 
 RightOfWay::Room RightOfWay::find_room(Explorer& explorer, RoomQuery query, const RouteStart& start) const {
-  const Vec3& from = start.lead.points.back();
+  const Vec3& from = start.committed.points.back();
   query.from = from;
   Room room;
-  room.refuge = explorer.refuge(query);
-  if (!room.refuge || (room.refuge->place - from).norm() < 1e-3) return room;
-  const Path path = explorer.plan_to(from, room.refuge->place);
+  room.waiting_place = explorer.find_waiting_place(query);
+  if (!room.waiting_place || (room.waiting_place->place - from).norm() < 1e-3) return room;
+  const Path path = explorer.plan_to(from, room.waiting_place->place);
   if (path.found())
     room.route = make_route(explorer.map(), onboard_.options, onboard_.vehicle, start, path, {});
   else
-    room.refuge.reset();
+    room.waiting_place.reset();
   return room;
 }
 
 void RightOfWay::on_room(const Room& room, TimeNs begun, bool crowd) {
   planning_ = false;
   const TimeNs now = onboard_.now();
-  if (!encounter_.holds() || parts_.path.braked_since(begun)) return;
-  if (!room.refuge) {
-    encounter_.no_room(now, crowd);
-    onboard_.recorder.event(now, "team", {{"action", "no room"}, {"robot", encounter_.with()}});
+  if (!yield_state_.holds() || parts_.path.braked_since(begun)) return;
+  if (!room.waiting_place) {
+    yield_state_.no_room(now, crowd);
+    onboard_.recorder.event(now, "team", {{"action", "no room"}, {"robot", yield_state_.with()}});
     return;
   }
-  refuge_ = *room.refuge;
-  encounter_.set_out();
+  waiting_place_ = *room.waiting_place;
+  yield_state_.set_out();
   onboard_.recorder.event(now, "team",
                           {{"action", "make room"},
-                           {"robot", encounter_.with()},
-                           {"to", list(refuge_.place)},
-                           {"others_get_by", refuge_.others_get_by}});
+                           {"robot", yield_state_.with()},
+                           {"to", list(waiting_place_.place)},
+                           {"others_get_by", waiting_place_.keeps_passage_open}});
   if (room.route.path.found()) parts_.path.follow(room.route, now);
 }
 

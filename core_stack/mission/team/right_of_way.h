@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "core_stack/mission/flight/path_execution.h"
+#include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
-#include "core_stack/mission/phases/way_flown.h"
 #include "core_stack/mission/team/teamwork.h"
-#include "core_stack/team/right_of_way/encounter.h"
+#include "core_stack/team/right_of_way/yield_state.h"
 
 namespace karst::core {
 
 /// What the others are told of a phase.
-TeamPhase told(Phase phase);
+TeamPhase phase_for_team(Phase phase);
 
 class RightOfWay {
  public:
@@ -19,7 +19,7 @@ class RightOfWay {
     const PhaseMachine& phases;
     GoalTracker& goals;
     PathExecution& path;
-    const WayFlown& way_flown;
+    const FlownPath& flown_path;
   };
   RightOfWay(Onboard& onboard, Teamwork& team, const Parts& parts)
       : onboard_(onboard), team_(team), parts_(parts) {}
@@ -27,14 +27,14 @@ class RightOfWay {
   /// Ten times a second: stops the vehicle for another that goes first, and has it make room.
   void step();
   /// What to tell of itself.
-  TeamPhase told_now() const;
+  TeamPhase phase_to_report() const;
 
  private:
   void note_arrival();
   void on_change(bool held, RobotId held_for);
   void make_room(const std::vector<Neighbour>& others);
   struct Room {
-    std::optional<Refuge> refuge;
+    std::optional<WaitingPlace> waiting_place;
     Route route;
   };
   Room find_room(Explorer& explorer, RoomQuery query, const RouteStart& start) const;
@@ -43,9 +43,9 @@ class RightOfWay {
   Onboard& onboard_;
   Teamwork& team_;
   Parts parts_;
-  Encounter encounter_;
-  Refuge refuge_;                      // where it last made room
-  std::vector<Vec3> refuges_in_vain_;  // the other did not get by there
+  YieldState yield_state_;
+  WaitingPlace waiting_place_;       // where it last made room
+  std::vector<Vec3> failed_places_;  // the other did not get by there
   bool planning_ = false;
 };
 

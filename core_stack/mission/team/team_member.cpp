@@ -2,29 +2,29 @@
 
 namespace karst::core {
 
-void transmit(Teammate& mate, RadioPort& radio, TimeNs team_time) {
-  for (const Bytes& frame : mate.speak(team_time)) radio.send(frame, team_time);
+void transmit(TeamNode& node, RadioPort& radio, TimeNs team_time) {
+  for (const Bytes& frame : node.transmit(team_time)) radio.send(frame, team_time);
 }
 
-void receive(Teammate& mate, RadioPort& radio, TimeNs team_time) {
-  for (const auto& frame : radio.receive(team_time)) mate.hear(frame, team_time);
+void receive(TeamNode& node, RadioPort& radio, TimeNs team_time) {
+  for (const auto& frame : radio.receive(team_time)) node.receive(frame, team_time);
 }
 
 TeamMember::TeamMember(RobotId id, const CoreOptions& options, const VehicleDescription& vehicle,
                        const TeamSetup& setup, TimeNs starts_at, TeamPort& port)
     : port_(port),
       first_node_(options.team.robots + (id - 1) * options.team.nodes + 1),
-      mate_(id, options.team, options.homing, setup.base, setup.seed, setup.key),
+      node_(id, options.team, options.homing, setup.base, setup.seed, setup.key),
       homing_(id, options.team, options.homing, setup.base, options.planning, options.motion,
               vehicle.radius_m),
-      teamwork_(mate_, homing_, options.team, starts_at) {
+      teamwork_(node_, homing_, options.team, starts_at) {
   TeamState waiting;
   waiting.position = vehicle.T_world_start.position;
   teamwork_.report(waiting, -starts_at);
 }
 
-void TeamMember::transmit(TimeNs team_time) { core::transmit(mate_, port_, team_time); }
-void TeamMember::receive(TimeNs team_time) { core::receive(mate_, port_, team_time); }
+void TeamMember::transmit(TimeNs team_time) { core::transmit(node_, port_, team_time); }
+void TeamMember::receive(TimeNs team_time) { core::receive(node_, port_, team_time); }
 
 std::optional<DroppedNode> TeamMember::drop_due_node() {
   const std::optional<NodeDrop> drop = teamwork_.take_drop();

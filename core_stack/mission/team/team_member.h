@@ -35,20 +35,20 @@ class TeamMember {
   /// Drops the communication node that mission control has asked for since the last call, if it has.
   std::optional<DroppedNode> drop_due_node();
 
-  RobotId id() const { return mate_.self(); }
-  const Teammate& mate() const { return mate_; }
+  RobotId id() const { return node_.self(); }
+  const TeamNode& node() const { return node_; }
   Teamwork& teamwork() { return teamwork_; }
 
  private:
   TeamPort& port_;
   std::int64_t first_node_, nodes_dropped_ = 0;
-  Teammate mate_;
+  TeamNode node_;
   RelayHoming homing_;
   Teamwork teamwork_;
 };
 
 /// Sends what `mate` has to say, and lets it hear what has come in.
-void transmit(Teammate& mate, RadioPort& radio, TimeNs team_time);
-void receive(Teammate& mate, RadioPort& radio, TimeNs team_time);
+void transmit(TeamNode& node, RadioPort& radio, TimeNs team_time);
+void receive(TeamNode& node, RadioPort& radio, TimeNs team_time);
 
 }  // namespace karst::core

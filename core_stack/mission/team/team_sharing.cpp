@@ -13,7 +13,7 @@ constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
 constexpr TimeNs kHeardLately = 2 * kSecond;   // of who speaks once a second
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
-constexpr double kAboutThere_m = 0.4, kMostStrayed_m = 1.5;
+constexpr double kAboutThere_m = 0.4, kMaxStrayed_m = 1.5;
 
 /// What is to be told, and where a node would fall to if it has to be dropped now.
 struct Shared {
@@ -28,12 +28,12 @@ Release release_at(const Flight& flight, TimeNs at) {
 
 }  // namespace
 
-void TeamSharing::report(TeamPhase told) {
+void TeamSharing::report(TeamPhase phase) {
   const TimeNs now = onboard_.now();
   TeamState state;
   state.position = onboard_.flight.state().position;
   state.velocity_mps = onboard_.flight.state().velocity_mps;
-  state.phase = told;
+  state.phase = phase;
   state.seconds_left = std::max(0.0, parts_.endurance.seconds_left(now));
   team_.report(state, now);
 }
@@ -54,7 +54,7 @@ void TeamSharing::share() {
        news = team_.take_news(now, parts_.endurance.seconds_left(now))](Explorer& explorer) {
         Shared out;
         out.facts = explorer.share(here, news);
-        if (may_drop) out.drop_ground = explorer.reach_ends(drop, next);
+        if (may_drop) out.drop_ground = explorer.relay_drop_site(drop, next);
         return out;
       },
       [this, from = drop.position, begun = now](const Shared& shared) {
@@ -66,17 +66,17 @@ void TeamSharing::share() {
 /// A relay is heard yet, and by the map none will be in reach when this is asked the next time.
 void TeamSharing::drop_node(const NodeDrop& drop) {
   const TimeNs now = onboard_.now();
-  if (!parts_.phases.in(Phase::explore) || !team_.hears_base(now, now - kHeardLately)) return;
+  if (!parts_.phases.in(Phase::explore) || !team_.base_in_contact(now, now - kHeardLately)) return;
   --nodes_left_;
   dropped_at_ = now;
   team_.drop_node(drop);
   onboard_.recorder.event(now, "drop", {{"ground", list(drop.ground)}, {"left", nodes_left_}});
 }
 
-void TeamSharing::claim_goal(const Goal& goal) { tell_goal(goal.position, false); }
-void TeamSharing::give_up_goals() { tell_goal(onboard_.flight.reference().position, true); }
+void TeamSharing::claim_goal(const Goal& goal) { publish_goal(goal.position, false); }
+void TeamSharing::give_up_goals() { publish_goal(onboard_.flight.reference().position, true); }
 
-void TeamSharing::tell_goal(const Vec3& position, bool given_up) {
+void TeamSharing::publish_goal(const Vec3& position, bool given_up) {
   GoalClaim claim;
   claim.stamp = team_.team_time(onboard_.now());
   claim.position = position;
@@ -89,14 +89,14 @@ bool TeamSharing::airspace_clear() const {
       onboard_.vehicle.T_world_start.position + Vec3(0, 0, onboard_.options.mission.takeoff_height_m);
   const std::vector<Neighbour> others = team_.neighbours(onboard_.now());
   return std::none_of(others.begin(), others.end(), [&](const Neighbour& o) {
-    return (o.position - hover).norm() < team_.options().keep_apart_m;
+    return (o.position - hover).norm() < team_.options().separation_m;
   });
 }
 
 bool TeamSharing::in_company() const {
   const std::vector<Neighbour> others = team_.neighbours(onboard_.now());
   return std::any_of(others.begin(), others.end(), [this](const Neighbour& o) {
-    return (o.position - onboard_.flight.state().position).norm() < 3 * team_.options().keep_apart_m;
+    return (o.position - onboard_.flight.state().position).norm() < 3 * team_.options().separation_m;
   });
 }
 
@@ -106,7 +106,7 @@ std::vector<MovingBody> TeamSharing::others_at(TimeNs stamp) const {
   for (const Neighbour& o : team_.neighbours(now)) {
     if (o.phase == TeamPhase::aside) continue;
     const double strayed_m =
-        std::min(0.5 * onboard_.options.motion.max_acceleration_mps2 * o.age_s * o.age_s, kMostStrayed_m);
+        std::min(0.5 * onboard_.options.motion.max_acceleration_mps2 * o.age_s * o.age_s, kMaxStrayed_m);
     out.push_back({o.position - seconds(now - stamp) * o.velocity_mps,
                    onboard_.vehicle.radius_m + kAboutThere_m + strayed_m});
   }

@@ -24,7 +24,7 @@ class TeamSharing {
       : onboard_(onboard), team_(team), parts_(parts), nodes_left_(team.options().nodes) {}
 
   /// Ten times a second.
-  void report(TeamPhase told);
+  void report(TeamPhase phase);
   /// Once a second in the air: takes in what was heard, tells what was found since, and drops a node where
   /// the others would be out of reach next.
   void share();
@@ -41,10 +41,10 @@ class TeamSharing {
   /// Where the others are that move, at `stamp`: those that stand, aside or landed, are obstacles like any
   /// other.
   std::vector<MovingBody> others_at(TimeNs stamp) const;
-  std::vector<HeardMate> mates() const { return team_.mates(onboard_.now()); }
+  std::vector<TeammateState> teammates() const { return team_.teammates(onboard_.now()); }
 
  private:
-  void tell_goal(const Vec3& position, bool given_up);
+  void publish_goal(const Vec3& position, bool given_up);
   void drop_node(const NodeDrop& drop);
   bool may_drop() const;
 

@@ -16,57 +16,57 @@ struct NodeDrop {
 
 class Teamwork {
  public:
-  Teamwork(Teammate& mate, RelayHoming& homing, const TeamOptions& options, TimeNs ahead)
-      : mate_(&mate), homing_(&homing), options_(options), ahead_(ahead) {}
+  Teamwork(TeamNode& node, RelayHoming& homing, const TeamOptions& options, TimeNs ahead)
+      : node_(&node), homing_(&homing), options_(options), ahead_(ahead) {}
 
   /// To be touched on the map lane only.
   RelayHoming* homing() const { return homing_; }
   const TeamOptions& options() const { return options_; }
   bool lands_as_relay() const { return options_.strategy != "return_to_base"; }
-  RobotId self() const { return mate_->self(); }
+  RobotId self() const { return node_->self(); }
   TimeNs team_time(TimeNs own) const { return own + ahead_; }
 
   void report(TeamState state, TimeNs now) {
     state.stamp = team_time(now);
-    mate_->set_state(state);
+    node_->set_state(state);
   }
   /// What was heard since the last call.
   TeamNews take_news(TimeNs now, double seconds_left) {
     return {team_time(now),
-            mate_->take_facts(),
-            mate_->relays(),
-            mate_->taken_ground(),
-            mate_->claimed_goals(team_time(now)),
+            node_->take_facts(),
+            node_->relays(),
+            node_->taken_ground(),
+            node_->claimed_goals(team_time(now)),
             team_time(now) + from_seconds(seconds_left)};
   }
   /// That robot is on the way to a landing place that it has claimed, and its battery lasts yet.
   bool lands_soon(RobotId robot, TimeNs now) const {
-    const std::vector<Relay> relays = mate_->relays();
+    const std::vector<Relay> relays = node_->relays();
     return std::any_of(relays.begin(), relays.end(), [&](const Relay& r) {
       return r.robot == robot && r.stands_by && *r.stands_by > team_time(now);
     });
   }
-  std::uint32_t publish(const Record& record) { return mate_->publish(record); }
+  std::uint32_t publish(const Record& record) { return node_->publish(record); }
   /// How many of its own records the base is known to hold.
-  std::uint32_t known_at_base() const { return mate_->gossip().known_at_base(); }
-  std::vector<TeamObject> objects() const { return merged(mate_->objects()); }
-  bool hears_base(TimeNs now, TimeNs since) const {
-    return mate_->hears_base(team_time(now), team_time(since));
+  std::uint32_t known_at_base() const { return node_->gossip().known_at_base(); }
+  std::vector<TeamObject> objects() const { return merged(node_->objects()); }
+  bool base_in_contact(TimeNs now, TimeNs since) const {
+    return node_->base_in_contact(team_time(now), team_time(since));
   }
   void drop_node(const NodeDrop& drop) { drop_ = drop; }
   /// What was dropped since the last call.
   std::optional<NodeDrop> take_drop() { return std::exchange(drop_, std::nullopt); }
-  bool overruled() const { return mate_->overruled(); }
+  bool overruled() const { return node_->overruled(); }
   /// The others as last heard of, by this vehicle's own clock.
-  std::vector<HeardMate> mates(TimeNs now) const {
-    std::vector<HeardMate> all = mate_->mates(team_time(now));
-    for (HeardMate& m : all) m.heard -= ahead_;
+  std::vector<TeammateState> teammates(TimeNs now) const {
+    std::vector<TeammateState> all = node_->teammates(team_time(now));
+    for (TeammateState& m : all) m.heard -= ahead_;
     return all;
   }
-  std::vector<Neighbour> neighbours(TimeNs now) const { return mate_->neighbours(team_time(now)); }
+  std::vector<Neighbour> neighbours(TimeNs now) const { return node_->neighbours(team_time(now)); }
 
  private:
-  Teammate* mate_;
+  TeamNode* node_;
   RelayHoming* homing_;
   TeamOptions options_;
   TimeNs ahead_;

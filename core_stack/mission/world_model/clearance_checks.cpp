@@ -52,13 +52,13 @@ Vec3 hover_below(const VoxelMap& map, const ClearanceLimits& limits, const Vec3&
   constexpr double kStep_m = 0.05;
   const double enough_m = limits.usual_m - limits.hull_radius_m;
   Vec3 best = highest;
-  double most_m = -1;
-  for (Vec3 p = highest; most_m < enough_m; p.z() -= kStep_m) {
+  double max_m = -1;
+  for (Vec3 p = highest; max_m < enough_m; p.z() -= kStep_m) {
     const double above_ground_m = p.z() - limits.ground_z_m;
-    if (above_ground_m <= most_m) break;
+    if (above_ground_m <= max_m) break;
     const double room_m = std::min(above_ground_m, hull_clearance_m(map, limits, p).value_or(above_ground_m));
-    if (room_m <= most_m) continue;
-    most_m = room_m;
+    if (room_m <= max_m) continue;
+    max_m = room_m;
     best = p;
   }
   return best;

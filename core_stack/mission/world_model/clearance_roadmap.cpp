@@ -9,15 +9,15 @@ void ClearanceRoadmap::note(std::span<const CellChange> changes) {
 void ClearanceRoadmap::update(const VoxelMap& map, const Vec3& home) {
   roadmap_.update(map, noted_);
   noted_.clear();
-  way_home_.update(map, roadmap_, home, planning());
+  path_home_.update(map, roadmap_, home, planning());
 }
 
 std::optional<double> ClearanceRoadmap::home_length_m(const VoxelMap& map, const Vec3& from) const {
-  return way_home_.length_m(map, roadmap_, from);
+  return path_home_.length_m(map, roadmap_, from);
 }
 
 Path ClearanceRoadmap::path_home(const VoxelMap& map, const Vec3& from) const {
-  return way_home_.find(map, roadmap_, from);
+  return path_home_.find(map, roadmap_, from);
 }
 
 std::optional<double> narrow_clearance_m(const PlanningOptions& options, double vehicle_radius_m) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "core_stack/planning/roadmap/roadmap.h"
 
 namespace karst::core {
@@ -37,7 +37,7 @@ class ClearanceRoadmap {
  private:
   Passages passages_;
   Roadmap roadmap_;
-  WayHome way_home_;
+  PathHome path_home_;
   std::vector<CellChange> noted_;
 };
 

@@ -11,7 +11,7 @@ HomeEstimator::HomeEstimator(const CoreOptions& options, const VehicleDescriptio
       home_margin_(options.mission.home_margin),
       home_reserve_s_(options.mission.home_reserve_s),
       landing_speed_mps_(options.mission.landing_speed_mps),
-      slow_speed_mps_(options.safety.slow_share * options.motion.max_speed_mps),
+      slow_speed_mps_(options.safety.slow_fraction * options.motion.max_speed_mps),
       ground_z_m_(vehicle.T_world_start.position.z()),
       world_(&world),
       team_(&team) {}
@@ -67,19 +67,20 @@ std::optional<LandingSpot> HomeEstimator::nearest_spot(const Vec3& from, double 
   return beyond->time_s < sooner_than_s ? beyond : std::nullopt;
 }
 
-OtherVehicle HomeEstimator::seen_by_policy(const HeardMate& mate, TimeNs now) {
-  OtherVehicle out{mate.robot, mate.heard, mate.position, mate.velocity_mps, mate.goal, 0};
-  if (!mate.explores) return out;
+OtherVehicle HomeEstimator::seen_by_policy(const TeammateState& teammate, TimeNs now) {
+  OtherVehicle out{teammate.robot,        teammate.heard, teammate.position,
+                   teammate.velocity_mps, teammate.goal,  0};
+  if (!teammate.explores) return out;
   const VoxelMap& map = world_->map();
   const ClearanceRoadmap& usual = world_->usual();
   constexpr double inf = std::numeric_limits<double>::infinity();
   HomeEstimate home;
-  home.length_m = usual.home_length_m(map, mate.position).value_or(inf);
+  home.length_m = usual.home_length_m(map, teammate.position).value_or(inf);
   home.time_s = time_home_s(home.length_m);
   if (const RelayHoming* const homing = team_->homing())
-    if (const auto spot = homing->spot_from(map, usual.roadmap(), mate.position, home.time_s))
+    if (const auto spot = homing->spot_from(map, usual.roadmap(), teammate.position, home.time_s))
       home.time_s = spot->time_s;
-  const double left_s = mate.seconds_left - seconds(now - mate.heard);
+  const double left_s = teammate.seconds_left - seconds(now - teammate.heard);
   out.seconds_before_homing =
       std::isfinite(home.time_s) ? slack_s(left_s, home) : std::numeric_limits<double>::quiet_NaN();
   return out;

@@ -30,7 +30,7 @@ class HomeEstimator {
   double slack_s(double seconds_left, const HomeEstimate& home) const;
   /// A teammate reports its battery, not its plans: when it must turn back is worked out on one's own map, as
   /// for oneself.
-  OtherVehicle seen_by_policy(const HeardMate& mate, TimeNs now);
+  OtherVehicle seen_by_policy(const TeammateState& teammate, TimeNs now);
 
  private:
   HomeEstimate to_start(const Vec3& from, double flown_m);

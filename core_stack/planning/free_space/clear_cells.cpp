@@ -9,7 +9,7 @@
 namespace karst::core {
 namespace {
 
-constexpr int kMostReach = 16;  // a row of 32 cells is widened by that much on both sides
+constexpr int kMaxExtent = 16;  // a row of 32 cells is widened by that much on both sides
 
 /// True if the ball of radius r around one end or the other of the move from 0 to d holds o, or no point of
 /// the move is nearer to o than r.
@@ -30,7 +30,7 @@ bool near_moves(const Eigen::Vector3i& o, double r2) {
 double squared_radius(double radius_cells) { return radius_cells * radius_cells - 1e-6; }
 
 double checked(double clearance_cells) {
-  if (!(clearance_cells <= kMostReach - 2))
+  if (!(clearance_cells <= kMaxExtent - 2))
     throw InputError("planning", "clearance",
                      "is more than 14 cells of the map; make it less or the cells larger");
   return clearance_cells;
@@ -90,7 +90,7 @@ void Ball::fill(double radius_cells, Holds&& holds) {
       if (half_width < 0 && dy == 0 && dz == 0) half_width = 0;    // the cell itself must be free
       if (half_width < 0) continue;
       rows_.push_back({dy, dz, half_width});
-      reach_ = std::max({reach_, half_width + (shift_ & 1), std::abs(dy), std::abs(dz)});
+      extent_ = std::max({extent_, half_width + (shift_ & 1), std::abs(dy), std::abs(dz)});
     }
 }
 
@@ -116,16 +116,16 @@ ClearanceRule::ClearanceRule(double clearance_cells, double search_cells)
   for (int shift = 0; shift < 8; ++shift) points_.emplace_back(checked(clearance_cells), shift);
 }
 
-int ClearanceRule::reach() const {
-  int reach = moves_.reach();
-  for (const Ball& b : points_) reach = std::max(reach, b.reach() + 1);
-  return reach;
+int ClearanceRule::extent() const {
+  int extent = moves_.extent();
+  for (const Ball& b : points_) extent = std::max(extent, b.extent() + 1);
+  return extent;
 }
 
 TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) const {
   TileBits out = bits(t);
   if (std::all_of(out.begin(), out.end(), [](std::uint32_t r) { return r == 0; })) return out;
-  const int p = rule.reach();
+  const int p = rule.extent();
   const CellKey c = corner_of(t);
   WideRows free(p);
   for (int z = -p; z < 8 + p; ++z)

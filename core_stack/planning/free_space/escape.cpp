@@ -12,8 +12,8 @@ std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& fre
     double length_m, distance_m;  // of the way so far; to the nearest obstacle
     CellKey parent;
   };
-  const double res = free.resolution_m(), reach_m = 2 * clearance_m + 2 * res;
-  free.load_near(map, start, reach_m + clearance_m);
+  const double res = free.resolution_m(), radius_m = 2 * clearance_m + 2 * res;
+  free.load_near(map, start, radius_m + clearance_m);
   const CellKey first = free.key_of(start);
   if (!free.at(first)) return std::nullopt;
 
@@ -34,7 +34,7 @@ std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& fre
     for (int i = 0; i < 27; ++i) {
       const CellKey n = k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
       const Vec3 q = free.center_of(n);
-      if (n == first || (q - start).norm() > reach_m || !free.at(n)) continue;
+      if (n == first || (q - start).norm() > radius_m || !free.at(n)) continue;
       const double distance = free.nearest(q, clearance_m).distance_m;
       const double length = at.length_m + (q - p).norm();
       const auto known = visits.find(n);

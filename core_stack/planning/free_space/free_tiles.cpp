@@ -9,7 +9,7 @@
 namespace karst::core {
 namespace {
 
-constexpr int kNearestReach = 15;  // a window of 32 cells around the point
+constexpr int kNearestRadius = 15;  // a window of 32 cells around the point
 constexpr TileBits kUnknownTile{};
 
 struct Offset {
@@ -20,9 +20,9 @@ struct Offset {
 /// Rows around a cell by distance, nearest first.
 std::vector<Offset> rows_by_distance() {
   std::vector<Offset> out;
-  for (int dz = -kNearestReach; dz <= kNearestReach; ++dz)
-    for (int dy = -kNearestReach; dy <= kNearestReach; ++dy)
-      if (const double d = std::hypot(dy, dz); d <= kNearestReach) out.push_back({dy, dz, d});
+  for (int dz = -kNearestRadius; dz <= kNearestRadius; ++dz)
+    for (int dy = -kNearestRadius; dy <= kNearestRadius; ++dy)
+      if (const double d = std::hypot(dy, dz); d <= kNearestRadius) out.push_back({dy, dz, d});
   std::stable_sort(out.begin(), out.end(),
                    [](const Offset& a, const Offset& b) { return a.distance < b.distance; });
   return out;
@@ -60,9 +60,9 @@ void FreeTiles::load(const VoxelMap& map, const CellKey& low, const CellKey& hig
       }
 }
 
-void FreeTiles::load_near(const VoxelMap& map, const Vec3& p, double reach_m) {
-  const Vec3 reach = Vec3::Constant(reach_m + resolution_m_);
-  load(map, key_of(p - reach), key_of(p + reach));
+void FreeTiles::load_near(const VoxelMap& map, const Vec3& p, double radius_m) {
+  const Vec3 radius = Vec3::Constant(radius_m + resolution_m_);
+  load(map, key_of(p - radius), key_of(p + radius));
 }
 
 void FreeTiles::refresh(const VoxelMap& map, const CellKey& k) {
@@ -127,14 +127,14 @@ NearestObstacle FreeTiles::nearest(const Vec3& p, double limit_m) const {
   static const std::vector<Offset> rows = rows_by_distance();
   const CellKey c = key_of(p);
   const Vec3 q = p / resolution_m_ - Vec3::Constant(0.5);
-  double best = std::min(limit_m / resolution_m_, static_cast<double>(kNearestReach)), best2 = best * best;
-  NearestObstacle out{std::min(limit_m, kNearestReach * resolution_m_), p};
+  double best = std::min(limit_m / resolution_m_, static_cast<double>(kNearestRadius)), best2 = best * best;
+  NearestObstacle out{std::min(limit_m, kNearestRadius * resolution_m_), p};
   // The window's rows lie in at most five by five pairs of tiles along x, each looked up when first needed.
   struct Pair {
     const TileBits *low = nullptr, *high = nullptr;
   };
   std::array<Pair, 25> pairs{};
-  const TileKey first = tile_of({c.x - 16, c.y - kNearestReach, c.z - kNearestReach});
+  const TileKey first = tile_of({c.x - 16, c.y - kNearestRadius, c.z - kNearestRadius});
   const int shift = (c.x - 16) & 31;
   const auto window_row = [&](std::int32_t y, std::int32_t z) {
     const TileKey t{first.x, y >> 3, z >> 3};

@@ -28,14 +28,14 @@ class Ball {
   };
   const std::vector<Row>& rows() const { return rows_; }
   int shift() const { return shift_; }
-  int reach() const { return reach_; }
+  int extent() const { return extent_; }
 
  private:
   template <class Holds>
   void fill(double radius_cells, Holds&& holds);
 
   std::vector<Row> rows_;
-  int shift_, reach_ = 0;
+  int shift_, extent_ = 0;
 };
 
 /// Which cells a search may use.
@@ -49,7 +49,7 @@ class ClearanceRule {
   const Ball& moves() const { return moves_; }
   /// Around the centre and around the points half a cell up from it. None: `moves` alone decides.
   const std::vector<Ball>& points() const { return points_; }
-  int reach() const;
+  int extent() const;
 
  private:
   Ball moves_;
@@ -68,7 +68,7 @@ class FreeTiles {
   /// Reads the tiles that touch the closed box of cells and have not been read yet. What was never read
   /// counts as unknown.
   void load(const VoxelMap& map, const CellKey& low, const CellKey& high);
-  void load_near(const VoxelMap& map, const Vec3& p, double reach_m);
+  void load_near(const VoxelMap& map, const Vec3& p, double radius_m);
   /// Notes a cell's present class.
   void refresh(const VoxelMap& map, const CellKey& k);
 

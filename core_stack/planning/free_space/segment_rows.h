@@ -68,8 +68,8 @@ class RowsNearSegment {
 /// false; returns whether all did. A centre at r, up to rounding, is not nearer than r.
 template <class Visit>
 bool all_rows_near_segment(const Vec3& a, const Vec3& b, double r, Visit&& visit) {
-  constexpr double most_cells = 8;  // long segments go in pieces, or most rows of their box would be empty
-  const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / most_cells)));
+  constexpr double max_cells = 8;  // long segments go in pieces, or most rows of their box would be empty
+  const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / max_cells)));
   r -= 1e-7;
   if (r < 0) return true;
   for (int i = 0; i < pieces; ++i) {

@@ -9,7 +9,7 @@ namespace {
 constexpr int kSweeps = 60;
 constexpr double kSettled_m = 0.002;  // a sweep that moves no point farther than this is the last
 constexpr double kBending = 0.35, kTension = 0.08, kPush = 0.3;
-constexpr double kMostStep_m = 0.15;
+constexpr double kMaxStep_m = 0.15;
 
 /// True if every point between a and b is clear, given the distances at both: nothing on the way can be
 /// nearer than (da + db - length) / 2. Asks the cells only where that does not decide.
@@ -30,12 +30,12 @@ class NearestAlong {
     if (s.distance_m - (p - s.from).norm() >= limit_m_ + 1e-9) return {limit_m_, p};
     if (s.near && (p - s.from).norm() < 0.5 * kAhead_m) return free_.nearest(p, limit_m_);
     const NearestObstacle o = free_.nearest(p, limit_m_ + kAhead_m);
-    s = {o.distance_m, p, o.distance_m < limit_m_ + kLeastAhead_m};
+    s = {o.distance_m, p, o.distance_m < limit_m_ + kMinAhead_m};
     return o.distance_m < limit_m_ ? o : NearestObstacle{limit_m_, p};
   }
 
  private:
-  static constexpr double kAhead_m = 0.6, kLeastAhead_m = 0.1;
+  static constexpr double kAhead_m = 0.6, kMinAhead_m = 0.1;
   struct Seen {
     double distance_m = 0;  // to the nearest obstacle, or as far as was looked
     Vec3 from = Vec3::Zero();
@@ -76,7 +76,7 @@ std::vector<Vec3> smooth_band(const FreeTiles& free, double clearance_m, double 
         push -= push.dot(along) * along;
         step += push;
       }
-      if (step.norm() > kMostStep_m) step *= kMostStep_m / step.norm();
+      if (step.norm() > kMaxStep_m) step *= kMaxStep_m / step.norm();
       if (step.norm() < 1e-4) continue;
       for (int half = 0; half < 2; ++half, step *= 0.4) {
         const Vec3 q = p + step;

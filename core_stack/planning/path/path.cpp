@@ -28,7 +28,7 @@ bool near_narrow_place(const std::vector<Vec3>& places, const Vec3& a, const Vec
     const Vec3 along = b - a;
     const double l2 = along.squaredNorm();
     const double s = l2 > 0 ? std::clamp((p - a).dot(along) / l2, 0.0, 1.0) : 0.0;
-    return (a + s * along - p).norm() <= kNarrowReach_m;
+    return (a + s * along - p).norm() <= kNarrowRadius_m;
   });
 }
 

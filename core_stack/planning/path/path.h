@@ -28,7 +28,7 @@ inline double search_clearance_m(const PlanningOptions& o, double resolution_m) 
   return o.clearance_m - o.search_slack_cells * resolution_m;
 }
 /// The least clearance of what is flown, where refining cannot make up for all of it.
-inline double least_clearance_m(const PlanningOptions& o, double resolution_m) {
+inline double min_clearance_m(const PlanningOptions& o, double resolution_m) {
   return o.clearance_m - 0.25 * resolution_m;
 }
 
@@ -54,7 +54,7 @@ struct Path {
 double path_length_m(const std::vector<Vec3>& points);
 
 /// Around a narrow place it is flown slowly, and less clearance will do.
-constexpr double kNarrowReach_m = 1.0;
+constexpr double kNarrowRadius_m = 1.0;
 bool near_narrow_place(const std::vector<Vec3>& places, const Vec3& a, const Vec3& b);
 
 /// Sets length_m, and length_bound from what the planner promises and from the straight distance.

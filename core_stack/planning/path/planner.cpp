@@ -20,8 +20,8 @@ constexpr std::int64_t kNearExpansions = 30000;
 /// A start that lies in the slack below the clearance must have left it after this much of the path.
 constexpr double kSlackLeft_m = 1.0;
 /// A place where refining failed is planned anew from this far before it to this far behind, so many times.
-constexpr double kDetourReach_m = 2.0;
-constexpr int kMostDetours = 6;
+constexpr double kDetourRadius_m = 2.0;
+constexpr int kMaxDetours = 6;
 
 /// Refines `raw` on the roadmap's free cells, which are the map's: nothing needs to be read anew.
 Path refined(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options) {
@@ -56,16 +56,16 @@ bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOpt
   std::size_t from = flaw, to = flaw + 1;
   const Vec3 place = path.points[flaw];
   const auto good_end = [&](const Vec3& p) {
-    return (p - place).norm() >= kDetourReach_m && is_clear(map, p, options.clearance_m);
+    return (p - place).norm() >= kDetourRadius_m && is_clear(map, p, options.clearance_m);
   };
   while (from > path.escape_points && !good_end(path.points[from])) --from;
   while (to + 1 < path.points.size() && !good_end(path.points[to])) ++to;
   PlanningOptions local = options;
   local.max_expansions = std::min(options.max_expansions, kNearExpansions);
-  const Path way = plan_on_grid(map, path.points[from], path.points[to], local);
-  if (!way.found() || (way.escape_points > 0 && from > path.escape_points)) return false;
+  const Path bypass = plan_on_grid(map, path.points[from], path.points[to], local);
+  if (!bypass.found() || (bypass.escape_points > 0 && from > path.escape_points)) return false;
   std::vector<Vec3> points(path.points.begin(), path.points.begin() + static_cast<std::ptrdiff_t>(from));
-  points.insert(points.end(), way.points.begin(), way.points.end());
+  points.insert(points.end(), bypass.points.begin(), bypass.points.end());
   points.insert(points.end(), path.points.begin() + static_cast<std::ptrdiff_t>(to) + 1, path.points.end());
   path.points = std::move(points);
   measure(path, std::numeric_limits<double>::infinity());
@@ -83,7 +83,7 @@ Path finished(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, cons
     }
     const Vec3 p = path.points[static_cast<std::size_t>(flaw)];
     path.escape_points = raw.escape_points;
-    if (round < kMostDetours && detour(map, path, static_cast<std::size_t>(flaw), options)) {
+    if (round < kMaxDetours && detour(map, path, static_cast<std::size_t>(flaw), options)) {
       path = refined(map, roadmap, path, options);
       continue;
     }
@@ -131,7 +131,7 @@ Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw,
   }
   // A narrow passage and no way around it: keep the clearance that the search found.
   PlanningOptions tight = options;
-  tight.clearance_m = least_clearance_m(options, map.resolution_m());
+  tight.clearance_m = min_clearance_m(options, map.resolution_m());
   Path narrow = finished(map, roadmap, raw, tight);
   if (!narrow.found()) return path;
   mark_narrow_places(map, options.clearance_m, narrow);

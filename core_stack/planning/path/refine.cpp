@@ -9,14 +9,14 @@ namespace karst::core {
 namespace {
 
 /// Points of the given path are lifted off obstacles in steps from the first to the second of these.
-constexpr double kLiftStep_m = 0.04, kLeastLiftStep_m = 0.004;
+constexpr double kLiftStep_m = 0.04, kMinLiftStep_m = 0.004;
 /// Lifted that much more, so that the lines between lifted points are clear too.
 constexpr double kLiftSlack_m = 0.02;
 /// The band's points stand this far apart; the finished path's points at most `kFineSpacing_m`.
 constexpr double kBandSpacing_m = 0.4;
 constexpr double kFineSpacing_m = 0.1;
 /// For more clearance a path may become that much longer than the one given (which zigzags: it rarely does).
-constexpr double kMostLonger = 1.05;
+constexpr double kMaxLonger = 1.05;
 
 /// Points at most `spacing_m` apart along the same polyline, its vertices included.
 std::vector<Vec3> densified(const std::vector<Vec3>& points, double spacing_m) {
@@ -36,7 +36,7 @@ std::vector<Vec3> densified(const std::vector<Vec3>& points, double spacing_m) {
 void lift(const FreeTiles& free, double clearance_m, std::vector<Vec3>& points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     double distance = free.nearest(points[i], clearance_m).distance_m;
-    for (double step = kLiftStep_m; step > kLeastLiftStep_m && distance < clearance_m;) {
+    for (double step = kLiftStep_m; step > kMinLiftStep_m && distance < clearance_m;) {
       Vec3 best = points[i];
       for (int m = 0; m < 27; ++m) {
         const Vec3 q = points[i] + step * Vec3(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
@@ -110,11 +110,11 @@ std::vector<Vec3> refine_path(const FreeTiles& free, const std::vector<Vec3>& po
     lift(free, clearance + kLiftSlack_m, rest);
     const std::vector<Vec3> string = shortened(free, clearance, rest);
     best = string;
-    for (const double share : {1.0, 0.6, 0.3, 0.0}) {
-      const std::vector<Vec3> band = smooth_band(free, clearance, clearance + share * (preferred - clearance),
-                                                 densified(string, kBandSpacing_m));
+    for (const double fraction : {1.0, 0.6, 0.3, 0.0}) {
+      const std::vector<Vec3> band = smooth_band(
+          free, clearance, clearance + fraction * (preferred - clearance), densified(string, kBandSpacing_m));
       std::vector<Vec3> fine = fine_curve(free, clearance, band, kFineSpacing_m);
-      if (path_length_m(fine) <= kMostLonger * raw_length) {
+      if (path_length_m(fine) <= kMaxLonger * raw_length) {
         best = std::move(fine);
         break;
       }

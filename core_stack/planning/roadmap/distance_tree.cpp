@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core_stack/planning/roadmap/roadmap_way.h"
+#include "core_stack/planning/roadmap/roadmap_path.h"
 
 namespace karst::core {
 namespace {
@@ -53,8 +53,8 @@ struct DistanceTree::Tree {
   void take_over(const RoadmapGraph& g, std::uint32_t tile, std::vector<PastNode>& gone,
                  std::vector<NodeRef>& lost);
   void check_joins(const RoadmapGraph& g, std::vector<PastNode>& gone, std::vector<NodeRef>& lost);
-  void forget_ways_through(const RoadmapGraph& g, std::vector<PastNode> gone, std::vector<NodeRef>& lost);
-  void settle(const RoadmapGraph& g, const std::vector<NodeRef>& lost);
+  void forget_paths_through(const RoadmapGraph& g, std::vector<PastNode> gone, std::vector<NodeRef>& lost);
+  void relax(const RoadmapGraph& g, const std::vector<NodeRef>& lost);
   void forget(const NodeRef& n, std::vector<PastNode>& gone, std::vector<NodeRef>& lost) {
     length(n) = kUnreached_m, next(n) = kNothing;
     lost.push_back(n);
@@ -105,8 +105,8 @@ void DistanceTree::Tree::check_joins(const RoadmapGraph& g, std::vector<PastNode
   }
 }
 
-void DistanceTree::Tree::forget_ways_through(const RoadmapGraph& g, std::vector<PastNode> gone,
-                                             std::vector<NodeRef>& lost) {
+void DistanceTree::Tree::forget_paths_through(const RoadmapGraph& g, std::vector<PastNode> gone,
+                                              std::vector<NodeRef>& lost) {
   while (!gone.empty()) {
     const PastNode past = gone.back();
     gone.pop_back();
@@ -117,7 +117,7 @@ void DistanceTree::Tree::forget_ways_through(const RoadmapGraph& g, std::vector<
 }
 
 /// Dijkstra's algorithm, from what the neighbours of the lost nodes and the root's joins offer.
-void DistanceTree::Tree::settle(const RoadmapGraph& g, const std::vector<NodeRef>& lost) {
+void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>& lost) {
   std::vector<Entry> heap;
   const auto offer = [&](const NodeRef& n, double length_m, const CellKey& by) {
     // Of equally long ways the one by the least place is kept: it does not depend on the map's history.
@@ -161,9 +161,9 @@ void DistanceTree::Tree::update(const RoadmapGraph& g) {
   for (std::uint32_t i = 0; i < tiles.size(); ++i)
     if (g.tiles[i].changed > tiles[i].seen) take_over(g, i, gone, lost);
   check_joins(g, gone, lost);
-  forget_ways_through(g, std::move(gone), lost);
+  forget_paths_through(g, std::move(gone), lost);
   touched = lost.size();
-  settle(g, lost);
+  relax(g, lost);
 }
 
 std::optional<Join> DistanceTree::Tree::best_join(const RoadmapGraph& g, const Vec3& from,
@@ -193,10 +193,10 @@ std::optional<double> DistanceTree::length_m(const VoxelMap& map, const Roadmap&
                                              const Vec3& from) const {
   const RoadmapGraph& g = roadmap.graph();
   if (!tree_->root || !g.rule) return std::nullopt;
-  const std::vector<Vec3> way_out = way_to_clear(map, g, from);
+  const std::vector<Vec3> escape = path_to_clear(map, g, from);
   double length_m = kUnreached_m;
-  if (way_out.empty() || !tree_->best_join(g, way_out.back(), length_m)) return std::nullopt;
-  return path_length_m(way_out) + length_m;
+  if (escape.empty() || !tree_->best_join(g, escape.back(), length_m)) return std::nullopt;
+  return path_length_m(escape) + length_m;
 }
 
 Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const {
@@ -208,7 +208,7 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
     return path;
   };
   if (!tree_->root || !g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");
-  path.points = way_to_clear(map, g, from);
+  path.points = path_to_clear(map, g, from);
   if (path.points.empty())
     return fail(PlanStatus::start_blocked,
                 "the start is nearer to an obstacle than the clearance and no way leads out");
@@ -227,7 +227,7 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
   }
   for (std::size_t i = 0; i < tree_->joins.size(); ++i)
     if (tree_->joined[i] == g.cell_of(nodes.back()))
-      append_way(g, *out, nodes, tree_->joins[i], *tree_->root, path.points);
+      append_path(g, *out, nodes, tree_->joins[i], *tree_->root, path.points);
   path.status = PlanStatus::found;
   measure(path, kUnreached_m);
   return path;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core_stack/planning/roadmap/roadmap_graph.h"
-#include "core_stack/planning/roadmap/roadmap_way.h"
+#include "core_stack/planning/roadmap/roadmap_path.h"
 
 namespace karst::core {
 namespace {
@@ -21,8 +21,8 @@ constexpr double kDirect_m = 5.0;
 constexpr double kFirstShell_m = 1.6;
 
 /// Of 4 x 4 x 4 cells, in the cube around a ball.
-double blocks_within(double reach_m, double resolution_m) {
-  return std::pow(2 * reach_m / (4 * resolution_m) + 2, 3);
+double blocks_within(double radius_m, double resolution_m) {
+  return std::pow(2 * radius_m / (4 * resolution_m) + 2, 3);
 }
 
 /// One run over the graph from several joins, by least length plus least possible rest.
@@ -124,14 +124,14 @@ bool Roadmap::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) co
   return graph_->rule && graph_->free.segment_clear(a, b, clearance_m);
 }
 
-std::vector<Vec3> Roadmap::places_near(const Vec3& p, double reach_m) const {
+std::vector<Vec3> Roadmap::places_near(const Vec3& p, double radius_m) const {
   const RoadmapGraph& g = *graph_;
   std::vector<Vec3> out;
-  if (!g.rule || !(p.cwiseAbs().maxCoeff() < 1e6) || !(reach_m > 0)) return out;
-  const Vec3 reach = Vec3::Constant(reach_m);
-  const CellKey low = g.free.key_of(p - reach), high = g.free.key_of(p + reach);
-  const auto near = [&](const NodeRef& n) { return (g.position_of(n) - p).norm() <= reach_m; };
-  if (blocks_within(reach_m, g.free.resolution_m()) <= static_cast<double>(g.tiles.size())) {
+  if (!g.rule || !(p.cwiseAbs().maxCoeff() < 1e6) || !(radius_m > 0)) return out;
+  const Vec3 radius = Vec3::Constant(radius_m);
+  const CellKey low = g.free.key_of(p - radius), high = g.free.key_of(p + radius);
+  const auto near = [&](const NodeRef& n) { return (g.position_of(n) - p).norm() <= radius_m; };
+  if (blocks_within(radius_m, g.free.resolution_m()) <= static_cast<double>(g.tiles.size())) {
     for (std::int32_t z = low.z & ~3; z <= high.z; z += 4)
       for (std::int32_t y = low.y & ~3; y <= high.y; y += 4)
         for (std::int32_t x = low.x & ~3; x <= high.x; x += 4)
@@ -166,40 +166,41 @@ std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, dou
   if (!g.rule) return std::nullopt;
   if (g.free.is_clear(goal, g.clearance_m)) return goal;
   if (map.at(goal) != Cell::free) return std::nullopt;  // nothing sees it through free cells
-  struct Place {
+  struct Candidate {
     Vec3 position;
     double away_m;
   };
   // Shell by shell, the nearest first: where there is one, it is mostly near.
   double beyond_m = -1;
-  for (double reach_m = std::min(kFirstShell_m, tolerance_m);; reach_m = std::min(2 * reach_m, tolerance_m)) {
-    std::vector<Place> shell;
-    for (const Vec3& p : places_near(goal, reach_m))
+  for (double radius_m = std::min(kFirstShell_m, tolerance_m);;
+       radius_m = std::min(2 * radius_m, tolerance_m)) {
+    std::vector<Candidate> shell;
+    for (const Vec3& p : places_near(goal, radius_m))
       if (const double away_m = (p - goal).norm(); away_m > beyond_m) shell.push_back({p, away_m});
     std::stable_sort(shell.begin(), shell.end(),
-                     [](const Place& a, const Place& b) { return a.away_m < b.away_m; });
-    const double looked_at = std::min(blocks_within(reach_m, g.free.resolution_m()),
+                     [](const Candidate& a, const Candidate& b) { return a.away_m < b.away_m; });
+    const double looked_at = std::min(blocks_within(radius_m, g.free.resolution_m()),
                                       static_cast<double>(g.tiles.size() + node_count()));
     if (work && !work->spend(static_cast<std::uint64_t>(looked_at))) return std::nullopt;
-    for (const Place& place : shell) {
+    for (const Candidate& place : shell) {
       const double cells = 1 + 2 * place.away_m / g.free.resolution_m();  // of the line, about
       if (work && !work->spend(static_cast<std::uint64_t>(cells))) return std::nullopt;
       if (!map.first_not_free(place.position, goal)) return place.position;
     }
-    if (!(reach_m < tolerance_m)) return std::nullopt;
-    beyond_m = reach_m;
+    if (!(radius_m < tolerance_m)) return std::nullopt;
+    beyond_m = radius_m;
   }
 }
 
 std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
-                                       double goal_tolerance_m, double most_m, WorkBudget* work) const {
+                                       double goal_tolerance_m, double max_m, WorkBudget* work) const {
   const RoadmapGraph& g = *graph_;
   std::vector<double> out(goals.size(), kInf);
   if (!g.rule) return out;
-  const std::vector<Vec3> way_out = way_to_clear(map, g, from);
-  if (way_out.empty()) return out;
-  const Vec3 start = way_out.back();
-  const double escape_m = path_length_m(way_out);
+  const std::vector<Vec3> escape = path_to_clear(map, g, from);
+  if (escape.empty()) return out;
+  const Vec3 start = escape.back();
+  const double escape_m = path_length_m(escape);
 
   GraphSearch search(g);
   std::vector<std::vector<Join>> goal_joins(goals.size());
@@ -221,11 +222,11 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
   std::size_t left = wanted.size();
   if (left > 0)
     search.run(g.joins(start), std::nullopt, [&](std::uint32_t node, double length_m) {
-      return length_m > most_m || (std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0);
+      return length_m > max_m || (std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0);
     });
   for (std::size_t i = 0; i < goals.size(); ++i)
     for (const Join& j : goal_joins[i])
-      if (const double length_m = search.length(search.index_of(j.node)); length_m <= most_m)
+      if (const double length_m = search.length(search.index_of(j.node)); length_m <= max_m)
         out[i] = std::min(out[i], escape_m + length_m + j.length_m);
   return out;
 }
@@ -241,7 +242,7 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
   if (!g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");
   if (!g.free.is_clear(goal, g.clearance_m))
     return fail(PlanStatus::goal_blocked, "the goal is nearer to an obstacle than the clearance");
-  path.points = way_to_clear(map, g, from);
+  path.points = path_to_clear(map, g, from);
   if (path.points.empty())
     return fail(PlanStatus::start_blocked,
                 "the start is nearer to an obstacle than the clearance and no way leads out");
@@ -266,7 +267,7 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
   std::reverse(nodes.begin(), nodes.end());
   for (const Join& j : outs)
     if (search.index_of(j.node) == search.index_of(nodes.front()))
-      append_way(g, j, nodes, *in, goal, path.points);
+      append_path(g, j, nodes, *in, goal, path.points);
   path.status = PlanStatus::found;
   measure(path, kInf);
   return path;

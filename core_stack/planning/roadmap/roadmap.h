@@ -36,12 +36,12 @@ class Roadmap {
   /// Path lengths in metres from `from` to each goal through the graph (one Dijkstra run); +inf where there
   /// is no way. The graph's ways zigzag a little: some per cent longer than the path flown. A goal is joined
   /// to nodes it sees along a clear line, or, if itself not clear, to `approach(goal)`. Ways through the
-  /// graph longer than `most_m` are not looked for: +inf as well. Looking for places to approach counts
+  /// graph longer than `max_m` are not looked for: +inf as well. Looking for places to approach counts
   /// against `work`, a step for each block, node and cell looked at; once it is exhausted the lengths mean
   /// nothing.
   std::vector<double> distances(const VoxelMap& map, const Vec3& from, std::span<const Vec3> goals,
                                 double goal_tolerance_m,
-                                double most_m = std::numeric_limits<double>::infinity(),
+                                double max_m = std::numeric_limits<double>::infinity(),
                                 WorkBudget* work = nullptr) const;
   /// A path of the search's clearance (search_clearance_m); raw: pass it to refine_path.
   Path find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const;
@@ -51,7 +51,7 @@ class Roadmap {
 
   /// The graph's nodes within `reach_m` of p: clear by the search's clearance, and less than a cell from a
   /// point that is so by the whole.
-  std::vector<Vec3> places_near(const Vec3& p, double reach_m) const;
+  std::vector<Vec3> places_near(const Vec3& p, double radius_m) const;
 
   /// The straight line runs through free cells and is nowhere nearer than `clearance_m` to an obstacle's
   /// centre, as the map was at the last update. Microseconds.

@@ -65,7 +65,7 @@ std::uint32_t RoadmapGraph::add_tile(const TileKey& t) {
 }
 
 void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty) {
-  const int r = rule->reach();
+  const int r = rule->extent();
   const TileKey a = tile_of({k.x - r, k.y - r, k.z - r}), b = tile_of({k.x + r, k.y + r, k.z + r});
   for (std::int32_t z = a.z; z <= b.z; ++z)
     for (std::int32_t y = a.y; y <= b.y; ++y)

@@ -56,13 +56,13 @@ Path search_path(const VoxelMap& map, const Vec3& start, const Vec3& goal, const
 
   path.points = {start};
   if (!free.is_clear(start, clearance)) {
-    const auto way_out = within_world(start) ? escape_path(map, free, start, clearance) : std::nullopt;
-    if (!way_out)
+    const auto escape = within_world(start) ? escape_path(map, free, start, clearance) : std::nullopt;
+    if (!escape)
       return fail(PlanStatus::start_blocked,
                   what_blocks(map, free, start, clearance, "start") +
                       ", and no way out of there that only leads away from obstacles");
-    path.points = *way_out;
-    path.escape_points = way_out->size() - 1;
+    path.points = *escape;
+    path.escape_points = escape->size() - 1;
   }
   const Vec3 from = path.points.back(), half = Vec3::Constant(0.5);
   const GridSearchResult found =

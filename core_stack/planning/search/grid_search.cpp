@@ -77,7 +77,7 @@ class Search {
     tiles_.push_back(std::make_unique<SearchTile>());
     SearchTile& tile = *tiles_.back();
     tile.corner = corner_of(t);
-    const CellKey margin{16, rule_.reach(), rule_.reach()};
+    const CellKey margin{16, rule_.extent(), rule_.extent()};
     const CellKey far = tile.corner + CellKey{kTileX - 1, kTileY - 1, kTileZ - 1};
     free_.load(map_, {tile.corner.x - margin.x, tile.corner.y - margin.y, tile.corner.z - margin.z},
                far + margin);
@@ -138,14 +138,14 @@ class Search {
   float weight_;
   TileTable table_;
   std::vector<std::unique_ptr<SearchTile>> tiles_;
-  struct PlaceOf {  // node: tile index * kTileCells + index in tile, or kGoal
+  struct HeapIndexOf {  // node: tile index * kTileCells + index in tile, or kGoal
     Search* search;
     std::uint32_t& operator()(std::uint32_t node) const {
       return node == kGoal ? search->goal_place_
                            : search->tiles_[node / kTileCells]->place[node % kTileCells];
     }
   };
-  SearchHeap<PlaceOf> heap_{PlaceOf{this}};
+  SearchHeap<HeapIndexOf> heap_{HeapIndexOf{this}};
   std::uint32_t goal_place_ = 0;
   float goal_cost_ = std::numeric_limits<float>::infinity();
   CellKey goal_cell_;

@@ -34,14 +34,14 @@ class ClearMotion : public ob::MotionValidator {
                    std::pair<ob::State*, double>& last_valid) const override {
     if (checkMotion(a, b)) return true;
     // If one beginning of a segment is clear, so is every shorter one: halving finds how far it goes.
-    const Vec3 from = point_of(a), way = point_of(b) - from;
+    const Vec3 from = point_of(a), offset = point_of(b) - from;
     double clear = 0, blocked = 1;
-    while ((blocked - clear) * way.norm() > 0.25 * free_.resolution_m()) {
+    while ((blocked - clear) * offset.norm() > 0.25 * free_.resolution_m()) {
       const double middle = 0.5 * (clear + blocked);
-      (free_.segment_clear(from, from + middle * way, clearance_m_) ? clear : blocked) = middle;
+      (free_.segment_clear(from, from + middle * offset, clearance_m_) ? clear : blocked) = middle;
     }
     last_valid.second = clear;
-    if (last_valid.first != nullptr) set_point(last_valid.first, from + clear * way);
+    if (last_valid.first != nullptr) set_point(last_valid.first, from + clear * offset);
     return false;
   }
 
@@ -95,8 +95,8 @@ class CellSampler : public ob::StateSampler {
 /// path.
 class InformedCellSampler : public ob::InformedSampler {
  public:
-  InformedCellSampler(const ob::ProblemDefinitionPtr& definition, unsigned int most_calls)
-      : ob::InformedSampler(definition, most_calls), cells_(space_->allocStateSampler()) {}
+  InformedCellSampler(const ob::ProblemDefinitionPtr& definition, unsigned int max_calls)
+      : ob::InformedSampler(definition, max_calls), cells_(space_->allocStateSampler()) {}
 
   bool sampleUniform(ob::State* s, const ob::Cost& most) override {
     return sampleUniform(s, opt_->identityCost(), most);
@@ -122,8 +122,8 @@ class Shortest : public ob::PathLengthOptimizationObjective {
     setCostToGoHeuristic(&ob::goalRegionCostToGo);
   }
   ob::InformedSamplerPtr allocInformedStateSampler(const ob::ProblemDefinitionPtr& definition,
-                                                   unsigned int most_calls) const override {
-    return std::make_shared<InformedCellSampler>(definition, most_calls);
+                                                   unsigned int max_calls) const override {
+    return std::make_shared<InformedCellSampler>(definition, max_calls);
   }
 };
 

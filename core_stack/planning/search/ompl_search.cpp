@@ -124,8 +124,8 @@ std::vector<Vec3> solved(const OmplProblem& problem, const ob::PlannerPtr& plann
 
 Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
                       const PlanningOptions& options, double clearance_m) {
-  const Path way = roadmap.find(map, start, goal);
-  if (!way.found()) return way;
+  const Path coarse = roadmap.find(map, start, goal);
+  if (!coarse.found()) return coarse;
   const RoadmapGraph& graph = roadmap.graph();
   Path path;
   const auto fail = [&path](PlanStatus status, std::string reason) {
@@ -147,7 +147,7 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
   const Vec3 from = path.points.back();
 
   Vec3 low = from.cwiseMin(goal), high = from.cwiseMax(goal);
-  for (const Vec3& p : way.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  for (const Vec3& p : coarse.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
   low.array() -= kAround_m, high.array() += kAround_m;
   PlanningOptions at_clearance = options;
   at_clearance.clearance_m = clearance_m;

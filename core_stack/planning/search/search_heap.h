@@ -19,26 +19,26 @@ struct OpenNode {
 };
 
 /// `PlaceOf(node)` gives a reference to the node's own std::uint32_t, 0 to begin with, which the heap keeps.
-template <class PlaceOf>
+template <class HeapIndexOf>
 class SearchHeap {
  public:
-  explicit SearchHeap(PlaceOf place_of) : place_of_(std::move(place_of)) {}
+  explicit SearchHeap(HeapIndexOf heap_index_of) : heap_index_of_(std::move(heap_index_of)) {}
 
   bool empty() const { return heap_.empty(); }
   /// Adds a node, or moves it up if it is in the heap already and `n` comes before what is known of it.
   void push_or_lower(const OpenNode& n) {
-    const std::uint32_t place = place_of_(n.node);
-    if (place == 0) {
+    const std::uint32_t heap_index = heap_index_of_(n.node);
+    if (heap_index == 0) {
       heap_.push_back(n);
       rise(heap_.size() - 1, n);
-    } else if (n.before(heap_[place - 1])) {
-      rise(place - 1, n);
+    } else if (n.before(heap_[heap_index - 1])) {
+      rise(heap_index - 1, n);
     }
   }
   OpenNode pop() {
     const OpenNode top = heap_.front(), last = heap_.back();
     heap_.pop_back();
-    place_of_(top.node) = 0;
+    heap_index_of_(top.node) = 0;
     if (!heap_.empty()) sink(last);
     return top;
   }
@@ -46,7 +46,7 @@ class SearchHeap {
  private:
   void put(std::size_t i, const OpenNode& n) {
     heap_[i] = n;
-    place_of_(n.node) = static_cast<std::uint32_t>(i + 1);
+    heap_index_of_(n.node) = static_cast<std::uint32_t>(i + 1);
   }
   void rise(std::size_t i, const OpenNode& n) {
     for (; i > 0 && n.before(heap_[(i - 1) / 2]); i = (i - 1) / 2) put(i, heap_[(i - 1) / 2]);
@@ -63,7 +63,7 @@ class SearchHeap {
     put(i, n);
   }
 
-  PlaceOf place_of_;
+  HeapIndexOf heap_index_of_;
   std::vector<OpenNode> heap_;
 };
 

@@ -66,11 +66,11 @@ std::vector<double> turned_early(const std::vector<Vec3>& points, const std::vec
   }
   double length_m = 0;
   for (std::size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
-  const auto reach =
+  const auto half_window =
       static_cast<std::size_t>(kBend_m * static_cast<double>(points.size()) / std::max(length_m, kBend_m));
   std::vector<double> out;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::size_t half = std::min({reach, i, all.size() - 1 - i});
+    const std::size_t half = std::min({half_window, i, all.size() - 1 - i});
     const double mean = (sum[i + half + 1] - sum[i - half]) / static_cast<double>(2 * half + 1);
     out.push_back(wrap_angle(std::clamp(mean, all[i] - kAside_rad, all[i] + kAside_rad)));
   }
@@ -84,9 +84,9 @@ void look_in_passing(const std::vector<Vec3>& points, const PassingLook& look,
   });
   const auto at = static_cast<std::size_t>(nearest - points.begin());
   const auto turn_towards = [&](std::size_t i, double away_m) {
-    const double most_rad = kPassing_rad + kPassing_radpm * away_m;
+    const double max_rad = kPassing_rad + kPassing_radpm * away_m;
     const double off_rad = wrap_angle(headings[i] - look.heading_rad);
-    headings[i] = wrap_angle(look.heading_rad + std::clamp(off_rad, -most_rad, most_rad));
+    headings[i] = wrap_angle(look.heading_rad + std::clamp(off_rad, -max_rad, max_rad));
   };
   double away_m = 0;
   turn_towards(at, away_m);

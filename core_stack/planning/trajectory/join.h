@@ -10,8 +10,8 @@ namespace karst::core {
 
 /// `lead` and then `path`, which begins where the lead ends. The corner between them is replaced by a
 /// parabola that touches both, the longest of a few for which `clear` holds along it and which passes the
-/// corner by no more than `most_cut_m`; without one it stays.
-std::vector<Vec3> join_paths(const std::vector<Vec3>& lead, const std::vector<Vec3>& path, double most_cut_m,
-                             const std::function<bool(const Vec3&, const Vec3&)>& clear);
+/// corner by no more than `max_cut_m`; without one it stays.
+std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vector<Vec3>& path,
+                             double max_cut_m, const std::function<bool(const Vec3&, const Vec3&)>& clear);
 
 }  // namespace karst::core

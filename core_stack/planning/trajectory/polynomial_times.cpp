@@ -14,8 +14,8 @@ constexpr double kTimeWeight = 300.0;
 /// A limit reached costs this, and e times as much for every kSoftness of it beyond.
 constexpr double kLimitWeight = 10.0, kSoftness = 0.05;
 /// Each duration may change by this factor up or down.
-constexpr double kMostChange = 3.0;
-constexpr int kMostStretches = 60;
+constexpr double kMaxChange = 3.0;
+constexpr int kMaxStretches = 60;
 /// Places in a piece where limits are looked at, its ends among them: by the optimizer, and in the end.
 constexpr int kLooks = 9, kCloseLooks = 33;
 
@@ -33,7 +33,7 @@ Eigen::MatrixXd looks_at(int order, int looks) {
 
 /// Greatest speed, acceleration and jerk in a piece, each as a share of its limit.
 template <int kCount>
-Vec3 shares_of_limits(const PolynomialPiece& piece, const MotionLimits& limits) {
+Vec3 fractions_of_limits(const PolynomialPiece& piece, const MotionLimits& limits) {
   using Looks = Eigen::Matrix<double, kCount, 8>;
   static const Looks looks[] = {looks_at(1, kCount), looks_at(2, kCount), looks_at(3, kCount)};
   const double most[] = {limits.max_speed_mps, limits.max_acceleration_mps2, limits.max_jerk_mps3};
@@ -60,8 +60,9 @@ struct Problem {
     const Polynomial polynomial = minimum_snap(waypoints, durations_s, departure);
     double sum = polynomial.snap_cost + kTimeWeight * polynomial.duration_s();
     for (const PolynomialPiece& piece : polynomial.pieces) {
-      const Vec3 shares = shares_of_limits<kLooks>(piece, limits);
-      for (int k = 0; k < 3; ++k) sum += kLimitWeight * std::exp(std::min((shares[k] - 1) / kSoftness, 50.0));
+      const Vec3 fractions = fractions_of_limits<kLooks>(piece, limits);
+      for (int k = 0; k < 3; ++k)
+        sum += kLimitWeight * std::exp(std::min((fractions[k] - 1) / kSoftness, 50.0));
     }
     return std::isfinite(sum) ? sum : 1e30;
   }
@@ -71,7 +72,7 @@ struct Problem {
 
 std::vector<double> optimized_times(const std::vector<Vec3>& waypoints, std::vector<double> durations_s,
                                     const Departure& departure, const MotionLimits& limits, int evaluations) {
-  const std::size_t n = std::min(durations_s.size(), kMostOptimized);
+  const std::size_t n = std::min(durations_s.size(), kMaxOptimized);
   Problem problem{waypoints, durations_s, departure, limits, durations_s};
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
       nlopt_create(NLOPT_LN_SBPLX, static_cast<unsigned>(n)), nlopt_destroy);
@@ -81,8 +82,8 @@ std::vector<double> optimized_times(const std::vector<Vec3>& waypoints, std::vec
         return static_cast<Problem*>(data)->cost(x, size);
       },
       &problem);
-  nlopt_set_lower_bounds1(opt.get(), -std::log(kMostChange));
-  nlopt_set_upper_bounds1(opt.get(), std::log(kMostChange));
+  nlopt_set_lower_bounds1(opt.get(), -std::log(kMaxChange));
+  nlopt_set_upper_bounds1(opt.get(), std::log(kMaxChange));
   nlopt_set_initial_step1(opt.get(), 0.1);
   nlopt_set_maxeval(opt.get(), evaluations);
   std::vector<double> x(n, 0.0);
@@ -95,16 +96,16 @@ std::vector<double> optimized_times(const std::vector<Vec3>& waypoints, std::vec
 
 std::optional<Polynomial> within_limits(const std::vector<Vec3>& waypoints, std::vector<double> durations_s,
                                         const Departure& departure, const MotionLimits& limits) {
-  for (int round = 0; round < kMostStretches; ++round) {
+  for (int round = 0; round < kMaxStretches; ++round) {
     Polynomial polynomial = minimum_snap(waypoints, durations_s, departure);
     double worst = 0;
     std::vector<double>
         ratios;  // of time, that would bring each piece to its limits were all stretched alike
     for (const PolynomialPiece& piece : polynomial.pieces) {
-      const Vec3 shares = shares_of_limits<kCloseLooks>(piece, limits);
-      if (!shares.allFinite()) return std::nullopt;
-      worst = std::max(worst, shares.maxCoeff());
-      ratios.push_back(std::max({shares[0], std::sqrt(shares[1]), std::cbrt(shares[2])}));
+      const Vec3 fractions = fractions_of_limits<kCloseLooks>(piece, limits);
+      if (!fractions.allFinite()) return std::nullopt;
+      worst = std::max(worst, fractions.maxCoeff());
+      ratios.push_back(std::max({fractions[0], std::sqrt(fractions[1]), std::cbrt(fractions[2])}));
     }
     if (worst <= 1 + kLimitTolerance) return polynomial;
     for (std::size_t i = 0; i < ratios.size(); ++i) {

@@ -9,10 +9,10 @@
 namespace karst::core {
 
 /// Better durations than `durations_s`, found by NLopt in just so many evaluations: never by the clock, so
-/// that a flight can be repeated. Only the first kMostOptimized pieces change.
+/// that a flight can be repeated. Only the first kMaxOptimized pieces change.
 std::vector<double> optimized_times(const std::vector<Vec3>& waypoints, std::vector<double> durations_s,
                                     const Departure& departure, const MotionLimits& limits, int evaluations);
-constexpr std::size_t kMostOptimized = 32;
+constexpr std::size_t kMaxOptimized = 32;
 
 /// Durations stretched where limits are exceeded, until none is by more than kLimitTolerance. Nothing if that
 /// does not come about: given velocity and acceleration at the start, more time does not always help.

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kCornerTolerance_m = 0.15;
 /// A straight of one piece could use the greatest speed at one point only.
-constexpr double kMostApart_m = 3.0;
-constexpr double kLeastApart_m = 0.02;
-constexpr int kMostRounds = 6, kFirstEvaluations = 500, kMoreEvaluations = 150;
+constexpr double kMaxApart_m = 3.0;
+constexpr double kMinApart_m = 0.02;
+constexpr int kMaxRounds = 6, kFirstEvaluations = 500, kMoreEvaluations = 150;
 /// Chords of the curve that are checked for rock.
 constexpr double kCheck_m = 0.1;
 
@@ -40,16 +40,16 @@ std::size_t middle(const std::vector<double>& at, std::size_t from, std::size_t 
 }
 
 void split(const std::vector<Vec3>& points, const std::vector<double>& at, std::size_t from, std::size_t to,
-           double tolerance_m, double most_m, std::vector<std::size_t>& out) {
+           double tolerance_m, double max_m, std::vector<std::size_t>& out) {
   std::size_t farthest = from;
   double most = tolerance_m;
   for (std::size_t i = from + 1; i < to; ++i)
     if (const double d = deviation_m(points[i], points[from], points[to]); d > most) most = d, farthest = i;
-  if (farthest == from && at[to] - at[from] > most_m) farthest = middle(at, from, to);
+  if (farthest == from && at[to] - at[from] > max_m) farthest = middle(at, from, to);
   if (farthest == from) return;
-  split(points, at, from, farthest, tolerance_m, most_m, out);
+  split(points, at, from, farthest, tolerance_m, max_m, out);
   out.push_back(farthest);
-  split(points, at, farthest, to, tolerance_m, most_m, out);
+  split(points, at, farthest, to, tolerance_m, max_m, out);
 }
 
 /// Points no two of which coincide, close enough for waypoints to be chosen among them.
@@ -62,7 +62,7 @@ std::vector<Vec3> dense(const std::vector<Vec3>& points) {
     }
     const Vec3 from = out.back();
     const double length = (p - from).norm();
-    if (length < kLeastApart_m) continue;
+    if (length < kMinApart_m) continue;
     const int n = static_cast<int>(std::ceil(length / kCheck_m));
     for (int i = 1; i <= n; ++i) out.push_back(from + (p - from) * (static_cast<double>(i) / n));
   }
@@ -132,9 +132,9 @@ Vec3 at_most(const Vec3& v, double most) { return v.norm() > most ? Vec3(v * (mo
 
 }  // namespace
 
-std::vector<std::size_t> corners(const std::vector<Vec3>& points, double tolerance_m, double most_m) {
+std::vector<std::size_t> corners(const std::vector<Vec3>& points, double tolerance_m, double max_m) {
   std::vector<std::size_t> out{0};
-  split(points, lengths_along(points), 0, points.size() - 1, tolerance_m, most_m, out);
+  split(points, lengths_along(points), 0, points.size() - 1, tolerance_m, max_m, out);
   out.push_back(points.size() - 1);
   return out;
 }
@@ -158,9 +158,9 @@ PolynomialTrajectory polynomial_trajectory(const std::vector<Vec3>& points, cons
   const double speed = from.velocity_mps.norm();
   if (turns_first(heading, wanted_headings(path, heading).front(), speed)) from = {};
 
-  std::vector<std::size_t> chosen = corners(path, kCornerTolerance_m, kMostApart_m);
+  std::vector<std::size_t> chosen = corners(path, kCornerTolerance_m, kMaxApart_m);
   std::vector<double> durations = sampled_times(path, at, chosen, from.velocity_mps.norm(), limits);
-  for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
+  for (out.rounds = 1; out.rounds <= kMaxRounds; ++out.rounds) {
     std::vector<Vec3> waypoints;
     for (const std::size_t i : chosen) waypoints.push_back(path[i]);
     out.waypoints = waypoints.size();

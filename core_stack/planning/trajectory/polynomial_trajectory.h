@@ -28,7 +28,7 @@ PolynomialTrajectory polynomial_trajectory(const std::vector<Vec3>& points, cons
                                            const HeadingPlan& heading, const SegmentClear& clear);
 
 /// Indices of the points that a polyline within `tolerance_m` of all needs (Douglas and Peucker), and of more
-/// between where they are farther apart along the path than `most_m`.
-std::vector<std::size_t> corners(const std::vector<Vec3>& points, double tolerance_m, double most_m);
+/// between where they are farther apart along the path than `max_m`.
+std::vector<std::size_t> corners(const std::vector<Vec3>& points, double tolerance_m, double max_m);
 
 }  // namespace karst::core

@@ -10,18 +10,17 @@ namespace {
 
 constexpr TimeNs kPeriod = 100 * kMillisecond;
 /// Spacing of the path's nodes; with the period it bounds how much a bend is rounded (by a quarter of it).
-constexpr double kMostSpacing_m = 0.1;
+constexpr double kMaxSpacing_m = 0.1;
 /// Of a trajectory: longer than any battery lasts, and 72,000 samples.
 constexpr double kLongest_s = 7200;
 
 /// Points at equal distances along the polyline; the ends stay.
-std::vector<Vec3> evenly_spaced(const std::vector<Vec3>& points, double most_spacing_m) {
+std::vector<Vec3> evenly_spaced(const std::vector<Vec3>& points, double max_spacing_m) {
   std::vector<double> at{0};
   for (std::size_t i = 1; i < points.size(); ++i)
     at.push_back(at.back() + (points[i] - points[i - 1]).norm());
   const double length = at.back();
-  const auto n =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / most_spacing_m - 1e-9)));
+  const auto n = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / max_spacing_m - 1e-9)));
   std::vector<Vec3> out{points.front()};
   std::size_t i = 1;
   for (std::size_t k = 1; k < n; ++k) {
@@ -152,7 +151,7 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
     return sum;
   }();
   if (length > 1e-6) {
-    const std::vector<Vec3> nodes = evenly_spaced(points, kMostSpacing_m);
+    const std::vector<Vec3> nodes = evenly_spaced(points, kMaxSpacing_m);
     const double spacing = length / static_cast<double>(nodes.size() - 1);
     const std::vector<double> wanted = wanted_headings(nodes, heading);
     if (turns_first(heading, wanted.front(), start_speed_mps)) {

@@ -7,17 +7,17 @@ namespace karst::core {
 namespace {
 
 constexpr std::uint16_t kMark = 0x724b;  // "Kr"
-constexpr double kMostSpeed_cmps = 10000;
+constexpr double kMaxSpeed_cmps = 10000;
 
 void write(PartWriter& w, const TeamState& s) {
   w.robot(s.robot), w.time(s.stamp), w.place(s.position);
-  for (int i = 0; i < 3; ++i) w.scaled(s.velocity_mps[i], 0.01, kMostSpeed_cmps, 2);
+  for (int i = 0; i < 3; ++i) w.scaled(s.velocity_mps[i], 0.01, kMaxSpeed_cmps, 2);
   w.byte(static_cast<std::uint8_t>(s.phase));
   if (!(s.seconds_left >= 0)) w.refuse();
   w.scaled(std::min(s.seconds_left, 65535.0), 1, 65535, 2);
-  if (s.heard.size() > kMostRobots) w.refuse();
+  if (s.heard.size() > kMaxRobots) w.refuse();
   w.count(s.heard.size());
-  for (const HeardRobot& h : s.heard) {
+  for (const RadioContact& h : s.heard) {
     w.robot(h.robot);
     if (!(h.quality >= 0)) w.refuse();
     w.scaled(h.quality, 1.0 / 255, 255, 1);
@@ -28,11 +28,11 @@ TeamState read_state(PartReader& r) {
   TeamState s;
   s.robot = r.robot(), s.stamp = r.time(), s.position = r.place();
   for (int i = 0; i < 3; ++i) s.velocity_mps[i] = static_cast<double>(r.whole(2)) / 100.0;
-  if (s.velocity_mps.cwiseAbs().maxCoeff() > kMostSpeed_cmps / 100) r.refuse(Refusal::range);
+  if (s.velocity_mps.cwiseAbs().maxCoeff() > kMaxSpeed_cmps / 100) r.refuse(Refusal::range);
   s.phase = r.one_of<TeamPhase>(9);
   s.seconds_left = static_cast<double>(r.number(2));
   const std::size_t heard = r.count(2);
-  if (heard > kMostRobots) r.refuse(Refusal::range);
+  if (heard > kMaxRobots) r.refuse(Refusal::range);
   for (std::size_t i = 0; i < heard && r.fine(); ++i) {
     const RobotId robot = r.robot();
     s.heard.push_back({robot, r.byte() / 255.0});
@@ -41,11 +41,11 @@ TeamState read_state(PartReader& r) {
 }
 
 void write(PartWriter& w, const Held& h) {
-  w.robot(h.author), w.limited(h.first, kMostNumber), w.compact(h.beyond);
+  w.robot(h.author), w.limited(h.first, kMaxNumber), w.compact(h.beyond);
 }
 
 void write(PartWriter& w, const SentRecord& r) {
-  w.robot(r.author), w.limited(r.number, kMostNumber);
+  w.robot(r.author), w.limited(r.number, kMaxNumber);
   if (r.number == 0) w.refuse();
   w.count(r.bytes.size());
   for (const std::uint8_t b : r.bytes) w.byte(b);
@@ -69,8 +69,8 @@ std::optional<Bytes> write_frame(const Frame& frame, const MissionKey& key) {
   Bytes out;
   PartWriter w(out);
   w.number(kMark, 2), w.byte(kWireVersion),
-      w.byte(static_cast<std::uint8_t>(frame.sender | frame.tells_held << 7));
-  if (frame.sender >= kMostRobots) w.refuse();
+      w.byte(static_cast<std::uint8_t>(frame.sender | frame.reports_held << 7));
+  if (frame.sender >= kMaxRobots) w.refuse();
   w.time(frame.sent), w.number(frame.sequence, 2);
   const auto parts = [&w](const auto& list) {
     w.count(list.size());
@@ -97,20 +97,20 @@ std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, const Missi
   if (!has_tag(said, bytes.last(kTagBytes), key)) return refuse(Refusal::forged);
   Frame frame;
   const std::uint8_t sender = r.byte();
-  frame.tells_held = sender & 0x80;
+  frame.reports_held = sender & 0x80;
   frame.sender = sender & 0x7f;
-  if (frame.sender >= kMostRobots) return refuse(Refusal::range);
+  if (frame.sender >= kMaxRobots) return refuse(Refusal::range);
   frame.sent = r.time();
   frame.sequence = static_cast<std::uint16_t>(r.number(2));
   for (std::size_t n = r.count(24); n > 0 && r.fine(); --n) frame.states.push_back(read_state(r));
   for (std::size_t n = r.count(3); n > 0 && r.fine(); --n) {
     Held h;
-    h.author = r.robot(), h.first = r.limited(kMostNumber), h.beyond = r.compact();
+    h.author = r.robot(), h.first = r.limited(kMaxNumber), h.beyond = r.compact();
     frame.held.push_back(h);
   }
   for (std::size_t n = r.count(3); n > 0 && r.fine(); --n) {
     SentRecord record;
-    record.author = r.robot(), record.number = r.limited(kMostNumber);
+    record.author = r.robot(), record.number = r.limited(kMaxNumber);
     if (record.number == 0) r.refuse(Refusal::range);
     const auto body = r.bytes(r.byte());
     record.bytes.assign(body.begin(), body.end());

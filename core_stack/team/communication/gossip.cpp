@@ -10,9 +10,9 @@ namespace {
 constexpr double kBurstFrames = 10;
 constexpr double kLongestWait_s = 0.4;
 constexpr double kHaste = 3;  // times as often while robots in contact do not hold the same, or one is near
-constexpr std::size_t kMostAnswered = 40;  // records queued for one that lacks more
-constexpr std::size_t kMostWaiting = 400;
-constexpr int kTimesTold = 2;  // each of these states, or too many are lost on their way along a chain
+constexpr std::size_t kMaxAnswered = 40;  // records queued for one that lacks more
+constexpr std::size_t kMaxWaiting = 400;
+constexpr int kTimesReported = 2;  // each of these states, or too many are lost on their way along a chain
 constexpr TimeNs kSteady = 4 * kSecond;  // of many, who stands is told of again when there is so much news
 /// So long after it was switched on others may remind a robot of records that it wrote before.
 constexpr TimeNs kReminded = 10 * kSecond;
@@ -24,14 +24,14 @@ void describe(OptionTable& t, GossipOptions& o) {
   t.add("bytes_per_second", o.bytes_per_s, "", 50, 1e6, "a robot sends no more than that, as a mean");
   t.add("contact_age", o.contact_age_s, "s", 0.5, 600,
         "a robot not heard for longer is out of contact; a frame sent longer ago is refused");
-  t.add("most_records", o.most_records, 100, 1e6, "of one robot; more are refused");
+  t.add("max_records", o.max_records, 100, 1e6, "of one robot; more are refused");
 }
 
 Gossip::Gossip(const TeamRadio& radio, const GossipOptions& options, std::uint64_t seed)
     : radio_(radio),
       options_(options),
       random_(Random::stream(seed, "gossip " + std::to_string(radio.self))),
-      store_(static_cast<std::uint32_t>(options.most_records)),
+      store_(static_cast<std::uint32_t>(options.max_records)),
       allowance_bytes_(kBurstFrames * kFrameBytes) {
   next_news_ = from_seconds(options_.period_s * random_.uniform());
 }
@@ -71,7 +71,7 @@ void Gossip::receive(std::span<const std::uint8_t> bytes, TimeNs now) {
   if (!frame) {
     ++counts_.refused[static_cast<std::size_t>(why)];
   } else if (frame->sender != self()) {  // its own voice, thrown back or feigned
-    hear(*frame, now);
+    take_frame(*frame, now);
   }
 }
 
@@ -83,7 +83,7 @@ std::optional<Refusal> Gossip::refused(const Frame& frame, TimeNs now) const {
   return std::nullopt;
 }
 
-void Gossip::hear(const Frame& frame, TimeNs now) {
+void Gossip::take_frame(const Frame& frame, TimeNs now) {
   std::optional<Refusal> why = refused(frame, now);
   ReplayWindow::Verdict verdict{};
   if (!why) {
@@ -95,24 +95,24 @@ void Gossip::hear(const Frame& frame, TimeNs now) {
     return;
   }
   const bool newest = verdict == ReplayWindow::Verdict::newest;
-  if (newest) hear_from(frame, now);
+  if (newest) take_newest(frame, now);
   for (const TeamState& s : frame.states) take_state(s, now);
   for (const SentRecord& r : frame.records) take_record(r, frame.sender, now);
-  if (newest && frame.tells_held) take_held(frame, now);
+  if (newest && frame.reports_held) take_held(frame, now);
 }
 
 /// The sender is in contact.
-void Gossip::hear_from(const Frame& frame, TimeNs now) {
+void Gossip::take_newest(const Frame& frame, TimeNs now) {
   Peer& peer = peers_[frame.sender];
   if (in_contact(peer, now)) {
     // A mean over the last ten frames or so; each gap counts as that many lost.
-    constexpr double kShare = 0.1;
+    constexpr double kFraction = 0.1;
     const auto gap = static_cast<std::int16_t>(frame.sequence - peer.sequence);
-    for (int lost = std::min<int>(gap, 20); lost > 1; --lost) peer.quality -= kShare * peer.quality;
-    peer.quality += kShare * (1 - peer.quality);
+    for (int lost = std::min<int>(gap, 20); lost > 1; --lost) peer.quality -= kFraction * peer.quality;
+    peer.quality += kFraction * (1 - peer.quality);
   } else {
-    peer.quality = 0.5;                 // nothing is known yet
-    for (Told& t : told_) t.times = 0;  // nor does it know what was told before
+    peer.quality = 0.5;                         // nothing is known yet
+    for (Reported& t : reported_) t.times = 0;  // nor does it know what was told before
   }
   peer.sequence = frame.sequence;
   peer.heard_at = now;
@@ -194,10 +194,10 @@ void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
 void Gossip::answer(RobotId peer, TimeNs now) {
   std::size_t queued = 0;
   const TimeNs due = now + wait();
-  for (RobotId author = 0; author < kMostRobots; ++author) {
+  for (RobotId author = 0; author < kMaxRobots; ++author) {
     const HeldNumbers &mine = store_.held(author), &theirs = peers_[peer].held[author];
     for (std::uint32_t n = theirs.first() + 1;
-         theirs.takes(n) && n <= mine.first() + 1 + HeldNumbers::window && queued < kMostAnswered; ++n)
+         theirs.takes(n) && n <= mine.first() + 1 + HeldNumbers::window && queued < kMaxAnswered; ++n)
       if (mine.holds(n) && !theirs.holds(n)) queue(author, n, due), ++queued;
   }
 }
@@ -205,7 +205,7 @@ void Gossip::answer(RobotId peer, TimeNs now) {
 void Gossip::queue(RobotId author, std::uint32_t number, TimeNs due) {
   const bool there = std::any_of(waiting_.begin(), waiting_.end(),
                                  [&](const Waiting& w) { return w.author == author && w.number == number; });
-  if (!there && waiting_.size() < kMostWaiting) waiting_.push_back({due, author, number});
+  if (!there && waiting_.size() < kMaxWaiting) waiting_.push_back({due, author, number});
 }
 
 /// Somebody in contact is not known to hold it, and would take it.
@@ -219,7 +219,7 @@ bool Gossip::wanted(const Waiting& w, TimeNs now) const {
 /// Somebody in contact holds what this robot lacks, or lacks what it holds, as far as is known.
 bool Gossip::unsettled(TimeNs now) const {
   for (const Peer& p : peers_)
-    for (RobotId a = 0; in_contact(p, now) && a < kMostRobots; ++a)
+    for (RobotId a = 0; in_contact(p, now) && a < kMaxRobots; ++a)
       if (!(p.held[a] == store_.held(a))) return true;
   return false;
 }
@@ -249,7 +249,7 @@ std::vector<Bytes> Gossip::send(TimeNs now) {
     });
     const std::size_t passed = news ? add_states(frame, room) : 0;
     finish(frame, now, out);
-    if (news) tell_more_states(passed, now, out);
+    if (news) report_more_states(passed, now, out);
   }
   return out;
 }
@@ -263,11 +263,11 @@ bool Gossip::of_many() const {
 /// Of many radios few states fit into one's own frame; over a chain of them they would be old when they
 /// arrive. So once a period all that are news are told before any records, as far as there is room beside
 /// what it says of itself: that must stay on the beat, others keep apart by it.
-void Gossip::tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out) {
+void Gossip::report_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out) {
   if (!of_many() || now < all_states_due_) return;
   all_states_due_ = now + from_seconds(0.8 * options_.period_s);  // frames are not quite on the beat
   const double left_bytes = hurried_ ? kHaste * kFrameBytes : -1.0 * kFrameBytes;
-  while (passed < kMostRobots && allowance_bytes_ > left_bytes) {
+  while (passed < kMaxRobots && allowance_bytes_ > left_bytes) {
     Frame frame;
     std::size_t room = kFrameBytes - kEmptyFrameBytes;
     passed += add_states(frame, room);
@@ -283,10 +283,10 @@ Frame Gossip::own_news(TimeNs now) {
   Frame frame;
   state_.robot = self();
   state_.heard.clear();
-  frame.tells_held = true;
+  frame.reports_held = true;
   std::size_t bytes = kEmptyFrameBytes + state_bytes(state_);
-  for (RobotId author = 0; author < kMostRobots; ++author) {
-    const Held h = store_.held(author).told(author);
+  for (RobotId author = 0; author < kMaxRobots; ++author) {
+    const Held h = store_.held(author).summary(author);
     if (h.first == 0 && h.beyond == 0) continue;
     frame.held.push_back(h);
     bytes += held_bytes(h);
@@ -296,7 +296,7 @@ Frame Gossip::own_news(TimeNs now) {
     for (Held& h : frame.held) bytes -= held_bytes(h), h.beyond = 0, bytes += held_bytes(h);
   if (const std::size_t room = (kFrameBytes - bytes) / 2; state_.heard.size() > room) {
     std::stable_sort(state_.heard.begin(), state_.heard.end(),
-                     [](const HeardRobot& a, const HeardRobot& b) { return a.quality > b.quality; });
+                     [](const RadioContact& a, const RadioContact& b) { return a.quality > b.quality; });
     state_.heard.resize(room);
   }
   frame.states = {state_};
@@ -308,18 +308,18 @@ Frame Gossip::own_news(TimeNs now) {
 std::size_t Gossip::add_states(Frame& frame, std::size_t& room) {
   const bool many = of_many();
   std::size_t passed = 0;
-  for (; passed < kMostRobots; ++passed) {
-    const RobotId i = next_told_;
+  for (; passed < kMaxRobots; ++passed) {
+    const RobotId i = next_reported_;
     const auto& s = states_[i];
     const TimeNs newer_by = s && in_the_air(s->phase) ? 0 : kSteady;
-    const bool is_new = s && (!told_[i].stamp || s->stamp > *told_[i].stamp + newer_by);
-    if (s && (!many || is_new || told_[i].times < kTimesTold)) {
+    const bool is_new = s && (!reported_[i].stamp || s->stamp > *reported_[i].stamp + newer_by);
+    if (s && (!many || is_new || reported_[i].times < kTimesReported)) {
       if (state_bytes(*s) > room) break;
       frame.states.push_back(*s), room -= state_bytes(*s);
-      if (is_new) told_[i] = {s->stamp, 0};
-      ++told_[i].times;
+      if (is_new) reported_[i] = {s->stamp, 0};
+      ++reported_[i].times;
     }
-    next_told_ = static_cast<RobotId>((next_told_ + 1) % kMostRobots);
+    next_reported_ = static_cast<RobotId>((next_reported_ + 1) % kMaxRobots);
   }
   return passed;
 }
@@ -345,7 +345,7 @@ std::vector<Delivery> Gossip::take_delivered() { return std::exchange(delivered_
 
 Receipt Gossip::receipt() const {
   Receipt out;
-  for (RobotId i = 0; i < kMostRobots; ++i)
+  for (RobotId i = 0; i < kMaxRobots; ++i)
     if (store_.held(i).first() > 0) out.rows.push_back({i, store_.held(i).first()});
   return out;
 }
@@ -357,9 +357,9 @@ std::vector<TeamState> Gossip::states() const {
   return out;
 }
 
-std::vector<HeardRobot> Gossip::contacts(TimeNs now, TimeNs since) const {
-  std::vector<HeardRobot> out;
-  for (RobotId i = 0; i < kMostRobots; ++i)
+std::vector<RadioContact> Gossip::contacts(TimeNs now, TimeNs since) const {
+  std::vector<RadioContact> out;
+  for (RobotId i = 0; i < kMaxRobots; ++i)
     if (in_contact(peers_[i], now) && *peers_[i].heard_at >= since) out.push_back({i, peers_[i].quality});
   return out;
 }

@@ -31,7 +31,7 @@ struct GossipOptions {
   double bytes_per_s = 1120;  // of its own frames, as a mean; a burst may be ten frames
   double contact_age_s =
       5.0;  // a robot not heard for longer is out of contact, a frame older than that stale
-  std::int64_t most_records = 20000;  // of one robot
+  std::int64_t max_records = 20000;  // of one robot
 };
 void describe(OptionTable& t, GossipOptions& o);
 
@@ -74,9 +74,9 @@ class Gossip {
   /// The newest state known of each robot, its own left out, by robot.
   std::vector<TeamState> states() const;
   /// Its own as last told, with whom it heard: what a relay graph is to note beside the others'.
-  const TeamState& told_state() const { return state_; }
+  const TeamState& reported_state() const { return state_; }
   /// Robots heard of late, and not before `since`, with the share of frames that arrived.
-  std::vector<HeardRobot> contacts(TimeNs now, TimeNs since) const;
+  std::vector<RadioContact> contacts(TimeNs now, TimeNs since) const;
 
   /// What it holds, to be published: by the base, whenever something arrived that its finder waits for.
   Receipt receipt() const;
@@ -93,9 +93,9 @@ class Gossip {
     ReplayWindow replays;
     std::uint16_t sequence = 0;
     double quality = 1;
-    std::array<HeldNumbers, kMostRobots> held{};
+    std::array<HeldNumbers, kMaxRobots> held{};
   };
-  struct Told {
+  struct Reported {
     std::optional<TimeNs> stamp;
     int times = 0;
   };
@@ -107,8 +107,8 @@ class Gossip {
 
   bool in_contact(const Peer& p, TimeNs now) const;
   std::optional<Refusal> refused(const Frame& frame, TimeNs now) const;
-  void hear(const Frame& frame, TimeNs now);
-  void hear_from(const Frame& frame, TimeNs now);
+  void take_frame(const Frame& frame, TimeNs now);
+  void take_newest(const Frame& frame, TimeNs now);
   void take_held(const Frame& frame, TimeNs now);
   void take_state(const TeamState& s, TimeNs now);
   void take_record(const SentRecord& r, RobotId from, TimeNs now);
@@ -121,7 +121,7 @@ class Gossip {
   Frame own_news(TimeNs now);
   std::size_t add_states(Frame& frame, std::size_t& room);
   bool of_many() const;
-  void tell_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out);
+  void report_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out);
   void finish(Frame& frame, TimeNs now, std::vector<Bytes>& out);
   TimeNs wait();
 
@@ -130,9 +130,9 @@ class Gossip {
   Random random_;
   RecordStore store_;
   TeamState state_;
-  std::array<Peer, kMostRobots> peers_;
-  std::array<std::optional<TeamState>, kMostRobots> states_;
-  std::array<Told, kMostRobots> told_;  // of states
+  std::array<Peer, kMaxRobots> peers_;
+  std::array<std::optional<TeamState>, kMaxRobots> states_;
+  std::array<Reported, kMaxRobots> reported_;  // of states
   std::vector<Waiting> waiting_;
   std::vector<Delivery> delivered_;
   bool published_ = false;
@@ -142,7 +142,7 @@ class Gossip {
   TimeNs next_news_ = 0, all_states_due_ = 0, last_send_ = 0;
   bool hurried_ = false;
   double allowance_bytes_;
-  RobotId next_told_ = 0;  // whose state is passed on next
+  RobotId next_reported_ = 0;  // whose state is passed on next
   GossipCounts counts_;
 };
 

@@ -17,21 +17,21 @@ class PartWriter : public WireWriter {
     byte(static_cast<std::uint8_t>(n));
   }
   void robot(RobotId r) {
-    if (r >= kMostRobots) refuse();
+    if (r >= kMaxRobots) refuse();
     byte(r);
   }
   void limited(std::uint32_t v, std::uint32_t below) {
     if (v >= below) refuse();
     compact(v);
   }
-  void node_id(const NodeId& id) { robot(id.robot), limited(id.number, kMostNumber); }
+  void node_id(const NodeId& id) { robot(id.robot), limited(id.number, kMaxNumber); }
   /// Milliseconds in four bytes: 49 days.
   void time(TimeNs t) {
     if (t < 0 || t / kMillisecond > 0xffffffffll) refuse();
     number(static_cast<std::uint64_t>(t / kMillisecond), 4);
   }
   void place(const Vec3& p) {
-    for (int i = 0; i < 3; ++i) scaled(p[i], 0.01, kMostReach_m * 100, 3);
+    for (int i = 0; i < 3; ++i) scaled(p[i], 0.01, kMaxCoordinate_m * 100, 3);
   }
   /// v in steps, no farther from 0 than `most` of them.
   void scaled(double v, double step, double most, int bytes) {
@@ -55,10 +55,10 @@ class PartReader : public WireReader {
   void refuse(Refusal why) {
     if (fine()) refused_ = why;
   }
-  /// How many parts of at least `least_bytes` follow: no more than there is room for.
-  std::size_t count(std::size_t least_bytes) {
+  /// How many parts of at least `min_bytes` follow: no more than there is room for.
+  std::size_t count(std::size_t min_bytes) {
     const std::size_t n = byte();
-    if (n * least_bytes <= left()) return n;
+    if (n * min_bytes <= left()) return n;
     refuse(Refusal::truncated);
     return 0;
   }
@@ -76,7 +76,7 @@ class PartReader : public WireReader {
   }
   RobotId robot() {
     const RobotId r = byte();
-    if (r < kMostRobots) return r;
+    if (r < kMaxRobots) return r;
     refuse(Refusal::range);
     return 0;
   }
@@ -88,14 +88,14 @@ class PartReader : public WireReader {
   }
   NodeId node_id() {
     const RobotId r = robot();
-    return {r, limited(kMostNumber)};
+    return {r, limited(kMaxNumber)};
   }
   TimeNs time() { return static_cast<TimeNs>(number(4)) * kMillisecond; }
   Vec3 place() {
     Vec3 p;
     // Divided, not multiplied by 0.01: the same number as to_centimetres() gives.
     for (int i = 0; i < 3; ++i) p[i] = static_cast<double>(whole(3)) / 100.0;
-    if (p.cwiseAbs().maxCoeff() <= kMostReach_m) return p;
+    if (p.cwiseAbs().maxCoeff() <= kMaxCoordinate_m) return p;
     refuse(Refusal::range);
     return Vec3::Zero();
   }

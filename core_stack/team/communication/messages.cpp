@@ -65,13 +65,13 @@ void write(PartWriter& w, const LandingClaim& l) {
   w.time(l.stamp), w.place(l.ground), w.place(l.hover), w.byte(static_cast<std::uint8_t>(l.state));
 }
 void write(PartWriter& w, const ObjectSeen& o) {
-  w.time(o.stamp), w.limited(o.object, kMostNumber), w.byte(o.kind), w.place(o.position);
+  w.time(o.stamp), w.limited(o.object, kMaxNumber), w.byte(o.kind), w.place(o.position);
   w.scaled(o.deviation_m, 0.1, 255, 1);
 }
 void write(PartWriter& w, const Receipt& receipt) {
-  if (receipt.rows.size() > kMostRobots) w.refuse();
+  if (receipt.rows.size() > kMaxRobots) w.refuse();
   w.count(receipt.rows.size());
-  for (const Receipt::Row& row : receipt.rows) w.robot(row.robot), w.limited(row.records, kMostNumber);
+  for (const Receipt::Row& row : receipt.rows) w.robot(row.robot), w.limited(row.records, kMaxNumber);
 }
 
 Record read_body(Kind kind, PartReader& r) {
@@ -91,7 +91,7 @@ Record read_body(Kind kind, PartReader& r) {
     }
     case Kind::object: {
       ObjectSeen o;
-      o.stamp = r.time(), o.object = r.limited(kMostNumber), o.kind = r.byte(), o.position = r.place();
+      o.stamp = r.time(), o.object = r.limited(kMaxNumber), o.kind = r.byte(), o.position = r.place();
       o.deviation_m = 0.1 * r.byte();
       return o;
     }
@@ -100,10 +100,10 @@ Record read_body(Kind kind, PartReader& r) {
   }
   Receipt receipt;
   const std::size_t rows = r.count(2);
-  if (rows > kMostRobots) r.refuse(Refusal::range);
+  if (rows > kMaxRobots) r.refuse(Refusal::range);
   for (std::size_t i = 0; i < rows && r.fine(); ++i) {
     const RobotId robot = r.robot();
-    receipt.rows.push_back({robot, r.limited(kMostNumber)});
+    receipt.rows.push_back({robot, r.limited(kMaxNumber)});
   }
   return receipt;
 }
@@ -115,13 +115,13 @@ std::optional<Bytes> write_record(const Record& record) {
   PartWriter w(out);
   w.byte(static_cast<std::uint8_t>(record.index()));
   std::visit([&w](const auto& r) { write(w, r); }, record);
-  if (!w.fine() || out.size() > most_record_bytes()) return std::nullopt;
+  if (!w.fine() || out.size() > max_record_bytes()) return std::nullopt;
   return out;
 }
 
 std::optional<Record> read_record(std::span<const std::uint8_t> bytes, Refusal& why) {
   PartReader r(bytes);
-  if (bytes.size() > most_record_bytes()) r.refuse(Refusal::range);
+  if (bytes.size() > max_record_bytes()) r.refuse(Refusal::range);
   const auto kind = r.one_of<Kind>(5);
   if (r.fine()) {
     Record record = read_body(kind, r);

@@ -11,7 +11,7 @@
 #include <string>
 #include <variant>
 
-#include "core_stack/homing/way_home/tree_facts.h"
+#include "core_stack/homing/path_home/tree_facts.h"
 #include "core_stack/team/communication/mission_key.h"
 #include "core_stack/team/communication/wire.h"
 
@@ -19,9 +19,9 @@ namespace karst::core {
 
 constexpr std::size_t kFrameBytes = 208;
 constexpr std::uint8_t kWireVersion = 2;
-constexpr RobotId kMostRobots = 32;  // radios, the base's among them: what each holds of all fits a frame
-constexpr double kMostReach_m = 40000;
-constexpr std::uint32_t kMostNumber = 1u << 24;  // of a robot's nodes, records or claims
+constexpr RobotId kMaxRobots = 32;  // radios, the base's among them: what each holds of all fits a frame
+constexpr double kMaxCoordinate_m = 40000;
+constexpr std::uint32_t kMaxNumber = 1u << 24;  // of a robot's nodes, records or claims
 
 /// aside: it hovers where others get by, and waits; boxed: it has no such place, and others make room.
 enum class TeamPhase : std::uint8_t { standby, explore, home, landing, landed, relay, lost, aside, boxed };
@@ -32,7 +32,7 @@ constexpr bool in_the_air(TeamPhase p) {
 }
 
 /// How well one robot hears another: the share of its frames that arrive.
-struct HeardRobot {
+struct RadioContact {
   RobotId robot = 0;
   double quality = 0;  // 0..1
 };
@@ -46,7 +46,7 @@ struct TeamState {
   Vec3 velocity_mps = Vec3::Zero();
   TeamPhase phase = TeamPhase::standby;
   double seconds_left = 0;
-  std::vector<HeardRobot> heard;  // at most kMostRobots
+  std::vector<RadioContact> heard;  // at most kMaxRobots
 };
 
 /// A place that a robot is about to look at; a later claim replaces an earlier one of the same robot.
@@ -76,7 +76,7 @@ struct Receipt {
     RobotId robot = 0;
     std::uint32_t records = 0;
   };
-  std::vector<Row> rows;  // at most kMostRobots
+  std::vector<Row> rows;  // at most kMaxRobots
 };
 
 using Record = std::variant<TreeFacts, GoalClaim, LandingClaim, ObjectSeen, Receipt>;
@@ -97,9 +97,9 @@ enum class Refusal : std::uint8_t {
 constexpr std::size_t kRefusals = 10;
 
 /// How a record is written. Nothing if it cannot be: a number that is not finite or out of range, or longer
-/// than most_record_bytes(); split tree facts first.
+/// than max_record_bytes(); split tree facts first.
 std::optional<Bytes> write_record(const Record& record);
-constexpr std::size_t most_record_bytes() { return kFrameBytes - 32; }
+constexpr std::size_t max_record_bytes() { return kFrameBytes - 32; }
 /// Reads exactly one record; on refusal `why` says so.
 std::optional<Record> read_record(std::span<const std::uint8_t> bytes, Refusal& why);
 
@@ -124,7 +124,7 @@ struct Held {
 /// have room; each part may be missing.
 struct Frame {
   RobotId sender = 0;
-  bool tells_held = false;          // `held` is the whole of what it holds
+  bool reports_held = false;        // `held` is the whole of what it holds
   TimeNs sent = 0;                  // in whole milliseconds
   std::uint16_t sequence = 0;       // of the sender's frames: gaps show what was lost
   std::vector<TeamState> states{};  // its own first, others' as it knows them

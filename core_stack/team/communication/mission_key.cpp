@@ -12,7 +12,7 @@
 namespace karst::core {
 namespace {
 
-constexpr std::uintmax_t kMostFileBytes = 4096;
+constexpr std::uintmax_t kMaxFileBytes = 4096;
 
 /// libsodium may choose its fastest implementation only once; all give the same bytes.
 void be_ready() {
@@ -33,7 +33,7 @@ MissionKey key_of_seed(std::uint64_t seed) {
 }
 
 MissionKey read_key(const std::string& file) {
-  const std::string text = read_input(file, kMostFileBytes);
+  const std::string text = read_input(file, kMaxFileBytes);
   MissionKey key;
   std::size_t length = 0;
   const char* end = nullptr;

@@ -11,7 +11,7 @@ namespace karst::core {
 /// they drop.
 struct TeamRadio {
   RobotId self = 0;
-  RobotId robots = kMostRobots - 1, nodes = 0;  // nodes of each
+  RobotId robots = kMaxRobots - 1, nodes = 0;  // nodes of each
   MissionKey key{};
 
   int radios() const { return 1 + robots * (1 + nodes); }

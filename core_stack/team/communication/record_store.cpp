@@ -5,7 +5,7 @@ namespace karst::core {
 RecordStore::Taken RecordStore::take(const SentRecord& r) {
   HeldNumbers& held = held_[r.author];
   if (held.holds(r.number)) return find(r.author, r.number)->bytes == r.bytes ? Taken::known : Taken::differs;
-  if (r.number > most_records_) return Taken::full;
+  if (r.number > max_records_) return Taken::full;
   if (!held.takes(r.number)) return Taken::too_far;
   held.add(r.number);
   records_[{r.author, r.number}] = r;

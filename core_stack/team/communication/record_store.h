@@ -33,7 +33,7 @@ class HeldNumbers {
     beyond_ >>= 1;
   }
   void set(const Held& h) { first_ = h.first, beyond_ = h.beyond; }
-  Held told(RobotId author) const { return {author, first_, beyond_}; }
+  Held summary(RobotId author) const { return {author, first_, beyond_}; }
 
  private:
   std::uint32_t first_ = 0, beyond_ = 0;
@@ -41,7 +41,7 @@ class HeldNumbers {
 
 class RecordStore {
  public:
-  explicit RecordStore(std::uint32_t most_records) : most_records_(most_records) {}
+  explicit RecordStore(std::uint32_t max_records) : max_records_(max_records) {}
 
   enum class Taken { fresh, known, differs, too_far, full };
   Taken take(const SentRecord& r);
@@ -49,8 +49,8 @@ class RecordStore {
   const HeldNumbers& held(RobotId author) const { return held_[author]; }
 
  private:
-  std::uint32_t most_records_;  // of one author
-  std::array<HeldNumbers, kMostRobots> held_;
+  std::uint32_t max_records_;  // of one author
+  std::array<HeldNumbers, kMaxRobots> held_;
   std::map<std::pair<RobotId, std::uint32_t>, SentRecord> records_;
 };
 

@@ -15,8 +15,8 @@
 namespace karst::core {
 
 struct RelayOptions {
-  double link_age_s = 15.0;    // what was said longer ago no longer counts; longer in a team of many radios
-  double least_quality = 0.1;  // of a link, each way
+  double link_age_s = 15.0;  // what was said longer ago no longer counts; longer in a team of many radios
+  double min_quality = 0.1;  // of a link, each way
 };
 void describe(OptionTable& t, RelayOptions& o);
 
@@ -36,26 +36,26 @@ class RelayGraph {
   std::optional<TimeNs> last_heard_of(RobotId robot) const { return stamps_[robot]; }
 
   std::vector<RelayLink> links(TimeNs now) const;
-  using Robots = std::array<bool, kMostRobots>;
+  using Robots = std::array<bool, kMaxRobots>;
   /// Robots that reach the base over links, itself first, the rest in order.
   std::vector<RobotId> connected(TimeNs now) const;
   /// Whether a robot does over others that are among `relays` only; the base need not be.
   bool reaches_base(TimeNs now, RobotId robot, const Robots& relays) const {
-    return reaches_base(now, robot, relays, options_.least_quality);
+    return reaches_base(now, robot, relays, options_.min_quality);
   }
   /// And over links of at least that quality each way.
-  bool reaches_base(TimeNs now, RobotId robot, const Robots& relays, double least_quality) const;
+  bool reaches_base(TimeNs now, RobotId robot, const Robots& relays, double min_quality) const;
 
  private:
-  using Row = std::array<double, kMostRobots>;
+  using Row = std::array<double, kMaxRobots>;
   /// Cost of each link in transmissions; 0: none.
-  std::array<Row, kMostRobots> costs(TimeNs now, double least_quality) const;
-  std::vector<RobotId> connected(TimeNs now, const Robots& relays, double least_quality) const;
+  std::array<Row, kMaxRobots> costs(TimeNs now, double min_quality) const;
+  std::vector<RobotId> connected(TimeNs now, const Robots& relays, double min_quality) const;
   bool fresh(RobotId robot, TimeNs now) const;
 
   RelayOptions options_;
-  std::array<std::optional<TimeNs>, kMostRobots> stamps_;  // of what each said last
-  std::array<Row, kMostRobots> heard_{};                   // [by][whom], 0..1
+  std::array<std::optional<TimeNs>, kMaxRobots> stamps_;  // of what each said last
+  std::array<Row, kMaxRobots> heard_{};                   // [by][whom], 0..1
 };
 
 }  // namespace karst::core

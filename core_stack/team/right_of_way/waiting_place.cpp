@@ -12,12 +12,12 @@ namespace karst::core {
 namespace {
 
 // So far around, and so far back along the path flown.
-constexpr double kReach_m = 12.0, kRetreat_m = 60.0, kStep_m = 1.0;
+constexpr double kSearchRadius_m = 12.0, kRetreat_m = 60.0, kStep_m = 1.0;
 constexpr double kGetBy_m = 3.0;
 constexpr std::array kGaps_m = {0.5, 0.2};  // beside one that hovers, more than beside rock
 constexpr double kAhead_m = 0.3;            // it comes there before the others by so much of the way
 constexpr double kElsewhere_m = 2.0, kRefusedNear_m = 0.5;
-constexpr std::size_t kEnoughInVain = 2, kMostRefused = 40;
+constexpr std::size_t kMaxFailed = 2, kMaxRefused = 40;
 
 bool near_one_of(const std::vector<Vec3>& all, const Vec3& p, double within_m) {
   return std::any_of(all.begin(), all.end(), [&](const Vec3& o) { return (o - p).norm() < within_m; });
@@ -42,9 +42,9 @@ std::vector<double> first_of_others_m(const VoxelMap& map, const Roadmap& roadma
   for (const Vec3& o : query.moving)
     if ((o - query.from).norm() < kRetreat_m) others.push_back(o);
   for (const Vec3& o : others) {
-    const std::vector<double> way_m = roadmap.distances(map, o, places, map.resolution_m());
+    const std::vector<double> path_m = roadmap.distances(map, o, places, map.resolution_m());
     for (std::size_t i = 0; i < places.size(); ++i)
-      first[i] = std::min(first[i], std::isfinite(way_m[i]) ? way_m[i] : (places[i] - o).norm());
+      first[i] = std::min(first[i], std::isfinite(path_m[i]) ? path_m[i] : (places[i] - o).norm());
   }
   return first;
 }
@@ -52,7 +52,7 @@ std::vector<double> first_of_others_m(const VoxelMap& map, const Roadmap& roadma
 /// Too near to another, and nearer than it is now.
 bool crowds(const RoomQuery& query, const Vec3& place) {
   const auto by = [&](const Vec3& o) {
-    return (o - place).norm() < std::min(query.apart_m, (o - query.from).norm());
+    return (o - place).norm() < std::min(query.separation_m, (o - query.from).norm());
   };
   return by(query.other) || std::any_of(query.moving.begin(), query.moving.end(), by) ||
          std::any_of(query.standing.begin(), query.standing.end(), by);
@@ -60,10 +60,11 @@ bool crowds(const RoomQuery& query, const Vec3& place) {
 
 }  // namespace
 
-std::optional<Refuge> waiting_place(const VoxelMap& map, const Roadmap& roadmap, const RoomQuery& query) {
+std::optional<WaitingPlace> waiting_place(const VoxelMap& map, const Roadmap& roadmap,
+                                          const RoomQuery& query) {
   const std::vector<Vec3> back = points_back(query.flown);
   std::vector<Vec3> places{query.from};
-  for (const Vec3& p : roadmap.places_near(query.from, kReach_m)) places.push_back(p);
+  for (const Vec3& p : roadmap.places_near(query.from, kSearchRadius_m)) places.push_back(p);
   places.insert(places.end(), back.begin(), back.end());
   std::vector<double> own_m = roadmap.distances(map, query.from, places, map.resolution_m());
   own_m.front() = 0;
@@ -72,7 +73,7 @@ std::optional<Refuge> waiting_place(const VoxelMap& map, const Roadmap& roadmap,
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < places.size(); ++i)
     if (std::isfinite(own_m[i]) && others_m[i] - own_m[i] > kAhead_m && !crowds(query, places[i]) &&
-        !near_one_of(query.in_vain, places[i], kElsewhere_m))
+        !near_one_of(query.failed, places[i], kElsewhere_m))
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return own_m[a] < own_m[b]; });
@@ -80,12 +81,12 @@ std::optional<Refuge> waiting_place(const VoxelMap& map, const Roadmap& roadmap,
   for (const double gap_m : kGaps_m) {
     std::vector<Vec3> refused;
     for (const std::size_t i : order) {
-      if (refused.size() == kMostRefused || query.in_vain.size() >= kEnoughInVain) break;
+      if (refused.size() == kMaxRefused || query.failed.size() >= kMaxFailed) break;
       if (near_one_of(refused, places[i], kRefusedNear_m) || !is_clear(map, places[i], planning.clearance_m))
         continue;
-      if (others_get_by(map, places[i], query.vehicle_radius_m + gap_m,
-                        search_clearance_m(planning, map.resolution_m()), kGetBy_m))
-        return Refuge{places[i], true};
+      if (keeps_passage_open(map, places[i], query.vehicle_radius_m + gap_m,
+                             search_clearance_m(planning, map.resolution_m()), kGetBy_m))
+        return WaitingPlace{places[i], true};
       refused.push_back(places[i]);
     }
   }
@@ -94,7 +95,7 @@ std::optional<Refuge> waiting_place(const VoxelMap& map, const Roadmap& roadmap,
     if (i >= places.size() - back.size() && own_m[i] > kElsewhere_m &&
         (!farthest || own_m[i] > own_m[*farthest]))
       farthest = i;
-  return farthest ? std::optional(Refuge{places[*farthest], false}) : std::nullopt;
+  return farthest ? std::optional(WaitingPlace{places[*farthest], false}) : std::nullopt;
 }
 
 }  // namespace karst::core

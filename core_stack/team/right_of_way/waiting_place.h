@@ -8,9 +8,9 @@
 
 namespace karst::core {
 
-struct Refuge {
+struct WaitingPlace {
   Vec3 place = Vec3::Zero();
-  bool others_get_by = false;
+  bool keeps_passage_open = false;
 };
 
 struct RoomQuery {
@@ -19,8 +19,8 @@ struct RoomQuery {
   Vec3 other = Vec3::Zero();   // the vehicle that it makes room for
   std::vector<Vec3> moving;    // all further ones that may move
   std::vector<Vec3> standing;  // and those that wait: obstacles in the map
-  std::vector<Vec3> in_vain;   // places where the other did not get by; two are enough
-  double apart_m = 1.5;        // the place is so far from all others, or as far as it is now
+  std::vector<Vec3> failed;    // places where the other did not get by; two are enough
+  double separation_m = 1.5;   // the place is so far from all others, or as far as it is now
   double vehicle_radius_m = 0;
 };
 
@@ -28,6 +28,7 @@ struct RoomQuery {
 /// and where others get by: places connected by the planning clearance still are when those too near to it
 /// are taken out. If there is none, as far back along the path flown as it stays ahead of all. Who comes to a
 /// place first does not pass another on its way: where it does, that one would be nearer.
-std::optional<Refuge> waiting_place(const VoxelMap& map, const Roadmap& roadmap, const RoomQuery& query);
+std::optional<WaitingPlace> waiting_place(const VoxelMap& map, const Roadmap& roadmap,
+                                          const RoomQuery& query);
 
 }  // namespace karst::core

@@ -9,12 +9,12 @@
 namespace {
 
 /// way_m[i][j]: from stop i to stop j. Stop 0 is where the vehicle is.
-using Ways = std::vector<std::vector<double>>;
+using PathLengths = std::vector<std::vector<double>>;
 using Order = std::vector<std::size_t>;
 
-double length_m(const Ways& way_m, const Order& order) {
+double length_m(const PathLengths& path_m, const Order& order) {
   double sum = 0;
-  for (std::size_t i = 1; i < order.size(); ++i) sum += way_m[order[i - 1]][order[i]];
+  for (std::size_t i = 1; i < order.size(); ++i) sum += path_m[order[i - 1]][order[i]];
   return sum;
 }
 
@@ -28,19 +28,19 @@ std::array<Order, 3> changed(const Order& order, std::size_t i, std::size_t j) {
 }
 
 /// Always on to the nearest stop; then whatever small change makes the way shorter, until none does.
-Order short_tour(const Ways& way_m) {
-  Order order(way_m.size());
+Order short_tour(const PathLengths& path_m) {
+  Order order(path_m.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = 1; i + 1 < order.size(); ++i)
     std::swap(order[i], *std::min_element(order.begin() + i, order.end(), [&](std::size_t a, std::size_t b) {
-                return way_m[order[i - 1]][a] < way_m[order[i - 1]][b];
+                return path_m[order[i - 1]][a] < path_m[order[i - 1]][b];
               }));
   for (bool shorter = true; shorter;) {
     shorter = false;
     for (std::size_t i = 1; i + 1 < order.size(); ++i)
       for (std::size_t j = i + 1; j < order.size(); ++j)
         for (const Order& other : changed(order, i, j))
-          if (length_m(way_m, other) < length_m(way_m, order) - 1e-6) order = other, shorter = true;
+          if (length_m(path_m, other) < length_m(path_m, order) - 1e-6) order = other, shorter = true;
   }
   return order;
 }
@@ -55,8 +55,8 @@ class MyTour : public karst::Policy {
   karst::Decision decide(const karst::Request& request) override {
     const std::vector<karst::Frontier> stops = nearest(request);
     if (stops.empty()) return karst::Decision::explored("no frontier can be reached");
-    const Ways way_m = ways(request, stops);
-    const Order order = short_tour(way_m);
+    const PathLengths path_m = lengths(request, stops);
+    const Order order = short_tour(path_m);
 
     std::vector<karst::Goal> goals;
     std::vector<karst_segment_t> drawn;
@@ -65,7 +65,7 @@ class MyTour : public karst::Policy {
       const karst::Frontier& f = stops[order[k] - 1];
       char why[120];
       std::snprintf(why, sizeof why, "stop %zu of %zu, a tour of %.0f m", k, stops.size(),
-                    length_m(way_m, order));
+                    length_m(path_m, order));
       goals.push_back(karst::goal_at(f, -static_cast<double>(k), why));
       drawn.push_back({at, f.viewpoint});
       at = f.viewpoint;
@@ -89,17 +89,17 @@ class MyTour : public karst::Policy {
   /// One question for each stop: a search finds the ways from one place to all the others. The way back to
   /// where the vehicle is does not count, as the tour is open. Where no way is known, it is taken as very
   /// long.
-  static Ways ways(const karst::Request& request, const std::vector<karst::Frontier>& stops) {
+  static PathLengths lengths(const karst::Request& request, const std::vector<karst::Frontier>& stops) {
     std::vector<karst::Vec3> places;
     for (const karst::Frontier& f : stops) places.push_back(f.viewpoint);
-    Ways way_m(stops.size() + 1, std::vector<double>(stops.size() + 1, 0.0));
-    for (std::size_t j = 0; j < stops.size(); ++j) way_m[0][j + 1] = stops[j].path_length_m;
+    PathLengths path_m(stops.size() + 1, std::vector<double>(stops.size() + 1, 0.0));
+    for (std::size_t j = 0; j < stops.size(); ++j) path_m[0][j + 1] = stops[j].path_length_m;
     for (std::size_t i = 0; i < stops.size(); ++i) {
       const std::vector<double> found = request.path_lengths(places[i], places, request.map.resolution_m());
       for (std::size_t j = 0; j < stops.size(); ++j)
-        way_m[i + 1][j + 1] = std::isfinite(found[j]) ? found[j] : 1e4;
+        path_m[i + 1][j + 1] = std::isfinite(found[j]) ? found[j] : 1e4;
     }
-    return way_m;
+    return path_m;
   }
 
   int stops_ = 12;

@@ -54,7 +54,7 @@ class MyMemory : public karst::Policy, public karst::Restorable {
       case KARST_EVENT_GOAL_REJECTED:
       case KARST_EVENT_GOAL_UNREACHABLE:
       case KARST_EVENT_GOAL_ABANDONED:
-        vain_.push_back({event.goal.position, event.stamp_ns});
+        failed_.push_back({event.goal.position, event.stamp_ns});
         break;
       default:
         return;  // also for kinds that later versions add
@@ -62,17 +62,17 @@ class MyMemory : public karst::Policy, public karst::Restorable {
     if (event.goal.frontier_id == under_way_) under_way_ = 0;
   }
 
-  void memory(karst::Memory& m) override { m.add(first_seen_s_), m.add(vain_), m.add(under_way_); }
+  void memory(karst::Memory& m) override { m.add(first_seen_s_), m.add(failed_), m.add(under_way_); }
 
  private:
-  struct Place {
+  struct FailedGoal {
     karst::Vec3 position;
     std::int64_t since_ns;
   };
   static double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
   bool rests(const karst::Vec3& place, std::int64_t now_ns) const {
-    return std::any_of(vain_.begin(), vain_.end(), [&](const Place& p) {
+    return std::any_of(failed_.begin(), failed_.end(), [&](const FailedGoal& p) {
       return karst::distance(p.position, place) < same_place_m && seconds(now_ns - p.since_ns) < rest_s_;
     });
   }
@@ -85,7 +85,7 @@ class MyMemory : public karst::Policy, public karst::Restorable {
   double rest_s_ = 20.0;
 
   std::map<std::uint32_t, double> first_seen_s_;  // by id of the frontier, seconds of mission time
-  std::vector<Place> vain_;
+  std::vector<FailedGoal> failed_;
   std::uint32_t under_way_ = 0;  // the frontier flown to; 0: none
 };
 

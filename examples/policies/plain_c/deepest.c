@@ -11,7 +11,7 @@
   { literal, sizeof literal - 1 }
 
 typedef struct deepest {
-  double longest_way_m;
+  double max_path_m;
 } deepest_t;
 
 static void* create(const karst_host_t* host, karst_error_t* error) {
@@ -26,7 +26,7 @@ static void* create(const karst_host_t* host, karst_error_t* error) {
 
 static int32_t init(void* self, const karst_parameter_value_t* values, uint64_t count, karst_error_t* error) {
   (void)error;
-  if (count == 1) ((deepest_t*)self)->longest_way_m = values[0].number; /* in the order of declaration */
+  if (count == 1) ((deepest_t*)self)->max_path_m = values[0].number; /* in the order of declaration */
   return KARST_OK;
 }
 
@@ -37,11 +37,11 @@ static int32_t activate(void* self, karst_error_t* error) {
 
 static int32_t decide(void* self, const karst_request_t* request, const karst_decision_sink_t* sink,
                       karst_error_t* error) {
-  const double longest_way_m = ((const deepest_t*)self)->longest_way_m;
+  const double max_path_m = ((const deepest_t*)self)->max_path_m;
   const karst_frontier_cluster_t* best = NULL;
   for (uint64_t i = 0; i < request->frontier_count; ++i) {
     const karst_frontier_cluster_t* f = &request->frontiers[i];
-    if (!isfinite(f->viewpoint.position.z) || !(f->path_length_m <= longest_way_m)) continue;
+    if (!isfinite(f->viewpoint.position.z) || !(f->path_length_m <= max_path_m)) continue;
     if (!best || f->viewpoint.position.z < best->viewpoint.position.z) best = f;
   }
   if (!best) {
@@ -73,7 +73,7 @@ static void deactivate(void* self) { (void)self; }
 static void destroy(void* self) { free(self); }
 
 static const karst_parameter_t parameters[] = {{
-    .id = TEXT("longest_way"),
+    .id = TEXT("max_path"),
     .unit = TEXT("m"),
     .help = TEXT("frontiers with a longer way to them are ignored"),
     .default_number = 200.0,

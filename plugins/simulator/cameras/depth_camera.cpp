@@ -27,26 +27,26 @@ constexpr double kCameraStretch_m = 0.25;  // of the veil's light: short against
 
 float stereo_range(const PixelLight& rock, std::span<const PixelLight> veil, float range_m,
                    float pixel_noise_m) {
-  constexpr double kLeastContrast = 0.1;
+  constexpr double kMinContrast = 0.1;
   double all = rock.strength;
   for (const PixelLight& v : veil) all += v.strength;
   const double contrast = rock.strength / all;
-  if (!(contrast >= kLeastContrast)) return kNan;
+  if (!(contrast >= kMinContrast)) return kNan;
   return range_m + pixel_noise_m * static_cast<float>(1 / contrast - 1);
 }
 
 float tof_range(const PixelLight& rock, std::span<const PixelLight> veil, float range_m,
-                double least_strength) {
-  constexpr double kWave_m = 7.5;          // c / (2 * 20 MHz)
-  constexpr double kLeastAgreement = 0.7;  // length of the sum over the sum of the lengths
+                double min_strength) {
+  constexpr double kWave_m = 7.5;        // c / (2 * 20 MHz)
+  constexpr double kMinAgreement = 0.7;  // length of the sum over the sum of the lengths
   const auto phasor = [](const PixelLight& l) {
     return std::polar(l.strength, 2 * std::numbers::pi * l.range_m / kWave_m);
   };
   std::complex<double> sum = phasor(rock);
   double lengths = rock.strength;
   for (const PixelLight& v : veil) sum += phasor(v), lengths += v.strength;
-  if (std::abs(sum) < least_strength) return kInf;
-  if (std::abs(sum) < kLeastAgreement * lengths) return kNan;
+  if (std::abs(sum) < min_strength) return kInf;
+  if (std::abs(sum) < kMinAgreement * lengths) return kNan;
   const double turned = std::atan2(sum.imag(), sum.real()) / (2 * std::numbers::pi);
   const double mixed_m = kWave_m * (turned < 0 ? turned + 1 : turned);
   return std::isfinite(range_m) ? range_m + static_cast<float>(mixed_m - rock.range_m)
@@ -96,16 +96,16 @@ DepthCamera::DepthCamera(const CameraOptions& o, std::shared_ptr<const core::Cam
     for (int column = 0; column < model_->width; ++column) beams_.push_back(model_->direction(row, column));
 }
 
-float DepthCamera::through(const CloudyWay& way, const PixelLight& rock, float range_m,
+float DepthCamera::through(const CloudyPath& path, const PixelLight& rock, float range_m,
                            core::Random& random) const {
-  if (way.depth(rock.range_m) == 0) return range_m;
+  if (path.depth(rock.range_m) == 0) return range_m;
   const bool tof = options_.kind == "tof";
   // The lamp of a time-of-flight camera sits beside its lens, the lamps that stereo sees by farther off: from
   // there on they light what it looks at. Nearer droplets are dark, and out of focus.
   const double lit_from_m = tof ? 0.3 : 0.5;
-  const PixelLight left{rock.range_m, rock.strength * way.two_way(rock.range_m)};
+  const PixelLight left{rock.range_m, rock.strength * path.two_way(rock.range_m)};
   std::vector<PixelLight> veil;
-  way.for_each_stretch(lit_from_m, rock.range_m, kCameraStretch_m, [&](const CloudyWay::Stretch& s) {
+  path.for_each_stretch(lit_from_m, rock.range_m, kCameraStretch_m, [&](const CloudyPath::Stretch& s) {
     // 1 / r^2 averaged over the stretch.
     veil.push_back({(s.from_m + s.to_m) / 2, s.echo(random) / (s.from_m * s.to_m)});
   });
@@ -128,14 +128,14 @@ core::DepthImage DepthCamera::image(const cave::Cave& cave, const core::Pose& T_
 
   core::DepthImage image{stamp, model_, std::vector<float>(rays.size())};
   const auto noise = static_cast<float>(options_.noise_at_1m_m);
-  CloudyWay way;
+  CloudyPath path;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     float range = hits[i].range_m;
     if (hits[i].any()) range += noise * range * range * range_noise(random);
     if (!air.clouds.empty()) {
-      way.trace(air.clouds, rays[i]);
-      if (!way.clear())
-        range = through(way, light_of(cave, rays[i], hits[i], model_->max_range_m), range, air.random);
+      path.trace(air.clouds, rays[i]);
+      if (!path.clear())
+        range = through(path, light_of(cave, rays[i], hits[i], model_->max_range_m), range, air.random);
     }
     if (range < model_->min_range_m) range = std::numeric_limits<float>::quiet_NaN();
     image.range_m[i] = range;

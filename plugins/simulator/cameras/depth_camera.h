@@ -34,8 +34,7 @@ float stereo_range(const PixelLight& rock, std::span<const PixelLight> veil, flo
 /// as phasors: droplets near the lens pull the range towards it (Muraji et al., Depth from phasor distortions
 /// in fog, Optics Express 27, 2019). Where the sum is less than the weakest return, nothing is seen:
 /// infinity; where its parts disagree, the unit flags it: NaN. Ranges wrap around at 7.5 m.
-float tof_range(const PixelLight& rock, std::span<const PixelLight> veil, float range_m,
-                double least_strength);
+float tof_range(const PixelLight& rock, std::span<const PixelLight> veil, float range_m, double min_strength);
 
 class DepthCamera {
  public:
@@ -49,7 +48,7 @@ class DepthCamera {
  private:
   /// What becomes of a pixel's range where droplets are in the way. `rock` is the light that comes back from
   /// what it looks at in clear air.
-  float through(const CloudyWay& way, const PixelLight& rock, float range_m, core::Random& random) const;
+  float through(const CloudyPath& path, const PixelLight& rock, float range_m, core::Random& random) const;
 
   CameraOptions options_;
   std::shared_ptr<const core::CameraModel> model_;

@@ -12,7 +12,7 @@ using core::Vec3;
 
 namespace {
 
-constexpr double kLeastLux = 2, kLeastClear = 0.1;
+constexpr double kMinLux = 2, kMinClear = 0.1;
 
 /// Two unit vectors across `d`.
 std::pair<Vec3, Vec3> across(const Vec3& d) {
@@ -30,7 +30,7 @@ std::vector<InView> ObjectDetector::in_view(const cave::Cave& cave, const core::
   const double range_m = std::min(options_.range_m, static_cast<double>(camera.max_range_m));
   const double wide = std::tan(camera.horizontal_fov_rad / 2), high = std::tan(camera.vertical_fov_rad / 2);
   std::vector<InView> seen;
-  CloudyWay way;
+  CloudyPath path;
   for (std::size_t i = 0; i < cave.description.objects.size(); ++i) {
     const cave::CaveObject& o = cave.description.objects[i];
     const double away_m = (o.position - eye).norm();
@@ -42,16 +42,17 @@ std::vector<InView> ObjectDetector::in_view(const cave::Cave& cave, const core::
     const double cosine = o.normal.isZero() ? 1 : -sight.dot(o.normal);
     if (cosine < std::cos(options_.max_incidence_rad)) continue;
     if (lit) {  // the lamp is beside the lens
-      const double share = static_cast<double>(beam_share(rgb_, static_cast<float>(place.x() / away_m)));
-      if (rgb_.intensity_cd * share * cosine / (away_m * away_m) < kLeastLux) continue;
+      const double fraction =
+          static_cast<double>(beam_fraction(rgb_, static_cast<float>(place.x() / away_m)));
+      if (rgb_.intensity_cd * fraction * cosine / (away_m * away_m) < kMinLux) continue;
     }
     if (cave.scene.ray_cast(eye, sight, away_m) < away_m) continue;
     double clear = 1;
     if (!clouds.empty()) {
-      way.trace(clouds, {eye.cast<float>(), sight.cast<float>()});
-      clear = way.two_way(away_m);
+      path.trace(clouds, {eye.cast<float>(), sight.cast<float>()});
+      clear = path.two_way(away_m);
     }
-    if (clear < kLeastClear) continue;
+    if (clear < kMinClear) continue;
     seen.push_back({i, place, clear});
   }
   return seen;
@@ -63,9 +64,9 @@ ObjectDetection ObjectDetector::measured(ObjectKind kind, const Vec3& place, boo
   d.kind = kind;
   const double range_m = place.norm();
   d.bearing_sigma_rad = options_.bearing_noise_rad;
-  const double share = lit ? options_.size_noise : options_.depth_noise;
-  d.range_m = std::max(0.1, range_m * (1 + share * random.normal()));
-  d.range_sigma_m = share * d.range_m;  // as the detector itself can tell
+  const double fraction = lit ? options_.size_noise : options_.depth_noise;
+  d.range_m = std::max(0.1, range_m * (1 + fraction * random.normal()));
+  d.range_sigma_m = fraction * d.range_m;  // as the detector itself can tell
   const Vec3 u = place / range_m;
   const auto [a, b] = across(u);
   const double off_a = d.bearing_sigma_rad * random.normal(), off_b = d.bearing_sigma_rad * random.normal();

@@ -91,7 +91,8 @@ std::shared_ptr<const core::RgbCameraModel> rgb_camera_model(const RgbOptions& o
   return m;
 }
 
-float reflected_share(const Vec3f& normal, const Vec3f& to_lamp, const Vec3f& to_eye, float roughness_rad) {
+float reflected_fraction(const Vec3f& normal, const Vec3f& to_lamp, const Vec3f& to_eye,
+                         float roughness_rad) {
   const float cos_in = normal.dot(to_lamp), cos_out = normal.dot(to_eye);
   if (cos_in <= 0 || cos_out <= 0) return 0;
   if (roughness_rad == 0) return cos_in;
@@ -103,7 +104,7 @@ float reflected_share(const Vec3f& normal, const Vec3f& to_lamp, const Vec3f& to
   return cos_in * (a + b * facing);
 }
 
-float beam_share(const RgbOptions& o, float cos_off_axis) {
+float beam_fraction(const RgbOptions& o, float cos_off_axis) {
   if (o.light == "flood") return cos_off_axis > 0 ? 1 : 0;
   const auto half = static_cast<float>(0.5 * o.beam_rad);
   const float inner = std::cos(half), outer = std::cos(std::min(1.2f * half, kPi));
@@ -125,9 +126,9 @@ std::vector<bool> RgbCamera::lit(const cave::Cave& cave, const Vec3f& lamp,
   std::vector<float> distance_m(rays.size(), 0);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const float range_m = hits[i].any() ? hits[i].range_m : 1;
-    const Vec3f way = rays[i].origin + range_m * rays[i].direction - lamp;
-    distance_m[i] = way.norm();
-    from_lamp[i] = {lamp, way / std::max(distance_m[i], 1e-6f)};
+    const Vec3f offset = rays[i].origin + range_m * rays[i].direction - lamp;
+    distance_m[i] = offset.norm();
+    from_lamp[i] = {lamp, offset / std::max(distance_m[i], 1e-6f)};
   }
   std::vector<cave::Hit> first(rays.size());
   cave.scene.cast(from_lamp, kSight_m, first);
@@ -156,17 +157,17 @@ std::vector<Vec3f> RgbCamera::light(const cave::Cave& cave, const core::Pose& T_
   const float pixel_rad =
       2 * std::tan(static_cast<float>(options_.fov_rad) / 2) / static_cast<float>(options_.width);
   std::vector<Vec3f> light(rays.size(), Vec3f::Zero());
-  CloudyWay way;
+  CloudyPath path;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const cave::Hit& hit = hits[i];
     const Vec3f& d = rays[i].direction;
     const float range_m = hit.any() ? hit.range_m : kSight_m;
-    const bool cloudy = !air.clouds.empty() && (way.trace(air.clouds, rays[i]), !way.clear());
+    const bool cloudy = !air.clouds.empty() && (path.trace(air.clouds, rays[i]), !path.clear());
     if (is_lit[i]) {
       const Vec3f place = eye + range_m * d, to_lamp = lamp - place;
       const float distance_m = to_lamp.norm();
       const float lux =
-          intensity_cd * beam_share(options_, -to_lamp.dot(axis) / distance_m) / (distance_m * distance_m);
+          intensity_cd * beam_fraction(options_, -to_lamp.dot(axis) / distance_m) / (distance_m * distance_m);
       if (lux > kTooFaint_cdpm2) {
         const float rho = patched
                               ? static_cast<float>(reflectivity_at(cave.description, place.cast<double>()))
@@ -176,15 +177,15 @@ std::vector<Vec3f> RgbCamera::light(const cave::Cave& cave, const core::Pose& T_
         const RockLook look = rock_look(place.cast<double>(), pixel_rad * range_m / cos_seen);
         const Vec3f along = look.slope - look.slope.dot(hit.normal) * hit.normal;
         const Vec3f normal = (hit.normal - along).normalized();
-        const float share = reflected_share(normal, to_lamp / distance_m, -d, roughness);
-        light[i] = rho * lux * share / kPi * look.tint;
-        if (cloudy) light[i] *= static_cast<float>(way.two_way(static_cast<double>(range_m)));
+        const float fraction = reflected_fraction(normal, to_lamp / distance_m, -d, roughness);
+        light[i] = rho * lux * fraction / kPi * look.tint;
+        if (cloudy) light[i] *= static_cast<float>(path.two_way(static_cast<double>(range_m)));
       }
     }
     if (cloudy) {
-      const float beam = intensity_cd * beam_share(options_, d.dot(axis)) / kPi;
-      way.for_each_stretch(
-          kLitFrom_m, static_cast<double>(range_m), kStretch_m, [&](const CloudyWay::Stretch& s) {
+      const float beam = intensity_cd * beam_fraction(options_, d.dot(axis)) / kPi;
+      path.for_each_stretch(
+          kLitFrom_m, static_cast<double>(range_m), kStretch_m, [&](const CloudyPath::Stretch& s) {
             light[i] += Vec3f::Constant(beam * static_cast<float>(s.mean_echo / (s.from_m * s.to_m)));
           });
     }
@@ -203,10 +204,10 @@ std::vector<std::uint8_t> RgbCamera::picture(const cave::Cave& cave, const core:
   rgb.reserve(3 * seen.size());
   for (const Vec3f& l : seen)
     for (int c = 0; c < 3; ++c) {
-      const float share = l[c] / white;
+      const float fraction = l[c] / white;
       // Photons come at random: their noise grows with the root of the light.
-      const float deviation = noise * std::sqrt(1 + 3 * std::min(share, 1.0f));
-      rgb.push_back(srgb(share + deviation * range_noise(random)));
+      const float deviation = noise * std::sqrt(1 + 3 * std::min(fraction, 1.0f));
+      rgb.push_back(srgb(fraction + deviation * range_noise(random)));
     }
   return rgb;
 }

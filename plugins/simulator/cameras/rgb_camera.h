@@ -32,12 +32,12 @@ std::shared_ptr<const core::RgbCameraModel> rgb_camera_model(const RgbOptions& o
 
 /// Luminance of rock over reflectivity * illuminance / pi, cosine of the lamp's incidence included: 1 where a
 /// smooth surface is lit head-on. `normal`, `to_lamp` and `to_eye` are unit vectors.
-float reflected_share(const core::Vec3f& normal, const core::Vec3f& to_lamp, const core::Vec3f& to_eye,
-                      float roughness_rad);
+float reflected_fraction(const core::Vec3f& normal, const core::Vec3f& to_lamp, const core::Vec3f& to_eye,
+                         float roughness_rad);
 
 /// Share of the lamp's intensity at an angle off its axis: all of it within half the beam's width, then
 /// falling to nothing at 1.2 times that. A flood sends it everywhere to the front.
-float beam_share(const RgbOptions& o, float cos_off_axis);
+float beam_fraction(const RgbOptions& o, float cos_off_axis);
 
 class RgbCamera {
  public:

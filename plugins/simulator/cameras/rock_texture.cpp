@@ -68,12 +68,12 @@ RockLook rock_look(const Vec3& place, float finest_m) {
   float shade = 0, coarse = 0, wave_m = kCoarsest_m;
   for (std::uint32_t i = 0; i < kOctaves; ++i, wave_m *= 0.5f) {
     // An octave fades out between four and two pixels a wave.
-    const float share = std::clamp(wave_m / (2 * finest_m) - 1, 0.0f, 1.0f);
-    if (share == 0) break;
+    const float fraction = std::clamp(wave_m / (2 * finest_m) - 1, 0.0f, 1.0f);
+    if (fraction == 0) break;
     const Noise n = noise(place / static_cast<double>(wave_m), i);
-    shade += 0.22f * share * n.value;
+    shade += 0.22f * fraction * n.value;
     if (i < 2) coarse += 0.5f * n.value;
-    look.slope += kBump * share * n.gradient;
+    look.slope += kBump * fraction * n.gradient;
   }
   // Beds of a hand's breadth to half a metre, level but for the coarse noise.
   const auto bed = static_cast<float>(std::sin(14 * place.z() + 2.5 * static_cast<double>(coarse)));

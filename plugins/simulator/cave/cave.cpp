@@ -70,7 +70,7 @@ Cave load_cave(const std::string& path, const std::string& start) {
   CaveDescription description = describe_cave(path, start);
   TriangleMesh mesh = load_mesh(description.mesh_path);
   Cave cave{std::move(description), RayScene(std::move(mesh))};
-  settle_objects(cave);
+  lay_objects(cave);
   return cave;
 }
 

@@ -106,7 +106,7 @@ struct Cave {
   RayScene scene;
 };
 
-/// describe_cave, then its mesh, on which objects are laid (settle_objects).
+/// describe_cave, then its mesh, on which objects are laid (lay_objects).
 Cave load_cave(const std::string& path, const std::string& start);
 
 /// Reflectivity of the rock at a place: that of the last patch that holds it.

@@ -25,7 +25,7 @@ namespace {
 
 using core::InputError;
 
-constexpr std::uint64_t kLeastMemory = std::uint64_t{2} << 30, kMemoryPerByte = 100;
+constexpr std::uint64_t kMinMemory = std::uint64_t{2} << 30, kMemoryPerByte = 100;
 constexpr std::uint64_t kMaxReason = 4000;
 constexpr int kLongestSilence_ms = 900'000;  // of the child, by the wall clock: then it hangs
 constexpr int kOutOfMemory = 3;              // the child's exit code
@@ -181,7 +181,7 @@ std::string end_of(pid_t child) {
 TriangleMesh import_in_child(const std::string& path, const std::function<TriangleMesh()>& import,
                              ImportLimits limits) {
   if (limits.memory_bytes == 0)
-    limits.memory_bytes = std::max(kLeastMemory, kMemoryPerByte * std::filesystem::file_size(path));
+    limits.memory_bytes = std::max(kMinMemory, kMemoryPerByte * std::filesystem::file_size(path));
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw InputError(path, "", std::strerror(errno));
   const pid_t parent = getpid(), child = fork();

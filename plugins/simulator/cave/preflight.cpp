@@ -29,8 +29,8 @@ Surroundings look_around(const RayScene& scene, const Vec3& place) {
     ++escaped;
     s.escape_direction += d;
   }
-  s.escape_share = static_cast<double>(escaped) / kRays;
-  s.odd_share = static_cast<double>(odd) / kRays;
+  s.escape_fraction = static_cast<double>(escaped) / kRays;
+  s.odd_fraction = static_cast<double>(odd) / kRays;
   if (escaped > 0 && s.escape_direction.norm() > 0) s.escape_direction.normalize();
   return s;
 }
@@ -46,41 +46,41 @@ void check_start(const Cave& cave, double vehicle_radius_m) {
                   p.x(), p.y(), p.z(), s.clearance_m, vehicle_radius_m);
     refuse();
   }
-  if (s.odd_share < 0.5) {
+  if (s.odd_fraction < 0.5) {
     std::snprintf(text, sizeof text,
                   "(%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces", p.x(),
-                  p.y(), p.z(), s.escape_share > 0.25 ? "outside of the cave" : "inside rock",
-                  100 * s.odd_share);
+                  p.y(), p.z(), s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock",
+                  100 * s.odd_fraction);
     refuse();
   }
   constexpr double kPinholes = 0.0005;  // 2 of 4096 rays may slip between triangles that do not quite join
-  if (s.escape_share > kPinholes) {
+  if (s.escape_fraction > kPinholes) {
     const auto& e = s.escape_direction;
     std::snprintf(
         text, sizeof text,
         "the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about (%.2f %.2f %.2f)",
-        100 * s.escape_share, p.x(), p.y(), p.z(), e.x(), e.y(), e.z());
+        100 * s.escape_fraction, p.x(), p.y(), p.z(), e.x(), e.y(), e.z());
     refuse();
   }
 }
 
-void settle_objects(Cave& cave) {
-  constexpr double kLeast_m = 0.02, kLiesOn_m = 1;
+void lay_objects(Cave& cave) {
+  constexpr double kMin_m = 0.02, kLiesOn_m = 1;
   for (CaveObject& o : cave.description.objects) {
     char text[200];
     const auto refuse = [&] { throw InputError(cave.description.file, "object.position", text); };
     const Vec3& p = o.position;
     const Surroundings s = look_around(cave.scene, p);
-    if (s.odd_share < 0.5) {
+    if (s.odd_fraction < 0.5) {
       std::snprintf(
           text, sizeof text,
           "the %s at (%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
           core::name_of(o.kind), p.x(), p.y(), p.z(),
-          s.escape_share > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_share);
+          s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_fraction);
       refuse();
     }
     const Nearest rock = cave.scene.nearest(p, kLiesOn_m);
-    if (rock.found && rock.distance_m < kLeast_m) {
+    if (rock.found && rock.distance_m < kMin_m) {
       std::snprintf(text, sizeof text,
                     "the %s at (%.2f %.2f %.2f) is %.3f m from rock: its middle must be 0.02 m off at least",
                     core::name_of(o.kind), p.x(), p.y(), p.z(), rock.distance_m);

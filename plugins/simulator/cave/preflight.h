@@ -7,9 +7,9 @@ namespace karst::cave {
 /// What rays in all directions from one place find.
 struct Surroundings {
   double clearance_m = 0;                            // distance to rock, at most 100 m
-  double escape_share = 0;                           // of rays that meet no rock at all
+  double escape_fraction = 0;                        // of rays that meet no rock at all
   core::Vec3 escape_direction = core::Vec3::Zero();  // mean of those
-  double odd_share = 0;                              // of rays that pass an odd number of surfaces
+  double odd_fraction = 0;                           // of rays that pass an odd number of surfaces
 };
 Surroundings look_around(const RayScene& scene, const core::Vec3& place);
 
@@ -26,7 +26,7 @@ void check_start(const Cave& cave, double vehicle_radius_m);
 /// Finds the rock that each object of the cave lies on: the nearest, if it is within 1 m. Throws InputError
 /// if an object lies in rock or outside the cave, or touches rock: with its middle nearer than 2 cm it could
 /// not be seen.
-void settle_objects(Cave& cave);
+void lay_objects(Cave& cave);
 
 /// Throws InputError if the vehicle's sphere, `standing` with its centre there, cannot rise straight up by
 /// `climb_m` and have 0.1 m of air left above: a ceiling or a block is in the way.

@@ -15,7 +15,7 @@ using core::Vec3;
 constexpr double kRockM = 1e3;        // value where nothing is hollow
 constexpr double kJoinM = 1.2;        // roundness where two passages meet
 constexpr double kSolidJoinM = 0.25;  // where a block lies on the floor
-constexpr double kWayJoinM = 0.4;     // where the vehicle's way was cut free
+constexpr double kPathJoinM = 0.4;    // where the vehicle's way was cut free
 
 struct Box {
   Vec3 low, high;
@@ -37,17 +37,17 @@ Box box_of(const Speleothem& s) {
 
 }  // namespace
 
-CaveField::CaveField(const CavePlan& plan, double cube_m, double way_radius_m)
+CaveField::CaveField(const CavePlan& plan, double cube_m, double path_radius_m)
     : plan_(plan),
       cube_m_(cube_m),
-      way_radius_m_(way_radius_m),
-      most_roughness_m_(2 * plan.roughness_m + plan.undulation_m) {
+      path_radius_m_(path_radius_m),
+      max_roughness_m_(2 * plan.roughness_m + plan.undulation_m) {
   for (std::size_t i = 0; i < plan.passages.size(); ++i)
     for (std::size_t j = 0; j + 1 < plan.passages[i].size(); ++j) {
       segments_.emplace_back(plan.passages[i][j], plan.passages[i][j + 1]);
       passage_of_.push_back(static_cast<std::int32_t>(i));
     }
-  const double margin = most_roughness_m_ + kJoinM;  // what can be added to a shape
+  const double margin = max_roughness_m_ + kJoinM;  // what can be added to a shape
   Box all{Vec3::Constant(std::numeric_limits<double>::infinity()),
           Vec3::Constant(-std::numeric_limits<double>::infinity())};
   const auto each_hollow = [&](const auto& visit) {
@@ -92,7 +92,7 @@ const CaveField::Cube& CaveField::cube(std::int32_t x, std::int32_t y, std::int3
 
 CaveField::Smooth CaveField::smooth(const Vec3& p, const Cube& cube) const {
   // Segments of one passage meet without a rounded join: it would widen the passage once a segment.
-  double d = kRockM, passage = kRockM, way = kRockM;
+  double d = kRockM, passage = kRockM, path = kRockM;
   std::int32_t current = -1;
   for (const std::int32_t i : cube.segments) {
     const auto at = static_cast<std::size_t>(i);
@@ -104,13 +104,13 @@ CaveField::Smooth CaveField::smooth(const Vec3& p, const Cube& cube) const {
     const Segment& s = segments_[at];
     const Foot foot = foot_of(p, s);
     const double from_line = foot.offset.norm();
-    way = std::min(way, from_line);
+    path = std::min(path, from_line);
     if (from_line - s.reach_m < passage) passage = std::min(passage, segment_distance(foot, s));
   }
   d = smooth_min(d, passage, kJoinM);
   for (const std::int32_t i : cube.chambers)
     d = smooth_min(d, chamber_distance(p, plan_.chambers[static_cast<std::size_t>(i)]), kJoinM);
-  return {d, way};
+  return {d, path};
 }
 
 double CaveField::roughness(const Vec3& p) const {
@@ -122,14 +122,14 @@ double CaveField::roughness(const Vec3& p) const {
   const double large = 1.8 * gradient_noise(Vec3(p / plan_.undulation_length_m), s + 4) +
                        0.8 * gradient_noise(Vec3(2.1 / plan_.undulation_length_m * p), s + 5);
   return std::clamp(plan_.roughness_m * (1.6 * bends + 1.2 * beds) + plan_.undulation_m * large,
-                    -most_roughness_m_, most_roughness_m_);
+                    -max_roughness_m_, max_roughness_m_);
 }
 
 double CaveField::value(const Vec3& p, const Cube& cube) const {
   if (!cube.any()) return kRockM;
   const Smooth s = smooth(p, cube);
   double d = s.hollow;
-  if (std::abs(d) < most_roughness_m_ + 1) {  // elsewhere only the sign matters
+  if (std::abs(d) < max_roughness_m_ + 1) {  // elsewhere only the sign matters
     const double from_start = (p - plan_.start).norm();
     const double fade = std::clamp((from_start - 2.5) / 3, 0.0, 1.0);  // level ground at the start
     d += fade * roughness(p);
@@ -138,15 +138,15 @@ double CaveField::value(const Vec3& p, const Cube& cube) const {
     d = -smooth_min(-d, boulder_distance(p, plan_.boulders[static_cast<std::size_t>(i)]), kSolidJoinM);
   for (const std::int32_t i : cube.speleothems)
     d = -smooth_min(-d, speleothem_distance(p, plan_.speleothems[static_cast<std::size_t>(i)]), kSolidJoinM);
-  return smooth_min(d, s.way - way_radius_m_, kWayJoinM);
+  return smooth_min(d, s.path - path_radius_m_, kPathJoinM);
 }
 
 double CaveField::value_around(const Vec3& p, double radius_m, const Cube& cube) const {
   if (!cube.any()) return kRockM;
   const Smooth s = smooth(p, cube);
   // The shapes' distances grow at most about twice as fast as the way to them.
-  const double unsure = 2 * radius_m + most_roughness_m_ + kJoinM;
-  if (s.hollow > unsure && s.way - way_radius_m_ > radius_m + kWayJoinM) return s.hollow;
+  const double unsure = 2 * radius_m + max_roughness_m_ + kJoinM;
+  if (s.hollow > unsure && s.path - path_radius_m_ > radius_m + kPathJoinM) return s.hollow;
   if (s.hollow < -unsure && !cube.solids()) return s.hollow;
   return 0;
 }

@@ -11,7 +11,7 @@ namespace karst::cave {
 /// Cuts space into cubes and knows for each what of the plan matters there. The plan must outlive it.
 class CaveField {
  public:
-  CaveField(const CavePlan& plan, double cube_m, double way_radius_m);
+  CaveField(const CavePlan& plan, double cube_m, double path_radius_m);
 
   struct Cube {
     std::vector<std::int32_t> segments, chambers, boulders, speleothems;
@@ -32,7 +32,7 @@ class CaveField {
 
  private:
   struct Smooth {
-    double hollow, way;  // distances to the passages' and chambers' walls, and to the nearest centre line
+    double hollow, path;  // distances to the passages' and chambers' walls, and to the nearest centre line
   };
   Smooth smooth(const core::Vec3& p, const Cube& cube) const;
   double roughness(const core::Vec3& p) const;
@@ -40,8 +40,8 @@ class CaveField {
   const CavePlan& plan_;
   std::vector<Segment> segments_;         // passage by passage
   std::vector<std::int32_t> passage_of_;  // of each segment
-  double cube_m_, way_radius_m_;
-  double most_roughness_m_;  // the walls are never farther from where they would be without
+  double cube_m_, path_radius_m_;
+  double max_roughness_m_;  // the walls are never farther from where they would be without
   core::Vec3 low_ = core::Vec3::Zero();
   std::array<std::int32_t, 3> count_{};
   std::vector<Cube> cubes_;

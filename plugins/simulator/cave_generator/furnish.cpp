@@ -34,13 +34,13 @@ std::optional<Vec3> rock_along(const CaveField& field, Vec3 p, double sign) {
 }
 
 /// A place in the cave and how far it is open to the sides there.
-struct Place {
+struct Site {
   Vec3 center = Vec3::Zero();
   double half_width_m = 1;
 };
 
-std::vector<Place> places(const CavePlan& plan) {
-  std::vector<Place> out;
+std::vector<Site> sites(const CavePlan& plan) {
+  std::vector<Site> out;
   for (const Passage& passage : plan.passages)
     for (std::size_t i = 0; i + 1 < passage.size(); ++i) {
       const Vec3 step = passage[i + 1].center - passage[i].center;
@@ -56,9 +56,9 @@ std::vector<Place> places(const CavePlan& plan) {
   return out;
 }
 
-Vec3 scattered(const Place& place, double radius_m, Random& random) {
+Vec3 scattered(const Site& site, double radius_m, Random& random) {
   const double angle = random.uniform(0, 2 * std::numbers::pi), r = radius_m * std::sqrt(random.uniform());
-  return place.center + Vec3(r * std::cos(angle), r * std::sin(angle), 0);
+  return site.center + Vec3(r * std::cos(angle), r * std::sin(angle), 0);
 }
 
 core::Quat tilted(Random& random, double lean_rad) {
@@ -68,14 +68,13 @@ core::Quat tilted(Random& random, double lean_rad) {
          core::from_heading(turn);
 }
 
-void add_heap(CavePlan& plan, const CaveField& field, const Place& place, Random& random) {
-  const double spread = random.uniform(0.5, 1.0) * place.half_width_m;
-  const Place heap{scattered(place, 0.5 * place.half_width_m, random), spread};
+void add_heap(CavePlan& plan, const CaveField& field, const Site& site, Random& random) {
+  const double spread = random.uniform(0.5, 1.0) * site.half_width_m;
+  const Site heap{scattered(site, 0.5 * site.half_width_m, random), spread};
   const int blocks = static_cast<int>(random.uniform(4, 9) * std::clamp(spread, 1.0, 4.0));
   for (int i = 0; i < blocks; ++i) {
     const Vec3 above = scattered(heap, spread, random);
-    const double size =
-        0.3 * std::exp(0.5 * random.normal()) * std::clamp(place.half_width_m / 2.5, 0.7, 2.0);
+    const double size = 0.3 * std::exp(0.5 * random.normal()) * std::clamp(site.half_width_m / 2.5, 0.7, 2.0);
     const Vec3 half = std::clamp(size, 0.22, 1.4) *
                       Vec3(random.uniform(0.8, 1.4), random.uniform(0.7, 1.1), random.uniform(0.45, 0.9));
     const double lean = 0.35 * random.normal();
@@ -88,11 +87,11 @@ void add_heap(CavePlan& plan, const CaveField& field, const Place& place, Random
   }
 }
 
-void add_dripstone(CavePlan& plan, const CaveField& field, const Place& place, Random& random) {
+void add_dripstone(CavePlan& plan, const CaveField& field, const Site& site, Random& random) {
   const int pieces = 3 + static_cast<int>(random.uniform() * 8);
-  const Place cluster{scattered(place, 0.6 * place.half_width_m, random), place.half_width_m};
+  const Site cluster{scattered(site, 0.6 * site.half_width_m, random), site.half_width_m};
   for (int i = 0; i < pieces; ++i) {
-    const Vec3 at = scattered(cluster, 0.5 * place.half_width_m, random);
+    const Vec3 at = scattered(cluster, 0.5 * site.half_width_m, random);
     const double base = random.uniform(0.22, 0.5), wish = 0.5 * std::exp(0.6 * random.normal());
     const double kind = random.uniform();
     const auto floor = rock_along(field, at, -1), ceiling = rock_along(field, at, 1);
@@ -118,7 +117,7 @@ void furnish(CavePlan& plan, const CaveRecipe& recipe, std::uint64_t seed) {
   plan.speleothems.clear();
   const CavePlan bare = plan;
   const CaveField field(bare, kCubeM, 0.5);
-  const std::vector<Place> all = places(plan);
+  const std::vector<Site> all = sites(plan);
   if (all.empty()) return;
   const auto scatter = [&](double per_station, const char* what, const auto& add) {
     Random random = Random::stream(seed, what);

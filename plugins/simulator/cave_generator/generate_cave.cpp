@@ -20,8 +20,8 @@ void check(const CaveRecipe& recipe) {
   for (const auto& row : table.rows()) table.set("cave recipe", row.key, core::value_text(row));
 }
 
-Samples sample(const CavePlan& plan, double grid_m, double way_radius_m) {
-  Samples s(CaveField(plan, Samples::kEdge * grid_m, way_radius_m), grid_m);
+Samples sample(const CavePlan& plan, double grid_m, double path_radius_m) {
+  Samples s(CaveField(plan, Samples::kEdge * grid_m, path_radius_m), grid_m);
   separate_sheets(s);
   keep_one_cave(s, plan.start);
   return s;
@@ -48,7 +48,7 @@ double next_scale(double scale, double ratio) {
 /// Finds the length of passages, then the scale of their cross-sections, that give the volume wanted: the
 /// length changes in steps of whole branches, the scale does the rest. Volumes are measured on a grid coarser
 /// than the mesh's.
-Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double way_radius_m,
+Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double path_radius_m,
            const std::function<void(const char*, double)>& progress) {
   constexpr int kRounds = 4;
   constexpr double kGoodEnough = 0.04;
@@ -56,7 +56,7 @@ Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double way_radius_m,
   int measured = 0;
   const auto ratio = [&](const Fit& fit) {
     progress("laying out passages", 0.5 * measured++ / kRounds);
-    return hollow_volume_m3(sample(plan_for(recipe, seed, fit), grid_m, way_radius_m)) / recipe.volume_m3;
+    return hollow_volume_m3(sample(plan_for(recipe, seed, fit), grid_m, path_radius_m)) / recipe.volume_m3;
   };
   const double section_m2 = 0.7 * recipe.passage_width_m * recipe.passage_width_m;
   Fit fit{std::max(20.0, 0.8 * recipe.volume_m3 / section_m2), 1}, best = fit;
@@ -76,7 +76,7 @@ Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double way_radius_m,
   return best;
 }
 
-double least_clearance_m(const RayScene& scene, const CavePlan& plan) {
+double min_clearance_m(const RayScene& scene, const CavePlan& plan) {
   double least = 10;
   for (const Passage& passage : plan.passages)
     for (std::size_t i = 0; i + 1 < passage.size(); ++i)
@@ -92,17 +92,17 @@ double least_clearance_m(const RayScene& scene, const CavePlan& plan) {
 GeneratedCave generate_cave(const CaveRecipe& recipe, std::uint64_t seed,
                             const std::function<void(const char*, double)>& progress) {
   check(recipe);
-  const auto tell = [&](const char* step, double share) {
-    if (progress) progress(step, share);
+  const auto tell = [&](const char* step, double fraction) {
+    if (progress) progress(step, fraction);
   };
   // Meshing rounds corners off by up to half a grid step: widen the way until it is as free as promised.
-  double way_radius_m = kWayClearanceM + 0.2;
-  Fit fit = fitted(recipe, seed, way_radius_m, tell);
+  double path_radius_m = kPathClearanceM + 0.2;
+  Fit fit = fitted(recipe, seed, path_radius_m, tell);
   for (int attempt = 0; attempt < 5; ++attempt) {
     tell("making rock", 0.2 * attempt);
     const CavePlan plan = plan_for(recipe, seed, fit);
     GeneratedCave cave;
-    cave.mesh = surface_net(sample(plan, recipe.grid_m, way_radius_m));
+    cave.mesh = surface_net(sample(plan, recipe.grid_m, path_radius_m));
     cave.volume_m3 = enclosed_volume_m3(cave.mesh);
     const double ratio = cave.volume_m3 / recipe.volume_m3, scale = next_scale(fit.scale, ratio);
     if (std::abs(ratio - 1) > 0.8 * kVolumeBand && scale != fit.scale && attempt < 3) {
@@ -111,15 +111,15 @@ GeneratedCave generate_cave(const CaveRecipe& recipe, std::uint64_t seed,
     }
     tell("checking clearance", 0.9);
     const RayScene scene(cave.mesh);
-    if (least_clearance_m(scene, plan) < kWayClearanceM ||
+    if (min_clearance_m(scene, plan) < kPathClearanceM ||
         scene.distance_to_rock(plan.start, 2 * kStartClearanceM) < kStartClearanceM) {
-      way_radius_m += 0.1;
+      path_radius_m += 0.1;
       continue;
     }
     cave.start = {plan.start, plan.start_heading_rad};
     for (const Passage& passage : plan.passages) {
-      cave.ways.emplace_back();
-      for (const Station& s : passage) cave.ways.back().push_back(s.center);
+      cave.axes.emplace_back();
+      for (const Station& s : passage) cave.axes.back().push_back(s.center);
     }
     cave.boulders = plan.boulders.size();
     cave.speleothems = plan.speleothems.size();

@@ -11,11 +11,11 @@ struct GeneratedCave {
   TriangleMesh mesh;     // one closed surface, normals into the cave
   StartPose start;       // in the entrance chamber over level ground, at least 1 m from rock
   double volume_m3 = 0;  // enclosed by the mesh
-  std::vector<std::vector<core::Vec3>> ways;  // centre lines, each at least kWayClearanceM from rock
+  std::vector<std::vector<core::Vec3>> axes;  // centre lines, each at least kPathClearanceM from rock
   std::size_t boulders = 0, speleothems = 0;
 };
 
-constexpr double kWayClearanceM = 0.6;
+constexpr double kPathClearanceM = 0.6;
 /// The volume comes within this share of the recipe's, unless its chambers and shafts alone hold more.
 constexpr double kVolumeBand = 0.15;
 

@@ -95,7 +95,7 @@ void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, bool
     if (room(plan, recipe, s.center + Vec3(0, 0, sign * drop), s.center) < 2 ||
         room(plan, recipe, s.center + Vec3(0, 0, sign * (0.5 * drop + 3)), s.center) < 0)
       continue;
-    Passage way;
+    Passage passage;
     const int steps = static_cast<int>(drop / kStationStepM);
     const auto noise = static_cast<std::uint32_t>(random.bits());
     Vec3 p = s.center;
@@ -104,14 +104,14 @@ void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, bool
       v.center = p;
       const double taper = down ? 1 : 1 - 0.35 * i / steps;
       const double pulse = std::exp(0.3 * gradient_noise(i * kStationStepM / 4, noise));
-      v.half_width_m = v.half_height_m = std::max(kLeastHalfM, radius * taper * pulse);
+      v.half_width_m = v.half_height_m = std::max(kMinHalfM, radius * taper * pulse);
       v.floor_m = v.half_height_m;
-      way.push_back(v);
+      passage.push_back(v);
       p += Vec3(0.25 * gradient_noise(i * 0.3, noise + 1), 0.25 * gradient_noise(i * 0.3, noise + 2),
                 sign * kStationStepM);
     }
-    const Vec3 foot = way.back().center;
-    plan.passages.push_back(std::move(way));
+    const Vec3 foot = passage.back().center;
+    plan.passages.push_back(std::move(passage));
     if (down)
       plan.passages.push_back(
           walk_passage(plan, recipe, seed,
@@ -151,7 +151,7 @@ void add_loop(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
   const Vec3 across = (b.center - a.center).cross(Vec3::UnitZ()).normalized();
   const double apart = (b.center - a.center).norm();
   const double bow = random.uniform(-0.25, 0.25) * apart, wave = random.uniform(-0.1, 0.1) * apart;
-  Passage way;
+  Passage passage;
   const int steps = std::max(3, static_cast<int>(apart / kStationStepM));
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
@@ -159,14 +159,13 @@ void add_loop(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
     Station s;
     s.center = a.center + t * (b.center - a.center) +
                across * (bow * std::sin(std::numbers::pi * t) + wave * std::sin(2 * std::numbers::pi * t));
-    s.half_width_m =
-        std::max(kLeastHalfM, (1 - 0.35 * end) * ((1 - t) * a.half_width_m + t * b.half_width_m));
+    s.half_width_m = std::max(kMinHalfM, (1 - 0.35 * end) * ((1 - t) * a.half_width_m + t * b.half_width_m));
     s.half_height_m =
-        std::max(kLeastHalfM, (1 - 0.35 * end) * ((1 - t) * a.half_height_m + t * b.half_height_m));
-    s.floor_m = std::max(kLeastHalfM, 0.8 * s.half_height_m);
-    way.push_back(s);
+        std::max(kMinHalfM, (1 - 0.35 * end) * ((1 - t) * a.half_height_m + t * b.half_height_m));
+    s.floor_m = std::max(kMinHalfM, 0.8 * s.half_height_m);
+    passage.push_back(s);
   }
-  plan.passages.push_back(std::move(way));
+  plan.passages.push_back(std::move(passage));
 }
 
 }  // namespace
@@ -222,10 +221,10 @@ CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m) 
 void scale_sections(CavePlan& plan, double factor) {
   for (Passage& passage : plan.passages)
     for (Station& s : passage) {
-      s.half_width_m = std::max(kLeastHalfM, factor * s.half_width_m);
-      s.half_height_m = std::max(kLeastHalfM, factor * s.half_height_m);
+      s.half_width_m = std::max(kMinHalfM, factor * s.half_width_m);
+      s.half_height_m = std::max(kMinHalfM, factor * s.half_height_m);
       const bool at_entrance = (s.center - plan.start).norm() < kLevelStartM;
-      if (!at_entrance) s.floor_m = std::max(kLeastHalfM, factor * s.floor_m);
+      if (!at_entrance) s.floor_m = std::max(kMinHalfM, factor * s.floor_m);
     }
   for (std::size_t i = 1; i < plan.chambers.size(); ++i) plan.chambers[i].radii *= factor;
 }

@@ -18,10 +18,10 @@ Station section(const CaveRecipe& recipe, double s, double width_factor, std::ui
   const double aspect = std::exp(0.55 * gradient_noise(s / 17, noise + 3) - 0.25);
   const double width = 0.5 * recipe.passage_width_m * width_factor * size;
   Station out;
-  out.half_width_m = std::max(kLeastHalfM, width);
-  out.half_height_m = std::max(kLeastHalfM, width * aspect);
+  out.half_width_m = std::max(kMinHalfM, width);
+  out.half_height_m = std::max(kMinHalfM, width * aspect);
   const double sediment = 0.75 + 0.35 * gradient_noise(s / 9, noise + 4);
-  out.floor_m = std::max(kLeastHalfM, sediment * out.half_height_m);
+  out.floor_m = std::max(kMinHalfM, sediment * out.half_height_m);
   const double cut = gradient_noise(s / 20, noise + 5) + 0.25;
   if (keyhole) out.slot = std::clamp(2 * cut, 0.0, 0.9);
   return out;
@@ -45,9 +45,9 @@ void taper(Passage& passage) {
   for (std::size_t i = 0; i < n; ++i) {
     Station& s = passage[passage.size() - n + i];
     const double shrink = 1 - 0.45 * static_cast<double>(i + 1) / static_cast<double>(n);
-    s.half_width_m = std::max(kLeastHalfM, s.half_width_m * shrink);
-    s.half_height_m = std::max(kLeastHalfM, s.half_height_m * shrink);
-    s.floor_m = std::max(kLeastHalfM, s.floor_m * shrink);
+    s.half_width_m = std::max(kMinHalfM, s.half_width_m * shrink);
+    s.half_height_m = std::max(kMinHalfM, s.half_height_m * shrink);
+    s.floor_m = std::max(kMinHalfM, s.floor_m * shrink);
   }
 }
 

@@ -52,7 +52,7 @@ struct CavePlan {
   std::uint32_t noise_seed = 0;
 };
 
-constexpr double kLeastHalfM = 1.05;  // no passage is narrower or lower than twice this
+constexpr double kMinHalfM = 1.05;  // no passage is narrower or lower than twice this
 
 /// Lays out passages of about `length_m` in total, without boulders and speleothems.
 CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m);

@@ -25,8 +25,8 @@ cave::Nearest ContactWatch::query(const Vec3& position) {
 }
 
 std::optional<Touch> ContactWatch::touch(const Vec3& position) {
-  const double least_m = last_distance_m_ - (position - last_position_).norm();
-  if (last_distance_m_ >= 0 && least_m > radius_m_) return std::nullopt;
+  const double min_m = last_distance_m_ - (position - last_position_).norm();
+  if (last_distance_m_ >= 0 && min_m > radius_m_) return std::nullopt;
   const cave::Nearest n = query(position);
   if (n.distance_m > radius_m_ || !n.found) return std::nullopt;
   const Vec3 offset = n.point - position;

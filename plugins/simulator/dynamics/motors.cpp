@@ -19,7 +19,7 @@ void describe(core::OptionTable& t, MotorModel& m) {
   t.add("time_constant", m.time_constant_s, "s", 0.001, 0.5, "first-order lag of the thrust");
   t.add("weak", m.weak, 0, 4,
         "number of a worn motor: 1 front left, 2 front right, 3 rear left, 4 rear right; 0: none");
-  t.add("weak_share", m.weak_share, "", 0, 1, "of the thrust asked of it that a worn motor exerts");
+  t.add("weak_fraction", m.weak_fraction, "", 0, 1, "of the thrust asked of it that a worn motor exerts");
   t.add("weak_after", m.weak_after_s, "s", 0, 86400, "when it begins to be worn");
 }
 
@@ -43,17 +43,17 @@ MotorThrusts mix(const MotorModel& model, double max_n, const Wrench& wanted) {
   if (span > max_n) tilt *= max_n / span;
   const double collective = std::clamp(wanted.thrust_n / 4, -tilt.minCoeff(), max_n - tilt.maxCoeff());
   const MotorThrusts f = tilt.array() + collective;
-  double share = 1;
+  double fraction = 1;
   for (int i = 0; i < 4; ++i) {
-    if (yaw[i] > 0) share = std::min(share, (max_n - f[i]) / yaw[i]);
-    if (yaw[i] < 0) share = std::min(share, f[i] / -yaw[i]);
+    if (yaw[i] > 0) fraction = std::min(fraction, (max_n - f[i]) / yaw[i]);
+    if (yaw[i] < 0) fraction = std::min(fraction, f[i] / -yaw[i]);
   }
-  return (f + std::max(share, 0.0) * yaw).cwiseMax(0.0).cwiseMin(max_n);
+  return (f + std::max(fraction, 0.0) * yaw).cwiseMax(0.0).cwiseMin(max_n);
 }
 
 MotorThrusts exerted(const MotorModel& model, const MotorThrusts& f, double t_s) {
   MotorThrusts out = f;
-  if (model.weak > 0 && t_s >= model.weak_after_s) out[model.weak - 1] *= model.weak_share;
+  if (model.weak > 0 && t_s >= model.weak_after_s) out[model.weak - 1] *= model.weak_fraction;
   return out;
 }
 

@@ -13,7 +13,7 @@ struct MotorModel {
   double yaw_moment_m = 0.016;    // reaction torque over thrust
   double time_constant_s = 0.025;
   std::int64_t weak = 0;  // number of a motor that is worn, 1 to 4 in the order of MotorThrusts; 0: none
-  double weak_share = 0.9, weak_after_s = 0;
+  double weak_fraction = 0.9, weak_after_s = 0;
 };
 void describe(core::OptionTable& t, MotorModel& m);
 

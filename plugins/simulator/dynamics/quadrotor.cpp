@@ -48,7 +48,7 @@ QuadrotorEvent Quadrotor::step() {
   QuadrotorEvent event = QuadrotorEvent::none;
   if (footing_ == Footing::standing) {
     if (lift_n <= kLiftOff * model_.body.total_weight_n()) {
-      settle();
+      level_out();
       return event;
     }
     footing_ = Footing::leaving;
@@ -85,7 +85,7 @@ QuadrotorEvent Quadrotor::meet_rock(double lift_n) {
 }
 
 /// On its legs the vehicle comes level within about 0.1 s.
-void Quadrotor::settle() {
+void Quadrotor::level_out() {
   constexpr double kSettling_s = 0.1;
   Quat& q = state_.T_world_body.orientation;
   const Quat level = core::from_heading(core::heading_of(q));

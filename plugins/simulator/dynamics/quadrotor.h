@@ -45,7 +45,7 @@ class Quadrotor {
  private:
   QuadrotorEvent step();
   QuadrotorEvent meet_rock(double lift_n);
-  void settle();
+  void level_out();
 
   QuadrotorModel model_;
   double max_motor_thrust_n_;

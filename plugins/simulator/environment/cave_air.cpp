@@ -35,7 +35,7 @@ void describe(core::OptionTable& t, AirOptions& o) {
   t.add("settling", o.settling_s, "s", 0.1, 600, "time in which dust settles to 1/e");
 }
 
-double lifted_share(double distance_m, double reach_m, double vehicle_radius_m) {
+double lifted_fraction(double distance_m, double reach_m, double vehicle_radius_m) {
   const double core_m = std::min(5 * vehicle_radius_m, reach_m);  // 2.5 diameters
   if (distance_m >= reach_m) return 0;
   if (distance_m <= core_m) return 1;
@@ -51,8 +51,8 @@ void CaveAir::stir(double t_s, const core::Pose& T_world_body, const cave::RaySc
   while (!puffs_.empty() && t_s - puffs_.front().born_s > 5 * options_.settling_s) puffs_.pop_front();
   const Vec3 &p = T_world_body.position, wash = T_world_body.orientation * -Vec3::UnitZ();
   const auto lift = [&](const Vec3& place, double distance_m) {
-    const double share = lifted_share(distance_m, options_.stirred_reach_m, vehicle_radius_m_);
-    if (share > 0) puffs_.push_back({t_s, place, share * options_.stirred_1pm});
+    const double fraction = lifted_fraction(distance_m, options_.stirred_reach_m, vehicle_radius_m_);
+    if (fraction > 0) puffs_.push_back({t_s, place, fraction * options_.stirred_1pm});
   };
   const double below_m = scene.ray_cast(p, wash, options_.stirred_reach_m);
   if (std::isfinite(below_m)) lift(p + below_m * wash, below_m);

@@ -24,7 +24,7 @@ struct AirOptions {
 void describe(core::OptionTable& t, AirOptions& o);
 
 /// Share of the full wash's dust that is lifted from rock so far away, 0..1.
-double lifted_share(double distance_m, double reach_m, double vehicle_radius_m);
+double lifted_fraction(double distance_m, double reach_m, double vehicle_radius_m);
 
 class CaveAir {
  public:

@@ -33,7 +33,7 @@ Passage pass(const cave::Cloud& cloud, const Vec3& from, const Vec3& direction) 
 
 }  // namespace
 
-void CloudyWay::trace(std::span<const cave::Cloud> clouds, const cave::Ray& ray) {
+void CloudyPath::trace(std::span<const cave::Cloud> clouds, const cave::Ray& ray) {
   passages_.clear();
   for (const cave::Cloud& cloud : clouds) {
     const Passage p = pass(cloud, ray.origin.cast<double>(), ray.direction.cast<double>());
@@ -44,13 +44,13 @@ void CloudyWay::trace(std::span<const cave::Cloud> clouds, const cave::Ray& ray)
   }
 }
 
-double CloudyWay::depth(double range_m) const {
+double CloudyPath::depth(double range_m) const {
   double depth = 0;
   for (const Passage& p : passages_) depth += p.extinction_1pm * p.length_within_m(0, range_m);
   return depth;
 }
 
-CloudyWay::Stretch CloudyWay::stretch(double from_m, double to_m, double depth_before) const {
+CloudyPath::Stretch CloudyPath::stretch(double from_m, double to_m, double depth_before) const {
   Stretch s{to_m, from_m, 0, 0};
   double back = 0;  // backscatter weighted by depth
   for (const Passage& p : passages_) {
@@ -67,10 +67,10 @@ CloudyWay::Stretch CloudyWay::stretch(double from_m, double to_m, double depth_b
   return s;
 }
 
-double CloudyWay::Stretch::place_m(core::Random& random) const {
+double CloudyPath::Stretch::place_m(core::Random& random) const {
   // Density proportional to exp(-2 tau) along the stretch.
-  const double share = -std::log1p(random.uniform() * std::expm1(-2 * depth)) / (2 * depth);
-  return from_m + share * (to_m - from_m);
+  const double fraction = -std::log1p(random.uniform() * std::expm1(-2 * depth)) / (2 * depth);
+  return from_m + fraction * (to_m - from_m);
 }
 
 }  // namespace karst::sim

@@ -41,7 +41,7 @@ struct Passage {
 };
 
 /// A beam's way through all clouds; empty for most beams. Reusing one saves its allocation.
-class CloudyWay {
+class CloudyPath {
  public:
   /// `ray.direction` is a unit vector.
   void trace(std::span<const cave::Cloud> clouds, const cave::Ray& ray);

@@ -8,11 +8,12 @@ using core::Vec3;
 
 namespace {
 
-Vec3 place_of(const cave::LooseRock& b, double moving_s) {
-  const double way_m = (b.to - b.position).norm();
-  if (way_m == 0 || b.speed_mps == 0) return b.position;
-  const double along_m = std::fmod(b.speed_mps * moving_s, 2 * way_m);
-  return b.position + (b.to - b.position) * ((along_m <= way_m ? along_m : 2 * way_m - along_m) / way_m);
+Vec3 position_of(const cave::LooseRock& b, double moving_s) {
+  const double distance_m = (b.to - b.position).norm();
+  if (distance_m == 0 || b.speed_mps == 0) return b.position;
+  const double along_m = std::fmod(b.speed_mps * moving_s, 2 * distance_m);
+  return b.position +
+         (b.to - b.position) * ((along_m <= distance_m ? along_m : 2 * distance_m - along_m) / distance_m);
 }
 
 }  // namespace
@@ -34,7 +35,7 @@ std::vector<cave::Sphere> LooseRocks::present() const {
   std::vector<cave::Sphere> spheres;
   for (std::size_t i = 0; i < rocks_.size(); ++i)
     if (there_since_s_[i])
-      spheres.push_back({place_of(rocks_[i], t_s_ - *there_since_s_[i]), rocks_[i].radius_m});
+      spheres.push_back({position_of(rocks_[i], t_s_ - *there_since_s_[i]), rocks_[i].radius_m});
   return spheres;
 }
 

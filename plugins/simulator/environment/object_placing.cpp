@@ -36,7 +36,7 @@ namespace {
 
 constexpr double kStep_m = 0.3, kFarthest_m = 4.0, kApart_m = 4.0;
 constexpr double kOffRock_m = 0.15;  // of an object's middle
-constexpr std::size_t kMostPlaces = 500000;
+constexpr std::size_t kMaxPlaces = 500000;
 
 Vec3 any_direction(Random& random) {
   const double z = random.uniform(-1, 1), r = std::sqrt(1 - z * z),
@@ -54,7 +54,7 @@ std::vector<Vec3> flyable_places(const cave::Cave& cave, double clearance_m) {
   std::vector<Vec3> places{start};
   std::vector<Step> steps{{0, 0, 0}};
   std::set<Step> known{steps.front()};
-  for (std::size_t next = 0; next < places.size() && places.size() < kMostPlaces; ++next)
+  for (std::size_t next = 0; next < places.size() && places.size() < kMaxPlaces; ++next)
     for (int i = 0; i < 6; ++i) {
       Step there = steps[next];
       there[static_cast<std::size_t>(i / 2)] += i % 2 == 0 ? 1 : -1;
@@ -69,7 +69,7 @@ std::vector<Vec3> flyable_places(const cave::Cave& cave, double clearance_m) {
 
 void place_objects(cave::Cave& cave, const ObjectOptions& o, std::uint64_t seed) {
   if (o.count == 0) return;
-  constexpr double kLeastCosine = 0.5, kFloor = 0.7071;
+  constexpr double kMinCosine = 0.5, kFloor = 0.7071;
   constexpr int kTriesEach = 2000;
   Random random = Random::stream(seed, "objects");
   const std::vector<Vec3> places = flyable_places(cave);
@@ -90,11 +90,11 @@ void place_objects(cave::Cave& cave, const ObjectOptions& o, std::uint64_t seed)
         cave.scene.cast({eye.cast<float>(), d.cast<float>()}, static_cast<float>(kFarthest_m));
     if (!hit.any()) continue;
     const Vec3 normal = hit.normal.cast<double>();
-    if (-normal.dot(d) < kLeastCosine || (o.on == "floor" && normal.z() < kFloor)) continue;
+    if (-normal.dot(d) < kMinCosine || (o.on == "floor" && normal.z() < kFloor)) continue;
     const Vec3 p = eye + static_cast<double>(hit.range_m) * d + kOffRock_m * normal;
-    const double way_m = (p - eye).norm();
+    const double distance_m = (p - eye).norm();
     if (!apart(p) || cave.scene.distance_to_rock(p, kOffRock_m) < 0.5 * kOffRock_m ||
-        cave.scene.ray_cast(eye, p - eye, way_m) < way_m)
+        cave.scene.ray_cast(eye, p - eye, distance_m) < distance_m)
       continue;
     objects.push_back({kind, p, normal});
   }

@@ -39,7 +39,7 @@ void describe(core::OptionTable& t, LidarOptions& o) {
   t.add("rate", o.rate_hz, "Hz", 1, 20, "revolutions a second, rounded to whole steps of 5 ms");
   t.add("noise", o.noise_m, "m", 0, 1, "standard deviation of a range");
   t.add(
-      "dust", o.dust_share, "", 0, 0.9,
+      "dust", o.dust_fraction, "", 0, 0.9,
       "share of beams sent back from anywhere near, whatever is there: for tests; physical dust is in air.*");
   t.add("mast", o.mast_m, "m", -1, 1, "height of the sensor above the vehicle's centre");
 }
@@ -76,28 +76,28 @@ Lidar::Lidar(const LidarOptions& o) : options_(o), model_(lidar_model(o)) {
     for (int j = 0; j < model_->columns; ++j) beams_.push_back(model_->direction(c, j));
 }
 
-Lidar::Return Lidar::through(const CloudyWay& way, const Return& clear, core::Random& random) const {
+Lidar::Return Lidar::through(const CloudyPath& path, const Return& clear, core::Random& random) const {
   const double max_range_m = static_cast<double>(model_->max_range_m);
-  const double reach_m = std::min(static_cast<double>(clear.range_m), max_range_m);
-  if (way.depth(reach_m) == 0) return clear;
-  const double left = way.two_way(reach_m);
+  const double end_m = std::min(static_cast<double>(clear.range_m), max_range_m);
+  if (path.depth(end_m) == 0) return clear;
+  const double left = path.two_way(end_m);
   const double reflectivity = static_cast<double>(clear.intensity / return_intensity(1, 1, clear.range_m));
   // The weakest echo it notices: that of rock of 10 % at its greatest range, as data sheets state it.
   double strongest = received_light(0.1, max_range_m);
   Return best{std::numeric_limits<float>::quiet_NaN(), 0};
-  if (const double light = received_light(reflectivity * left, reach_m); light >= strongest) {
+  if (const double light = received_light(reflectivity * left, end_m); light >= strongest) {
     strongest = light;
     best = {clear.range_m, clear.intensity * static_cast<float>(left)};
   }
-  way.for_each_stretch(static_cast<double>(model_->min_range_m), reach_m, kPulse_m,
-                       [&](const CloudyWay::Stretch& s) {
-                         const double echo = s.echo(random), range_m = s.place_m(random);
-                         const double light = received_light(echo, range_m);
-                         if (light < strongest) return;
-                         strongest = light;
-                         const auto range = static_cast<float>(range_m);
-                         best = {range, return_intensity(echo, 1, range)};
-                       });
+  path.for_each_stretch(static_cast<double>(model_->min_range_m), end_m, kPulse_m,
+                        [&](const CloudyPath::Stretch& s) {
+                          const double echo = s.echo(random), range_m = s.place_m(random);
+                          const double light = received_light(echo, range_m);
+                          if (light < strongest) return;
+                          strongest = light;
+                          const auto range = static_cast<float>(range_m);
+                          best = {range, return_intensity(echo, 1, range)};
+                        });
   return best;
 }
 
@@ -119,7 +119,7 @@ core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_bo
   const bool patched = !cave.description.patches.empty();
   std::vector<cave::Ray> rays(columns);
   std::vector<cave::Hit> hits(columns);
-  CloudyWay way;
+  CloudyPath path;
   for (std::size_t first = 0; first < beams_.size(); first += columns) {  // a channel at a time: neighbours
     for (std::size_t j = 0; j < columns; ++j) rays[j] = {origins[j], rotations[j] * beams_[first + j]};
     cave.scene.cast(rays, model_->max_range_m, hits);
@@ -133,14 +133,14 @@ core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_bo
         intensity = return_intensity(reflectivity, -hit.normal.dot(rays[j].direction), range);
         range = std::max(range + noise_m * range_noise(random), 0.0f);
       }
-      if (options_.dust_share > 0 && random.uniform() < options_.dust_share) {
+      if (options_.dust_fraction > 0 && random.uniform() < options_.dust_fraction) {
         const auto dust = static_cast<float>(random.uniform(0.4, 3.0));
         if (dust < range) range = dust, intensity = static_cast<float>(random.uniform(0, 0.02));
       }
       if (!air.clouds.empty()) {
-        way.trace(air.clouds, rays[j]);
-        if (!way.clear()) {
-          const Return r = through(way, {range, intensity}, air.random);
+        path.trace(air.clouds, rays[j]);
+        if (!path.clear()) {
+          const Return r = through(path, {range, intensity}, air.random);
           range = r.range_m, intensity = r.intensity;
         }
       }

@@ -12,9 +12,9 @@ struct LidarOptions {
   std::string unit = "os0_32";
   std::int64_t columns = 512;
   double rate_hz = 10;
-  double noise_m = 0.02;  // standard deviation of a range
-  double dust_share = 0;  // of beams that dust or droplets near the vehicle send back
-  double mast_m = 0.1;    // height above the vehicle's centre
+  double noise_m = 0.02;     // standard deviation of a range
+  double dust_fraction = 0;  // of beams that dust or droplets near the vehicle send back
+  double mast_m = 0.1;       // height above the vehicle's centre
 };
 void describe(core::OptionTable& t, LidarOptions& o);
 
@@ -37,7 +37,7 @@ class Lidar {
     float range_m, intensity;
   };
   /// What becomes of a beam's return in clear air: of all echoes the strongest is reported.
-  Return through(const CloudyWay& way, const Return& clear, core::Random& random) const;
+  Return through(const CloudyPath& path, const Return& clear, core::Random& random) const;
 
   LidarOptions options_;
   std::shared_ptr<const core::LidarModel> model_;

@@ -22,20 +22,20 @@ std::string in_words(const cave::Fault& fault) {
 
 }  // namespace
 
-bool SensorFaults::Strike::lost() const {
+bool SensorFaults::InjectedFaults::lost() const {
   return std::find(kinds.begin(), kinds.end(), Kind::lost) != kinds.end();
 }
 
-SensorFaults::Strike SensorFaults::strike(cave::Fault::Sensor sensor, double t_s) {
-  Strike strike;
+SensorFaults::InjectedFaults SensorFaults::inject(cave::Fault::Sensor sensor, double t_s) {
+  InjectedFaults injected;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     const cave::Fault& f = faults_[i];
     if (f.sensor != sensor || t_s < f.after_s || (begun_[i] && t_s >= f.after_s + f.lasts_s)) continue;
-    strike.kinds.push_back(f.kind);
-    if (!begun_[i]) strike.begun.push_back(in_words(f));
+    injected.kinds.push_back(f.kind);
+    if (!begun_[i]) injected.begun.push_back(in_words(f));
     begun_[i] = true;
   }
-  return strike;
+  return injected;
 }
 
 void spoil(core::LidarScan& scan, Kind kind) {

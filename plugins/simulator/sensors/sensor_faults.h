@@ -13,13 +13,13 @@ class SensorFaults {
   explicit SensorFaults(std::vector<cave::Fault> faults)
       : faults_(std::move(faults)), begun_(faults_.size()) {}
 
-  struct Strike {
+  struct InjectedFaults {
     std::vector<cave::Fault::Kind> kinds;
     std::vector<std::string> begun;  // in words, those that strike for the first time
     bool lost() const;
   };
   /// What strikes a message measured now; times never go back.
-  Strike strike(cave::Fault::Sensor sensor, double t_s);
+  InjectedFaults inject(cave::Fault::Sensor sensor, double t_s);
 
  private:
   std::vector<cave::Fault> faults_;

@@ -21,7 +21,7 @@ namespace pt = boost::property_tree;
 using core::InputError;
 using core::OptionTable;
 
-constexpr std::int64_t kMostSeeds = 100'000;
+constexpr std::int64_t kMaxSeeds = 100'000;
 
 /// Takes the blocks of a name out of a tree.
 std::vector<pt::ptree> take_blocks(pt::ptree& tree, const std::string& name) {
@@ -228,7 +228,7 @@ Campaign read_campaign(const std::string& file) {
   table.add("flight_time", c.flight_time_s, "s", 10, 86400, "homing begins at the latest in time for this");
   table.add("trial_timeout", c.trial_timeout_s, "s", 1, 1e7,
             "a trial that takes longer, by the wall clock, hangs");
-  table.add("seeds", seeds, 1, kMostSeeds, "how many: 1, 2, 3 ...");
+  table.add("seeds", seeds, 1, kMaxSeeds, "how many: 1, 2, 3 ...");
   table.add("seed_list", seed_list, {}, "the seeds themselves");
   table.add("metric", c.metric, metric_names(), "the figure that the verdict is about");
   table.read(file, tree);

@@ -87,7 +87,7 @@ MeanInterval mean_interval(const evaluation::Differences& values, const VerdictO
 ordered_json report_verdicts(const Verdicts& verdicts) {
   ordered_json d = {{"metric", verdicts.metric}, {"sentence", verdicts.sentence}};
   d["ranking"] = ordered_json::array();
-  for (const Place& p : verdicts.ranking)
+  for (const RankedContestant& p : verdicts.ranking)
     d["ranking"].push_back({{"contestant", p.contestant},
                             {"mean", number_or_null(p.mean)},
                             {"best", p.best},

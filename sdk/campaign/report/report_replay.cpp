@@ -20,7 +20,7 @@ using evaluation::CloudArrays;
 using evaluation::RunRecord;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostPoints = 150000;  // of one flight: more is not seen in half a window
+constexpr std::size_t kMaxPoints = 150000;  // of one flight: more is not seen in half a window
 constexpr std::size_t kTrackPoses = 1000;
 constexpr double kTick_ms = 200;
 
@@ -119,10 +119,10 @@ void add_scenes(ordered_json& scenes, const CampaignResults& results, const std:
                 std::size_t max_points, std::vector<std::string>& notes) {
   std::map<std::size_t, std::pair<RunRecord, CloudArrays>> flights;
   double cell_m = 0;
-  const auto cloud_of = [&](const RunRecord& run, double least_cell_m) {
+  const auto cloud_of = [&](const RunRecord& run, double min_cell_m) {
     const double length_ms = 1000 * (run.phases.empty() ? run.last_time_s() : run.phases.back().end_s);
     std::vector<std::string> far;
-    return cloud_arrays(run, max_points, least_cell_m, std::max(kTick_ms, length_ms / 65534), far);
+    return cloud_arrays(run, max_points, min_cell_m, std::max(kTick_ms, length_ms / 65534), far);
   };
   for (const std::size_t i : trials) try {
       RunRecord run = recording_of(results.trials[i]);
@@ -160,7 +160,7 @@ ordered_json report_replays(const CampaignResults& results, int metric, std::siz
   }
   if (count > 0)
     for (const auto& trials : by_cave)
-      add_scenes(scenes, results, trials, std::min(kMostPoints, max_points / count), notes);
+      add_scenes(scenes, results, trials, std::min(kMaxPoints, max_points / count), notes);
   return {{"seeds", std::move(seeds)}, {"scenes", std::move(scenes)}};
 }
 

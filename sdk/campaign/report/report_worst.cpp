@@ -40,16 +40,16 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
   for (std::size_t i = 0; i < results.trials.size(); ++i) {
     const TrialResult& t = results.trials[i];
     const double value = figure_of(t, metric, results.horizon_s), mean = means[t.cave];
-    const double share = std::isfinite(value) && mean > 0 ? value / mean : 1;
-    const std::string text = std::to_string(std::lround(100 * share)) + " % of its cave's mean";
-    Judged j{kSlow, less ? -share : share, {i, text}};
+    const double fraction = std::isfinite(value) && mean > 0 ? value / mean : 1;
+    const std::string text = std::to_string(std::lround(100 * fraction)) + " % of its cave's mean";
+    Judged j{kSlow, less ? -fraction : fraction, {i, text}};
     if (t.failed) {
       j = {kFailed, 0, {i, "failed"}};
     } else if (t.outcome == "contact") {
       j = {kContact, j.against_cave, {i, "touched rock"}};
     } else if (t.outcome != "landed") {
       j = {kNotLanded, j.against_cave, {i, "did not land: " + t.outcome}};
-    } else if (less ? share <= 1 : share >= 1) {
+    } else if (less ? fraction <= 1 : fraction >= 1) {
       continue;  // not below its cave's mean: nothing bad about it
     }
     judged.push_back(std::move(j));

@@ -26,8 +26,7 @@ using host::end_process;
 using host::start_process;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uintmax_t kLeastSpace = 64u
-                                       << 20;  // bytes free to begin a trial; one writes tens of megabytes
+constexpr std::uintmax_t kMinSpace = 64u << 20;  // bytes free to begin a trial; one writes tens of megabytes
 constexpr const char* kNoteFile = "trial.json";
 
 std::string machine_name() {
@@ -47,7 +46,7 @@ struct Flying {
 void refuse_full_disk(const fs::path& folder) {
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
-  if (!error && space.available < kLeastSpace)
+  if (!error && space.available < kMinSpace)
     throw InputError(
         folder.string(), "",
         "the disk is full: less than 64 MB are free; make room and start the campaign again, it goes on "
@@ -84,7 +83,8 @@ Flying start(const TrialJob& job, std::size_t index, const ExecutorOptions& opti
 }
 
 /// Gives a trial that has ended its name.
-void settle(const Flying& f, const TrialJob& job, const ProcessEnd& end, const ExecutorOptions& options) {
+void finish_trial(const Flying& f, const TrialJob& job, const ProcessEnd& end,
+                  const ExecutorOptions& options) {
   if (end.exit_code != 0 || end.signal != 0) refuse_starved(f.folder);
   if (options.finish) options.finish(f.folder);
   std::error_code error;
@@ -147,7 +147,7 @@ bool run_trials(const std::vector<TrialJob>& jobs, const ExecutorOptions& option
       }
       const Flying f = air.trials[i];
       air.trials.erase(air.trials.begin() + static_cast<std::ptrdiff_t>(i));
-      settle(f, jobs[f.job], *end, options);
+      finish_trial(f, jobs[f.job], *end, options);
       if (events.ended) events.ended(f.job, *end);
     }
     if (events.tick && Clock::now() - last_tick > std::chrono::milliseconds(100)) {

@@ -74,7 +74,7 @@ void forecast(Comparison& c, const VerdictOptions& options, std::size_t tests) {
 
 }  // namespace
 
-std::size_t least_pairs(std::size_t contestants, double alpha) {
+std::size_t min_pairs(std::size_t contestants, double alpha) {
   if (contestants < 2) return 0;
   const double comparisons = static_cast<double>(contestants) * static_cast<double>(contestants - 1) / 2;
   // n pairs that all fall to one side have p = 2 / 2^n; Holm multiplies the least p by all comparisons.

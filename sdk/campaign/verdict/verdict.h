@@ -63,7 +63,7 @@ struct Comparison {
 };
 
 /// A contestant's place by the primary figure.
-struct Place {
+struct RankedContestant {
   std::size_t contestant = 0;
   double mean = 0;  // over caves of the mean over seeds, of what all contestants flew; NaN without trials
   int best = 1, worst = 1;  // places it may hold: 1 + contestants shown better ... all less those shown worse
@@ -71,10 +71,10 @@ struct Place {
 };
 
 struct Verdicts {
-  int metric = -1;                      // the primary one
-  std::vector<Comparison> comparisons;  // by metric in the table's order, then a < b
-  std::vector<Place> ranking;           // by the primary figure, best first
-  std::string sentence;                 // the campaign's, in one
+  int metric = -1;                        // the primary one
+  std::vector<Comparison> comparisons;    // by metric in the table's order, then a < b
+  std::vector<RankedContestant> ranking;  // by the primary figure, best first
+  std::string sentence;                   // the campaign's, in one
 
   /// Null if there is none: a == b, or no such metric.
   const Comparison* find(std::size_t a, std::size_t b, int metric) const;
@@ -83,7 +83,7 @@ struct Verdicts {
 /// How many pairs of flights two of so many contestants need at least for any difference to be shown: with
 /// fewer, even pairs that all fall to one side stay above `alpha` in the signed-rank test, corrected. 0 of a
 /// single contestant.
-std::size_t least_pairs(std::size_t contestants, double alpha);
+std::size_t min_pairs(std::size_t contestants, double alpha);
 
 /// Throws InputError if the options name no figure, or a trial is there twice or has not one value a figure.
 Verdicts compare_all(const CampaignResults& results, const VerdictOptions& options = {});

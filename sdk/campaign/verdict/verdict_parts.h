@@ -19,6 +19,6 @@ std::string sentence_of(const Comparison& comparison, const CampaignResults& res
 std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results);
 
 /// Best first; `verdicts` holds the comparisons already.
-std::vector<Place> rank_contestants(const Verdicts& verdicts, const CampaignResults& results);
+std::vector<RankedContestant> rank_contestants(const Verdicts& verdicts, const CampaignResults& results);
 
 }  // namespace karst::campaign

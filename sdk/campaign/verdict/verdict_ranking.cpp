@@ -69,16 +69,16 @@ std::vector<double> comparable_means(const CampaignResults& results, int metric)
   return means;
 }
 
-std::vector<Place> rank_contestants(const Verdicts& verdicts, const CampaignResults& results) {
+std::vector<RankedContestant> rank_contestants(const Verdicts& verdicts, const CampaignResults& results) {
   const auto better = evaluation::metric_definitions()[static_cast<std::size_t>(verdicts.metric)].better;
   const std::vector<double> means = comparable_means(results, verdicts.metric);
-  std::vector<Place> places;
+  std::vector<RankedContestant> places;
   for (std::size_t i = 0; i < results.contestants.size(); ++i) {
-    Place& place = places.emplace_back();
+    RankedContestant& place = places.emplace_back();
     place.contestant = i;
     place.mean = means[i];
   }
-  std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
+  std::stable_sort(places.begin(), places.end(), [&](const RankedContestant& a, const RankedContestant& b) {
     if (std::isnan(a.mean) || std::isnan(b.mean)) return !std::isnan(a.mean) && std::isnan(b.mean);
     return better == evaluation::Better::less ? a.mean < b.mean : a.mean > b.mean;
   });

@@ -65,15 +65,15 @@ std::string subject(const MetricDefinition& d) {
 }
 
 /// Shares are told in percentage points.
-bool is_share(std::string_view name) {
-  constexpr std::array kShares = {"completed",      "standing_share", "coverage",          "coverage_auc",
-                                  "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
-                                  "surface_imaged", "battery_left",   "data_at_base_share"};
-  return std::find(kShares.begin(), kShares.end(), name) != kShares.end();
+bool is_fraction(std::string_view name) {
+  constexpr std::array kFractions = {"completed",      "standing_share", "coverage",          "coverage_auc",
+                                     "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
+                                     "surface_imaged", "battery_left",   "data_at_base_share"};
+  return std::find(kFractions.begin(), kFractions.end(), name) != kFractions.end();
 }
 
 std::string unit_of(const MetricDefinition& d) {
-  return is_share(d.name) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
+  return is_fraction(d.name) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
 }
 
 /// With as many decimals as two significant digits of `scale` need.
@@ -113,7 +113,7 @@ std::string failures(const Comparison& c, const CampaignResults& results) {
 /// What the difference is, with its interval, turned so that the mean is positive.
 std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
   const MetricDefinition& d = definition(c.metric);
-  const double factor = is_share(d.name) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
+  const double factor = is_fraction(d.name) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
   double low = sign * c.interval.low, high = sign * c.interval.high;
   if (low > high) std::swap(low, high);
   const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
@@ -130,8 +130,8 @@ std::string size_of(const Comparison& c, const CampaignResults& results, const V
 std::string why_none(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
   // All pairs falling one way have p = 2 / 2^pairs, times the pairs of contestants after correction.
   const auto contestants = static_cast<double>(results.contestants.size());
-  const double least_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
-  if (least_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
+  const double min_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
+  if (min_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
   if (c.interval.excludes(0) && c.p_corrected >= options.alpha)
     return "; the means differ, but pairs fall either way: who is ahead depends on the cave";
   return "";
@@ -140,7 +140,7 @@ std::string why_none(const Comparison& c, const CampaignResults& results, const 
 std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
   const Forecast& f = c.forecast_worthwhile;
   const MetricDefinition& d = definition(c.metric);
-  const double factor = is_share(d.name) ? 100 : 1, effect = factor * c.worthwhile;
+  const double factor = is_fraction(d.name) ? 100 : 1, effect = factor * c.worthwhile;
   const std::string difference = "a difference of " + number(100 * options.worthwhile, 10) + " % (" +
                                  number(effect, effect) + unit_of(d) + ")";
   if (options.simulations == 0) return "";
@@ -155,7 +155,7 @@ std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
          difference;
 }
 
-std::string names_of(const std::vector<Place>& places, const CampaignResults& results) {
+std::string names_of(const std::vector<RankedContestant>& places, const CampaignResults& results) {
   std::string text;
   for (std::size_t i = 0; i < places.size(); ++i)
     text += (i == 0                   ? ""
@@ -189,20 +189,20 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
 }
 
 std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results) {
-  const std::vector<Place>& ranking = verdicts.ranking;
+  const std::vector<RankedContestant>& ranking = verdicts.ranking;
   if (ranking.size() < 2) return "nothing to compare: a verdict needs two contestants";
   if (ranking.size() == 2) return verdicts.find(0, 1, verdicts.metric)->sentence;
   const std::string by = " in " + subject(definition(verdicts.metric));
-  std::vector<Place> first;  // those that nobody is shown to be better than
+  std::vector<RankedContestant> first;  // those that nobody is shown to be better than
   std::copy_if(ranking.begin(), ranking.end(), std::back_inserter(first),
-               [](const Place& p) { return p.best == 1; });
+               [](const RankedContestant& p) { return p.best == 1; });
   if (first.size() == ranking.size() && ranking.front().worst == static_cast<int>(ranking.size()))
     return "no difference shown" + by + " between any two of " + names_of(ranking, results);
   if (first.empty())  // a better than b, b than c, c than a: where they did not all fly the same
     return "each of " + names_of(ranking, results) + " is shown worse than another" + by;
   if (first.size() > 1) return "nobody is shown to be better" + by + " than " + names_of(first, results);
   const std::size_t best = first.front().contestant;
-  const Place& second = ranking[ranking[0].contestant == best ? 1 : 0];
+  const RankedContestant& second = ranking[ranking[0].contestant == best ? 1 : 0];
   const Comparison* next = verdicts.find(best, second.contestant, verdicts.metric);
   const bool over_all = first.front().worst == 1;
   return results.contestants[best].name + " is best" + by +

@@ -20,7 +20,7 @@ using core::Pose;
 using core::Vec3;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostPlotted = 1600;
+constexpr std::size_t kMaxPlotted = 1600;
 constexpr int kBins = 60;
 
 double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
@@ -70,7 +70,7 @@ std::vector<PosePair> pairs_for_drift(const std::vector<StampedPose>& truth,
 /// Every n-th pair, to draw: [t, true x y z, estimated x y z, error].
 ordered_json drawn(const std::vector<PosePair>& pairs, double begin_s) {
   ordered_json rows = ordered_json::array();
-  const std::size_t stride = pairs.size() / kMostPlotted + 1;
+  const std::size_t stride = pairs.size() / kMaxPlotted + 1;
   const auto mm = [](double v) { return std::round(v * 1000) / 1000 + 0.0; };
   for (std::size_t i = 0; i < pairs.size(); i += stride) {
     const Vec3 &a = pairs[i].truth.position, &b = pairs[i].estimate.position;
@@ -84,7 +84,7 @@ ordered_json curve(const std::vector<PosePair>& pairs, const std::vector<double>
                    double factor) {
   std::vector<double> t;
   for (const PosePair& p : pairs) t.push_back(p.t_s - begin_s);
-  const Curve c = decimate(t, y, kMostPlotted);
+  const Curve c = decimate(t, y, kMaxPlotted);
   ordered_json points = ordered_json::array();
   for (std::size_t i = 0; i < c.x.size(); ++i)
     points.push_back({std::round(c.x[i] * 1000) / 1000, rounded(factor * c.y[i])});

@@ -19,7 +19,7 @@ using core::Vec3;
 using core::Vec3f;
 
 constexpr double kMargin_m = 5;
-constexpr double kMostPoints = 6e7;
+constexpr double kMaxPoints = 6e7;
 
 /// Two numbers in [0, 1), the i-th of a sequence that fills the square evenly (the generalized golden ratio).
 std::pair<double, double> even(std::uint64_t i) {
@@ -51,7 +51,7 @@ std::vector<Vec3f> sample_surface(const cave::TriangleMesh& mesh, double points_
     own.extend(b).extend(c);
     if (!own.intersects(grown)) continue;
     owed += points_per_m2 * (b - a).cross(c - a).norm() / 2;
-    if (static_cast<double>(points.size()) + owed > kMostPoints)
+    if (static_cast<double>(points.size()) + owed > kMaxPoints)
       throw InputError(name, "", "needs more than 60 million points; choose a smaller --density");
     for (; owed >= 1; owed -= 1) {
       auto [u, v] = even(count++);

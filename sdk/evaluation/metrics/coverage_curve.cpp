@@ -13,17 +13,18 @@ std::vector<CoveragePoint> coverage_curve(const RunRecord& run, std::optional<do
   const auto* explored = run.telemetry.column("explored_m3");
   const auto final_m3 = last_finite(explored);
   if (!t_s || !final_m3) return {};
-  const double share_per_m3 = final_coverage && *final_m3 > 0 ? *final_coverage / *final_m3
-                              : final_coverage                ? 0.0
-                                                              : std::numeric_limits<double>::quiet_NaN();
+  const double fraction_per_m3 = final_coverage && *final_m3 > 0 ? *final_coverage / *final_m3
+                                 : final_coverage                ? 0.0
+                                                                 : std::numeric_limits<double>::quiet_NaN();
   const double begin_s = flight_begin_s(run);
-  std::vector<CoveragePoint> curve{{0, 0, 0 * share_per_m3}};
+  std::vector<CoveragePoint> curve{{0, 0, 0 * fraction_per_m3}};
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const double m3 = (*explored)[i];
     if (!std::isfinite((*t_s)[i]) || !std::isfinite(m3)) continue;
     // Free cells may turn out to be rock: then less is known free at the end than before.
-    const double share = std::isnan(share_per_m3) ? share_per_m3 : std::min(1.0, m3 * share_per_m3);
-    const CoveragePoint p{std::max(0.0, (*t_s)[i] - begin_s), m3, share};
+    const double fraction =
+        std::isnan(fraction_per_m3) ? fraction_per_m3 : std::min(1.0, m3 * fraction_per_m3);
+    const CoveragePoint p{std::max(0.0, (*t_s)[i] - begin_s), m3, fraction};
     if (p.time_s > 0) {
       curve.push_back(p);
     } else {
@@ -33,9 +34,9 @@ std::vector<CoveragePoint> coverage_curve(const RunRecord& run, std::optional<do
   return curve;
 }
 
-std::optional<double> time_of_coverage(const std::vector<CoveragePoint>& curve, double share) {
+std::optional<double> time_of_coverage(const std::vector<CoveragePoint>& curve, double fraction) {
   for (const CoveragePoint& p : curve)
-    if (p.coverage >= share) return p.time_s;
+    if (p.coverage >= fraction) return p.time_s;
   return std::nullopt;
 }
 

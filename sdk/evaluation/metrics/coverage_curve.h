@@ -20,7 +20,7 @@ struct CoveragePoint {
 std::vector<CoveragePoint> coverage_curve(const RunRecord& run, std::optional<double> final_coverage);
 
 /// From take-off; none if the curve never reaches the share, or is not known.
-std::optional<double> time_of_coverage(const std::vector<CoveragePoint>& curve, double share);
+std::optional<double> time_of_coverage(const std::vector<CoveragePoint>& curve, double fraction);
 
 /// What had been covered by `time_s` after take-off: the coverage of the last point no later.
 std::optional<double> coverage_at(const std::vector<CoveragePoint>& curve, double time_s);

@@ -32,13 +32,13 @@ std::vector<Vec3> thinned(const std::vector<Vec3>& positions) {
 
 }  // namespace
 
-double depth_along_way(const std::vector<Vec3>& positions) {
-  const std::vector<Vec3> way = thinned(positions);
-  if (way.empty()) return 0;
+double depth_along_path(const std::vector<Vec3>& positions) {
+  const std::vector<Vec3> path = thinned(positions);
+  if (path.empty()) return 0;
   std::map<Bin, std::vector<std::size_t>> bins;
-  for (std::size_t i = 0; i < way.size(); ++i) bins[bin_of(way[i])].push_back(i);
+  for (std::size_t i = 0; i < path.size(); ++i) bins[bin_of(path[i])].push_back(i);
 
-  std::vector<double> distance_m(way.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> distance_m(path.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto reach = [&](std::size_t to, double d) {
@@ -50,14 +50,14 @@ double depth_along_way(const std::vector<Vec3>& positions) {
     const std::size_t at = queue.top().second;
     queue.pop();
     if (d > distance_m[at]) continue;
-    const auto step = [&](std::size_t to) { reach(to, d + (way[to] - way[at]).norm()); };
+    const auto step = [&](std::size_t to) { reach(to, d + (path[to] - path[at]).norm()); };
     if (at > 0) step(at - 1);
-    if (at + 1 < way.size()) step(at + 1);
+    if (at + 1 < path.size()) step(at + 1);
     for (int i = 0; i < 27; ++i) {
-      const auto bin = bins.find(bin_of(way[at], i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+      const auto bin = bins.find(bin_of(path[at], i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
       if (bin == bins.end()) continue;
       for (const std::size_t to : bin->second)
-        if ((way[to] - way[at]).norm() <= kLink_m) step(to);
+        if ((path[to] - path[at]).norm() <= kLink_m) step(to);
     }
   }
   return *std::max_element(distance_m.begin(), distance_m.end());

@@ -144,7 +144,7 @@ void farthest(const std::vector<StampedPose>& poses, double begin_s, double end_
   for (const StampedPose& p : poses)
     if (p.t_s >= begin_s && p.t_s <= end_s) positions.push_back(p.T_world_body.position);
   if (positions.empty()) return;
-  f.depth_m = depth_along_way(positions);
+  f.depth_m = depth_along_path(positions);
   f.vertical_reach_m = vertical_reach(positions);
 }
 

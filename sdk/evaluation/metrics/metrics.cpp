@@ -78,7 +78,7 @@ Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& t
 
 /// Share of cells that hold, or share a face with one that holds.
 template <class Holds>
-double share_near(const std::vector<CellKey>& cells, const Holds& holds) {
+double fraction_near(const std::vector<CellKey>& cells, const Holds& holds) {
   constexpr std::array<CellKey, 7> kNear{
       {{}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
   const auto count = std::count_if(cells.begin(), cells.end(), [&](const CellKey& k) {
@@ -98,21 +98,21 @@ std::optional<double> surface_seen(const RunRecord& run, const core::VoxelMap* m
   const auto occupied = [&](const CellKey& k) {
     return map ? map->at(k) == Cell::occupied : grown.count(k) > 0;
   };
-  return share_near(truth.surface, occupied);
+  return fraction_near(truth.surface, occupied);
 }
 
 /// The same of what the colour camera's pictures truly show. Null without such a camera.
 std::optional<double> surface_imaged(const Truth& truth) {
   if (truth.surface.empty() || !truth.imaged_rock) return std::nullopt;
   const std::vector<CellKey>& imaged = *truth.imaged_rock;
-  return share_near(truth.surface,
-                    [&](const CellKey& k) { return std::binary_search(imaged.begin(), imaged.end(), k); });
+  return fraction_near(truth.surface,
+                       [&](const CellKey& k) { return std::binary_search(imaged.begin(), imaged.end(), k); });
 }
 
-std::optional<double> restricted(const std::vector<CoveragePoint>& curve, double share,
+std::optional<double> restricted(const std::vector<CoveragePoint>& curve, double fraction,
                                  std::optional<double> horizon) {
   if (!horizon || curve.empty() || std::isnan(curve.back().coverage)) return std::nullopt;
-  return std::min(time_of_coverage(curve, share).value_or(*horizon), *horizon);
+  return std::min(time_of_coverage(curve, fraction).value_or(*horizon), *horizon);
 }
 
 ErrorStatistics map_error(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {

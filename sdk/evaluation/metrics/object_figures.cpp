@@ -156,7 +156,7 @@ ObjectFigures object_figures(const std::vector<TrueObject>& truth, const std::ve
     errors_m.push_back((at_base[k].position - o.position).norm());
     if (at_base[k].reported_s) times_s.push_back(*at_base[k].reported_s);
   }
-  if (*f.seen > 0) f.reported_share = seen_and_reported / *f.seen;
+  if (*f.seen > 0) f.reported_fraction = seen_and_reported / *f.seen;
   f.report_time_s = mean(times_s);
   f.error_m = mean(errors_m);
   return f;
@@ -205,7 +205,7 @@ void set_figures(nlohmann::ordered_json& m, const ObjectFigures& f) {
        {"objects_seen", f.seen},
        {"objects_found", f.found},
        {"objects_reported", f.reported},
-       {"objects_reported_share", f.reported_share},
+       {"objects_reported_share", f.reported_fraction},
        {"object_report_time_s", f.report_time_s},
        {"object_error_m", f.error_m},
        {"objects_false", f.wrong}}};

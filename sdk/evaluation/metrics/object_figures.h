@@ -31,7 +31,7 @@ std::vector<std::optional<std::size_t>> match_objects(const std::vector<KnownObj
 
 /// Empty where the record does not tell.
 struct ObjectFigures {
-  std::optional<double> placed, seen, found, reported, reported_share, report_time_s, error_m, wrong;
+  std::optional<double> placed, seen, found, reported, reported_fraction, report_time_s, error_m, wrong;
 };
 
 /// `found` is what the vehicles know, `at_base` what the base does, in the end.

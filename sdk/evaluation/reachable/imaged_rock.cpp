@@ -55,11 +55,11 @@ std::vector<CellKey> imaged_rock(const cave::RayScene& scene, std::span<const Pi
     hits.resize(directions.size());
     for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {eye, R * directions[i]};
     scene.cast(rays, static_cast<float>(p.max_range_m), hits);
-    const auto least_cosine = static_cast<float>(std::cos(p.max_incidence_rad));
+    const auto min_cosine = static_cast<float>(std::cos(p.max_incidence_rad));
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const cave::Hit& hit = hits[i];
       if (!hit.any() || static_cast<double>(hit.range_m) < p.min_range_m) continue;
-      if (-hit.normal.dot(rays[i].direction) < least_cosine) continue;
+      if (-hit.normal.dot(rays[i].direction) < min_cosine) continue;
       const Vec3 place = (eye + hit.range_m * rays[i].direction).cast<double>() / resolution_m;
       const auto key = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
       cells.insert({key(place.x()), key(place.y()), key(place.z())});

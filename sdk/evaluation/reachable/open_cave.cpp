@@ -65,16 +65,16 @@ CellKey find_opening(const CellSet& rock, const CellKey& start) {
       queue.push_back(next);
     }
   }
-  std::vector<CellKey> way{end};
-  while (way.back() != start) {
-    const CellKey& d = kSteps[trail.at(way.back()) - 1u];
-    way.push_back(way.back() + CellKey{-d.x, -d.y, -d.z});
+  std::vector<CellKey> path{end};
+  while (path.back() != start) {
+    const CellKey& d = kSteps[trail.at(path.back()) - 1u];
+    path.push_back(path.back() + CellKey{-d.x, -d.y, -d.z});
   }
-  std::reverse(way.begin(), way.end());
-  const auto open = std::find_if(way.begin(), way.end(), [&](const CellKey& k) {
+  std::reverse(path.begin(), path.end());
+  const auto open = std::find_if(path.begin(), path.end(), [&](const CellKey& k) {
     return sides_with_rock(rock, k) < 18;  // in the plane of a hole in a wall 17 lead out or along, 9 back in
   });
-  return open == way.end() ? end : *open;
+  return open == path.end() ? end : *open;
 }
 
 }  // namespace karst::evaluation

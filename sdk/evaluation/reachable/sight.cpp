@@ -26,7 +26,7 @@ std::uint64_t window(const CellSet& set, const CellKey& low) {
 }
 
 /// Blocks of `free` from which a ray of so many blocks' length can come to `flyable` at all.
-std::vector<CellKey> blocks_in_reach(const CellSet& flyable, const CellSet& free, int steps) {
+std::vector<CellKey> blocks_in_range(const CellSet& flyable, const CellSet& free, int steps) {
   const CellKey n = free.blocks_along();
   std::vector<bool> met(static_cast<std::size_t>(n.x) * n.y * n.z);
   std::vector<CellKey> blocks;
@@ -94,7 +94,7 @@ CellSet seen_from(const CellSet& flyable, const CellSet& free, double cells) {
   CellSet seen = flyable;
   const int steps = static_cast<int>(std::ceil(cells / CellSet::kEdge)) + 1;
   // All rays of one direction pass the same cells, counted from their start: 64 rays are cast at a time.
-  for (const CellKey& place : blocks_in_reach(flyable, free, steps)) {
+  for (const CellKey& place : blocks_in_range(flyable, free, steps)) {
     const CellKey corner = free.first_cell(place);
     CellSet::Block block{};
     if (const auto* flown = flyable.find(place)) block = *flown;

@@ -88,9 +88,9 @@ Vec3 surface_normal(const CellBits& cells, const CellKey& k) {
 }  // namespace
 
 Cloud make_cloud(const std::vector<OccupiedSpan>& growth, double resolution_m, std::size_t max_points,
-                 const std::vector<StampedPose>& seen_from, double least_cell_m, std::int32_t flicker_ms) {
+                 const std::vector<StampedPose>& seen_from, double min_cell_m, std::int32_t flicker_ms) {
   Cloud cloud{resolution_m, merge(growth, flicker_ms), {}};
-  while (!cloud.points.empty() && (cloud.points.size() > max_points || cloud.cell_m < 0.999 * least_cell_m)) {
+  while (!cloud.points.empty() && (cloud.points.size() > max_points || cloud.cell_m < 0.999 * min_cell_m)) {
     cloud.points = halved(std::move(cloud.points));
     cloud.cell_m *= 2;
   }

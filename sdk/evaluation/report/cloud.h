@@ -15,10 +15,10 @@ struct Cloud {
   std::vector<std::array<std::int8_t, 3>> normals;  // 127 * unit normal, towards where it was seen from
 };
 
-/// At most `max_points` cells no smaller than `least_cell_m`, by merging 2x2x2 cells as often as needed: a
+/// At most `max_points` cells no smaller than `min_cell_m`, by merging 2x2x2 cells as often as needed: a
 /// merged cell is there while any of its parts is. Cells that came and went within `flicker_ms` are left out.
 Cloud make_cloud(const std::vector<OccupiedSpan>& growth, double resolution_m, std::size_t max_points,
-                 const std::vector<StampedPose>& seen_from, double least_cell_m = 0,
+                 const std::vector<StampedPose>& seen_from, double min_cell_m = 0,
                  std::int32_t flicker_ms = 2000);
 
 }  // namespace karst::evaluation

@@ -19,12 +19,12 @@
 namespace karst::evaluation {
 namespace {
 
-constexpr std::size_t kMost = 240;
+constexpr std::size_t kMax = 240;
 constexpr int kWidth = 240, kQuality = 60;
 
 using Coder = std::unique_ptr<void, int (*)(void*)>;
 
-void demand(bool fine, const Coder& coder) {
+void require(bool fine, const Coder& coder) {
   if (!fine) throw std::runtime_error(tjGetErrorStr2(coder.get()));
 }
 
@@ -38,24 +38,24 @@ std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
 std::vector<std::uint8_t> thumbnail(const std::vector<std::uint8_t>& jpeg, int width) {
   const Coder reader(tjInitDecompress(), &tjDestroy), writer(tjInitCompress(), &tjDestroy);
   int full_width = 0, full_height = 0, sampling = 0, colours = 0;
-  demand(tjDecompressHeader3(reader.get(), jpeg.data(), jpeg.size(), &full_width, &full_height, &sampling,
-                             &colours) == 0,
-         reader);
+  require(tjDecompressHeader3(reader.get(), jpeg.data(), jpeg.size(), &full_width, &full_height, &sampling,
+                              &colours) == 0,
+          reader);
   // The decoder scales by eighths as it goes.
   int eighths = 8;
   while (eighths > 1 && TJSCALED(full_width, (tjscalingfactor{eighths, 8})) > width) --eighths;
   const tjscalingfactor scale{eighths, 8};
   const int w = TJSCALED(full_width, scale), h = TJSCALED(full_height, scale);
   std::vector<std::uint8_t> rgb(std::size_t{3} * static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
-  demand(tjDecompress2(reader.get(), jpeg.data(), jpeg.size(), rgb.data(), w, 0, h, TJPF_RGB,
-                       TJFLAG_ACCURATEDCT) == 0,
-         reader);
+  require(tjDecompress2(reader.get(), jpeg.data(), jpeg.size(), rgb.data(), w, 0, h, TJPF_RGB,
+                        TJFLAG_ACCURATEDCT) == 0,
+          reader);
   unsigned char* out = nullptr;
   unsigned long size = 0;
   const int failed = tjCompress2(writer.get(), rgb.data(), w, 0, h, TJPF_RGB, &out, &size, TJSAMP_420,
                                  kQuality, TJFLAG_ACCURATEDCT);
   const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owned(out, &tjFree);
-  demand(failed == 0, writer);
+  require(failed == 0, writer);
   return {out, out + size};
 }
 
@@ -75,7 +75,7 @@ nlohmann::ordered_json report_pictures(const std::filesystem::path& run_dir,
   if (kept.empty()) return nullptr;
   nlohmann::ordered_json pictures = nlohmann::ordered_json::array();
   std::size_t lost = 0;
-  const std::size_t shown = std::min(kept.size(), kMost);
+  const std::size_t shown = std::min(kept.size(), kMax);
   const auto mm = [](double v) { return std::round(v * 1000) / 1000; };
   for (std::size_t n = 0; n < shown; ++n) {
     const std::size_t row = kept[n * kept.size() / shown];

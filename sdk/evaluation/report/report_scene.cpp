@@ -55,10 +55,10 @@ ordered_json thinned(std::vector<Moment> moments, const char* what, std::vector<
 
 }  // namespace
 
-CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double least_cell_m, double tick_ms,
+CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double min_cell_m, double tick_ms,
                          std::vector<std::string>& problems) {
   const auto& poses = run.estimate.empty() ? run.truth : run.estimate;
-  const Cloud cloud = make_cloud(run.growth, run.map_resolution_m(), max_points, poses, least_cell_m);
+  const Cloud cloud = make_cloud(run.growth, run.map_resolution_m(), max_points, poses, min_cell_m);
   CloudArrays arrays;
   arrays.cell_m = cloud.cell_m;
   arrays.tick_s = 1e-3 * tick_ms;

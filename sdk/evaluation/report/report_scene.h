@@ -16,9 +16,9 @@ struct CloudArrays {
   std::vector<std::uint16_t> from, until;
   std::vector<std::int8_t> normals;  // x, y, z
 };
-/// At most `max_points` cells, none smaller than `least_cell_m`, in the order of their keys; what is left out
+/// At most `max_points` cells, none smaller than `min_cell_m`, in the order of their keys; what is left out
 /// is added to `problems`.
-CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double least_cell_m, double tick_ms,
+CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double min_cell_m, double tick_ms,
                          std::vector<std::string>& problems);
 
 /// Points of the map as base64 arrays; null without any. What is left out is added to `problems`.

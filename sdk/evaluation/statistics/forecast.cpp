@@ -14,7 +14,7 @@
 namespace karst::evaluation {
 namespace {
 
-constexpr double kMostSimulated = 25;  // seeds a cave, about; more follow by scaling
+constexpr double kMaxSimulated = 25;  // seeds a cave, about; more follow by scaling
 
 /// What campaigns are drawn from: with the mean at `effect`, and the variances within and between caves
 /// unbiased. Nothing if a cave has a single pair.
@@ -43,13 +43,13 @@ std::optional<Differences> moved_to(const Differences& differences, double effec
 
 /// The verdict's rule (docs/statistics.md), with Student's interval in the place of the bootstrap's.
 bool is_shown(const Differences& campaign, double sign, const ForecastOptions& options) {
-  constexpr std::size_t kMostExact = 12;  // beyond, the normal approximation is as good, and fast
+  constexpr std::size_t kMaxExact = 12;  // beyond, the normal approximation is as good, and fast
   const Spread s = spread_within_caves(campaign);
   if (!(s.mean * sign > 0)) return false;
   const bool excludes_zero =
       s.variance == 0 ||
       std::abs(s.mean) > std::sqrt(s.variance) * student_t_quantile(1 - options.alpha / 2, s.degrees);
-  return excludes_zero && signed_rank(campaign, kMostExact).p < options.alpha / options.tests;
+  return excludes_zero && signed_rank(campaign, kMaxExact).p < options.alpha / options.tests;
 }
 
 double power_of(int seeds, const Differences& pool, double sign, const ForecastOptions& options) {
@@ -103,7 +103,7 @@ Forecast forecast_seeds(const Differences& differences, double effect, const For
   const double guess = first_guess(*pool, effect, options);
   if (!(guess < 2.0 * Forecast::kNever)) return f;
   // Many pairs of a small effect are as good as fewer of one larger by the root of their number.
-  const double fewer = std::max(1.0, guess / kMostSimulated);
+  const double fewer = std::max(1.0, guess / kMaxSimulated);
   const double larger_effect = effect * std::sqrt(fewer);
   pool = moved_to(differences, larger_effect);
   f.seeds = scaled(seeds_needed(*pool, larger_effect, guess / fewer, options), fewer);

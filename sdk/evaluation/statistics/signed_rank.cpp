@@ -7,7 +7,7 @@
 namespace karst::evaluation {
 namespace {
 
-constexpr std::size_t kMostExact = 50;  // counts of 2^50 sign patterns are exact in a double
+constexpr std::size_t kMaxExact = 50;  // counts of 2^50 sign patterns are exact in a double
 
 /// Probability that the positive ranks sum to no more than `doubled_sum` if every sign is a coin's: by
 /// counting sign patterns, a rank at a time.
@@ -35,7 +35,7 @@ double normal_p(double n, double lesser_sum, double ties) {
 
 }  // namespace
 
-SignedRank signed_rank(std::span<const double> differences, std::size_t most_exact) {
+SignedRank signed_rank(std::span<const double> differences, std::size_t max_exact) {
   SignedRank test;
   std::vector<double> nonzero;
   for (const double d : differences)
@@ -59,17 +59,17 @@ SignedRank signed_rank(std::span<const double> differences, std::size_t most_exa
   test.rank_sum_positive = static_cast<double>(doubled_positive) / 2;
   test.rank_sum_negative = static_cast<double>(doubled_negative) / 2;
   if (nonzero.empty()) return test;
-  test.exact = nonzero.size() <= std::min(most_exact, kMostExact);
+  test.exact = nonzero.size() <= std::min(max_exact, kMaxExact);
   const std::size_t lesser = std::min(doubled_positive, doubled_negative);
   test.p = test.exact ? std::min(1.0, 2 * lower_tail(doubled_ranks, lesser))
                       : normal_p(static_cast<double>(nonzero.size()), static_cast<double>(lesser) / 2, ties);
   return test;
 }
 
-SignedRank signed_rank(const Differences& differences, std::size_t most_exact) {
+SignedRank signed_rank(const Differences& differences, std::size_t max_exact) {
   std::vector<double> all;
   for (const auto& cave : differences) all.insert(all.end(), cave.begin(), cave.end());
-  return signed_rank(std::span<const double>(all), most_exact);
+  return signed_rank(std::span<const double>(all), max_exact);
 }
 
 double rank_biserial(const SignedRank& test) {

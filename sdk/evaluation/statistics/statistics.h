@@ -43,10 +43,10 @@ struct SignedRank {
   double p = 1;        // 1 if all differences are zero
   bool exact = false;  // else normal approximation, corrected for ties and continuity
 };
-/// Exact for up to `most_exact` differences that are not zero, at most 50.
-SignedRank signed_rank(std::span<const double> differences, std::size_t most_exact = 50);
+/// Exact for up to `max_exact` differences that are not zero, at most 50.
+SignedRank signed_rank(std::span<const double> differences, std::size_t max_exact = 50);
 /// Of all caves' pairs together.
-SignedRank signed_rank(const Differences& differences, std::size_t most_exact = 50);
+SignedRank signed_rank(const Differences& differences, std::size_t max_exact = 50);
 
 /// Matched-pairs rank-biserial correlation (W+ - W-) / (W+ + W-), from -1 (b always more) to 1; 0 without any
 /// difference.

@@ -14,15 +14,15 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kMostRobots = 1000;  // above this a number is damaged
+constexpr double kMaxRobots = 1000;  // above this a number is damaged
 
 struct TeamSize {
   int robots = 0;
   std::string said_by;
 };
 
-std::optional<TeamSize> told_size(std::optional<double> robots, const fs::path& file) {
-  if (!robots || !(*robots >= 1 && *robots <= kMostRobots)) return std::nullopt;
+std::optional<TeamSize> reported_size(std::optional<double> robots, const fs::path& file) {
+  if (!robots || !(*robots >= 1 && *robots <= kMaxRobots)) return std::nullopt;
   return TeamSize{static_cast<int>(*robots), file.filename().string()};
 }
 
@@ -33,14 +33,14 @@ std::optional<TeamSize> size_in_log(const fs::path& log) {
   std::getline(in, line);
   const json first = core::json_of(line);
   if (!first.is_object() || event_text(first, "kind") != "team") return std::nullopt;
-  return told_size(event_number(first, "robots"), log);
+  return reported_size(event_number(first, "robots"), log);
 }
 
 std::optional<TeamSize> size_in_mission(const fs::path& mission) {
   std::vector<std::string> no_matter;
   RunRecord settings;
   settings.settings = read_settings(mission, no_matter);
-  return told_size(settings.number("team.robots"), mission);
+  return reported_size(settings.number("team.robots"), mission);
 }
 
 fs::path folder(const fs::path& run_dir, int robot) { return run_dir / ("robot_" + std::to_string(robot)); }

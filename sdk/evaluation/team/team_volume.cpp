@@ -66,17 +66,17 @@ VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::v
   CellCount all(united);
   end_s = std::min(end_s, begin_s + kLongestRun_s);  // a damaged time must not make it endless
   for (double t = std::ceil(begin_s); t < end_s + 1 && std::isfinite(t); ++t) {
-    double own_cells = 0, sum_m3 = 0, most_m3 = 0;
+    double own_cells = 0, sum_m3 = 0, max_m3 = 0;
     for (CellCount& c : cells) own_cells += c.at(t);
     for (Latest& v : volumes) {
       const double m3 = v.at(t);
       sum_m3 += m3;
-      most_m3 = std::max(most_m3, m3);
+      max_m3 = std::max(max_m3, m3);
     }
     curve.t_s.push_back(t);
     curve.explored_m3.push_back(sum_m3);
     overlap_m3.push_back(own_cells > 0 ? sum_m3 * (1 - all.at(t) / own_cells) : 0);
-    greatest_m3.push_back(most_m3);
+    greatest_m3.push_back(max_m3);
   }
   if (curve.t_s.empty()) return curve;
   const double found_m3 = overlap_m3.back();

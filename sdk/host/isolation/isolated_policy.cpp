@@ -71,11 +71,11 @@ void IsolatedPolicy::start() {
 RingMessage IsolatedPolicy::question(const char* call, Said kind, const Bytes& body,
                                      const core::DecisionRequest* request) {
   if (!process_) throw ProcessBroken("it has no process any more");
-  if (kind != Said::event) process_->begin_round();
+  if (kind != Said::event) process_->begin_cycle();
   process_->begin_call(call);
   process_->send(static_cast<std::uint32_t>(kind), body);
   for (;;) {
-    RingMessage said = process_->receive(kMostAnswerBytes);
+    RingMessage said = process_->receive(kMaxAnswerBytes);
     if (said.kind != static_cast<std::uint32_t>(Said::asks_lengths)) {
       process_->end_call();
       return said;

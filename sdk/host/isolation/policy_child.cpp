@@ -14,7 +14,7 @@
 namespace karst::host {
 namespace {
 
-constexpr std::size_t kMostRequestBytes = std::size_t{4} << 30;
+constexpr std::size_t kMaxRequestBytes = std::size_t{4} << 30;
 
 class Server {
  public:
@@ -23,7 +23,7 @@ class Server {
   int run() {
     start();
     for (;;) {
-      const RingMessage m = ring_.receive(kMostRequestBytes);
+      const RingMessage m = ring_.receive(kMaxRequestBytes);
       switch (static_cast<Said>(m.kind)) {
         case Said::decide:
           decide(m.body);
@@ -45,7 +45,7 @@ class Server {
   void say(Said kind, const Bytes& body) { ring_.send(static_cast<std::uint32_t>(kind), body); }
 
   void start() {
-    const StartOrder order = read_start_order(ring_.receive(kMostRequestBytes).body);
+    const StartOrder order = read_start_order(ring_.receive(kMaxRequestBytes).body);
     PolicyChoice choice;
     choice.name = order.policy;
     choice.parameters = order.parameters;
@@ -85,7 +85,7 @@ class Server {
   PathAnswer lengths(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
     const std::lock_guard lock(asking_);
     say(Said::asks_lengths, flatten(LengthsQuestion{from, {goals.begin(), goals.end()}, tolerance_m}));
-    return read_path_answer(ring_.receive(kMostAnswerBytes).body);
+    return read_path_answer(ring_.receive(kMaxAnswerBytes).body);
   }
 
   RingEnd ring_;

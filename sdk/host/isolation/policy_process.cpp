@@ -22,7 +22,7 @@
 namespace karst::host {
 namespace {
 
-constexpr std::size_t kMostThreads = 64;
+constexpr std::size_t kMaxThreads = 64;
 
 /// Closed when it goes out of scope.
 struct Descriptor {
@@ -166,8 +166,8 @@ void PolicyProcess::watch() {
   const std::string which =
       passed(limits_, spent_wall_s_ + waited_s(), spent_cpu_s_ + cpu_s() - cpu_before_s_);
   if (!which.empty()) throw ProcessBroken(std::string(call_) + "() " + which);
-  if (threads_of(id_) > kMostThreads)
-    throw ProcessBroken("it ran more than " + std::to_string(kMostThreads) + " threads" + in_call);
+  if (threads_of(id_) > kMaxThreads)
+    throw ProcessBroken("it ran more than " + std::to_string(kMaxThreads) + " threads" + in_call);
 }
 
 void PolicyProcess::send(std::uint32_t kind, std::span<const std::byte> body) {
@@ -178,9 +178,9 @@ void PolicyProcess::send(std::uint32_t kind, std::span<const std::byte> body) {
   }
 }
 
-RingMessage PolicyProcess::receive(std::size_t most_bytes) {
+RingMessage PolicyProcess::receive(std::size_t max_bytes) {
   try {
-    return ring_.receive(most_bytes);
+    return ring_.receive(max_bytes);
   } catch (const RingBroken& e) {
     throw ProcessBroken(std::string("garbage came from its process in ") + call_ + "(): " + e.what());
   }

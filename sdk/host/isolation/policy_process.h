@@ -55,10 +55,10 @@ class PolicyProcess {
   /// is told until the next: many short calls must not add up to a long one.
   void begin_call(const char* name);
   void end_call();
-  void begin_round() { spent_wall_s_ = spent_cpu_s_ = 0; }
+  void begin_cycle() { spent_wall_s_ = spent_cpu_s_ = 0; }
   /// Both throw ProcessBroken.
   void send(std::uint32_t kind, std::span<const std::byte> body);
-  RingMessage receive(std::size_t most_bytes);
+  RingMessage receive(std::size_t max_bytes);
   /// Throws ProcessBroken if a limit is passed or the process is gone.
   void check() { watch(); }
   /// Waits a while for it to end by itself.

@@ -131,13 +131,13 @@ void RingEnd::send(std::uint32_t kind, std::span<const std::byte> body) {
   write(body);
 }
 
-RingMessage RingEnd::receive(std::size_t most_bytes) {
+RingMessage RingEnd::receive(std::size_t max_bytes) {
   Bytes head(sizeof(std::uint32_t) + sizeof(std::uint64_t));
   read(head);
   FlatReader in(head);
   RingMessage message{in.number<std::uint32_t>(), {}};
   const auto size = in.number<std::uint64_t>();
-  if (size > most_bytes) throw RingBroken("it sent a message of " + std::to_string(size) + " bytes");
+  if (size > max_bytes) throw RingBroken("it sent a message of " + std::to_string(size) + " bytes");
   // Memory is given as bytes come, not as they are announced.
   while (message.body.size() < size) {
     const std::size_t before = message.body.size();

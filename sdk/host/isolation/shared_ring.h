@@ -57,8 +57,8 @@ class RingEnd {
 
   /// Returns when all of it is in the ring. Throws what `watch` throws, and RingBroken.
   void send(std::uint32_t kind, std::span<const std::byte> body);
-  /// Throws what `watch` throws, and RingBroken, also for a message of more than `most_bytes`.
-  RingMessage receive(std::size_t most_bytes);
+  /// Throws what `watch` throws, and RingBroken, also for a message of more than `max_bytes`.
+  RingMessage receive(std::size_t max_bytes);
 
  private:
   void write(std::span<const std::byte> bytes);

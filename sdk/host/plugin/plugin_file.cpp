@@ -19,7 +19,7 @@ using core::InputError;
 
 constexpr std::array<std::uint32_t, 3> kHostRelease = {KARST_VERSION_MAJOR, KARST_VERSION_MINOR,
                                                        KARST_VERSION_PATCH};
-constexpr std::uint32_t kMostPolicies = 64, kMostParameters = 256;
+constexpr std::uint32_t kMaxPolicies = 64, kMaxParameters = 256;
 
 std::string abi_text(std::uint32_t major, std::uint32_t minor) {
   return std::to_string(major) + "." + std::to_string(minor);
@@ -117,7 +117,7 @@ std::string handshake_fault(std::uint32_t abi_major, std::uint32_t abi_minor) {
 
 std::string plugin_fault(const karst_plugin_t& plugin) {
   if (!KARST_HAS(karst_plugin_t, &plugin, policy)) return "its plugin table has no \"policy\"";
-  if (plugin.policy_count == 0 || plugin.policy_count > kMostPolicies)
+  if (plugin.policy_count == 0 || plugin.policy_count > kMaxPolicies)
     return "offers " + std::to_string(plugin.policy_count) + " policies, 1 to 64 were expected";
   return "";
 }
@@ -144,7 +144,7 @@ std::string descriptor_fault(const karst_policy_descriptor_t& d) {
 
 std::string parameters_fault(const karst_policy_descriptor_t& d) {
   const std::string id = string_of(d.id);
-  if (d.parameter_count > kMostParameters) return id + " declares too many parameters";
+  if (d.parameter_count > kMaxParameters) return id + " declares too many parameters";
   if (d.parameter_count > 0 && d.parameters == nullptr) return id + " declares parameters but gives none";
   std::set<std::string> seen;
   for (std::uint32_t i = 0; i < d.parameter_count; ++i) {
@@ -160,18 +160,18 @@ namespace {
 /// Runs the plugin's constructors, its entry and its tables' getters.
 PluginFile opened(const std::string& path) {
   const karst_plugin_t& plugin = enter_plugin(path);
-  const auto demand = [&](const std::string& place, const std::string& fault) {
+  const auto require = [&](const std::string& place, const std::string& fault) {
     if (!fault.empty()) throw InputError(path, place, fault);
   };
-  demand("", handshake_fault(plugin.abi_major, plugin.abi_minor));
-  demand("", plugin_fault(plugin));
+  require("", handshake_fault(plugin.abi_major, plugin.abi_minor));
+  require("", plugin_fault(plugin));
   PluginFile out{path, &plugin, {}, ""};
   for (std::uint32_t i = 0; i < plugin.policy_count; ++i) {
     const karst_policy_t* policy = plugin.policy(i);
     const std::string place = "policy " + std::to_string(i);
-    demand(place, table_fault(policy));
-    demand(place, descriptor_fault(*policy->descriptor));
-    demand(place, parameters_fault(*policy->descriptor));
+    require(place, table_fault(policy));
+    require(place, descriptor_fault(*policy->descriptor));
+    require(place, parameters_fault(*policy->descriptor));
     out.policies.push_back(policy);
   }
   return out;

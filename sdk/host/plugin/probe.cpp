@@ -97,7 +97,7 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
 }
 
 /// What a file has to say of 64 policies with 256 parameters each, five texts of a kilobyte to each of them.
-constexpr std::size_t kMostBytes = std::size_t{128} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{128} << 20;
 
 /// Reads until the other end closes. False if that takes longer than the limit, or is more than can be.
 bool read_all(int in, double limit_s, std::string& text) {
@@ -112,7 +112,7 @@ bool read_all(int in, double limit_s, std::string& text) {
     char buffer[4096];
     const ssize_t n = read(in, buffer, sizeof buffer);
     if (n <= 0) return true;
-    if (text.size() > kMostBytes) return false;
+    if (text.size() > kMaxBytes) return false;
     text.append(buffer, static_cast<std::size_t>(n));
   }
 }

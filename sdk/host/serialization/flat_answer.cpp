@@ -20,7 +20,7 @@ using core::Vec3;
 
 constexpr std::uint64_t kLongestText = 64 * 1024;
 // What a session keeps between two decisions (session.cpp, services.cpp); a host's own notes come on top.
-constexpr std::uint64_t kMostLogLines = 400, kMostDrawings = 1000, kMostDrawnPoints = 400'000;
+constexpr std::uint64_t kMaxLogLines = 400, kMaxDrawings = 1000, kMaxDrawnPoints = 400'000;
 
 std::string line(FlatReader& in, std::uint64_t limit) {
   return cleaned(view_of(in.text(kLongestText)), limit);
@@ -51,7 +51,7 @@ PolicyLegacy legacy(FlatReader& in) {
   PolicyLegacy l;
   l.numbers_drawn = in.number<std::uint64_t>();
   if (!in.flag()) return l;
-  const std::span<const std::byte> state = in.raw(in.count(1, kMostStateBytes, "bytes of state"));
+  const std::span<const std::byte> state = in.raw(in.count(1, kMaxStateBytes, "bytes of state"));
   l.state.emplace(state.begin(), state.end());
   return l;
 }
@@ -116,7 +116,7 @@ StartOrder read_start_order(std::span<const std::byte> bytes) {
   o.failures_allowed = in.number<int>();
   o.memory_limit_bytes = in.number<std::uint64_t>();
   o.legacy = legacy(in);
-  in.demand_end();
+  in.require_end();
   return o;
 }
 
@@ -132,7 +132,7 @@ ReadyReport read_ready_report(std::span<const std::byte> bytes) {
   ReadyReport r;
   r.version = line(in, kLineLimit);
   r.parameters = tree(in);
-  in.demand_end();
+  in.require_end();
   return r;
 }
 
@@ -161,16 +161,16 @@ DecisionReport read_decision_report(std::span<const std::byte> bytes) {
   d.outcome = static_cast<core::Outcome>(
       in.choice(0, static_cast<std::uint32_t>(core::Outcome::go_home), "the outcome"));
   d.reason = line(in, kLogLineLimit);  // a failure's reason is longer than a policy's own
-  const std::size_t goals = in.count(60, kMostGoals, "goals");
+  const std::size_t goals = in.count(60, kMaxGoals, "goals");
   if ((d.outcome == core::Outcome::goals) != (goals > 0)) in.fail("its goals do not fit the outcome");
   for (std::size_t i = 0; i < goals; ++i) d.goals.push_back(sound_goal(in));
-  const std::size_t drawings = in.count(24, kMostDrawings, "drawings");
-  std::uint64_t points_left = kMostDrawnPoints;
+  const std::size_t drawings = in.count(24, kMaxDrawings, "drawings");
+  std::uint64_t points_left = kMaxDrawnPoints;
   for (std::size_t i = 0; i < drawings; ++i) d.drawings.push_back(drawing(in, points_left));
-  const std::size_t lines = in.count(8, kMostLogLines, "lines of log");
+  const std::size_t lines = in.count(8, kMaxLogLines, "lines of log");
   for (std::size_t i = 0; i < lines; ++i) d.log.push_back(line(in, 2 * kLogLineLimit));
   r.legacy = legacy(in);
-  in.demand_end();
+  in.require_end();
   return r;
 }
 
@@ -190,7 +190,7 @@ core::PolicyEvent read_event(std::span<const std::byte> bytes) {
   e.stamp = in.number<core::TimeNs>();
   e.goal = goal(in);
   e.reason = in.text(kLongestText);
-  in.demand_end();
+  in.require_end();
   return e;
 }
 
@@ -209,7 +209,7 @@ LengthsQuestion read_lengths_question(std::span<const std::byte> bytes) {
   q.tolerance_m = in.number<double>();
   q.goals.resize(in.count(sizeof(double) * 3, KARST_MAX_PATH_GOALS, "goals"));
   for (Vec3& g : q.goals) g = in.vec3();
-  in.demand_end();
+  in.require_end();
   const bool finite = q.from.allFinite() && std::all_of(q.goals.begin(), q.goals.end(),
                                                         [](const Vec3& g) { return g.allFinite(); });
   if (!finite || !(q.tolerance_m >= 0 && q.tolerance_m <= 100)) in.fail("a path between no places");
@@ -231,7 +231,7 @@ PathAnswer read_path_answer(std::span<const std::byte> bytes) {
       in.choice(0, static_cast<std::uint32_t>(PathAnswer::Status::too_much), "an answer about paths"));
   answer.lengths_m.resize(in.count(sizeof(double), KARST_MAX_PATH_GOALS, "lengths"));
   for (double& l : answer.lengths_m) l = in.number<double>();
-  in.demand_end();
+  in.require_end();
   return answer;
 }
 
@@ -244,7 +244,7 @@ Bytes flatten(const std::string& text) {
 std::string read_text(std::span<const std::byte> bytes) {
   FlatReader in(bytes);
   std::string text = line(in, kLongestText);
-  in.demand_end();
+  in.require_end();
   return text;
 }
 

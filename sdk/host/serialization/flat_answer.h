@@ -30,7 +30,7 @@ enum class Said : std::uint32_t {
   asks_lengths = 106  // LengthsQuestion
 };
 
-constexpr std::size_t kMostAnswerBytes = 32u << 20;  // a state of 16 MiB, drawings of 5 MB, texts
+constexpr std::size_t kMaxAnswerBytes = 32u << 20;  // a state of 16 MiB, drawings of 5 MB, texts
 
 /// What a policy's object leaves to the one that is started in its place.
 struct PolicyLegacy {

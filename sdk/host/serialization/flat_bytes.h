@@ -86,10 +86,10 @@ class FlatReader {
     if (v < low || v > high) fail(std::string(name) + " is out of range");
     return v;
   }
-  /// How many items follow, each of which takes `least_bytes` or more.
-  std::size_t count(std::size_t least_bytes, std::uint64_t most, const char* name) {
+  /// How many items follow, each of which takes `min_bytes` or more.
+  std::size_t count(std::size_t min_bytes, std::uint64_t most, const char* name) {
     const auto n = number<std::uint64_t>();
-    if (n > most || n * least_bytes > left()) fail(std::string("there cannot be so many ") + name);
+    if (n > most || n * min_bytes > left()) fail(std::string("there cannot be so many ") + name);
     return static_cast<std::size_t>(n);
   }
   std::string text(std::uint64_t most) {
@@ -103,7 +103,7 @@ class FlatReader {
     return out;
   }
   std::size_t left() const { return bytes_.size() - at_; }
-  void demand_end() const {
+  void require_end() const {
     if (left() > 0) fail("more follows than belongs to it");
   }
   [[noreturn]] void fail(const std::string& why) const {

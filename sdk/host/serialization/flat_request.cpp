@@ -11,8 +11,8 @@ namespace {
 constexpr std::uint64_t kMagic = 0x747365757165726bull;  // "krequest"
 constexpr std::uint32_t kVersion = 3;
 constexpr std::size_t kHeader = 8 + 4 + 4 + 8 + 8;  // magic, version, reserved, length, sum of the body
-constexpr std::uint64_t kMostClusters = 1'000'000, kMostCells = 100'000'000, kMostSensors = 64,
-                        kMostChannels = 4096, kLongestName = 1000, kMostTeammates = 1000;
+constexpr std::uint64_t kMaxClusters = 1'000'000, kMaxCells = 100'000'000, kMaxSensors = 64,
+                        kMaxChannels = 4096, kLongestName = 1000, kMaxTeammates = 1000;
 constexpr std::size_t kKeyBytes = 12, kClusterBytes = 160, kTeammateBytes = 69;
 constexpr std::size_t kBlockBytes = kKeyBytes + sizeof(core::ClassBlock::classes);
 
@@ -55,7 +55,7 @@ core::LidarModel lidar(FlatReader& in) {
   core::LidarModel l;
   l.name = in.text(kLongestName);
   l.columns = in.number<int>();
-  l.elevation_rad.resize(in.count(sizeof(float), kMostChannels, "channels"));
+  l.elevation_rad.resize(in.count(sizeof(float), kMaxChannels, "channels"));
   for (float& e : l.elevation_rad) e = in.number<float>();
   l.min_range_m = in.number<float>(), l.max_range_m = in.number<float>();
   l.period = in.number<core::TimeNs>();
@@ -205,7 +205,7 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     read_teammates(in);
     read_map(in);
     read_imaged(in);
-    in.demand_end();
+    in.require_end();
   } catch (...) {
     request_ = {};
     roadmap_.reset(), map_.reset();
@@ -219,7 +219,7 @@ void RequestReader::read_vehicle(FlatReader& in) {
   request_.vehicle = nullptr;
   if (!in.flag()) return;
   if (in.flag()) vehicle_.lidar = std::make_shared<core::LidarModel>(lidar(in));
-  const std::size_t cameras = in.count(1, kMostSensors, "cameras");
+  const std::size_t cameras = in.count(1, kMaxSensors, "cameras");
   for (std::size_t i = 0; i < cameras; ++i)
     vehicle_.cameras.push_back(std::make_shared<core::CameraModel>(camera(in)));
   if (in.flag()) {
@@ -232,7 +232,7 @@ void RequestReader::read_vehicle(FlatReader& in) {
 void RequestReader::read_imaged(FlatReader& in) {
   request_.imaged = nullptr;
   if (!in.flag()) return;
-  std::vector<core::CellKey> cells(in.count(kKeyBytes, kMostCells, "imaged cells"));
+  std::vector<core::CellKey> cells(in.count(kKeyBytes, kMaxCells, "imaged cells"));
   for (core::CellKey& k : cells) k = key(in);
   imaged_ = core::ImagedSurface(cells);
   request_.imaged = &imaged_;
@@ -240,7 +240,7 @@ void RequestReader::read_imaged(FlatReader& in) {
 
 void RequestReader::read_frontiers(FlatReader& in) {
   clusters_.clear();
-  clusters_.resize(in.count(kClusterBytes, kMostClusters, "frontier clusters"));
+  clusters_.resize(in.count(kClusterBytes, kMaxClusters, "frontier clusters"));
   request_.frontiers.clear();
   for (core::FrontierCluster& c : clusters_) {
     c.id = in.number<std::uint32_t>();
@@ -250,14 +250,14 @@ void RequestReader::read_frontiers(FlatReader& in) {
     offer.cluster = &c;
     offer.viewpoint = in.vec3();
     offer.viewpoint_heading_rad = in.number<double>(), offer.path_length_m = in.number<double>();
-    c.cells.resize(in.count(kKeyBytes, kMostCells, "cells in a cluster"));
+    c.cells.resize(in.count(kKeyBytes, kMaxCells, "cells in a cluster"));
     for (core::CellKey& k : c.cells) k = key(in);
     request_.frontiers.push_back(offer);
   }
 }
 
 void RequestReader::read_teammates(FlatReader& in) {
-  request_.teammates.assign(in.count(kTeammateBytes, kMostTeammates, "teammates"), {});
+  request_.teammates.assign(in.count(kTeammateBytes, kMaxTeammates, "teammates"), {});
   for (core::OtherVehicle& v : request_.teammates) {
     v.id = in.number<std::uint32_t>(), v.heard = in.number<core::TimeNs>();
     v.position = in.vec3(), v.velocity_mps = in.vec3();
@@ -280,7 +280,7 @@ void RequestReader::read_map(FlatReader& in) {
     map_.emplace(options);
     roadmap_.reset();
   }
-  std::vector<core::ClassBlock> blocks(in.count(kBlockBytes, kMostCells, "blocks"));
+  std::vector<core::ClassBlock> blocks(in.count(kBlockBytes, kMaxCells, "blocks"));
   for (core::ClassBlock& b : blocks) {
     b.low = key(in);
     std::memcpy(b.classes.data(), in.raw(sizeof b.classes).data(), sizeof b.classes);

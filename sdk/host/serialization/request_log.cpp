@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 constexpr std::uint32_t kMagic = 0x6c71726b;  // "krql"
 enum : std::uint32_t { kHeader = 1, kRequest = kRequestRecord, kAnswer = 3, kEvent = 4 };
 constexpr int kSchema = 1;
-constexpr std::uint64_t kMostText = 1u << 20;  // bytes of a record that is JSON
+constexpr std::uint64_t kMaxText = 1u << 20;  // bytes of a record that is JSON
 
 /// FNV-1a. A request has a sum of its own.
 std::uint64_t sum_of(std::uint32_t kind, std::span<const std::byte> payload) {
@@ -171,15 +171,15 @@ std::optional<RequestLogReader::Record> RequestLogReader::read() {
   ++record_;
   RecordFrame frame{};
   if (size_ - at_ < sizeof frame) {
-    passed_over_ = size_ - at_;
+    skipped_bytes_ = size_ - at_;
     return std::nullopt;
   }
   in_.read(reinterpret_cast<char*>(&frame), sizeof frame);
   at_ += sizeof frame;
   if (!in_ || frame.magic != kMagic) fail("this is no record of requests, or it is damaged");
-  if (frame.kind != kRequest && frame.length > kMostText) fail("it is longer than it can be");
+  if (frame.kind != kRequest && frame.length > kMaxText) fail("it is longer than it can be");
   if (frame.length > size_ - at_) {  // the flight was killed while it was written
-    passed_over_ = sizeof frame + size_ - at_;
+    skipped_bytes_ = sizeof frame + size_ - at_;
     return std::nullopt;
   }
   Record out{frame.kind, Bytes(frame.length)};

@@ -73,7 +73,7 @@ class RequestLogReader {
   const std::string& answer() const { return answer_; }
   const core::PolicyEvent& event() const { return event_; }
   /// At the end: bytes of a last record that is not whole.
-  std::uint64_t passed_over() const { return passed_over_; }
+  std::uint64_t skipped_bytes() const { return skipped_bytes_; }
 
  private:
   struct Record {
@@ -85,7 +85,7 @@ class RequestLogReader {
 
   std::string file_;
   std::ifstream in_;
-  std::uint64_t size_ = 0, at_ = 0, record_ = 0, passed_over_ = 0;
+  std::uint64_t size_ = 0, at_ = 0, record_ = 0, skipped_bytes_ = 0;
   RequestLogHeader header_;
   RequestReader requests_{true};
   std::string answer_;

@@ -17,13 +17,13 @@ using core::Vec3;
 /// A cube of cells around the eye, copied from the map so that a ray reads one byte a cell.
 class Window {
  public:
-  Window(const core::VoxelMap& map, const CellKey& center, std::int32_t reach)
-      : corner_{center.x - reach, center.y - reach, center.z - reach},
-        edge_(2 * reach + 1),
+  Window(const core::VoxelMap& map, const CellKey& center, std::int32_t radius)
+      : corner_{center.x - radius, center.y - radius, center.z - radius},
+        edge_(2 * radius + 1),
         cells_(static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_) *
                    static_cast<std::size_t>(edge_),
                Cell::unknown) {
-    const CellKey high{center.x + reach, center.y + reach, center.z + reach};
+    const CellKey high{center.x + radius, center.y + radius, center.z + radius};
     map.for_each_in_box(corner_, high, [&](const CellKey& k, Cell c) { *at(k) = c; });
   }
 

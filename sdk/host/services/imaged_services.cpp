@@ -32,7 +32,7 @@ struct ImagedServices {
 
   static std::int32_t camera(const karst_host_t* h, karst_imaged_camera_t* out, karst_error_t* e) noexcept {
     return Serving::serve(h, e, [&](Session& s) {
-      demand(out != nullptr, "out is NULL");
+      require(out != nullptr, "out is NULL");
       const core::RgbCameraModel& model = camera_of(s);
       *out = {};
       out->sensor = to_abi(model);
@@ -45,10 +45,10 @@ struct ImagedServices {
   static std::int32_t states(const karst_host_t* h, const karst_vec3_t* points, std::uint64_t count,
                              karst_imaged_t* out, karst_error_t* e) noexcept {
     return Serving::serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_BATCH, points, out);
+      require_batch(count, KARST_MAX_BATCH, points, out);
       camera_of(s);  // or it is refused
       for (std::uint64_t i = 0; i < count; ++i) {
-        demand(finite(points[i]), "a point is not finite");
+        require(finite(points[i]), "a point is not finite");
         const core::CellKey key = s.live_.map->key_of(to_core(points[i]));
         out[i] = !core::surface_cell(*s.live_.map, key) ? KARST_IMAGED_NO_SURFACE
                  : s.imaged_->contains(key)             ? KARST_IMAGED_YES
@@ -60,8 +60,8 @@ struct ImagedServices {
   static std::int32_t unimaged(const karst_host_t* h, karst_box_t box, karst_surface_cell_t* out,
                                std::uint64_t capacity, std::uint64_t* total, karst_error_t* e) noexcept {
     return Serving::serve(h, e, [&](Session& s) {
-      demand(total != nullptr && (capacity == 0 || out != nullptr), "an array is NULL");
-      demand_box(box);
+      require(total != nullptr && (capacity == 0 || out != nullptr), "an array is NULL");
+      require_box(box);
       const Account a = account(s);
       const core::Vec3 low = to_core(box.low), high = to_core(box.high);
       *total = 0;
@@ -79,8 +79,8 @@ struct ImagedServices {
   static void look(Session& s, const Account& a, const karst_viewpoint_t* from, std::uint64_t count,
                    Visit&& visit) {
     for (std::uint64_t i = 0; i < count; ++i) {
-      Serving::going_on(s);
-      demand(finite(from[i].position) && std::isfinite(from[i].heading_rad), "a viewpoint is not finite");
+      Serving::check_not_abandoned(s);
+      require(finite(from[i].position) && std::isfinite(from[i].heading_rad), "a viewpoint is not finite");
       const core::Pose T_world_body{to_core(from[i].position), core::from_heading(from[i].heading_rad)};
       visit(i, a.unimaged.seen_from(T_world_body * a.camera.camera.T_body_camera, a.camera));
     }
@@ -89,7 +89,7 @@ struct ImagedServices {
   static std::int32_t newly_imaged(const karst_host_t* h, const karst_viewpoint_t* from, std::uint64_t count,
                                    std::uint64_t* out, karst_error_t* e) noexcept {
     return Serving::serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_GAIN_VIEWPOINTS, from, out);
+      require_batch(count, KARST_MAX_GAIN_VIEWPOINTS, from, out);
       look(s, account(s), from, count, [&](std::uint64_t i, const auto& seen) { out[i] = seen.size(); });
     });
   }
@@ -98,8 +98,8 @@ struct ImagedServices {
                                          std::uint64_t count, std::uint64_t* ends, karst_vec3_t* out,
                                          std::uint64_t capacity, karst_error_t* e) noexcept {
     return Serving::serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_GAIN_VIEWPOINTS, from, ends);
-      demand(capacity == 0 || out != nullptr, "an array is NULL");
+      require_batch(count, KARST_MAX_GAIN_VIEWPOINTS, from, ends);
+      require(capacity == 0 || out != nullptr, "an array is NULL");
       const Account a = account(s);
       std::uint64_t total = 0;
       look(s, a, from, count, [&](std::uint64_t i, const std::vector<std::uint32_t>& seen) {

@@ -13,7 +13,7 @@ namespace karst::host {
 
 /// Of one question: blocks, nodes and cells looked at to find a place near goals that are not clear. About
 /// half a second.
-constexpr std::uint64_t kMostPathWork = 20'000'000;
+constexpr std::uint64_t kMaxPathWork = 20'000'000;
 
 struct PathAnswer {
   enum class Status : std::uint32_t { answered, no_roadmap, too_much } status = Status::no_roadmap;
@@ -25,11 +25,11 @@ using PathLengths =
     std::function<PathAnswer(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m)>;
 
 /// As core::Roadmap::distances gives them, or `too_much` if goals and tolerance would cost more than
-/// kMostPathWork: counted, so that it is the same in every run.
+/// kMaxPathWork: counted, so that it is the same in every run.
 inline PathAnswer path_lengths(const core::VoxelMap& map, const core::Roadmap& roadmap,
                                const core::Vec3& from, std::span<const core::Vec3> goals,
                                double tolerance_m) {
-  core::WorkBudget work(kMostPathWork);
+  core::WorkBudget work(kMaxPathWork);
   constexpr double any_m = std::numeric_limits<double>::infinity();
   std::vector<double> lengths_m = roadmap.distances(map, from, goals, tolerance_m, any_m, &work);
   if (work.exhausted()) return {PathAnswer::Status::too_much, {}};

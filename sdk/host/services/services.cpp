@@ -21,7 +21,7 @@ struct Services : Serving {
   static std::int32_t info(const karst_host_t* h, const karst_map_t* m, karst_map_info_t* out,
                            karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand(out != nullptr, "out is NULL");
+      require(out != nullptr, "out is NULL");
       *out = info_of(snapshot(s, m));
     });
   }
@@ -29,10 +29,10 @@ struct Services : Serving {
   static std::int32_t cell_states(const karst_host_t* h, const karst_map_t* m, const karst_vec3_t* points,
                                   std::uint64_t count, karst_cell_t* out, karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_BATCH, points, out);
+      require_batch(count, KARST_MAX_BATCH, points, out);
       const core::VoxelMap& map = *snapshot(s, m).map;
       for (std::uint64_t i = 0; i < count; ++i) {
-        demand(finite(points[i]), "a point is not finite");
+        require(finite(points[i]), "a point is not finite");
         out[i] = static_cast<karst_cell_t>(map.at(to_core(points[i])));
       }
     });
@@ -42,13 +42,13 @@ struct Services : Serving {
                                 std::uint64_t count, std::uint32_t flags, karst_ray_end_t* out,
                                 karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_BATCH, rays, out);
+      require_batch(count, KARST_MAX_BATCH, rays, out);
       const core::VoxelMap& map = *snapshot(s, m).map;
       for (std::uint64_t i = 0; i < count; ++i) {
-        going_on(s);
-        demand(finite(rays[i].from) && finite(rays[i].to), "a ray is not finite");
-        demand((to_core(rays[i].to) - to_core(rays[i].from)).norm() <= KARST_MAX_RAY_LENGTH_M,
-               "a ray is longer than 1000 m");
+        check_not_abandoned(s);
+        require(finite(rays[i].from) && finite(rays[i].to), "a ray is not finite");
+        require((to_core(rays[i].to) - to_core(rays[i].from)).norm() <= KARST_MAX_RAY_LENGTH_M,
+                "a ray is longer than 1000 m");
         out[i] = cast_ray(map, rays[i], (flags & KARST_RAY_THROUGH_UNKNOWN) != 0);
       }
     });
@@ -58,11 +58,11 @@ struct Services : Serving {
                                      std::uint64_t count, karst_cell_counts_t* out,
                                      karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_BATCH, boxes, out);
+      require_batch(count, KARST_MAX_BATCH, boxes, out);
       const core::VoxelMap& map = *snapshot(s, m).map;
       for (std::uint64_t i = 0; i < count; ++i) {
-        going_on(s);
-        demand_box(boxes[i]);
+        check_not_abandoned(s);
+        require_box(boxes[i]);
         const std::optional<karst_cell_counts_t> counts = count_in_box(map, boxes[i]);
         if (!counts) throw Refusal{KARST_ERROR_LIMIT, "a box holds 2^63 cells or more"};
         out[i] = *counts;
@@ -74,8 +74,8 @@ struct Services : Serving {
                                     karst_vec3_t* out, std::uint64_t capacity, std::uint64_t* total,
                                     karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand(total != nullptr && (capacity == 0 || out != nullptr), "an array is NULL");
-      demand_box(box);
+      require(total != nullptr && (capacity == 0 || out != nullptr), "an array is NULL");
+      require_box(box);
       const std::vector<karst_vec3_t> cells = surface_in_box(*snapshot(s, m).map, box);
       *total = cells.size();
       std::copy_n(cells.begin(), std::min<std::uint64_t>(capacity, cells.size()), out);
@@ -108,14 +108,14 @@ struct Services : Serving {
                               std::uint64_t count, double tolerance_m, double* out,
                               karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_PATH_GOALS, goals, out);
-      demand(finite(from), "from is not finite");
-      demand(tolerance_m >= 0 && tolerance_m <= 100, "tolerance_m is not in [0, 100] m");
+      require_batch(count, KARST_MAX_PATH_GOALS, goals, out);
+      require(finite(from), "from is not finite");
+      require(tolerance_m >= 0 && tolerance_m <= 100, "tolerance_m is not in [0, 100] m");
       const Refusal closed{KARST_ERROR_STATE, "paths can be asked for during decide() only"};
       if (s.live_.map == nullptr || !s.lengths_) throw closed;
       std::vector<core::Vec3> places;
       for (std::uint64_t i = 0; i < count; ++i) {
-        demand(finite(goals[i]), "a goal is not finite");
+        require(finite(goals[i]), "a goal is not finite");
         places.push_back(to_core(goals[i]));
       }
       const PathAnswer found = s.lengths_(to_core(from), places, tolerance_m);
@@ -134,8 +134,8 @@ struct Services : Serving {
                                  std::uint64_t sensor_count, const karst_viewpoint_t* viewpoints,
                                  std::uint64_t count, std::uint64_t* out, karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(sensor_count, 16, sensors, out);
-      demand_batch(count, KARST_MAX_GAIN_VIEWPOINTS, viewpoints, out);
+      require_batch(sensor_count, 16, sensors, out);
+      require_batch(count, KARST_MAX_GAIN_VIEWPOINTS, viewpoints, out);
       const core::VoxelMap& map = *snapshot(s, m).map;
       for (std::uint64_t j = 0; j < sensor_count; ++j) {
         if (const std::string fault = sensor_fault(sensors[j]); !fault.empty())
@@ -144,10 +144,10 @@ struct Services : Serving {
           throw Refusal{KARST_ERROR_LIMIT, "sensor " + std::to_string(j) + ": " + excess};
         const SensorRays rays(sensors[j], map.resolution_m());
         for (std::uint64_t i = 0; i < count; ++i) {
-          going_on(s);
-          demand(finite(viewpoints[i].position) && std::isfinite(viewpoints[i].heading_rad),
-                 "a viewpoint is not finite");
-          demand(to_core(viewpoints[i].position).norm() <= 1e5, "a viewpoint is more than 100 km away");
+          check_not_abandoned(s);
+          require(finite(viewpoints[i].position) && std::isfinite(viewpoints[i].heading_rad),
+                  "a viewpoint is not finite");
+          require(to_core(viewpoints[i].position).norm() <= 1e5, "a viewpoint is more than 100 km away");
           out[i * sensor_count + j] = rays.newly_seen(map, viewpoints[i]);
         }
       }
@@ -157,11 +157,11 @@ struct Services : Serving {
   // draw
 
   static void add_drawing(Session& s, core::Drawing drawing) {
-    constexpr std::size_t most_points = 200'000, most_drawings = 1000;  // between two decisions
+    constexpr std::size_t max_points = 200'000, max_drawings = 1000;  // between two decisions
     on_decision_thread(s);
-    for (const core::Vec3& p : drawing.points) demand(p.allFinite(), "a point is not finite");
+    for (const core::Vec3& p : drawing.points) require(p.allFinite(), "a point is not finite");
     const std::lock_guard lock(s.output_mutex_);
-    if (s.drawn_points_ + drawing.points.size() > most_points || s.drawings_.size() >= most_drawings)
+    if (s.drawn_points_ + drawing.points.size() > max_points || s.drawings_.size() >= max_drawings)
       throw Refusal{KARST_ERROR_LIMIT, "more is drawn than the report holds"};
     s.drawn_points_ += drawing.points.size();
     s.drawings_.push_back(std::move(drawing));
@@ -170,7 +170,7 @@ struct Services : Serving {
   static std::int32_t points(const karst_host_t* h, const karst_vec3_t* points, std::uint64_t count,
                              std::uint32_t rgb, karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_BATCH, points, points);
+      require_batch(count, KARST_MAX_BATCH, points, points);
       core::Drawing d{core::Drawing::Kind::points, {}, rgb & 0xffffffu, ""};
       for (std::uint64_t i = 0; i < count; ++i) d.points.push_back(to_core(points[i]));
       add_drawing(s, std::move(d));
@@ -180,7 +180,7 @@ struct Services : Serving {
   static std::int32_t lines(const karst_host_t* h, const karst_segment_t* lines, std::uint64_t count,
                             std::uint32_t rgb, karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
-      demand_batch(count, KARST_MAX_BATCH, lines, lines);
+      require_batch(count, KARST_MAX_BATCH, lines, lines);
       core::Drawing d{core::Drawing::Kind::lines, {}, rgb & 0xffffffu, ""};
       for (std::uint64_t i = 0; i < count; ++i) {
         d.points.push_back(to_core(lines[i].from));
@@ -210,7 +210,7 @@ struct Services : Serving {
     const std::int32_t code = serve(h, nullptr, [&](Session& s) {
       on_decision_thread(s);
       for (std::uint64_t i = 0; i < count; ++i) {
-        if (i % KARST_MAX_BATCH == 0) going_on(s);
+        if (i % KARST_MAX_BATCH == 0) check_not_abandoned(s);
         out[i] = s.random_.uniform();
       }
       s.numbers_drawn_ += count;

@@ -15,24 +15,25 @@ struct Refusal {
   std::string text;
 };
 
-inline void demand(bool holds, const char* text) {
+inline void require(bool holds, const char* text) {
   if (!holds) throw Refusal{KARST_ERROR_ARGUMENT, text};
 }
 
-inline void demand_batch(std::uint64_t count, std::uint64_t limit, const void* in, const void* out) {
+inline void require_batch(std::uint64_t count, std::uint64_t limit, const void* in, const void* out) {
   if (count > limit)
     throw Refusal{KARST_ERROR_LIMIT,
                   std::to_string(count) + " items in one call, the limit is " + std::to_string(limit)};
-  demand(count == 0 || (in != nullptr && out != nullptr), "an array is NULL");
+  require(count == 0 || (in != nullptr && out != nullptr), "an array is NULL");
 }
 
 inline bool finite(const karst_vec3_t& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-inline void demand_box(const karst_box_t& b) {
-  demand(finite(b.low) && finite(b.high) && b.low.x <= b.high.x && b.low.y <= b.high.y && b.low.z <= b.high.z,
-         "a box is not finite, or its low corner is above its high one");
+inline void require_box(const karst_box_t& b) {
+  require(
+      finite(b.low) && finite(b.high) && b.low.x <= b.high.x && b.low.y <= b.high.y && b.low.z <= b.high.z,
+      "a box is not finite, or its low corner is above its high one");
 }
 
 struct Serving {
@@ -45,7 +46,7 @@ struct Serving {
     try {
       Session& s = session(host);
       const std::shared_lock lock(s.gate_);
-      going_on(s);
+      check_not_abandoned(s);
       work(s);
       return KARST_OK;
     } catch (Refusal& r) {
@@ -57,7 +58,7 @@ struct Serving {
     return refusal.code;
   }
 
-  static void going_on(const Session& s) {
+  static void check_not_abandoned(const Session& s) {
     if (s.abandoned_) throw Refusal{KARST_ERROR_ABANDONED, "the host has given up this policy"};
   }
   static void on_decision_thread(const Session& s) {

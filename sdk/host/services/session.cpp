@@ -5,7 +5,7 @@
 namespace karst::host {
 namespace {
 
-constexpr std::size_t kMostLogLines = 200;  // between two decisions
+constexpr std::size_t kMaxLogLines = 200;  // between two decisions
 
 }  // namespace
 
@@ -64,8 +64,8 @@ std::vector<std::string> Session::take_log() {
 
 void Session::note(std::string line) {
   const std::lock_guard lock(output_mutex_);
-  if (log_.size() < kMostLogLines) log_.push_back(std::move(line));
-  if (log_.size() == kMostLogLines) log_.back() = "(more lines were dropped)";
+  if (log_.size() < kMaxLogLines) log_.push_back(std::move(line));
+  if (log_.size() == kMaxLogLines) log_.back() = "(more lines were dropped)";
 }
 
 }  // namespace karst::host

@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
+#include <karst/flown_path.h>
 #include <karst/policy.h>
-#include <karst/way_flown.h>
 
 namespace karst {
 
@@ -50,9 +50,9 @@ class ExpectedGain {
     look(request, fresh);
     std::vector<double> out;
     for (const Frontier* f : frontiers) {
-      const double most_m3 = behind_openings_m3(request, *f);
+      const double max_m3 = behind_openings_m3(request, *f);
       const auto found = known_.find(f->id);
-      out.push_back(found == known_.end() ? most_m3 : std::min(found->second.volume_m3, most_m3));
+      out.push_back(found == known_.end() ? max_m3 : std::min(found->second.volume_m3, max_m3));
     }
     return out;
   }
@@ -60,18 +60,18 @@ class ExpectedGain {
   /// Volume in m^3 expected behind the opening itself, wherever one looks from.
   double behind_m3(const Request& request, const Frontier& f) const {
     const double edge_m = request.map.resolution_m();
-    return f.cells * edge_m * edge_m * depth_m * share_of_depth(f);
+    return f.cells * edge_m * edge_m * depth_m * fraction_of_depth(f);
   }
 
  private:
   /// Of the clusters in range that lie the same way as `f` from its viewpoint.
   double behind_openings_m3(const Request& request, const Frontier& f) const {
-    constexpr double same_way = 0.5;  // cosine
+    constexpr double same_direction = 0.5;  // cosine
     const Vec3 there = f.centroid - f.viewpoint;
     double sum_m3 = 0;
     for (const Frontier& other : request.frontiers) {
       const Vec3 d = other.centroid - f.viewpoint;
-      if (other.id == f.id || (norm(d) < range_m && dot(d, there) > same_way * norm(d) * norm(there)))
+      if (other.id == f.id || (norm(d) < range_m && dot(d, there) > same_direction * norm(d) * norm(there)))
         sum_m3 += behind_m3(request, other);
     }
     return sum_m3;
@@ -79,9 +79,9 @@ class ExpectedGain {
 
   /// Of what predictions of 3 m deep came to in flight, nothing but the distance from the way flown told: all
   /// of it 3 m away and farther, a tenth within 1.5 m. A passage that goes on is seen from afar first.
-  double share_of_depth(const Frontier& f) const {
+  double fraction_of_depth(const Frontier& f) const {
     constexpr double least = 0.05;
-    const double away_m = way_.distance_m(f.centroid);
+    const double away_m = path_.distance_m(f.centroid);
     if (away_m >= ahead_m) return 1.0;
     return std::max(least, (away_m - beside_m) / (ahead_m - beside_m));
   }
@@ -102,7 +102,7 @@ class ExpectedGain {
     if (request.sequence == sequence_) return;
     sequence_ = request.sequence;
     looks_left_ = static_cast<std::size_t>(looks);
-    way_.note(request.position());
+    path_.note(request.position());
     std::map<std::uint32_t, Known> kept;
     for (const Frontier& f : request.frontiers)
       if (const auto found = known_.find(f.id); found != known_.end()) kept.insert(*found);
@@ -128,7 +128,7 @@ class ExpectedGain {
 
   std::uint32_t sequence_ = 0;
   std::size_t looks_left_ = 0;
-  WayFlown way_;
+  FlownPath path_;
   std::map<std::uint32_t, Known> known_;
 };
 

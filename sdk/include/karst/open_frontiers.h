@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <karst/place_memory.h>
+#include <karst/goal_history.h>
 #include <karst/policy.h>
 
 namespace karst {
@@ -21,12 +21,12 @@ class OpenFrontiers {
     p.add("patience", patience_s, "s", 0, 120, "without any goal for this long, the cave counts as explored");
   }
 
-  void on_event(const Event& event) { places_.on_event(event); }
-  void memory(Memory& m) { m.add(places_), m.add(idle_since_ns_); }
+  void on_event(const Event& event) { entries_.on_event(event); }
+  void memory(Memory& m) { m.add(entries_), m.add(idle_since_ns_); }
 
   struct Candidate {
     const Frontier* frontier;
-    double reluctance_m;  // what earlier visits in vain count as, in metres of flight
+    double revisit_penalty_m;  // what earlier visits in vain count as, in metres of flight
   };
 
   /// Those that can be flown to now, by id; they live as long as the request.
@@ -36,9 +36,9 @@ class OpenFrontiers {
     for (const Frontier& f : request.frontiers) {
       if (!f.reachable() || f.cells < static_cast<std::uint32_t>(min_cells)) continue;
       if (distance(f.viewpoint, request.position()) < min_distance_m) continue;
-      const PlaceMemory::Verdict verdict = places_.judge(f, request.stamp_ns);
+      const GoalHistory::Verdict verdict = entries_.judge(f, request.stamp_ns);
       some_closed_ |= verdict.closed_now;
-      if (verdict.open) open.push_back({&f, verdict.reluctance_m});
+      if (verdict.open) open.push_back({&f, verdict.revisit_penalty_m});
     }
     return open;
   }
@@ -57,7 +57,7 @@ class OpenFrontiers {
   }
 
  private:
-  PlaceMemory places_;
+  GoalHistory entries_;
   bool some_closed_ = false;
   std::int64_t idle_since_ns_ = -1;
 };
@@ -69,7 +69,7 @@ inline bool under_way(const Request& request, const Frontier& f) {
 }
 
 /// 0 for flying straight on to the frontier's viewpoint, 1 for turning back.
-inline double turn_share(const Request& request, const Frontier& f) {
+inline double turn_fraction(const Request& request, const Frontier& f) {
   const Vec3 there = f.viewpoint - request.position();
   return 0.5 * (1.0 - dot(there, request.direction_of_flight) / std::max(norm(there), 1e-9));
 }

@@ -1,9 +1,9 @@
 // The C++ face of the policy ABI. A policy derives from karst::Policy, writes decide(), and registers itself:
 //
-//   class Onward : public karst::Policy {
+//   class CommittedSegment : public karst::Policy {
 //     karst::Decision decide(const karst::Request& request) override { ... }
 //   };
-//   KARST_POLICY(Onward, "onward", "1.0.0", "Flies straight on.")
+//   KARST_POLICY(CommittedSegment, "onward", "1.0.0", "Flies straight on.")
 //
 // Everything here is compiled into the plugin; only the C ABI crosses to the host, and no exception does.
 #pragma once

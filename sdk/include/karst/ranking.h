@@ -51,9 +51,9 @@ class Ranking {
   template <class MeritOf>
   Decision decide(const Request& request, MeritOf&& merit_of) {
     std::vector<Goal> ranked;
-    for (const auto& [f, reluctance_m] : open_.of(request)) {
+    for (const auto& [f, revisit_penalty_m] : open_.of(request)) {
       Merit merit = merit_of(*f);
-      ranked.push_back(goal_at(*f, score(request, *f, merit) - reluctance_m, std::move(merit.why)));
+      ranked.push_back(goal_at(*f, score(request, *f, merit) - revisit_penalty_m, std::move(merit.why)));
     }
     if (ranked.empty()) return open_.none_left(request);
     open_.found_some();
@@ -63,7 +63,7 @@ class Ranking {
 
  private:
   double score(const Request& request, const Frontier& f, const Merit& merit) const {
-    double s = merit.worth_m - path_weight * f.path_length_m - turn_cost_m * turn_share(request, f);
+    double s = merit.worth_m - path_weight * f.path_length_m - turn_cost_m * turn_fraction(request, f);
     s -= std::max(0.0, f.path_length_m - horizon_m);
     return s + (under_way(request, f) ? keep_bonus_m : 0.0);
   }

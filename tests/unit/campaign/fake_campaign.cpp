@@ -75,9 +75,9 @@ CampaignResults fake_campaign(std::size_t contestants, std::size_t caves, std::i
         const double rate = (1 - advantage * static_cast<double>(c)) * (1 + noise * (pair + 0.5 * own));
         const double size_m3 = 5000.0 * static_cast<double>(k + 1);
         for (int s = 0; s <= 60; ++s) {
-          const double time_s = 5.0 * s, share = 1 - std::exp(-std::max(0.05, rate) * time_s /
-                                                              (120 + 60 * static_cast<double>(k)));
-          t.curve.push_back({time_s, share * size_m3, share});
+          const double time_s = 5.0 * s, fraction = 1 - std::exp(-std::max(0.05, rate) * time_s /
+                                                                 (120 + 60 * static_cast<double>(k)));
+          t.curve.push_back({time_s, fraction * size_m3, fraction});
         }
         t.figures.assign(metric_definitions().size(), 1 + 0.1 * own);
         figure(t, "coverage") = t.curve.back().coverage;

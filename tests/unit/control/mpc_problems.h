@@ -59,8 +59,8 @@ inline std::vector<MotionTarget> random_targets(Random& r, const JerkMpcSetup& s
   for (int k = 1; k <= s.steps; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const Vec3 offset = points[i] - start.position;
-    const double reach_m = s.max_speed_mps * (k * s.step_s + 0.3);
-    out.push_back({start.position + offset * std::min(1.0, reach_m / std::max(offset.norm(), 1e-9)),
+    const double reachable_m = s.max_speed_mps * (k * s.step_s + 0.3);
+    out.push_back({start.position + offset * std::min(1.0, reachable_m / std::max(offset.norm(), 1e-9)),
                    (points[i] - points[i - 1]) / s.step_s});
   }
   return out;

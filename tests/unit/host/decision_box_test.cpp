@@ -64,7 +64,7 @@ TEST(DecisionBox, CarriesGoalsOutcomeReasonAndOrder) {
 TEST(DecisionBox, ExactlyTheLimitIsTaken) {
   DecisionBox box;
   const karst_decision_sink_t sink = box.sink();
-  const std::vector<karst_goal_t> goals(kMostGoals, good());
+  const std::vector<karst_goal_t> goals(kMaxGoals, good());
   karst_error_t e{};
   EXPECT_EQ(sink.add_goals(&sink, goals.data(), goals.size(), &e), KARST_OK);
   EXPECT_EQ(sink.add_goals(&sink, goals.data(), 1, &e), KARST_ERROR_LIMIT);

@@ -203,15 +203,15 @@ TEST(FilterBank, TheCompassHoldsTheHeadingThatTheLidarLeavesOpen) {
 }
 
 TEST(FilterBank, OreThatBendsTheFieldBySixtyDegreesDoesNotTurnTheHeading) {
-  for (const double share : {1.0, 1.4}) {  // of the same strength, or stronger
+  for (const double fraction : {1.0, 1.4}) {  // of the same strength, or stronger
     Bench b;
     b.field = [&](double t) -> Vec3 {
       const double bend = 1.05 * std::exp(-std::pow((t - 25) / 4, 2));
-      return (1 + (share - 1) * bend) * (from_heading(bend) * kEarthField);
+      return (1 + (fraction - 1) * bend) * (from_heading(bend) * kEarthField);
     };
     double worst_rad = 0;
     b.run_until(40, [&](double t) { worst_rad = t < 10 ? 0 : std::max(worst_rad, b.heading_error_rad()); });
-    EXPECT_LT(worst_rad, 0.017) << share;
+    EXPECT_LT(worst_rad, 0.017) << fraction;
     EXPECT_LT(b.position_error_m(), 0.05);
   }
 }

@@ -27,7 +27,7 @@ struct Room {
   Scripted policy;
   VehicleDescription vehicle;
   std::unique_ptr<Explorer> explorer;
-  RoundInput input;
+  CycleInput input;
 
   explicit Room(const CoreOptions& options = {}, const Vec3& size = Vec3(8, 6, 4),
                 const std::string& open = "x+") {
@@ -43,11 +43,11 @@ struct Room {
     input.seconds_left = 600;
     input.standing = true;
   }
-  RoundResult decide(std::function<Decision(const DecisionRequest&)> script) {
+  CycleResult decide(std::function<Decision(const DecisionRequest&)> script) {
     policy.script = std::move(script);
     return explorer->decide(input);
   }
-  RoundResult propose(const Vec3& p) {
+  CycleResult propose(const Vec3& p) {
     return decide([p](const DecisionRequest&) {
       Decision d;
       d.outcome = Outcome::goals;
@@ -73,7 +73,7 @@ TEST(Explorer, OffersTheOpenSideWithAReachableViewpoint) {
 
 TEST(Explorer, PlansAPathInKnownFreeSpaceToAnAcceptedGoal) {
   Room room;
-  const RoundResult r = room.propose(Vec3(6.5, 4, 2));
+  const CycleResult r = room.propose(Vec3(6.5, 4, 2));
   ASSERT_TRUE(r.goal);
   ASSERT_GE(r.path.points.size(), 2u);
   EXPECT_TRUE(r.path.points.front().isApprox(room.input.from));
@@ -89,7 +89,7 @@ TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {
                                               {Vec3(0.5, 3, 2), "too near"}};
   for (const auto& [place, reason] : bad) {
     Room room;
-    const RoundResult r = room.propose(place);
+    const CycleResult r = room.propose(place);
     EXPECT_FALSE(r.goal);
     ASSERT_EQ(r.rejected.size(), 1u);
     EXPECT_NE(r.rejected[0].reason.find(reason), std::string::npos) << r.rejected[0].reason;
@@ -101,7 +101,7 @@ TEST(Explorer, EveryRefusalHasAReasonAndReachesThePolicy) {
 TEST(Explorer, RefusesAGoalTheBatteryDoesNotAllow) {
   Room room;
   room.input.seconds_left = 21;  // just over the reserve
-  const RoundResult r = room.propose(Vec3(6.5, 4, 2));
+  const CycleResult r = room.propose(Vec3(6.5, 4, 2));
   ASSERT_GT(r.rejected.size(), 1u) << "the fallback's goals, too, in the same round";
   for (const RejectedGoal& goal : r.rejected) EXPECT_NE(goal.reason.find("battery"), std::string::npos);
   EXPECT_EQ(r.outcome, Outcome::explored);
@@ -110,7 +110,7 @@ TEST(Explorer, RefusesAGoalTheBatteryDoesNotAllow) {
 
 TEST(Explorer, TheFirstGoalThatPassesIsTaken) {
   Room room;
-  const RoundResult r = room.decide([](const DecisionRequest&) {
+  const CycleResult r = room.decide([](const DecisionRequest&) {
     Decision d;
     d.outcome = Outcome::goals;
     d.goals.resize(3);
@@ -132,7 +132,7 @@ TEST(Explorer, AFailedPolicyIsReplacedByTheFallbackForGood) {
     throw PolicyFailure("it hangs");
   };
   for (int i = 0; i < 3; ++i) {
-    const RoundResult r = room.decide(fail);
+    const CycleResult r = room.decide(fail);
     EXPECT_EQ(r.policy, "fallback");
     EXPECT_TRUE(r.goal) << "the fallback finds the open side";
   }
@@ -141,21 +141,21 @@ TEST(Explorer, AFailedPolicyIsReplacedByTheFallbackForGood) {
 
 TEST(Explorer, APolicyThatOnlyProposesTheImpossibleIsPassedOverForARound) {
   Room room;
-  int fallback_rounds = 0;
+  int fallback_cycles = 0;
   for (int i = 0; i < 10; ++i) {
     room.input.now = i * kSecond;
-    fallback_rounds += room.propose(Vec3(50, 50, 50)).policy == "fallback";
+    fallback_cycles += room.propose(Vec3(50, 50, 50)).policy == "fallback";
   }
-  EXPECT_EQ(fallback_rounds, 3);
+  EXPECT_EQ(fallback_cycles, 3);
 }
 
 TEST(Explorer, APolicyMayHoldAStandingVehicleForTwoSecondsAndNoLonger) {
   // As it was: a policy that now held, now proposed what had to be refused, held the vehicle for 14 s.
   Room room;
   const auto hold = [](const DecisionRequest&) { return Decision{}; };
-  for (int round = 0; round < 4; ++round) {
-    room.input.now = round * kSecond / 2;
-    EXPECT_EQ((round == 2 ? room.propose(Vec3(50, 50, 50)) : room.decide(hold)).policy, "scripted") << round;
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    room.input.now = cycle * kSecond / 2;
+    EXPECT_EQ((cycle == 2 ? room.propose(Vec3(50, 50, 50)) : room.decide(hold)).policy, "scripted") << cycle;
   }
   room.input.now = 2 * kSecond;
   EXPECT_EQ(room.decide(hold).policy, "fallback");
@@ -171,7 +171,7 @@ TEST(Explorer, AskedTwiceInARoundItReportsEachFrontierOnce) {
   // As it was: those of the round's second asking, for narrow passages, came on top of the first one's.
   Room room(narrow_allowed());
   int asked = 0;
-  const RoundResult r = room.decide([&](const DecisionRequest&) {
+  const CycleResult r = room.decide([&](const DecisionRequest&) {
     ++asked;
     Decision d;
     d.outcome = Outcome::explored;
@@ -196,7 +196,7 @@ TEST(Explorer, APolicyThatIsPassedOverIsSoForNarrowPassagesToo) {
   };
   EXPECT_EQ(room.decide(hold).policy, "scripted");
   room.input.now = 2 * kSecond;
-  RoundResult r = room.decide(hold);
+  CycleResult r = room.decide(hold);
   EXPECT_EQ(r.policy, "fallback");
   EXPECT_FALSE(r.rejected.empty()) << "wide passages came first";
   EXPECT_EQ(asked, 1);
@@ -213,7 +213,7 @@ TEST(Explorer, WithoutAKnownWayHomeTheWayComeCounts) {
   // As it was: no way home took no time at all, and every goal was affordable.
   Room room;
   room.explorer = std::make_unique<Explorer>(CoreOptions{}, room.vehicle, room.policy);
-  room.input.way_come_m = 160;
+  room.input.flown_length_m = 160;
   room.decide([](const DecisionRequest& r) {
     EXPECT_LT(r.seconds_before_homing, 600 - 100 * 1.15 - 20);  // 160 m at 1.6 m/s
     return Decision{};
@@ -227,7 +227,7 @@ TEST(Explorer, TheWayBackLeavesOutLoopsAndCutsNoCorner) {
   for (double x = 1; x < 6; x += 0.25) flown.push_back({x, 1.4, 2});
   for (double y = 1.4; y < 2.4; y += 0.25) flown.push_back({6, y, 2});
   for (double x = 6; x > 1; x -= 0.25) flown.push_back({x, 2.4, 2});
-  const double free_m = path_length_m(room.explorer->way_back(flown));
+  const double free_m = path_length_m(room.explorer->path_back(flown));
   EXPECT_LT(free_m, 5);  // straight over, then home
   std::vector<Ray> wall;
   for (double x = 0.5; x < 5; x += 0.1)
@@ -237,7 +237,7 @@ TEST(Explorer, TheWayBackLeavesOutLoopsAndCutsNoCorner) {
         wall.push_back({origin, origin + Vec3f(0, 0.7f, 0), true});
       }
   room.explorer->integrate(wall);
-  const std::vector<Vec3> back = room.explorer->way_back(flown);
+  const std::vector<Vec3> back = room.explorer->path_back(flown);
   EXPECT_GT(path_length_m(back), 9);
   for (std::size_t i = 1; i + 1 < back.size(); ++i)
     EXPECT_TRUE((back[i] - back[i - 1]).norm() < 0.26 ||
@@ -248,9 +248,9 @@ TEST(Explorer, ThePolicyIsToldOfTeammatesAndWhatTimeTheyHaveLeft) {
   Room room;
   room.input.now = 50 * kSecond;
   const TimeNs heard = 40 * kSecond;
-  room.input.mates = {{1, heard, {6, 4, 2}, {0.5, 0, 0}, Vec3(6.5, 3, 2), true, 300},
-                      {2, heard, {6, 4, 2}, {0, 0, 0}, std::nullopt, false, 300},
-                      {3, heard, {90, 4, 2}, {0, 0, 0}, std::nullopt, true, 300}};
+  room.input.teammates = {{1, heard, {6, 4, 2}, {0.5, 0, 0}, Vec3(6.5, 3, 2), true, 300},
+                          {2, heard, {6, 4, 2}, {0, 0, 0}, std::nullopt, false, 300},
+                          {3, heard, {90, 4, 2}, {0, 0, 0}, std::nullopt, true, 300}};
   std::vector<OtherVehicle> told;
   double own_s = 0;
   const auto ask = [&](const DecisionRequest& r) {
@@ -280,22 +280,22 @@ TEST(Explorer, WhenTheBatteryAllowsNoGoalTheFlightIsOver) {
   Room room;
   room.input.seconds_left = 21;
   Outcome last = Outcome::hold;
-  int rounds = 0;
-  for (; rounds < 10 && last == Outcome::hold; ++rounds) {
-    room.input.now = rounds * kSecond;
+  int cycles = 0;
+  for (; cycles < 10 && last == Outcome::hold; ++cycles) {
+    room.input.now = cycles * kSecond;
     last = room.propose(Vec3(6.5, 4, 2)).outcome;
   }
   EXPECT_EQ(last, Outcome::explored);
-  EXPECT_LE(rounds, 5);
+  EXPECT_LE(cycles, 5);
 }
 
 TEST(Explorer, AnAbandonedGoalIsNotAcceptedAgainWhileTheMapIsUnchanged) {
   Room room;
-  const RoundResult first = room.propose(Vec3(6.5, 4, 2));
+  const CycleResult first = room.propose(Vec3(6.5, 4, 2));
   ASSERT_TRUE(first.goal);
   room.input.events = {{PolicyEvent::Kind::goal_abandoned, 0, *first.goal, "no progress towards it"}};
   room.input.now = 1000 * kSecond;
-  const RoundResult again = room.propose(Vec3(6.5, 4, 2));
+  const CycleResult again = room.propose(Vec3(6.5, 4, 2));
   EXPECT_FALSE(again.goal);
   ASSERT_EQ(again.rejected.size(), 1u);
   EXPECT_NE(again.rejected[0].reason.find("no progress"), std::string::npos);
@@ -316,7 +316,7 @@ TEST(Explorer, RefusesAGoalThatAsksForLessThanTheLeastSpeed) {
     });
   };
   for (const double speed_mps : {1e-300, 1e-9, 1e-4, 0.29, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    const RoundResult r = at_speed(speed_mps);
+    const CycleResult r = at_speed(speed_mps);
     EXPECT_FALSE(r.goal) << speed_mps;
     ASSERT_EQ(r.rejected.size(), 1u);
     EXPECT_NE(r.rejected[0].reason.find("below motion.min_speed, 0.3 m/s"), std::string::npos)
@@ -330,7 +330,7 @@ TEST(Explorer, TakesWhatIsAskedForWhereTheLeastSpeedIsAboveTheGreatest) {
   options.motion.min_speed_mps = 5;
   options.motion.max_speed_mps = 0.5;
   Room room(options);
-  const RoundResult r = room.decide([](const DecisionRequest&) {
+  const CycleResult r = room.decide([](const DecisionRequest&) {
     Decision d;
     d.outcome = Outcome::goals;
     d.goals.resize(1);

@@ -11,8 +11,8 @@
 #include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/onboard.h"
 #include "core_stack/mission/phases/endurance.h"
+#include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
-#include "core_stack/mission/phases/way_flown.h"
 
 namespace karst::core {
 
@@ -67,7 +67,7 @@ class OnboardTest : public ::testing::Test {
   void hover(double height_m = 1) {
     onboard.flight.climb(now(), height_m, 0.5);
     advance(2 * height_m + 3);
-    way_flown.begin(onboard.flight.reference().position);
+    flown_path.begin(onboard.flight.reference().position);
   }
   /// Flies straight ahead, for that far.
   void fly_ahead(double metres) {
@@ -96,7 +96,7 @@ class OnboardTest : public ::testing::Test {
   PhaseMachine phases;
   GoalTracker goals{recorder};
   PathExecution path{onboard};
-  WayFlown way_flown;
+  FlownPath flown_path;
   Endurance endurance{300};
 };
 

@@ -34,7 +34,7 @@ LidarScan room(const std::shared_ptr<const LidarModel>& model, double turn_rad, 
   return scan;
 }
 
-double dropped_share(const LidarScan& before, const LidarScan& after) {
+double dropped_fraction(const LidarScan& before, const LidarScan& after) {
   double finite = 0, dropped = 0;
   for (std::size_t i = 0; i < before.range_m.size(); ++i) {
     finite += std::isfinite(before.range_m[i]);
@@ -49,24 +49,24 @@ TEST(LonelyReturns, DimWallsStayAtAnyIncidenceAlsoInCornersAndWithNoise) {
       LidarScan scan = room(model, 0.3 * turn);
       const LidarScan before = scan;
       drop_lonely_returns(scan, {});
-      EXPECT_LT(dropped_share(before, scan), 0.003) << model->columns << " " << turn;
+      EXPECT_LT(dropped_fraction(before, scan), 0.003) << model->columns << " " << turn;
       Random random(3);
       scan = before;
       for (float& r : scan.range_m) r += 0.02f * static_cast<float>(random.normal());
       const LidarScan noisy = scan;
       drop_lonely_returns(scan, {});
-      EXPECT_LT(dropped_share(noisy, scan), 0.01) << model->columns << " " << turn;
+      EXPECT_LT(dropped_fraction(noisy, scan), 0.01) << model->columns << " " << turn;
     }
   }
 }
 
 TEST(LonelyReturns, EchoesFromAnywhereInFrontOfTheWallsGoAndTheWallsStay) {
-  for (const double share : {0.01, 0.1, 0.3, 0.45}) {
+  for (const double fraction : {0.01, 0.1, 0.3, 0.45}) {
     LidarScan scan = room(unit(1024, 64, 0.39), 0.4);
     Random random(5);
     std::vector<bool> dust;
     for (float& r : scan.range_m) {
-      dust.push_back(random.uniform() < share);
+      dust.push_back(random.uniform() < fraction);
       if (dust.back()) r = static_cast<float>(random.uniform(0.3, 0.9 * static_cast<double>(r)));
     }
     const LidarScan before = scan;
@@ -76,8 +76,8 @@ TEST(LonelyReturns, EchoesFromAnywhereInFrontOfTheWallsGoAndTheWallsStay) {
       const bool gone = std::isnan(scan.range_m[i]);
       n += dust[i], removed += dust[i] && gone, lost += !dust[i] && gone;
     }
-    EXPECT_GT(removed / n, 0.97) << share;
-    EXPECT_LT(lost / (static_cast<double>(dust.size()) - n), share < 0.4 ? 0.03 : 0.2) << share;
+    EXPECT_GT(removed / n, 0.97) << fraction;
+    EXPECT_LT(lost / (static_cast<double>(dust.size()) - n), fraction < 0.4 ? 0.03 : 0.2) << fraction;
   }
 }
 

@@ -41,14 +41,14 @@ inline void draw(VoxelMap& map, const CellKey& low, const CellKey& high, const C
 }
 
 /// Free inside the box except for random obstacle cells with the given share, a third of them unknown.
-inline VoxelMap random_map(std::uint64_t seed, const CellKey& size, double share,
+inline VoxelMap random_map(std::uint64_t seed, const CellKey& size, double fraction,
                            std::vector<CellChange>* changes = nullptr) {
   VoxelMap map{MapOptions{}};
   Random random(seed);
   draw(
       map, {0, 0, 0}, {size.x - 1, size.y - 1, size.z - 1},
       [&](const CellKey&) {
-        if (random.uniform() >= share) return Cell::free;
+        if (random.uniform() >= fraction) return Cell::free;
         return random.uniform() < 0.33 ? Cell::unknown : Cell::occupied;
       },
       changes);

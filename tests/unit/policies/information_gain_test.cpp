@@ -31,12 +31,12 @@ DrawnMap passage() {
 /// line.
 double volume_in_sight(const DrawnMap& map, const karst::Vec3& eye, double range_m) {
   const double edge_m = map.resolution_m();
-  const int reach = static_cast<int>(range_m / edge_m) + 2;
+  const int radius = static_cast<int>(range_m / edge_m) + 2;
   const karst::testing::Index at = map.index_of(eye);
   double volume = 0;
-  for (int x = -reach; x <= reach; ++x)
-    for (int y = -reach; y <= reach; ++y)
-      for (int z = -reach; z <= reach; ++z) {
+  for (int x = -radius; x <= radius; ++x)
+    for (int y = -radius; y <= radius; ++y)
+      for (int z = -radius; z <= radius; ++z) {
         const karst::Vec3 cell = map.center_of({at.x + x, at.y + y, at.z + z});
         if (map.at(cell) != karst::Cell::unknown || karst::distance(cell, eye) > range_m) continue;
         bool hidden = false;
@@ -55,7 +55,7 @@ const karst::Goal& goal_of(const karst::Decision& d, std::uint32_t frontier) {
 TEST(InformationGain, ScoreIsTheVolumeInSightOverTheTimeItTakes) {
   const DrawnMap map = passage();
   const Bench::Values plain = {{"gain_range", "2.5"}, {"gain_depth", "100"}, {"stop_time", "2"},
-                               {"turn_time", "0"},    {"cruise", "0.5"},     {"most_volume", "1000"}};
+                               {"turn_time", "0"},    {"cruise", "0.5"},     {"max_volume", "1000"}};
   Bench bench(karst_plugin_entry(), map, plain);
   bench.sensors = {karst::test::sphere_sensor(10)};
   bench.position = map.place('s');
@@ -122,7 +122,7 @@ TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
                 {{"gain_depth", "0.5"},
                  {"turn_time", "0"},
                  {"stop_time", "1.5"},
-                 {"most_volume", "20"},
+                 {"max_volume", "20"},
                  {"passing", std::to_string(round % 2)},
                  {"gain_range", "2"}});
     bench.sensors = {karst::test::sphere_sensor(10)};
@@ -151,7 +151,7 @@ TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
 TEST(InformationGain, WhatIsPassedCountsForSensorsThatSeeItOnly) {
   const DrawnMap map(1.0, {"??s....a.........b??"});
   Bench bench(karst_plugin_entry(), map,
-              {{"turn_time", "0"}, {"gain_depth", "1"}, {"most_volume", "30"}, {"stop_time", "2"}});
+              {{"turn_time", "0"}, {"gain_depth", "1"}, {"max_volume", "30"}, {"stop_time", "2"}});
   bench.position = map.place('s');
   bench.offer(1, map.place('a'), map.place('a') + karst::Vec3(0, 1, 0), 25);
   bench.offer(2, map.place('b'), map.place('b'), 25);

@@ -40,7 +40,7 @@ TEST(UnknownRatio, ScoreIsTheRatioCountedCellByCell) {
                                     {"turn_cost", "0"},
                                     {"ratio_worth", "1"},
                                     {"half_edge", "1.2"},
-                                    {"most_ratio", "1000"}};
+                                    {"max_ratio", "1000"}};
   Bench bench(karst_plugin_entry(), map, only_ratio);
   bench.position = map.place('s');
   bench.offer(1, map.place('a'), map.place('a'));
@@ -55,7 +55,7 @@ TEST(UnknownRatio, ScoreIsTheRatioCountedCellByCell) {
 
 TEST(UnknownRatio, LargerRatiosThanTheCapCountAlike) {
   const DrawnMap map = passage();
-  Bench bench(karst_plugin_entry(), map, {{"most_ratio", "0.1"}, {"turn_cost", "0"}});
+  Bench bench(karst_plugin_entry(), map, {{"max_ratio", "0.1"}, {"turn_cost", "0"}});
   bench.position = map.place('s') + karst::Vec3(1, 0, 0);
   bench.offer(1, map.place('b'), map.place('b'));
   bench.offer(2, map.place('a'), map.place('a'));

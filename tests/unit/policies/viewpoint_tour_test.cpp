@@ -7,8 +7,8 @@
 #include <random>
 #include <set>
 
+#include "policies/viewpoint_tour/path_lengths.h"
 #include "policies/viewpoint_tour/tour.h"
-#include "policies/viewpoint_tour/way_lengths.h"
 #include "tests/unit/policies/sphere_sensor.h"
 
 namespace {
@@ -38,7 +38,7 @@ Problem random_problem(std::size_t n, std::mt19937& chance) {
 }
 
 /// By trying every order.
-double least_of_all(const Problem& p) {
+double min_of_all(const Problem& p) {
   Order order(p.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   double least = std::numeric_limits<double>::infinity();
@@ -59,9 +59,9 @@ TEST(Tour, IsMostlyTheBestOfAllOrdersAndNeverFarFromIt) {
   constexpr int rounds = 60;
   for (int round = 0; round < rounds; ++round) {
     const Problem p = random_problem(1 + static_cast<std::size_t>(round) % 8, chance);
-    const Order order = tour::least_latency(p);
+    const Order order = tour::min_latency(p);
     ASSERT_EQ(std::set<std::size_t>(order.begin(), order.end()).size(), p.size()) << "every stop once";
-    const double ratio = tour::latency(p, order) / least_of_all(p);
+    const double ratio = tour::latency(p, order) / min_of_all(p);
     EXPECT_GE(ratio, 1 - 1e-12);
     EXPECT_LT(ratio, 1.03);
     best += ratio < 1 + 1e-9;
@@ -72,7 +72,7 @@ TEST(Tour, IsMostlyTheBestOfAllOrdersAndNeverFarFromIt) {
 TEST(Tour, NoStopAloneWouldBeBetterElsewhere) {
   std::mt19937 chance(2);
   const Problem p = random_problem(25, chance);
-  const Order order = tour::least_latency(p);
+  const Order order = tour::min_latency(p);
   const double cost = tour::latency(p, order);
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = 0; j < order.size(); ++j) {
@@ -102,10 +102,10 @@ DrawnMap hairpin() {
     ##################)"}};
 }
 
-TEST(WayLengths, AreThoseOfTheMapWhateverWasAskedBefore) {
+TEST(PathLengths, AreThoseOfTheMapWhateverWasAskedBefore) {
   const DrawnHost host(hairpin());
   const DrawnMap& map = host.map();
-  WayLengths ways;
+  PathLengths lengths;
   karst_request_t r{};
   r.size = sizeof r;
   r.map = host.map_handle();
@@ -114,21 +114,21 @@ TEST(WayLengths, AreThoseOfTheMapWhateverWasAskedBefore) {
     std::vector<karst::Vec3> places;
     for (const char c : names) places.push_back(map.place(c));
     const std::vector<double> far(places.size(), 1000.0);
-    const auto m = ways.between(karst::Request(host.host(), r), places, far);
+    const auto m = lengths.between(karst::Request(host.host(), r), places, far);
     for (std::size_t i = 0; i < places.size(); ++i)
       for (std::size_t j = 0; j < places.size(); ++j)
         EXPECT_NEAR(m[i][j], map.path_length_m(places[i], places[j]), 1e-9) << names[i] << names[j];
   }
 }
 
-TEST(WayLengths, LeadThroughWhereTheVehicleIsIfNoWayIsKnown) {
+TEST(PathLengths, LeadThroughWhereTheVehicleIsIfNoWayIsKnown) {
   const DrawnHost host(DrawnMap(1.0, {"a.#.b"}));
   karst_request_t r{};
   r.size = sizeof r;
   r.map = host.map_handle();
-  WayLengths ways;
-  const auto m = ways.between(karst::Request(host.host(), r), {host.map().place('a'), host.map().place('b')},
-                              {10.0, 7.0});
+  PathLengths lengths;
+  const auto m = lengths.between(karst::Request(host.host(), r),
+                                 {host.map().place('a'), host.map().place('b')}, {10.0, 7.0});
   EXPECT_DOUBLE_EQ(m[0][1], 17.0);
 }
 
@@ -197,8 +197,8 @@ TEST(ViewpointTour, ALargeOpeningDoesNotWaitForASmallCornerOutOfTheWay) {
     ????????????????????????)"});
   const Bench::Values values{{"turn_time", "0"},
                              {"gain_depth", "1"},
-                             {"least_volume", "0.1"},
-                             {"most_volume", "1000"},
+                             {"min_volume", "0.1"},
+                             {"max_volume", "1000"},
                              {"min_cells", "1"}};
   const karst::Decision small = decide(map, {{'a', 1}, {'b', 60}}, values);
   EXPECT_EQ(small.goals.at(0).frontier_id, 2u);

@@ -28,12 +28,12 @@ int junctions_of(const CaveFigures& f) {
 }
 int loops_of(const CaveFigures& f) { return static_cast<int>(std::lround(f.loops * f.length_m / 100)); }
 
-void expect_alike(const CaveFigures& a, const CaveFigures& b, double share) {
+void expect_alike(const CaveFigures& a, const CaveFigures& b, double fraction) {
   for (const FigureDefinition& f : figure_definitions()) {
     const double x = a.*f.value, y = b.*f.value;
     // Of what is counted, one more or less may be seen at another resolution.
     const double one = f.name == "branching" || f.name == "loops" ? 110 / a.length_m : 0;
-    EXPECT_NEAR(x, y, std::max(one, share * std::max(std::abs(x), f.logarithmic ? 0.0 : 0.3))) << f.name;
+    EXPECT_NEAR(x, y, std::max(one, fraction * std::max(std::abs(x), f.logarithmic ? 0.0 : 0.3))) << f.name;
   }
 }
 
@@ -89,14 +89,14 @@ TEST(Describe, RingIsOneLoopWithoutAJunction) {
 }
 
 TEST(Describe, TheeIsOneJunctionAndACrossingTwo) {
-  const Field way = tube({{-30, 0, 0}, {30, 0, 0}}, 2);
+  const Field line = tube({{-30, 0, 0}, {30, 0, 0}}, 2);
   const CaveFigures t =
-      describe(space_of(either(way, tube({{0, 0, 0}, {0, 25, 0}}, 2)), {-33, -3, -3}, {33, 28, 3}));
+      describe(space_of(either(line, tube({{0, 0, 0}, {0, 25, 0}}, 2)), {-33, -3, -3}, {33, 28, 3}));
   EXPECT_EQ(junctions_of(t), 1);
   EXPECT_EQ(loops_of(t), 0);
   EXPECT_NEAR(t.length_m, 85, 8);
   const CaveFigures x =
-      describe(space_of(either(way, tube({{0, -25, 0}, {0, 25, 0}}, 2)), {-33, -28, -3}, {33, 28, 3}));
+      describe(space_of(either(line, tube({{0, -25, 0}, {0, 25, 0}}, 2)), {-33, -28, -3}, {33, 28, 3}));
   EXPECT_EQ(junctions_of(x), 2);
   EXPECT_EQ(loops_of(x), 0);
 }
@@ -148,9 +148,9 @@ TEST(Describe, WidthOfAPassageThatWidensIsItsMedianAndItsSpread) {
 TEST(Describe, ZigzagIsAsTortuousAsDrawn) {
   // Legs of 14 m at 45 degrees to either side: sqrt(2) times the straight line, less what the corners cut
   // off.
-  std::vector<Vec3> way;
-  for (int i = 0; i < 9; ++i) way.push_back({9.9 * i, i % 2 ? 9.9 : 0.0, 0});
-  const CaveFigures d = describe(space_of(tube(way, 1.6), {-3, -3, -3}, {83, 13, 3}));
+  std::vector<Vec3> line;
+  for (int i = 0; i < 9; ++i) line.push_back({9.9 * i, i % 2 ? 9.9 : 0.0, 0});
+  const CaveFigures d = describe(space_of(tube(line, 1.6), {-3, -3, -3}, {83, 13, 3}));
   EXPECT_GT(d.tortuosity, 1.2);
   EXPECT_LT(d.tortuosity, std::sqrt(2.0) + 0.03);
 }

@@ -13,13 +13,13 @@ using core::Vec3;
 using Field = std::function<double(const Vec3&)>;
 
 /// A round tube about a polyline, with ends like half balls.
-inline Field tube(std::vector<Vec3> way, double radius) {
-  return [way = std::move(way), radius](const Vec3& p) {
+inline Field tube(std::vector<Vec3> axis, double radius) {
+  return [axis = std::move(axis), radius](const Vec3& p) {
     double nearest = 1e9;
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const Vec3 d = way[i] - way[i - 1];
-      const double s = std::clamp((p - way[i - 1]).dot(d) / d.squaredNorm(), 0.0, 1.0);
-      nearest = std::min(nearest, (p - way[i - 1] - s * d).norm());
+    for (std::size_t i = 1; i < axis.size(); ++i) {
+      const Vec3 d = axis[i] - axis[i - 1];
+      const double s = std::clamp((p - axis[i - 1]).dot(d) / d.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (p - axis[i - 1] - s * d).norm());
     }
     return radius - nearest;
   };
@@ -32,12 +32,12 @@ inline Field without_ball(Field a, Vec3 centre, double radius) {
   return [=](const Vec3& p) { return std::min(a(p), (p - centre).norm() - radius); };
 }
 inline std::vector<Vec3> circle(double radius, int corners, const Vec3& u, const Vec3& v) {
-  std::vector<Vec3> way;
+  std::vector<Vec3> axis;
   for (int i = 0; i <= corners; ++i) {
     const double a = 2 * M_PI * i / corners;
-    way.push_back(radius * (std::cos(a) * u + std::sin(a) * v));
+    axis.push_back(radius * (std::cos(a) * u + std::sin(a) * v));
   }
-  return way;
+  return axis;
 }
 
 inline selection::FreeSpace space_of(const Field& field, const Vec3& low, const Vec3& high,
@@ -60,10 +60,10 @@ inline selection::FreeSpace space_of(const Field& field, const Vec3& low, const 
       }
   s.volume_m3 = static_cast<double>(inside) * std::pow(edge, 3);
   s.distance_to_rock = field;
-  s.way_to_rock = [field](const Vec3& from, const Vec3& d) {
-    double way = 0;
-    while (field(from + way * d) > 1e-3 && way < 500) way += std::max(1e-3, field(from + way * d));
-    return way;
+  s.range_to_rock = [field](const Vec3& from, const Vec3& d) {
+    double axis = 0;
+    while (field(from + axis * d) > 1e-3 && axis < 500) axis += std::max(1e-3, field(from + axis * d));
+    return axis;
   };
   return s;
 }

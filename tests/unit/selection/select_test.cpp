@@ -46,7 +46,7 @@ TEST(Distance, ByDefinition) {
   a.length_m = 100, b.length_m = 100 * std::exp(0.2);      // one unit of 0.2, weight 0.5
   a.width_m = 3;                                           // not known of the other
   std::vector<double> scales;
-  for (const FigureDefinition& f : figure_definitions()) scales.push_back(f.least_scale);
+  for (const FigureDefinition& f : figure_definitions()) scales.push_back(f.min_scale);
   const Distance d = distance_between(a, b, scales);
   EXPECT_NEAR(d.value, std::sqrt((9 + 0.5) / 1.5), 1e-12);
   EXPECT_EQ(d.shared, 2);
@@ -64,7 +64,7 @@ TEST(Distance, ScalesAreRobust) {
     if (figure_definitions()[i].name == "verticality")
       EXPECT_NEAR(robust_scales(caves)[i], 0.14826, 1e-9);
     else
-      EXPECT_EQ(robust_scales(caves)[i], figure_definitions()[i].least_scale);
+      EXPECT_EQ(robust_scales(caves)[i], figure_definitions()[i].min_scale);
 }
 
 TEST(Select, NamesThePolicyThatDoesWellInCavesLikeIt) {

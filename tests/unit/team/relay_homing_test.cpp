@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "tests/benchmark/cave_map.h"
 #include "tests/unit/homing/passage.h"
@@ -90,10 +90,10 @@ TEST_F(Flown, NoOtherPlaceIsSooner) {
       rest.give_up(s->hover);
     }
     ASSERT_GE(times.size(), 5u);
-    const double least_s = homing.spot_from(map, roadmap, from, kAlways)->time_s;
-    EXPECT_EQ(least_s, *times.begin());
-    EXPECT_FALSE(homing.spot_from(map, roadmap, from, least_s));
-    EXPECT_EQ(homing.spot_from(map, roadmap, from, least_s + 0.01)->time_s, least_s);
+    const double min_s = homing.spot_from(map, roadmap, from, kAlways)->time_s;
+    EXPECT_EQ(min_s, *times.begin());
+    EXPECT_FALSE(homing.spot_from(map, roadmap, from, min_s));
+    EXPECT_EQ(homing.spot_from(map, roadmap, from, min_s + 0.01)->time_s, min_s);
   }
 }
 
@@ -107,7 +107,7 @@ TEST_F(Flown, KeepsApartFromTakenPlacesAndFromWhereItWasInVain) {
     news.taken = {second.ground};
     fly(homing, 25, 25);
     const LandingSpot third = *spot(homing);
-    EXPECT_GE((third.ground - second.ground).norm(), options.landing.keep_apart_m);
+    EXPECT_GE((third.ground - second.ground).norm(), options.landing.separation_m);
     EXPECT_GT((third.hover - first.hover).norm(), 0.5);
   }
 }
@@ -118,7 +118,7 @@ TEST_F(Flown, WhereNobodyIsHeardTheNextPlaceHasMoreToSpare) {
   for (const char* strategy : {"relay_chain", "relay_tree"}) {
     RelayHoming homing = flown(strategy);
     const LandingSpot first = *spot(homing);
-    homing.not_heard(first);
+    homing.no_contact_at(first);
     fly(homing, 25, 25);
     const LandingSpot second = *spot(homing);
     EXPECT_LE((second.ground - base).norm(), 25.1 / std::pow(10, 3.0 / 20)) << strategy << ": 3 dB";
@@ -132,13 +132,13 @@ TEST_F(Flown, WhoIsAwaitedInVainIsNotCountedOnBeforeItIsKnownToStandSomewhere) {
   news.relays.push_back({2, claimed, claimed + Vec3(0, 0, 1), 500 * kSecond});
   fly(homing, 25, 25);
   ASSERT_TRUE(spot(homing)->claimed);
-  homing.not_heard(*spot(homing));
+  homing.no_contact_at(*spot(homing));
   fly(homing, 25, 25);
   EXPECT_EQ(spot(homing)->node, kBase);
   news.relays.back() = {2, elsewhere, elsewhere + Vec3(0, 0, 1), 500 * kSecond};
   fly(homing, 25, 25);
   EXPECT_EQ(spot(homing)->node, 2) << "it claims another place";
-  homing.not_heard(*spot(homing));
+  homing.no_contact_at(*spot(homing));
   news.relays.back().stands_by.reset();
   fly(homing, 25, 25);
   EXPECT_EQ(spot(homing)->node, 2) << "it stands there";
@@ -154,7 +154,7 @@ TEST_F(Flown, OfARelayThatLandedMeanwhileAndIsNotHeardTheNextPlaceHasMoreToSpare
   ASSERT_TRUE(first.claimed);
   news.relays.back().stands_by.reset();
   fly(homing, 25, 25);
-  homing.not_heard(first);
+  homing.no_contact_at(first);
   fly(homing, 25, 25);
   const LandingSpot second = *spot(homing);
   EXPECT_EQ(second.node, 2);
@@ -165,7 +165,7 @@ TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
   // 50 m less 6 dB to spare: 25 m from the base, which is at -28; 22 m with one more.
   RelayHoming homing = flown("return_to_base");
   const auto ends = [&](double x, double ahead) {
-    return homing.reach_ends(map, {{x, 0.1, 1}}, {{ahead, 0.1, 1}});
+    return homing.relay_drop_site(map, {{x, 0.1, 1}}, {{ahead, 0.1, 1}});
   };
   ASSERT_TRUE(ends(-4, -2));
   EXPECT_LT((*ends(-4, -2) - Vec3(-4, 0.1, 0)).norm(), 0.2) << "straight below";
@@ -179,7 +179,7 @@ TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
   news.relays.back().stands_by = 500 * kSecond;
   fly(homing, 24, 24);
   EXPECT_TRUE(ends(-4, -2)) << "the relay is yet to land";
-  EXPECT_FALSE(homing.reach_ends(map, {{-4, 0.1, 60}}, {{-2, 0.1, 60}})) << "unknown, and no ground";
+  EXPECT_FALSE(homing.relay_drop_site(map, {{-4, 0.1, 60}}, {{-2, 0.1, 60}})) << "unknown, and no ground";
 }
 
 // As it was: by a fall of 0.4 s whatever the height a node came to lie 0.7 m farther on than was reckoned
@@ -187,7 +187,7 @@ TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
 TEST_F(Flown, DropsNoNodeThatFallsOutOfReach) {
   RelayHoming homing = flown("return_to_base");
   const auto ends = [&](double x, double vx_mps) {
-    return homing.reach_ends(map, {{x, 0.1, 1}, {vx_mps, 0, 0}}, {{x + vx_mps, 0.1, 1}, {vx_mps, 0, 0}});
+    return homing.relay_drop_site(map, {{x, 0.1, 1}, {vx_mps, 0, 0}}, {{x + vx_mps, 0.1, 1}, {vx_mps, 0, 0}});
   };
   const auto flat = ends(-4, 1.5);
   ASSERT_TRUE(flat);
@@ -257,8 +257,8 @@ TEST(RelayHomingInACave, EveryPlaceIsOnTheRockItselfClearOfItAndReachable) {
   const HomingOptions options;
   RelayHoming homing(1, team_with("relay_chain"), options, base, planning, {}, kRadius);
   const TeamNews news = hearing(base);
-  for (const auto& way : made.ways)
-    for (const Vec3& p : way)
+  for (const auto& axis : made.axes)
+    for (const Vec3& p : axis)
       if (roadmap.approach(drawn.map, p, 0)) homing.update(drawn.map, roadmap, p, news, {});
   std::size_t places = 0;
   for (; const auto s = homing.spot_from(drawn.map, roadmap, base, kAlways); ++places) {

@@ -4,8 +4,8 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
-#include "core_stack/homing/way_home/home.h"
-#include "core_stack/team/teammate.h"
+#include "core_stack/homing/path_home/home.h"
+#include "core_stack/team/team_node.h"
 #include "tests/unit/team/communication/test_radio.h"
 
 namespace karst::core {
@@ -53,13 +53,13 @@ TEST(TeamOptions, ThatDoNotFitTogetherAreRefusedByName) {
   team.nodes = 6;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError) << "35 radios";
   team.nodes = 0;
-  homing.tree.longest_edge_m = homing.tree.least_edge_m;
+  homing.tree.longest_edge_m = homing.tree.min_edge_m;
   EXPECT_THROW(check(team, homing, "mission.info"), InputError);
 }
 
 /// Teammates that hear each other as `linked` says.
 struct Team {
-  std::vector<Teammate> mates;
+  std::vector<TeamNode> nodes;
   std::function<bool(RobotId, RobotId)> linked = [](RobotId, RobotId) { return true; };
   TimeNs now = 0;
 
@@ -67,36 +67,36 @@ struct Team {
     TeamOptions options;
     options.robots = robots;
     for (RobotId r = 0; r <= robots; ++r)
-      mates.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7, testing::test_key());
+      nodes.emplace_back(r, options, HomingOptions{}, Vec3(1, 2, 3), 7, testing::test_key());
   }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end;) {
       now += kSecond / 10;
-      for (Teammate& from : mates) {
+      for (TeamNode& from : nodes) {
         TeamState state = states[from.self()];
         state.stamp = now;
         from.set_state(state);
-        for (const Bytes& frame : from.speak(now))
-          for (Teammate& to : mates)
-            if (to.self() != from.self() && linked(from.self(), to.self())) to.hear(frame, now);
+        for (const Bytes& frame : from.transmit(now))
+          for (TeamNode& to : nodes)
+            if (to.self() != from.self() && linked(from.self(), to.self())) to.receive(frame, now);
       }
     }
   }
   void land(RobotId r, const Vec3& ground) {
     TreeFacts node;
     node.nodes = {{{r, 1}, NodeKind::communication, ground + Vec3(0, 0, 1)}};
-    mates[r].publish(node);
-    mates[r].publish(LandingClaim{now, ground, ground + Vec3(0, 0, 1), LandingClaim::State::landed});
+    nodes[r].publish(node);
+    nodes[r].publish(LandingClaim{now, ground, ground + Vec3(0, 0, 1), LandingClaim::State::landed});
   }
   std::vector<RobotId> relays_of(RobotId r) const {
     std::vector<RobotId> out;
-    for (const Relay& relay : mates[r].relays()) out.push_back(relay.robot);
+    for (const Relay& relay : nodes[r].relays()) out.push_back(relay.robot);
     return out;
   }
-  std::array<TeamState, kMostRobots> states{};
+  std::array<TeamState, kMaxRobots> states{};
 };
 
-TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
+TEST(TeamNode, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
   Team team(3);
   // A chain: base - 1 - 2; robot 3 hears robot 2 for half a minute, and then nobody.
   bool with_3 = true;
@@ -108,40 +108,41 @@ TEST(Teammate, CountsOnRelaysThatReachedTheBaseWhenLastHeardOf) {
   team.land(2, {80, 0, 0});
   team.run(30);
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2}));
-  EXPECT_TRUE(team.mates[3].hears_base(team.now, 0));
+  EXPECT_TRUE(team.nodes[3].base_in_contact(team.now, 0));
   with_3 = false;
   team.run(3);
-  EXPECT_TRUE(team.mates[3].hears_base(team.now, 0)) << "some seconds of silence are chance";
-  EXPECT_FALSE(team.mates[3].hears_base(team.now, team.now - kSecond)) << "but not heard where it is now";
+  EXPECT_TRUE(team.nodes[3].base_in_contact(team.now, 0)) << "some seconds of silence are chance";
+  EXPECT_FALSE(team.nodes[3].base_in_contact(team.now, team.now - kSecond))
+      << "but not heard where it is now";
   team.run(117);
-  EXPECT_FALSE(team.mates[3].hears_base(team.now, 0)) << "by what is heard now";
+  EXPECT_FALSE(team.nodes[3].base_in_contact(team.now, 0)) << "by what is heard now";
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "by older news";
 }
 
 // As it was: a node that its robot had dropped too far out reached the base over that robot, which flew on
 // and believed so ever after.
-TEST(Teammate, WhoReachesTheBaseOverOneInTheAirOnlyIsNotCountedOn) {
+TEST(TeamNode, WhoReachesTheBaseOverOneInTheAirOnlyIsNotCountedOn) {
   Team team(3);
-  bool landed_in_reach = false;
+  bool landed_in_range = false;
   using Pair = std::pair<RobotId, RobotId>;
   team.linked = [&](RobotId a, RobotId b) {  // base - 3, in the air - 2, landed - 1
     const Pair pair(std::min(a, b), std::max(a, b));
     return pair == Pair(0, 3) || pair == Pair(2, 3) || pair == Pair(1, 2) ||
-           (landed_in_reach && pair == Pair(0, 2));
+           (landed_in_range && pair == Pair(0, 2));
   };
   team.states[3].phase = TeamPhase::explore;
   team.land(2, {80, 0, 0});
   team.run(30);
-  EXPECT_TRUE(team.mates[1].landing_of(2)) << "news pass";
+  EXPECT_TRUE(team.nodes[1].landing_of(2)) << "news pass";
   EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0}));
-  EXPECT_FALSE(team.mates[1].hears_base(team.now, 0));
-  landed_in_reach = true;
+  EXPECT_FALSE(team.nodes[1].base_in_contact(team.now, 0));
+  landed_in_range = true;
   team.run(30);
   EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0, 2}));
-  EXPECT_TRUE(team.mates[1].hears_base(team.now, 0));
+  EXPECT_TRUE(team.nodes[1].base_in_contact(team.now, 0));
 }
 
-TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
+TEST(TeamNode, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
   Team team(3);
   bool dead = false;
   team.linked = [&](RobotId a, RobotId b) { return !dead || (a != 1 && b != 1); };
@@ -150,7 +151,7 @@ TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
   ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1}));
   dead = true;
   team.run(30);
-  EXPECT_TRUE(team.mates[3].told_dead(1)) << "the base stood by and told";
+  EXPECT_TRUE(team.nodes[3].reported_dead(1)) << "the base stood by and told";
   EXPECT_EQ(team.relays_of(3), (std::vector<RobotId>{0}));
   dead = false;
   team.run(30);
@@ -159,13 +160,13 @@ TEST(Teammate, KnowsARelayThatFellSilentForDeadAndOneThatComesBackForAlive) {
 
 // As it was: who met one that had passed the relay knew of its landing at once, of its links six seconds
 // later, and turned home in between for want of any relay.
-TEST(Teammate, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPieces) {
+TEST(TeamNode, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPieces) {
   Team team(4);
   team.states[2].phase = team.states[3].phase = team.states[4].phase = TeamPhase::explore;
   team.states[2].seconds_left = 60;
   team.land(1, {40, 0, 0});
   team.run(20);
-  team.mates[2].publish(LandingClaim{team.now, {80, 0, 0}, {80, 0, 1}, LandingClaim::State::claimed});
+  team.nodes[2].publish(LandingClaim{team.now, {80, 0, 0}, {80, 0, 1}, LandingClaim::State::claimed});
   team.run(5);
   ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << "the last is on its way down";
   team.linked = [](RobotId a, RobotId b) { return a != 3 && b != 3 && (a + 1 == b || b + 1 == a); };
@@ -176,9 +177,9 @@ TEST(Teammate, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPiece
   // The record of the landing before all else: what is known of robot 2 else dates from when it flew.
   Frame first{.sender = 2, .sent = team.now};
   const LandingClaim landed{team.now - 60 * kSecond, {80, 0, 0}, {80, 0, 1}, LandingClaim::State::landed};
-  first.records = {{2, team.mates[3].gossip().held(2).first() + 1, *write_record(landed)}};
-  Teammate with_record = team.mates[3];
-  with_record.hear(*testing::write_frame(first), team.now);
+  first.records = {{2, team.nodes[3].gossip().held(2).first() + 1, *write_record(landed)}};
+  TeamNode with_record = team.nodes[3];
+  with_record.receive(*testing::write_frame(first), team.now);
   ASSERT_EQ(with_record.landing_of(2)->state, LandingClaim::State::landed);
   EXPECT_EQ(with_record.relays().size(), 3u);
   EXPECT_FALSE(with_record.relays().back().stands_by) << "it stands";
@@ -186,134 +187,134 @@ TEST(Teammate, ARelayThatWasCountedOnStaysOneWhileTheNewsOfItsLandingComeInPiece
     team.run(0.1);
     ASSERT_EQ(team.relays_of(3), (std::vector<RobotId>{0, 1, 2})) << i;
   }
-  EXPECT_EQ(team.mates[3].landing_of(2)->state, LandingClaim::State::landed) << "it has heard of it";
+  EXPECT_EQ(team.nodes[3].landing_of(2)->state, LandingClaim::State::landed) << "it has heard of it";
 }
 
 // As it was: ten records a second, for as long as they went on.
-TEST(Teammate, RelaysThatHearAnotherAndThatDoNotDoNotArgueAboutIt) {
+TEST(TeamNode, RelaysThatHearAnotherAndThatDoNotDoNotArgueAboutIt) {
   Team team(3);
   bool lost = false;  // by robot 1 alone
   team.linked = [&](RobotId a, RobotId b) { return !lost || a + b != 4 || a == b; };
   for (RobotId r = 1; r <= 3; ++r) team.land(r, {10.0 * r, 0, 0});
   team.run(20);
   lost = true;
-  const auto told = [&] {
+  const auto reported = [&] {
     std::uint32_t all = 0;
-    for (RobotId r = 0; r <= 2; ++r) all += team.mates[r].gossip().held(r).first();
+    for (RobotId r = 0; r <= 2; ++r) all += team.nodes[r].gossip().held(r).first();
     return all;
   };
-  const std::uint32_t before = told();
+  const std::uint32_t before = reported();
   team.run(120);
-  EXPECT_FALSE(team.mates[1].told_dead(3)) << "robot 2 and the base hear it";
+  EXPECT_FALSE(team.nodes[1].reported_dead(3)) << "robot 2 and the base hear it";
   EXPECT_EQ(team.relays_of(1), (std::vector<RobotId>{0, 2, 3}));
-  EXPECT_LE(told() - before, 60u + 4u) << "a receipt every two seconds, and once dead and alive";
+  EXPECT_LE(reported() - before, 60u + 4u) << "a receipt every two seconds, and once dead and alive";
 }
 
-TEST(Teammate, WithALandedRelayThatTheBaseCannotHearDoesNotCountOnIt) {
+TEST(TeamNode, WithALandedRelayThatTheBaseCannotHearDoesNotCountOnIt) {
   Team team(2);
   team.linked = [](RobotId a, RobotId b) { return a != kBase && b != kBase; };
   team.land(1, {200, 0, 0});
   team.run(20);
   EXPECT_EQ(team.relays_of(2), (std::vector<RobotId>{0}));
-  EXPECT_FALSE(team.mates[2].hears_base(team.now, 0));
+  EXPECT_FALSE(team.nodes[2].base_in_contact(team.now, 0));
 }
 
-TEST(Teammate, CountsLastOnOneThatIsOnItsWayToAClaimedPlace) {
+TEST(TeamNode, CountsLastOnOneThatIsOnItsWayToAClaimedPlace) {
   Team team(2);
   team.states[1].phase = TeamPhase::home;
   team.states[1].seconds_left = 80;
   team.run(1);
-  team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+  team.nodes[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
   team.run(5);
-  std::vector<Relay> relays = team.mates[2].relays();
+  std::vector<Relay> relays = team.nodes[2].relays();
   ASSERT_EQ(relays.size(), 2u);
   EXPECT_FALSE(relays[0].stands_by);
   EXPECT_EQ(relays[1].robot, 1);
   ASSERT_TRUE(relays[1].stands_by);
   EXPECT_NEAR(seconds(*relays[1].stands_by - team.now), 80, 2);
-  team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::given_up});
+  team.nodes[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::given_up});
   team.run(5);
-  EXPECT_EQ(team.mates[2].relays().size(), 1u);
+  EXPECT_EQ(team.nodes[2].relays().size(), 1u);
 }
 
-TEST(Teammate, OfTwoThatClaimOnePlaceTheLaterIsOverruled) {
+TEST(TeamNode, OfTwoThatClaimOnePlaceTheLaterIsOverruled) {
   Team team(2);
   team.run(1);
-  team.mates[2].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+  team.nodes[2].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
   team.run(0.1);
-  team.mates[1].publish(LandingClaim{team.now, {41, 0, 0}, {41, 0, 1}, LandingClaim::State::claimed});
+  team.nodes[1].publish(LandingClaim{team.now, {41, 0, 0}, {41, 0, 1}, LandingClaim::State::claimed});
   team.run(5);
-  EXPECT_TRUE(team.mates[1].overruled()) << "its number is lower, but its claim came later";
-  EXPECT_FALSE(team.mates[2].overruled());
+  EXPECT_TRUE(team.nodes[1].overruled()) << "its number is lower, but its claim came later";
+  EXPECT_FALSE(team.nodes[2].overruled());
 }
 
 // As it was: places were chosen 2 m apart, and given up if they were nearer than 3 m.
-TEST(Teammate, AClaimAsFarFromAnothersAsPlacesAreChosenIsNotOverruled) {
+TEST(TeamNode, AClaimAsFarFromAnothersAsPlacesAreChosenIsNotOverruled) {
   Team team(2);
   team.run(1);
-  const double apart_m = HomingOptions{}.landing.keep_apart_m + 0.02;
-  ASSERT_LT(apart_m, TeamOptions{}.keep_apart_m);
-  team.mates[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+  const double apart_m = HomingOptions{}.landing.separation_m + 0.02;
+  ASSERT_LT(apart_m, TeamOptions{}.separation_m);
+  team.nodes[1].publish(LandingClaim{team.now, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
   team.run(1);
-  team.mates[2].publish(
+  team.nodes[2].publish(
       LandingClaim{team.now, {40 + apart_m, 0, 0}, {40 + apart_m, 0, 1}, LandingClaim::State::claimed});
   team.run(5);
-  EXPECT_FALSE(team.mates[2].overruled());
+  EXPECT_FALSE(team.nodes[2].overruled());
 }
 
-TEST(Teammate, ForgetsGoalsThatWereGivenUpOrClaimedLongAgo) {
+TEST(TeamNode, ForgetsGoalsThatWereGivenUpOrClaimedLongAgo) {
   Team team(2);
-  team.mates[1].publish(GoalClaim{team.now, {5, 0, 0}, false});
+  team.nodes[1].publish(GoalClaim{team.now, {5, 0, 0}, false});
   team.run(5);
-  EXPECT_EQ(team.mates[2].claimed_goals(team.now).size(), 1u);
-  EXPECT_TRUE(team.mates[1].claimed_goals(team.now).empty()) << "its own";
-  EXPECT_TRUE(team.mates[2].claimed_goals(team.now + from_seconds(TeamOptions{}.claim_age_s)).empty());
-  team.mates[1].publish(GoalClaim{team.now, {5, 0, 0}, true});
+  EXPECT_EQ(team.nodes[2].claimed_goals(team.now).size(), 1u);
+  EXPECT_TRUE(team.nodes[1].claimed_goals(team.now).empty()) << "its own";
+  EXPECT_TRUE(team.nodes[2].claimed_goals(team.now + from_seconds(TeamOptions{}.claim_age_s)).empty());
+  team.nodes[1].publish(GoalClaim{team.now, {5, 0, 0}, true});
   team.run(5);
-  EXPECT_TRUE(team.mates[2].claimed_goals(team.now).empty());
+  EXPECT_TRUE(team.nodes[2].claimed_goals(team.now).empty());
 }
 
-TEST(Teammate, KnowsAllThatHaveStartedAsTheyWereLastHeardOf) {
+TEST(TeamNode, KnowsAllThatHaveStartedAsTheyWereLastHeardOf) {
   Team team(4);
   team.states[1].phase = TeamPhase::explore;
   team.states[1].seconds_left = 120;
   team.states[1].position = {9, 0, 0};
   team.states[3].phase = TeamPhase::standby;
   team.states[4].phase = TeamPhase::landed;
-  team.mates[1].publish(GoalClaim{team.now, {12, 0, 0}, false});
-  team.mates[4].publish(GoalClaim{team.now, {5, 0, 0}, false});
+  team.nodes[1].publish(GoalClaim{team.now, {12, 0, 0}, false});
+  team.nodes[4].publish(GoalClaim{team.now, {5, 0, 0}, false});
   team.run(3);
   const TimeNs last_heard = team.now;
   team.linked = [](RobotId, RobotId) { return false; };
   team.run(30);
-  const std::vector<HeardMate> mates = team.mates[2].mates(team.now);
-  ASSERT_EQ(mates.size(), 2u) << "robot 3 has not started";
-  EXPECT_EQ(mates[0].robot, 1);
-  EXPECT_TRUE(mates[0].explores);
-  EXPECT_NEAR(seconds(last_heard - mates[0].heard), 0.5, 1.0);
-  EXPECT_EQ(mates[0].position, Vec3(9, 0, 0)) << "where it was, not where it may be by now";
-  EXPECT_EQ(mates[0].goal, Vec3(12, 0, 0));
-  EXPECT_EQ(mates[0].seconds_left, 120);
-  EXPECT_EQ(mates[1].robot, 4);
-  EXPECT_FALSE(mates[1].explores);
-  EXPECT_FALSE(mates[1].goal) << "it flies nowhere any more";
-  const auto later = team.mates[2].mates(team.now + from_seconds(TeamOptions{}.claim_age_s));
+  const std::vector<TeammateState> teammates = team.nodes[2].teammates(team.now);
+  ASSERT_EQ(teammates.size(), 2u) << "robot 3 has not started";
+  EXPECT_EQ(teammates[0].robot, 1);
+  EXPECT_TRUE(teammates[0].explores);
+  EXPECT_NEAR(seconds(last_heard - teammates[0].heard), 0.5, 1.0);
+  EXPECT_EQ(teammates[0].position, Vec3(9, 0, 0)) << "where it was, not where it may be by now";
+  EXPECT_EQ(teammates[0].goal, Vec3(12, 0, 0));
+  EXPECT_EQ(teammates[0].seconds_left, 120);
+  EXPECT_EQ(teammates[1].robot, 4);
+  EXPECT_FALSE(teammates[1].explores);
+  EXPECT_FALSE(teammates[1].goal) << "it flies nowhere any more";
+  const auto later = team.nodes[2].teammates(team.now + from_seconds(TeamOptions{}.claim_age_s));
   EXPECT_FALSE(later[0].goal) << "claimed long ago";
 }
 
-TEST(Teammate, SeesVehiclesInTheAirWhereTheyShouldBeByNow) {
+TEST(TeamNode, SeesVehiclesInTheAirWhereTheyShouldBeByNow) {
   Team team(3);
   team.states[1].phase = TeamPhase::home;
   team.states[1].velocity_mps = {1, 0, 0};
   team.states[3].phase = TeamPhase::standby;
   team.run(3);
-  const auto others = team.mates[2].neighbours(team.now + kSecond);
+  const auto others = team.nodes[2].neighbours(team.now + kSecond);
   ASSERT_EQ(others.size(), 1u) << "robot 3 has not started";
   EXPECT_EQ(others[0].robot, 1);
   EXPECT_GE(others[0].position.x(), 1.0);
   EXPECT_LE(others[0].position.x(), 2.5);  // told at most a period and a half ago
   EXPECT_GE(others[0].age_s, 1.0);
-  EXPECT_TRUE(team.mates[2].neighbours(team.now + 10 * kSecond).empty());
+  EXPECT_TRUE(team.nodes[2].neighbours(team.now + 10 * kSecond).empty());
 }
 
 }  // namespace

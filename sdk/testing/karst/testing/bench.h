@@ -78,7 +78,7 @@ class Bench {
   void arrive() {
     const Goal goal = first_goal();
     position = goal.position;
-    settle(KARST_EVENT_GOAL_REACHED, KARST_FATE_REACHED, goal, "reached");
+    close_goal(KARST_EVENT_GOAL_REACHED, KARST_FATE_REACHED, goal, "reached");
     for (Frontier& f : frontiers) f.path_length_m = host_.map().path_length_m(position, f.viewpoint);
   }
   /// It came to nothing: KARST_EVENT_GOAL_REJECTED, _UNREACHABLE, _ABANDONED or _SUPERSEDED.
@@ -87,7 +87,7 @@ class Bench {
                                    : kind == KARST_EVENT_GOAL_UNREACHABLE ? KARST_FATE_UNREACHABLE
                                    : kind == KARST_EVENT_GOAL_ABANDONED   ? KARST_FATE_ABANDONED
                                                                           : KARST_FATE_SUPERSEDED;
-    settle(kind, fate, first_goal(), reason);
+    close_goal(kind, fate, first_goal(), reason);
   }
 
   /// Asks once. Throws Error if the policy fails.
@@ -161,7 +161,8 @@ class Bench {
     if (last_answer_.goals.empty()) throw Error("the last answer had no goal");
     return last_answer_.goals.front();
   }
-  void settle(karst_event_kind_t kind, karst_goal_fate_t fate, const Goal& goal, const std::string& reason) {
+  void close_goal(karst_event_kind_t kind, karst_goal_fate_t fate, const Goal& goal,
+                  const std::string& reason) {
     last_goal = goal.position;
     last_fate = fate;
     tell(kind, goal, reason);

@@ -132,9 +132,10 @@ TEST(CampaignReport, NoIntervalOfAMeanLeavesWhatTheFigureCanBe) {
       }
   const json& shares = page["summaries"][evaluation::metric_index("coverage")][0]["caves"][0]["interval"];
   EXPECT_EQ(shares[1], 1);  // it was cut
-  const json& ways = page["summaries"][evaluation::metric_index("path_length_m")][0]["caves"][0]["interval"];
-  EXPECT_EQ(ways[0], 0);
-  EXPECT_GT(ways[1].get<double>(), 900);  // a length has no most
+  const json& intervals =
+      page["summaries"][evaluation::metric_index("path_length_m")][0]["caves"][0]["interval"];
+  EXPECT_EQ(intervals[0], 0);
+  EXPECT_GT(intervals[1].get<double>(), 900);  // a length has no most
 }
 
 TEST(CampaignReport, SaysWhereAnIntervalIsOverCavesForWantOfSeeds) {

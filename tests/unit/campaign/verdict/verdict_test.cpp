@@ -58,10 +58,10 @@ TEST(Verdict, ComparesTrialsOfTheSameCaveAndSeedAndWeighsCavesTheSame) {
 }
 
 TEST(Verdict, FewerPairsThanTheLeastNeverShowADifferenceThatIsAsPlainAsCanBe) {
-  EXPECT_EQ(least_pairs(1, 0.05), 0u);
-  EXPECT_EQ(least_pairs(2, 0.05), 6u);
+  EXPECT_EQ(min_pairs(1, 0.05), 0u);
+  EXPECT_EQ(min_pairs(2, 0.05), 6u);
   for (const std::size_t contestants : {2u, 3u, 4u, 7u}) {
-    const std::size_t least = least_pairs(contestants, 0.05);
+    const std::size_t least = min_pairs(contestants, 0.05);
     const auto p_of = [&](std::size_t pairs) {  // all to one side, no two equal
       std::vector<double> differences;
       for (std::size_t i = 1; i <= pairs; ++i) differences.push_back(static_cast<double>(i));

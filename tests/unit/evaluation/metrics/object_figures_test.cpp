@@ -33,7 +33,7 @@ TEST(ObjectFigures, OfAHandMadeSearch) {
   EXPECT_EQ(f.seen, 4);
   EXPECT_EQ(f.found, 4);
   EXPECT_EQ(f.reported, 3);
-  EXPECT_EQ(f.reported_share, 0.5) << "of the four seen a rope and the lamp";
+  EXPECT_EQ(f.reported_fraction, 0.5) << "of the four seen a rope and the lamp";
   EXPECT_EQ(f.wrong, 2);
   EXPECT_NEAR(*f.error_m, (0.5 + 1 + 0) / 3, 1e-12);
   EXPECT_NEAR(*f.report_time_s, (100 + 200 + 300) / 3.0, 1e-12);
@@ -89,7 +89,7 @@ TEST(ObjectFigures, OfARunThatReportedAtTheStart) {
   EXPECT_EQ(f.seen, 1);
   EXPECT_EQ(f.found, 1);
   EXPECT_EQ(f.reported, 1);
-  EXPECT_EQ(f.reported_share, 1);
+  EXPECT_EQ(f.reported_fraction, 1);
   EXPECT_EQ(f.wrong, 0);
   EXPECT_NEAR(*f.error_m, 0.5, 1e-12);
   EXPECT_EQ(f.report_time_s, 80);
@@ -102,7 +102,7 @@ TEST(ObjectFigures, OfARunThatNeverCameBackOrHadNoneToFind) {
   const ObjectFigures f = object_figures(read_run(lost.path()));
   EXPECT_EQ(f.found, 1);
   EXPECT_EQ(f.reported, 0);
-  EXPECT_EQ(f.reported_share, 0);
+  EXPECT_EQ(f.reported_fraction, 0);
   EXPECT_FALSE(f.error_m || f.report_time_s);
   none.write("events.jsonl", kFound);
   const ObjectFigures nothing = object_figures(read_run(none.path()));
@@ -135,7 +135,7 @@ this line is damaged
   EXPECT_EQ(f.seen, 2);
   EXPECT_EQ(f.found, 2);
   EXPECT_EQ(f.reported, 1);
-  EXPECT_EQ(f.reported_share, 0.5);
+  EXPECT_EQ(f.reported_fraction, 0.5);
   EXPECT_EQ(f.wrong, 0);
   EXPECT_EQ(f.report_time_s, 40) << "when the first of both reports had come";
   EXPECT_NEAR(*f.error_m, 0.2, 1e-12);

@@ -43,23 +43,23 @@ TEST(Surface, OfARoomIsItsSixWalls) {
 TEST(Surface, SeenIsWhatTheMapHoldsThereOrOneCellOff) {
   Truth truth;
   truth.surface = surface_cells(room());
-  const auto share = [&](const core::VoxelMap& map) {
+  const auto fraction = [&](const core::VoxelMap& map) {
     test::TemporaryDirectory dir;
     return evaluate(read_run(dir.path()), &map, truth)["surface_seen"].get<double>();
   };
   core::VoxelMap map{core::MapOptions{}};
-  EXPECT_EQ(share(map), 0);
+  EXPECT_EQ(fraction(map), 0);
   for (int y = -9; y < 9; ++y)
     for (int z = -9; z < 9; ++z) map.assign({-10, y, z}, 1, 2.0f);  // one wall
   // Beside it, an edge's row of each of the four neighbouring walls is one cell off.
   const double one_wall = 1.0 / 6, rows = 4 * 18 / (6.0 * 18 * 18);
-  EXPECT_NEAR(share(map), one_wall, rows + 1e-9);
+  EXPECT_NEAR(fraction(map), one_wall, rows + 1e-9);
   for (int y = -9; y < 9; ++y)
     for (int z = -9; z < 9; ++z) map.assign({10, y, z}, 1, 2.0f);  // the one across, a cell too far out
-  EXPECT_NEAR(share(map), 2 * one_wall, rows + 1e-9);
+  EXPECT_NEAR(fraction(map), 2 * one_wall, rows + 1e-9);
   for (int y = -9; y < 9; ++y)
     for (int x = -9; x < 9; ++x) map.assign({x, y, 11}, 1, 2.0f);  // the roof, two cells off: not seen
-  EXPECT_NEAR(share(map), 2 * one_wall, rows + 1e-9);
+  EXPECT_NEAR(fraction(map), 2 * one_wall, rows + 1e-9);
 }
 
 TEST(Surface, OfARunWithoutAMapIsThatOfTheCellsThatGrew) {

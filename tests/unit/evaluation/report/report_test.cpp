@@ -96,15 +96,15 @@ TEST(Report, OfARunCutShortAnywhereShowsWhatThereIs) {
   for (const auto& entry : fs::directory_iterator(whole.path())) {
     const std::string name = entry.path().filename().string();
     const std::string bytes = bytes_of(entry.path());
-    for (const double share : {0.0, 0.001, 0.3337, 0.77}) {
+    for (const double fraction : {0.0, 0.001, 0.3337, 0.77}) {
       TemporaryDirectory cut;
       for (const auto& other : fs::directory_iterator(whole.path()))
         fs::copy_file(other.path(), cut.path() / other.path().filename());
       cut.write(name,
-                bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size())) | 3));
-      ASSERT_NO_THROW(write_report(cut.path())) << name << " cut at " << share;
+                bytes.substr(0, static_cast<std::size_t>(fraction * static_cast<double>(bytes.size())) | 3));
+      ASSERT_NO_THROW(write_report(cut.path())) << name << " cut at " << fraction;
       const json d = data_of(bytes_of(cut.path() / "report.html"));
-      const bool cut_in_a_line = share == 0.3337 && name != "timing.json" && name != "mission.info";
+      const bool cut_in_a_line = fraction == 0.3337 && name != "timing.json" && name != "mission.info";
       EXPECT_TRUE(!cut_in_a_line || mentions(d["problems"], name)) << name;
     }
     TemporaryDirectory without;

@@ -95,8 +95,8 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
     const Eigen::VectorXd above = z - a * plane;
     const double step = above.maxCoeff() - above.minCoeff();
     const double slope = std::atan(plane.head<2>().norm()), limit = 15 * std::numbers::pi / 180;
-    RC_PRE(std::abs(slope - limit) > 1e-6 && std::abs(step - options.most_step_m) > 1e-6);
-    const bool expected = open_to_floor && slope < limit && step < options.most_step_m;
+    RC_PRE(std::abs(slope - limit) > 1e-6 && std::abs(step - options.max_step_m) > 1e-6);
+    const bool expected = open_to_floor && slope < limit && step < options.max_step_m;
     RC_ASSERT((g.verdict == GroundVerdict::good) == expected);
     if (expected) {
       RC_ASSERT(std::abs(g.slope_rad - slope) < 1e-6);
@@ -110,14 +110,14 @@ TEST(Ground, AgreesWithBruteForceOnRandomFloors) {
 
 TEST(OthersGetBy, OverItBesideItOrNotAtAll) {
   const Vec3 middle(0.1, 0.1, 0.3);
-  EXPECT_TRUE(others_get_by(passage(2, 3.2), middle, kRobotRadius_m, 0.55, 3));  // over it
+  EXPECT_TRUE(keeps_passage_open(passage(2, 3.2), middle, kRobotRadius_m, 0.55, 3));  // over it
   EXPECT_FALSE(
-      others_get_by(passage(1.6, 1.4), middle, kRobotRadius_m, 0.55, 3));        // neither over nor past it
-  EXPECT_TRUE(others_get_by(passage(6, 1.6), middle, kRobotRadius_m, 0.55, 3));  // past it
+      keeps_passage_open(passage(1.6, 1.4), middle, kRobotRadius_m, 0.55, 3));  // neither over nor past it
+  EXPECT_TRUE(keeps_passage_open(passage(6, 1.6), middle, kRobotRadius_m, 0.55, 3));  // past it
   EXPECT_TRUE(
-      others_get_by(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRobotRadius_m, 0.55, 3));  // on one side of it
+      keeps_passage_open(passage(3.2, 1.6), {0.1, -1.1, 0.3}, kRobotRadius_m, 0.55, 3));  // on one side of it
   // At the end of a blind passage nobody is held up.
-  EXPECT_TRUE(others_get_by(passage(2, 1.6), {9, 0.1, 0.3}, kRobotRadius_m, 0.55, 3));
+  EXPECT_TRUE(keeps_passage_open(passage(2, 1.6), {9, 0.1, 0.3}, kRobotRadius_m, 0.55, 3));
 }
 
 // A relay landed where others got by by its radius; in their maps it filled cells, and closed the passage.
@@ -130,8 +130,8 @@ TEST(OthersGetBy, StillWhenTheyHaveMappedIt) {
     VoxelMap map = passage(random.uniform(2, 4), random.uniform(1.3, 1.9), 8, &changes);
     const Vec3 standing(random.uniform(-0.5, 0.5), random.uniform(-1, 1), kRobotRadius_m);
     const double clearance_m = search_clearance_m(planning, map.resolution_m());
-    const bool by_radius = others_get_by(map, standing, kRobotRadius_m, clearance_m, 3),
-               as_mapped = others_get_by(map, standing, kRobotRadius_m + kAsMapped_m, clearance_m, 3);
+    const bool by_radius = keeps_passage_open(map, standing, kRobotRadius_m, clearance_m, 3),
+               as_mapped = keeps_passage_open(map, standing, kRobotRadius_m + kAsMapped_m, clearance_m, 3);
     const Vec3 landed = standing + 0.1 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
     for (int i = 0; i < 1000; ++i) {
       const Vec3 p =
@@ -155,7 +155,7 @@ TEST(OthersGetBy, AWallBesideThatWasClosedBeforeIsNoMatter) {
   VoxelMap map = passage(6, 3.2);
   for (int x = -60; x < 60; ++x)
     for (int z = 0; z < 16; ++z) map.assign({x, 0, z}, 1, 2.0f);
-  EXPECT_TRUE(others_get_by(map, {0.1, 1.5, 0.3}, kRobotRadius_m, 0.55, 3));
+  EXPECT_TRUE(keeps_passage_open(map, {0.1, 1.5, 0.3}, kRobotRadius_m, 0.55, 3));
 }
 
 TEST(LinkEstimate, UnknownAndRockTakeTheirDecibels) {

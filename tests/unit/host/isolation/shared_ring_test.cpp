@@ -15,7 +15,7 @@ using host::Bytes;
 using host::RingEnd;
 using host::RingMemory;
 
-constexpr std::size_t kMost = 8u << 20;
+constexpr std::size_t kMax = 8u << 20;
 
 Bytes pattern(std::size_t size, unsigned seed) {
   Bytes out(size);
@@ -29,7 +29,7 @@ TEST(SharedRing, MessagesOfAnySizeArriveInOrder) {
   std::thread echo([&] {
     RingEnd end(b, a, [] {});
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-      const host::RingMessage m = end.receive(kMost);
+      const host::RingMessage m = end.receive(kMax);
       end.send(m.kind + 1, m.body);
     }
   });
@@ -37,7 +37,7 @@ TEST(SharedRing, MessagesOfAnySizeArriveInOrder) {
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const Bytes sent = pattern(sizes[i], static_cast<unsigned>(i));
     end.send(static_cast<std::uint32_t>(i), sent);
-    const host::RingMessage m = end.receive(kMost);
+    const host::RingMessage m = end.receive(kMax);
     EXPECT_EQ(m.kind, i + 1);
     EXPECT_TRUE(m.body == sent) << sizes[i];
   }
@@ -51,7 +51,7 @@ TEST(SharedRing, TheWatchEndsAWaitThatNobodyAnswers) {
   RingEnd end(a, b, [&] {
     if (++waits == 3) throw Enough{};
   });
-  EXPECT_THROW(end.receive(kMost), Enough);
+  EXPECT_THROW(end.receive(kMax), Enough);
   waits = 0;
   EXPECT_THROW(end.send(1, Bytes(2u << 20)), Enough);  // more than the ring holds
 }
@@ -67,8 +67,8 @@ TEST(SharedRing, GarbageInTheOtherEndsMemoryIsRefusedOrReadAsBytes) {
       if (++waits == 2) throw Enough{};
     });
     try {
-      const host::RingMessage m = end.receive(kMost);
-      EXPECT_LE(m.body.size(), kMost);
+      const host::RingMessage m = end.receive(kMax);
+      EXPECT_LE(m.body.size(), kMax);
     } catch (const host::RingBroken&) {
     } catch (const Enough&) {
     }

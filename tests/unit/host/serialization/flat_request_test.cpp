@@ -81,7 +81,7 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
   ASSERT_EQ(x.teammate_count, 2u);
   ASSERT_EQ(y.teammate_count, 2u);
   EXPECT_EQ(std::memcmp(x.teammates, y.teammates, 2 * sizeof *x.teammates), 0);
-  EXPECT_EQ(y.teammates[0].heard_ns, -5);
+  EXPECT_EQ(y.teammates[0].stamp_ns, -5);
   EXPECT_EQ(y.teammates[0].goal.y, 8);
   EXPECT_TRUE(std::isnan(y.teammates[1].goal.x)) << "it has none";
   x.teammates = y.teammates = nullptr;

@@ -119,16 +119,16 @@ TEST_F(Recorded, KilledFlightIsReadUpToItsLastRecord) {
 
 TEST_F(Recorded, WhatOfARecordCutShortIsPassedOverIsCounted) {
   const std::string all = bytes();
-  const auto passed_over = [&](const std::string& text) {
+  const auto skipped_bytes = [&](const std::string& text) {
     rewrite(text);
     RequestLogReader log(file);
     while (log.next() != RequestLogReader::Kind::end) continue;
-    return log.passed_over();
+    return log.skipped_bytes();
   };
-  EXPECT_EQ(passed_over(all), 0u);
-  EXPECT_EQ(passed_over(all + "half"), 4u);
+  EXPECT_EQ(skipped_bytes(all), 0u);
+  EXPECT_EQ(skipped_bytes(all + "half"), 4u);
   const std::size_t last = all.rfind("krql");  // the last answer
-  EXPECT_EQ(passed_over(all.substr(0, all.size() - 1)), all.size() - 1 - last);
+  EXPECT_EQ(skipped_bytes(all.substr(0, all.size() - 1)), all.size() - 1 - last);
 }
 
 TEST_F(Recorded, AnswerOfAnotherShapeIsShownAsItStands) {

@@ -112,8 +112,8 @@ TEST(Frontiers, EveryFigureOfAClusterHoldsForTheMapAsItIs) {
       EXPECT_NEAR((c.centroid - sum / static_cast<double>(c.cells.size())).norm(), 0, 1e-9);
       EXPECT_NEAR((c.low - (low - half)).norm() + (c.high - (high + half)).norm(), 0, 1e-9);
       EXPECT_NEAR((c.normal - (normal.norm() > 0 ? normal.normalized() : normal)).norm(), 0, 1e-9);
-      const Vec3 reach = Vec3::Constant(options.neighbourhood_m);
-      const CellKey a = map.key_of(c.centroid - reach), b = map.key_of(c.centroid + reach);
+      const Vec3 radius = Vec3::Constant(options.neighbourhood_m);
+      const CellKey a = map.key_of(c.centroid - radius), b = map.key_of(c.centroid + radius);
       std::uint32_t free = 0, unknown = 0;
       for (int x = a.x; x <= b.x; ++x)
         for (int y = a.y; y <= b.y; ++y)
@@ -145,11 +145,11 @@ TEST(Frontiers, ClustersKeepTheirIdWhileTheyShareCellsAndNoIdComesBack) {
       EXPECT_FALSE(both.empty()) << "an id moved to other cells";
       // No other cluster would be the better heir.
       for (const auto& [other_id, other] : frontiers.clusters()) {
-        std::vector<CellKey> share;
+        std::vector<CellKey> fraction;
         std::set_intersection(other.cells.begin(), other.cells.end(), former->second.cells.begin(),
-                              former->second.cells.end(), std::back_inserter(share));
+                              former->second.cells.end(), std::back_inserter(fraction));
         if (!before.contains(other_id)) {
-          EXPECT_LE(share.size(), both.size());
+          EXPECT_LE(fraction.size(), both.size());
         }
       }
     }

@@ -34,7 +34,7 @@ struct Deciding {
   TeamMembership alone;
   HomeEstimator home;
   DecisionCycle cycle;
-  RoundInput input;
+  CycleInput input;
 
   explicit Deciding(const CoreOptions& options = {})
       : world(options, vehicle),
@@ -49,7 +49,7 @@ struct Deciding {
 
 TEST(DecisionCycle, AsksForAGoalAmongTheFrontiersAndPlansToIt) {
   Deciding d;
-  const RoundResult first = d.cycle.decide(d.input, {}), second = d.cycle.decide(d.input, {});
+  const CycleResult first = d.cycle.decide(d.input, {}), second = d.cycle.decide(d.input, {});
   ASSERT_TRUE(first.goal && second.goal);
   EXPECT_EQ(first.outcome, Outcome::goals);
   EXPECT_EQ(first.policy, "first frontier");
@@ -69,7 +69,7 @@ TEST(DecisionCycle, AsksForAGoalAmongTheFrontiersAndPlansToIt) {
 
 TEST(DecisionCycle, AFrontierThatWasLookedAtRests) {
   Deciding d;
-  const RoundResult first = d.cycle.decide(d.input, {});
+  const CycleResult first = d.cycle.decide(d.input, {});
   ASSERT_TRUE(first.goal);
   d.input.looked_at = {first.goal->frontier_id, 9999};
   d.cycle.decide(d.input, {});
@@ -79,28 +79,28 @@ TEST(DecisionCycle, AFrontierThatWasLookedAtRests) {
 
 TEST(DecisionCycle, WhatIsAppendedIsForAnotherFrontier) {
   Deciding d;
-  const RoundResult first = d.cycle.decide(d.input, {});
+  const CycleResult first = d.cycle.decide(d.input, {});
   ASSERT_TRUE(first.goal);
   d.input.last_goal = first.goal;
   EXPECT_EQ(d.cycle.decide(d.input, {}).goal->frontier_id, first.goal->frontier_id);
   d.input.appending = true;
-  const RoundResult appended = d.cycle.decide(d.input, {});
+  const CycleResult appended = d.cycle.decide(d.input, {});
   ASSERT_TRUE(appended.goal);
   EXPECT_NE(appended.goal->frontier_id, first.goal->frontier_id);
 }
 
 TEST(DecisionCycle, OtherVehiclesClaimsAreNotOffered) {
   Deciding d;
-  const RoundResult alone = d.cycle.decide(d.input, {});
+  const CycleResult alone = d.cycle.decide(d.input, {});
   const Vec3 claimed = d.policy.asked[0].frontiers[0].cluster->centroid;
-  const RoundResult in_team = d.cycle.decide(d.input, {{claimed}, 0.1});
+  const CycleResult in_team = d.cycle.decide(d.input, {{claimed}, 0.1});
   ASSERT_TRUE(alone.goal && in_team.goal);
   EXPECT_NE(alone.goal->frontier_id, in_team.goal->frontier_id);
 }
 
 TEST(DecisionCycle, AnAbandonedGoalsPlaceIsClosedAndThePolicyIsTold) {
   Deciding d;
-  const RoundResult first = d.cycle.decide(d.input, {});
+  const CycleResult first = d.cycle.decide(d.input, {});
   ASSERT_TRUE(first.goal);
   d.cycle.tell({{PolicyEvent::Kind::goal_abandoned, 0, *first.goal, "no progress"}}, d.input.now);
   ASSERT_EQ(d.policy.told.size(), 1u);
@@ -112,7 +112,7 @@ TEST(DecisionCycle, AnAbandonedGoalsPlaceIsClosedAndThePolicyIsTold) {
 
 TEST(DecisionCycle, AClusterLivesUntilMostOfItHasBeenSeen) {
   Deciding d;
-  const RoundResult first = d.cycle.decide(d.input, {});
+  const CycleResult first = d.cycle.decide(d.input, {});
   ASSERT_TRUE(first.goal);
   const std::uint32_t id = first.goal->frontier_id;
   EXPECT_TRUE(d.cycle.cluster_alive(id));

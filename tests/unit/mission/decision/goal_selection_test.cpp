@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "tests/unit/mission/mapped_world.h"
 
 namespace karst::core {
@@ -19,7 +19,7 @@ struct Selecting {
   HomeEstimator home;
   GoalLedger ledger;
   GoalSelection selection;
-  RoundInput input;
+  CycleInput input;
 
   explicit Selecting(const VoxelMap& map = room_open_to_x())
       : world(options, vehicle),

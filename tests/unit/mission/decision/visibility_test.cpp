@@ -60,29 +60,29 @@ TEST(BlindClimb, NoLevelIsNewBesideWhereTheVehicleWasAsHighOrAsLow) {
   const SteepestView view{30 * kDegree, 30 * kDegree};
   for (const double sign : {1.0, -1.0}) {
     const Vec3 there(0, 0, 3.3 * sign);
-    const std::vector<Vec3> way = line({0, 0, 0}, there);
-    EXPECT_FALSE(blind_climb(view, way, line(there, {0, 0, 0})));
-    EXPECT_FALSE(blind_climb(view, way, line(there, {3.5, 0, 0}))) << "beside";
-    EXPECT_FALSE(blind_climb(view, way, line(there, {1, 0, 3.2 * sign}))) << "what is done is done";
-    EXPECT_TRUE(blind_climb(view, way, line(there, {0, 0, -0.2 * sign}))) << "farther than it came from";
-    EXPECT_TRUE(blind_climb(view, way, line(there, {0, 0, 3.5 * sign}))) << "farther than it is";
-    EXPECT_TRUE(blind_climb(view, way, line(there, {4.5, 0, 0}))) << "elsewhere";
+    const std::vector<Vec3> path = line({0, 0, 0}, there);
+    EXPECT_FALSE(blind_climb(view, path, line(there, {0, 0, 0})));
+    EXPECT_FALSE(blind_climb(view, path, line(there, {3.5, 0, 0}))) << "beside";
+    EXPECT_FALSE(blind_climb(view, path, line(there, {1, 0, 3.2 * sign}))) << "what is done is done";
+    EXPECT_TRUE(blind_climb(view, path, line(there, {0, 0, -0.2 * sign}))) << "farther than it came from";
+    EXPECT_TRUE(blind_climb(view, path, line(there, {0, 0, 3.5 * sign}))) << "farther than it is";
+    EXPECT_TRUE(blind_climb(view, path, line(there, {4.5, 0, 0}))) << "elsewhere";
   }
 }
 
 TEST(BlindClimb, AWayFlownLongAgoNeedNotBeMetToTheCentimetre) {
   const SteepestView view{30 * kDegree, 30 * kDegree};
-  std::vector<Vec3> way = line({0, 0, 0}, {0, 0, 3.3});
+  std::vector<Vec3> path = line({0, 0, 0}, {0, 0, 3.3});
   const auto back_to = [&](double z) {
-    return blind_climb(view, way, line({0, 0, 3.3}, {0, 0, z})).has_value();
+    return blind_climb(view, path, line({0, 0, 3.3}, {0, 0, z})).has_value();
   };
   EXPECT_TRUE(back_to(-0.4));
   for (int i = 0; i < 25; ++i)  // to and fro, 50 m of way
-    for (const double y : {0.0, 1.0}) way.push_back({0, y, 3.3});
+    for (const double y : {0.0, 1.0}) path.push_back({0, y, 3.3});
   EXPECT_FALSE(back_to(-0.4));
-  way.back() = {0, 0, 3.3};
-  way.push_back({0, 0, 0.2});  // the climb down is new: half a metre below it, that is, and no more
-  way.push_back({0, 0, 3.3});
+  path.back() = {0, 0, 3.3};
+  path.push_back({0, 0, 0.2});  // the climb down is new: half a metre below it, that is, and no more
+  path.push_back({0, 0, 3.3});
   EXPECT_FALSE(back_to(-0.4));
   EXPECT_TRUE(back_to(-0.6));
 }
@@ -90,14 +90,14 @@ TEST(BlindClimb, AWayFlownLongAgoNeedNotBeMetToTheCentimetre) {
 TEST(BlindClimb, GoesByTheWayComeTooAndIsNotDeceivedBySweeping) {
   const SteepestView view{15 * kDegree, 15 * kDegree};
   // Up a shaft 3 m wide in steps of 0.7 m, to and fro: each step by itself is a ledge.
-  std::vector<Vec3> way;
+  std::vector<Vec3> path;
   bool refused = false;
   for (int i = 0; i < 10 && !refused; ++i) {
     const Vec3 from(i % 2 ? 3 : 0, 0, 0.7 * i), to(i % 2 ? 0 : 3, 0, 0.7 * (i + 1));
     const std::vector<Vec3> step = line(from, to);
-    refused = blind_climb(view, way, step).has_value();
+    refused = blind_climb(view, path, step).has_value();
     EXPECT_EQ(refused, 0.7 * (i + 1) > 3.0) << i;
-    way.insert(way.end(), step.begin(), step.end());
+    path.insert(path.end(), step.begin(), step.end());
   }
   EXPECT_TRUE(refused);
 }

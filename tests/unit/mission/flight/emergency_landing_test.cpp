@@ -35,7 +35,7 @@ TEST(EmergencyLanding, BrakesOnThePathFasterAndFasterBehindWithinTheStoppingDist
   const Vec3 from = circle().at(kNow).position;
   EXPECT_LT((landing.trajectory(kNow).at(kNow).position - from).norm(), 1e-9) << "no step in position";
   EXPECT_NEAR(velocity_mps(landing, kNow).norm(), kSpeed_mps, 0.1) << "nor in speed";
-  double speed_mps = kSpeed_mps + 0.01, way_m = 0;
+  double speed_mps = kSpeed_mps + 0.01, path_m = 0;
   for (TimeNs t = kNow; t < kNow + 2 * kSecond; t += 10 * kMillisecond) {
     const Vec3 p = landing.trajectory(t).at(t).position;
     if (t < kNow + kSecond) {
@@ -45,11 +45,11 @@ TEST(EmergencyLanding, BrakesOnThePathFasterAndFasterBehindWithinTheStoppingDist
       EXPECT_LT(now_mps, speed_mps + 0.02);
       EXPECT_LT((speed_mps - now_mps) / 0.01, 8 * limits.max_acceleration_mps2) << "in steps of 50 ms";
       speed_mps = now_mps;
-      way_m += 0.01 * now_mps;
+      path_m += 0.01 * now_mps;
     }
   }
   EXPECT_LT(speed_mps, 1e-6);
-  EXPECT_NEAR(way_m, kSpeed_mps * kSpeed_mps / (2 * 0.95 * limits.max_acceleration_mps2), 0.03);
+  EXPECT_NEAR(path_m, kSpeed_mps * kSpeed_mps / (2 * 0.95 * limits.max_acceleration_mps2), 0.03);
 }
 
 TEST(EmergencyLanding, ThenComesStraightDownAsFarAsTheGroundMayBe) {
@@ -79,9 +79,9 @@ TEST(EmergencyLanding, FromAHoverComesDownAtOnceAndIsNotBegunTwice) {
 TEST(EmergencyLanding, FliesTheWayToKnownGroundNotFasterThanAMetrePerSecondAndThenComesDown) {
   Trajectory hover;
   hover.samples = {{{0, 0, 1}, 0.5}};
-  const std::vector<Vec3> way{{0.1, 0, 1}, {2, 0, 1}, {2, 2, 1.5}};
+  const std::vector<Vec3> path{{0.1, 0, 1}, {2, 0, 1}, {2, 2, 1.5}};
   EmergencyLanding landing({}, kDescent_mps);
-  landing.prepare(way);
+  landing.prepare(path);
   landing.begin(hover, kNow);
   landing.prepare(std::vector<Vec3>{{0, 0, 1}, {-9, 0, 1}});  // too late
   Vec3 before = landing.trajectory(kNow).at(kNow).position;
@@ -93,19 +93,19 @@ TEST(EmergencyLanding, FliesTheWayToKnownGroundNotFasterThanAMetrePerSecondAndTh
     length_m += (p - before).norm();
     before = p;
   }
-  EXPECT_LT((before - way.back()).head<2>().norm(), 1e-9);
+  EXPECT_LT((before - path.back()).head<2>().norm(), 1e-9);
   EXPECT_NEAR(length_m, 2 + std::sqrt(4.25) + 0.6, 0.05);
 }
 
 TEST(EmergencyLanding, FliesNoWayOfAnotherMomentOrLongerThanItMay) {
   Trajectory hover;
   hover.samples = {{{0, 0, 1}, 0}};
-  for (const auto& [way, longest_m] :
+  for (const auto& [path, longest_m] :
        {std::pair{std::vector<Vec3>{{3, 0, 1}, {4, 0, 1}}, 100.0},
         std::pair{std::vector<Vec3>{{0, 0, 1}, {6, 0, 1}}, 5.0},
         std::pair{std::vector<Vec3>(100, Vec3(1, 0, 1)), 100.0}, std::pair{std::vector<Vec3>{}, 100.0}}) {
     EmergencyLanding landing({}, kDescent_mps);
-    landing.prepare(way);
+    landing.prepare(path);
     landing.begin(hover, kNow, longest_m);
     for (TimeNs t = kNow; t < kNow + 10 * kSecond; t += kSecond)
       EXPECT_LT(landing.trajectory(t).at(t).position.head<2>().norm(), 1e-9);

@@ -104,13 +104,13 @@ TEST(Flight, TheStretchUntilStopBeginsWhereTheReferenceWillBe) {
   heading.along_path = false;
   f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
   f.advance(4);
-  const Flight::Onward ahead = f.flight.until_stop(f.now + 300 * kMillisecond);
-  const Flight::Onward all = f.flight.until_end(f.now + 300 * kMillisecond);
+  const Flight::CommittedSegment ahead = f.flight.until_stop(f.now + 300 * kMillisecond);
+  const Flight::CommittedSegment all = f.flight.until_end(f.now + 300 * kMillisecond);
   f.advance(0.3);
   EXPECT_LT((f.flight.reference().position - ahead.points.front()).norm(), 0.25) << "tracking lag only";
   EXPECT_NEAR((all.points.back() - from).norm(), 20, 1e-6);
-  const double lead = (ahead.points.back() - ahead.points.front()).norm();
-  EXPECT_GT(lead, ahead.speed_mps * ahead.speed_mps / (2 * MotionLimits{}.max_acceleration_mps2));
+  const double committed = (ahead.points.back() - ahead.points.front()).norm();
+  EXPECT_GT(committed, ahead.speed_mps * ahead.speed_mps / (2 * MotionLimits{}.max_acceleration_mps2));
 }
 
 TEST(Flight, ACapOnSpeedHoldsUntilItIsLifted) {

@@ -75,7 +75,7 @@ TEST_F(PathExecutionTest, ARouteIsFollowedFromWhereItJoinsTheTrajectoryToItsEnd)
   const RouteStart start = path.start_at_stop(now());
   Path detour;
   detour.status = PlanStatus::found;
-  const Vec3 from = start.lead.points.back(), to = from + Vec3(3, 4, 0);
+  const Vec3 from = start.committed.points.back(), to = from + Vec3(3, 4, 0);
   detour.points = {from, to};
   VoxelMap map{MapOptions{}};
   path.follow(make_route(map, onboard.options, onboard.vehicle, start, detour, {}), now());

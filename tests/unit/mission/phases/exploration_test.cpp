@@ -43,10 +43,10 @@ class ExplorationTest : public OnboardTest {
   std::string went_home;
   std::vector<Vec3> claimed;
   Exploration exploration{onboard,
-                          {phases, goals, path, way_flown, endurance},
+                          {phases, goals, path, flown_path, endurance},
                           {.go_home = [this](const std::string& reason) { went_home = reason; },
                            .claim = [this](const Goal& g) { claimed.push_back(g.position); },
-                           .mates = [] { return std::vector<HeardMate>{}; }}};
+                           .teammates = [] { return std::vector<TeammateState>{}; }}};
 };
 
 TEST_F(ExplorationTest, AnAcceptedGoalIsFlownToClaimedAndReached) {

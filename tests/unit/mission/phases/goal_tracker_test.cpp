@@ -21,7 +21,7 @@ TEST_F(GoalTrackerTest, ANewGoalSupersedesTheOneUnderWayUnlessItIsTheSame) {
   goals.accept(goal_at(3), 3);
   EXPECT_EQ(told("superseded"), 1u);
   EXPECT_EQ(told("accepted"), 3u);
-  RoundInput input;
+  CycleInput input;
   goals.tell(input);
   EXPECT_EQ(input.last_fate, GoalFate::under_way);
   EXPECT_EQ(input.last_goal->position.x(), 3);
@@ -42,14 +42,14 @@ TEST_F(GoalTrackerTest, AnAppendedGoalTakesThePlaceOfTheOneThatIsPassed) {
 
 TEST_F(GoalTrackerTest, AFrontierThatIsReachedOrSeenOnTheWayIsLookedAtAndNoOther) {
   goals.accept(goal_at(1, 4), 1);
-  goals.settle(GoalFate::reached, "", 2);
+  goals.close_goal(GoalFate::reached, "", 2);
   goals.accept(goal_at(2, 5), 3);
   goals.note_frontier(5, false);
   EXPECT_FALSE(goals.frontier_open());
   goals.accept(goal_at(9, 6), 4);
   EXPECT_EQ(told("its frontier has been seen"), 1u);
-  goals.settle(GoalFate::unreachable, "no path", 5);
-  RoundInput input;
+  goals.close_goal(GoalFate::unreachable, "no path", 5);
+  CycleInput input;
   goals.tell(input);
   EXPECT_EQ(input.looked_at, (std::vector<std::uint32_t>{4, 5}));
   EXPECT_EQ(input.last_fate, GoalFate::unreachable);
@@ -62,18 +62,18 @@ TEST_F(GoalTrackerTest, WhatTheMapSaysOfAnotherFrontierDoesNotCount) {
   goals.accept(goal_at(2, 5), 1);
   goals.note_frontier(4, false);  // asked before the goal was accepted
   EXPECT_TRUE(goals.frontier_open());
-  goals.settle(GoalFate::reached, "", 2);
+  goals.close_goal(GoalFate::reached, "", 2);
   goals.note_frontier(0, false);
   EXPECT_TRUE(goals.frontier_open());
 }
 
 TEST_F(GoalTrackerTest, NothingIsSettledOrDroppedWhereThereIsNothing) {
-  goals.settle(GoalFate::reached, "", 1);
+  goals.close_goal(GoalFate::reached, "", 1);
   goals.drop_next(GoalFate::superseded, "", 1);
   EXPECT_TRUE(goals.take_events().empty());
   EXPECT_EQ(events(), "");
   goals.refuse(goal_at(7));
-  RoundInput input;
+  CycleInput input;
   goals.tell(input);
   EXPECT_EQ(input.last_fate, GoalFate::rejected);
   EXPECT_EQ(input.last_goal->position.x(), 7);

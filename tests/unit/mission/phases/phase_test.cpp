@@ -17,7 +17,7 @@ TEST(PhaseMachine, GoesFromPhaseToPhaseAsTheMissionDoesAndNoOtherWay) {
   const std::set<std::pair<Phase, Phase>> allowed{
       {Phase::standby, Phase::takeoff}, {Phase::takeoff, Phase::look}, {Phase::takeoff, Phase::explore},
       {Phase::look, Phase::explore},    {Phase::explore, Phase::home}, {Phase::standby, Phase::standby}};
-  const std::map<Phase, std::vector<Phase>> way_there{
+  const std::map<Phase, std::vector<Phase>> path_there{
       {Phase::standby, {}},
       {Phase::takeoff, {Phase::takeoff}},
       {Phase::look, {Phase::takeoff, Phase::look}},
@@ -28,7 +28,7 @@ TEST(PhaseMachine, GoesFromPhaseToPhaseAsTheMissionDoesAndNoOtherWay) {
   for (const Phase from : kAll) {
     for (const Phase to : kAll) {
       PhaseMachine m;
-      for (const Phase p : way_there.at(from)) m.enter(p, 1);
+      for (const Phase p : path_there.at(from)) m.enter(p, 1);
       const bool ends = to == Phase::land || to == Phase::done;  // from whatever phase it is
       if (ends || allowed.contains({from, to})) {
         EXPECT_NO_THROW(m.enter(to, 7)) << name_of(from) << " -> " << name_of(to);

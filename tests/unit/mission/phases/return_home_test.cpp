@@ -16,7 +16,7 @@ class ReturnHomeTest : public OnboardTest {
     const double fly_s = away_m + 4;
     for (double t = 0; t < fly_s; t += 0.1) {
       advance(0.1);
-      way_flown.note(onboard.flight.reference().position);
+      flown_path.note(onboard.flight.reference().position);
     }
     home.begin("enough");
   }
@@ -33,7 +33,7 @@ class ReturnHomeTest : public OnboardTest {
   bool company = false;
   std::string landed_here, landed = "no";
   ReturnHome home{onboard,
-                  {phases, goals, path, way_flown, endurance, nullptr},
+                  {phases, goals, path, flown_path, endurance, nullptr},
                   {.enter =
                        [this](Phase to, const std::string& reason) {
                          phases.enter(to, now());
@@ -94,22 +94,22 @@ TEST_F(ReturnHomeTest, TurnsBackWhenTheTimeLeftOnlyJustSufficesAndNotBefore) {
   home.set_home(onboard.flight.reference().position);
   phases.enter(Phase::takeoff, now());
   phases.enter(Phase::explore, now());
-  const double least_s = onboard.options.mission.home_reserve_s;
-  for (double left_s = 60; left_s > least_s + 12; left_s -= 1) {
+  const double min_s = onboard.options.mission.home_reserve_s;
+  for (double left_s = 60; left_s > min_s + 12; left_s -= 1) {
     endurance.note({.seconds_left = left_s});
     advance(1 - seconds(now() % kSecond));
     home.watch_time();
     advance(0.2);
     ASSERT_TRUE(phases.in(Phase::explore)) << left_s;
   }
-  for (double left_s = least_s + 12; phases.in(Phase::explore) && left_s > 0; left_s -= 1) {
+  for (double left_s = min_s + 12; phases.in(Phase::explore) && left_s > 0; left_s -= 1) {
     endurance.note({.seconds_left = left_s});
     advance(1 - seconds(now() % kSecond));
     home.watch_time();
     advance(0.2);
   }
   EXPECT_TRUE(phases.in(Phase::home));
-  EXPECT_GT(endurance.seconds_left(now()), least_s - 3);
+  EXPECT_GT(endurance.seconds_left(now()), min_s - 3);
   EXPECT_EQ(told("\"battery\""), 1u);
 }
 

@@ -3,34 +3,34 @@
 #include <gtest/gtest.h>
 
 #include "core_stack/mission/phases/endurance.h"
+#include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/still_watch.h"
-#include "core_stack/mission/phases/way_flown.h"
 
 namespace karst::core {
 namespace {
 
-TEST(WayFlown, KeepsAPoseEveryQuarterOfAMetreAndItsLength) {
-  WayFlown way;
-  EXPECT_FALSE(way.begun());
-  way.begin({0, 0, 1});
-  for (int i = 1; i <= 1000; ++i) way.note({0.01 * i, 0, 1});
-  EXPECT_NEAR(way.length_m(), 10, 0.3);
-  EXPECT_NEAR(static_cast<double>(way.points().size()), 10 / 0.26 + 1, 1);
-  for (std::size_t i = 1; i < way.points().size(); ++i)
-    EXPECT_GT((way.points()[i] - way.points()[i - 1]).norm(), 0.25);
+TEST(FlownPath, KeepsAPoseEveryQuarterOfAMetreAndItsLength) {
+  FlownPath path;
+  EXPECT_FALSE(path.begun());
+  path.begin({0, 0, 1});
+  for (int i = 1; i <= 1000; ++i) path.note({0.01 * i, 0, 1});
+  EXPECT_NEAR(path.length_m(), 10, 0.3);
+  EXPECT_NEAR(static_cast<double>(path.points().size()), 10 / 0.26 + 1, 1);
+  for (std::size_t i = 1; i < path.points().size(); ++i)
+    EXPECT_GT((path.points()[i] - path.points()[i - 1]).norm(), 0.25);
 }
 
-TEST(WayFlown, LeadsBackAPoseAMetreAsFarAsAskedAndToItsBeginning) {
-  WayFlown way;
-  way.begin({0, 0, 1});
-  for (int i = 1; i <= 1000; ++i) way.note({0.01 * i, 0, 1});
-  const auto near = way.back(3);
-  EXPECT_EQ(near.front(), way.points().back());
+TEST(FlownPath, LeadsBackAPoseAMetreAsFarAsAskedAndToItsBeginning) {
+  FlownPath path;
+  path.begin({0, 0, 1});
+  for (int i = 1; i <= 1000; ++i) path.note({0.01 * i, 0, 1});
+  const auto near = path.back(3);
+  EXPECT_EQ(near.front(), path.points().back());
   EXPECT_NEAR((near.front() - near.back()).norm(), 3, 0.6);
   for (std::size_t i = 1; i < near.size(); ++i) EXPECT_NEAR((near[i] - near[i - 1]).norm(), 1.04, 0.05);
-  EXPECT_EQ(way.back(100).back(), Vec3(0, 0, 1)) << "it took off there";
-  EXPECT_TRUE(way.back(0).empty());
-  EXPECT_TRUE(WayFlown{}.back(5).empty());
+  EXPECT_EQ(path.back(100).back(), Vec3(0, 0, 1)) << "it took off there";
+  EXPECT_TRUE(path.back(0).empty());
+  EXPECT_TRUE(FlownPath{}.back(5).empty());
 }
 
 TEST(StillWatch, CountsFromWhereItLastCameHalfAMetreAway) {

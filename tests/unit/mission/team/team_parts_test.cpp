@@ -15,22 +15,22 @@ class TeamPartsTest : public OnboardTest {
     phases.enter(Phase::takeoff, now());
     phases.enter(Phase::explore, now());
   }
-  Teammate teammate(RobotId id) {
-    return Teammate(id, onboard.options.team, onboard.options.homing, Vec3::Zero(), 1, key_of_seed(1));
+  TeamNode teammate(RobotId id) {
+    return TeamNode(id, onboard.options.team, onboard.options.homing, Vec3::Zero(), 1, key_of_seed(1));
   }
   /// Robot 1, which goes before robot 2, says that it is there.
-  void hear_first_robot_at(const Vec3& place, const Vec3& velocity_mps = Vec3::Zero()) {
+  void receive_first_robot_at(const Vec3& place, const Vec3& velocity_mps = Vec3::Zero()) {
     TeamState state;
     state.position = place;
     state.velocity_mps = velocity_mps;
     state.phase = TeamPhase::explore;
     state.stamp = now();
     first.set_state(state);
-    for (const Bytes& frame : first.speak(now())) mate.hear(frame, now());
+    for (const Bytes& frame : first.transmit(now())) node.receive(frame, now());
   }
   const Vec3& here() { return onboard.flight.reference().position; }
 
-  Teammate mate = teammate(2), first = teammate(1);
+  TeamNode node = teammate(2), first = teammate(1);
   RelayHoming homing{2,
                      onboard.options.team,
                      onboard.options.homing,
@@ -38,9 +38,9 @@ class TeamPartsTest : public OnboardTest {
                      onboard.options.planning,
                      onboard.options.motion,
                      onboard.vehicle.radius_m};
-  Teamwork work{mate, homing, onboard.options.team, 0};
+  Teamwork work{node, homing, onboard.options.team, 0};
   TeamSharing sharing{onboard, work, {phases, path, endurance}};
-  RightOfWay right_of_way{onboard, work, {phases, goals, path, way_flown}};
+  RightOfWay right_of_way{onboard, work, {phases, goals, path, flown_path}};
   RelayLanding landing{onboard, work, phases, endurance};
 };
 
@@ -49,7 +49,7 @@ TEST_F(TeamPartsTest, ItYieldsToARobotThatGoesFirstAndGoesOnOnceThatIsAway) {
   EXPECT_FALSE(path.yields());
   fly_ahead(20);
   advance(2);
-  hear_first_robot_at(here() + Vec3(4, 0, 0), Vec3(-1, 0, 0));
+  receive_first_robot_at(here() + Vec3(4, 0, 0), Vec3(-1, 0, 0));
   right_of_way.step();
   EXPECT_TRUE(path.yields());
   EXPECT_TRUE(path.blocked());
@@ -57,7 +57,7 @@ TEST_F(TeamPartsTest, ItYieldsToARobotThatGoesFirstAndGoesOnOnceThatIsAway) {
   EXPECT_EQ(told("give way"), 1u);
   for (int i = 0; i < 300 && path.yields(); ++i) {
     advance(0.1);
-    hear_first_robot_at(here() + Vec3(40, 0, 0));
+    receive_first_robot_at(here() + Vec3(40, 0, 0));
     right_of_way.step();
   }
   EXPECT_FALSE(path.yields());
@@ -65,30 +65,30 @@ TEST_F(TeamPartsTest, ItYieldsToARobotThatGoesFirstAndGoesOnOnceThatIsAway) {
 }
 
 TEST_F(TeamPartsTest, OnceItLandsNobodyHasTheRightOfWayOverIt) {
-  hear_first_robot_at(here() + Vec3(2, 0, 0));
+  receive_first_robot_at(here() + Vec3(2, 0, 0));
   right_of_way.step();
   ASSERT_TRUE(path.yields());
   phases.enter(Phase::land, now());
   right_of_way.step();
   EXPECT_FALSE(path.yields());
-  EXPECT_EQ(right_of_way.told_now(), TeamPhase::landing);
+  EXPECT_EQ(right_of_way.phase_to_report(), TeamPhase::landing);
 }
 
 TEST_F(TeamPartsTest, AnotherIsInCompanyNearByAndLeftOutOfTheMapWhereItShouldBe) {
   EXPECT_FALSE(sharing.in_company());
-  hear_first_robot_at(here() + Vec3(5, 0, 0), Vec3(1, 0, 0));
+  receive_first_robot_at(here() + Vec3(5, 0, 0), Vec3(1, 0, 0));
   EXPECT_TRUE(sharing.in_company());
   const auto bodies = sharing.others_at(now() - kSecond / 2);
   ASSERT_EQ(bodies.size(), 1u);
   EXPECT_NEAR(bodies[0].position.x() - here().x(), 4.5, 0.03) << "half a second ago, at 1 m/s";
   advance(1);
-  hear_first_robot_at(here() + Vec3(50, 0, 0));
+  receive_first_robot_at(here() + Vec3(50, 0, 0));
   EXPECT_FALSE(sharing.in_company());
 }
 
 TEST_F(TeamPartsTest, ItStaysOnTheGroundWhileAnotherIsWhereItWouldHover) {
   EXPECT_TRUE(sharing.airspace_clear());
-  hear_first_robot_at(Vec3(1, 0, 1));
+  receive_first_robot_at(Vec3(1, 0, 1));
   EXPECT_FALSE(sharing.airspace_clear());
 }
 
@@ -100,8 +100,8 @@ TEST_F(TeamPartsTest, AClaimedGoalIsToldToTheOthersUntilItIsGivenUp) {
     for (int i = 0; i < 30; ++i) {
       advance(0.1);
       sharing.report(phase);
-      for (const Bytes& frame : mate.speak(now())) first.hear(frame, now());
-      hear_first_robot_at({30, 0, 0});
+      for (const Bytes& frame : node.transmit(now())) first.receive(frame, now());
+      receive_first_robot_at({30, 0, 0});
     }
   };
   tell(TeamPhase::explore);
@@ -137,11 +137,11 @@ TEST_F(TeamPartsTest, AChoiceThatComesAfterItBeganToLandChangesNothing) {
 }
 
 TEST(ToldPhase, TellsWhoCannotStopForOthers) {
-  EXPECT_EQ(told(Phase::takeoff), TeamPhase::landing);
-  EXPECT_EQ(told(Phase::land), TeamPhase::landing);
-  EXPECT_EQ(told(Phase::look), TeamPhase::explore);
-  EXPECT_EQ(told(Phase::home), TeamPhase::home);
-  EXPECT_EQ(told(Phase::done), TeamPhase::landed);
+  EXPECT_EQ(phase_for_team(Phase::takeoff), TeamPhase::landing);
+  EXPECT_EQ(phase_for_team(Phase::land), TeamPhase::landing);
+  EXPECT_EQ(phase_for_team(Phase::look), TeamPhase::explore);
+  EXPECT_EQ(phase_for_team(Phase::home), TeamPhase::home);
+  EXPECT_EQ(phase_for_team(Phase::done), TeamPhase::landed);
 }
 
 }  // namespace

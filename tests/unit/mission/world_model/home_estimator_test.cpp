@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core_stack/homing/way_home/home.h"
+#include "core_stack/homing/path_home/home.h"
 #include "tests/unit/homing/passage.h"
 #include "tests/unit/mission/mapped_world.h"
 
@@ -54,7 +54,7 @@ TEST(HomeEstimator, NarrowPassagesTakeLonger) {
   const HomeEstimate home = e.home.estimate(beyond, 160);
   EXPECT_NEAR(home.length_m, 9, 1);
   // Some 2.6 m of it are narrow (WorldModel.MeasuresTheNarrowPartOfAPath).
-  const double slow_mps = e.options.safety.slow_share * e.options.motion.max_speed_mps;
+  const double slow_mps = e.options.safety.slow_fraction * e.options.motion.max_speed_mps;
   EXPECT_NEAR(home.time_s - e.time_home_s(home.length_m), 2.6 / slow_mps, 1 / slow_mps);
 }
 
@@ -69,19 +69,19 @@ TEST(HomeEstimator, SlackIsWhatTheMarginAndTheReserveLeave) {
 TEST(HomeEstimator, ATeammatesTimeIsWorkedOutAsOnesOwn) {
   Estimating e(room_open_to_x());
   const Vec3 there(6, 4, 2);
-  HeardMate mate{2, 40 * kSecond, there, {0.5, 0, 0}, Vec3(6.5, 3, 2), true, 300};
-  const OtherVehicle seen = e.home.seen_by_policy(mate, 50 * kSecond);
+  TeammateState teammate{2, 40 * kSecond, there, {0.5, 0, 0}, Vec3(6.5, 3, 2), true, 300};
+  const OtherVehicle seen = e.home.seen_by_policy(teammate, 50 * kSecond);
   EXPECT_EQ(seen.id, 2u);
-  EXPECT_EQ(seen.heard, mate.heard);
+  EXPECT_EQ(seen.heard, teammate.heard);
   EXPECT_EQ(seen.position, there);
-  EXPECT_EQ(seen.velocity_mps, mate.velocity_mps);
-  EXPECT_EQ(seen.goal, mate.goal);
+  EXPECT_EQ(seen.velocity_mps, teammate.velocity_mps);
+  EXPECT_EQ(seen.goal, teammate.goal);
   EXPECT_NEAR(seen.seconds_before_homing, e.home.slack_s(290, e.home.estimate(there, 0)), 1e-9)
       << "ten seconds have passed";
-  mate.position.x() = 90;
-  EXPECT_TRUE(std::isnan(e.home.seen_by_policy(mate, 0).seconds_before_homing)) << "where this map ends";
-  mate.explores = false;
-  EXPECT_EQ(e.home.seen_by_policy(mate, 0).seconds_before_homing, 0);
+  teammate.position.x() = 90;
+  EXPECT_TRUE(std::isnan(e.home.seen_by_policy(teammate, 0).seconds_before_homing)) << "where this map ends";
+  teammate.explores = false;
+  EXPECT_EQ(e.home.seen_by_policy(teammate, 0).seconds_before_homing, 0);
 }
 
 TEST(HomeEstimator, InATeamALandingSpotCountsIfItTakesLessTime) {

@@ -97,9 +97,9 @@ TEST(Planner, WhatTheRoadmapConnectsCanBeFlown) {
       ++connected;
       const Path path = plan(map, roadmap, a, b, options);
       ASSERT_TRUE(path.found()) << seed << ": " << path.reason;
-      const double least_m = path.narrow() ? search_clearance_m(options, 0.2) : options.clearance_m;
+      const double min_m = path.narrow() ? search_clearance_m(options, 0.2) : options.clearance_m;
       for (std::size_t k = path.escape_points + 1; k < path.points.size(); ++k)
-        EXPECT_GE(obstacles.distance(path.points[k - 1], path.points[k]), least_m - 1e-6) << seed;
+        EXPECT_GE(obstacles.distance(path.points[k - 1], path.points[k]), min_m - 1e-6) << seed;
     }
   }
   EXPECT_GT(connected, 20);

@@ -12,7 +12,7 @@ namespace {
 using testing::Obstacles;
 using testing::WindingCave;
 
-double least_clearance(const Obstacles& obstacles, const std::vector<Vec3>& points) {
+double min_clearance(const Obstacles& obstacles, const std::vector<Vec3>& points) {
   double least = 1e9;
   for (std::size_t i = 1; i < points.size(); ++i)
     least = std::min(least, obstacles.distance(points[i - 1], points[i]));
@@ -36,7 +36,7 @@ TEST(Refine, IsHardlyLongerAndNeverLessClearAndKeepsTheEnds) {
     EXPECT_EQ(fine.front(), raw.points.front());
     EXPECT_EQ(fine.back(), raw.points.back());
     EXPECT_LE(path_length_m(fine), 1.05 * raw.length_m);
-    EXPECT_GE(least_clearance(Obstacles(map), fine), options.clearance_m - 1e-6);
+    EXPECT_GE(min_clearance(Obstacles(map), fine), options.clearance_m - 1e-6);
     EXPECT_EQ(first_blocked_segment(map, fine, options.clearance_m), -1);
   }
 }
@@ -51,8 +51,8 @@ TEST(Refine, PushesOutToThePreferredClearanceWhereThereIsRoom) {
   const Path raw = plan_on_grid(map, {1.5, 2.0, 2.0}, {8.5, 2.0, 2.0}, options);
   ASSERT_TRUE(raw.found());
   const std::vector<Vec3> fine = refine_path(map, raw.points, options);
-  EXPECT_LT(least_clearance(Obstacles(map), raw.points), 0.7);
-  EXPECT_GT(least_clearance(Obstacles(map), fine), 0.8);
+  EXPECT_LT(min_clearance(Obstacles(map), raw.points), 0.7);
+  EXPECT_GT(min_clearance(Obstacles(map), fine), 0.8);
   EXPECT_GT(mean_clearance(Obstacles(map), fine), mean_clearance(Obstacles(map), raw.points));
 }
 
@@ -83,12 +83,12 @@ TEST(Refine, LiftsASqueezedPathToTheFullClearance) {
   testing::draw(even, {0, 0, 0}, {39, 5, 5}, [](const CellKey& k) {
     return k.y == 0 || k.y == 5 || k.z == 0 || k.z == 5 ? Cell::occupied : Cell::free;
   });
-  const Path odd_way = plan_on_grid(map, {1.0, 0.7, 0.7}, {7.0, 0.7, 0.7}, kOptions);
-  EXPECT_TRUE(odd_way.found()) << odd_way.reason;
+  const Path odd_path = plan_on_grid(map, {1.0, 0.7, 0.7}, {7.0, 0.7, 0.7}, kOptions);
+  EXPECT_TRUE(odd_path.found()) << odd_path.reason;
   EXPECT_FALSE(plan_on_grid(even, {1.0, 0.6, 0.6}, {7.0, 0.6, 0.6}, kOptions).found());
   const Path raw = plan_on_grid_squeezing(even, {1.0, 0.6, 0.6}, {7.0, 0.6, 0.6}, kOptions);
   ASSERT_TRUE(raw.found()) << raw.reason;
-  EXPECT_GE(least_clearance(Obstacles(even), refine_path(even, raw.points, kOptions)),
+  EXPECT_GE(min_clearance(Obstacles(even), refine_path(even, raw.points, kOptions)),
             kOptions.clearance_m - 1e-6);
 }
 

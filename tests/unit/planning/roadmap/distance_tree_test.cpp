@@ -81,11 +81,12 @@ TEST(DistanceTree, KeptUpToDateEqualsBuiltFromScratchAndDijkstra) {
       const CellKey at{static_cast<std::int32_t>(random.bits() % 18),
                        static_cast<std::int32_t>(random.bits() % 12),
                        static_cast<std::int32_t>(random.bits() % 7)};
-      const double share = 0.02 * static_cast<double>(random.bits() % 3);
+      const double fraction = 0.02 * static_cast<double>(random.bits() % 3);
       std::vector<CellChange> changes;
       testing::draw(
           map, at, at + CellKey{14, 11, 9},
-          [&](const CellKey&) { return random.uniform() < share ? Cell::occupied : Cell::free; }, &changes);
+          [&](const CellKey&) { return random.uniform() < fraction ? Cell::occupied : Cell::free; },
+          &changes);
       roadmap.update(map, changes);
       kept.update(roadmap, root);
       DistanceTree built;

@@ -39,16 +39,17 @@ TEST(Roadmap, ReachesExactlyWhatTheGridReaches) {
     const std::vector<double> lengths = roadmap.distances(map, from, places, 0.0);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Path grid = plan_on_grid_squeezing(map, from, places[i], kOptions);
-      const Path way = roadmap.find(map, from, places[i]);
+      const Path path = roadmap.find(map, from, places[i]);
       // A point may see a neighbouring node directly, in a place where the grid finds no cell at all.
-      ASSERT_TRUE(!grid.found() || (std::isfinite(lengths[i]) && way.found()));
-      ASSERT_TRUE(way.found() || !std::isfinite(lengths[i]) || segment_clear(map, from, places[i], search_m));
+      ASSERT_TRUE(!grid.found() || (std::isfinite(lengths[i]) && path.found()));
+      ASSERT_TRUE(path.found() || !std::isfinite(lengths[i]) ||
+                  segment_clear(map, from, places[i], search_m));
       (grid.found() ? reached : not_reached) += 1;
-      if (!way.found()) continue;
-      ASSERT_TRUE(way.points.front() == from && way.points.back() == places[i]);
-      for (std::size_t k = 1; k < way.points.size(); ++k)
-        ASSERT_TRUE(obstacles.distance(way.points[k - 1], way.points[k]) >= search_m - 1e-6);
-      ASSERT_TRUE(std::abs(way.length_m - path_length_m(way.points)) < 1e-9);
+      if (!path.found()) continue;
+      ASSERT_TRUE(path.points.front() == from && path.points.back() == places[i]);
+      for (std::size_t k = 1; k < path.points.size(); ++k)
+        ASSERT_TRUE(obstacles.distance(path.points[k - 1], path.points[k]) >= search_m - 1e-6);
+      ASSERT_TRUE(std::abs(path.length_m - path_length_m(path.points)) < 1e-9);
       ASSERT_TRUE(lengths[i] >= (places[i] - from).norm() - 1e-9);
     }
   }
@@ -66,11 +67,12 @@ TEST(Roadmap, UpdatedFromChangesEqualsBuiltFromScratch) {
       const CellKey at{static_cast<std::int32_t>(random.bits() % 20),
                        static_cast<std::int32_t>(random.bits() % 14),
                        static_cast<std::int32_t>(random.bits() % 8)};
-      const double share = 0.02 * static_cast<double>(random.bits() % 3);
+      const double fraction = 0.02 * static_cast<double>(random.bits() % 3);
       std::vector<CellChange> changes;
       testing::draw(
           map, at, at + CellKey{12, 9, 8},
-          [&](const CellKey&) { return random.uniform() < share ? Cell::occupied : Cell::free; }, &changes);
+          [&](const CellKey&) { return random.uniform() < fraction ? Cell::occupied : Cell::free; },
+          &changes);
       grown.update(map, changes);
     }
     Roadmap built{kOptions};

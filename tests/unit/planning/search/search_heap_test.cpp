@@ -12,8 +12,8 @@ namespace {
 /// Oracle: a plain map of what is open, searched from end to end.
 RC_GTEST_PROP(SearchHeap, GivesWhatALinearSearchGives, ()) {
   std::map<std::uint32_t, std::uint32_t> places;
-  const auto place_of = [&](std::uint32_t node) -> std::uint32_t& { return places[node]; };
-  SearchHeap heap(place_of);
+  const auto heap_index_of = [&](std::uint32_t node) -> std::uint32_t& { return places[node]; };
+  SearchHeap heap(heap_index_of);
   std::map<std::uint32_t, OpenNode> open;
   const int steps = *rc::gen::inRange(1, 300);
   for (int i = 0; i < steps; ++i) {

@@ -27,21 +27,21 @@ double sharpest_turn_rad(const std::vector<Vec3>& points) {
 const auto everywhere = [](const Vec3&, const Vec3&) { return true; };
 
 TEST(JoinPaths, ACornerBecomesACurveThatPassesItClosely) {
-  const std::vector<Vec3> lead = line({0, 0, 0}, {3, 0, 0}),
+  const std::vector<Vec3> committed = line({0, 0, 0}, {3, 0, 0}),
                           path = line({3, 0, 0}, {3 + 3 * std::cos(0.4), 3 * std::sin(0.4), 0});
-  const std::vector<Vec3> way = join_paths(lead, path, 0.3, everywhere);
-  EXPECT_LT(sharpest_turn_rad(way), 0.03);
-  EXPECT_EQ(way.front(), lead.front());
-  EXPECT_EQ(way.back(), path.back());
+  const std::vector<Vec3> joined = join_paths(committed, path, 0.3, everywhere);
+  EXPECT_LT(sharpest_turn_rad(joined), 0.03);
+  EXPECT_EQ(joined.front(), committed.front());
+  EXPECT_EQ(joined.back(), path.back());
   double nearest = 1e9;
-  for (const Vec3& p : way) nearest = std::min(nearest, (p - lead.back()).norm());
+  for (const Vec3& p : joined) nearest = std::min(nearest, (p - committed.back()).norm());
   EXPECT_LT(nearest, 0.3);
 }
 
 TEST(JoinPaths, WhereNoCurveIsClearTheCornerStays) {
-  const std::vector<Vec3> lead = line({0, 0, 0}, {3, 0, 0}), path = line({3, 0, 0}, {3, 3, 0});
+  const std::vector<Vec3> committed = line({0, 0, 0}, {3, 0, 0}), path = line({3, 0, 0}, {3, 3, 0});
   const auto nowhere = [](const Vec3&, const Vec3&) { return false; };
-  EXPECT_EQ(join_paths(lead, path, 0.3, nowhere).size(), lead.size() + path.size() - 1);
+  EXPECT_EQ(join_paths(committed, path, 0.3, nowhere).size(), committed.size() + path.size() - 1);
 }
 
 TEST(JoinPaths, NeverLeavesWhatIsClear) {
@@ -50,19 +50,19 @@ TEST(JoinPaths, NeverLeavesWhatIsClear) {
   const auto clear = [&](const Vec3& a, const Vec3& b) {
     return (a - pillar).norm() > 0.35 && (b - pillar).norm() > 0.35;
   };
-  const std::vector<Vec3> way =
+  const std::vector<Vec3> joined =
       join_paths(line({0, 0, 0}, {3, 0, 0}), line({3, 0, 0}, {3, 3, 0}), 0.3, clear);
-  EXPECT_LT(sharpest_turn_rad(way), 1.0);
-  for (std::size_t i = 1; i < way.size(); ++i) EXPECT_TRUE(clear(way[i - 1], way[i])) << i;
+  EXPECT_LT(sharpest_turn_rad(joined), 1.0);
+  for (std::size_t i = 1; i < joined.size(); ++i) EXPECT_TRUE(clear(joined[i - 1], joined[i])) << i;
 }
 
 TEST(JoinPaths, AShortLeadOrATurnBackIsLeftAlone) {
   const std::vector<Vec3> path = line({3, 0, 0}, {0, 0.2, 0});
   EXPECT_EQ(join_paths({{3, 0, 0}}, path, 0.3, everywhere).size(), path.size());
-  const std::vector<Vec3> lead = line({0, 0, 0}, {3, 0, 0});
-  const std::vector<Vec3> way = join_paths(lead, path, 0.3, everywhere);
+  const std::vector<Vec3> committed = line({0, 0, 0}, {3, 0, 0});
+  const std::vector<Vec3> joined = join_paths(committed, path, 0.3, everywhere);
   double nearest = 1e9;
-  for (const Vec3& p : way) nearest = std::min(nearest, (p - lead.back()).norm());
+  for (const Vec3& p : joined) nearest = std::min(nearest, (p - committed.back()).norm());
   EXPECT_LE(nearest, 0.3) << "the goal that was turned back at";
 }
 

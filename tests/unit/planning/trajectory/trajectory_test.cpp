@@ -165,12 +165,12 @@ TEST(Trajectory, LooksInPassingWhereItIsToldTo) {
   plan.passing = {{6, 0, 0}, 1.5};
   const std::vector<Vec3> path{{0, 0, 0}, {12, 0, 0}};
   const Trajectory t = sample_trajectory(path, 0, 0, {}, plan);
-  double least_off = 10;
+  double min_off = 10;
   for (const TrajectorySample& s : t.samples) {
-    if (std::abs(s.position.x() - 6) < 0.2) least_off = std::min(least_off, std::abs(s.heading_rad - 1.5));
+    if (std::abs(s.position.x() - 6) < 0.2) min_off = std::min(min_off, std::abs(s.heading_rad - 1.5));
     EXPECT_TRUE(std::abs(s.position.x() - 6) < 3 || std::abs(s.heading_rad) < 0.1) << s.position.x();
   }
-  EXPECT_LT(least_off, 0.4);
+  EXPECT_LT(min_off, 0.4);
   plan.passing.reset();
   EXPECT_LT(t.end() - sample_trajectory(path, 0, 0, {}, plan).end(), 3 * kSecond) << "without a stop";
 }

@@ -22,8 +22,8 @@ bool blocked(const cave::TriangleMesh& m, const Vec3& from, const Vec3& to) {
     const double det = e1.dot(p);
     if (std::abs(det) < 1e-12) continue;
     const Vec3 s = from - a, q = s.cross(e1);
-    const double u = s.dot(p) / det, v = d.dot(q) / det, share = e2.dot(q) / det;
-    if (u >= 0 && v >= 0 && u + v <= 1 && share > 0 && share < 1) return true;
+    const double u = s.dot(p) / det, v = d.dot(q) / det, fraction = e2.dot(q) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1 && fraction > 0 && fraction < 1) return true;
   }
   return false;
 }
@@ -54,12 +54,12 @@ TEST(ObjectDetector, SeesWhatBruteForceSees) {
       }
       for (std::size_t k = 0; k < told.size(); ++k) {
         const auto& object = c.description.objects[k];
-        const Vec3 way = object.position - T.position, in = T.orientation.inverse() * way;
+        const Vec3 offset = object.position - T.position, in = T.orientation.inverse() * offset;
         const bool in_field = std::abs(std::atan2(in.y(), in.x())) <= camera.horizontal_fov_rad / 2 &&
                               std::abs(std::atan2(in.z(), in.x())) <= camera.vertical_fov_rad / 2;
         const double limit = std::min(4.0, static_cast<double>(camera.max_range_m));
-        const bool near = way.norm() <= limit && way.norm() >= static_cast<double>(camera.min_range_m);
-        const bool facing_us = std::acos(-way.normalized().dot(object.normal)) <= o.max_incidence_rad;
+        const bool near = offset.norm() <= limit && offset.norm() >= static_cast<double>(camera.min_range_m);
+        const bool facing_us = std::acos(-offset.normalized().dot(object.normal)) <= o.max_incidence_rad;
         const bool clear = !blocked(mesh, T.position, object.position);
         EXPECT_EQ(told[k], in_field && near && facing_us && clear) << k << " from pose " << i;
         seen += told[k];

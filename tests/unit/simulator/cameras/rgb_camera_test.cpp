@@ -54,13 +54,13 @@ TEST(RgbCamera, APlaneLitHeadOnHasLambertsLuminance) {
 TEST(RgbCamera, OrenAndNayarsHeadOnValueAndLambertsLimit) {
   const core::Vec3f n(0, 0, 1);
   for (const float sigma : {0.1f, 0.35f, 0.8f})
-    EXPECT_NEAR(sim::reflected_share(n, n, n, sigma), 1 - 0.5f * sigma * sigma / (sigma * sigma + 0.33f),
+    EXPECT_NEAR(sim::reflected_fraction(n, n, n, sigma), 1 - 0.5f * sigma * sigma / (sigma * sigma + 0.33f),
                 1e-6);
   const core::Vec3f in = core::Vec3f(0.5f, 0.2f, 1).normalized(),
                     out = core::Vec3f(-0.3f, 0.6f, 1).normalized();
-  EXPECT_FLOAT_EQ(sim::reflected_share(n, in, out, 0), in.z());
-  EXPECT_EQ(sim::reflected_share(n, -in, out, 0.3f), 0);
-  EXPECT_EQ(sim::reflected_share(n, in, -out, 0.3f), 0);
+  EXPECT_FLOAT_EQ(sim::reflected_fraction(n, in, out, 0), in.z());
+  EXPECT_EQ(sim::reflected_fraction(n, -in, out, 0.3f), 0);
+  EXPECT_EQ(sim::reflected_fraction(n, in, -out, 0.3f), 0);
   // The published form, with its angles.
   const double sigma = 0.35, a = std::acos(in.z()), b = std::acos(out.z());
   const double phi = std::atan2(in.y(), in.x()) - std::atan2(out.y(), out.x());
@@ -68,16 +68,16 @@ TEST(RgbCamera, OrenAndNayarsHeadOnValueAndLambertsLimit) {
                B = 0.45 * sigma * sigma / (sigma * sigma + 0.09);
   const double expected = std::cos(a) * (A + B * std::max(0.0, std::cos(phi)) * std::sin(std::max(a, b)) *
                                                  std::tan(std::min(a, b)));
-  EXPECT_NEAR(sim::reflected_share(n, in, out, 0.35f), expected, 1e-5);
+  EXPECT_NEAR(sim::reflected_fraction(n, in, out, 0.35f), expected, 1e-5);
 }
 
 TEST(RgbCamera, ASpotIsDarkOutsideItsBeamAndAFloodIsNot) {
   RgbOptions o = plain();
   o.light = "spot";
   o.beam_rad = 0.4;
-  EXPECT_EQ(sim::beam_share(o, std::cos(0.19f)), 1);
-  EXPECT_EQ(sim::beam_share(o, std::cos(0.25f)), 0);
-  const float edge = sim::beam_share(o, std::cos(0.22f));
+  EXPECT_EQ(sim::beam_fraction(o, std::cos(0.19f)), 1);
+  EXPECT_EQ(sim::beam_fraction(o, std::cos(0.25f)), 0);
+  const float edge = sim::beam_fraction(o, std::cos(0.22f));
   EXPECT_GT(edge, 0);
   EXPECT_LT(edge, 1);
   const cave::Cave box = make_cave(box_mesh({-20, -20, -20}, {3.15, 20, 20}));
@@ -86,7 +86,7 @@ TEST(RgbCamera, ASpotIsDarkOutsideItsBeamAndAFloodIsNot) {
   EXPECT_GT(spot[spot.size() / 2 + 32].y(), 0);
   o.light = "flood";
   EXPECT_GT(RgbCamera(o).light(box, {}).front().y(), 0);
-  EXPECT_EQ(sim::beam_share(o, -0.1f), 0);
+  EXPECT_EQ(sim::beam_fraction(o, -0.1f), 0);
 }
 
 TEST(RgbCamera, AKnownPointComesToItsPixel) {

@@ -205,8 +205,8 @@ TEST_F(MeshFiles, ColladaWithYUpIsTurned) {
 TEST_F(MeshFiles, TruncatedFilesAreRefusedWhereverTheyEnd) {
   for (const char* name : {"t.stl", "t.ply"}) {
     const std::string whole = written(name);
-    for (const double share : {0.02, 0.3, 0.5, 0.9, 0.999}) {
-      const auto bytes = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+    for (const double fraction : {0.02, 0.3, 0.5, 0.9, 0.999}) {
+      const auto bytes = static_cast<std::size_t>(fraction * static_cast<double>(whole.size()));
       expect_refused(name, whole.substr(0, bytes), "truncated");
     }
     expect_refused(name, whole.substr(0, whole.size() - 1), "truncated");

@@ -43,7 +43,7 @@ TEST(Preflight, AHoleAtTheStartIsReportedWithDirectionAndShare) {
   // Without the wall at +x: seen from the centre of a cube, a sixth of all directions.
   const cave::RayScene scene(box_mesh({-2, -2, -2}, {2, 2, 2}, 0b111101));
   const cave::Surroundings s = cave::look_around(scene, Vec3::Zero());
-  EXPECT_NEAR(s.escape_share, 1.0 / 6, 0.002);
+  EXPECT_NEAR(s.escape_fraction, 1.0 / 6, 0.002);
   EXPECT_LT((s.escape_direction - Vec3::UnitX()).norm(), 0.02);
   const std::string e = refusal(box_mesh({-2, -2, -2}, {2, 2, 2}, 0b111101), Vec3::Zero());
   EXPECT_NE(e.find("hole"), std::string::npos) << e;

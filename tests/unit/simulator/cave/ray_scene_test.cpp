@@ -90,8 +90,8 @@ TEST(RayScene, NoRaySlipsBetweenTwoTriangles) {
   for (const auto& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t[0]].cast<double>(), b = mesh.vertices[t[1]].cast<double>();
     const Vec3f from(static_cast<float>(random.uniform(5, 15)), 0.1f, -0.2f);
-    for (const double share : {0.0, 0.25, 0.5}) {
-      const Vec3f to = (a + share * (b - a)).cast<float>();
+    for (const double fraction : {0.0, 0.25, 0.5}) {
+      const Vec3f to = (a + fraction * (b - a)).cast<float>();
       if (to.x() < 1 || to.x() > 19) continue;  // the tunnel's ends are open
       ASSERT_TRUE(scene.cast({from, (to - from).normalized()}, 100).any()) << to.transpose();
       ++cast;

@@ -62,14 +62,14 @@ TEST_P(GeneratedCaves, HaveTheVolumeAskedFor) {
 
 TEST_P(GeneratedCaves, LeaveTheVehicleAWayAlongEveryPassage) {
   const RayScene scene(cave.mesh);
-  ASSERT_FALSE(cave.ways.empty());
+  ASSERT_FALSE(cave.axes.empty());
   const auto r = karst::evaluation::find_reachable(cave.mesh, cave.start.position, {}, "generated");
-  for (const auto& way : cave.ways)
-    for (std::size_t i = 0; i + 1 < way.size(); ++i)
+  for (const auto& axis : cave.axes)
+    for (std::size_t i = 0; i + 1 < axis.size(); ++i)
       for (int k = 0; k < 10; ++k) {
-        const Vec3 p = way[i] + 0.1 * k * (way[i + 1] - way[i]);
+        const Vec3 p = axis[i] + 0.1 * k * (axis[i + 1] - axis[i]);
         // Checked at steps of 0.3 m when it was made: half of that may be lost in between.
-        EXPECT_GE(scene.distance_to_rock(p, 5), kWayClearanceM - 0.16);
+        EXPECT_GE(scene.distance_to_rock(p, 5), kPathClearanceM - 0.16);
         const Vec3 cell = (p / 0.2).array().floor();
         EXPECT_TRUE(r.free.contains(
             {static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())}));

@@ -19,8 +19,8 @@ class QuadrotorInAHall : public testing::Test {
     return {o, core::Random(1)};
   }
   static Pose standing() { return {{0, 0, 0.3}, core::Quat::Identity()}; }
-  void thrust(double share_of_weight, const Vec3& rate = Vec3::Zero()) {
-    quad.command = {rate, share_of_weight * model.body.weight_n(), true};
+  void thrust(double fraction_of_weight, const Vec3& rate = Vec3::Zero()) {
+    quad.command = {rate, fraction_of_weight * model.body.weight_n(), true};
   }
   /// Advances until an event or `steps` ms.
   QuadrotorEvent run(int steps) { return quad.advance(steps); }
@@ -54,8 +54,8 @@ TEST_F(QuadrotorInAHall, ClimbFollowsTheThrustStepThroughTheMotorsLag) {
   // v' = g 0.5 (1 - exp(-t / tau)) without drag, from t0 on.
   const double tau = model.motors.time_constant_s, t1 = t0 + 0.5;
   const double expected = 9.81 * 0.5 * (0.5 + tau * (std::exp(-t1 / tau) - std::exp(-t0 / tau)));
-  const double drag_share = model.body.drag_kgps / model.body.mass_kg * 0.25;  // about c / m * t / 2
-  EXPECT_NEAR(quad.state().velocity_mps.z() - v0, expected * (1 - drag_share), 0.03);
+  const double drag_fraction = model.body.drag_kgps / model.body.mass_kg * 0.25;  // about c / m * t / 2
+  EXPECT_NEAR(quad.state().velocity_mps.z() - v0, expected * (1 - drag_fraction), 0.03);
 }
 
 TEST_F(QuadrotorInAHall, ASlowDescentLandsAndRests) {

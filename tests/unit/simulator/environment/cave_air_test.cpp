@@ -40,14 +40,14 @@ TEST(CaveAir, TheCavesCloudsComeAtTheirTimeAndMistFliesAlong) {
 }
 
 TEST(CaveAir, TheWashLiftsNothingBeyondItsReachAndAllWithinItsCore) {
-  EXPECT_EQ(sim::lifted_share(3, 3, 0.3), 0);
-  EXPECT_EQ(sim::lifted_share(1.5, 3, 0.3), 1) << "2.5 diameters";
+  EXPECT_EQ(sim::lifted_fraction(3, 3, 0.3), 0);
+  EXPECT_EQ(sim::lifted_fraction(1.5, 3, 0.3), 1) << "2.5 diameters";
   // (u^2 - u_t^2) over its value at the core's end, u = 1 / distance.
-  EXPECT_NEAR(sim::lifted_share(2, 3, 0.3), (1 / 4.0 - 1 / 9.0) / (1 / 2.25 - 1 / 9.0), 1e-12);
-  EXPECT_EQ(sim::lifted_share(0.5, 1, 0.3), 1);
-  EXPECT_EQ(sim::lifted_share(1, 1, 0.3), 0);
+  EXPECT_NEAR(sim::lifted_fraction(2, 3, 0.3), (1 / 4.0 - 1 / 9.0) / (1 / 2.25 - 1 / 9.0), 1e-12);
+  EXPECT_EQ(sim::lifted_fraction(0.5, 1, 0.3), 1);
+  EXPECT_EQ(sim::lifted_fraction(1, 1, 0.3), 0);
   for (double m = 0.1; m < 4; m += 0.1)
-    EXPECT_GE(sim::lifted_share(m, 3, 0.3), sim::lifted_share(m + 0.1, 3, 0.3));
+    EXPECT_GE(sim::lifted_fraction(m, 3, 0.3), sim::lifted_fraction(m + 0.1, 3, 0.3));
 }
 
 TEST(CaveAir, DustRisesBelowAndBesideTheVehicleNearRockOnly) {

@@ -11,7 +11,7 @@ namespace karst::test {
 namespace {
 
 using sim::Air;
-using sim::CloudyWay;
+using sim::CloudyPath;
 
 cave::Cloud ball(const Vec3& p, double radius_m, double extinction_1pm,
                  double lidar_ratio_sr = cave::Cloud::kDroplets_sr) {
@@ -48,39 +48,39 @@ RC_GTEST_PROP(Clouds, OpticalDepthIsTheIntegralOfExtinctionAlongTheBeam, ()) {
   const Vec3 towards = Vec3(number(-1, 1), number(-1, 1), number(-0.3, 0.3)) + Vec3(0, 0, 1e-3);
   RC_PRE(towards.norm() > 0.05);
   const cave::Ray ray{from.cast<float>(), towards.normalized().cast<float>()};
-  CloudyWay way;
-  way.trace(clouds, ray);
+  CloudyPath path;
+  path.trace(clouds, ray);
   double sum = 0;
   constexpr double kStep_m = 1e-3;
   for (double t = kStep_m / 2; t < 8; t += kStep_m)
     for (const cave::Cloud& c : clouds)
       if (inside(c, from + t * towards.normalized())) sum += kStep_m * c.extinction_1pm;
-  RC_ASSERT(std::abs(way.depth(8) - sum) < 0.02);
+  RC_ASSERT(std::abs(path.depth(8) - sum) < 0.02);
   double stretches = 0;
-  way.for_each_stretch(0, 8, 0.75, [&](const CloudyWay::Stretch& s) {
+  path.for_each_stretch(0, 8, 0.75, [&](const CloudyPath::Stretch& s) {
     stretches += s.depth;
     RC_ASSERT(s.to_m >= s.from_m && s.from_m >= 0 && s.to_m <= 8.0);
   });
-  RC_ASSERT(std::abs(stretches - std::min(way.depth(8), stretches)) < 1e-9);
-  RC_ASSERT(way.depth(8) > 8 || std::abs(stretches - way.depth(8)) < 1e-9);
+  RC_ASSERT(std::abs(stretches - std::min(path.depth(8), stretches)) < 1e-9);
+  RC_ASSERT(path.depth(8) > 8 || std::abs(stretches - path.depth(8)) < 1e-9);
 }
 
 TEST(Clouds, WhatComesBackOfAllStretchesIsWhatTheWholeCloudSendsBack) {
-  CloudyWay way;
+  CloudyPath path;
   const std::vector<cave::Cloud> cloud{ball({5, 0, 0}, 2, 0.3)};
-  way.trace(cloud, {Vec3f::Zero(), Vec3f::UnitX()});
+  path.trace(cloud, {Vec3f::Zero(), Vec3f::UnitX()});
   for (const double length_m : {0.1, 0.75, 3.0}) {
     double back = 0;
-    way.for_each_stretch(0.3, 20, length_m, [&](const CloudyWay::Stretch& s) { back += s.mean_echo; });
+    path.for_each_stretch(0.3, 20, length_m, [&](const CloudyPath::Stretch& s) { back += s.mean_echo; });
     EXPECT_NEAR(back, std::numbers::pi / 2 / 18.8 * (1 - std::exp(-2 * 0.3 * 4)), 1e-9) << length_m;
   }
-  EXPECT_NEAR(way.two_way(20), std::exp(-2 * 0.3 * 4), 1e-9);
-  EXPECT_NEAR(way.two_way(5), std::exp(-2 * 0.3 * 2), 1e-9);
-  EXPECT_EQ(way.two_way(3), 1);
+  EXPECT_NEAR(path.two_way(20), std::exp(-2 * 0.3 * 4), 1e-9);
+  EXPECT_NEAR(path.two_way(5), std::exp(-2 * 0.3 * 2), 1e-9);
+  EXPECT_EQ(path.two_way(3), 1);
 }
 
 TEST(Clouds, EchoesAreDistributedExponentiallyAndComeFromTheNearEndMostly) {
-  const CloudyWay::Stretch s{2, 3, 1.5, 0.02};
+  const CloudyPath::Stretch s{2, 3, 1.5, 0.02};
   core::Random random(4);
   constexpr int kDraws = 40000;
   int above_mean = 0, above_three = 0;

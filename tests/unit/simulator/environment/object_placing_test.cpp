@@ -60,9 +60,9 @@ TEST(PlaceObjects, OnTheFloorApartInSightAndTheSameForTheSameSeed) {
     for (std::size_t k = 0; k < i; ++k)
       EXPECT_GE((objects[i].position - objects[k].position).norm(), 4) << i << ' ' << k;
     EXPECT_TRUE(std::any_of(places.begin(), places.end(), [&](const Vec3& eye) {
-      const Vec3 way = objects[i].position - eye;
-      return way.norm() < 4.2 && -way.normalized().dot(objects[i].normal) > 0.4 &&
-             plain.scene.ray_cast(eye, way, way.norm()) >= way.norm();
+      const Vec3 offset = objects[i].position - eye;
+      return offset.norm() < 4.2 && -offset.normalized().dot(objects[i].normal) > 0.4 &&
+             plain.scene.ray_cast(eye, offset, offset.norm()) >= offset.norm();
     })) << i;
   }
   EXPECT_FALSE(same);
@@ -134,7 +134,7 @@ TEST_F(ObjectInCave, InsideABoulderIsInsideRock) {
   append(m, box_mesh({1, 1, 0.5}, {3, 3, 2}));
   cave::Cave c = make_cave(m, {0, 0, 1});
   c.description.objects = {{ObjectKind::drill, {2, 2, 1.2}, Vec3::Zero()}};
-  const std::string said = error_of([&] { cave::settle_objects(c); });
+  const std::string said = error_of([&] { cave::lay_objects(c); });
   EXPECT_NE(said.find("inside rock"), std::string::npos) << said;
 }
 

@@ -130,7 +130,7 @@ TEST(Lidar, IntensityFallsWithRangeIncidenceAndReflectivity) {
 TEST(Lidar, DustIsNearDimAndAsFrequentAsAsked) {
   const cave::Cave box = make_cave(box_mesh(kLow, kHigh));
   LidarOptions o = exact("os1_64", 1024);
-  o.dust_share = 0.05;
+  o.dust_fraction = 0.05;
   const LidarScan scan = Lidar(o).sweep(box, {{0, {}}}, kEnd, core::Random(1));
   int dust = 0;
   for (std::size_t i = 0; i < scan.range_m.size(); ++i) {

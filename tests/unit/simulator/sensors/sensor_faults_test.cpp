@@ -11,23 +11,23 @@ using sim::SensorFaults;
 
 TEST(SensorFaults, StrikeTheirSensorInTheirTimeOnlyAndAreToldOnce) {
   SensorFaults faults({{Sensor::lidar, Kind::lost, 2, 1}, {Sensor::imu, Kind::lost, 2, 0.5}});
-  EXPECT_FALSE(faults.strike(Sensor::lidar, 1.9).lost());
-  const auto first = faults.strike(Sensor::lidar, 2.0);
+  EXPECT_FALSE(faults.inject(Sensor::lidar, 1.9).lost());
+  const auto first = faults.inject(Sensor::lidar, 2.0);
   EXPECT_TRUE(first.lost());
   EXPECT_EQ(first.begun, std::vector<std::string>{"lidar lost for 1.000 s"});
-  const auto later = faults.strike(Sensor::lidar, 2.9);
+  const auto later = faults.inject(Sensor::lidar, 2.9);
   EXPECT_TRUE(later.lost());
   EXPECT_TRUE(later.begun.empty());
-  EXPECT_FALSE(faults.strike(Sensor::lidar, 3.0).lost());
-  EXPECT_FALSE(faults.strike(Sensor::magnetometer, 2.2).lost());
-  EXPECT_TRUE(faults.strike(Sensor::imu, 2.2).lost());
+  EXPECT_FALSE(faults.inject(Sensor::lidar, 3.0).lost());
+  EXPECT_FALSE(faults.inject(Sensor::magnetometer, 2.2).lost());
+  EXPECT_TRUE(faults.inject(Sensor::imu, 2.2).lost());
 }
 
 TEST(SensorFaults, WithoutDurationTheyStrikeTheNextMessageAndNoOther) {
   SensorFaults faults({{Sensor::lidar, Kind::three_points, 2.05, 0}});
-  EXPECT_TRUE(faults.strike(Sensor::lidar, 2.0).kinds.empty());
-  EXPECT_EQ(faults.strike(Sensor::lidar, 2.1).kinds, std::vector{Kind::three_points});
-  EXPECT_TRUE(faults.strike(Sensor::lidar, 2.2).kinds.empty());
+  EXPECT_TRUE(faults.inject(Sensor::lidar, 2.0).kinds.empty());
+  EXPECT_EQ(faults.inject(Sensor::lidar, 2.1).kinds, std::vector{Kind::three_points});
+  EXPECT_TRUE(faults.inject(Sensor::lidar, 2.2).kinds.empty());
 }
 
 core::LidarScan scan() {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "core_stack/homing/way_home/homing_tree.h"
+#include "core_stack/homing/path_home/homing_tree.h"
 #include "tests/unit/team/communication/lossy_network.h"
 
 namespace karst::core {
@@ -108,7 +108,7 @@ TEST(Gossip, OfManyRadiosInAChainTheBaseGetsTheRecordsOfTheFarEnd) {
 // As it was: states of 24 explorers took what a hurried robot needs to say where it is three times a second.
 TEST(Gossip, AmongManyAHurriedRobotStaysOnTheBeat) {
   Network net(24, kAll, 0, 0, 5);
-  std::map<RobotId, TimeNs> told;
+  std::map<RobotId, TimeNs> reported;
   TimeNs longest = 0;
   for (Gossip& r : net.robots) r.hurry(true);
   net.run(20);
@@ -116,10 +116,10 @@ TEST(Gossip, AmongManyAHurriedRobotStaysOnTheBeat) {
     net.run(0.1);
     const std::vector<TeamState> states = net.robots[0].states();
     for (const TeamState& s : states)
-      if (const auto [at, is_new] = told.try_emplace(s.robot, s.stamp); !is_new && s.stamp > at->second)
+      if (const auto [at, is_new] = reported.try_emplace(s.robot, s.stamp); !is_new && s.stamp > at->second)
         longest = std::max(longest, s.stamp - at->second), at->second = s.stamp;
   }
-  EXPECT_EQ(told.size(), 23u);
+  EXPECT_EQ(reported.size(), 23u);
   EXPECT_LE(seconds(longest), 0.65);
 }
 
@@ -141,18 +141,18 @@ TEST(Gossip, WhoComesIntoContactAmongManyIsToldOfOneThatFellSilent) {
 TEST(Gossip, WhatIsHeldOfAllFitsAFrameThoughOfEachThereIsAGap) {
   Gossip base(radio(kBase), {}, 1);
   const Bytes record = *write_record(object(1, 33));
-  for (RobotId r = 1; r < kMostRobots; ++r)
+  for (RobotId r = 1; r < kMaxRobots; ++r)
     base.receive(*write_frame({.sender = r, .records = {{r, 33, record}}}), kSecond);
   base.publish(object(kBase, 1));
-  std::size_t told = 0;
+  std::size_t reported = 0;
   for (TimeNs t = kSecond; t < 4 * kSecond; t += kSecond / 10)
     for (const Bytes& b : base.send(t)) {
       Refusal why{};
       const auto frame = read_frame(b, why);
       ASSERT_TRUE(frame);
-      if (frame->tells_held) told = std::max(told, frame->held.size());
+      if (frame->reports_held) reported = std::max(reported, frame->held.size());
     }
-  EXPECT_EQ(told, kMostRobots) << "five bytes of each for what lies beyond the gap would not fit";
+  EXPECT_EQ(reported, kMaxRobots) << "five bytes of each for what lies beyond the gap would not fit";
 }
 
 TEST(Gossip, ConvergesOnAnyNetworkThatIsConnectedNowAndThen) {
@@ -163,8 +163,8 @@ TEST(Gossip, ConvergesOnAnyNetworkThatIsConnectedNowAndThen) {
     const std::uint64_t seed = random.bits();
     const Heard linked = [seed](RobotId a, RobotId b, TimeNs now) {
       Random r(seed + static_cast<std::uint64_t>(now / (5 * kSecond)));
-      std::vector<RobotId> parent(kMostRobots);
-      for (RobotId i = 1; i < kMostRobots; ++i) parent[i] = static_cast<RobotId>(r.bits() % i);
+      std::vector<RobotId> parent(kMaxRobots);
+      for (RobotId i = 1; i < kMaxRobots; ++i) parent[i] = static_cast<RobotId>(r.bits() % i);
       return parent[a] == b || parent[b] == a;
     };
     Network net(n, linked, 0.3, 0.5, seed);
@@ -233,21 +233,21 @@ TEST(Gossip, HostileFramesLeaveItAsItWas) {
   Gossip robot(radio(1), {}, 1);
   const auto record = write_record(object(2, 1));
   std::uint16_t sequence = 0;
-  const auto hear = [&](Frame f) {
+  const auto receive = [&](Frame f) {
     f.sequence = sequence++;
     robot.receive(*write_frame(f), kSecond);
   };
-  hear({.sender = 2, .records = {{2, 5000, *record}}});  // far ahead: would need memory without end
-  hear({.sender = 2, .records = {{2, 1, {9, 9, 9}}}});   // no record
+  receive({.sender = 2, .records = {{2, 5000, *record}}});  // far ahead: would need memory without end
+  receive({.sender = 2, .records = {{2, 1, {9, 9, 9}}}});   // no record
   EXPECT_EQ(robot.counts().records_refused, 2u);
-  hear({.sender = 2, .records = {{2, 1, *record}}});
-  hear({.sender = 2, .records = {{2, 1, *write_record(object(2, 7))}}});
+  receive({.sender = 2, .records = {{2, 1, *record}}});
+  receive({.sender = 2, .records = {{2, 1, *write_record(object(2, 7))}}});
   EXPECT_EQ(robot.counts().contradictions, 1u);
   EXPECT_EQ(std::get<ObjectSeen>(robot.take_delivered().at(0).record).object, 1u);
   EXPECT_TRUE(robot.take_delivered().empty());
   TeamState late;
   late.robot = 2, late.stamp = 1000 * kSecond;
-  hear({.sender = 2, .states = {late}});
+  receive({.sender = 2, .states = {late}});
   EXPECT_TRUE(robot.states().empty());
   EXPECT_EQ(robot.counts().states_refused, 1u);
   Random random(4);
@@ -274,15 +274,15 @@ TEST(Gossip, RecordsFromTheFutureAreRefusedAndTheGenuineOnesUnderTheirNumbersTak
   };
   Gossip robot(radio(1), {}, 1);
   std::uint16_t sequence = 0;
-  const auto hear = [&](std::uint32_t number, const Record& r) {
+  const auto receive = [&](std::uint32_t number, const Record& r) {
     robot.receive(
         *write_frame({.sender = 2, .sequence = sequence++, .records = {{2, number, *write_record(r)}}}),
         kSecond);
   };
-  for (std::uint32_t i = 0; i < forged.size(); ++i) hear(i + 1, forged[i]);
+  for (std::uint32_t i = 0; i < forged.size(); ++i) receive(i + 1, forged[i]);
   EXPECT_EQ(robot.counts().records_refused, forged.size());
   EXPECT_TRUE(robot.take_delivered().empty());
-  for (std::uint32_t i = 0; i < forged.size(); ++i) hear(i + 1, object(2, i + 1));
+  for (std::uint32_t i = 0; i < forged.size(); ++i) receive(i + 1, object(2, i + 1));
   EXPECT_EQ(robot.take_delivered().size(), forged.size());
   EXPECT_EQ(robot.counts().contradictions, 0u);
 }

@@ -65,13 +65,13 @@ TEST(Messages, AFrameReadIsTheFrameWritten) {
   rc::check("frames", [] {
     Random random = seeded();
     Frame frame;
-    frame.sender = static_cast<RobotId>(below(random, kMostRobots));
+    frame.sender = static_cast<RobotId>(below(random, kMaxRobots));
     frame.sent = testing::random_time(random);
     frame.sequence = static_cast<std::uint16_t>(random.bits());
-    frame.tells_held = random.uniform() < 0.5;
+    frame.reports_held = random.uniform() < 0.5;
     if (random.uniform() < 0.7) frame.states.push_back(random_state(random));
     for (std::uint32_t n = below(random, 6); n > 0; --n)
-      frame.held.push_back({static_cast<RobotId>(below(random, kMostRobots)), below(random, kMostNumber),
+      frame.held.push_back({static_cast<RobotId>(below(random, kMaxRobots)), below(random, kMaxNumber),
                             static_cast<std::uint32_t>(random.bits())});
     if (const auto bytes = write_record(random_record(random)))
       frame.records.push_back({1, 1 + below(random, 1000), *bytes});
@@ -86,7 +86,7 @@ TEST(Messages, AFrameReadIsTheFrameWritten) {
     Refusal why{};
     const auto read = read_frame(*bytes, why);
     RC_ASSERT(read.has_value());
-    RC_ASSERT(read->sender == frame.sender && read->tells_held == frame.tells_held);
+    RC_ASSERT(read->sender == frame.sender && read->reports_held == frame.reports_held);
     RC_ASSERT(read->sent == frame.sent && read->sequence == frame.sequence);
     RC_ASSERT(write_frame(*read) == bytes);
   });
@@ -94,22 +94,22 @@ TEST(Messages, AFrameReadIsTheFrameWritten) {
 
 TEST(Messages, WhatOtherRobotsSentStaysWithinTheFrameAtItsLongest) {
   Frame frame;
-  frame.sender = kMostRobots - 1;
+  frame.sender = kMaxRobots - 1;
   TeamState s;
   s.position = {-40000, 40000, -40000};
   frame.states = {s};
-  constexpr std::uint32_t most_records = 1000000;  // gossip.most_records at its most
-  for (RobotId i = 0; i < kMostRobots; ++i) frame.held.push_back({i, most_records, 0});
-  frame.tells_held = true;
+  constexpr std::uint32_t max_records = 1000000;  // gossip.max_records at its most
+  for (RobotId i = 0; i < kMaxRobots; ++i) frame.held.push_back({i, max_records, 0});
+  frame.reports_held = true;
   ASSERT_TRUE(write_frame(frame));
-  Bytes longest(most_record_bytes());
-  EXPECT_TRUE(write_frame({.sender = 1, .records = {{15, kMostNumber - 1, longest}}}));
+  Bytes longest(max_record_bytes());
+  EXPECT_TRUE(write_frame({.sender = 1, .records = {{15, kMaxNumber - 1, longest}}}));
 }
 
 TEST(Messages, AnyDamageIsNoticed) {
   rc::check("damage", [] {
     Random random = seeded();
-    Frame frame{.sender = 3, .tells_held = true, .states = {random_state(random)}};
+    Frame frame{.sender = 3, .reports_held = true, .states = {random_state(random)}};
     frame.held = {{1, 7, 0}};
     if (const auto r = write_record(ObjectSeen{})) frame.records.push_back({3, 1, *r});
     Bytes bytes = *write_frame(frame);
@@ -159,7 +159,7 @@ TEST(Messages, HostileFramesAreRefusedByReason) {
   EXPECT_EQ(why_of(with({255, 0, 0})), Refusal::truncated);  // says it holds 255 states
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 1, 250})), Refusal::truncated);
   EXPECT_EQ(why_of(with({0, 0, 0, 9})), Refusal::truncated);  // a byte too many
-  EXPECT_EQ(why_of(with({0, 1, kMostRobots, 0, 0, 0})), Refusal::range);
+  EXPECT_EQ(why_of(with({0, 1, kMaxRobots, 0, 0, 0})), Refusal::range);
   EXPECT_EQ(why_of(with({0, 0, 1, 1, 0, 0})), Refusal::range);  // record 0
   Bytes sender = {0x4b, 0x72, kWireVersion, 99, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   EXPECT_EQ(why_of(sealed(sender)), Refusal::range);
@@ -186,12 +186,12 @@ TEST(Messages, WhatCannotBeWrittenIsNot) {
   EXPECT_FALSE(write_record(GoalClaim{0, {nan, 0, 0}, false}));
   EXPECT_FALSE(write_record(GoalClaim{0, {0, 50000, 0}, false}));
   EXPECT_FALSE(write_record(GoalClaim{-kSecond, {0, 0, 0}, false}));
-  EXPECT_FALSE(write_record(ObjectSeen{0, kMostNumber, 0, {0, 0, 0}, 0}));
+  EXPECT_FALSE(write_record(ObjectSeen{0, kMaxNumber, 0, {0, 0, 0}, 0}));
   EXPECT_FALSE(write_record(ObjectSeen{0, 0, 0, {0, 0, 0}, nan}));
   TeamState s;
   s.seconds_left = nan;
   EXPECT_FALSE(write_frame({.sender = 1, .states = {s}}));
-  EXPECT_FALSE(write_frame({.sender = kMostRobots}));
+  EXPECT_FALSE(write_frame({.sender = kMaxRobots}));
 }
 
 TEST(Messages, TreeFactsOfAnySizeAreSplitAndLoseNothing) {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core_stack/common/random.h"
-#include "core_stack/team/teammate.h"
+#include "core_stack/team/team_node.h"
 #include "tests/unit/team/communication/random_messages.h"
 #include "tests/unit/team/communication/test_radio.h"
 
@@ -57,7 +57,7 @@ TEST(ReplayWindow, OfASenderThatCountsAnewTheOldFramesAreRefused) {
 struct Victim {
   static constexpr RobotId kSelf = 2;
   TeamOptions team;
-  std::vector<Teammate> mates;
+  std::vector<TeamNode> nodes;
   std::vector<Bytes> air;  // all that was ever sent
   TimeNs now = 0;
   std::uint16_t sequence = 0;
@@ -65,21 +65,21 @@ struct Victim {
   Victim() {
     team.robots = 3, team.nodes = 1;
     for (RobotId r = 0; r <= 3; ++r)
-      mates.emplace_back(r, team, HomingOptions{}, Vec3(0, 0, 1), 7, test_key());
+      nodes.emplace_back(r, team, HomingOptions{}, Vec3(0, 0, 1), 7, test_key());
   }
-  Teammate& self() { return mates[kSelf]; }
+  TeamNode& self() { return nodes[kSelf]; }
   void run(double for_s) {
     for (const TimeNs end = now + from_seconds(for_s); now < end;) {
       now += kSecond / 10;
-      for (Teammate& from : mates) {
+      for (TeamNode& from : nodes) {
         TeamState state;
         state.phase = from.self() == kBase ? TeamPhase::standby : TeamPhase::explore;
         state.position = {10.0 * from.self(), seconds(now), 2};
         state.stamp = now;
         from.set_state(state);
-        for (Bytes& frame : from.speak(now)) {
-          for (Teammate& to : mates)
-            if (to.self() != from.self()) to.hear(frame, now);
+        for (Bytes& frame : from.transmit(now)) {
+          for (TeamNode& to : nodes)
+            if (to.self() != from.self()) to.receive(frame, now);
           air.push_back(std::move(frame));
         }
       }
@@ -88,7 +88,7 @@ struct Victim {
   /// As somebody who holds the key, in the name of `frame.sender`.
   void forge(Frame frame) {
     frame.sent = now, frame.sequence = static_cast<std::uint16_t>(20000 + sequence++);
-    self().hear(*write_frame(frame), now);
+    self().receive(*write_frame(frame), now);
   }
   std::uint64_t refused(Refusal why) {
     return self().gossip().counts().refused[static_cast<std::size_t>(why)];
@@ -105,10 +105,10 @@ struct Victim {
     const auto add = [&out](double v) { out += std::to_string(v) + ' '; };
     for (const TeamState& s : g.states()) {
       add(s.robot), add(seconds(s.stamp)), add(s.position.x()), add(s.position.y());
-      for (const HeardRobot& h : s.heard) add(h.robot), add(h.quality);
+      for (const RadioContact& h : s.heard) add(h.robot), add(h.quality);
     }
-    for (const HeardRobot& h : g.contacts(now, 0)) add(h.robot), add(h.quality);
-    for (RobotId r = 0; r < kMostRobots; ++r) add(g.held(r).first()), add(self().landing_of(r).has_value());
+    for (const RadioContact& h : g.contacts(now, 0)) add(h.robot), add(h.quality);
+    for (RobotId r = 0; r < kMaxRobots; ++r) add(g.held(r).first()), add(self().landing_of(r).has_value());
     for (const Vec3& p : self().claimed_goals(now)) add(p.x());
     for (const Vec3& p : self().taken_ground()) add(p.x());
     add(g.known_at_base()), add(static_cast<double>(g.counts().records_taken));
@@ -130,8 +130,8 @@ struct RadioAttack : ::testing::Test {
   std::uint64_t refused_before = 0;
 
   void SetUp() override {
-    victim.mates[1].publish(GoalClaim{0, {5, 0, 0}, false});
-    victim.mates[3].publish(LandingClaim{0, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
+    victim.nodes[1].publish(GoalClaim{0, {5, 0, 0}, false});
+    victim.nodes[3].publish(LandingClaim{0, {40, 0, 0}, {40, 0, 1}, LandingClaim::State::claimed});
     victim.run(30);
     before = victim.belief(), refused_before = victim.refused();
   }
@@ -155,7 +155,7 @@ TEST_F(RadioAttack, NoForgedFrameIsBelieved) {
     Bytes bytes = *write_frame(frame);
     for (std::size_t b = bytes.size() - kTagBytes; b < bytes.size(); ++b)
       bytes[b] = static_cast<std::uint8_t>(random.bits());
-    victim.self().hear(bytes, victim.now);
+    victim.self().receive(bytes, victim.now);
   }
   expect_all_refused(n);
 }
@@ -167,7 +167,7 @@ TEST_F(RadioAttack, NoFrameWithFlippedBitsIsBelieved) {
     std::set<std::size_t> bits;
     for (std::uint64_t k = 1 + random.bits() % 4; k > 0; --k) bits.insert(random.bits() % (8 * bytes.size()));
     for (const std::size_t bit : bits) bytes[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
-    victim.self().hear(bytes, victim.now);
+    victim.self().receive(bytes, victim.now);
   }
   expect_all_refused(n);
 }
@@ -177,7 +177,8 @@ TEST_F(RadioAttack, NoReplayedFrameIsBelieved) {
   for (const Bytes& frame : victim.air)
     if ((frame[3] & 0x7f) != Victim::kSelf) others.push_back(frame);
   const std::uint64_t n = attacks();
-  for (std::uint64_t i = 0; i < n; ++i) victim.self().hear(others[random.bits() % others.size()], victim.now);
+  for (std::uint64_t i = 0; i < n; ++i)
+    victim.self().receive(others[random.bits() % others.size()], victim.now);
   expect_all_refused(n);
   EXPECT_GT(victim.refused(Refusal::replayed), 0u);
   EXPECT_GT(victim.refused(Refusal::stale), 0u);
@@ -188,16 +189,16 @@ TEST_F(RadioAttack, NobodyWhoIsNotInTheTeamIsHeardOrHeardOf) {
   const std::size_t neighbours = victim.self().neighbours(victim.now).size();
   TeamState phantom;
   phantom.phase = TeamPhase::landing, phantom.stamp = victim.now, phantom.position = {21, 30, 2};
-  for (RobotId id = 7; id < kMostRobots; ++id) {  // base, three robots, a node of each: 0 to 6
+  for (RobotId id = 7; id < kMaxRobots; ++id) {  // base, three robots, a node of each: 0 to 6
     phantom.robot = id;
     victim.forge({.sender = id, .states = {phantom}});
     victim.forge({.sender = 1, .states = {phantom}});
     const LandingClaim landing{victim.now, {20, 30, 0}, {20, 30, 1}, LandingClaim::State::landed};
     victim.forge({.sender = 1, .records = {{id, 1, *write_record(landing)}}});
   }
-  EXPECT_EQ(victim.refused(Refusal::stranger), kMostRobots - 7u);
-  EXPECT_EQ(victim.self().gossip().counts().states_refused, kMostRobots - 7u);
-  EXPECT_EQ(victim.self().gossip().counts().records_refused, kMostRobots - 7u);
+  EXPECT_EQ(victim.refused(Refusal::stranger), kMaxRobots - 7u);
+  EXPECT_EQ(victim.self().gossip().counts().states_refused, kMaxRobots - 7u);
+  EXPECT_EQ(victim.self().gossip().counts().records_refused, kMaxRobots - 7u);
   EXPECT_EQ(victim.self().neighbours(victim.now).size(), neighbours);
   EXPECT_EQ(victim.self().taken_ground().size(), 1u) << "robot 3's claim, and no ground that nobody claimed";
 }
@@ -223,8 +224,8 @@ TEST_F(RadioAttack, ARecordThatItNeverWroteDoesNotMuteIt) {
   for (std::uint32_t i = 1; i <= 3; ++i)
     EXPECT_EQ(victim.self().publish(ObjectSeen{victim.now, i, 1, {1, 2, 3}, 0.5}), own + i);
   victim.run(10);
-  EXPECT_EQ(victim.mates[kBase].gossip().held(Victim::kSelf).first(), own + 3);
-  EXPECT_EQ(victim.mates[kBase].objects().size(), 3u);
+  EXPECT_EQ(victim.nodes[kBase].gossip().held(Victim::kSelf).first(), own + 3);
+  EXPECT_EQ(victim.nodes[kBase].objects().size(), 3u);
 }
 
 TEST(RadioAttackAtTheStart, ARobotRemindedOfANumberFarAheadStillSpeaks) {
@@ -239,8 +240,8 @@ TEST(RadioAttackAtTheStart, ARobotRemindedOfANumberFarAheadStillSpeaks) {
 // As it was: known_at_base() became what one frame in the base's name said, and no object was told again.
 TEST_F(RadioAttack, TheBaseIsNotBelievedToHoldMoreThanWasWritten) {
   const std::uint32_t own = victim.self().publish(ObjectSeen{victim.now, 1, 1, {1, 2, 3}, 0.5});
-  victim.forge({.sender = kBase, .tells_held = true, .held = {{Victim::kSelf, 5000, 0}}});
-  victim.forge({.sender = kBase, .tells_held = true, .held = {{Victim::kSelf, 0, 0xffffffffu}}});
+  victim.forge({.sender = kBase, .reports_held = true, .held = {{Victim::kSelf, 5000, 0}}});
+  victim.forge({.sender = kBase, .reports_held = true, .held = {{Victim::kSelf, 0, 0xffffffffu}}});
   const Receipt receipt{{{Victim::kSelf, 5000}}};
   const std::uint32_t next = victim.self().gossip().held(kBase).first() + 1;
   victim.forge({.sender = 1, .records = {{kBase, next, *write_record(receipt)}}});
@@ -248,7 +249,7 @@ TEST_F(RadioAttack, TheBaseIsNotBelievedToHoldMoreThanWasWritten) {
   EXPECT_EQ(victim.self().gossip().counts().claims_refused, 3u);
   victim.run(5);
   EXPECT_EQ(victim.self().gossip().known_at_base(), victim.self().gossip().held(Victim::kSelf).first());
-  EXPECT_TRUE(victim.mates[kBase].objects().contains({Victim::kSelf, 1})) << "it went on telling it";
+  EXPECT_TRUE(victim.nodes[kBase].objects().contains({Victim::kSelf, 1})) << "it went on telling it";
 }
 
 // As it was: what was stamped up to 5 s ahead stood for the truth until that had passed.
@@ -262,18 +263,19 @@ TEST_F(RadioAttack, AStateOfTheFutureDoesNotStandForTheTruth) {
   forged.stamp = victim.now + kClockTolerance;
   victim.forge({.sender = 3, .states = {forged}});
   victim.run(1.2);
-  for (const HeardMate& mate : victim.self().mates(victim.now)) EXPECT_LT(mate.position.x(), 100);
+  for (const TeammateState& teammate : victim.self().teammates(victim.now))
+    EXPECT_LT(teammate.position.x(), 100);
 }
 
 TEST_F(RadioAttack, ATreeNodeInAnothersNameIsNotTaken) {
-  const auto hear = [&](const TreeFacts& facts) {
+  const auto receive = [&](const TreeFacts& facts) {
     const std::uint32_t next = victim.self().gossip().held(1).first() + 1;
     victim.forge({.sender = 1, .records = {{1, next, *write_record(facts)}}});
   };
   TreeFacts base, stranger;
   base.nodes = {{{kBase, 1}, NodeKind::communication, {300, 0, 0}}};
   stranger.lives = {{{20, 1}, false, victim.now}};
-  hear(base), hear(stranger);
+  receive(base), receive(stranger);
   EXPECT_EQ(victim.self().gossip().counts().records_refused, 2u);
   EXPECT_TRUE(victim.self().take_facts().empty());
 }

@@ -12,7 +12,7 @@ inline Vec3 random_place(Random& r) {
   return to_centimetres({x, y, z});
 }
 inline NodeId random_id(Random& r) {
-  return {static_cast<RobotId>(below(r, kMostRobots)), below(r, r.uniform() < 0.8 ? 300 : kMostNumber)};
+  return {static_cast<RobotId>(below(r, kMaxRobots)), below(r, r.uniform() < 0.8 ? 300 : kMaxNumber)};
 }
 
 inline TreeFacts random_facts(Random& r, std::uint32_t most) {
@@ -39,26 +39,26 @@ inline Record random_record(Random& r) {
       return LandingClaim{random_time(r), random_place(r), random_place(r),
                           static_cast<LandingClaim::State>(below(r, 3))};
     case 3:
-      return ObjectSeen{random_time(r), below(r, kMostNumber), static_cast<std::uint8_t>(below(r, 256)),
+      return ObjectSeen{random_time(r), below(r, kMaxNumber), static_cast<std::uint8_t>(below(r, 256)),
                         random_place(r), 0.1 * below(r, 256)};
     default:
       break;
   }
   Receipt receipt;
-  for (std::uint32_t n = below(r, kMostRobots + 1); n > 0; --n)
-    receipt.rows.push_back({static_cast<RobotId>(below(r, kMostRobots)), below(r, kMostNumber)});
+  for (std::uint32_t n = below(r, kMaxRobots + 1); n > 0; --n)
+    receipt.rows.push_back({static_cast<RobotId>(below(r, kMaxRobots)), below(r, kMaxNumber)});
   return receipt;
 }
 
 inline TeamState random_state(Random& r) {
   TeamState s;
-  s.robot = static_cast<RobotId>(below(r, kMostRobots));
+  s.robot = static_cast<RobotId>(below(r, kMaxRobots));
   s.stamp = random_time(r), s.position = random_place(r), s.velocity_mps = random_place(r) / 1000;
   s.velocity_mps = (s.velocity_mps * 100).array().round() / 100;
   s.phase = static_cast<TeamPhase>(below(r, 9));
   s.seconds_left = below(r, 65536);
   for (std::uint32_t n = below(r, 6); n > 0; --n)
-    s.heard.push_back({static_cast<RobotId>(below(r, kMostRobots)), below(r, 256) / 255.0});
+    s.heard.push_back({static_cast<RobotId>(below(r, kMaxRobots)), below(r, 256) / 255.0});
   return s;
 }
 

@@ -23,10 +23,10 @@ RelayGraph graph_of(const std::vector<std::vector<double>>& quality, TimeNs stam
   return g;
 }
 
-std::vector<std::vector<double>> random_table(Random& random, std::size_t n, double share) {
+std::vector<std::vector<double>> random_table(Random& random, std::size_t n, double fraction) {
   std::vector<std::vector<double>> q(n, std::vector<double>(n));
   for (auto& row : q)
-    for (double& v : row) v = random.uniform() < share ? random.uniform(0.05, 1) : 0;
+    for (double& v : row) v = random.uniform() < fraction ? random.uniform(0.05, 1) : 0;
   return q;
 }
 
@@ -57,12 +57,12 @@ TEST(RelayGraph, AgreesWithAllPathsTriedOneByOne) {
     RelayGraph::Robots relays{};
     for (RobotId r = 1; r < n; ++r) relays[r] = random.uniform() < 0.6;
     for (RobotId r = 1; r < n; ++r) {
-      bool any_way = false, over_relays = false;
+      bool any_path = false, over_relays = false;
       std::vector<RobotId> path;
-      walk(q, all_robots(), r, path, any_way);
+      walk(q, all_robots(), r, path, any_path);
       walk(q, relays, r, path, over_relays);
       const std::vector<RobotId> connected = g.connected(0);
-      RC_ASSERT((std::find(connected.begin(), connected.end(), r) != connected.end()) == any_way);
+      RC_ASSERT((std::find(connected.begin(), connected.end(), r) != connected.end()) == any_path);
       RC_ASSERT(g.reaches_base(0, r, relays) == over_relays);
     }
   });

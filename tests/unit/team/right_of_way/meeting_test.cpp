@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "core_stack/common/random.h"
-#include "core_stack/team/right_of_way/encounter.h"
 #include "core_stack/team/right_of_way/waiting_place.h"
-#include "core_stack/team/teammate.h"
+#include "core_stack/team/right_of_way/yield_state.h"
+#include "core_stack/team/team_node.h"
 #include "tests/unit/homing/passage.h"
 #include "tests/unit/team/communication/test_radio.h"
 
@@ -40,33 +40,33 @@ class Pilot {
  public:
   Pilot(RobotId robots, RobotId self, TeamPhase phase, double x_m, double goal_m)
       : phase_(phase),
-        mate_(self, team_of(robots), HomingOptions{}, Vec3(0, 0, 1), 7, testing::test_key()),
+        node_(self, team_of(robots), HomingOptions{}, Vec3(0, 0, 1), 7, testing::test_key()),
         x_m_(x_m),
         goal_m_(goal_m),
         flown_{place()} {}
 
-  Teammate& mate() { return mate_; }
+  TeamNode& node() { return node_; }
   Vec3 place() const { return {x_m_, 0.1, kHeight_m}; }
   double x_m() const { return x_m_; }
   int made_room() const { return made_room_; }
 
-  std::vector<Bytes> speak(TimeNs now) {
+  std::vector<Bytes> transmit(TimeNs now) {
     TeamState state;
     state.stamp = now, state.position = place(), state.velocity_mps = {speed_mps_, 0, 0};
-    state.phase = encounter_.told(phase_, now), state.seconds_left = 100;
-    mate_.set_state(state);
-    return mate_.speak(now);
+    state.phase = yield_state_.reported(phase_, now), state.seconds_left = 100;
+    node_.set_state(state);
+    return node_.transmit(now);
   }
 
   void fly(TimeNs now) {
-    keep_apart(now);
-    if (!encounter_.holds() && at_rest()) {
+    separation(now);
+    if (!yield_state_.holds() && at_rest()) {
       if (std::abs(goal_m_ - x_m_) < 0.5) goal_m_ = -goal_m_;
       target_m_ = goal_m_;
     }
     const double left_m = target_m_ - x_m_;
-    const double most_mps = std::min(kSpeed_mps, std::sqrt(2 * kAcceleration_mps2 * std::abs(left_m)));
-    const double wanted_mps = braking_ || std::abs(left_m) < 0.05 ? 0 : std::copysign(most_mps, left_m);
+    const double max_mps = std::min(kSpeed_mps, std::sqrt(2 * kAcceleration_mps2 * std::abs(left_m)));
+    const double wanted_mps = braking_ || std::abs(left_m) < 0.05 ? 0 : std::copysign(max_mps, left_m);
     const double step = kAcceleration_mps2 * kTick_s;
     speed_mps_ += std::clamp(wanted_mps - speed_mps_, -step, step);
     x_m_ += kTick_s * speed_mps_;
@@ -82,42 +82,43 @@ class Pilot {
   }
   bool at_rest() const { return speed_mps_ == 0 && std::abs(target_m_ - x_m_) < 0.05; }
 
-  void keep_apart(TimeNs now) {
-    if (encounter_.on_the_way() && at_rest())
-      encounter_.arrived(refuge_.others_get_by && (place() - refuge_.place).norm() < 0.5, now);
-    const std::vector<Neighbour> others = mate_.neighbours(now);
-    const bool held = encounter_.holds();
+  void separation(TimeNs now) {
+    if (yield_state_.on_the_way() && at_rest())
+      yield_state_.arrived(waiting_place_.keeps_passage_open && (place() - waiting_place_.place).norm() < 0.5,
+                           now);
+    const std::vector<Neighbour> others = node_.neighbours(now);
+    const bool held = yield_state_.holds();
     const auto action =
-        encounter_.update({}, {mate_.self(), place(), {speed_mps_, 0, 0}, phase_}, others, now, at_rest());
-    if (held != encounter_.holds() || action == Encounter::Action::stop) braking_ = speed_mps_ != 0;
-    if (action == Encounter::Action::make_room && !room_due_) room_due_ = now + kPlanning;
+        yield_state_.update({}, {node_.self(), place(), {speed_mps_, 0, 0}, phase_}, others, now, at_rest());
+    if (held != yield_state_.holds() || action == YieldState::Action::stop) braking_ = speed_mps_ != 0;
+    if (action == YieldState::Action::make_room && !room_due_) room_due_ = now + kPlanning;
     if (room_due_ && now >= *room_due_) make_room(others, now);
   }
 
   void make_room(const std::vector<Neighbour>& others, TimeNs now) {
     room_due_.reset();
-    if (!encounter_.holds() || !at_rest()) return;
+    if (!yield_state_.holds() || !at_rest()) return;
     RoomQuery query;
-    query.from = place(), query.flown = flown_, query.in_vain = kNowhere;
+    query.from = place(), query.flown = flown_, query.failed = kNowhere;
     query.vehicle_radius_m = kRadius_m;
     for (const Neighbour& o : others)
-      if (o.robot == encounter_.with())
+      if (o.robot == yield_state_.with())
         query.other = o.position;
       else
         query.moving.push_back(o.position);
-    const auto refuge = waiting_place(Tube::instance().map, Tube::instance().roadmap, query);
-    if (!refuge) return encounter_.no_room(now, !query.moving.empty());
+    const auto found = waiting_place(Tube::instance().map, Tube::instance().roadmap, query);
+    if (!found) return yield_state_.no_room(now, !query.moving.empty());
     ++made_room_;
-    refuge_ = *refuge, target_m_ = refuge->place.x();
-    encounter_.set_out();
+    waiting_place_ = *found, target_m_ = found->place.x();
+    yield_state_.set_out();
   }
 
   TeamPhase phase_;
-  Teammate mate_;
-  Encounter encounter_;
+  TeamNode node_;
+  YieldState yield_state_;
   double x_m_, goal_m_, target_m_ = x_m_, speed_mps_ = 0;
   bool braking_ = false;
-  Refuge refuge_;
+  WaitingPlace waiting_place_;
   std::vector<Vec3> flown_;
   std::optional<TimeNs> room_due_;
   int made_room_ = 0;
@@ -146,9 +147,9 @@ Outcome fly(RobotId flying, bool liar, std::uint64_t seed) {
   std::uint16_t lies = 0;
   for (TimeNs now = kTick; now < 40 * kSecond; now += kTick) {
     for (const auto& from : pilots)
-      for (const Bytes& frame : from->speak(now))
+      for (const Bytes& frame : from->transmit(now))
         for (const auto& to : pilots)
-          if (to != from) to->mate().hear(frame, now);
+          if (to != from) to->node().receive(frame, now);
     if (liar && now % (kSecond / 2) == 0) {
       if (now % (10 * kSecond) == 0) {  // it appears 2 to 4 m from one of them
         const Pilot& victim = *pilots[random.bits() % pilots.size()];
@@ -159,7 +160,7 @@ Outcome fly(RobotId flying, bool liar, std::uint64_t seed) {
       }
       lie.stamp = now, lie.position = phantom;
       const Frame frame{.sender = lie.robot, .sent = now, .sequence = lies++, .states = {lie}};
-      for (const auto& to : pilots) to->mate().hear(*testing::write_frame(frame), now);
+      for (const auto& to : pilots) to->node().receive(*testing::write_frame(frame), now);
     }
     for (const auto& pilot : pilots) pilot->fly(now);
     for (std::size_t i = 0; i < pilots.size(); ++i)
@@ -201,7 +202,7 @@ TEST(WaitingPlace, IsNotBeyondAnotherThatIsNearerToIt) {
   for (double x = -30; x <= 0; x += 0.5) query.flown.push_back({x, 0.1, kHeight_m});
   const auto alone = waiting_place(tube.map, tube.roadmap, query);
   ASSERT_TRUE(alone);
-  EXPECT_FALSE(alone->others_get_by);
+  EXPECT_FALSE(alone->keeps_passage_open);
   EXPECT_LT(alone->place.x(), -25) << "as far back as it came";
   query.moving = {{-10, 0.1, kHeight_m}};
   const auto before_one = waiting_place(tube.map, tube.roadmap, query);
@@ -220,12 +221,12 @@ TEST(WaitingPlace, KeepsItsDistanceFromOthersThatWait) {
   RoomQuery query;
   query.from = {0, 0.1, 1.1}, query.other = {4, 0.1, 1.1}, query.vehicle_radius_m = kRadius_m;
   const auto alone = waiting_place(map, roadmap, query);
-  ASSERT_TRUE(alone && alone->others_get_by);
+  ASSERT_TRUE(alone && alone->keeps_passage_open);
   query.standing = {alone->place - (query.other - alone->place).normalized() * 0.2};
   query.from = query.standing.front() + Vec3(0, -2, 0);
   const auto beside = waiting_place(map, roadmap, query);
   ASSERT_TRUE(beside);
-  EXPECT_GE((beside->place - query.standing.front()).norm(), query.apart_m);
+  EXPECT_GE((beside->place - query.standing.front()).norm(), query.separation_m);
 }
 
 }  // namespace

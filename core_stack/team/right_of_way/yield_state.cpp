@@ -1,0 +1,106 @@
+#include "core_stack/team/right_of_way/yield_state.h"
+
+#include <algorithm>
+
+namespace karst::core {
+namespace {
+
+constexpr double kGoOn = 1.3;                // times the distance at which it stopped: then it goes on
+constexpr double kPast_m = 2.0;              // so much farther away than it was: the other is past
+constexpr double kNearer_m = 0.3;            // so much nearer: it comes
+constexpr double kMoves_mps = 0.15;          // so fast: it comes, or goes
+constexpr TimeNs kLook = 3 * kSecond;        // another that stands near may want to get by
+constexpr TimeNs kStands = 8 * kSecond;      // it does not get by, so the place is no good
+constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
+constexpr TimeNs kSeen = kSecond;            // one that stands aside is in the map by then
+constexpr TimeNs kFirst = 15 * kSecond;      // who goes before waits no longer for room
+constexpr TimeNs kAskAgain = 2 * kSecond;
+constexpr int kMaxAttempts = 2, kMaxAttemptsInCrowd = 8;
+constexpr TimeNs kBoxed = 30 * kSecond;
+
+double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
+
+/// How fast `other` itself comes.
+double coming_mps(const Neighbour& self, const Neighbour& other) {
+  Neighbour still = self;
+  still.velocity_mps.setZero();
+  return closing_mps(still, other);
+}
+
+}  // namespace
+
+TeamPhase YieldState::reported(TeamPhase phase, TimeNs now) const {
+  if (phase != TeamPhase::explore && phase != TeamPhase::home) return phase;
+  if (stands_aside()) return TeamPhase::aside;
+  return now < boxed_until_ ? TeamPhase::boxed : phase;
+}
+
+void YieldState::begin(const Neighbour& self, const Neighbour& other, TimeNs now) {
+  with_ = other.robot;
+  since_ = nearest_at_ = now;
+  nearest_m_ = distance_m(self, other);
+  aside_since_.reset();
+}
+
+bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const Neighbour& other, TimeNs now) {
+  const double d = distance_m(self, other);
+  if (goes_before(self, other)) {
+    if (other.phase == TeamPhase::aside) {
+      if (!aside_since_) aside_since_ = now;
+      return now - *aside_since_ > kSeen;
+    }
+    return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
+  }
+  if (d < nearest_m_ - kNearer_m) nearest_m_ = d, nearest_at_ = now;
+  if (on_the_way_ || d < kGoOn * rule.distance_m) return false;
+  return d > nearest_m_ + kPast_m || now - nearest_at_ > kStaysAway;
+}
+
+YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self,
+                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest) {
+  if (now < boxed_until_) self.phase = TeamPhase::boxed;
+  const std::vector<Neighbour> near = give_way_to(rule, self, others);
+  const auto other = std::find_if(others.begin(), others.end(),
+                                  [this](const Neighbour& o) { return with_ && o.robot == *with_; });
+  if (!with_ || other == others.end() || over(rule, self, *other, now)) {
+    if (near.empty()) {
+      const TimeNs boxed_until = boxed_until_;
+      forget();
+      boxed_until_ = boxed_until;
+      return Action::go_on;
+    }
+    begin(self, near.front(), now);
+    return Action::hold;
+  }
+  // Who makes room for one must not fly into another: nobody else is looked at where it flies then.
+  if (on_the_way_ && std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
+        return stops_on_the_way(rule, self, o, o.robot == *with_);
+      })) {
+    arrived(false, now);
+    return Action::stop;
+  }
+  const double d = distance_m(self, *other);
+  if (!at_rest || on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain)
+    return Action::hold;
+  const bool in_its_way = aside_ ? d < 2 * rule.distance_m && now - std::max(nearest_at_, since_) > kStands &&
+                                       std::abs(coming_mps(self, *other)) < kMoves_mps
+                                 : coming_mps(self, *other) > kMoves_mps || now - since_ > kLook;
+  if (!in_its_way) return Action::hold;
+  asked_at_ = now;
+  return Action::make_room;
+}
+
+void YieldState::arrived(bool keeps_passage_open, TimeNs now) {
+  on_the_way_ = false;
+  aside_ = keeps_passage_open;
+  if (keeps_passage_open) attempts_ = 0;
+  since_ = nearest_at_ = now;
+  nearest_m_ = 1e9;  // from here on it counts anew how near the other comes
+}
+
+void YieldState::no_room(TimeNs now, bool crowd) {
+  aside_ = false;
+  if (++attempts_ >= (crowd ? kMaxAttemptsInCrowd : kMaxAttempts)) boxed_until_ = now + kBoxed, attempts_ = 0;
+}
+
+}  // namespace karst::core

@@ -1,0 +1,53 @@
+// What a vehicle does about another that comes near: it stops, makes room, and goes on once the other is
+// past.
+#pragma once
+#include <optional>
+
+#include "core_stack/team/right_of_way/separation.h"
+
+namespace karst::core {
+
+class YieldState {
+ public:
+  enum class Action {
+    go_on,      // nobody is in the way
+    hold,       // stop, or stay where it is
+    stop,       // on its way to make room it comes too near to somebody: brake, and look for another place
+    make_room,  // it stands in another's way: to be answered by set_out() or no_room()
+  };
+
+  /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others.
+  Action update(const SeparationRule& rule, Neighbour self, const std::vector<Neighbour>& others, TimeNs now,
+                bool at_rest);
+
+  /// It is on its way to where it makes room.
+  void set_out() { on_the_way_ = true, aside_ = false; }
+  /// It is at rest again: where others get by it, or not there.
+  void arrived(bool keeps_passage_open, TimeNs now);
+  /// There is no place to make room; of a `crowd`, further vehicles may be in the way, which make room
+  /// themselves.
+  void no_room(TimeNs now, bool crowd);
+  void forget() { *this = {}; }
+
+  bool holds() const { return with_.has_value(); }
+  /// It waits where the other gets by.
+  bool stands_aside() const { return with_ && aside_; }
+  bool on_the_way() const { return on_the_way_; }
+  RobotId with() const { return with_.value_or(kBase); }
+  /// What to tell of itself instead of `phase`.
+  TeamPhase reported(TeamPhase phase, TimeNs now) const;
+
+ private:
+  void begin(const Neighbour& self, const Neighbour& other, TimeNs now);
+  bool over(const SeparationRule& rule, const Neighbour& self, const Neighbour& other, TimeNs now);
+
+  std::optional<RobotId> with_;
+  TimeNs since_ = 0, nearest_at_ = 0, asked_at_ = 0;
+  double nearest_m_ = 0;
+  std::optional<TimeNs> aside_since_;  // of the other
+  bool on_the_way_ = false, aside_ = false;
+  int attempts_ = 0;  // places asked for
+  TimeNs boxed_until_ = 0;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,184 @@
+// Who gives way, and what a vehicle does until the other is past.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+
+#include "core_stack/team/right_of_way/yield_state.h"
+
+namespace karst::core {
+namespace {
+
+using Action = YieldState::Action;
+
+Neighbour any_vehicle(RobotId robot) {
+  const auto coordinate = [] { return 0.01 * *rc::gen::inRange(-800, 800); };
+  const auto speed = [] { return 0.01 * *rc::gen::inRange(-200, 200); };
+  const TeamPhase phase = *rc::gen::element(TeamPhase::explore, TeamPhase::home, TeamPhase::landing,
+                                            TeamPhase::aside, TeamPhase::boxed);
+  return {robot, {coordinate(), coordinate(), coordinate()}, {speed(), speed(), speed()}, phase};
+}
+
+bool stops_for(const Neighbour& self, const Neighbour& other) {
+  return !give_way_to({}, self, {other}).empty();
+}
+
+RC_GTEST_PROP(SeparationRule, OfTwoOneGoesFirstAndNoThreeWaitInACircle, ()) {
+  const Neighbour a = any_vehicle(1), b = any_vehicle(2), c = any_vehicle(3);
+  RC_ASSERT(goes_before(a, b) != goes_before(b, a));
+  RC_ASSERT(!goes_before(a, a));
+  RC_ASSERT(!(goes_before(a, b) && goes_before(b, c) && goes_before(c, a)));
+  RC_ASSERT(!(goes_before(c, b) && goes_before(b, a) && goes_before(a, c)));
+}
+
+RC_GTEST_PROP(SeparationRule, OfTwoThatAreTooNearOneAtLeastStops, ()) {
+  const SeparationRule rule;
+  const Neighbour a = any_vehicle(1), b = any_vehicle(2);
+  RC_PRE(a.phase != TeamPhase::aside && b.phase != TeamPhase::aside);
+  const double d = (a.position - b.position).norm();
+  RC_ASSERT((stops_for(a, b) || stops_for(b, a)) == (d < yield_distance_m(rule, a, b)));
+  const bool both = stops_for(a, b) && stops_for(b, a);
+  RC_ASSERT(both == (closing_mps(a, b) > 0 && d < stop_distance_m(rule, a, b)));
+}
+
+TEST(SeparationRule, LeavesTheRoomThatIsNeededToStop) {
+  const SeparationRule rule{.distance_m = 3, .reaction_s = 1.5, .own_s = 0.3, .brake_mps2 = 1};
+  const auto flying = [](double x, double speed) { return Neighbour{1, {x, 0, 0}, {speed, 0, 0}}; };
+  // Head on at 1.2 m/s each: 2.4 m/s until the brake begins, and 2.4^2 / 2 to brake.
+  EXPECT_NEAR(yield_distance_m(rule, flying(0, 1.2), flying(9, -1.2)), 3 + 2.4 * 1.5 + 2.88, 1e-9);
+  EXPECT_NEAR(stop_distance_m(rule, flying(0, 1.2), flying(9, -1.2)), 1.5 + 2.4 * 0.3 + 2.88, 1e-9);
+  EXPECT_NEAR(yield_distance_m(rule, flying(0, -1.2), flying(9, 0)), 3, 1e-9);
+}
+
+TEST(SeparationRule, WhoExploresGivesWayToWhoGoesHomeAndBothToWhoLands) {
+  const std::array order{TeamPhase::landing, TeamPhase::boxed, TeamPhase::home, TeamPhase::explore,
+                         TeamPhase::aside};
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t k = i + 1; k < order.size(); ++k)
+      EXPECT_TRUE(goes_before({9, {}, {}, order[i]}, {1, {}, {}, order[k]})) << i << ' ' << k;
+}
+
+/// Two in a line, of which `self` is asked ten times a second what it does.
+struct Meeting {
+  YieldState yield_state;
+  Neighbour self{2, {0, 0, 0}}, other{1, {8, 0, 0}, {-1, 0, 0}};
+  TimeNs now = 0;
+  std::vector<Neighbour> others() const { return {other}; }
+  Action step() {
+    now += kSecond / 10;
+    other.position += 0.1 * other.velocity_mps;
+    return yield_state.update({}, self, others(), now, true);
+  }
+  Action run(double for_s) {
+    Action last = Action::go_on;
+    for (int i = 0; i < static_cast<int>(10 * for_s); ++i)
+      if ((last = step()) == Action::make_room) return last;
+    return last;
+  }
+};
+
+TEST(YieldState, MakesRoomForOneThatComesAndWaitsUntilItIsPast) {
+  Meeting m;
+  EXPECT_EQ(m.run(4), Action::make_room);
+  m.yield_state.set_out();
+  EXPECT_EQ(m.run(1), Action::hold) << "on its way";
+  m.self.position.y() = 2;  // beside the other's way
+  m.yield_state.arrived(true, m.now);
+  EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::aside);
+  while (m.other.position.x() > -3) ASSERT_EQ(m.step(), Action::hold) << m.other.position.x();
+  while (m.step() == Action::hold) ASSERT_GT(m.other.position.x(), -8) << "it waits for ever";
+  EXPECT_LT(m.other.position.x(), -3);
+  EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::explore);
+}
+
+TEST(YieldState, GoesOnWhenTheOtherDoesNotComeOrIsNoMoreHeard) {
+  Meeting m;
+  m.other.position = {2.9, 0, 0}, m.other.velocity_mps.setZero();
+  EXPECT_EQ(m.run(10), Action::make_room) << "it may want to get by";
+  m.yield_state.set_out();
+  m.self.position.x() = -4;
+  m.yield_state.arrived(true, m.now);
+  EXPECT_EQ(m.run(9), Action::hold);
+  EXPECT_EQ(m.run(5), Action::go_on) << "it stays where it is";
+
+  Meeting silent;
+  silent.other.position.x() = 4;
+  ASSERT_EQ(silent.run(1), Action::hold);
+  EXPECT_EQ(silent.yield_state.update({}, silent.self, {}, silent.now, true), Action::go_on);
+}
+
+TEST(YieldState, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
+  Meeting m;
+  ASSERT_EQ(m.run(4), Action::make_room);
+  m.yield_state.set_out();
+  m.yield_state.arrived(true, m.now);
+  m.other.velocity_mps.setZero();
+  m.other.position = {3.5, 0, 0};
+  EXPECT_EQ(m.run(12), Action::make_room);
+}
+
+TEST(YieldState, WithNoRoomGoesBeforeTheOther) {
+  Meeting m;
+  ASSERT_EQ(m.run(4), Action::make_room);
+  m.yield_state.no_room(m.now, false);
+  m.other.velocity_mps.setZero();
+  ASSERT_EQ(m.run(10), Action::make_room);
+  m.yield_state.no_room(m.now, false);
+  EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::boxed);
+  // The other hears it, and gives way to it.
+  Neighbour boxed = m.self;
+  boxed.phase = TeamPhase::boxed;
+  EXPECT_TRUE(goes_before(boxed, m.other));
+  m.other.velocity_mps = {1, 0, 0};
+  EXPECT_EQ(m.run(3), Action::go_on);
+}
+
+// As it was: it flew on, into the one behind it.
+TEST(YieldState, OnItsWayToMakeRoomStopsForAThirdThatItFliesAt) {
+  Meeting m;
+  Neighbour third{3, {-8, 0, 0}};
+  const auto step = [&] {
+    m.now += kSecond / 10;
+    m.self.position += 0.1 * m.self.velocity_mps;
+    return m.yield_state.update({}, m.self, {m.other, third}, m.now, m.self.velocity_mps.isZero());
+  };
+  ASSERT_EQ(m.run(4), Action::make_room);
+  m.yield_state.set_out();
+  m.self.velocity_mps = {-1, 0, 0};
+  Action last = step();
+  while (last == Action::hold && m.self.position.x() > -8) last = step();
+  EXPECT_EQ(last, Action::stop);
+  const SeparationRule rule;
+  EXPECT_NEAR(m.self.position.x(), -8 + rule.distance_m / 2 + rule.own_s + 0.5 / rule.brake_mps2, 0.11);
+  m.self.velocity_mps.setZero(), m.other.velocity_mps.setZero();
+  EXPECT_EQ(step(), Action::hold);
+  for (int i = 0; i < 40 && last != Action::make_room; ++i) last = step();
+  EXPECT_EQ(last, Action::make_room) << "for another place";
+}
+
+TEST(YieldState, AmongACrowdWaitsLongerForRoomBeforeItGoesFirst) {
+  Meeting m;
+  m.other.position = {2.9, 0, 0}, m.other.velocity_mps.setZero();
+  for (int asked = 1; asked < 8; ++asked) {
+    ASSERT_EQ(m.run(10), Action::make_room);
+    m.yield_state.no_room(m.now, true);
+    EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::explore) << asked;
+  }
+  ASSERT_EQ(m.run(10), Action::make_room);
+  m.yield_state.no_room(m.now, true);
+  EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::boxed);
+}
+
+TEST(YieldState, WhoGoesFirstWaitsForTheOtherToStandAside) {
+  Meeting m;
+  std::swap(m.self.robot, m.other.robot);
+  m.other.position = {1.9, 0, 0};
+  ASSERT_EQ(m.step(), Action::hold) << "both stop that near";
+  m.other.velocity_mps.setZero();
+  EXPECT_EQ(m.run(3), Action::hold);
+  m.other.phase = TeamPhase::aside;
+  EXPECT_EQ(m.run(2), Action::go_on);
+}
+
+}  // namespace
+}  // namespace karst::core
