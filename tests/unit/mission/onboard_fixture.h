@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <sstream>
 
 #include "core_stack/mission/flight/path_execution.h"
@@ -13,17 +12,9 @@
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
+#include "tests/unit/mission/scripted_policy.h"
 
 namespace karst::core {
-
-/// A policy that does as the test says.
-struct ScriptedPolicy final : PolicyPort {
-  std::function<Decision(const DecisionRequest&)> script = [](const DecisionRequest&) { return Decision{}; };
-  std::vector<PolicyEvent> heard;
-  std::string name() const override { return "scripted"; }
-  Decision decide(const DecisionRequest& r) override { return script(r); }
-  void notify(const PolicyEvent& e) override { heard.push_back(e); }
-};
 
 class OnboardTest : public ::testing::Test {
  protected:

@@ -1,0 +1,249 @@
+// Whole missions of a vehicle that needs no simulator, by a policy that does as the test says.
+#include "core_stack/mission/mission_control.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core_stack/common/json_text.h"
+#include "tests/unit/mission/fake_vehicle.h"
+#include "tests/unit/mission/scripted_policy.h"
+
+namespace karst::core {
+namespace {
+
+const Vec3 kStart(0, 0, 0.2);
+constexpr double kFar_m = 14;  // as far as the corridor can be flown
+constexpr char kDegraded[] = "slow: the state estimate is degraded: a measurement that is not a number";
+using Texts = std::vector<std::string>;
+
+/// A room that leads into a corridor along x.
+std::vector<Room> room_with_corridor() {
+  return {{Vec3(-3, -3, 0), Vec3(4, 3, 3.2)}, {Vec3(3, -1.4, 0), Vec3(kFar_m + 2, 1.4, 2.8)}};
+}
+
+Decision fly_to(double x_m) {
+  Decision decision;
+  decision.outcome = Outcome::goals;
+  Goal goal;
+  goal.position = Vec3(x_m, 0, 1.3);
+  goal.heading_rad = std::numeric_limits<double>::quiet_NaN();
+  decision.goals = {goal};
+  return decision;
+}
+
+Decision explored() {
+  Decision decision;
+  decision.outcome = Outcome::explored;
+  decision.reason = "all seen";
+  return decision;
+}
+
+class MissionControlTest : public ::testing::Test {
+ protected:
+  MissionControlTest() {
+    options.localization.source = "pose_sensor";
+    options.map.resolution_m = 0.4;                                      // ample for a few rays
+    policy.script = [there = false](const DecisionRequest& r) mutable {  // to and fro
+      const double x_m = r.state.position.x();
+      if (x_m > kFar_m - 1 || x_m < 3) there = x_m < 3;
+      return fly_to(there ? kFar_m : 2);
+    };
+    std::filesystem::remove_all(run);
+  }
+
+  /// Flies the mission; `in_flight` is called ten times a second.
+  MissionResult fly(
+      const std::function<void(MissionControl&)>& in_flight = [](MissionControl&) {},
+      const Watch& watch = [](const MissionStatus&) { return true; }) {
+    Recorder recorder(run);
+    MissionControl mission(options, vehicle, executive, policy, recorder);
+    executive.every("test", 100 * kMillisecond, 100 * kMillisecond, [&] { in_flight(mission); });
+    MissionResult result = mission.run(watch);
+    recorder.flush();
+    std::ifstream in(run / "events.jsonl");
+    for (std::string line; std::getline(in, line);) events.push_back(json_of(line));
+    return result;
+  }
+  /// A measurement that is not a number: the vehicle still flies well by all others.
+  void degrade(MissionControl& mission) const {
+    mission.on_barometer({executive.now(), std::numeric_limits<double>::quiet_NaN()});
+  }
+
+  /// Of the events of that kind, one field, or two with a colon between them.
+  Texts told(const std::string& kind, const std::string& field, const std::string& other = "") const {
+    Texts out;
+    for (const nlohmann::json& e : events) {
+      if (e["kind"] != kind) continue;
+      out.push_back(e[field].get<std::string>());
+      if (!other.empty()) out.back() += ": " + e[other].get<std::string>();
+    }
+    return out;
+  }
+  Texts phases() const { return told("phase", "phase"); }
+  Texts safety() const { return told("safety", "action", "reason"); }
+  std::string homing_reason() const {
+    for (const nlohmann::json& e : events)
+      if (e["kind"] == "phase" && e["phase"] == "home") return e["reason"];
+    return "it never went home";
+  }
+
+  const std::filesystem::path run =
+      std::filesystem::path(KARST_BINARY_DIR) / "test_runs" /
+      (std::string("mission_control_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  CoreOptions options;
+  FakeVehicle vehicle{room_with_corridor(), kStart};
+  Executive executive{1};
+  ScriptedPolicy policy;
+  std::vector<nlohmann::json> events;
+};
+
+const Texts kWholeMission{"standby", "takeoff", "explore", "home", "land", "done"};
+const Texts kCutShort{"standby", "takeoff", "explore", "land", "done"};
+
+TEST_F(MissionControlTest, ExploresAsThePolicySaysComesHomeAndLandsAtTheStart) {
+  const std::vector<Decision> script{fly_to(5), fly_to(9), explored()};
+  std::size_t asked = 0;
+  policy.script = [&](const DecisionRequest&) { return script[std::min(asked++, script.size() - 1)]; };
+  options.mission.append = false;  // a goal is reached before the next is asked for
+  options.mission.decision_period_s = 600;
+  double farthest_m = 0;
+  const MissionResult result =
+      fly([&](MissionControl&) { farthest_m = std::max(farthest_m, vehicle.pose().position.x()); });
+  EXPECT_EQ(result.outcome, "landed");
+  EXPECT_EQ(result.reason, "at the start");
+  EXPECT_TRUE(result.stands);
+  EXPECT_EQ(result.record_problem, "");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "explored: all seen");
+  EXPECT_EQ(safety(), Texts{});
+  EXPECT_NEAR(farthest_m, 9, 0.5);
+  EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
+
+  using Kind = PolicyEvent::Kind;
+  std::vector<Kind> heard;
+  for (const PolicyEvent& e : policy.heard) heard.push_back(e.kind);
+  EXPECT_EQ(heard, (std::vector{Kind::goal_reached, Kind::goal_reached, Kind::homing}));
+}
+
+TEST_F(MissionControlTest, APolicyThatHasNothingSendsItHomeFromItsHover) {
+  policy.script = [](const DecisionRequest&) { return explored(); };
+  EXPECT_EQ(fly().outcome, "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "explored: all seen");
+  ASSERT_EQ(policy.heard.size(), 1u);
+  EXPECT_EQ(policy.heard.front().kind, PolicyEvent::Kind::homing);
+}
+
+TEST_F(MissionControlTest, TurnsBackWhileTheBatteryLastsForTheWayHome) {
+  vehicle.battery_s = 55;
+  options.mission.append = false;
+  options.mission.decision_period_s = 600;
+  policy.script = [](const DecisionRequest&) {
+    Decision slowly = fly_to(kFar_m);  // it takes longer than was reckoned with
+    slowly.goals.front().max_speed_mps = 0.5;
+    return slowly;
+  };
+  EXPECT_EQ(fly().outcome, "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "the time left only just suffices for the way home");
+  EXPECT_EQ(told("homing", "reason"), Texts{"battery"});
+  EXPECT_NEAR(vehicle.battery_s, options.mission.home_reserve_s, 5);
+}
+
+TEST_F(MissionControlTest, LandsWhereItIsWhenTheOperatorEndsTheFlight) {
+  const MissionResult result =
+      fly([](MissionControl&) {}, [this](const MissionStatus&) { return vehicle.pose().position.x() < 5; });
+  EXPECT_EQ(result.outcome, "aborted");
+  EXPECT_TRUE(result.reason.starts_with("stopped by the operator: on the ground ")) << result.reason;
+  EXPECT_TRUE(result.stands);
+  EXPECT_EQ(phases(), kCutShort);
+  EXPECT_EQ(safety(), Texts{"land: stopped by the operator"});
+  EXPECT_GT(vehicle.pose().position.x(), 5);
+}
+
+TEST_F(MissionControlTest, LandsWhereItIsWhenTheEstimateIsLost) {
+  const MissionResult result =
+      fly([this](MissionControl&) { vehicle.pose_sensor_works &= vehicle.pose().position.x() < 5; });
+  EXPECT_EQ(result.outcome, "stuck");
+  EXPECT_TRUE(result.reason.starts_with("on the ground ")) << result.reason;
+  EXPECT_TRUE(result.stands);
+  EXPECT_EQ(phases(), kCutShort);
+  EXPECT_EQ(safety(), (Texts{"slow: the state estimate is degraded: no pose",
+                             "land: the state estimate is lost: no pose for too long"}));
+}
+
+TEST_F(MissionControlTest, LandsByItsCommandsAndPosesWhenTheImuStops) {
+  const MissionResult result =
+      fly([this](MissionControl&) { vehicle.imu_works &= vehicle.pose().position.x() < 5; });
+  EXPECT_EQ(result.outcome, "stuck");
+  EXPECT_TRUE(result.stands);
+  EXPECT_EQ(phases(), kCutShort);
+  EXPECT_EQ(safety(), (Texts{"slow: the state estimate is degraded: no IMU",
+                             "land: the state estimate is lost: no IMU for too long"}));
+}
+
+TEST_F(MissionControlTest, IsOverWhenTheVehicleHitsRock) {
+  const MissionResult result =
+      fly([this](MissionControl&) { vehicle.wind_push_mps2.y() = vehicle.pose().position.x() < 5 ? 0 : 20; });
+  EXPECT_EQ(result.outcome, "contact");
+  EXPECT_EQ(result.reason, "touched rock");
+  EXPECT_FALSE(result.stands);
+  EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "done"}));
+}
+
+TEST_F(MissionControlTest, IgnoresSensorMessagesFromTheFuture) {
+  vehicle.battery_s = 40;
+  const MissionResult result = fly([this](MissionControl& mission) {
+    const TimeNs later = executive.now() + 3600 * kSecond;
+    const Vec3 nonsense(7, -7, 7);
+    mission.on_imu({later, nonsense, nonsense});
+    mission.on_magnetometer({later, nonsense});
+    mission.on_barometer({later, 7});
+    mission.on_pose({later, {nonsense, Quat::Identity()}});
+    LidarScan scan;
+    scan.stamp = later;
+    scan.model = vehicle.description().lidar;
+    scan.range_m.assign(scan.model->elevation_rad.size() * static_cast<std::size_t>(scan.model->columns),
+                        0.7f);
+    scan.intensity.assign(scan.range_m.size(), 0.5f);
+    mission.on_lidar(std::make_shared<LidarScan>(scan));
+  });
+  EXPECT_EQ(result.outcome, "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(safety(), Texts{});
+  EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
+}
+
+TEST_F(MissionControlTest, ComesHomeWhenTheDiskIsFull) {
+  std::filesystem::create_directories(run);
+  std::filesystem::create_symlink("/dev/full", run / "telemetry.csv");
+  const MissionResult result = fly();
+  EXPECT_EQ(result.outcome, "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "the run directory cannot be written any more (disk full?)");
+}
+
+TEST_F(MissionControlTest, GoesHomeSlowlyWhenTheEstimateStaysDegraded) {
+  options.safety.degraded_home_s = 2;
+  EXPECT_EQ(fly([this](MissionControl& mission) {
+              if (mission.phase() == Phase::explore && vehicle.pose().position.x() > 3) degrade(mission);
+            }).outcome,
+            "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "the state estimate stays degraded");
+  EXPECT_EQ(safety(), (Texts{kDegraded, "home: the state estimate stays degraded", "none: "}));
+}
+
+TEST_F(MissionControlTest, BrakesWhenBlindAndThenGoesHomeThroughTheKnownMap) {
+  options.safety.blind_home_s = 3;
+  EXPECT_EQ(fly([this](MissionControl&) { vehicle.lidar_works &= vehicle.pose().position.x() < 5; }).outcome,
+            "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "no sensor sees the cave any more");
+  EXPECT_EQ(safety(), (Texts{"brake: no sensor sees the cave", "home: no sensor sees the cave any more"}));
+}
+
+}  // namespace
+}  // namespace karst::core
