@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "core_stack/common/error.h"
+
 namespace karst::core {
 namespace {
 
@@ -161,6 +163,10 @@ MissionResult MissionControl::end() {
   attempt([this] { vehicle_.finish(); });
   attempt([this] {
     if (onboard_.vehicle.detects_objects) objects_.write();
+  });
+  attempt([this] {
+    if (!onboard_.recorder.flush())
+      throw InputError(onboard_.recorder.directory().string(), "", "cannot be written: is the disk full?");
   });
   attempt([this] { onboard_.recorder.final_map(onboard_.map.while_idle().map()); });
   if (!result_) result_ = MissionResult{"aborted", "", standing_, ""};

@@ -216,13 +216,14 @@ TEST_F(MissionControlTest, IgnoresSensorMessagesFromTheFuture) {
   EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
 }
 
-TEST_F(MissionControlTest, ComesHomeWhenTheDiskIsFull) {
+TEST_F(MissionControlTest, ComesHomeWhenTheDiskIsFullAndSaysThatTheRecordIsIncomplete) {
   std::filesystem::create_directories(run);
   std::filesystem::create_symlink("/dev/full", run / "telemetry.csv");
   const MissionResult result = fly();
   EXPECT_EQ(result.outcome, "landed");
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "the run directory cannot be written any more (disk full?)");
+  EXPECT_NE(result.record_problem, "");
 }
 
 TEST_F(MissionControlTest, GoesHomeSlowlyWhenTheEstimateStaysDegraded) {
