@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "core_stack/common/error.h"
 
@@ -352,25 +353,37 @@ void MissionControl::keep_safe() {
     o.hull_clearance_m = sensors_.hull_clearance_m();  // not while it lifts off from the ground
   o.blind_s = seconds(sensors_.blind_for());
   o.battery_s = endurance_.battery().seconds_left;
-  const SafetyVerdict verdict = safety_.judge(o);
-  if (verdict == verdict_) return;
-  verdict_ = verdict;
-  path_.obey(verdict.action);
-  onboard_.recorder.event(now(), "safety", {{"action", name_of(verdict.action)}, {"reason", verdict.reason}});
-  react(verdict);
+  const SafetyVerdict before = std::exchange(verdict_, safety_.judge(o));
+  note_verdict(before);
+  path_.obey(verdict_.action);
+  react(before);
 }
 
-void MissionControl::react(const SafetyVerdict& verdict) {
+/// Every change is an event, and only one where the same cause slows the vehicle and sends it home.
+void MissionControl::note_verdict(const SafetyVerdict& before) {
+  const auto note = [this](const char* action, const std::string& reason) {
+    onboard_.recorder.event(now(), "safety", {{"action", action}, {"reason", reason}});
+  };
+  const bool turns_back = verdict_.go_home && verdict_.go_home != before.go_home;
+  if (!verdict_.same_motion(before) && !(turns_back && verdict_.reason == *verdict_.go_home))
+    note(name_of(verdict_.action), verdict_.reason);
+  if (turns_back) note("home", *verdict_.go_home);
+}
+
+/// It brakes when a cause comes up. What it may fly at and whether it may explore hold as long as the cause
+/// does: that may have come up, or be gone, in a phase in which it made no difference.
+void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
-  const double fraction = verdict.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_fraction;
+  const double fraction = verdict_.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_fraction;
   if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * fraction);
-  if (verdict.action == SafetyAction::land) {
+  if (verdict_.action == SafetyAction::land) {
     path_.brake(now());
-    land_here(verdict.reason);
-  } else if (verdict.action == SafetyAction::home && phases_.in(Phase::explore)) {
-    return_home_.begin(verdict.reason);
-  } else if (verdict.action == SafetyAction::brake && under_way && !onboard_.flight.at_rest(now())) {
-    goals_.drop_next(GoalFate::superseded, verdict.reason, now());
+    return land_here(verdict_.reason);
+  }
+  if (verdict_.go_home && phases_.in(Phase::explore)) return_home_.begin(*verdict_.go_home);
+  const bool brakes = verdict_.action == SafetyAction::brake && !verdict_.same_motion(before);
+  if (brakes && under_way && !onboard_.flight.at_rest(now())) {
+    goals_.drop_next(GoalFate::superseded, verdict_.reason, now());
     path_.brake(now());
     path_.block();  // and look for a new way from there
   }

@@ -100,7 +100,8 @@ class MissionControl final : public VehicleSink {
   void watch_steps();
   void report_to_watcher();
   void keep_safe();
-  void react(const SafetyVerdict& verdict);
+  void note_verdict(const SafetyVerdict& before);
+  void react(const SafetyVerdict& before);
   void take_off();
   void end_flight(const char* reason, double max_path_m) noexcept;
   void land_here(const std::string& reason);

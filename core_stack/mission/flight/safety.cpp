@@ -1,14 +1,17 @@
 #include "core_stack/mission/flight/safety.h"
 
+#include <utility>
+
 namespace karst::core {
 namespace {
 
 constexpr TimeNs kKept = kSecond;
+constexpr const char* kBlindForLong = "no sensor sees the cave any more";
 
 }  // namespace
 
 const char* name_of(SafetyAction action) {
-  static constexpr const char* kNames[] = {"none", "slow", "brake", "home", "land"};
+  static constexpr const char* kNames[] = {"none", "slow", "brake", "land"};
   return kNames[static_cast<int>(action)];
 }
 
@@ -25,15 +28,14 @@ void describe(OptionTable& t, SafetyOptions& o) {
         "with less battery time than this it lands wherever it is");
 }
 
-SafetyVerdict SafetySupervisor::worst(const SafetyObservation& o) const {
+SafetyVerdict SafetySupervisor::on_motion(const SafetyObservation& o) const {
   const std::string why = o.estimate.reason;
   if (o.estimate.health == Health::lost) return {SafetyAction::land, "the state estimate is lost: " + why};
   if (o.battery_s < options_.battery_land_s) return {SafetyAction::land, "the battery ends"};
-  if (degraded_since_ && seconds(o.now - *degraded_since_) > options_.degraded_home_s)
-    return {SafetyAction::home, "the state estimate stays degraded"};
-  if (o.blind_s > options_.blind_home_s) return {SafetyAction::home, "no sensor sees the cave any more"};
-  if (o.blind_s > options_.blind_brake_s) return {SafetyAction::brake, "no sensor sees the cave"};
+  const bool waits_for_sight = o.blind_s > options_.blind_brake_s && o.blind_s <= options_.blind_home_s;
+  if (waits_for_sight) return {SafetyAction::brake, "no sensor sees the cave"};
   if (o.tracking_error_m > options_.tracking_brake_m) return {SafetyAction::brake, "far from the reference"};
+  if (o.blind_s > options_.blind_home_s) return {SafetyAction::slow, kBlindForLong};
   if (o.tracking_error_m > options_.tracking_slow_m) return {SafetyAction::slow, "off the reference"};
   if (o.estimate.health == Health::degraded)
     return {SafetyAction::slow, "the state estimate is degraded: " + why};
@@ -42,15 +44,24 @@ SafetyVerdict SafetySupervisor::worst(const SafetyObservation& o) const {
   return {};
 }
 
+std::optional<std::string> SafetySupervisor::why_home(const SafetyObservation& o) const {
+  if (degraded_since_ && seconds(o.now - *degraded_since_) > options_.degraded_home_s)
+    return "the state estimate stays degraded";
+  if (o.blind_s > options_.blind_home_s) return kBlindForLong;
+  return std::nullopt;
+}
+
 const SafetyVerdict& SafetySupervisor::judge(const SafetyObservation& o) {
   if (o.estimate.health == Health::good) degraded_since_.reset();
   if (o.estimate.health != Health::good && !degraded_since_) degraded_since_ = o.now;
-  const SafetyVerdict now = worst(o);
-  if (now.action >= verdict_.action) {
-    verdict_ = now;
+  SafetyVerdict now = on_motion(o);
+  now.go_home = why_home(o);
+  const bool turns_back = now.go_home && !verdict_.go_home;  // it waits for nothing that is over
+  if (now.action >= verdict_.action || turns_back || o.now - cause_seen_ >= kKept) {
+    verdict_ = std::move(now);
     cause_seen_ = o.now;
-  } else if (o.now - cause_seen_ >= kKept) {
-    verdict_ = now;
+  } else {
+    verdict_.go_home = std::move(now.go_home);
   }
   return verdict_;
 }

@@ -1,7 +1,8 @@
 // The safety supervisor: from what is wrong to what is done about it, ten times a second.
 //
-// Each rule reads one observation; the most severe action of all rules counts. An action is kept for a second
-// after its cause is gone, so that it does not flicker.
+// Each rule reads one observation. Two questions are answered apart, so that neither answer hides the other:
+// what is done about the motion, where the most severe action of all rules counts, and whether exploring has
+// to end. An action is kept for a second after its cause is gone, so that it does not flicker.
 #pragma once
 #include <optional>
 #include <string>
@@ -24,8 +25,8 @@ struct SafetyOptions {
 };
 void describe(OptionTable& t, SafetyOptions& o);
 
-/// In order of severity.
-enum class SafetyAction { none, slow, brake, home, land };
+/// On the motion, in order of severity.
+enum class SafetyAction { none, slow, brake, land };
 const char* name_of(SafetyAction action);
 
 struct SafetyObservation {
@@ -39,8 +40,9 @@ struct SafetyObservation {
 
 struct SafetyVerdict {
   SafetyAction action = SafetyAction::none;
-  std::string reason;
-  bool operator==(const SafetyVerdict&) const = default;
+  std::string reason;                       // of the action
+  std::optional<std::string> go_home = {};  // why exploring has to end, if it has
+  bool same_motion(const SafetyVerdict& o) const { return action == o.action && reason == o.reason; }
 };
 
 class SafetySupervisor {
@@ -49,7 +51,8 @@ class SafetySupervisor {
   const SafetyVerdict& judge(const SafetyObservation& o);
 
  private:
-  SafetyVerdict worst(const SafetyObservation& o) const;
+  SafetyVerdict on_motion(const SafetyObservation& o) const;
+  std::optional<std::string> why_home(const SafetyObservation& o) const;
 
   SafetyOptions options_;
   SafetyVerdict verdict_;

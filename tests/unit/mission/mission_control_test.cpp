@@ -246,5 +246,56 @@ TEST_F(MissionControlTest, BrakesWhenBlindAndThenGoesHomeThroughTheKnownMap) {
   EXPECT_EQ(safety(), (Texts{"brake: no sensor sees the cave", "home: no sensor sees the cave any more"}));
 }
 
+TEST_F(MissionControlTest, AnEstimateDegradedSinceTakeOffSendsItHome) {
+  options.safety.degraded_home_s = 1;
+  EXPECT_EQ(fly([this](MissionControl& mission) { degrade(mission); }).outcome, "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "the state estimate stays degraded");
+  EXPECT_EQ(safety(), (Texts{kDegraded, "home: the state estimate stays degraded"}));
+}
+
+TEST_F(MissionControlTest, BlindSinceTakeOffItGoesHome) {
+  options.safety.blind_home_s = 2;
+  vehicle.lidar_works = false;
+  EXPECT_EQ(fly().outcome, "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "no sensor sees the cave any more");
+}
+
+TEST_F(MissionControlTest, SlowedSinceTakeOffItExploresSlowlyUntilTheCauseIsGone) {
+  options.safety.degraded_home_s = 600;
+  vehicle.battery_s = 45;
+  double slowly_mps = 0, then_mps = 0;
+  fly([&](MissionControl& mission) {
+    const bool degraded = executive.now() < 8 * kSecond;
+    if (degraded) degrade(mission);
+    double& fastest_mps = degraded ? slowly_mps : then_mps;
+    fastest_mps = std::max(fastest_mps, vehicle.velocity_mps().norm());
+  });
+  const double slow_mps = options.safety.slow_fraction * options.motion.max_speed_mps;
+  EXPECT_EQ(safety(), (Texts{kDegraded, "none: "}));
+  EXPECT_LT(slowly_mps, 1.1 * slow_mps);
+  EXPECT_GT(slowly_mps, 0.7 * slow_mps);
+  EXPECT_GT(then_mps, 1.5 * slow_mps);
+}
+
+TEST_F(MissionControlTest, BrakesForWhatPushesItOffItsPathOnTheWayHomeWithADegradedEstimate) {
+  options.safety.degraded_home_s = 2;
+  std::optional<TimeNs> pushed;
+  bool degraded = false;
+  EXPECT_EQ(fly([&](MissionControl& mission) {
+              degraded |= vehicle.pose().position.x() > 7;
+              if (degraded) degrade(mission);
+              if (mission.phase() == Phase::home && !pushed) pushed = executive.now();
+              const TimeNs since = executive.now() - pushed.value_or(executive.now());
+              vehicle.wind_push_mps2 = {since > kSecond && since < 2 * kSecond ? 9.0 : 0.0, 0, 0};
+            }).outcome,
+            "landed");
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "the state estimate stays degraded");
+  const Texts all = safety();
+  EXPECT_EQ(std::count(all.begin(), all.end(), "brake: far from the reference"), 1);
+}
+
 }  // namespace
 }  // namespace karst::core
