@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <map>
 
-#include "core_stack/mission/onboard.h"
-#include "core_stack/mission/team/teamwork.h"
+#include "core_stack/mission/onboard/onboard.h"
 #include "core_stack/objects/object_map.h"
+#include "core_stack/team/teamwork.h"
 
 namespace karst::core {
 

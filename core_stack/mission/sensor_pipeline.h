@@ -10,7 +10,7 @@
 #include "core_stack/homing/landing/descent_path.h"
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/moving_bodies.h"
-#include "core_stack/mission/onboard.h"
+#include "core_stack/mission/onboard/onboard.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {

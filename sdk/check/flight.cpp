@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/services/snapshot.h"
-#include "sdk/host/text.h"
 
 namespace karst::check {
 namespace {

@@ -5,11 +5,11 @@
 #include <chrono>
 #include <cstdio>
 
-#include "sdk/host/plugin/call_plugin.h"
+#include "sdk/host/boundary/call_plugin.h"
+#include "sdk/host/boundary/policy_state.h"
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/plugin/process_state.h"
-#include "sdk/host/policy_state.h"
 #include "sdk/host/services/translation.h"
-#include "sdk/host/text.h"
 
 namespace karst::check {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sdk/check/progress.h"
-#include "sdk/host/decision_box.h"
+#include "sdk/host/boundary/decision_box.h"
 #include "sdk/host/plugin/plugin_file.h"
 #include "sdk/host/services/session.h"
 

@@ -6,8 +6,8 @@
 #include "sdk/check/elf_exports.h"
 #include "sdk/check/process_view.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/plugin/call_plugin.h"
-#include "sdk/host/text.h"
+#include "sdk/host/boundary/call_plugin.h"
+#include "sdk/host/boundary/text.h"
 
 namespace karst::check {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/plugin/parameters.h"
-#include "sdk/host/text.h"
 
 namespace karst::check {
 namespace {

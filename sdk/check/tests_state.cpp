@@ -1,8 +1,8 @@
 // state: what it remembers, through the extension "karst.state/1".
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
-#include "sdk/host/plugin/call_plugin.h"
-#include "sdk/host/text.h"
+#include "sdk/host/boundary/call_plugin.h"
+#include "sdk/host/boundary/text.h"
 
 namespace karst::check {
 namespace {

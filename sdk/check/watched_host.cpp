@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "sdk/host/text.h"
+#include "sdk/host/boundary/text.h"
 
 namespace karst::check {
 

@@ -11,7 +11,6 @@
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/metrics.h"
-#include "sdk/evaluation/metrics/object_figures.h"
 #include "sdk/evaluation/reachable/imaged_rock.h"
 #include "sdk/evaluation/reachable/reachable_file.h"
 #include "sdk/evaluation/reachable/surface.h"
@@ -19,6 +18,7 @@
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/team_report.h"
 #include "sdk/evaluation/team/team_metrics.h"
+#include "sdk/evaluation/team/team_object_figures.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::flight {

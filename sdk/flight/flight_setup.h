@@ -9,7 +9,7 @@
 #include "plugins/simulator/simulated_world.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/mission_file.h"
-#include "sdk/host/hosted_policy.h"
+#include "sdk/host/load_policy.h"
 
 namespace karst::flight {
 

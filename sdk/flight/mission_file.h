@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/vehicle.h"
 #include "sdk/flight/team_faults.h"
 

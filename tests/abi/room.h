@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core_stack/mission/policy/policy_port.h"
-#include "sdk/host/hosted_policy.h"
+#include "sdk/host/load_policy.h"
 
 namespace karst::test {
 

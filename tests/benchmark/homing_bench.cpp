@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core_stack/homing/path_home/home.h"
-#include "core_stack/planning/path/planner.h"
+#include "core_stack/planning/planner.h"
 #include "tests/benchmark/times.h"
 #include "tests/unit/planning/test_maps.h"
 

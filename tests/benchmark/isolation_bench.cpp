@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "core_stack/mapping/occupancy/voxel_classes.h"
-#include "sdk/host/decision_box.h"
-#include "sdk/host/hosted_policy.h"
+#include "sdk/host/boundary/decision_box.h"
+#include "sdk/host/load_policy.h"
 #include "sdk/host/serialization/flat_request.h"
 #include "tests/benchmark/times.h"
 

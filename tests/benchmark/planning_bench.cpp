@@ -8,8 +8,8 @@
 
 #include "core_stack/mapping/obstacles/obstacle_tree.h"
 #include "core_stack/planning/free_space/free_tiles.h"
-#include "core_stack/planning/path/planner.h"
 #include "core_stack/planning/path/refine.h"
+#include "core_stack/planning/planner.h"
 #include "core_stack/planning/search/grid_planner.h"
 #include "core_stack/planning/trajectory/polynomial_trajectory.h"
 #include "core_stack/planning/trajectory/trajectory.h"

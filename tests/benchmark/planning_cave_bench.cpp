@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "core_stack/planning/free_space/free_tiles.h"
-#include "core_stack/planning/path/planner.h"
 #include "core_stack/planning/path/refine.h"
+#include "core_stack/planning/planner.h"
 #include "core_stack/planning/search/grid_planner.h"
 #include "core_stack/planning/search/ompl_search.h"
 #include "tests/benchmark/cave_map.h"

@@ -11,7 +11,7 @@
 #include "core_stack/mission/decision/goal_ledger.h"
 #include "core_stack/mission/decision/viewpoints.h"
 #include "core_stack/mission/policy/policy_port.h"
-#include "core_stack/mission/team/team_membership.h"
+#include "core_stack/mission/world_model/team_membership.h"
 #include "core_stack/mission/world_model/world_model.h"
 
 namespace karst::core {

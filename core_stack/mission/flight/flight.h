@@ -8,7 +8,7 @@
 #include "core_stack/control/se3_controller.h"
 #include "core_stack/localization/estimator.h"
 #include "core_stack/mission/flight/emergency_landing.h"
-#include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/options/mission_options.h"
 #include "core_stack/planning/trajectory/minimum_snap.h"
 #include "core_stack/vehicle/vehicle.h"
 

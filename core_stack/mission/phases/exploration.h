@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
+#include "core_stack/mission/phases/path_execution.h"
 #include "core_stack/mission/phases/still_watch.h"
 
 namespace karst::core {

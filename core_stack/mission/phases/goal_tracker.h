@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/mission/explorer.h"
+#include "core_stack/mission/onboard/explorer.h"
 #include "core_stack/mission/recording/recorder.h"
 
 namespace karst::core {

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "core_stack/homing/path_home/home.h"
-#include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
+#include "core_stack/mission/phases/path_execution.h"
+#include "core_stack/mission/phases/relay_landing.h"
 #include "core_stack/mission/phases/still_watch.h"
-#include "core_stack/mission/team/relay_landing.h"
 
 namespace karst::core {
 

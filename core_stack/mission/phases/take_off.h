@@ -1,6 +1,6 @@
 // The take-off: up to the first hover, and below a low roof to where there is room.
 #pragma once
-#include "core_stack/mission/flight/path_execution.h"
+#include "core_stack/mission/phases/path_execution.h"
 
 namespace karst::core {
 

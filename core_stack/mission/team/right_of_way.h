@@ -2,11 +2,11 @@
 #pragma once
 #include <vector>
 
-#include "core_stack/mission/flight/path_execution.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
-#include "core_stack/mission/team/teamwork.h"
+#include "core_stack/mission/phases/path_execution.h"
 #include "core_stack/team/right_of_way/yield_state.h"
+#include "core_stack/team/teamwork.h"
 
 namespace karst::core {
 

@@ -4,8 +4,8 @@
 #pragma once
 #include <optional>
 
-#include "core_stack/mission/mission_options.h"
-#include "core_stack/mission/team/teamwork.h"
+#include "core_stack/mission/options/mission_options.h"
+#include "core_stack/team/teamwork.h"
 #include "core_stack/vehicle/team_port.h"
 #include "core_stack/vehicle/vehicle.h"
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core_stack/mapping/occupancy/moving_bodies.h"
-#include "core_stack/mission/flight/path_execution.h"
-#include "core_stack/mission/onboard.h"
+#include "core_stack/mission/onboard/onboard.h"
 #include "core_stack/mission/phases/endurance.h"
+#include "core_stack/mission/phases/path_execution.h"
 #include "core_stack/mission/phases/phase.h"
-#include "core_stack/mission/team/teamwork.h"
+#include "core_stack/team/teamwork.h"
 
 namespace karst::core {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core_stack/mission/policy/policy_port.h"
-#include "core_stack/mission/team/team_membership.h"
+#include "core_stack/mission/world_model/team_membership.h"
 #include "core_stack/mission/world_model/world_model.h"
 
 namespace karst::core {

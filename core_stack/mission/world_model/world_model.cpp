@@ -1,6 +1,6 @@
 #include "core_stack/mission/world_model/world_model.h"
 
-#include "core_stack/planning/path/planner.h"
+#include "core_stack/planning/planner.h"
 #include "core_stack/planning/search/grid_planner.h"
 
 namespace karst::core {

@@ -9,7 +9,7 @@
 
 #include "core_stack/mapping/frontiers/frontiers.h"
 #include "core_stack/mapping/frontiers/imaged_surface.h"
-#include "core_stack/mission/mission_options.h"
+#include "core_stack/mission/options/mission_options.h"
 #include "core_stack/mission/world_model/clearance_roadmap.h"
 
 namespace karst::core {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "plugins/simulator/sensors/random_vector.h"
+#include "core_stack/common/random_vector.h"
 
 namespace karst::sim {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "plugins/simulator/sensors/random_vector.h"
+#include "core_stack/common/random_vector.h"
 
 namespace karst::sim {
 

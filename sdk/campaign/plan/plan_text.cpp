@@ -65,19 +65,6 @@ std::string definition_of(const Plan& plan) {
   return info_text(tree);
 }
 
-void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results) {
-  const pt::ptree tree = tree_of(definition, source);
-  results.profile = tree.get("profile", "");
-  results.metric = tree.get("metric", results.metric);
-  for (const auto& [key, contestant] : tree) {
-    if (key != "contestant" || contestant.get("settings", "{}") != "{}") continue;
-    for (const auto& [name, value] : core::leaves_of(contestant.get_child("mission", {})))
-      if (!name.starts_with("policy.") && name != "mission.max_flight_time")
-        results.shared.emplace_back(name, value);
-    return;  // what the others have in common with it
-  }
-}
-
 Plan plan_of(const std::string& definition, const std::string& source) {
   Plan plan;
   const pt::ptree tree = tree_of(definition, source);

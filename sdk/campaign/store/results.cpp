@@ -6,7 +6,8 @@
 #include <map>
 
 #include "core_stack/common/error.h"
-#include "sdk/campaign/plan/plan_text.h"
+#include "core_stack/common/info_reader.h"
+#include "core_stack/common/options.h"
 #include "sdk/campaign/store/sqlite.h"
 #include "sdk/campaign/store/store.h"
 #include "sdk/campaign/store/store_schema.h"
@@ -40,6 +41,20 @@ std::size_t index_of(const fs::path& file, std::int64_t id, std::size_t count) {
   if (id < 1 || static_cast<std::size_t>(id) > count)
     throw core::InputError(file.string(), "trial", "names a contestant or cave that is not there");
   return static_cast<std::size_t>(id - 1);
+}
+
+/// What a definition tells of how all flew: fills what it knows of profile, metric and shared settings.
+void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results) {
+  const boost::property_tree::ptree tree = core::parse_info(definition, source + ": campaign.definition");
+  results.profile = tree.get("profile", "");
+  results.metric = tree.get("metric", results.metric);
+  for (const auto& [key, contestant] : tree) {
+    if (key != "contestant" || contestant.get("settings", "{}") != "{}") continue;
+    for (const auto& [name, value] : core::leaves_of(contestant.get_child("mission", {})))
+      if (!name.starts_with("policy.") && name != "mission.max_flight_time")
+        results.shared.emplace_back(name, value);
+    return;  // what the others have in common with it
+  }
 }
 
 }  // namespace

@@ -3,110 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <set>
 #include <tuple>
+
+#include "sdk/evaluation/metrics/object_events.h"
 
 namespace karst::evaluation {
 namespace {
 
-using core::Vec3;
 using nlohmann::json;
-using Key = std::pair<std::int64_t, std::int64_t>;  // robot, and its own number for the object
 
 constexpr double kSameObject_m = 3;
-constexpr double kFarthest_m = 1e6;  // what lies farther is damaged
-
-std::optional<Vec3> position_of(const json& e) {
-  const auto p = e.find("position");
-  if (p == e.end() || !p->is_array() || p->size() != 3) return std::nullopt;
-  Vec3 v;
-  for (int i = 0; i < 3; ++i) {
-    if (!(*p)[static_cast<std::size_t>(i)].is_number()) return std::nullopt;
-    v[i] = (*p)[static_cast<std::size_t>(i)].get<double>();
-    if (!(std::abs(v[i]) < kFarthest_m)) return std::nullopt;
-  }
-  return v;
-}
-
-/// -1 if it is none.
-std::int64_t whole(const json& e, const char* key) {
-  const double v = event_number(e, key).value_or(-1);
-  return v >= 0 && v <= UINT32_MAX ? static_cast<std::int64_t>(v) : -1;
-}
-
-/// By number, as truth_objects.jsonl has them.
-std::map<std::int64_t, TrueObject> true_objects(const std::vector<json>& events) {
-  std::map<std::int64_t, TrueObject> truth;
-  for (const json& e : events) {
-    const auto p = position_of(e);
-    if (!p || whole(e, "number") < 0) continue;
-    TrueObject& o =
-        truth.try_emplace(whole(e, "number"), TrueObject{event_text(e, "what"), *p, false}).first->second;
-    o.seen = o.seen || event_text(e, "event") == "seen";
-  }
-  return truth;
-}
-
-std::vector<TrueObject> listed(const std::map<std::int64_t, TrueObject>& truth) {
-  std::vector<TrueObject> list;
-  for (const auto& [number, o] : truth) list.push_back(o);
-  return list;
-}
-
-/// What events say of objects, as last told; `time` is that of the state that counts as reported.
-void note(std::map<Key, KnownObject>& known, const Key& key, const json& e, const char* reported_by) {
-  const std::string state = event_text(e, "state");
-  if (state == "withdrawn") {
-    known.erase(key);
-    return;
-  }
-  KnownObject& o = known[key];
-  if (const auto p = position_of(e)) o.what = event_text(e, "what"), o.position = *p;
-  if (state == reported_by && !o.reported_s) o.reported_s = event_number(e, "t");
-}
-
-std::vector<KnownObject> listed(const std::map<Key, KnownObject>& known) {
-  std::vector<KnownObject> list;
-  for (const auto& [key, o] : known) list.push_back(o);
-  return list;
-}
-
-/// Whether a team's log says whose object it is, which, and, unless it is withdrawn, what and where.
-bool is_whole_report(const json& e) {
-  if (whole(e, "robot") < 0 || whole(e, "number") < 0 || event_text(e, "state").empty()) return false;
-  return event_text(e, "state") == "withdrawn" || (position_of(e) && !event_text(e, "what").empty());
-}
-
-/// What the base makes of all reports; `at_base` says when each report came. Counts what is damaged.
-std::vector<KnownObject> together(const json& e, const std::map<Key, KnownObject>& at_base,
-                                  std::size_t& damaged) {
-  std::vector<KnownObject> all;
-  const auto known = e.find("known");
-  if (known == e.end() || !known->is_array()) return ++damaged, all;
-  for (const json& o : *known) {
-    const auto p = o.is_object() ? position_of(o) : std::nullopt;
-    if (!p || event_text(o, "what").empty()) {
-      ++damaged;
-      continue;
-    }
-    KnownObject one{event_text(o, "what"), *p, std::nullopt};
-    if (const auto by = o.find("told_by"); by != o.end() && by->is_array())
-      for (const json& pair : *by) {
-        if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer() ||
-            !pair[1].is_number_integer()) {
-          ++damaged;
-          continue;
-        }
-        const auto report = at_base.find({pair[0].get<std::int64_t>(), pair[1].get<std::int64_t>()});
-        if (report == at_base.end() || !report->second.reported_s) continue;
-        one.reported_s =
-            std::min(one.reported_s.value_or(*report->second.reported_s), *report->second.reported_s);
-      }
-    all.push_back(one);
-  }
-  return all;
-}
 
 std::optional<double> mean(const std::vector<double>& v) {
   if (v.empty()) return std::nullopt;
@@ -164,39 +71,14 @@ ObjectFigures object_figures(const std::vector<TrueObject>& truth, const std::ve
 
 ObjectFigures object_figures(const RunRecord& run) {
   if (run.truth_objects.empty()) return {};
-  std::map<Key, KnownObject> known;
+  KnownObjects known;
   for (const json& e : run.events)
-    if (e["kind"] == "object" && whole(e, "number") >= 0) note(known, {0, whole(e, "number")}, e, "reported");
+    if (e["kind"] == "object" && whole_number(e, "number") >= 0)
+      note(known, {0, whole_number(e, "number")}, e, "reported");
   std::vector<KnownObject> found = listed(known), at_base;
   std::copy_if(found.begin(), found.end(), std::back_inserter(at_base),
                [](const KnownObject& o) { return o.reported_s.has_value(); });
   return object_figures(listed(true_objects(run.truth_objects)), found, at_base);
-}
-
-ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::string>& problems) {
-  std::map<std::int64_t, TrueObject> truth;
-  for (const RunRecord& robot : team.robots)
-    for (const auto& [number, o] : true_objects(robot.truth_objects))
-      truth.try_emplace(number, o).first->second.seen |= o.seen;
-  std::map<Key, KnownObject> told, at_base;
-  std::vector<KnownObject> merged;
-  std::size_t damaged = 0;
-  for (const json& e : team.events) {
-    const std::string kind = event_text(e, "kind");
-    const bool one = kind == "object" || kind == "object_known";
-    if (one && !is_whole_report(e))
-      ++damaged;
-    else if (one)
-      note(kind == "object" ? told : at_base, {whole(e, "robot"), whole(e, "number")}, e,
-           kind == "object" ? "" : "found");
-    else if (kind == "objects")
-      merged = together(e, at_base, damaged);
-  }
-  if (damaged > 0)
-    problems.push_back("team.jsonl: " + std::to_string(damaged) +
-                       " reports of objects are damaged; left out");
-  if (truth.empty()) return {};
-  return object_figures(listed(truth), listed(told), merged);
 }
 
 void set_figures(nlohmann::ordered_json& m, const ObjectFigures& f) {

@@ -1,28 +1,13 @@
-// Figures of the search for objects of interest: of a flight, and of a team. Definitions: docs/metrics.md.
+// Figures of the search for objects of interest. Definitions: docs/metrics.md.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "core_stack/common/geometry.h"
-#include "sdk/evaluation/team/team_record.h"
+#include "sdk/evaluation/metrics/object_events.h"
+#include "sdk/evaluation/record/run_record.h"
 
 namespace karst::evaluation {
-
-/// An object as it truly lies.
-struct TrueObject {
-  std::string what;
-  core::Vec3 position = core::Vec3::Zero();
-  bool seen = false;  // in view often enough to be found
-};
-
-/// An object as somebody knows it.
-struct KnownObject {
-  std::string what;
-  core::Vec3 position = core::Vec3::Zero();
-  std::optional<double> reported_s;  // when the base first knew of it
-};
 
 /// For each known object the index of the true one it is: of all pairs of one kind within 3 m the nearest
 /// first, each used once. None: it is a false one.
@@ -40,8 +25,6 @@ ObjectFigures object_figures(const std::vector<TrueObject>& truth, const std::ve
 
 /// Of one vehicle's flight.
 ObjectFigures object_figures(const RunRecord& run);
-/// Of a team, from its log and its robots' truth. What is damaged is added to `problems`.
-ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::string>& problems);
 
 /// Sets objects_* and object_* of metrics.json, null for what is not known.
 void set_figures(nlohmann::ordered_json& metrics, const ObjectFigures& figures);

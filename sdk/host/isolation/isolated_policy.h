@@ -6,8 +6,8 @@
 #pragma once
 #include <memory>
 
-#include "sdk/host/hosted_policy.h"
 #include "sdk/host/isolation/policy_process.h"
+#include "sdk/host/plugin/hosted_policy.h"
 #include "sdk/host/serialization/flat_answer.h"
 
 namespace karst::host {

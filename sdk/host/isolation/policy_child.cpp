@@ -3,10 +3,10 @@
 #include <memory>
 #include <mutex>
 
+#include "sdk/host/in_process/loaded_policy.h"
 #include "sdk/host/isolation/file_access.h"
 #include "sdk/host/isolation/sandbox.h"
 #include "sdk/host/isolation/shared_ring.h"
-#include "sdk/host/loaded_policy.h"
 #include "sdk/host/plugin/selection.h"
 #include "sdk/host/serialization/flat_answer.h"
 #include "sdk/host/serialization/flat_request.h"

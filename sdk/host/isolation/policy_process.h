@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "sdk/host/call_limits.h"
+#include "sdk/host/in_process/call_limits.h"
 #include "sdk/host/isolation/shared_ring.h"
 
 namespace karst::host {

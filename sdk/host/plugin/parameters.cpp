@@ -1,6 +1,6 @@
 #include "sdk/host/plugin/parameters.h"
 
-#include "sdk/host/text.h"
+#include "sdk/host/boundary/text.h"
 
 namespace karst::host {
 namespace {

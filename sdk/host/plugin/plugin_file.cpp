@@ -9,8 +9,8 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/plugin/process_state.h"
-#include "sdk/host/text.h"
 
 namespace karst::host {
 namespace {

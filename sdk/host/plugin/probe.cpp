@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/json_text.h"
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/plugin/parameters.h"
 #include "sdk/host/plugin/plugin_file.h"
-#include "sdk/host/text.h"
 
 namespace karst::host {
 namespace {

@@ -8,10 +8,10 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_reader.h"
 #include "sdk/abi/karst_abi_services.h"
-#include "sdk/host/decision_box.h"
-#include "sdk/host/policy_state.h"
+#include "sdk/host/boundary/decision_box.h"
+#include "sdk/host/boundary/policy_state.h"
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/services/snapshot.h"
-#include "sdk/host/text.h"
 
 namespace karst::host {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "sdk/abi/karst_abi.h"
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/services/session.h"
-#include "sdk/host/text.h"
 
 namespace karst::host {
 

@@ -3,8 +3,8 @@
 #include <limits>
 #include <numbers>
 
+#include "sdk/host/boundary/text.h"
 #include "sdk/host/services/snapshot.h"
-#include "sdk/host/text.h"
 
 namespace karst::host {
 namespace {

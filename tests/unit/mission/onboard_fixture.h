@@ -7,11 +7,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "core_stack/mission/flight/path_execution.h"
-#include "core_stack/mission/onboard.h"
+#include "core_stack/mission/onboard/onboard.h"
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
+#include "core_stack/mission/phases/path_execution.h"
 #include "tests/unit/mission/scripted_policy.h"
 
 namespace karst::core {

@@ -1,6 +1,7 @@
 // The architecture's one-way dependencies, read from the sources themselves (docs/architecture.md).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -120,6 +121,54 @@ TEST(IncludeDirection, CoreModulesUseOnlyThoseAboveThem) {
       ASSERT_TRUE(rank.contains(used)) << i.file << " includes " << i.target;
       EXPECT_LE(rank[used], rank[module]) << i.file << " includes " << i.target;
     }
+}
+
+/// For each folder below `module` ("." is the module's own) those whose headers its sources include.
+std::map<std::string, std::set<std::string>> includes_between_folders(const std::string& module) {
+  const auto folder_of = [&](const std::string& file) {
+    const fs::path folder = fs::path(file).parent_path().lexically_relative(module);
+    return folder.begin()->string();
+  };
+  std::map<std::string, std::set<std::string>> used;
+  for (const Include& i : includes_below(module)) {
+    std::set<std::string>& by_folder = used[folder_of(i.file)];
+    if (i.target.starts_with(module + "/")) by_folder.insert(folder_of(i.target));
+  }
+  return used;
+}
+
+/// What is left when folders are taken away that include none of the others, or that none includes: cycles.
+std::map<std::string, std::set<std::string>> cycles_of(std::map<std::string, std::set<std::string>> folders) {
+  const auto includes = [&](const std::string& folder, const std::string& other) {
+    return folder != other && folders.at(folder).contains(other);
+  };
+  const auto is_outermost = [&](const auto& folder) {
+    const auto above = [&](const auto& other) { return includes(other.first, folder.first); };
+    const auto below = [&](const auto& other) { return includes(folder.first, other.first); };
+    return std::none_of(folders.begin(), folders.end(), above) ||
+           std::none_of(folders.begin(), folders.end(), below);
+  };
+  for (;;) {
+    const auto outermost = std::find_if(folders.begin(), folders.end(), is_outermost);
+    if (outermost == folders.end()) return folders;
+    folders.erase(outermost);
+  }
+}
+
+// Whoever reads a folder needs to know those it includes, and they never lead back to it.
+TEST(IncludeDirection, FoldersOfAModuleIncludeOneAnotherInOneDirection) {
+  std::vector<std::string> modules{"core_stack", "sdk", "plugins"};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const auto& entry : fs::directory_iterator(fs::path(KARST_SOURCE_DIR) / modules[i]))
+      if (entry.is_directory()) modules.push_back(modules[i] + "/" + entry.path().filename().string());
+  EXPECT_GT(modules.size(), 25u);
+  for (const std::string& module : modules) {
+    const auto cycles = cycles_of(includes_between_folders(module));
+    for (const auto& [folder, used] : cycles)
+      for (const std::string& other : used)
+        EXPECT_TRUE(other == folder || !cycles.contains(other))
+            << "in " << module << ", " << folder << " and " << other << " are parts of a cycle of includes";
+  }
 }
 
 }  // namespace

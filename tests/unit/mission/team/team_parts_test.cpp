@@ -1,5 +1,5 @@
 // The parts of a mission that only a robot of a team has.
-#include "core_stack/mission/team/relay_landing.h"
+#include "core_stack/mission/phases/relay_landing.h"
 #include "core_stack/mission/team/right_of_way.h"
 #include "core_stack/mission/team/team_sharing.h"
 #include "tests/unit/mission/onboard_fixture.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core_stack/planning/path/planner.h"
+#include "core_stack/planning/planner.h"
 #include "core_stack/planning/search/grid_planner.h"
 #include "tests/unit/mission/drawn_map.h"
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
-#include "core_stack/planning/path/planner.h"
+#include "core_stack/planning/planner.h"
 #include "core_stack/planning/search/grid_planner.h"
 #include "tests/unit/planning/oracles.h"
 #include "tests/unit/planning/test_maps.h"

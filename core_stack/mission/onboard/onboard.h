@@ -1,0 +1,33 @@
+// What every part of a mission works with on board one vehicle.
+#pragma once
+#include "core_stack/common/lane_bound.h"
+#include "core_stack/mission/flight/flight.h"
+#include "core_stack/mission/onboard/explorer.h"
+#include "core_stack/mission/recording/recorder.h"
+
+namespace karst::core {
+
+/// A scan counts in the map this long after it came in.
+constexpr TimeNs kMappingBudget = 60 * kMillisecond;
+
+struct Onboard {
+  Onboard(const CoreOptions& o, const VehicleDescription& description, Executive& e, Recorder& r,
+          PolicyPort& policy)
+      : options(o),
+        vehicle(description),
+        executive(e),
+        recorder(r),
+        flight(o, description),
+        map(e, Lane::map, o, description, policy) {}
+
+  TimeNs now() const { return executive.now(); }
+
+  const CoreOptions options;
+  const VehicleDescription vehicle;
+  Executive& executive;
+  Recorder& recorder;
+  Flight flight;
+  LaneBound<Explorer> map;  // on the map lane
+};
+
+}  // namespace karst::core

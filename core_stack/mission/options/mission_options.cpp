@@ -1,0 +1,83 @@
+#include "core_stack/mission/options/mission_options.h"
+
+#include "core_stack/common/error.h"
+
+namespace karst::core {
+
+void describe(OptionTable& t, MissionOptions& o) {
+  t.add("takeoff_height", o.takeoff_height_m, "m", 0.3, 20,
+        "height of the first hover above the launch site");
+  t.add("launch_clear_radius", o.launch_clear_radius_m, "m", 0.5, 5,
+        "ball around the first hover which the operator vouches to be clear");
+  t.add("decision_period", o.decision_period_s, "s", 0.5, 60,
+        "the policy is asked again after this long under way, and when a goal is near or has lost its sense");
+  t.add("decision_budget", o.decision_budget_s, "s", 0.05, 2, "simulated time a decision and its plan take");
+  t.add("append", o.append,
+        "the next goal is chosen under way and its path appended; off: the vehicle stops at every goal");
+  t.add("append_before", o.append_before_s, "s", 0.5, 10,
+        "the next goal is asked for this long before the present one is reached");
+  t.add("goal_timeout", o.goal_timeout_s, "s", 2, 60, "a goal without progress for this long is abandoned");
+  t.add("home_margin", o.home_margin, "", 0, 2, "share added to the time estimated for flying home");
+  t.add("home_reserve", o.home_reserve_s, "s", 5, 600, "battery time kept for after the way home");
+  t.add("landing_speed", o.landing_speed_mps, "m/s", 0.1, 0.7, "vertical speed of the landing");
+  t.add("max_flight_time", o.max_flight_time_s, "s", 10, 86400,
+        "homing begins at the latest in time for this");
+  t.add("mapping_range", o.mapping_range_m, "m", 1, 200,
+        "LiDAR measurements beyond this only clear space up to it");
+  t.add("min_open_cells", o.min_open_cells, 0, 1000,
+        "a frontier is offered to the policy if so many of its cells have no rock beside them");
+}
+
+void describe(OptionTable& t, CoreOptions& o) {
+  t.section("mission", o.mission);
+  t.section("safety", o.safety);
+  t.section("map", o.map);
+  t.section("frontiers", o.frontiers);
+  t.section("perception", o.perception);
+  t.section("localization", o.localization);
+  t.section("objects", o.objects);
+  t.section("planning", o.planning);
+  t.section("motion", o.motion);
+  t.section("tracker", o.tracker);
+  t.section("controller", o.controller);
+}
+
+void check(const CoreOptions& o, const VehicleDescription& vehicle) {
+  const auto refuse = [](const std::string& key, const std::string& reason) {
+    throw InputError("mission", key, reason);
+  };
+  const auto metres = [](double m) { return std::to_string(m).substr(0, 5) + " m"; };
+  if (o.motion.min_speed_mps > o.motion.max_speed_mps)
+    refuse("motion.min_speed", "is greater than motion.max_speed, " +
+                                   std::to_string(o.motion.max_speed_mps).substr(0, 5) + " m/s");
+  if (!vehicle.pose_sensor && (o.localization.source == "pose_sensor" || !vehicle.lidar))
+    refuse("localization.source", "the vehicle " + vehicle.name + " has no pose sensor" +
+                                      (vehicle.lidar ? "" : ", nor a LiDAR to locate itself with"));
+  // Obstacles are cells, whose surface may lie half an edge nearer than their centre.
+  const double min_m = vehicle.radius_m + o.map.resolution_m / 2;
+  if (o.planning.clearance_m < min_m)
+    refuse("planning.clearance", metres(o.planning.clearance_m) +
+                                     " is less than the vehicle's radius and half a cell, " + metres(min_m));
+  // Not silently off: whoever asks for a margin wants narrower passages flown than the clearance allows.
+  // Where refining cannot lift a narrow path to its clearance, a quarter of a cell less must do.
+  if (const double least = o.map.resolution_m / 4;
+      o.planning.narrow_margin_m > 0 && o.planning.narrow_margin_m < least)
+    refuse("planning.narrow_margin", metres(o.planning.narrow_margin_m) +
+                                         " is less than a quarter of a cell, " + metres(least) +
+                                         "; 0 switches it off");
+  if (const double narrow_m = vehicle.radius_m + o.planning.narrow_margin_m;
+      o.planning.narrow_margin_m > 0 && narrow_m >= o.planning.clearance_m)
+    refuse("planning.narrow_margin", "with the vehicle's radius it makes " + metres(narrow_m) +
+                                         ", which is no less than planning.clearance, " +
+                                         metres(o.planning.clearance_m));
+  constexpr double kMaxCells = 14;  // that planning on bits can keep clear
+  for (const auto& [key, clearance_m] :
+       {std::pair{"planning.clearance", o.planning.clearance_m},
+        std::pair{"planning.preferred_clearance", o.planning.preferred_clearance_m}})
+    if (clearance_m > kMaxCells * o.map.resolution_m)
+      refuse(key, metres(clearance_m) + " is more than " + std::to_string(static_cast<int>(kMaxCells)) +
+                      " cells of map.resolution (" + metres(o.map.resolution_m) +
+                      "): choose coarser cells or less clearance");
+}
+
+}  // namespace karst::core

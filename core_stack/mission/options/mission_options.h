@@ -1,0 +1,55 @@
+// Every setting of the core stack, as one struct and one table: the mission file's sections.
+#pragma once
+#include "core_stack/control/mpc_tracker.h"
+#include "core_stack/control/se3_controller.h"
+#include "core_stack/localization/localization_options.h"
+#include "core_stack/mapping/frontiers/frontiers.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mission/options/safety_options.h"
+#include "core_stack/objects/object_options.h"
+#include "core_stack/perception/intensity_filter.h"
+#include "core_stack/planning/path/path.h"
+#include "core_stack/planning/trajectory/trajectory.h"
+#include "core_stack/team/team_options.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+struct MissionOptions {
+  double takeoff_height_m = 0.7;
+  double launch_clear_radius_m = 1.0;
+  double decision_period_s = 4.0;
+  double decision_budget_s = 0.3;
+  bool append = true;
+  double append_before_s = 2.5;
+  double goal_timeout_s = 10.0;
+  double home_margin = 0.15;
+  double home_reserve_s = 20.0;
+  double landing_speed_mps = 0.4;
+  double max_flight_time_s = 3600.0;
+  double mapping_range_m = 30.0;
+  std::int64_t min_open_cells = 4;
+};
+void describe(OptionTable& t, MissionOptions& o);
+
+struct CoreOptions {
+  MissionOptions mission;
+  SafetyOptions safety;
+  MapOptions map;
+  FrontierOptions frontiers;
+  IntensityFilterOptions perception;
+  LocalizationOptions localization;
+  ObjectOptions objects;
+  PlanningOptions planning;
+  MotionLimits motion;
+  MpcOptions tracker;
+  Se3Options controller;
+  TeamOptions team;  // described apart: a single vehicle has none
+  HomingOptions homing;
+};
+void describe(OptionTable& t, CoreOptions& o);
+
+/// Settings that are fine each for itself but do not fit together, or not this vehicle: throws InputError.
+void check(const CoreOptions& o, const VehicleDescription& vehicle);
+
+}  // namespace karst::core

@@ -1,0 +1,108 @@
+#include "core_stack/mission/phases/path_execution.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core_stack/mission/recording/json_point.h"
+
+namespace karst::core {
+namespace {
+
+/// A closed place is flown around if a new path can be found before the vehicle would have to brake for it;
+/// otherwise it brakes at once. Metres kept in hand beyond the braking distance.
+constexpr double kDetourMargin_m = 0.5;
+
+/// Why a route flies sampled, not as the polynomial that it may have.
+std::string why_sampled(const std::optional<PolynomialTrajectory>& polynomial) {
+  if (!polynomial) return "a way back as come, or through a tight place";
+  return polynomial->fell_back.empty() ? "the motion has changed since it was made" : polynomial->fell_back;
+}
+
+}  // namespace
+
+RouteStart PathExecution::start(Flight::CommittedSegment committed, TimeNs at) const {
+  return {.at = at,
+          .committed = std::move(committed),
+          .limits = flight_.limits(0),
+          .narrow_places = narrow_places_};
+}
+
+RouteStart PathExecution::start_at_stop(TimeNs at) const { return start(flight_.until_stop(at), at); }
+RouteStart PathExecution::start_at_end(TimeNs at) const { return start(flight_.until_end(at), at); }
+
+void PathExecution::follow(const Route& route, TimeNs now) {
+  // Made for the state it was expected to be in now, and the speed allowed then: either may have changed.
+  const auto& polynomial = route.polynomial;
+  const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now &&
+                    (flight_.expected(now).position - route.points.front()).norm() < 0.01 &&
+                    flight_.limits(0).max_speed_mps >= polynomial->speed_limit_mps;
+  const nlohmann::json points = list(route.points);
+  nlohmann::json plan{{"length", path_length_m(route.points)},
+                      {"from", points.front()},
+                      {"to", points.back()},
+                      {"narrow", route.path.narrow()},
+                      {"length_bound", route.path.length_bound},
+                      {"points", points}};
+  if (options_.motion.trajectory == "polynomial") {
+    plan["trajectory"] = fits ? "polynomial" : "sampled";
+    plan["rounds"] = polynomial ? polynomial->rounds : 0;
+    plan["fell_back"] = fits ? "" : why_sampled(polynomial);
+  }
+  recorder_.event(now, "plan", plan);
+  const double start_speed_mps = flight_.at_rest(now) ? 0.0 : route.start_speed_mps;
+  const bool still_so = !route.sampled.samples.empty() && start_speed_mps == route.start_speed_mps &&
+                        flight_.limits(route.max_speed_mps) == route.limits;
+  Trajectory sampled = route.sampled;
+  sampled.start = now;
+  flight_.follow(route.points, start_speed_mps, now, route.heading, route.max_speed_mps, route.slow,
+                 fits       ? &polynomial->trajectory
+                 : still_so ? &sampled
+                            : nullptr);
+  narrow_places_ = route.slow.places;
+  speed_limited_ = route.max_speed_mps < options_.motion.max_speed_mps;
+  const Path& path = route.path;
+  tight_until_ =
+      path.escape_points == 0
+          ? 0
+          : flight_.time_nearest(path.points[std::min(path.escape_points, path.points.size() - 1)]);
+  blocked_ = false;
+  detour_due_ = false;
+}
+
+void PathExecution::brake(TimeNs now) {
+  flight_.brake(now);
+  braked_at_ = now;
+}
+
+void PathExecution::stop(TimeNs now) {
+  if (!flight_.at_rest(now)) brake(now);
+}
+
+std::vector<Vec3> PathExecution::ahead(TimeNs now, std::optional<double> ground_m) const {
+  std::vector<Vec3> ahead = flight_.until_end(std::max(now, tight_until_)).points;
+  if (ground_m) std::erase_if(ahead, [&](const Vec3& p) { return p.z() < *ground_m; });
+  return ahead;
+}
+
+void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now) {
+  const std::string reason = kPathForbidden;
+  // What a decision and its plan take in flight, and then the stretch to stop in.
+  const TimeNs decided = now + kMappingBudget + from_seconds(options_.mission.decision_budget_s);
+  const Flight::CommittedSegment until_decided = flight_.until_end(now), stop = flight_.until_stop(decided);
+  const double needed_m =
+      seconds(decided - now) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
+  const bool takes_off = phases.in(Phase::takeoff);
+  if (after_m > needed_m && !takes_off) {
+    if (as_come_) return;  // nothing else leads home; from near, what is there may look otherwise
+    if (!detour_due_)
+      recorder_.event(now, "safety", {{"action", "replan"}, {"reason", reason}, {"after_m", after_m}});
+    detour_due_ = true;
+    return;
+  }
+  blocked_ = !takes_off;  // from there, exploring goes on below the roof
+  detour_due_ = false;
+  recorder_.event(now, "safety", {{"action", "brake"}, {"reason", reason}, {"after_m", after_m}});
+  brake(now);
+}
+
+}  // namespace karst::core

@@ -1,0 +1,14 @@
+// Figures of a team's search for objects of interest. Definitions: docs/metrics.md.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "sdk/evaluation/metrics/object_figures.h"
+#include "sdk/evaluation/team/team_record.h"
+
+namespace karst::evaluation {
+
+/// From the team's log and its robots' truth. What is damaged is added to `problems`.
+ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::string>& problems);
+
+}  // namespace karst::evaluation

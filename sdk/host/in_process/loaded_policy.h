@@ -1,0 +1,65 @@
+// A policy plugin opened in this process, behind the core's port.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "sdk/host/boundary/decision_box.h"
+#include "sdk/host/in_process/decision_thread.h"
+#include "sdk/host/plugin/hosted_policy.h"
+#include "sdk/host/plugin/parameters.h"
+#include "sdk/host/plugin/plugin_file.h"
+#include "sdk/host/serialization/flat_answer.h"
+#include "sdk/host/services/session.h"
+
+namespace karst::host {
+
+class LoadedPolicy final : public HostedPolicy {
+ public:
+  /// Creates, initializes and activates; with a former object's state first restores that, or notes why not
+  /// and begins anew. `lengths` answers the path service in place of a request's roadmap. Throws
+  /// core::InputError.
+  LoadedPolicy(const PluginFile& plugin, const karst_policy_t& table, const PolicyChoice& choice,
+               const PolicyLegacy& former = {}, PathLengths lengths = {});
+  ~LoadedPolicy() override { end(); }
+
+  std::string name() const override { return name_; }
+  const std::string& version() const override { return version_; }
+  const std::string& file() const override { return file_; }
+  const boost::property_tree::ptree& parameters() const override { return parameters_.tree(); }
+  bool abandoned() const override { return thread_.hangs(); }
+
+  core::Decision decide(const core::DecisionRequest& request) override;
+  void notify(const core::PolicyEvent& event) override;
+
+  /// What another object needs to go on where this one is. A state the policy fails to save is left out.
+  PolicyLegacy legacy();
+
+ private:
+  struct Call;
+  /// Runs `work(call)` on the decision thread, work returning a result code. "" or what went wrong.
+  template <class Work>
+  std::string call(const char* slot, Work work);
+  /// Throws core::InputError if there is a fault.
+  void require(const std::string& fault) const;
+  void start(const PolicyLegacy& former);
+  void create_and_init();
+  /// "" if there is no state, or it was restored.
+  std::string restore(const PolicyLegacy& former);
+  void end() noexcept;
+  core::Decision failed(const std::string& why);
+  void warn_of_change(const std::string& what, const std::string& when);
+  void refuse(const core::DecisionRequest& request, const DecisionBox& box);
+
+  const karst_policy_t& table_;
+  std::string name_, version_, file_;
+  PolicyChoice choice_;
+  ResolvedParameters parameters_;
+  PathLengths lengths_;
+  std::shared_ptr<Session> session_;
+  DecisionThread thread_;
+  void* self_ = nullptr;
+  bool active_ = false;
+  int failures_ = 0;  // of decide, in a row
+};
+
+}  // namespace karst::host

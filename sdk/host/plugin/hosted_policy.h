@@ -1,0 +1,48 @@
+// A policy plugin behind the core's port: in this process, or in one of its own (docs/isolation.md).
+//
+// In this process the plugin runs on a decision thread of its own. A call that passes a limit of time is
+// abandoned: its services fail from then on, should_stop() says so, and PolicyFailure is
+// thrown. This is the only thing a clock decides, and it is a failure path: a replay of a run in which
+// no policy hangs is bit-identical.
+//
+// A thread cannot be killed. If it never returns, it stays until the process ends; `abandoned()` tells, and
+// a tool that sees it ends with std::quick_exit or _exit once its files are written, because
+// the stuck code may still run while static objects are destroyed.
+#pragma once
+#include <boost/property_tree/ptree.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core_stack/mission/policy/policy_port.h"
+
+namespace karst::host {
+
+enum class Isolation { in_process, process };
+
+/// What a mission file or a command line says about its policy.
+struct PolicyChoice {
+  std::string name;
+  std::vector<std::string> plugin_files;   // --plugin, before everything else
+  boost::property_tree::ptree parameters;  // values as text with units, such as "2 m"
+  std::string source = "policy";           // the file the parameters come from, for messages
+  std::uint64_t seed = 1;
+  double hang_limit_s = 60.0;  // of a call, by the wall clock
+  Isolation isolation = Isolation::in_process;
+  double cpu_limit_s = 10.0;  // of a call: of its thread, or of all threads of the policy's own process
+  std::int64_t memory_limit_mib = 2048;  // of a policy's own process
+  int failures_allowed = 2;              // in a row; one more is a PolicyFailure
+};
+
+class HostedPolicy : public core::PolicyPort {
+ public:
+  ~HostedPolicy() override = default;
+  virtual const std::string& version() const = 0;
+  virtual const std::string& file() const = 0;
+  /// Every parameter with the value in force, as read from a mission file.
+  virtual const boost::property_tree::ptree& parameters() const = 0;
+  /// True once the plugin hangs on its thread.
+  virtual bool abandoned() const = 0;
+};
+
+}  // namespace karst::host
