@@ -5,8 +5,14 @@
 
 #include "sdk/map_merge/map_overlay.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
+
+using core::PointTree;
+using core::Pose;
+using core::Quat;
+using core::Vec3;
+using core::Vec3f;
 
 constexpr double kThin_m = 0.4;        // of what descriptors are made of
 constexpr double kRough_m = 0.4;       // cells of the quick look: rock counts as thickened to 1.2 m
@@ -96,8 +102,9 @@ std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, 
     const Eigen::VectorXf likeness = to_all.transpose() * from.descriptors[s].invariants();
     for (const std::size_t t : largest(likeness, options.candidates)) {
       const double turn = to.descriptors[t].turn_of(from.descriptors[s]).angle_rad;
-      const Quat R = (to.frames[t].orientation * from_heading(turn) * from.frames[s].orientation.conjugate())
-                         .normalized();
+      const Quat R =
+          (to.frames[t].orientation * core::from_heading(turn) * from.frames[s].orientation.conjugate())
+              .normalized();
       poses.push_back({to.frames[t].position - R * from.frames[s].position, R});
     }
   }
@@ -147,4 +154,4 @@ std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& sou
   return distinct;
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -2,7 +2,7 @@
 #pragma once
 #include "sdk/map_merge/place_descriptor.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 
 struct CoarseOptions {
   bool gravity_known = true;  // both maps' z axes point up
@@ -16,7 +16,7 @@ struct CoarseOptions {
 };
 
 struct CoarsePose {
-  Pose T_target_source;
+  core::Pose T_target_source;
   double score;   // of RoughTarget
   int votes = 1;  // matches that say the same
 };
@@ -28,6 +28,6 @@ std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& sou
                                      const CoarseOptions& options);
 
 /// How far two poses of a map move its middle, and turn it, against each other.
-bool alike(const Pose& a, const Pose& b, const Vec3& middle, double metres, double radians);
+bool alike(const core::Pose& a, const core::Pose& b, const core::Vec3& middle, double metres, double radians);
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -5,8 +5,12 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
+
+using core::Pose;
+using core::Quat;
+using core::Vec3;
 
 using PclCloud = pcl::PointCloud<pcl::PointNormal>;
 
@@ -72,4 +76,4 @@ Pose Icp::refine(const MapPiece& source, const Pose& T_target_source,
   return to_middle.inverse() * T;
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -4,7 +4,7 @@
 
 #include "sdk/map_merge/map_piece.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 
 /// One round: pairs of points up to `reach_m` apart, of the source's points an even pick.
 struct IcpRound {
@@ -19,11 +19,12 @@ class Icp {
   explicit Icp(const MapPiece& target);
   ~Icp();
   /// Where ICP ends. Nothing is said of whether that is right: PCL calls failures converged, too.
-  Pose refine(const MapPiece& source, const Pose& T_target_source, const std::vector<IcpRound>& rounds) const;
+  core::Pose refine(const MapPiece& source, const core::Pose& T_target_source,
+                    const std::vector<IcpRound>& rounds) const;
 
  private:
   struct Storage;
   std::unique_ptr<Storage> storage_;
 };
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -6,7 +6,7 @@
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/map_merge/merge_maps.h"
 
-namespace karst::evaluation {
+namespace karst::map_merge {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,10 +45,10 @@ MapInput read_map_input(const std::string& name, double resolution_m) {
   const std::string ending = fs::path(file).extension().string();
   try {
     if (ending == ".bt" || ending == ".ot")
-      return {name, file, core::piece_of(std::make_shared<core::VoxelMap>(core::read_octomap(file)))};
+      return {name, file, piece_of(std::make_shared<core::VoxelMap>(core::read_octomap(file)))};
     std::vector<core::Vec3f> points;
     for (const replay::ScanPoint& p : replay::read_scan(file).points) points.push_back(p.position);
-    return {name, file, core::piece_of(points, resolution_m)};
+    return {name, file, piece_of(points, resolution_m)};
   } catch (const std::invalid_argument& e) {
     throw InputError(file, "", e.what());
   }
@@ -59,14 +59,14 @@ MergedMap::MergedMap(const MapInput& first) : piece_(first.piece) {}
 void MergedMap::add(const MapInput& map, const core::Pose& T_first_map) {
   if (piece_.cells && map.piece.cells) {
     const std::shared_ptr<core::VoxelMap> sum = copy_of(*piece_.cells);
-    core::add_map(*sum, *map.piece.cells, T_first_map, {});
-    piece_ = core::piece_of(sum);
+    add_map(*sum, *map.piece.cells, T_first_map, {});
+    piece_ = piece_of(sum);
     return;
   }
   std::vector<core::Vec3f> points = piece_.surface;
   for (const core::Vec3f& p : map.piece.surface)
     points.push_back((T_first_map * p.cast<double>()).cast<float>());
-  piece_ = core::piece_of(points, std::min(piece_.resolution_m, map.piece.resolution_m));
+  piece_ = piece_of(points, std::min(piece_.resolution_m, map.piece.resolution_m));
 }
 
 std::vector<fs::path> MergedMap::write(const std::string& stem) const {
@@ -77,7 +77,7 @@ std::vector<fs::path> MergedMap::write(const std::string& stem) const {
       core::write_octomap(*piece_.cells, stem);
     }
     files.emplace_back(stem + ".ply");
-    write_whole_file(files.back(), ply_bytes(piece_.surface));
+    evaluation::write_whole_file(files.back(), ply_bytes(piece_.surface));
   } catch (...) {
     std::error_code ignored;
     for (const fs::path& f : files) fs::remove(f, ignored);
@@ -86,4 +86,4 @@ std::vector<fs::path> MergedMap::write(const std::string& stem) const {
   return files;
 }
 
-}  // namespace karst::evaluation
+}  // namespace karst::map_merge

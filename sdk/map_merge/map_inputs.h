@@ -6,11 +6,11 @@
 
 #include "sdk/map_merge/map_registration.h"
 
-namespace karst::evaluation {
+namespace karst::map_merge {
 
 struct MapInput {
   std::string name, file;  // as named on the command line, and what was read
-  core::MapPiece piece;
+  MapPiece piece;
 };
 
 /// A run directory (its map.ot, map.bt or map.ply), a .bt or .ot file, or a cloud (.ply, .pcd, .bin), thinned
@@ -22,13 +22,13 @@ class MergedMap {
  public:
   explicit MergedMap(const MapInput& first);
   void add(const MapInput& map, const core::Pose& T_first_map);
-  const core::MapPiece& piece() const { return piece_; }
+  const MapPiece& piece() const { return piece_; }
   /// STEM.ot, STEM.bt and STEM.ply; STEM.ply alone if any of the maps was a cloud. All or, with an
   /// InputError, nothing.
   std::vector<std::filesystem::path> write(const std::string& stem) const;
 
  private:
-  core::MapPiece piece_;
+  MapPiece piece_;
 };
 
-}  // namespace karst::evaluation
+}  // namespace karst::map_merge

@@ -5,8 +5,17 @@
 
 #include "core_stack/mapping/occupancy/voxel_reader.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
+
+using core::Cell;
+using core::CellKey;
+using core::MapOptions;
+using core::Pose;
+using core::Vec3;
+using core::Vec3f;
+using core::VoxelMap;
+using core::VoxelReader;
 
 // Rock in space that is known to be free weighs more than rock that fits: walls fit walls of any passage,
 // while two maps of one place contradict each other hardly anywhere.
@@ -92,4 +101,4 @@ double RoughTarget::score(const std::vector<Vec3>& source_points, const Pose& T_
   return source_points.empty() ? 0 : score / static_cast<double>(source_points.size());
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -2,7 +2,7 @@
 #pragma once
 #include "sdk/map_merge/map_piece.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 
 /// One piece's surface in the other: `near` its rock, `in_free` space where the other knows there is none,
 /// and the rest where it has not looked.
@@ -32,7 +32,7 @@ struct OverlayOptions {
   std::size_t max_points = 20000;  // of each map, evenly picked
 };
 
-Overlay overlay(const MapPiece& target, const MapPiece& source, const Pose& T_target_source,
+Overlay overlay(const MapPiece& target, const MapPiece& source, const core::Pose& T_target_source,
                 const OverlayOptions& options);
 
 /// A quick look for very many poses: the target's rock thickened and its free space, in cells of `cell_m`.
@@ -40,10 +40,10 @@ class RoughTarget {
  public:
   RoughTarget(const MapPiece& target, double cell_m);
   /// Points in rock less those in free space, which weigh double, over the number of points.
-  double score(const std::vector<Vec3>& source_points, const Pose& T_target_source) const;
+  double score(const std::vector<core::Vec3>& source_points, const core::Pose& T_target_source) const;
 
  private:
-  VoxelMap cells_;
+  core::VoxelMap cells_;
 };
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

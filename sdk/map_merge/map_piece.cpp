@@ -6,8 +6,15 @@
 
 #include "core_stack/mapping/occupancy/packed_cell.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
+
+using core::Cell;
+using core::CellKey;
+using core::PointTree;
+using core::Vec3;
+using core::Vec3f;
+using core::VoxelMap;
 
 constexpr double kNormalRadiusCells = 4;
 
@@ -49,15 +56,16 @@ void complete(MapPiece& piece) {
 
 std::vector<Vec3f> thinned_out(const std::vector<Vec3f>& points, double cell_m) {
   struct Entry {
-    PackedCell cell;
+    core::PackedCell cell;
     std::uint32_t index;
   };
   std::vector<Entry> entries;
   entries.reserve(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d k = (points[i].cast<double>() / cell_m).array().floor();
-    if (!points[i].allFinite() || k.cwiseAbs().maxCoeff() >= kPackedLimit) continue;
-    entries.push_back({pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
+    if (!points[i].allFinite() || k.cwiseAbs().maxCoeff() >= core::kPackedLimit) continue;
+    entries.push_back(
+        {core::pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.cell != b.cell ? a.cell < b.cell : a.index < b.index;
@@ -91,4 +99,4 @@ MapPiece piece_of(const std::vector<Vec3f>& cloud, double resolution_m) {
   return piece;
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

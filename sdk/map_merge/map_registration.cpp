@@ -5,8 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
+
+using core::OptionTable;
+using core::Pose;
+using core::Vec3;
+using core::Vec3f;
 
 struct Candidate {
   Pose T_target_source;
@@ -174,4 +179,4 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
   return result;
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

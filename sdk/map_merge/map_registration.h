@@ -14,7 +14,7 @@
 #include "sdk/map_merge/icp.h"
 #include "sdk/map_merge/map_overlay.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 
 struct RegistrationLimits {
   double min_overlap = 0.17;  // of the rock of the map that shares more; half as much again without gravity
@@ -26,7 +26,7 @@ struct RegistrationLimits {
   double max_rival = 0.75;           // score of the next best pose over the best's
   double max_tilt_rad = 0.026;       // with gravity known
 };
-void describe(OptionTable& t, RegistrationLimits& o);
+void describe(core::OptionTable& t, RegistrationLimits& o);
 
 struct MapRegistrationOptions {
   CoarseOptions coarse;
@@ -38,7 +38,7 @@ struct MapRegistrationOptions {
 };
 
 struct MapRegistration {
-  Pose T_target_source;
+  core::Pose T_target_source;
   Overlay overlay;
   double hold = 0;   // mean squared cosine of the least held direction to the coinciding rock's normals
   double rival = 0;  // score of the best pose that is another, over this one's
@@ -53,7 +53,7 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
 /// How well the rock that coincides holds the pose: over the near points with normal n and arm p from their
 /// middle, the least eigenvalue of the mean of j j', j = (n, p x n / L), L the arms' root mean square; with
 /// gravity known only the turn about z counts. 0: free in some direction, as along a smooth tube.
-double hold_of(const MapPiece& target, const MapPiece& source, const Pose& T_target_source, double near_m,
-               bool gravity_known);
+double hold_of(const MapPiece& target, const MapPiece& source, const core::Pose& T_target_source,
+               double near_m, bool gravity_known);
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

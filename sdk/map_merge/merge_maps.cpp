@@ -4,7 +4,16 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace karst::core {
+namespace karst::map_merge {
+namespace {
+
+using core::Cell;
+using core::CellKey;
+using core::MapOptions;
+using core::Pose;
+using core::VoxelMap;
+
+}  // namespace
 
 void add_map(VoxelMap& target, const VoxelMap& source, const Pose& T_target_source,
              const MapOptions& options) {
@@ -28,4 +37,4 @@ void add_map(VoxelMap& target, const VoxelMap& source, const Pose& T_target_sour
   });
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <complex>
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
+
+using core::PointTree;
+using core::Quat;
+using core::Vec3;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr float kFull = 3;  // points that fill a cell: more say no more
@@ -58,7 +62,7 @@ PlaceDescriptor::Turn PlaceDescriptor::turn_of(const PlaceDescriptor& other) con
   // The top of the parabola through the best and its neighbours.
   const double bend = at(best - 1) - 2 * at(best) + at(best + 1);
   const double off = bend < 0 ? 0.5 * (at(best - 1) - at(best + 1)) / bend : 0;
-  return {wrap_angle((best + std::clamp(off, -0.5, 0.5)) * kTwoPi / kSectors), at(best)};
+  return {core::wrap_angle((best + std::clamp(off, -0.5, 0.5)) * kTwoPi / kSectors), at(best)};
 }
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

@@ -11,11 +11,11 @@
 
 #include "sdk/map_merge/map_piece.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 
 struct PlaceFrame {
-  Vec3 position;
-  Quat orientation;  // its z axis is the axis
+  core::Vec3 position;
+  core::Quat orientation;  // its z axis is the axis
 };
 
 class PlaceDescriptor {
@@ -25,7 +25,7 @@ class PlaceDescriptor {
   static constexpr int kInvariants = kRings * kSlices * kHarmonics;
 
   /// Of `points` (thinned out evenly), those around the frame: dr and dz are both `cell_m`.
-  PlaceDescriptor(const PointTree& points, const PlaceFrame& frame, double cell_m);
+  PlaceDescriptor(const core::PointTree& points, const PlaceFrame& frame, double cell_m);
 
   /// Unit length; unchanged by turns about the axis.
   const Eigen::Matrix<float, kInvariants, 1>& invariants() const { return invariants_; }
@@ -44,4 +44,4 @@ class PlaceDescriptor {
   int count_ = 0;
 };
 
-}  // namespace karst::core
+}  // namespace karst::map_merge

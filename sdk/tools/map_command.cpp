@@ -31,14 +31,14 @@ struct MergeArguments {
 };
 
 struct Placed {
-  const evaluation::MapInput* map;
-  core::MapRegistration registration;
+  const map_merge::MapInput* map;
+  map_merge::MapRegistration registration;
 };
 
 double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
 
 ordered_json json_of(const Placed& p) {
-  const core::MapRegistration& r = p.registration;
+  const map_merge::MapRegistration& r = p.registration;
   const Eigen::Matrix3d R = r.T_target_source.orientation.toRotationMatrix();
   ordered_json rows = ordered_json::array();
   for (int i = 0; i < 3; ++i)
@@ -59,8 +59,8 @@ ordered_json json_of(const Placed& p) {
           {"rival", rounded(r.rival)}};
 }
 
-core::MapRegistrationOptions options_of(const MergeArguments& args) {
-  core::MapRegistrationOptions options;
+map_merge::MapRegistrationOptions options_of(const MergeArguments& args) {
+  map_merge::MapRegistrationOptions options;
   options.coarse.gravity_known = !args.six;
   core::OptionTable table;
   describe(table, options.limits);
@@ -79,11 +79,11 @@ std::string stem_of(const std::string& out) {
                                                                 : out;
 }
 
-std::vector<evaluation::MapInput> read_all(const MergeArguments& args) {
-  std::vector<evaluation::MapInput> maps;
+std::vector<map_merge::MapInput> read_all(const MergeArguments& args) {
+  std::vector<map_merge::MapInput> maps;
   for (const std::string& name : args.maps) {
-    maps.push_back(evaluation::read_map_input(name, args.resolution_m));
-    const evaluation::MapInput &first = maps.front(), &last = maps.back();
+    maps.push_back(map_merge::read_map_input(name, args.resolution_m));
+    const map_merge::MapInput &first = maps.front(), &last = maps.back();
     if (first.piece.cells && last.piece.cells &&
         std::abs(first.piece.resolution_m / last.piece.resolution_m - 1) > 0.01)
       throw core::InputError(last.file, "res",
@@ -96,16 +96,17 @@ std::vector<evaluation::MapInput> read_all(const MergeArguments& args) {
 
 /// Each map is laid on all that were put together before it; one that does not fit waits until more are
 /// there.
-std::vector<Placed> place_all(const std::vector<evaluation::MapInput>& maps,
-                              const core::MapRegistrationOptions& options, evaluation::MergedMap& merged) {
+std::vector<Placed> place_all(const std::vector<map_merge::MapInput>& maps,
+                              const map_merge::MapRegistrationOptions& options,
+                              map_merge::MergedMap& merged) {
   std::vector<Placed> placed;
-  std::vector<const evaluation::MapInput*> waiting;
+  std::vector<const map_merge::MapInput*> waiting;
   for (std::size_t i = 1; i < maps.size(); ++i) waiting.push_back(&maps[i]);
   while (!waiting.empty()) {
     std::vector<Placed> refused;
-    for (const evaluation::MapInput* map : waiting) {
+    for (const map_merge::MapInput* map : waiting) {
       print_error("registering %s ...\n", map->name.c_str());
-      const Placed p{map, core::register_maps(merged.piece(), map->piece, options)};
+      const Placed p{map, map_merge::register_maps(merged.piece(), map->piece, options)};
       if (p.registration.trusted) {
         merged.add(*map, p.registration.T_target_source);
         placed.push_back(p);
@@ -124,7 +125,7 @@ std::vector<Placed> place_all(const std::vector<evaluation::MapInput>& maps,
 }
 
 void print(const Placed& p) {
-  const core::MapRegistration& r = p.registration;
+  const map_merge::MapRegistration& r = p.registration;
   const core::Vec3& t = r.T_target_source.position;
   print_out("%s: %s\n", p.map->name.c_str(), r.trusted ? "in place" : ("refused: " + r.reason).c_str());
   print_out("  moved by (%.2f, %.2f, %.2f) m, turned by %.2f deg%s\n", t.x(), t.y(), t.z(),
@@ -148,15 +149,15 @@ void check_can_write(const std::string& stem) {
 }
 
 int merge(const MergeArguments& args) {
-  const core::MapRegistrationOptions options = options_of(args);
+  const map_merge::MapRegistrationOptions options = options_of(args);
   const std::string stem = stem_of(args.out);
   if (!args.force)
     for (const char* ending : {".ot", ".bt", ".ply", ".json"})
       if (fs::exists(stem + ending))
         throw core::InputError(stem + ending, "", "is there already; choose another --out, or --force");
   check_can_write(stem);
-  const std::vector<evaluation::MapInput> maps = read_all(args);
-  evaluation::MergedMap merged(maps.front());
+  const std::vector<map_merge::MapInput> maps = read_all(args);
+  map_merge::MergedMap merged(maps.front());
   const std::vector<Placed> placed = place_all(maps, options, merged);
   const bool all =
       std::all_of(placed.begin(), placed.end(), [](const Placed& p) { return p.registration.trusted; });

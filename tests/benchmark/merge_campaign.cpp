@@ -18,6 +18,7 @@
 namespace {
 
 using namespace karst::core;
+using namespace karst::map_merge;
 
 bool clouds = false;
 MapRegistrationOptions options;

@@ -7,9 +7,17 @@
 #include "sdk/map_merge/merge_maps.h"
 #include "tests/unit/map_merge/tunnels.h"
 
-namespace karst::core {
+namespace karst::map_merge {
 namespace {
 
+using core::MapOptions;
+using core::PointTree;
+using core::Pose;
+using core::Quat;
+using core::Random;
+using core::Vec3;
+using core::Vec3f;
+using core::VoxelMap;
 using test::Tunnel;
 
 MapPiece piece(VoxelMap map) { return piece_of(std::make_shared<VoxelMap>(std::move(map))); }
@@ -35,11 +43,11 @@ TEST(PlaceDescriptor, KnowsAPlaceAgainAndByHowMuchItIsTurned) {
   const PlaceDescriptor here(PointTree(rock), {Vec3::Zero(), Quat::Identity()}, 1.0);
   for (const double turn : {0.0, 0.5, -2.0, 3.1}) {
     std::vector<Vec3f> turned;
-    const Quat q = from_heading(-turn);
+    const Quat q = core::from_heading(-turn);
     for (const Vec3f& p : rock) turned.push_back((q * p.cast<double>()).cast<float>() + Vec3f(30, -5, 2));
     const PlaceDescriptor there(PointTree(turned), {Vec3(30, -5, 2), Quat::Identity()}, 1.0);
     EXPECT_GT(here.invariants().dot(there.invariants()), 0.97f);
-    EXPECT_NEAR(wrap_angle(here.turn_of(there).angle_rad - turn), 0, 0.1);
+    EXPECT_NEAR(core::wrap_angle(here.turn_of(there).angle_rad - turn), 0, 0.1);
   }
   std::vector<Vec3f> other;
   for (int i = 0; i < 800; ++i)
@@ -50,7 +58,7 @@ TEST(PlaceDescriptor, KnowsAPlaceAgainAndByHowMuchItIsTurned) {
 
 TEST(MapRegistration, PutsTwoStretchesOfATunnelTogether) {
   const Tunnel tunnel{.phase = 0.4};
-  const Pose T_source_target{Vec3(12, -30, 4), from_heading(2.2)};
+  const Pose T_source_target{Vec3(12, -30, 4), core::from_heading(2.2)};
   const MapPiece target = piece(tunnel.map(0, 32)),
                  source = piece(moved(tunnel.map(18, 50), T_source_target));
   const MapRegistration r = register_maps(target, source, {});
@@ -140,7 +148,7 @@ TEST(AddMap, EveryCentreTakesTheCellItLiesInOnceHoweverTheMapIsTurned) {
       for (int z = -6; z < 6; ++z)
         source.assign({x, y, z}, 1, 0.01f * static_cast<float>(1 + (x * 7 + y * 3 + z + 400) % 50));
   const Pose T{Vec3(3.3, -1.7, 0.45),
-               (from_heading(0.7) * Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()))).normalized()};
+               (core::from_heading(0.7) * Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()))).normalized()};
   const VoxelMap turned = moved(source, T);
   std::size_t known = 0;
   for (int x = -30; x < 60; ++x)
@@ -157,4 +165,4 @@ TEST(AddMap, EveryCentreTakesTheCellItLiesInOnceHoweverTheMapIsTurned) {
 }
 
 }  // namespace
-}  // namespace karst::core
+}  // namespace karst::map_merge

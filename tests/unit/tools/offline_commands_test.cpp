@@ -85,7 +85,7 @@ TEST(MapMerge, WritesTheUnionOrNothingAtAll) {
   const core::VoxelMap first = tunnel.map(0, 30);
   core::write_octomap(first, name("a"));
   core::VoxelMap moved{core::MapOptions{}};
-  core::add_map(moved, tunnel.map(14, 44), {Vec3(9, 4, -2), core::from_heading(1)}, {});
+  map_merge::add_map(moved, tunnel.map(14, 44), {Vec3(9, 4, -2), core::from_heading(1)}, {});
   core::write_octomap(moved, name("b"));
   core::write_octomap(Tunnel{.phase = 2.0}.map(0, 30), name("other"));
 
