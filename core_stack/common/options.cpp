@@ -30,7 +30,8 @@ std::string range_text(const Row& row) {
 
 std::string expected_text(const Row& row) {
   if (std::holds_alternative<bool*>(row.target)) return "true or false";
-  if (std::holds_alternative<std::string*>(row.target)) {
+  if (std::holds_alternative<std::string*>(row.target) ||
+      std::holds_alternative<OptionTable::Choice>(row.target)) {
     if (row.choices.empty()) return "text";
     std::string all = "one of";
     for (const std::string& c : row.choices) all += " " + c;
@@ -94,6 +95,7 @@ std::string value_text(const Row& row) {
     std::string operator()(const std::int64_t* v) const { return std::to_string(*v); }
     std::string operator()(const bool* v) const { return *v ? "true" : "false"; }
     std::string operator()(const std::string* v) const { return *v; }
+    std::string operator()(const OptionTable::Choice& c) const { return c.name(); }
   };
   return std::visit(Text{row}, row.target);
 }
@@ -110,6 +112,10 @@ void OptionTable::add(std::string key, bool& v, std::string help) {
 }
 void OptionTable::add(std::string key, std::string& v, std::vector<std::string> choices, std::string help) {
   rows_.push_back({prefix_ + std::move(key), &v, "", 0, 0, std::move(choices), std::move(help)});
+}
+void OptionTable::add(std::string key, Choice choice, std::vector<std::string> choices, std::string help) {
+  rows_.push_back(
+      {prefix_ + std::move(key), std::move(choice), "", 0, 0, std::move(choices), std::move(help)});
 }
 
 void OptionTable::set(const std::string& source, const std::string& key, const std::string& raw) {
@@ -134,15 +140,16 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
     **flag = text == "true";
     return;
   }
+  if (!row->choices.empty() &&
+      std::find(row->choices.begin(), row->choices.end(), text) == row->choices.end()) {
+    const std::string near = nearest_name(text, row->choices);
+    bad(near.empty() ? "" : "; did you mean " + near + "?");
+  }
   if (auto* const* words = std::get_if<std::string*>(&row->target)) {
-    if (!row->choices.empty() &&
-        std::find(row->choices.begin(), row->choices.end(), text) == row->choices.end()) {
-      const std::string near = nearest_name(text, row->choices);
-      bad(near.empty() ? "" : "; did you mean " + near + "?");
-    }
     **words = text;
     return;
   }
+  if (const auto* choice = std::get_if<OptionTable::Choice>(&row->target)) return choice->choose(text);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || !std::isfinite(value)) bad("");

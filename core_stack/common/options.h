@@ -9,21 +9,29 @@
 #pragma once
 #include <boost/property_tree/ptree_fwd.hpp>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
+
 namespace karst::core {
 
 class OptionTable {
  public:
+  /// A field whose type is an enumeration, by the names of its values.
+  struct Choice {
+    std::function<std::string()> name;
+    std::function<void(const std::string&)> choose;  // one of the row's choices
+  };
   struct Row {
     std::string key;
-    std::variant<double*, std::int64_t*, bool*, std::string*> target;
+    std::variant<double*, std::int64_t*, bool*, std::string*, Choice> target;
     std::string unit;  // "" for a plain number
     double low = 0, high = 0;
-    std::vector<std::string> choices;  // for text: the values allowed, empty for any
+    std::vector<std::string> choices;  // for text and enumerations: the values allowed, empty for any
     std::string help;
   };
 
@@ -31,6 +39,19 @@ class OptionTable {
   void add(std::string key, std::int64_t& v, double low, double high, std::string help);
   void add(std::string key, bool& v, std::string help);
   void add(std::string key, std::string& v, std::vector<std::string> choices, std::string help);
+  template <NamedEnum E>
+  void add(std::string key, E& v, std::string help) {
+    add(std::move(key),
+        Choice{[&v] { return name_of(v); }, [&v](const std::string& name) { v = *parse<E>(name); }},
+        all_names<E>(), std::move(help));
+  }
+  /// The same of one that has no default.
+  template <NamedEnum E>
+  void add(std::string key, std::optional<E>& v, std::string help) {
+    add(std::move(key),
+        Choice{[&v] { return v ? name_of(*v) : ""; }, [&v](const std::string& name) { v = parse<E>(name); }},
+        all_names<E>(), std::move(help));
+  }
   /// What `fill` adds stands below `prefix.`; keys become "prefix.key".
   template <class Fill>
   void under(const std::string& prefix, Fill fill) {
@@ -60,6 +81,8 @@ class OptionTable {
   std::string help() const;
 
  private:
+  void add(std::string key, Choice choice, std::vector<std::string> choices, std::string help);
+
   std::vector<Row> rows_;
   std::string prefix_;
 };

@@ -53,7 +53,7 @@ void describe(OptionTable& t, LoamOptions& o) {
   t.section("features", o.features);
   t.section("map", o.map);
   t.section("registration", o.registration);
-  t.add("scan_to_scan", o.scan_to_scan, {"auto", "always", "never"},
+  t.add("scan_to_scan", o.scan_to_scan,
         "fit each sweep to the one before first; auto: where the prediction does not cover it");
   t.add("max_correction", o.max_correction_m, "m", 0.05, 20, "a fit farther from its guess is not believed");
   t.add("max_correction_angle", o.max_correction_rad, "rad", 0.01, 3.1, "nor one turned by more");
@@ -128,7 +128,8 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     return fit_to_map(cloud, map, guess, first_level, options_.registration, threads, scratch_);
   };
   const bool weak = !prediction.covered || since_s > kLongGap;
-  const bool scan_to_scan = options_.scan_to_scan == "always" || (options_.scan_to_scan == "auto" && weak);
+  const bool scan_to_scan =
+      options_.scan_to_scan == ScanToScan::always || (options_.scan_to_scan == ScanToScan::automatic && weak);
   Pose guess = prediction.T_world_body;
   if (scan_to_scan && !last_sweep_.empty()) {
     const Fit with_last = fit(last_sweep_, guess, coarsest);

@@ -14,12 +14,19 @@
 
 namespace karst::core {
 
+/// Whether a sweep is fitted to the one before it first; automatic: where the prediction does not cover it.
+enum class ScanToScan { automatic, always, never };
+constexpr auto names_of(ScanToScan) {
+  using enum ScanToScan;
+  return std::to_array<Named<ScanToScan>>({{automatic, "auto"}, {always, "always"}, {never, "never"}});
+}
+
 struct LoamOptions {
   FeatureOptions features;
   LocalMapOptions map;
   RegistrationOptions registration;
-  std::string scan_to_scan = "auto";  // auto: where the prediction does not cover the sweep
-  double max_correction_m = 1.5;      // of the guess by a fit; a larger one is not believed
+  ScanToScan scan_to_scan = ScanToScan::automatic;
+  double max_correction_m = 1.5;  // of the guess by a fit; a larger one is not believed
   double max_correction_rad = 0.35;
   double restart_s = 5;  // without a valid pose: the local map begins anew at the prediction
   std::int64_t threads = 1;

@@ -5,14 +5,20 @@
 
 namespace karst::core {
 
+/// LOAM, on vehicles that have a LiDAR; or the vehicle's own pose sensor, if fitted.
+enum class PoseSource { lidar, pose_sensor };
+constexpr auto names_of(PoseSource) {
+  using enum PoseSource;
+  return std::to_array<Named<PoseSource>>({{lidar, "lidar"}, {pose_sensor, "pose_sensor"}});
+}
+
 struct LocalizationOptions {
-  std::string source =
-      "lidar";  // LOAM, on vehicles that have a LiDAR; or pose_sensor: the vehicle's own, if fitted
+  PoseSource source = PoseSource::lidar;
   EstimatorOptions estimator;
   LoamOptions loam;
 };
 inline void describe(OptionTable& t, LocalizationOptions& o) {
-  t.add("source", o.source, {"lidar", "pose_sensor"},
+  t.add("source", o.source,
         "lidar: LOAM, on vehicles that have a LiDAR, others use their pose sensor; pose_sensor: always that");
   describe(t, o.estimator);
   t.section("loam", o.loam);

@@ -152,12 +152,13 @@ MissionResult MissionControl::end() {
   };
   attempt([this] { onboard_.executive.drain(); });
   attempt([this] {
-    finish("aborted", emergency_ ? *emergency_ + ": it did not come down"
-                                 : "the vehicle did not come back within ten minutes after the time limit");
+    finish(MissionOutcome::aborted,
+           emergency_ ? *emergency_ + ": it did not come down"
+                      : "the vehicle did not come back within ten minutes after the time limit");
   });
   attempt([this] {
     if (!team_) return;
-    const bool where_it_should = result_->outcome == "landed";
+    const bool where_it_should = result_->outcome == MissionOutcome::landed;
     team_->sharing.become_relay(result_->stands,
                                 where_it_should ? std::optional(return_home_.hover()) : std::nullopt);
   });
@@ -170,7 +171,7 @@ MissionResult MissionControl::end() {
       throw InputError(onboard_.recorder.directory().string(), "", "cannot be written: is the disk full?");
   });
   attempt([this] { onboard_.recorder.final_map(onboard_.map.while_idle().map()); });
-  if (!result_) result_ = MissionResult{"aborted", "", standing_, ""};
+  if (!result_) result_ = MissionResult{MissionOutcome::aborted, "", standing_, ""};
   result_->record_problem = problem;
   return *result_;
 }
@@ -192,15 +193,16 @@ void MissionControl::end_flight(const char* reason, double max_path_m) noexcept 
 }
 
 /// It is over, even if that cannot be told any more.
-void MissionControl::finish(const std::string& outcome, const std::string& reason) {
+void MissionControl::finish(MissionOutcome outcome, const std::string& reason) {
   if (result_) return;
-  result_ = MissionResult{"aborted", "", standing_ && outcome != "contact" && outcome != "battery", ""};
-  result_->outcome = outcome;
+  result_ = MissionResult{
+      outcome, "", standing_ && outcome != MissionOutcome::contact && outcome != MissionOutcome::battery, ""};
   result_->reason = reason;
   enter(Phase::done, reason);
-  objects_.finish(outcome == "landed" || (team_ && result_->stands));
-  onboard_.recorder.event(now(), "outcome",
-                          {{"outcome", outcome}, {"reason", reason}, {"mass_kg", onboard_.flight.mass_kg()}});
+  objects_.finish(outcome == MissionOutcome::landed || (team_ && result_->stands));
+  onboard_.recorder.event(
+      now(), "outcome",
+      {{"outcome", name_of(outcome)}, {"reason", reason}, {"mass_kg", onboard_.flight.mass_kg()}});
   onboard_.recorder.flush();
 }
 
@@ -288,7 +290,7 @@ void MissionControl::take_off() {
       return;
     case TakeOff::State::does_not_lift:
       onboard_.flight.disarm();
-      return finish("stuck", "it does not lift off: too heavy for its motors?");
+      return finish(MissionOutcome::stuck, "it does not lift off: too heavy for its motors?");
     case TakeOff::State::hovers:
       break;
   }
@@ -423,7 +425,7 @@ void MissionControl::touch_down(TimeNs stamp) {
   try {
     finish_on_ground();
   } catch (...) {  // it stands, even if that cannot be told
-    if (!result_) result_ = MissionResult{"aborted", "", true, ""};
+    if (!result_) result_ = MissionResult{MissionOutcome::aborted, "", true, ""};
     throw;
   }
 }
@@ -434,16 +436,16 @@ void MissionControl::finish_on_ground() {
   const double off_m = (onboard_.flight.state().position - there).head<2>().norm();
   const std::string place = std::to_string(off_m).substr(0, 5) + " m from the start";
   if (emergency_)
-    finish("aborted", *emergency_ + ": on the ground " + place);
+    finish(MissionOutcome::aborted, *emergency_ + ": on the ground " + place);
   else if (!phases_.in(Phase::land))
-    finish("contact", std::string("touched the ground in phase ") + name_of(phase()));
+    finish(MissionOutcome::contact, std::string("touched the ground in phase ") + name_of(phase()));
   else if (off_m < 1.0)
-    finish("landed", spot ? "as a relay" : "at the start");
+    finish(MissionOutcome::landed, spot ? "as a relay" : "at the start");
   else
-    finish("stuck", "on the ground " + place);
+    finish(MissionOutcome::stuck, "on the ground " + place);
 }
 
-void MissionControl::on_lost(TimeNs, const std::string& outcome, const std::string& reason) {
+void MissionControl::on_lost(TimeNs, MissionOutcome outcome, const std::string& reason) {
   finish(outcome, reason);
 }
 

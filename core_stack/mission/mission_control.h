@@ -34,7 +34,7 @@ struct MissionStatus {
 using Watch = std::function<bool(const MissionStatus&)>;
 
 struct MissionResult {
-  std::string outcome;  // landed | contact | stuck | battery | aborted
+  MissionOutcome outcome = MissionOutcome::aborted;
   std::string reason;
   bool stands = false;              // whole, on the ground
   std::string record_problem = {};  // why the run directory is not complete; empty if it is
@@ -79,7 +79,7 @@ class MissionControl final : public VehicleSink {
   }
   void on_battery(const BatteryStatus& s) override { endurance_.note(s); }
   void on_ground(TimeNs stamp, bool standing) override;
-  void on_lost(TimeNs stamp, const std::string& outcome, const std::string& reason) override;
+  void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) override;
 
  private:
   /// What it has as one of a team.
@@ -112,7 +112,7 @@ class MissionControl final : public VehicleSink {
   void enter(Phase phase, const std::string& reason);
   void touch_down(TimeNs stamp);
   void finish_on_ground();
-  void finish(const std::string& outcome, const std::string& reason);
+  void finish(MissionOutcome outcome, const std::string& reason);
   TimeNs now() const { return onboard_.now(); }
 
   Onboard onboard_;

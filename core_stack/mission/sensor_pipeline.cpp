@@ -24,7 +24,7 @@ constexpr double kSelfMargin_m = 0.05;
 SensorPipeline::SensorPipeline(Onboard& onboard, Wiring wiring)
     : onboard_(onboard), wiring_(std::move(wiring)) {
   const CoreOptions& o = onboard.options;
-  if (onboard.vehicle.lidar && o.localization.source == "lidar")
+  if (onboard.vehicle.lidar && o.localization.source == PoseSource::lidar)
     loam_.emplace(onboard.executive, Lane::localization, o.localization.loam, onboard.vehicle.T_world_start);
 }
 

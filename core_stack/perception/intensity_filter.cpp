@@ -7,7 +7,7 @@
 namespace karst::core {
 
 void describe(OptionTable& t, IntensityFilterOptions& o) {
-  t.add("rule", o.rule, {"lonely", "percentile", "both", "none"},
+  t.add("rule", o.rule,
         "which returns are taken for dust: those no surface passes through, or the weakest near the sensor");
   t.add("percentile", o.percentile, "%", 0, 100,
         "weakest share of a scan's returns that the rule percentile suspects; 0: none");
@@ -16,9 +16,10 @@ void describe(OptionTable& t, IntensityFilterOptions& o) {
 }
 
 void filter_low_intensity(LidarScan& scan, const IntensityFilterOptions& options) {
-  if (options.rule == "percentile" || options.rule == "both")
+  if (options.rule == DustRule::percentile || options.rule == DustRule::both)
     drop_weakest_returns(scan, options.percentile, options.radius_m);
-  if (options.rule == "lonely" || options.rule == "both") drop_lonely_returns(scan, options.lonely);
+  if (options.rule == DustRule::lonely || options.rule == DustRule::both)
+    drop_lonely_returns(scan, options.lonely);
 }
 
 void drop_weakest_returns(LidarScan& scan, double percentile, double radius_m) {

@@ -8,10 +8,17 @@
 
 namespace karst::core {
 
+enum class DustRule { lonely, percentile, both, none };
+constexpr auto names_of(DustRule) {
+  using enum DustRule;
+  return std::to_array<Named<DustRule>>(
+      {{lonely, "lonely"}, {percentile, "percentile"}, {both, "both"}, {none, "none"}});
+}
+
 struct IntensityFilterOptions {
-  double percentile = 10.0;     // of the scan's intensities; 0 switches that rule off
-  double radius_m = 1.5;        // that rule judges only returns nearer than this
-  std::string rule = "lonely";  // or "percentile", "both", "none"
+  double percentile = 10.0;  // of the scan's intensities; 0 switches that rule off
+  double radius_m = 1.5;     // that rule judges only returns nearer than this
+  DustRule rule = DustRule::lonely;
   LonelyReturnOptions lonely;
 };
 void describe(OptionTable& t, IntensityFilterOptions& o);

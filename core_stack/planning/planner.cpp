@@ -100,7 +100,7 @@ Path finished(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, cons
 /// The search that may squeeze: cells are used where a point beside their centre is clear.
 Path searched(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
               const PlanningOptions& options) {
-  if (options.planner != "grid")
+  if (options.planner != Planner::grid)
     return search_with_ompl(map, roadmap, start, goal, options,
                             search_clearance_m(options, map.resolution_m()));
   PlanningOptions near = options;
@@ -114,7 +114,7 @@ Path searched(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, co
 /// The search that keeps the whole clearance.
 Path searched_wide(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
                    const PlanningOptions& options) {
-  if (options.planner == "grid") return plan_on_grid(map, start, goal, options);
+  if (options.planner == Planner::grid) return plan_on_grid(map, start, goal, options);
   return search_with_ompl(map, roadmap, start, goal, options, options.clearance_m);
 }
 

@@ -76,8 +76,8 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
                               const TeamNews& news, std::span<const CellKey> closed) {
   relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
   std::erase_if(relays_, [&](const Relay& r) {
-    return r.stands_by &&
-           (strategy_ != "relay_chain" || *r.stands_by + kSurelyBefore > news.ends || has_failed(r));
+    return r.stands_by && (strategy_ != LandingStrategy::relay_chain ||
+                           *r.stands_by + kSurelyBefore > news.ends || has_failed(r));
   });
   const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));
   const TimeNs stamp = to_milliseconds(news.stamp);
@@ -258,8 +258,8 @@ std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const R
 
 std::optional<LandingSpot> RelayHoming::spot_from(const VoxelMap& map, const Roadmap& roadmap,
                                                   const Vec3& from, double sooner_than_s) const {
-  if (strategy_ == "relay_chain") return nearest_place(map, roadmap, from, sooner_than_s);
-  const auto spot = strategy_ == "relay_tree" ? up_the_tree(map, roadmap, from) : std::nullopt;
+  if (strategy_ == LandingStrategy::relay_chain) return nearest_place(map, roadmap, from, sooner_than_s);
+  const auto spot = strategy_ == LandingStrategy::relay_tree ? up_the_tree(map, roadmap, from) : std::nullopt;
   return spot && spot->time_s < sooner_than_s ? spot : std::nullopt;
 }
 

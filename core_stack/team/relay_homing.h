@@ -98,7 +98,7 @@ class RelayHoming {
   double margin_db(const VoxelMap& map, const Vec3& ground, const Relay& to) const;
 
   RobotId self_;
-  std::string strategy_;
+  LandingStrategy strategy_;
   HomingOptions options_;
   PlanningOptions planning_;
   MotionLimits limits_;

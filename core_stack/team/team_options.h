@@ -8,11 +8,19 @@
 
 namespace karst::core {
 
+/// Where a robot lands when its battery runs low.
+enum class LandingStrategy { return_to_base, relay_tree, relay_chain };
+constexpr auto names_of(LandingStrategy) {
+  using enum LandingStrategy;
+  return std::to_array<Named<LandingStrategy>>(
+      {{return_to_base, "return_to_base"}, {relay_tree, "relay_tree"}, {relay_chain, "relay_chain"}});
+}
+
 struct TeamOptions {
   std::int64_t robots = 1;
   std::int64_t nodes = 0;  // that each carries
   double stagger_s = 60;
-  std::string strategy = "relay_chain";
+  LandingStrategy strategy = LandingStrategy::relay_chain;
   double separation_m = 3.0;
   double claim_radius_m = 4.0;
   double claim_age_s = 60;

@@ -22,7 +22,7 @@ class Teamwork {
   /// To be touched on the map lane only.
   RelayHoming* homing() const { return homing_; }
   const TeamOptions& options() const { return options_; }
-  bool lands_as_relay() const { return options_.strategy != "return_to_base"; }
+  bool lands_as_relay() const { return options_.strategy != LandingStrategy::return_to_base; }
   RobotId self() const { return node_->self(); }
   TimeNs team_time(TimeNs own) const { return own + ahead_; }
 

@@ -1,11 +1,10 @@
 // Objects that people look for in caves, and what a detector behind a vehicle's camera says of them.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <string_view>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
 #include "core_stack/vehicle/messages.h"
 
 namespace karst::core {
@@ -22,20 +21,21 @@ enum class ObjectKind : std::uint8_t {
   extinguisher,
   phone
 };
-constexpr std::array<const char*, 9> kObjectNames = {"none", "person", "backpack",     "helmet", "rope",
-                                                     "lamp", "drill",  "extinguisher", "phone"};
+constexpr auto names_of(ObjectKind) {
+  using enum ObjectKind;
+  return std::to_array<Named<ObjectKind>>({{none, "none"},
+                                           {person, "person"},
+                                           {backpack, "backpack"},
+                                           {helmet, "helmet"},
+                                           {rope, "rope"},
+                                           {lamp, "lamp"},
+                                           {drill, "drill"},
+                                           {extinguisher, "extinguisher"},
+                                           {phone, "phone"}});
+}
 
-/// "unknown" for a number that no kind has.
-constexpr const char* name_of(ObjectKind kind) {
-  const auto i = static_cast<std::size_t>(kind);
-  return i < kObjectNames.size() ? kObjectNames[i] : "unknown";
-}
-/// `none` for a name that no kind has.
-constexpr ObjectKind object_kind(std::string_view name) {
-  for (std::size_t i = 1; i < kObjectNames.size(); ++i)
-    if (name == kObjectNames[i]) return static_cast<ObjectKind>(i);
-  return ObjectKind::none;
-}
+/// That there are to find.
+constexpr int kObjectKinds = static_cast<int>(names_of(ObjectKind::none).size()) - 1;
 
 /// What the detector takes for an object, in the frame of the camera (CameraModel).
 struct ObjectDetection {

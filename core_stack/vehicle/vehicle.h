@@ -7,6 +7,7 @@
 #include "core_stack/common/executive.h"
 #include "core_stack/common/options.h"
 #include "core_stack/vehicle/messages.h"
+#include "core_stack/vehicle/mission_outcome.h"
 #include "core_stack/vehicle/object_detection.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
 
@@ -43,7 +44,7 @@ class VehicleSink {
   /// The vehicle stands on the ground, or has left it.
   virtual void on_ground(TimeNs stamp, bool standing) = 0;
   /// Nothing more will come from this vehicle (crash, empty battery, end of a recording).
-  virtual void on_lost(TimeNs stamp, const std::string& outcome, const std::string& reason) = 0;
+  virtual void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) = 0;
 };
 
 /// A vehicle that has been given no command for so long levels itself and comes down by itself, as autopilots

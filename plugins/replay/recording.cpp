@@ -111,12 +111,12 @@ void stamp_from_file(Recording& r) {
 }
 
 void stamp(Recording& r) {
-  if (r.info.stamp_from == "file") stamp_from_file(r);
+  if (r.info.stamp_from == StampSource::file) stamp_from_file(r);
   for (std::size_t i = 0; i < r.files.size(); ++i) {
     RecordedFile& f = r.files[i];
-    if (r.info.stamp_from == "rate")
+    if (r.info.stamp_from == StampSource::rate)
       f.stamp = core::from_seconds(static_cast<double>(i) / r.info.stamp_rate_hz);
-    if (r.info.stamp_from == "names") {
+    if (r.info.stamp_from == StampSource::names) {
       const auto t = parse_time(number_in(f.path), nanoseconds_of(r.info.stamp_unit));
       if (!t) throw InputError(f.path.string(), "", "its name ends with no number that is a stamp");
       f.stamp = *t;
@@ -146,7 +146,7 @@ void take_point_times(const Recording& r, const RecordedFile& f, std::size_t dec
 
 /// Seconds since the sweep's own zero, from the angle turned since the first point.
 void times_by_azimuth(const Recording& r, Scan& scan) {
-  const double sign = r.info.time_direction == "clockwise" ? -1 : 1;
+  const double sign = r.info.time_direction == TurnDirection::clockwise ? -1 : 1;
   const auto azimuth = [](const ScanPoint& p) { return std::atan2(p.position.y(), p.position.x()); };
   const double first = scan.points.empty() ? 0 : azimuth(scan.points.front());
   for (ScanPoint& p : scan.points) {
@@ -175,12 +175,12 @@ TimeNs assign_times(const Recording& r, const RecordedFile& f, bool by_azimuth, 
     throw InputError(
         f.path.string(), "",
         "its points' times spread over " + std::to_string(length_s) + " s: time.unit or the field is wrong");
-  const std::string of = by_azimuth ? "start" : r.info.time_of;
+  const TimeOrigin of = by_azimuth ? TimeOrigin::start : r.info.time_of;
   TimeNs end = f.stamp;
-  if (of == "absolute") {
+  if (of == TimeOrigin::absolute) {
     end = static_cast<TimeNs>(std::llround(last * unit_s * 1e9));
-  } else if (r.info.stamp_of == "start") {
-    end += core::from_seconds(of == "start" ? last * unit_s : length_s);
+  } else if (r.info.stamp_of == StampMoment::start) {
+    end += core::from_seconds(of == TimeOrigin::start ? last * unit_s : length_s);
   }
   // With the stamp at the end, times from the start say by how much each point is before the last.
   for (ScanPoint& p : scan.points) p.time = (p.time - last) * unit_s;
@@ -231,18 +231,20 @@ core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
   Scan scan = read_scan(f.path.string(), r.info.fields, r.layout.bin);
   const std::size_t declared = scan.points.size() + scan.dropped;
   if (!f.point_times.empty()) take_point_times(r, f, declared, scan);
-  const bool by_azimuth = !scan.has_time && !r.info.compensated && r.info.time_direction != "none";
+  const bool by_azimuth =
+      !scan.has_time && !r.info.compensated && r.info.time_direction != TurnDirection::none;
   if (by_azimuth) times_by_azimuth(r, scan);
-  if (r.info.rings_by == "field" && !scan.has_ring)
+  if (r.info.rings_by == RingSource::field && !scan.has_ring)
     throw InputError(f.path.string(), "", "has no field with rings, which rings.by asks for");
-  if (r.info.rings_by == "order") {
+  if (r.info.rings_by == RingSource::order) {
     rings_by_order(scan);  // while all points are there
   }
   std::erase_if(scan.points, [&](const ScanPoint& p) {
     const double range = p.position.norm();
     return range < r.info.min_range_m || range > r.info.max_range_m || range == 0;
   });
-  if (r.info.rings_by == "elevation" || (r.info.rings_by == "auto" && !scan.has_ring)) {
+  if (r.info.rings_by == RingSource::elevation ||
+      (r.info.rings_by == RingSource::automatic && !scan.has_ring)) {
     if (r.info.rings == 0)
       throw InputError(
           f.path.string(), "",

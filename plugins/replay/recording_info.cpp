@@ -74,18 +74,18 @@ void describe(core::OptionTable& t, RecordingInfo& o) {
     p.add("type", o.point_times_type, {}, "type of these numbers");
   });
   t.under("stamp", [&o](core::OptionTable& s) {
-    s.add("from", o.stamp_from, {"rate", "names", "file"}, "where each scan's stamp comes from");
+    s.add("from", o.stamp_from, "where each scan's stamp comes from");
     s.add("rate", o.stamp_rate_hz, "Hz", 0.01, 1000, "scans a second");
     s.add("file", o.stamp_file, {}, "text file, a line a scan; its first word is the stamp");
     s.add("unit", o.stamp_unit, {"s", "ms", "us", "ns"}, "of stamps in names and files");
-    s.add("of", o.stamp_of, {"start", "end"}, "the moment of the sweep that is stamped");
+    s.add("of", o.stamp_of, "the moment of the sweep that is stamped");
   });
   t.under("time", [&o](core::OptionTable& s) {
     s.add("unit", o.time_unit, {"auto", "s", "ms", "us", "ns"},
           "of each point's time; auto: ns if stored as whole numbers, else s");
-    s.add("of", o.time_of, {"start", "end", "absolute"},
+    s.add("of", o.time_of,
           "what each point's time counts from: the start or end of its sweep, or as the stamps do");
-    s.add("direction", o.time_direction, {"none", "clockwise", "counterclockwise"},
+    s.add("direction", o.time_direction,
           "where points have no time: the sensor's turn seen from above, from which it is worked out");
     s.add("period", o.period_s, "s", 0.001, 10, "of one turn");
   });
@@ -96,7 +96,7 @@ void describe(core::OptionTable& t, RecordingInfo& o) {
     l.add("max_range", o.max_range_m, "m", 1, 1000, "farther points are left out");
   });
   t.under("rings", [&o](core::OptionTable& r) {
-    r.add("by", o.rings_by, {"auto", "field", "elevation", "order"},
+    r.add("by", o.rings_by,
           "how a point's ring is known; auto: by the field if there is one, else by elevation");
     r.add("count", o.rings, 0, 4096, "rings of the sensor, for elevation; 0: not said");
     r.add("lowest", o.lowest_rad, "rad", -1.6, 1.6, "elevation of the lowest ring");
@@ -119,9 +119,9 @@ RecordingInfo read_recording_info(const std::string& file) {
   layout_of(info, file);  // whatever is wrong shows now
   if (info.rings > 1 && info.lowest_rad >= info.highest_rad)
     throw InputError(file, "rings.lowest", "must lie below rings.highest");
-  if (info.rings_by == "elevation" && info.rings == 0)
+  if (info.rings_by == RingSource::elevation && info.rings == 0)
     throw InputError(file, "rings.count", "expected the number of rings, which rings.by elevation needs");
-  if (info.stamp_from == "file" && info.stamp_file.empty())
+  if (info.stamp_from == StampSource::file && info.stamp_file.empty())
     throw InputError(file, "stamp.file", "expected the file that stamp.from asks for");
   return info;
 }

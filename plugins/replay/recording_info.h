@@ -8,6 +8,43 @@
 
 namespace karst::replay {
 
+/// Where each scan's stamp comes from.
+enum class StampSource { rate, names, file };
+constexpr auto names_of(StampSource) {
+  using enum StampSource;
+  return std::to_array<core::Named<StampSource>>({{rate, "rate"}, {names, "names"}, {file, "file"}});
+}
+
+/// The moment of the sweep that is stamped.
+enum class StampMoment { start, end };
+constexpr auto names_of(StampMoment) {
+  using enum StampMoment;
+  return std::to_array<core::Named<StampMoment>>({{start, "start"}, {end, "end"}});
+}
+
+/// What each point's time counts from: the start or end of its sweep, or as the stamps do.
+enum class TimeOrigin { start, end, absolute };
+constexpr auto names_of(TimeOrigin) {
+  using enum TimeOrigin;
+  return std::to_array<core::Named<TimeOrigin>>({{start, "start"}, {end, "end"}, {absolute, "absolute"}});
+}
+
+/// The sensor's turn seen from above.
+enum class TurnDirection { none, clockwise, counterclockwise };
+constexpr auto names_of(TurnDirection) {
+  using enum TurnDirection;
+  return std::to_array<core::Named<TurnDirection>>(
+      {{none, "none"}, {clockwise, "clockwise"}, {counterclockwise, "counterclockwise"}});
+}
+
+/// How a point's ring is known; automatic: by the field if there is one, else by elevation.
+enum class RingSource { automatic, field, elevation, order };
+constexpr auto names_of(RingSource) {
+  using enum RingSource;
+  return std::to_array<core::Named<RingSource>>(
+      {{automatic, "auto"}, {field, "field"}, {elevation, "elevation"}, {order, "order"}});
+}
+
 struct RecordingInfo {
   std::string scans = "*";
   bool compensated = false;
@@ -16,14 +53,18 @@ struct RecordingInfo {
   std::string bin_fields = "x y z intensity", bin_types = "float32";
   std::string point_times_files, point_times_type = "float32";
 
-  std::string stamp_from = "rate", stamp_file, stamp_unit = "s", stamp_of = "start";
+  StampSource stamp_from = StampSource::rate;
+  std::string stamp_file, stamp_unit = "s";
+  StampMoment stamp_of = StampMoment::start;
   double stamp_rate_hz = 10;
-  std::string time_unit = "auto", time_of = "start", time_direction = "none";
+  std::string time_unit = "auto";
+  TimeOrigin time_of = TimeOrigin::start;
+  TurnDirection time_direction = TurnDirection::none;
   double period_s = 0.1;
 
   std::string lidar_position = "0 0 0", lidar_rotation = "0 0 0";
   double min_range_m = 0.5, max_range_m = 120;
-  std::string rings_by = "auto";
+  RingSource rings_by = RingSource::automatic;
   std::int64_t rings = 0;  // not said
   double lowest_rad = 0, highest_rad = 0;
 

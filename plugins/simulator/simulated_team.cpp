@@ -156,8 +156,8 @@ void SimulatedTeam::count_contacts(TimeNs now) {
       std::snprintf(text, sizeof text, "{\"t\":%.1f,\"kind\":\"contact\",\"robots\":[%zu,%zu]}\n",
                     core::seconds(now), k + 1, i + 1);
       if (truth_.is_open()) truth_ << text;
-      if (a) robots_[i]->end_flight("contact", "touched robot " + std::to_string(k + 1));
-      if (b) robots_[k]->end_flight("contact", "touched robot " + std::to_string(i + 1));
+      if (a) robots_[i]->end_flight(core::MissionOutcome::contact, "touched robot " + std::to_string(k + 1));
+      if (b) robots_[k]->end_flight(core::MissionOutcome::contact, "touched robot " + std::to_string(i + 1));
     }
 }
 
@@ -205,7 +205,7 @@ void SimulatedTeam::log(TimeNs now) {
 
 void SimulatedTeam::wreck(std::size_t robot, const std::string& reason) {
   silence(robot + 1);
-  if (robots_.at(robot)->airborne()) robots_[robot]->end_flight("lost", reason);
+  if (robots_.at(robot)->airborne()) robots_[robot]->end_flight(core::MissionOutcome::lost, reason);
 }
 
 SimulatedTeam::Port& SimulatedTeam::port_of(std::size_t radio) {

@@ -38,8 +38,8 @@ TimeNs period_of(double rate_hz) {
 
 std::vector<std::shared_ptr<const DepthCamera>> mount_cameras(const SimulatorOptions& o) {
   std::vector<Facing> facing;
-  if (o.vehicle == "camera_uav") facing = {Facing::forward};
-  if (o.vehicle == "lidar_uav") facing = {Facing::up, Facing::down};
+  if (o.vehicle == VehiclePreset::camera_uav) facing = {Facing::forward};
+  if (o.vehicle == VehiclePreset::lidar_uav) facing = {Facing::up, Facing::down};
   std::vector<std::shared_ptr<const DepthCamera>> cameras;
   for (const Facing f : facing)
     cameras.push_back(std::make_shared<const DepthCamera>(o.camera, camera_model(o.camera, f)));
@@ -76,7 +76,8 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       site_(set_down(*cave_, options.body.radius_m)),
       quadrotor_({options.body, options.motors, options.autopilot, options.battery}, site_.T_world_start,
                  cave_->scene, Wind(options.wind, Random::stream(setup.seed, "wind"))),
-      lidar_(options.vehicle == "camera_uav" ? nullptr : std::make_shared<const Lidar>(options.lidar)),
+      lidar_(options.vehicle == VehiclePreset::camera_uav ? nullptr
+                                                          : std::make_shared<const Lidar>(options.lidar)),
       cameras_(mount_cameras(options)),
       rgb_(options.rgb.fitted ? std::make_shared<const RgbCamera>(options.rgb) : nullptr),
       detector_(options.objects, options.rgb),
@@ -88,7 +89,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
       log_(setup.run_dir) {
   renew_sight();
   cave::check_climb(*cave_, site_.T_world_start.position, setup.climb_m, options.body.radius_m);
-  description_.name = options.vehicle;
+  description_.name = core::name_of(options.vehicle);
   description_.radius_m = options.body.radius_m;
   description_.mass_kg = options.body.mass_kg;
   description_.max_thrust_n = 4 * max_motor_thrust_n(options.motors, options.body);
@@ -96,8 +97,8 @@ SimulatedVehicle::SimulatedVehicle(const SimulatorOptions& options, const core::
   if (lidar_) description_.lidar = lidar_->model();
   for (const auto& camera : cameras_) description_.cameras.push_back(camera->model());
   if (rgb_) description_.rgb = rgb_->model();
-  description_.pose_sensor =
-      options.pose.fitted == "always" || (options.pose.fitted == "without_lidar" && !lidar_);
+  description_.pose_sensor = options.pose.fitted == PoseSensorFitted::always ||
+                             (options.pose.fitted == PoseSensorFitted::without_lidar && !lidar_);
   description_.detects_objects = !looks_.empty() && (rgb_ || !cameras_.empty());
   description_.T_world_start = site_.T_world_start;
 }
@@ -180,7 +181,7 @@ void SimulatedVehicle::tick() {
   for (int left = kStepsPerTick; left > 0 && !lost_; left -= quadrotor_.steps_done())
     react(quadrotor_.advance(left));
   if (lost_) return;
-  if (quadrotor_.battery().empty()) return lose("battery", "the battery is empty");
+  if (quadrotor_.battery().empty()) return lose(core::MissionOutcome::battery, "the battery is empty");
 
   const BodyState& s = quadrotor_.state();
   const double dt_s = core::seconds(kTick);
@@ -217,15 +218,15 @@ void SimulatedVehicle::react(QuadrotorEvent event) {
                     "touched rock at (%.2f %.2f %.2f) at %.2f m/s after %.2f s, %.0f deg from straight down",
                     t.place.x(), t.place.y(), t.place.z(), s.velocity_mps.norm(), core::seconds(now()),
                     angle_from_down_rad(t) * 180 / std::numbers::pi);
-      return lose("contact", text);
+      return lose(core::MissionOutcome::contact, text);
     }
   }
 }
 
-void SimulatedVehicle::lose(const std::string& outcome, const std::string& reason) {
+void SimulatedVehicle::lose(core::MissionOutcome outcome, const std::string& reason) {
   lost_ = true;
   log_truth();
-  log_.event(now(), outcome, quadrotor_.state(), reason);
+  log_.event(now(), core::name_of(outcome), quadrotor_.state(), reason);
   sink_->on_lost(now(), outcome, reason);
 }
 

@@ -38,7 +38,7 @@ class SimulatedVehicle final : public core::Vehicle {
   /// Where the others are from now on, as its sensors see them. Touching them is not looked for.
   void see(std::vector<cave::Sphere> others);
   /// The end of its flight: `outcome` is contact, if it touched another, or lost.
-  void end_flight(const std::string& outcome, const std::string& reason) { lose(outcome, reason); }
+  void end_flight(core::MissionOutcome outcome, const std::string& reason) { lose(outcome, reason); }
 
  private:
   /// Something read once a period; both times are whole ticks.
@@ -51,7 +51,7 @@ class SimulatedVehicle final : public core::Vehicle {
   void tick();
   void take_over();
   void react(QuadrotorEvent event);
-  void lose(const std::string& outcome, const std::string& reason);
+  void lose(core::MissionOutcome outcome, const std::string& reason);
   void fire_lidar();
   void fire_camera(std::size_t index);
   void take_picture();

@@ -4,7 +4,7 @@ namespace karst::sim {
 
 void describe(core::OptionTable& t, SimulatorOptions& o) {
   t.add(
-      "vehicle", o.vehicle, {"lidar_uav", "lidar_only_uav", "camera_uav"},
+      "vehicle", o.vehicle,
       "lidar_uav: LiDAR, depth cameras up and down; lidar_only_uav: no cameras; camera_uav: one depth camera "
       "forward");
   describe(t, o.battery);

@@ -16,8 +16,16 @@
 
 namespace karst::sim {
 
+/// What sensors it carries.
+enum class VehiclePreset { lidar_uav, lidar_only_uav, camera_uav };
+constexpr auto names_of(VehiclePreset) {
+  using enum VehiclePreset;
+  return std::to_array<core::Named<VehiclePreset>>(
+      {{lidar_uav, "lidar_uav"}, {lidar_only_uav, "lidar_only_uav"}, {camera_uav, "camera_uav"}});
+}
+
 struct SimulatorOptions {
-  std::string vehicle = "lidar_uav";
+  VehiclePreset vehicle = VehiclePreset::lidar_uav;
   BatteryOptions battery;
   WindOptions wind;
   AirOptions air;

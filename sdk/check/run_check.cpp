@@ -104,8 +104,7 @@ TestResult run_in_child(const CheckOptions& o, const std::string& policy, const 
   if (ended.empty() && end.signal == 0 && end.exit_code == 0 && said.is_object()) {
     r.reason = said.value("reason", "");
     r.figures = said.value("figures", ordered_json::object());
-    for (const Verdict v : {Verdict::passed, Verdict::failed, Verdict::not_applicable})
-      if (said.value("outcome", "") == name_of(v)) r.verdict = v;
+    r.verdict = core::parse<Verdict>(said.value("outcome", "")).value_or(r.verdict);
     return r;
   }
   r.verdict = Verdict::failed;
@@ -155,19 +154,6 @@ std::vector<std::string> policies_of(const CheckOptions& o) {
 }
 
 }  // namespace
-
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::passed:
-      return "passed";
-    case Verdict::failed:
-      return "failed";
-    case Verdict::not_applicable:
-      return "not applicable";
-    default:
-      return "not run";
-  }
-}
 
 std::vector<TestResult> run_check(const CheckOptions& o, const std::function<void(const TestResult&)>& done) {
   core::check_input(o.file, core::kMaxPluginBytes);

@@ -23,7 +23,11 @@ struct CheckOptions {
 };
 
 enum class Verdict { passed, failed, not_applicable, not_run };
-const char* name_of(Verdict verdict);
+constexpr auto names_of(Verdict) {
+  using enum Verdict;
+  return std::to_array<core::Named<Verdict>>(
+      {{passed, "passed"}, {failed, "failed"}, {not_applicable, "not applicable"}, {not_run, "not run"}});
+}
 
 struct TestResult {
   const Test* test = nullptr;

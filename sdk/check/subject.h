@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
 #include "sdk/check/progress.h"
 #include "sdk/host/boundary/decision_box.h"
 #include "sdk/host/plugin/plugin_file.h"
@@ -14,6 +15,10 @@ namespace karst::check {
 
 /// basic: what a flight needs. strict: what a policy given to others should hold. pedantic: hygiene.
 enum class Level { basic, strict, pedantic };
+constexpr auto names_of(Level) {
+  using enum Level;
+  return std::to_array<core::Named<Level>>({{basic, "basic"}, {strict, "strict"}, {pedantic, "pedantic"}});
+}
 
 /// A test throws it with the reason, one line.
 struct Failed {

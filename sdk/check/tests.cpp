@@ -20,8 +20,4 @@ const Test* find_test(const std::string& name) {
   return nullptr;
 }
 
-const char* name_of(Level level) {
-  return level == Level::basic ? "basic" : level == Level::strict ? "strict" : "pedantic";
-}
-
 }  // namespace karst::check

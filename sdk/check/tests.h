@@ -24,7 +24,6 @@ struct Test {
 const std::vector<Test>& all_tests();
 /// Null if there is none.
 const Test* find_test(const std::string& name);
-const char* name_of(Level level);
 
 std::vector<Test> entry_tests();
 std::vector<Test> lifecycle_tests();

@@ -86,9 +86,8 @@ host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& re
   choice.parameters = mission.policy_parameters;
   choice.source = mission.file;
   choice.seed = policy_seed(mission);
-  const bool own_process = mission.policy_isolation == "process";
-  choice.isolation = own_process ? host::Isolation::process : host::Isolation::in_process;
-  if (own_process && host::landlock_version() == 0)
+  choice.isolation = mission.policy_isolation;
+  if (choice.isolation == host::Isolation::process && host::landlock_version() == 0)
     std::fputs("warning: this kernel has no Landlock: the policy's process can read what this user can\n",
                stderr);
   choice.memory_limit_mib = mission.policy_memory_limit_mib;

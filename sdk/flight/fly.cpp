@@ -169,7 +169,7 @@ nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, doubl
   write_timing(run_dir, running_->lockstep->executive(0), wall_s);
   const nlohmann::json metrics =
       finish_run(run_dir, {mission_.cave, mission_.start, request_.report, request_.cave_cache});
-  outcome.landed = result.outcome == "landed";
+  outcome.landed = result.outcome == core::MissionOutcome::landed;
   outcome.record_problem = result.record_problem;
   return nlohmann::ordered_json(metrics);
 }
@@ -190,7 +190,7 @@ nlohmann::ordered_json MissionFlight::finish_members(FlightOutcome& outcome, dou
   evaluation::write_metrics(run_dir, metrics);
   write_team_timing(run_dir, {outcome.team->duration_s, wall_s, request_.threads});
   finish_team(run_dir, how, metrics);
-  outcome.landed = metrics["outcome"] == "landed";
+  outcome.landed = metrics["outcome"] == core::name_of(core::MissionOutcome::landed);
   outcome.record_problem = outcome.team->record_problem;
   return metrics;
 }

@@ -38,7 +38,7 @@ void describe_mission(OptionTable& t, Mission& m) {
           "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
     p.add("stream", m.policy_stream, 0, 9e15,
           "gives the policy other random numbers, and nothing else: for comparing a policy with itself");
-    p.add("isolation", m.policy_isolation, {"in_process", "process"},
+    p.add("isolation", m.policy_isolation,
           "process: the policy runs in a process of its own, where a crash costs the policy and not the "
           "vehicle");
     p.add("cpu_limit", m.policy_cpu_limit_s, "s", 0.1, 3600,

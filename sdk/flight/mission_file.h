@@ -13,6 +13,7 @@
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/vehicle.h"
 #include "sdk/flight/team_faults.h"
+#include "sdk/host/hosted_policy.h"
 
 namespace karst::flight {
 
@@ -27,7 +28,7 @@ struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   std::int64_t seed = 1, policy_stream = 0;
-  std::string policy_isolation = "in_process";  // or "process" (docs/isolation.md)
+  host::Isolation policy_isolation = host::Isolation::in_process;  // docs/isolation.md
   double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;
   std::int64_t policy_memory_limit_mib = 2048;
   core::CoreOptions core;

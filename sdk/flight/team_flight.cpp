@@ -58,7 +58,7 @@ TeamFlight::TeamFlight(const TeamFlightSetup& setup, sim::SimulatedWorld& world)
                                   [](const Vec3&, const Vec3&) { return false; });
   log_.event(0, "team",
              {{"robots", robots},
-              {"strategy", options_.team.strategy},
+              {"strategy", core::name_of(options_.team.strategy)},
               {"base", core::list(setup_.base)},
               {"reach", options_.homing.landing.link.range_m}});
   for (std::size_t i = 0; i < robots; ++i)
@@ -135,7 +135,7 @@ void TeamFlight::on_phase(const Lockstep& flight, std::size_t robot, TimeNs now)
   const auto& claim = members_[robot]->member().landing_of(id_of(robot));
   log_.event(now, "end",
              {{"robot", id_of(robot)},
-              {"outcome", state.ended->outcome},
+              {"outcome", core::name_of(state.ended->outcome)},
               {"reason", state.ended->reason},
               {"ground", claim ? core::list(claim->ground) : nlohmann::json()}});
 }
@@ -165,8 +165,8 @@ RobotResult TeamFlight::result_of(const Lockstep& flight, std::size_t robot, Tim
   const core::TeamNode& member = members_[robot]->member();
   const std::vector<RobotId> connected = base_.graph().connected(now);
   RobotResult r;
-  r.mission =
-      state.ended.value_or(core::MissionResult{"aborted", "stopped by the operator before its start"});
+  r.mission = state.ended.value_or(
+      core::MissionResult{core::MissionOutcome::aborted, "stopped by the operator before its start"});
   r.start_s = core::seconds(starts_at(robot));
   r.end_s = core::seconds(state.ended_at.value_or(now));
   r.exploration_time_s = core::seconds(state.explored_for);

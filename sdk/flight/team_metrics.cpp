@@ -41,7 +41,7 @@ ordered_json begin_team_metrics(const TeamFlightFacts& flight, const std::vector
   m["policy"] = text_or_null(flight.policy);
   m["cave"] = text_or_null(std::filesystem::path(flight.cave).stem().string());
   m["seed"] = flight.seed;
-  m["outcome"] = flight.outcome;
+  m["outcome"] = core::name_of(flight.outcome);
   m["reason"] = flight.reason;
   for (const evaluation::MetricDefinition& d : evaluation::metric_definitions())
     m[std::string(d.name)] = nullptr;
@@ -54,16 +54,19 @@ ordered_json team_metrics(const Mission& mission, const TeamResult& result, cons
     return std::count_if(result.robots.begin(), result.robots.end(), holds);
   };
   const auto n = static_cast<long>(result.robots.size());
-  const long landed = count([](const RobotResult& r) { return r.mission.outcome == "landed"; });
-  const long connected =
-      count([](const RobotResult& r) { return r.mission.outcome == "landed" && r.connected; });
+  const long landed =
+      count([](const RobotResult& r) { return r.mission.outcome == core::MissionOutcome::landed; });
+  const long connected = count(
+      [](const RobotResult& r) { return r.mission.outcome == core::MissionOutcome::landed && r.connected; });
   double explored_s = 0;
   for (const RobotResult& r : result.robots) explored_s += r.exploration_time_s;
 
   const std::string reason = std::to_string(landed) + " of " + std::to_string(n) + " robots landed, " +
                              std::to_string(connected) + " of them connected to the base";
   ordered_json m = begin_team_metrics(
-      {mission.policy, mission.cave, mission.seed, landed == n ? "landed" : "incomplete", reason}, robots);
+      {mission.policy, mission.cave, mission.seed,
+       landed == n ? core::MissionOutcome::landed : core::MissionOutcome::incomplete, reason},
+      robots);
   m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
   std::uint64_t reported = 0, at_base = 0;
   for (const RobotResult& r : result.robots) {
@@ -80,12 +83,12 @@ ordered_json team_metrics(const Mission& mission, const TeamResult& result, cons
     if (const std::string key = "exploration_time_" + std::to_string(i + 1) + "_s"; m.contains(key))
       m[key] = rounded(result.robots[i].exploration_time_s);  // of as many as campaigns compare
 
-  m["strategy"] = mission.core.team.strategy;
+  m["strategy"] = core::name_of(mission.core.team.strategy);
   m["duration_s"] = rounded(result.duration_s);
   m["bytes_on_air"] = result.bytes_on_air;
   m["robots"] = ordered_json::array();
   for (const RobotResult& r : result.robots)
-    m["robots"].push_back({{"outcome", r.mission.outcome},
+    m["robots"].push_back({{"outcome", core::name_of(r.mission.outcome)},
                            {"reason", r.mission.reason},
                            {"start_s", rounded(r.start_s)},
                            {"end_s", rounded(r.end_s)},

@@ -10,7 +10,8 @@ namespace karst::flight {
 struct TeamFlightFacts {
   std::string policy, cave;
   std::int64_t seed = 0;
-  std::string outcome, reason;
+  core::MissionOutcome outcome = core::MissionOutcome::incomplete;
+  std::string reason;
 };
 
 /// Sets the sums over the robots that are null.

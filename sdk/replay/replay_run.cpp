@@ -74,8 +74,8 @@ class ReplayFiles {
     recorder_.telemetry(row);
   }
 
-  void end(TimeNs stamp, const std::string& outcome, const std::string& reason, const core::VoxelMap& map) {
-    recorder_.event(stamp, "outcome", {{"outcome", outcome}, {"reason", reason}});
+  void end(TimeNs stamp, core::MissionOutcome outcome, const std::string& reason, const core::VoxelMap& map) {
+    recorder_.event(stamp, "outcome", {{"outcome", core::name_of(outcome)}, {"reason", reason}});
     recorder_.final_map(map);
     trajectory_.flush();
     if (!recorder_.flush() || !trajectory_)
@@ -126,7 +126,7 @@ ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& 
     try {
       sweep = read_sweep(recording, i, &notes);
     } catch (const core::InputError& e) {
-      files.end(recording.files[i].stamp - origin, "aborted", e.what(), map);
+      files.end(recording.files[i].stamp - origin, core::MissionOutcome::aborted, e.what(), map);
       throw;
     }
     sweep.stamp -= origin;
@@ -162,7 +162,7 @@ ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& 
     files.scan(pose, changes, map, velocity_mps);
     const bool go_on = progress(i + 1, pose, map);
     if (!go_on || i + 1 == recording.files.size()) {
-      files.end(sweep.stamp, go_on ? "replayed" : "aborted",
+      files.end(sweep.stamp, go_on ? core::MissionOutcome::replayed : core::MissionOutcome::aborted,
                 go_on ? "the recording ended" : "stopped by the operator", map);
       break;
     }

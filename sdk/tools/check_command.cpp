@@ -30,14 +30,11 @@ struct CheckArguments {
   bool json = false, list = false;
 };
 
-const std::map<std::string, Level> kLevels = {
-    {"basic", Level::basic}, {"strict", Level::strict}, {"pedantic", Level::pedantic}};
-
 CLI::Validator level_by_name() {
   return {[](std::string& text) {
-            const auto found = kLevels.find(text);
-            if (found == kLevels.end()) return "expected basic, strict or pedantic, got \"" + text + "\"";
-            text = std::to_string(static_cast<int>(found->second));
+            const auto level = core::parse<Level>(text);
+            if (!level) return "expected basic, strict or pedantic, got \"" + text + "\"";
+            text = std::to_string(static_cast<int>(*level));
             return std::string();
           },
           ""};

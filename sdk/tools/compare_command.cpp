@@ -115,11 +115,6 @@ Campaign from_file(const CompareArguments& args) {
   return c;
 }
 
-campaign::Keep keep_of(const std::string& text) {
-  if (text == "figures") return campaign::Keep::figures;
-  return text == "all" ? campaign::Keep::all : campaign::Keep::replay;
-}
-
 /// Says so before it flies what no flight could show.
 void print_too_few(const campaign::Plan& plan) {
   const std::size_t caves = plan.caves.size(), pairs = caves * plan.seeds.size(),
@@ -153,11 +148,11 @@ int compare(const CompareArguments& args) {
   if (options.folder.empty()) options.folder = fs::path("runs") / c->name;
   flight::refuse_run(options.folder);
   options.karst = fs::read_symlink("/proc/self/exe");
-  options.executor = args.executor;
+  options.executor = *core::parse<campaign::Where>(args.executor);
   options.sbatch = args.sbatch;
   options.batch = args.batch;
   options.jobs = args.jobs;
-  options.keep = keep_of(args.keep);
+  options.keep = *core::parse<campaign::Keep>(args.keep);
   options.any_binary = args.any_binary;
   options.stop = &watch_for_interrupt();
 
@@ -227,7 +222,7 @@ void add_compare_command(CLI::App& app) {
   compare_app->add_option("--jobs", args->jobs, "trials flown at once; default: one a core")
       ->check(CLI::Range(1, 4096));
   compare_app->add_option("--executor", args->executor, "where trials fly: local, slurm")
-      ->check(CLI::IsMember({"local", "slurm"}));
+      ->check(CLI::IsMember(core::all_names<campaign::Where>()));
   compare_app
       ->add_option("--batch", args->batch,
                    "trials a Slurm task flies; default: as many as are ten seconds of work")
@@ -240,7 +235,7 @@ void add_compare_command(CLI::App& app) {
   compare_app
       ->add_option("--keep", args->keep,
                    "what stays of a trial: figures; replay (default): all but map.ot and map.ply; all")
-      ->check(CLI::IsMember({"figures", "replay", "all"}));
+      ->check(CLI::IsMember(core::all_names<campaign::Keep>()));
   compare_app->add_option("--metric", args->metric,
                           "figure that the verdict is about, decided before flying; default coverage_auc");
   compare_app->add_flag("--any-binary", args->any_binary,

@@ -93,8 +93,8 @@ void print_team(const flight::TeamResult& team, const nlohmann::ordered_json& me
   for (std::size_t i = 0; i < team.robots.size(); ++i) {
     const flight::RobotResult& r = team.robots[i];
     print_out("  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1, r.exploration_time_s,
-              r.mission.outcome.c_str(), r.connected ? "connected" : "cut off", r.records_at_base, r.records,
-              r.mission.reason.c_str());
+              core::name_of(r.mission.outcome), r.connected ? "connected" : "cut off", r.records_at_base,
+              r.records, r.mission.reason.c_str());
   }
   print_objects(metrics);
   print_out("  over the air     %.0f kB in %.0f s\nLook next at:\n",

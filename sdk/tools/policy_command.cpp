@@ -25,9 +25,9 @@ struct PolicyArguments {
 };
 
 ordered_json parameter_json(const ParameterListing& p) {
-  ordered_json j{{"id", p.id}, {"type", p.type}, {"default", p.default_text}};
+  ordered_json j{{"id", p.id}, {"type", core::name_of(p.type)}, {"default", p.default_text}};
   if (!p.unit.empty()) j["unit"] = p.unit;
-  if (p.type == "real" || p.type == "integer") j["low"] = p.low, j["high"] = p.high;
+  if (p.type == ParameterType::real || p.type == ParameterType::integer) j["low"] = p.low, j["high"] = p.high;
   if (!p.choices.empty()) j["choices"] = p.choices;
   j["help"] = p.help;
   return j;
@@ -50,13 +50,14 @@ void print_listings(const std::vector<PolicyListing>& all) {
 }
 
 std::string allowed_text(const ParameterListing& p) {
-  if (p.type == "boolean") return "true or false";
+  if (p.type == ParameterType::boolean) return "true or false";
   const auto number = [](double v) {
     std::ostringstream s;
     s << v;
     return s.str();
   };
-  if (p.type != "text") return number(p.low) + " to " + number(p.high) + (p.unit.empty() ? "" : " " + p.unit);
+  if (p.type != ParameterType::text)
+    return number(p.low) + " to " + number(p.high) + (p.unit.empty() ? "" : " " + p.unit);
   std::string out = p.choices.empty() ? "any text" : "";
   for (const std::string& c : p.choices) out += (out.empty() ? "" : ", ") + c;
   return out;

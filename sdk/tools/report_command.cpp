@@ -28,7 +28,7 @@ nlohmann::ordered_json metrics_of_cut_team(const fs::path& run, const std::strin
                                            const std::vector<nlohmann::json>& robots) {
   const auto info = core::read_info((run / "mission.info").string());
   return flight::begin_team_metrics({info.get("policy.name", ""), cave, info.get("seed", std::int64_t{0}),
-                                     "aborted", "the record ends without an outcome"},
+                                     core::MissionOutcome::aborted, "the record ends without an outcome"},
                                     robots);
 }
 

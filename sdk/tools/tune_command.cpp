@@ -28,6 +28,7 @@ using tuning::TuneResult;
 
 struct TuneArguments {
   std::string policy, plugin, out, mission, profile = "campaign", flight_time = "300 s";
+  std::string method = core::name_of(tuning::SearchOptions{}.method);
   std::vector<std::string> caves, held_out, parameters, settings;
   std::int64_t seeds = 2;
   std::size_t jobs = std::max(1u, std::thread::hardware_concurrency());
@@ -59,6 +60,7 @@ host::PolicyListing listing_of(const std::string& name, const std::string& plugi
 
 tuning::TuneOptions options_of(const TuneArguments& args) {
   tuning::TuneOptions o = args.tune;
+  o.search.method = tuning::search_method(args.method);
   o.policy = campaign::parse_contestant(args.policy);
   o.policy.plugin = args.plugin;
   o.axes = tuning::axes_of(listing_of(o.policy.policy, args.plugin), args.parameters);
@@ -210,8 +212,7 @@ void add_tune_command(CLI::App& app) {
   tune_app->add_option("--flights", args->tune.flights, "how many flights it may take in all")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  tune_app->add_option("--method", args->tune.search.method, "bobyqa, direct, crs (docs/tune.md)")
-      ->capture_default_str();
+  tune_app->add_option("--method", args->method, "bobyqa, direct, crs (docs/tune.md)")->capture_default_str();
   tune_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\"")->capture_default_str();
   tune_app->add_option("--profile", args->profile, "as of karst compare")->capture_default_str();
   tune_app->add_option("--mission", args->mission, "mission file with settings that all share")

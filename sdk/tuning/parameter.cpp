@@ -47,14 +47,14 @@ std::vector<Axis> axes_of(const host::PolicyListing& policy, const std::vector<s
   std::vector<Axis> axes;
   std::vector<std::string> names;
   for (const host::ParameterListing& p : policy.parameters) {
-    const bool number = p.type == "real" || p.type == "integer";
+    const bool number = p.type == host::ParameterType::real || p.type == host::ParameterType::integer;
     const bool wanted = ids.empty() || std::find(ids.begin(), ids.end(), p.id) != ids.end();
     if (number) names.push_back(p.id);
     if (!wanted) continue;
     if (!number && !ids.empty()) throw core::InputError(policy.id, p.id, "is no number: it cannot be tuned");
     if (number && p.high > p.low)
-      axes.push_back(
-          {p.id, p.unit, p.low, p.high, std::strtod(p.default_text.c_str(), nullptr), p.type == "integer"});
+      axes.push_back({p.id, p.unit, p.low, p.high, std::strtod(p.default_text.c_str(), nullptr),
+                      p.type == host::ParameterType::integer});
   }
   for (const std::string& id : ids)
     if (std::none_of(axes.begin(), axes.end(), [&](const Axis& a) { return a.id == id; })) {

@@ -13,15 +13,16 @@ namespace {
 
 constexpr double kTolerance = 0.005;  // of the cube's edge: finer than what flights can tell apart
 
-nlopt::algorithm algorithm_of(const std::string& method, std::size_t dimensions) {
-  // BOBYQA's models need two dimensions.
-  if (method == "bobyqa") return dimensions > 1 ? nlopt::LN_BOBYQA : nlopt::GN_DIRECT_L;
-  if (method == "direct") return nlopt::GN_DIRECT_L;
-  if (method == "crs") return nlopt::GN_CRS2_LM;
-  const std::string near = core::nearest_name(method, search_methods());
-  throw core::InputError(
-      "tune", method,
-      "no such method; there are bobyqa, direct, crs" + (near.empty() ? "" : "; did you mean " + near + "?"));
+nlopt::algorithm algorithm_of(SearchMethod method, std::size_t dimensions) {
+  switch (method) {
+    case SearchMethod::bobyqa:
+      return dimensions > 1 ? nlopt::LN_BOBYQA : nlopt::GN_DIRECT_L;  // its models need two dimensions
+    case SearchMethod::direct:
+      return nlopt::GN_DIRECT_L;
+    case SearchMethod::crs:
+      break;
+  }
+  return nlopt::GN_CRS2_LM;
 }
 
 struct Search {
@@ -43,9 +44,13 @@ double call(const Point& at, Point&, void* data) {
 
 }  // namespace
 
-const std::vector<std::string>& search_methods() {
-  static const std::vector<std::string> methods{"bobyqa", "direct", "crs"};
-  return methods;
+SearchMethod search_method(const std::string& name) {
+  if (const auto method = core::parse<SearchMethod>(name)) return *method;
+  const std::vector<std::string> methods = core::all_names<SearchMethod>();
+  std::string reason = "no such method; there are " + methods.front();
+  for (std::size_t i = 1; i < methods.size(); ++i) reason += ", " + methods[i];
+  const std::string near = core::nearest_name(name, methods);
+  throw core::InputError("tune", name, reason + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
 void search(const Point& start, const SearchOptions& options, const std::function<double(const Point&)>& f,

@@ -5,19 +5,28 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
+
 namespace karst::tuning {
 
 using Point = std::vector<double>;  // each from 0 to 1
 
+/// bobyqa: quadratic models about the best so far (Powell, 2009); direct: cuts the cube where it is promising
+/// or large (DIRECT-L: Gablonsky, Kelley, 2001); crs: a population (CRS2: Kaelo, Ali, 2006).
+enum class SearchMethod { bobyqa, direct, crs };
+constexpr auto names_of(SearchMethod) {
+  using enum SearchMethod;
+  return std::to_array<core::Named<SearchMethod>>({{bobyqa, "bobyqa"}, {direct, "direct"}, {crs, "crs"}});
+}
+
+/// Throws core::InputError naming the nearest one if there is none of this name.
+SearchMethod search_method(const std::string& name);
+
 struct SearchOptions {
-  // bobyqa: quadratic models about the best so far (Powell, 2009); direct: cuts the cube where it is
-  // promising or large (DIRECT-L: Gablonsky, Kelley, 2001); crs: a population (CRS2: Kaelo, Ali, 2006).
-  std::string method = "bobyqa";
+  SearchMethod method = SearchMethod::bobyqa;
   double first_step = 0.15;  // of bobyqa, per axis
   std::uint64_t seed = 1;    // of crs
 };
-
-const std::vector<std::string>& search_methods();
 
 /// Calls `f` on one point after another, `start` first, until it says that it wants no more, or nothing is
 /// left to gain. Deterministic. An exception of `f` ends the search and is thrown on.

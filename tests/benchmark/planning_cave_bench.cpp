@@ -96,7 +96,7 @@ void row(const World& w, const std::vector<Pair>& pairs, const std::vector<doubl
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair& p = pairs[i];
     Path raw, path;
-    if (options.planner != "grid")
+    if (options.planner != Planner::grid)
       search.ms.push_back(cpu_ms([&] {
         raw = search_with_ompl(w.cave.map, w.roadmap, p.from, p.to, options,
                                search_clearance_m(options, w.cave.map.resolution_m()));
@@ -150,7 +150,7 @@ void table(const World& w, double length_m, int count, std::uint64_t seed, bool 
     PlanningOptions o;
     std::vector<std::vector<Vec3>> paths{plan(w.cave.map, w.roadmap, p.from, p.to, o).points};
     if (std::getenv("KARST_BENCH_LONG")) {
-      o.planner = "bit_star", o.planner_iterations = 30000;
+      o.planner = Planner::bit_star, o.planner_iterations = 30000;
       paths.push_back(search_with_ompl(w.cave.map, w.roadmap, p.from, p.to, o, o.clearance_m).points);
     }
     best_m.push_back(shortest_m(w, p, paths));
@@ -169,10 +169,11 @@ void table(const World& w, double length_m, int count, std::uint64_t seed, bool 
   row(w, pairs, best_m, bare, "  bare clearance");
   const std::size_t few = std::min<std::size_t>(pairs.size(), 30);
   const std::vector<Pair> some(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(few));
-  for (const auto& [planner, iterations] :
-       {std::pair<const char*, std::int64_t>{"rrt_connect", 20000}, {"rrt_star", 3000}, {"bit_star", 5000}}) {
+  for (const auto& [planner, iterations] : {std::pair<Planner, std::int64_t>{Planner::rrt_connect, 20000},
+                                            {Planner::rrt_star, 3000},
+                                            {Planner::bit_star, 5000}}) {
     options.planner = planner, options.planner_iterations = iterations;
-    row(w, some, best_m, options, (std::string(planner) + " " + std::to_string(iterations)).c_str());
+    row(w, some, best_m, options, (std::string(name_of(planner)) + " " + std::to_string(iterations)).c_str());
   }
 }
 

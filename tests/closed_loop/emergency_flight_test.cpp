@@ -157,7 +157,7 @@ class StarvedSink final : public VehicleSink {
   void on_ground(TimeNs t, bool standing) override {
     call([&] { sink_.on_ground(t, standing); });
   }
-  void on_lost(TimeNs t, const std::string& outcome, const std::string& why) override {
+  void on_lost(TimeNs t, MissionOutcome outcome, const std::string& why) override {
     sink_.on_lost(t, outcome, why);
   }
 
@@ -293,7 +293,7 @@ Ended fly(const Fault& fault, int seed, const Scene& scene = {}) {
 }
 
 void expect_landed_at_once(const Ended& flight, const std::string& reason) {
-  EXPECT_EQ(flight.result.outcome, "aborted") << flight.result.reason;
+  EXPECT_EQ(flight.result.outcome, MissionOutcome::aborted) << flight.result.reason;
   EXPECT_TRUE(flight.result.stands) << flight.result.reason;
   EXPECT_EQ(flight.result.reason.find(reason + ": on the ground "), 0u) << flight.result.reason;
   EXPECT_EQ(flight.result.record_problem, "");
@@ -351,7 +351,7 @@ TEST(FailureBelowAFallenRoof, OfChoosingTheHoverLands) {
 
 TEST(FailureOnTheGround, OfAJobEndsTheMissionThere) {
   const Ended flight = fly({.name = "launch site", .when_fast = false}, 1);
-  EXPECT_EQ(flight.result.outcome, "aborted");
+  EXPECT_EQ(flight.result.outcome, MissionOutcome::aborted);
   EXPECT_TRUE(flight.result.stands);
   EXPECT_LT(flight.ended_at_s, 0.2);
 }
@@ -361,7 +361,7 @@ TEST(OutOfMemory, TheVehicleBrakesAndLands) {
     SCOPED_TRACE(seed);
     const Ended flight = fly({.starved = true}, seed);
     EXPECT_GE(flight.fast_mps, kFast_mps);
-    EXPECT_EQ(flight.result.outcome, "aborted");
+    EXPECT_EQ(flight.result.outcome, MissionOutcome::aborted);
     EXPECT_TRUE(flight.result.stands) << flight.result.reason;
     EXPECT_LT(flight.ended_at_s - flight.struck_at_s, 20);
   }

@@ -39,7 +39,7 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
               options.safety.slow_fraction * options.motion.max_speed_mps};
   for (const Vec3& place : start.narrow_places)
     if (near_line(committed.points, place)) out.slow.places.push_back(place);
-  if (options.motion.trajectory == "polynomial" && path.found() && path.escape_points == 0 &&
+  if (options.motion.trajectory == TrajectoryKind::polynomial && path.found() && path.escape_points == 0 &&
       out.slow.places.empty()) {
     MotionLimits limits = start.limits;
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);

@@ -10,11 +10,6 @@ constexpr const char* kBlindForLong = "no sensor sees the cave any more";
 
 }  // namespace
 
-const char* name_of(SafetyAction action) {
-  static constexpr const char* kNames[] = {"none", "slow", "brake", "land"};
-  return kNames[static_cast<int>(action)];
-}
-
 SafetyVerdict SafetySupervisor::on_motion(const SafetyObservation& o) const {
   const std::string why = o.estimate.reason;
   if (o.estimate.health == Health::lost) return {SafetyAction::land, "the state estimate is lost: " + why};

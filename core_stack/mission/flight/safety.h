@@ -15,7 +15,10 @@ namespace karst::core {
 
 /// On the motion, in order of severity.
 enum class SafetyAction { none, slow, brake, land };
-const char* name_of(SafetyAction action);
+constexpr auto names_of(SafetyAction) {
+  using enum SafetyAction;
+  return std::to_array<Named<SafetyAction>>({{none, "none"}, {slow, "slow"}, {brake, "brake"}, {land, "land"}});
+}
 
 struct SafetyObservation {
   TimeNs now = 0;

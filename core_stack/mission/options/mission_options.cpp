@@ -50,7 +50,7 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
   if (o.motion.min_speed_mps > o.motion.max_speed_mps)
     refuse("motion.min_speed", "is greater than motion.max_speed, " +
                                    std::to_string(o.motion.max_speed_mps).substr(0, 5) + " m/s");
-  if (!vehicle.pose_sensor && (o.localization.source == "pose_sensor" || !vehicle.lidar))
+  if (!vehicle.pose_sensor && (o.localization.source == PoseSource::pose_sensor || !vehicle.lidar))
     refuse("localization.source", "the vehicle " + vehicle.name + " has no pose sensor" +
                                       (vehicle.lidar ? "" : ", nor a LiDAR to locate itself with"));
   // Obstacles are cells, whose surface may lie half an edge nearer than their centre.

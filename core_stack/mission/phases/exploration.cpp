@@ -17,11 +17,8 @@ constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer 
 
 /// A drawing's fields in the event. Made on the map lane: a hundred thousand points take a fifth of a second.
 std::string text_of(const Drawing& d) {
-  static constexpr const char* kShapes[] = {"points", "lines", "text"};
-  return json_text(nlohmann::json{{"shape", kShapes[static_cast<int>(d.kind)]},
-                                  {"points", list(d.points)},
-                                  {"rgb", d.rgb},
-                                  {"text", d.text}});
+  return json_text(nlohmann::json{
+      {"shape", name_of(d.kind)}, {"points", list(d.points)}, {"rgb", d.rgb}, {"text", d.text}});
 }
 
 bool reached(const Reference& r, const Goal& goal) {
@@ -193,13 +190,12 @@ void Exploration::watch_progress() {
 }
 
 void Exploration::record_cycle(const CycleInput& input, const CycleResult& result) {
-  static constexpr const char* kOutcomes[] = {"goals", "hold", "explored", "go_home"};
   const TimeNs now = onboard_.now();
   Recorder& recorder = onboard_.recorder;
   recorder.decision_cost(now, result.decide_ms, result.plan_ms);
   recorder.event(now, "decision",
                  {{"policy", result.policy},
-                  {"outcome", kOutcomes[static_cast<int>(result.outcome)]},
+                  {"outcome", name_of(result.outcome)},
                   {"goals", result.goals_proposed},
                   {"reason", result.reason},
                   {"appending", input.appending},

@@ -43,7 +43,7 @@ void PathExecution::follow(const Route& route, TimeNs now) {
                       {"narrow", route.path.narrow()},
                       {"length_bound", route.path.length_bound},
                       {"points", points}};
-  if (options_.motion.trajectory == "polynomial") {
+  if (options_.motion.trajectory == TrajectoryKind::polynomial) {
     plan["trajectory"] = fits ? "polynomial" : "sampled";
     plan["rounds"] = polynomial ? polynomial->rounds : 0;
     plan["fell_back"] = fits ? "" : why_sampled(polynomial);

@@ -24,11 +24,6 @@ constexpr std::array kTransitions{
 
 }  // namespace
 
-const char* name_of(Phase phase) {
-  constexpr std::array kNames{"standby", "takeoff", "look", "explore", "home", "land", "done"};
-  return kNames[static_cast<std::size_t>(phase)];
-}
-
 std::span<const Transition> transitions() { return kTransitions; }
 
 void PhaseMachine::enter(Phase to, TimeNs now) {

@@ -3,12 +3,22 @@
 #include <optional>
 #include <span>
 
+#include "core_stack/common/enum_names.h"
 #include "core_stack/common/time.h"
 
 namespace karst::core {
 
 enum class Phase { standby, takeoff, look, explore, home, land, done };
-const char* name_of(Phase phase);
+constexpr auto names_of(Phase) {
+  using enum Phase;
+  return std::to_array<Named<Phase>>({{standby, "standby"},
+                                      {takeoff, "takeoff"},
+                                      {look, "look"},
+                                      {explore, "explore"},
+                                      {home, "home"},
+                                      {land, "land"},
+                                      {done, "done"}});
+}
 
 struct Transition {
   std::optional<Phase> from;  // nothing: from any

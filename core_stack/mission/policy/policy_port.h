@@ -65,6 +65,11 @@ struct Goal {
 };
 
 enum class Outcome { goals, hold, explored, go_home };
+constexpr auto names_of(Outcome) {
+  using enum Outcome;
+  return std::to_array<Named<Outcome>>(
+      {{goals, "goals"}, {hold, "hold"}, {explored, "explored"}, {go_home, "go_home"}});
+}
 
 /// Something a policy drew into the report.
 struct Drawing {
@@ -73,6 +78,10 @@ struct Drawing {
   std::uint32_t rgb = 0xffffff;
   std::string text;
 };
+constexpr auto names_of(Drawing::Kind) {
+  using enum Drawing::Kind;
+  return std::to_array<Named<Drawing::Kind>>({{points, "points"}, {lines, "lines"}, {text, "text"}});
+}
 
 struct Decision {
   Outcome outcome = Outcome::hold;
@@ -95,6 +104,15 @@ struct PolicyEvent {
   Goal goal;
   std::string reason;
 };
+constexpr auto names_of(PolicyEvent::Kind) {
+  using enum PolicyEvent::Kind;
+  return std::to_array<Named<PolicyEvent::Kind>>({{goal_reached, "reached"},
+                                                  {goal_rejected, "rejected"},
+                                                  {goal_unreachable, "unreachable"},
+                                                  {goal_abandoned, "abandoned"},
+                                                  {goal_superseded, "superseded"},
+                                                  {homing, "homing"}});
+}
 
 class PolicyPort {
  public:

@@ -16,7 +16,7 @@ void describe(OptionTable& t, PlanningOptions& o) {
   t.add("heuristic_weight", o.heuristic_weight, "", 1.0, 5.0,
         "the grid search's path is at most this times longer than the shortest on the grid");
   t.add("max_expansions", o.max_expansions, 1000, 1e8, "the grid search gives up after so many cells");
-  t.add("planner", o.planner, {"grid", "rrt_connect", "rrt_star", "bit_star"},
+  t.add("planner", o.planner,
         "what searches for paths: ours on the grid and the roadmap, or one of OMPL's planners");
   t.add(
       "planner_iterations", o.planner_iterations, 100, 1e6,

@@ -9,6 +9,14 @@
 
 namespace karst::core {
 
+/// What searches for paths: the grid search and the roadmap, or one of OMPL's planners.
+enum class Planner { grid, rrt_connect, rrt_star, bit_star };
+constexpr auto names_of(Planner) {
+  using enum Planner;
+  return std::to_array<Named<Planner>>(
+      {{grid, "grid"}, {rrt_connect, "rrt_connect"}, {rrt_star, "rrt_star"}, {bit_star, "bit_star"}});
+}
+
 struct PlanningOptions {
   double clearance_m = 0.6;            // least distance of the path from the centre of any occupied or
                                        // unknown-boundary cell; must exceed the vehicle's radius
@@ -17,7 +25,7 @@ struct PlanningOptions {
   double search_slack_cells = 0.25;  // not an option: the searches on cells' centres work with that much less
   double heuristic_weight = 1.2;     // bounded sub-optimality of the grid search; 1: optimal
   std::int64_t max_expansions = 400000;
-  std::string planner = "grid";  // grid, rrt_connect, rrt_star, bit_star
+  Planner planner = Planner::grid;
   std::int64_t planner_iterations = 5000;
 };
 void describe(OptionTable& t, PlanningOptions& o);

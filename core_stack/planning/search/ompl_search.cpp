@@ -74,17 +74,17 @@ std::uint_fast32_t seed_of(const Vec3& start, const Vec3& goal) {
 
 ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& si, const VoxelMap& map,
                             const PlanningOptions& options) {
-  if (options.planner == "rrt_connect") {
+  if (options.planner == Planner::rrt_connect) {
     const auto planner = std::make_shared<og::RRTConnect>(si);
     planner->setRange(kRange_m);
     return planner;
   }
-  if (options.planner == "rrt_star") {
+  if (options.planner == Planner::rrt_star) {
     const auto planner = std::make_shared<og::RRTstar>(si);
     planner->setRange(kRange_m);
     return planner;
   }
-  if (options.planner == "bit_star") {
+  if (options.planner == Planner::bit_star) {
     const auto planner = std::make_shared<og::BITstar>(si);
     planner->setSamplesPerBatch(400);
     return planner;
@@ -159,11 +159,11 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
     const OmplProblem problem =
         make_problem(graph.free, cells_between(graph, low, high), low, high, from, goal, clearance_m);
     const std::int64_t steps =
-        options.planner_iterations * (options.planner == "bit_star" ? kEdgesPerIteration : 1);
+        options.planner_iterations * (options.planner == Planner::bit_star ? kEdgesPerIteration : 1);
     found = solved(problem, make_planner(problem.space, map, at_clearance), steps);
   }
   if (found.size() < 2)
-    return fail(PlanStatus::gave_up, options.planner + " found no way in " +
+    return fail(PlanStatus::gave_up, std::string(name_of(options.planner)) + " found no way in " +
                                          std::to_string(options.planner_iterations) + " iterations");
   found.back() = goal;  // planners meet it to within rounding
   path.points.insert(path.points.end(), found.begin() + 1, found.end());

@@ -120,7 +120,7 @@ void describe(OptionTable& t, MotionLimits& o) {
   t.add("max_heading_rate", o.max_heading_rate_radps, "rad/s", 0.05, 10, "greatest rate of turning");
   t.add("max_heading_acceleration", o.max_heading_acceleration_radps2, "rad/s^2", 0.05, 50,
         "greatest change of the rate of turning");
-  t.add("trajectory", o.trajectory, {"sampled", "polynomial"},
+  t.add("trajectory", o.trajectory,
         "how paths become motion: the paper's sampling, or minimum-snap polynomials to compare with");
 }
 

@@ -11,6 +11,14 @@
 
 namespace karst::core {
 
+/// How paths become motion: by the paper's sampling, or as minimum-snap polynomials
+/// (polynomial_trajectory.h).
+enum class TrajectoryKind { sampled, polynomial };
+constexpr auto names_of(TrajectoryKind) {
+  using enum TrajectoryKind;
+  return std::to_array<Named<TrajectoryKind>>({{sampled, "sampled"}, {polynomial, "polynomial"}});
+}
+
 struct MotionLimits {
   double max_speed_mps = 2.0;
   double min_speed_mps = 0.3;  // v_min of the sampling: floor in bends
@@ -18,7 +26,7 @@ struct MotionLimits {
   double max_jerk_mps3 = 12.0;
   double max_heading_rate_radps = 1.0;
   double max_heading_acceleration_radps2 = 2.0;
-  std::string trajectory = "sampled";  // or "polynomial": see polynomial_trajectory.h
+  TrajectoryKind trajectory = TrajectoryKind::sampled;
   bool operator==(const MotionLimits&) const = default;
 };
 void describe(OptionTable& t, MotionLimits& o);

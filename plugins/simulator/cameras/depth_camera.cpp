@@ -15,7 +15,7 @@ void describe(core::OptionTable& t, CameraOptions& o) {
   t.add("rate", o.rate_hz, "Hz", 1, 50, "images a second, rounded to whole steps of 5 ms");
   t.add("noise", o.noise_at_1m_m, "m", 0, 0.2,
         "standard deviation at 1 m; grows with the square of the range");
-  t.add("kind", o.kind, {"stereo", "tof"}, "how it measures: droplets are much worse for time of flight");
+  t.add("kind", o.kind, "how it measures: droplets are much worse for time of flight");
 }
 
 namespace {
@@ -99,7 +99,7 @@ DepthCamera::DepthCamera(const CameraOptions& o, std::shared_ptr<const core::Cam
 float DepthCamera::through(const CloudyPath& path, const PixelLight& rock, float range_m,
                            core::Random& random) const {
   if (path.depth(rock.range_m) == 0) return range_m;
-  const bool tof = options_.kind == "tof";
+  const bool tof = options_.kind == DepthCameraKind::tof;
   // The lamp of a time-of-flight camera sits beside its lens, the lamps that stereo sees by farther off: from
   // there on they light what it looks at. Nearer droplets are dark, and out of focus.
   const double lit_from_m = tof ? 0.3 : 0.5;

@@ -7,10 +7,17 @@
 
 namespace karst::sim {
 
+/// tof: time of flight.
+enum class DepthCameraKind { stereo, tof };
+constexpr auto names_of(DepthCameraKind) {
+  using enum DepthCameraKind;
+  return std::to_array<core::Named<DepthCameraKind>>({{stereo, "stereo"}, {tof, "tof"}});
+}
+
 struct CameraOptions {
   double rate_hz = 5;
   double noise_at_1m_m = 0.003;  // grows with the square of the range, as a stereo camera's does
-  std::string kind = "stereo";   // or "tof": time of flight
+  DepthCameraKind kind = DepthCameraKind::stereo;
 };
 void describe(core::OptionTable& t, CameraOptions& o);
 

@@ -88,8 +88,7 @@ std::vector<ObjectDetection> ObjectDetector::detect(const cave::Cave& cave, cons
   if (random.uniform() < per_image) {  // rock that looks like something
     const double wide = std::tan(camera.horizontal_fov_rad / 2), high = std::tan(camera.vertical_fov_rad / 2);
     const Vec3 d = Vec3(1, random.uniform(-wide, wide), random.uniform(-high, high)).normalized();
-    const auto kind = static_cast<ObjectKind>(
-        1 + static_cast<int>(random.uniform() * (static_cast<double>(core::kObjectNames.size()) - 1)));
+    const auto kind = static_cast<ObjectKind>(1 + static_cast<int>(random.uniform() * core::kObjectKinds));
     const double range_m =
         cave.scene.ray_cast(T_world_camera.position, T_world_camera.orientation * d,
                             std::min(options_.range_m, static_cast<double>(camera.max_range_m)));

@@ -40,7 +40,7 @@ std::uint8_t srgb(float linear) {
 /// over logarithms, at 18 % of white, as a light meter does.
 float white_of(const RgbOptions& o, const std::vector<Vec3f>& light) {
   const auto fixed = static_cast<float>(o.white_cdpm2);
-  if (o.exposure == "fixed") return fixed;
+  if (o.exposure == Exposure::fixed) return fixed;
   double sum = 0;
   std::size_t count = 0;
   for (const Vec3f& l : light)
@@ -63,10 +63,10 @@ void describe(core::OptionTable& t, RgbOptions& o) {
   t.add("range", o.range_m, "m", 0.5, 30, "farther rock is too dim, or not sharp enough, to count as seen");
   t.add("max_incidence", o.max_incidence_rad, "rad", 0.1, 1.55, "nor does rock seen more at a slant count");
   t.add("rate", o.rate_hz, "Hz", 0.1, 20, "pictures a second, rounded to whole steps of 5 ms");
-  t.add("light", o.light, {"flood", "spot"}, "flood: lights all in front alike; spot: a beam");
+  t.add("light", o.light, "flood: lights all in front alike; spot: a beam");
   t.add("intensity", o.intensity_cd, "cd", 1, 1e6, "luminous intensity of the lamp");
   t.add("beam", o.beam_rad, "rad", 0.1, 3, "width of the spot's beam");
-  t.add("exposure", o.exposure, {"auto", "fixed"}, "auto: by each picture's own brightness");
+  t.add("exposure", o.exposure, "auto: by each picture's own brightness");
   t.add("white", o.white_cdpm2, "cd/m^2", 1e-3, 1e6, "fixed exposure: the luminance stored as white");
   t.add("roughness", o.roughness_rad, "rad", 0, 1.2,
         "of the rock, deviation of its facets' slope (Oren-Nayar); 0: a Lambert surface");
@@ -105,7 +105,7 @@ float reflected_fraction(const Vec3f& normal, const Vec3f& to_lamp, const Vec3f&
 }
 
 float beam_fraction(const RgbOptions& o, float cos_off_axis) {
-  if (o.light == "flood") return cos_off_axis > 0 ? 1 : 0;
+  if (o.light == LampLight::flood) return cos_off_axis > 0 ? 1 : 0;
   const auto half = static_cast<float>(0.5 * o.beam_rad);
   const float inner = std::cos(half), outer = std::cos(std::min(1.2f * half, kPi));
   const float t = std::clamp((cos_off_axis - outer) / (inner - outer), 0.0f, 1.0f);

@@ -13,14 +13,27 @@
 
 namespace karst::sim {
 
+enum class LampLight { flood, spot };
+constexpr auto names_of(LampLight) {
+  using enum LampLight;
+  return std::to_array<core::Named<LampLight>>({{flood, "flood"}, {spot, "spot"}});
+}
+
+/// automatic: by each picture's own brightness.
+enum class Exposure { automatic, fixed };
+constexpr auto names_of(Exposure) {
+  using enum Exposure;
+  return std::to_array<core::Named<Exposure>>({{automatic, "auto"}, {fixed, "fixed"}});
+}
+
 struct RgbOptions {
   bool fitted = false;
   bool pictures = false;
   std::int64_t width = 320, height = 240;
   double fov_rad = 1.3962634, pitch_rad = 0, range_m = 6, max_incidence_rad = 1.2217305, rate_hz = 2;
-  std::string light = "flood";
+  LampLight light = LampLight::flood;
   double intensity_cd = 1000, beam_rad = 1.0471976;
-  std::string exposure = "auto";
+  Exposure exposure = Exposure::automatic;
   double white_cdpm2 = 15;
   double roughness_rad = 0.35;
   double noise = 0.01;

@@ -65,6 +65,23 @@ struct Fault {
   Kind kind = Kind::lost;
   double after_s = 0, lasts_s = 0;
 };
+constexpr auto names_of(Fault::Sensor) {
+  using enum Fault::Sensor;
+  return std::to_array<core::Named<Fault::Sensor>>({{lidar, "lidar"},
+                                                    {imu, "imu"},
+                                                    {magnetometer, "magnetometer"},
+                                                    {barometer, "barometer"},
+                                                    {camera, "camera"},
+                                                    {pose, "pose"}});
+}
+constexpr auto names_of(Fault::Kind) {
+  using enum Fault::Kind;
+  return std::to_array<core::Named<Fault::Kind>>({{lost, "lost"},
+                                                  {nan, "nan"},
+                                                  {three_points, "three_points"},
+                                                  {stamp_back, "stamp_back"},
+                                                  {stamp_ahead, "stamp_ahead"}});
+}
 
 /// An object of interest. It is seen, but neither hit by rays nor touched.
 struct CaveObject {

@@ -52,10 +52,11 @@ void read_block(const std::string& source, const std::string& name, const pt::pt
   table.read(source, wrapped);
 }
 
-/// Index of `word` in `words`, which the option table has made sure holds it.
-template <class Enum>
-Enum chosen(const std::vector<std::string>& words, const std::string& word) {
-  return static_cast<Enum>(std::find(words.begin(), words.end(), word) - words.begin());
+/// What floats in a cloud.
+enum class CloudOf { dust, droplets };
+constexpr auto names_of(CloudOf) {
+  using enum CloudOf;
+  return std::to_array<core::Named<CloudOf>>({{dust, "dust"}, {droplets, "droplets"}});
 }
 
 }  // namespace
@@ -108,14 +109,15 @@ LooseRock read_loose_rock(const std::string& source, const pt::ptree& tree) {
 
 Cloud read_cloud(const std::string& source, const pt::ptree& tree) {
   Cloud cloud;
-  std::string position, size, of = "dust";
+  std::string position, size;
+  CloudOf of = CloudOf::dust;
   double radius_m = 0;
   OptionTable table;
   table.add("cloud.position", position, {}, "centre, x y z");
   table.add("cloud.radius", radius_m, "m", 0.05, 1000, "of a ball");
   table.add("cloud.size", size, {}, "edges of a box along the axes, x y z in metres");
   table.add("cloud.extinction", cloud.extinction_1pm, "1/m", 0.001, 100, "share of light lost per metre");
-  table.add("cloud.of", of, {"dust", "droplets"}, "what floats in it");
+  table.add("cloud.of", of, "what floats in it");
   table.add("cloud.after", cloud.after_s, "s", 0, 86400, "time from which it is there");
   read_block(source, "cloud", tree, table);
   cloud.position = read_vector(source, "cloud.position", position);
@@ -126,41 +128,39 @@ Cloud read_cloud(const std::string& source, const pt::ptree& tree) {
   if (cloud.box) cloud.half_size_m = read_vector(source, "cloud.size", size) / 2;
   if (cloud.half_size_m.minCoeff() <= 0)
     throw InputError(source, "cloud.size", "expected three edges above 0 m, got \"" + size + "\"");
-  cloud.lidar_ratio_sr = of == "dust" ? Cloud::kDust_sr : Cloud::kDroplets_sr;
+  cloud.lidar_ratio_sr = of == CloudOf::dust ? Cloud::kDust_sr : Cloud::kDroplets_sr;
   return cloud;
 }
 
 Fault read_fault(const std::string& source, const pt::ptree& tree) {
-  static const std::vector<std::string> kSensors{"lidar",     "imu",    "magnetometer",
-                                                 "barometer", "camera", "pose"},
-      kKinds{"lost", "nan", "three_points", "stamp_back", "stamp_ahead"};
   Fault fault;
-  std::string sensor, kind = "lost";
+  std::optional<Fault::Sensor> sensor;
   OptionTable table;
-  table.add("fault.sensor", sensor, kSensors, "whose messages it strikes");
-  table.add("fault.kind", kind, kKinds, "what goes wrong; all but lost are of the LiDAR's scans");
+  table.add("fault.sensor", sensor, "whose messages it strikes");
+  table.add("fault.kind", fault.kind, "what goes wrong; all but lost are of the LiDAR's scans");
   table.add("fault.after", fault.after_s, "s", 0, 86400, "when it begins");
   table.add("fault.for", fault.lasts_s, "s", 0, 86400, "how long it lasts; 0: one message");
   read_block(source, "fault", tree, table);
-  if (sensor.empty()) throw InputError(source, "fault.sensor", "missing: name the sensor that fails");
-  fault.sensor = chosen<Fault::Sensor>(kSensors, sensor);
-  fault.kind = chosen<Fault::Kind>(kKinds, kind);
+  if (!sensor) throw InputError(source, "fault.sensor", "missing: name the sensor that fails");
+  fault.sensor = *sensor;
   if (fault.kind != Fault::Kind::lost && fault.sensor != Fault::Sensor::lidar)
-    throw InputError(
-        source, "fault.kind",
-        "expected lost, which is all that can happen to the " + sensor + ", got \"" + kind + "\"");
+    throw InputError(source, "fault.kind",
+                     "expected lost, which is all that can happen to the " + name_of(fault.sensor) +
+                         ", got \"" + name_of(fault.kind) + "\"");
   return fault;
 }
 
 CaveObject read_object(const std::string& source, const pt::ptree& tree) {
-  static const std::vector<std::string> kKinds(core::kObjectNames.begin() + 1, core::kObjectNames.end());
+  std::vector<std::string> kinds = core::all_names<core::ObjectKind>();
+  std::erase(kinds, core::name_of(core::ObjectKind::none));
   std::string kind, position;
   OptionTable table;
-  table.add("object.kind", kind, kKinds, "what it is");
+  table.add("object.kind", kind, std::move(kinds), "what it is");
   table.add("object.position", position, {}, "its middle, a little off the rock it lies on, x y z");
   read_block(source, "object", tree, table);
   if (kind.empty()) throw InputError(source, "object.kind", "missing: say what it is, such as backpack");
-  return {core::object_kind(kind), read_vector(source, "object.position", position), Vec3::Zero()};
+  return {*core::parse<core::ObjectKind>(kind), read_vector(source, "object.position", position),
+          Vec3::Zero()};
 }
 
 }  // namespace karst::cave

@@ -16,7 +16,7 @@ using core::Vec3;
 
 void describe(core::OptionTable& t, ObjectOptions& o) {
   t.add("count", o.count, 0, 200, "objects of interest that the seed lays out in the cave, beside its own");
-  t.add("on", o.on, {"floor", "rock"}, "where: on ground no steeper than 45 degrees, or on any rock");
+  t.add("on", o.on, "where: on ground no steeper than 45 degrees, or on any rock");
   t.add("range", o.range_m, "m", 0.5, 30,
         "objects farther from a camera, or out of its own range, are not recognized");
   t.add("max_incidence", o.max_incidence_rad, "rad", 0.1, 1.55,
@@ -84,13 +84,13 @@ void place_objects(cave::Cave& cave, const ObjectOptions& o, std::uint64_t seed)
        tries > 0 && static_cast<std::int64_t>(objects.size()) < own + o.count; --tries) {
     const Vec3& eye = places[static_cast<std::size_t>(random.uniform() * static_cast<double>(places.size()))];
     const Vec3 d = any_direction(random);
-    const auto kind = static_cast<core::ObjectKind>(
-        1 + static_cast<int>(random.uniform() * (static_cast<double>(core::kObjectNames.size()) - 1)));
+    const auto kind =
+        static_cast<core::ObjectKind>(1 + static_cast<int>(random.uniform() * core::kObjectKinds));
     const cave::Hit hit =
         cave.scene.cast({eye.cast<float>(), d.cast<float>()}, static_cast<float>(kFarthest_m));
     if (!hit.any()) continue;
     const Vec3 normal = hit.normal.cast<double>();
-    if (-normal.dot(d) < kMinCosine || (o.on == "floor" && normal.z() < kFloor)) continue;
+    if (-normal.dot(d) < kMinCosine || (o.on == PlacedOn::floor && normal.z() < kFloor)) continue;
     const Vec3 p = eye + static_cast<double>(hit.range_m) * d + kOffRock_m * normal;
     const double distance_m = (p - eye).norm();
     if (!apart(p) || cave.scene.distance_to_rock(p, kOffRock_m) < 0.5 * kOffRock_m ||

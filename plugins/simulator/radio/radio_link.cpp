@@ -45,7 +45,7 @@ double chord_m(const cave::Sphere& ball, const Vec3& a, const Vec3& b) {
 }  // namespace
 
 void describe(core::OptionTable& t, LinkOptions& o) {
-  t.add("propagation", o.propagation, {"rock", "distance"},
+  t.add("propagation", o.propagation,
         "rock: air and rock on the straight line weaken it; distance: all is heard within the range");
   t.add("range", o.range_m, "m", 1, 5000, "reach in free air");
   t.add("path_loss_exponent", o.path_loss_exponent, "", 1, 6, "n of the log-distance law in air");
@@ -65,7 +65,7 @@ double rock_between_m(const cave::RayScene& scene, const Vec3& a, const Vec3& b)
 
 double link_margin_db(const LinkOptions& o, const cave::RayScene& scene, const Vec3& a, const Vec3& b) {
   const double d = (b - a).norm();
-  if (o.propagation == "distance")
+  if (o.propagation == Propagation::distance)
     return d <= o.range_m ? std::numeric_limits<double>::infinity()
                           : -std::numeric_limits<double>::infinity();
   // Nearer than a metre the law does not hold; it is strong enough there.

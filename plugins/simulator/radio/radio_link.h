@@ -20,8 +20,15 @@
 
 namespace karst::sim {
 
+/// rock: what this file is about; distance: within the range all is heard, as in the paper.
+enum class Propagation { rock, distance };
+constexpr auto names_of(Propagation) {
+  using enum Propagation;
+  return std::to_array<core::Named<Propagation>>({{rock, "rock"}, {distance, "distance"}});
+}
+
 struct LinkOptions {
-  std::string propagation = "rock";  // or "distance": within the range all is heard, as in the paper
+  Propagation propagation = Propagation::rock;
   double range_m = 50;
   double path_loss_exponent = 2.0;
   double rock_db_per_m = 3.0;

@@ -33,8 +33,9 @@ constexpr double kPulse_m = 0.75;       // c t / 2 of a pulse of 5 ns: what is n
 }  // namespace
 
 void describe(core::OptionTable& t, LidarOptions& o) {
-  t.add("unit", o.unit, {"vlp16", "os0_32", "os0_64", "os1_64", "os0_128"},
-        "16 channels in 30 deg; 32 in 90; 64 in 90; 64 in 45; 128 in 90");
+  std::vector<std::string> units;
+  for (const Unit& u : kUnits) units.emplace_back(u.name);
+  t.add("unit", o.unit, std::move(units), "16 channels in 30 deg; 32 in 90; 64 in 90; 64 in 45; 128 in 90");
   t.add("columns", o.columns, 64, 4096, "beams a channel and revolution");
   t.add("rate", o.rate_hz, "Hz", 1, 20, "revolutions a second, rounded to whole steps of 5 ms");
   t.add("noise", o.noise_m, "m", 0, 1, "standard deviation of a range");

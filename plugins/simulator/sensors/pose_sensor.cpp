@@ -16,8 +16,7 @@ constexpr double kDriftPath_m = 100;
 }  // namespace
 
 void describe(core::OptionTable& t, PoseSensorOptions& o) {
-  t.add("fitted", o.fitted, {"without_lidar", "always", "never"},
-        "which vehicles carry it; one with a LiDAR locates itself");
+  t.add("fitted", o.fitted, "which vehicles carry it; one with a LiDAR locates itself");
   t.add("rate", o.rate_hz, "Hz", 1, 200, "samples a second, rounded to whole steps of 5 ms");
   t.add("delay", o.delay_s, "s", 0, 1, "from measurement to arrival");
   t.add("noise", o.noise_m, "m", 0, 1, "standard deviation of each component of the position");

@@ -6,8 +6,16 @@
 
 namespace karst::sim {
 
+/// Which vehicles carry it; one with a LiDAR locates itself.
+enum class PoseSensorFitted { without_lidar, always, never };
+constexpr auto names_of(PoseSensorFitted) {
+  using enum PoseSensorFitted;
+  return std::to_array<core::Named<PoseSensorFitted>>(
+      {{without_lidar, "without_lidar"}, {always, "always"}, {never, "never"}});
+}
+
 struct PoseSensorOptions {
-  std::string fitted = "without_lidar";  // or always, never
+  PoseSensorFitted fitted = PoseSensorFitted::without_lidar;
   double rate_hz = 50;
   double delay_s = 0.05;
   double noise_m = 0.01;  // standard deviation of each component

@@ -12,11 +12,9 @@ using Kind = cave::Fault::Kind;
 namespace {
 
 std::string in_words(const cave::Fault& fault) {
-  constexpr const char* kSensors[] = {"lidar", "imu", "magnetometer", "barometer", "camera", "pose"};
-  constexpr const char* kKinds[] = {"lost", "nan", "three_points", "stamp_back", "stamp_ahead"};
   char text[80];
-  std::snprintf(text, sizeof text, "%s %s for %.3f s", kSensors[static_cast<int>(fault.sensor)],
-                kKinds[static_cast<int>(fault.kind)], fault.lasts_s);
+  std::snprintf(text, sizeof text, "%s %s for %.3f s", core::name_of(fault.sensor), core::name_of(fault.kind),
+                fault.lasts_s);
   return text;
 }
 

@@ -26,10 +26,8 @@ fs::path plain_path(const fs::path& path) {
 ordered_json definitions() {
   ordered_json list = ordered_json::array();
   for (const auto& m : evaluation::metric_definitions()) {
-    const char* better = m.better == evaluation::Better::more   ? "more"
-                         : m.better == evaluation::Better::less ? "less"
-                                                                : "neither";
-    list.push_back({{"name", m.name}, {"unit", m.unit}, {"better", better}, {"meaning", m.meaning}});
+    list.push_back(
+        {{"name", m.name}, {"unit", m.unit}, {"better", core::name_of(m.better)}, {"meaning", m.meaning}});
   }
   return list;
 }

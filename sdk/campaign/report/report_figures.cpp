@@ -13,22 +13,6 @@ using nlohmann::ordered_json;
 
 ordered_json pair_of(const Interval& i) { return {number_or_null(i.low), number_or_null(i.high)}; }
 
-const char* text_of(Shown shown) {
-  switch (shown) {
-    case Shown::a_better:
-      return "a better";
-    case Shown::b_better:
-      return "b better";
-    case Shown::a_more:
-      return "a more";
-    case Shown::b_more:
-      return "b more";
-    case Shown::no_difference:
-      break;
-  }
-  return "";
-}
-
 ordered_json comparison_row(const Comparison& c) {
   ordered_json row = {{"a", c.a},
                       {"b", c.b},
@@ -44,7 +28,7 @@ ordered_json comparison_row(const Comparison& c) {
                       {"p", number_or_null(c.p_corrected)},
                       {"rank_biserial", number_or_null(c.rank_biserial)},
                       {"standardized", number_or_null(c.standardized)},
-                      {"shown", text_of(c.shown)},
+                      {"shown", core::name_of(c.shown)},
                       {"sentence", c.sentence}};
   for (const CaveComparison& cave : c.per_cave)
     row["caves"].push_back({{"cave", cave.cave},

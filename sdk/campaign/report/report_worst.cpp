@@ -45,9 +45,9 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
     Judged j{kSlow, less ? -fraction : fraction, {i, text}};
     if (t.failed) {
       j = {kFailed, 0, {i, "failed"}};
-    } else if (t.outcome == "contact") {
+    } else if (t.outcome == core::name_of(core::MissionOutcome::contact)) {
       j = {kContact, j.against_cave, {i, "touched rock"}};
-    } else if (t.outcome != "landed") {
+    } else if (t.outcome != core::name_of(core::MissionOutcome::landed)) {
       j = {kNotLanded, j.against_cave, {i, "did not land: " + t.outcome}};
     } else if (less ? fraction <= 1 : fraction >= 1) {
       continue;  // not below its cave's mean: nothing bad about it

@@ -96,7 +96,7 @@ class Binaries {
 
 bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& options,
          const Binaries& binaries, const ExecutorEvents& events) {
-  if (options.executor == "slurm")
+  if (options.executor == Where::slurm)
     return run_on_slurm(jobs,
                         {options.folder, options.karst, plan.name, plan.trial_timeout_s,
                          expected_trial_s(plan), options.batch, options.sbatch, options.stop},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
 #include "sdk/campaign/plan/plan.h"
 #include "sdk/campaign/run/folder.h"
 
@@ -18,6 +19,17 @@ enum class Keep {
   replay,   // and all that reports and replays show; no map.ot, map.ply
   all
 };
+constexpr auto names_of(Keep) {
+  using enum Keep;
+  return std::to_array<core::Named<Keep>>({{figures, "figures"}, {replay, "replay"}, {all, "all"}});
+}
+
+/// Where trials fly.
+enum class Where { local, slurm };
+constexpr auto names_of(Where) {
+  using enum Where;
+  return std::to_array<core::Named<Where>>({{local, "local"}, {slurm, "slurm"}});
+}
 
 /// What is known while it runs.
 struct Progress {
@@ -33,8 +45,8 @@ struct Progress {
 
 struct RunOptions {
   std::filesystem::path folder;
-  std::filesystem::path karst;      // the program that flies
-  std::string executor = "local";   // or slurm
+  std::filesystem::path karst;  // the program that flies
+  Where executor = Where::local;
   std::vector<std::string> sbatch;  // further options of sbatch
   std::size_t batch = 0;            // trials a Slurm task flies; 0: as many as are ten seconds of work
   std::size_t jobs = 1;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
 #include "sdk/campaign/store/results.h"
 #include "sdk/evaluation/statistics/statistics.h"
 
@@ -19,13 +20,16 @@ struct VerdictOptions {
   std::uint64_t seed = 1;
 };
 
-enum class Shown {
-  a_better,
-  b_better,
-  a_more,
-  b_more,
-  no_difference
-};  // more: of a figure that has no better
+/// What a comparison shows; more: of a figure that has no better.
+enum class Shown { a_better, b_better, a_more, b_more, no_difference };
+constexpr auto names_of(Shown) {
+  using enum Shown;
+  return std::to_array<core::Named<Shown>>({{a_better, "a better"},
+                                            {b_better, "b better"},
+                                            {a_more, "a more"},
+                                            {b_more, "b more"},
+                                            {no_difference, ""}});
+}
 
 /// A pair of contestants in one figure and one cave.
 struct CaveComparison {

@@ -6,9 +6,15 @@
 #include <string>
 #include <string_view>
 
+#include "core_stack/common/enum_names.h"
+
 namespace karst::evaluation {
 
 enum class Better { more, less, neither };
+constexpr auto names_of(Better) {
+  using enum Better;
+  return std::to_array<core::Named<Better>>({{more, "more"}, {less, "less"}, {neither, "neither"}});
+}
 
 /// What a failed trial counts as where its record does not tell.
 enum class IfFailed { unknown, nothing, horizon };  // left out of comparisons; 0; the campaign's horizon

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
+
 namespace karst::host {
 
 /// Where policies are looked for.
@@ -19,8 +21,18 @@ struct SearchPath {
 /// The search path of this process.
 SearchPath default_search_path(std::vector<std::string> plugin_files = {});
 
+/// Numbered as in the ABI (KARST_PARAMETER_REAL and so on).
+enum class ParameterType { real = 1, integer, boolean, text };
+constexpr auto names_of(ParameterType) {
+  using enum ParameterType;
+  return std::to_array<core::Named<ParameterType>>(
+      {{real, "real"}, {integer, "integer"}, {boolean, "boolean"}, {text, "text"}});
+}
+
 struct ParameterListing {
-  std::string id, type, unit, default_text, help;
+  std::string id;
+  ParameterType type = ParameterType::real;
+  std::string unit, default_text, help;
   double low = 0, high = 0;          // of numbers
   std::vector<std::string> choices;  // of texts
 };

@@ -19,6 +19,10 @@
 namespace karst::host {
 
 enum class Isolation { in_process, process };
+constexpr auto names_of(Isolation) {
+  using enum Isolation;
+  return std::to_array<core::Named<Isolation>>({{in_process, "in_process"}, {process, "process"}});
+}
 
 /// What a mission file or a command line says about its policy.
 struct PolicyChoice {

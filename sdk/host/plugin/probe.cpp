@@ -32,9 +32,8 @@ std::string default_text(const karst_parameter_t& p) {
 }
 
 json parameter_json(const karst_parameter_t& p) {
-  constexpr const char* types[] = {"", "real", "integer", "boolean", "text"};
   return {{"id", line_of(p.id)},
-          {"type", types[p.type]},
+          {"type", core::name_of(static_cast<ParameterType>(p.type))},
           {"unit", line_of(p.unit)},
           {"default", default_text(p)},
           {"low", p.low},
@@ -78,7 +77,8 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
   p.version = j.at("version");
   p.one_line = j.at("one_line");
   for (const json& q : j.at("parameters"))
-    p.parameters.push_back({q.at("id"), q.at("type"), q.at("unit"), q.at("default"), q.at("help"),
+    p.parameters.push_back({q.at("id"), core::parse<ParameterType>(q.at("type").get<std::string>()).value(),
+                            q.at("unit"), q.at("default"), q.at("help"),
                             q.at("low").is_number() ? q.at("low").get<double>() : 0.0,
                             q.at("high").is_number() ? q.at("high").get<double>() : 0.0, q.at("choices")});
   return p;

@@ -29,10 +29,6 @@ std::uint64_t sum_of(std::uint32_t kind, std::span<const std::byte> payload) {
   return hash;
 }
 
-constexpr std::array<const char*, 4> kOutcomes = {"goals", "hold", "explored", "go_home"};
-constexpr std::array<const char*, 6> kEvents = {"reached",   "rejected",   "unreachable",
-                                                "abandoned", "superseded", "homing"};
-
 ordered_json to_json(const core::Goal& g) {
   ordered_json j{{"position", {g.position.x(), g.position.y(), g.position.z()}},
                  {"heading", g.heading_rad},  // NaN, which stands for any, becomes null
@@ -67,9 +63,9 @@ RequestLogHeader header_of(const ordered_json& j) {
 core::PolicyEvent event_of(const ordered_json& j) {
   core::PolicyEvent e{};
   const std::string kind = j.at("kind");
-  const auto found = std::find(kEvents.begin(), kEvents.end(), kind);
-  if (found == kEvents.end()) throw std::runtime_error("unknown event " + kind);
-  e.kind = static_cast<core::PolicyEvent::Kind>(found - kEvents.begin());
+  const auto parsed = core::parse<core::PolicyEvent::Kind>(kind);
+  if (!parsed) throw std::runtime_error("unknown event " + kind);
+  e.kind = *parsed;
   e.stamp = j.at("stamp"), e.goal = goal_of(j.at("goal")), e.reason = j.at("reason");
   return e;
 }
@@ -83,9 +79,8 @@ RecordFrame frame_of(std::uint32_t kind, std::span<const std::byte> payload) {
 std::string answer_text(const core::Decision& d) {
   ordered_json goals = ordered_json::array();
   for (const core::Goal& g : d.goals) goals.push_back(to_json(g));
-  return core::json_text(ordered_json{{"outcome", kOutcomes.at(static_cast<std::size_t>(d.outcome))},
-                                      {"reason", d.reason},
-                                      {"goals", goals}});
+  return core::json_text(
+      ordered_json{{"outcome", core::name_of(d.outcome)}, {"reason", d.reason}, {"goals", goals}});
 }
 
 std::string answer_line(const std::string& text) try {
@@ -141,7 +136,7 @@ core::Decision RecordingPolicy::decide(const core::DecisionRequest& request) {
 }
 
 void RecordingPolicy::notify(const core::PolicyEvent& e) {
-  write(kEvent, core::json_text(ordered_json{{"kind", kEvents.at(static_cast<std::size_t>(e.kind))},
+  write(kEvent, core::json_text(ordered_json{{"kind", core::name_of(e.kind)},
                                              {"stamp", e.stamp},
                                              {"goal", to_json(e.goal)},
                                              {"reason", e.reason}}));

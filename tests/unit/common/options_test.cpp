@@ -24,6 +24,12 @@ void describe(OptionTable& t, Camera& o) {
   t.add("rows", o.rows, 1, 4000, "rows of pixels");
 }
 
+enum class Light { none, flood };
+constexpr auto names_of(Light) {
+  using enum Light;
+  return std::to_array<Named<Light>>({{none, "dark"}, {flood, "flood"}});
+}
+
 struct Options {
   double speed_mps = 2;
   double share = 0.5;
@@ -31,6 +37,7 @@ struct Options {
   bool on = true;
   std::string mode = "near";
   std::string name = "bat";
+  Light light = Light::flood;
   Camera camera;
 };
 void describe(OptionTable& t, Options& o) {
@@ -40,6 +47,7 @@ void describe(OptionTable& t, Options& o) {
   t.add("on", o.on, "whether");
   t.add("mode", o.mode, {"near", "far", "highest"}, "which");
   t.add("name", o.name, {}, "any text");
+  t.add("light", o.light, "of the lamp");
   t.section("camera", o.camera);
 }
 
@@ -90,12 +98,15 @@ TEST(Options, UnitsOfOneDimensionAreConverted) {
 
 TEST(Options, AllKindsOfValuesAreRead) {
   Table x;
-  x.t.read("a.info",
-           parsed("count -2\non false\nmode far\nname \"two words\"\ncamera { rows 64 }\nshare 1e-3\n"));
+  x.t.read(
+      "a.info",
+      parsed(
+          "count -2\non false\nmode far\nname \"two words\"\nlight dark\ncamera { rows 64 }\nshare 1e-3\n"));
   EXPECT_EQ(x.o.count, -2);
   EXPECT_FALSE(x.o.on);
   EXPECT_EQ(x.o.mode, "far");
   EXPECT_EQ(x.o.name, "two words");
+  EXPECT_EQ(x.o.light, Light::none);
   EXPECT_EQ(x.o.camera.rows, 64);
   EXPECT_EQ(x.o.share, 1e-3);
   EXPECT_EQ(x.o.speed_mps, 2) << "what is not given keeps its default";
@@ -137,6 +148,30 @@ TEST(Options, TextThatIsNoValueIsRefused) {
   const std::string e = error_of_setting("mode", "highst");
   EXPECT_TRUE(contains(e, "one of near far highest")) << e;
   EXPECT_TRUE(contains(e, "did you mean highest?")) << e;
+}
+
+TEST(Options, TheChoicesOfAnEnumerationAreItsNames) {
+  const std::string e = error_of_setting("light", "flod");
+  EXPECT_TRUE(contains(e, "one of dark flood, got \"flod\"; did you mean flood?")) << e;
+  EXPECT_TRUE(contains(Table().t.help(), "light = flood"));
+}
+
+TEST(Options, AnEnumerationMayHaveNoDefault) {
+  std::optional<Light> light;
+  OptionTable t;
+  t.add("light", light, "");
+  EXPECT_EQ(t.resolved().get<std::string>("light"), "");
+  t.set("a.info", "light", "dark");
+  EXPECT_EQ(light, Light::none);
+}
+
+TEST(EnumNames, OfAValueAndBack) {
+  for (const Named<Light>& n : names_of(Light{})) {
+    EXPECT_STREQ(name_of(n.value), n.name);
+    EXPECT_EQ(parse<Light>(n.name), n.value);
+  }
+  EXPECT_FALSE(parse<Light>("none"));
+  EXPECT_STREQ(name_of(static_cast<Light>(7)), "unknown");
 }
 
 TEST(Options, ARefusedValueLeavesTheOldOne) {
@@ -192,6 +227,7 @@ RC_GTEST_PROP(Options, ResolvedValuesReadBackIdentically,
   x.o.count = std::abs(count % 1000);
   x.o.on = on;
   x.o.mode = std::vector<std::string>{"near", "far", "highest"}[mode % 3];
+  x.o.light = mode % 2 == 0 ? Light::none : Light::flood;
   x.o.camera.fov_rad = into(speed + share, 0.1, 3.2);
   std::ostringstream file;
   boost::property_tree::write_info(file, x.t.resolved());
@@ -202,6 +238,7 @@ RC_GTEST_PROP(Options, ResolvedValuesReadBackIdentically,
   RC_ASSERT(y.o.count == x.o.count);
   RC_ASSERT(y.o.on == x.o.on);
   RC_ASSERT(y.o.mode == x.o.mode);
+  RC_ASSERT(y.o.light == x.o.light);
   RC_ASSERT(y.o.camera.fov_rad == x.o.camera.fov_rad);
   RC_ASSERT(y.t.resolved() == x.t.resolved());
 }

@@ -19,7 +19,8 @@ class LostVehicle final : public core::Vehicle {
   explicit LostVehicle(TimeNs lost_after) : lost_after_(lost_after) {}
   core::VehicleDescription description() const override { return {}; }
   void start(core::Executive& executive, core::VehicleSink& sink) override {
-    executive.at(lost_after_, [&sink, t = lost_after_] { sink.on_lost(t, "contact", "hit a rock"); });
+    executive.at(lost_after_,
+                 [&sink, t = lost_after_] { sink.on_lost(t, core::MissionOutcome::contact, "hit a rock"); });
   }
   void command(const core::AttitudeRateCommand&) override {}
 
@@ -101,7 +102,7 @@ TEST(Lockstep, OneVehicleAloneFliesToItsEnd) {
     return true;
   });
   EXPECT_EQ(end, 2100 * kMillisecond) << "the end of the step in which it was lost";
-  EXPECT_EQ(flight.state(0).ended->outcome, "contact");
+  EXPECT_EQ(flight.state(0).ended->outcome, core::MissionOutcome::contact);
   EXPECT_EQ(flight.state(0).phase, core::Phase::done);
   EXPECT_EQ(watched, (std::vector<TimeNs>{kSecond, 2 * kSecond}));
 }

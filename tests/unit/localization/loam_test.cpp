@@ -67,14 +67,14 @@ TEST(Loam, WithoutAPredictionItHoldsItsOwnVelocity) {
     const double s = seconds(t);
     return lap(from_seconds(s * s / (s + 3)));
   };
-  for (const char* scan_to_scan : {"auto", "never", "always"}) {
+  for (const ScanToScan scan_to_scan : {ScanToScan::automatic, ScanToScan::never, ScanToScan::always}) {
     LoamOptions o;
     o.scan_to_scan = scan_to_scan;
     Loam loam(o, from_rest(kPeriod));
     const Flown flown = fly(loam, furnished_room(), from_rest, 1, 60, {}, false);
     for (const LoamPose& p : flown.poses) EXPECT_TRUE(p.valid) << p.problem;
-    EXPECT_LT(flown.worst_m, 0.03) << scan_to_scan;
-    EXPECT_LT(flown.worst_rad, 0.005) << scan_to_scan;
+    EXPECT_LT(flown.worst_m, 0.03) << name_of(scan_to_scan);
+    EXPECT_LT(flown.worst_rad, 0.005) << name_of(scan_to_scan);
   }
 }
 

@@ -35,7 +35,7 @@ class OnboardTest : public ::testing::Test {
   }
   static CoreOptions by_pose_sensor() {
     CoreOptions o;
-    o.localization.source = "pose_sensor";
+    o.localization.source = PoseSource::pose_sensor;
     o.team.robots = 3;
     return o;
   }

@@ -47,11 +47,11 @@ TEST(Mahalanobis, IsTheEuclideanDistanceInUnitsOfTheDeviation) {
 }
 
 TEST(ObjectKind, NamesAndNumbersAreEachOthersInverse) {
-  for (std::size_t i = 1; i < kObjectNames.size(); ++i) {
+  for (int i = 1; i <= kObjectKinds; ++i) {
     const auto kind = static_cast<ObjectKind>(i);
-    EXPECT_EQ(object_kind(name_of(kind)), kind);
+    EXPECT_EQ(parse<ObjectKind>(name_of(kind)), kind);
   }
-  EXPECT_EQ(object_kind("dragon"), ObjectKind::none);
+  EXPECT_FALSE(parse<ObjectKind>("dragon"));
   EXPECT_STREQ(name_of(static_cast<ObjectKind>(200)), "unknown");
 }
 

@@ -77,7 +77,7 @@ TEST(IntensityFilter, LeavesScansAloneThatItCannotJudge) {
 }
 
 TEST(IntensityFilter, TheRuleThatIsChosenIsTheOneThatIsUsed) {
-  const auto left = [](const char* rule) {
+  const auto left = [](DustRule rule) {
     auto model = std::make_shared<LidarModel>();
     model->columns = 64;
     model->elevation_rad = {0.1f, 0.0f, -0.1f};
@@ -87,10 +87,10 @@ TEST(IntensityFilter, TheRuleThatIsChosenIsTheOneThatIsUsed) {
     filter_low_intensity(scan, {10, 1.5, rule, {}});
     return std::pair(!std::isnan(scan.range_m[70]), !std::isnan(scan.range_m[100]));
   };
-  EXPECT_EQ(left("none"), std::pair(true, true));
-  EXPECT_EQ(left("lonely"), std::pair(true, false));
-  EXPECT_EQ(left("both"), std::pair(false, false));
-  EXPECT_EQ(left("percentile"), std::pair(false, true));
+  EXPECT_EQ(left(DustRule::none), std::pair(true, true));
+  EXPECT_EQ(left(DustRule::lonely), std::pair(true, false));
+  EXPECT_EQ(left(DustRule::both), std::pair(false, false));
+  EXPECT_EQ(left(DustRule::percentile), std::pair(false, true));
 }
 
 }  // namespace

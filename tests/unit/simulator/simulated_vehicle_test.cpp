@@ -49,8 +49,8 @@ class Listener final : public VehicleSink {
     log << "ground " << t << standing << '\n';
     grounds += standing ? 'G' : 'A';
   }
-  void on_lost(TimeNs t, const std::string& outcome, const std::string& why) override {
-    log << "lost " << t << ' ' << outcome << ' ' << why << '\n';
+  void on_lost(TimeNs t, MissionOutcome outcome, const std::string& why) override {
+    log << "lost " << t << ' ' << name_of(outcome) << ' ' << why << '\n';
     lost = outcome;
     reason = why;
   }
@@ -63,7 +63,8 @@ class Listener final : public VehicleSink {
   Vec3 mean_force = Vec3::Zero();
   Pose pose;
   std::shared_ptr<const LidarScan> last_scan;
-  std::string grounds, lost, reason;
+  std::string grounds, reason;
+  std::optional<MissionOutcome> lost;
 };
 
 class Simulation : public testing::Test {
@@ -71,7 +72,7 @@ class Simulation : public testing::Test {
   Simulation() {
     cave::write_mesh(folder + "/hall.ply", box_mesh({-8, -8, 0}, {8, 8, 6}));
     options.lidar.columns = 128;
-    options.pose.fitted = "always";
+    options.pose.fitted = sim::PoseSensorFitted::always;
     setup.cave = folder + "/hall.ply";
     setup.start = "1 2 1.5 90";
     setup.run_dir = folder;
@@ -89,7 +90,7 @@ class Simulation : public testing::Test {
       const double lift = thrust_over_weight(seconds(executive.now()), listener->pose.position.z());
       vehicle.command({Vec3::Zero(), lift * vehicle.description().mass_kg * 9.81, lift > 0});
     });
-    executive.run_until(from_seconds(duration_s), [&] { return !listener->lost.empty(); });
+    executive.run_until(from_seconds(duration_s), [&] { return listener->lost.has_value(); });
     executive.drain();
     vehicle.finish();
     return listener->log.str();
@@ -123,7 +124,7 @@ TEST_F(Simulation, MessagesComeAtTheirRates) {
 
 TEST_F(Simulation, WithoutThePoseSensorThereIsNotOneMessageOfItAndAllElseIsTheSame) {
   const std::string with = fly(2.0, [](double, double) { return 0; });
-  options.pose.fitted = "never";
+  options.pose.fitted = sim::PoseSensorFitted::never;
   const std::string without = fly(2.0, [](double, double) { return 0; });
   EXPECT_EQ(listener->poses, 0);
   const auto but_poses = [](const std::string& log) {
@@ -215,10 +216,10 @@ TEST_F(Simulation, DescriptionSaysWhatWasMounted) {
   EXPECT_LT((lidar_uav.T_world_start.position - Vec3(1, 2, 0.3)).norm(), 1e-3);
   EXPECT_NEAR(heading_of(lidar_uav.T_world_start.orientation), std::numbers::pi / 2, 1e-9);
   EXPECT_NEAR(lidar_uav.max_thrust_n, 2.2 * 2 * 9.81, 1e-9);
-  options.vehicle = "lidar_only_uav";
+  options.vehicle = sim::VehiclePreset::lidar_only_uav;
   EXPECT_TRUE(SimulatedVehicle(options, setup).description().lidar);
   EXPECT_TRUE(SimulatedVehicle(options, setup).description().cameras.empty());
-  options.vehicle = "camera_uav";
+  options.vehicle = sim::VehiclePreset::camera_uav;
   const VehicleDescription camera_uav = SimulatedVehicle(options, setup).description();
   EXPECT_FALSE(camera_uav.lidar);
   ASSERT_EQ(camera_uav.cameras.size(), 1u);
@@ -258,7 +259,7 @@ TEST_F(Simulation, ASweepEndsWhereTheVehicleIsWhenItEnds) {
 
 TEST_F(Simulation, ACrashEndsTheVehicleWithItsReason) {
   fly(20, [](double t, double) { return t < 2 ? 1.3 : 0.0; });
-  EXPECT_EQ(listener->lost, "contact");
+  EXPECT_EQ(listener->lost, MissionOutcome::contact);
   EXPECT_NE(listener->reason.find("touched rock at ("), std::string::npos) << listener->reason;
   EXPECT_NE(listener->reason.find("m/s"), std::string::npos);
   const std::string events = read_bytes(folder + "/truth_events.jsonl");
@@ -270,7 +271,7 @@ TEST_F(Simulation, AnEmptyBatteryEndsTheVehicle) {
   options.battery.minutes = 0.1;
   options.wind.gust_mps = 0;
   fly(70, [](double, double) { return 1.0; });  // motors turning, not enough to lift
-  EXPECT_EQ(listener->lost, "battery");
+  EXPECT_EQ(listener->lost, MissionOutcome::battery);
 }
 
 TEST_F(Simulation, GroundTruthIsWrittenInTheAnnouncedShape) {
@@ -354,8 +355,8 @@ TEST_F(Simulation, WithoutCommandsTheAutopilotLevelsTheVehicleAndComesDown) {
   const double height_m = vehicle.position().z();
   executive.run_until(from_seconds(5), [] { return false; });
   EXPECT_NEAR(vehicle.velocity_mps().z(), -0.5, 0.05);
-  executive.run_until(from_seconds(15), [&] { return !listener->lost.empty(); });
-  EXPECT_EQ(listener->grounds, "GAG") << "it stands " << listener->lost << listener->reason;
+  executive.run_until(from_seconds(15), [&] { return listener->lost.has_value(); });
+  EXPECT_EQ(listener->grounds, "GAG") << "it stands " << listener->reason;
   EXPECT_GT(height_m, 0.5);
   EXPECT_FALSE(vehicle.airborne());
   executive.run_until(from_seconds(20), [] { return false; });

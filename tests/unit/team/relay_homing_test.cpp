@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius = 0.3, kAlways = std::numeric_limits<double>::infinity();
 
-TeamOptions team_with(const std::string& strategy) {
+TeamOptions team_with(LandingStrategy strategy) {
   TeamOptions team;
   team.strategy = strategy;
   return team;
@@ -42,13 +42,13 @@ struct Flown : ::testing::Test {
   TeamNews news = hearing(base);
 
   Flown() { roadmap.update(map, changes), options.landing.link.spare_db = 6; }
-  RelayHoming homing(const std::string& strategy) const {
+  RelayHoming homing(LandingStrategy strategy) const {
     return {1, team_with(strategy), options, base, planning, limits, kRadius};
   }
   void fly(RelayHoming& homing, double from_x, double to_x) {
     for (double x = from_x; x <= to_x; x += 1) homing.update(map, roadmap, {x, 0.1, 1}, news, {});
   }
-  RelayHoming flown(const std::string& strategy) {
+  RelayHoming flown(LandingStrategy strategy) {
     RelayHoming out = homing(strategy);
     fly(out, -27, 25);
     return out;
@@ -59,12 +59,12 @@ struct Flown : ::testing::Test {
 };
 
 TEST_F(Flown, LandsWhereTheRadioBeginsToReachOnGoodGround) {
-  for (const char* strategy : {"relay_chain", "relay_tree"}) {
+  for (const LandingStrategy strategy : {LandingStrategy::relay_chain, LandingStrategy::relay_tree}) {
     const auto s = spot(flown(strategy));
-    ASSERT_TRUE(s) << strategy;
+    ASSERT_TRUE(s) << name_of(strategy);
     // 50 m less 6 dB to spare: 25 m. Poses are judged every few metres.
-    EXPECT_LE((s->ground - base).norm(), 25.1) << strategy;
-    EXPECT_GE((s->ground - base).norm(), 18) << strategy;
+    EXPECT_LE((s->ground - base).norm(), 25.1) << name_of(strategy);
+    EXPECT_GE((s->ground - base).norm(), 18) << name_of(strategy);
     EXPECT_EQ(s->node, kBase);
     EXPECT_FALSE(s->claimed);
     EXPECT_NEAR(s->ground.z(), 0, 1e-9);
@@ -75,12 +75,12 @@ TEST_F(Flown, LandsWhereTheRadioBeginsToReachOnGoodGround) {
     EXPECT_GE(s->time_s, flight_time_s(s->length_m, limits) +
                              (s->hover - s->ground).z() / options.landing.landing_speed_mps);
   }
-  EXPECT_FALSE(spot(flown("return_to_base")));
+  EXPECT_FALSE(spot(flown(LandingStrategy::return_to_base)));
 }
 
 // What is asked of the places in two rounds, the near ones first, is what asking each alone finds.
 TEST_F(Flown, NoOtherPlaceIsSooner) {
-  const RelayHoming homing = flown("relay_chain");
+  const RelayHoming homing = flown(LandingStrategy::relay_chain);
   for (double x = -27; x <= 25; x += 4) {
     const Vec3 from(x, 0.9, 1.1);
     std::set<double> times;
@@ -98,7 +98,7 @@ TEST_F(Flown, NoOtherPlaceIsSooner) {
 }
 
 TEST_F(Flown, KeepsApartFromTakenPlacesAndFromWhereItWasInVain) {
-  for (const char* strategy : {"relay_chain", "relay_tree"}) {
+  for (const LandingStrategy strategy : {LandingStrategy::relay_chain, LandingStrategy::relay_tree}) {
     RelayHoming homing = flown(strategy);
     const LandingSpot first = *spot(homing);
     homing.give_up(first.hover);
@@ -115,19 +115,19 @@ TEST_F(Flown, KeepsApartFromTakenPlacesAndFromWhereItWasInVain) {
 // As it was: robot 3 of a team tried seven places one beside the other, ten seconds each, of all of which the
 // map promised the same link.
 TEST_F(Flown, WhereNobodyIsHeardTheNextPlaceHasMoreToSpare) {
-  for (const char* strategy : {"relay_chain", "relay_tree"}) {
+  for (const LandingStrategy strategy : {LandingStrategy::relay_chain, LandingStrategy::relay_tree}) {
     RelayHoming homing = flown(strategy);
     const LandingSpot first = *spot(homing);
     homing.no_contact_at(first);
     fly(homing, 25, 25);
     const LandingSpot second = *spot(homing);
-    EXPECT_LE((second.ground - base).norm(), 25.1 / std::pow(10, 3.0 / 20)) << strategy << ": 3 dB";
+    EXPECT_LE((second.ground - base).norm(), 25.1 / std::pow(10, 3.0 / 20)) << name_of(strategy) << ": 3 dB";
   }
 }
 
 // As it was: of a claim that it had waited for in vain it tried four places more.
 TEST_F(Flown, WhoIsAwaitedInVainIsNotCountedOnBeforeItIsKnownToStandSomewhere) {
-  RelayHoming homing = flown("relay_chain");
+  RelayHoming homing = flown(LandingStrategy::relay_chain);
   const Vec3 claimed(-5, 0.1, 0.3), elsewhere(-8, 0.1, 0.3);
   news.relays.push_back({2, claimed, claimed + Vec3(0, 0, 1), 500 * kSecond});
   fly(homing, 25, 25);
@@ -146,7 +146,7 @@ TEST_F(Flown, WhoIsAwaitedInVainIsNotCountedOnBeforeItIsKnownToStandSomewhere) {
 
 // It is not taken for one awaited in vain: it stands there, and a place nearer to it may be in contact.
 TEST_F(Flown, OfARelayThatLandedMeanwhileAndIsNotHeardTheNextPlaceHasMoreToSpare) {
-  RelayHoming homing = flown("relay_chain");
+  RelayHoming homing = flown(LandingStrategy::relay_chain);
   const Vec3 ground(-5, 0.1, 0.3);
   news.relays.push_back({2, ground, ground + Vec3(0, 0, 1), 500 * kSecond});
   fly(homing, 25, 25);
@@ -163,7 +163,7 @@ TEST_F(Flown, OfARelayThatLandedMeanwhileAndIsNotHeardTheNextPlaceHasMoreToSpare
 
 TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
   // 50 m less 6 dB to spare: 25 m from the base, which is at -28; 22 m with one more.
-  RelayHoming homing = flown("return_to_base");
+  RelayHoming homing = flown(LandingStrategy::return_to_base);
   const auto ends = [&](double x, double ahead) {
     return homing.relay_drop_site(map, {{x, 0.1, 1}}, {{ahead, 0.1, 1}});
   };
@@ -185,7 +185,7 @@ TEST_F(Flown, DropsANodeWhereTheReachEndsAndNotBeforeOrBehind) {
 // As it was: by a fall of 0.4 s whatever the height a node came to lie 0.7 m farther on than was reckoned
 // with, over a ledge and out of reach.
 TEST_F(Flown, DropsNoNodeThatFallsOutOfReach) {
-  RelayHoming homing = flown("return_to_base");
+  RelayHoming homing = flown(LandingStrategy::return_to_base);
   const auto ends = [&](double x, double vx_mps) {
     return homing.relay_drop_site(map, {{x, 0.1, 1}, {vx_mps, 0, 0}}, {{x + vx_mps, 0.1, 1}, {vx_mps, 0, 0}});
   };
@@ -202,7 +202,7 @@ TEST_F(Flown, DropsNoNodeThatFallsOutOfReach) {
 }
 
 TEST_F(Flown, CountsOnARelayAndOnOneThatWillStandInTime) {
-  RelayHoming homing = flown("relay_chain");
+  RelayHoming homing = flown(LandingStrategy::relay_chain);
   const double alone_m = spot(homing)->length_m;
   const Vec3 landed(-5, 0.1, 0.3);
   news.relays.push_back({2, landed, landed + Vec3(0, 0, 1)});
@@ -220,7 +220,7 @@ TEST_F(Flown, CountsOnARelayAndOnOneThatWillStandInTime) {
 }
 
 TEST_F(Flown, BehindAFallOfRockThereIsNoPlaceAndAroundItMayBeOne) {
-  RelayHoming homing = flown("relay_chain");
+  RelayHoming homing = flown(LandingStrategy::relay_chain);
   std::vector<CellChange> fall;
   std::vector<CellKey> closed;
   for (int y = -12; y < 12; ++y)
@@ -255,7 +255,7 @@ TEST(RelayHomingInACave, EveryPlaceIsOnTheRockItselfClearOfItAndReachable) {
   roadmap.update(drawn.map, testing::all_cells(drawn.map));
   const Vec3 base = made.start.position;
   const HomingOptions options;
-  RelayHoming homing(1, team_with("relay_chain"), options, base, planning, {}, kRadius);
+  RelayHoming homing(1, team_with(LandingStrategy::relay_chain), options, base, planning, {}, kRadius);
   const TeamNews news = hearing(base);
   for (const auto& axis : made.axes)
     for (const Vec3& p : axis)

@@ -42,11 +42,12 @@ TEST(Axis, TextIsWithinTheRangeAndWholeWhereItMustBe) {
 }
 
 TEST(Axis, OfAPolicysParameters) {
+  using karst::host::ParameterType;
   karst::host::PolicyListing p;
   p.id = "mine";
-  p.parameters = {{"reach", "real", "m", "3", "", 0, 100, {}},
-                  {"goals", "integer", "", "8", "", 1, 32, {}},
-                  {"side", "text", "", "left", "", 0, 0, {"left", "right"}}};
+  p.parameters = {{"reach", ParameterType::real, "m", "3", "", 0, 100, {}},
+                  {"goals", ParameterType::integer, "", "8", "", 1, 32, {}},
+                  {"side", ParameterType::text, "", "left", "", 0, 0, {"left", "right"}}};
   EXPECT_EQ(axes_of(p, {}).size(), 2u);
   EXPECT_EQ(axes_of(p, {"goals"}).front().start, 8);
   EXPECT_TRUE(axes_of(p, {"goals"}).front().whole);
@@ -118,10 +119,11 @@ TuneOptions options(int flights) {
 TEST(Tune, FindsTheOptimumThroughNoiseThatAllCandidatesShare) {
   // The default loses 0.1 (ln(4)^2 + ln(4)^2) = 0.38. The seeds' luck is 0.05, what candidates do not share
   // 0.01.
-  for (const char* method : {"bobyqa", "direct", "crs"}) {
+  for (const SearchMethod m : {SearchMethod::bobyqa, SearchMethod::direct, SearchMethod::crs}) {
+    const char* method = name_of(m);
     Field field;
     TuneOptions o = options(12 + 6 * 30);
-    o.search.method = method;
+    o.search.method = m;
     const TuneResult r = tune(o, std::ref(field));
     EXPECT_EQ(field.flights, 12 + 6 * static_cast<int>(r.tried.size())) << method;
     EXPECT_LE(r.tried.size(), 30u) << method;
@@ -166,8 +168,9 @@ TEST(Tune, OneParameterAndWholeNumbersDoNotGoOnForEver) {
   Field field;
   TuneOptions o = options(12 + 6 * 40);
   o.axes = {axis("turn", 1, 6, 3, true)};  // six values there are
-  for (const char* method : {"bobyqa", "direct", "crs"}) {
-    o.search.method = method;
+  for (const SearchMethod m : {SearchMethod::bobyqa, SearchMethod::direct, SearchMethod::crs}) {
+    const char* method = name_of(m);
+    o.search.method = m;
     const TuneResult r = tune(o, std::ref(field));
     EXPECT_LE(r.tried.size(), 6u) << method;
     EXPECT_EQ(r.tried[r.best].parameters.front().second, "6") << method;
@@ -207,8 +210,9 @@ TEST(Tune, BadOptionsAreErrors) {
             std::string::npos);
   EXPECT_NE(message([](TuneOptions& o) { o.metric = "path_length_m"; }).find("neither better nor worse"),
             std::string::npos);
-  EXPECT_NE(message([](TuneOptions& o) { o.search.method = "bobyq"; }).find("did you mean bobyqa?"),
-            std::string::npos);
+  EXPECT_NE(
+      message([](TuneOptions& o) { o.search.method = search_method("bobyq"); }).find("did you mean bobyqa?"),
+      std::string::npos);
   EXPECT_NE(message([](TuneOptions& o) {
               o.held_out.push_back({"a", "a", ""});
             }).find("tuned on and held out"),

@@ -18,7 +18,7 @@ using testing::all_cells;
 using testing::Obstacles;
 using testing::WindingCave;
 
-PlanningOptions with(const char* planner) {
+PlanningOptions with(Planner planner) {
   PlanningOptions options{.clearance_m = 0.45};
   options.planner = planner;
   options.planner_iterations = 1500;
@@ -28,71 +28,71 @@ PlanningOptions with(const char* planner) {
 struct Winding {
   WindingCave cave = WindingCave::of_length(18, 4, 1.5);
   VoxelMap map = cave.map();
-  Roadmap roadmap{with("grid")};
+  Roadmap roadmap{with(Planner::grid)};
   Vec3 a = cave.line[4], b = cave.line[31];
   Winding() { roadmap.update(map, all_cells(map)); }
 };
 
-const std::vector<const char*> kPlanners{"grid", "rrt_connect", "rrt_star", "bit_star"};
+const std::vector kPlanners{Planner::grid, Planner::rrt_connect, Planner::rrt_star, Planner::bit_star};
 
 TEST(OmplSearch, EveryPlannersPathIsClearAndJoinsTheEnds) {
   const Winding w;
   const Obstacles obstacles(w.map);
-  for (const char* planner : kPlanners) {
+  for (const Planner planner : kPlanners) {
     const Path raw = search_with_ompl(w.map, w.roadmap, w.a, w.b, with(planner), 0.45);
-    ASSERT_TRUE(raw.found()) << planner << ": " << raw.reason;
+    ASSERT_TRUE(raw.found()) << name_of(planner) << ": " << raw.reason;
     const Path path = plan(w.map, w.roadmap, w.a, w.b, with(planner));
-    ASSERT_TRUE(path.found()) << planner << ": " << path.reason;
+    ASSERT_TRUE(path.found()) << name_of(planner) << ": " << path.reason;
     for (const Path& p : {raw, path}) {
       EXPECT_EQ(p.points.front(), w.a);
       EXPECT_EQ(p.points.back(), w.b);
       EXPECT_EQ(p.escape_points, 0u);
       for (std::size_t k = 1; k < p.points.size(); ++k)
-        EXPECT_GE(obstacles.distance(p.points[k - 1], p.points[k]), 0.45 - 1e-6) << planner;
+        EXPECT_GE(obstacles.distance(p.points[k - 1], p.points[k]), 0.45 - 1e-6) << name_of(planner);
     }
   }
 }
 
 TEST(OmplSearch, AQueryGivesTheSamePathWhateverWasAskedBeforeAndMeanwhile) {
   const Winding w;
-  for (const char* planner : kPlanners) {
+  for (const Planner planner : kPlanners) {
     const auto ask = [&] { return search_with_ompl(w.map, w.roadmap, w.a, w.b, with(planner), 0.45).points; };
     const std::vector<Vec3> first = ask();
     for (const char* other : kPlanners)
       search_with_ompl(w.map, w.roadmap, w.b, w.cave.line[6], with(other), 0.45);
-    EXPECT_EQ(ask(), first) << planner;
+    EXPECT_EQ(ask(), first) << name_of(planner);
     std::vector<Vec3> one, two;
     std::thread t([&] { one = ask(); });
     two = ask();
     t.join();
-    EXPECT_EQ(one, first) << planner;
-    EXPECT_EQ(two, first) << planner;
+    EXPECT_EQ(one, first) << name_of(planner);
+    EXPECT_EQ(two, first) << name_of(planner);
   }
 }
 
 TEST(OmplSearch, TheGridPlannerBehindOmplsInterfaceFindsWhatItFindsAlone) {
   const Winding w;
-  EXPECT_EQ(search_with_ompl(w.map, w.roadmap, w.a, w.b, with("grid"), 0.45).points,
-            plan_on_grid(w.map, w.a, w.b, with("grid")).points);
+  EXPECT_EQ(search_with_ompl(w.map, w.roadmap, w.a, w.b, with(Planner::grid), 0.45).points,
+            plan_on_grid(w.map, w.a, w.b, with(Planner::grid)).points);
 }
 
 TEST(OmplSearch, NothingIsPrinted) {
   const Winding w;
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
-  for (const char* planner : kPlanners) search_with_ompl(w.map, w.roadmap, w.a, w.b, with(planner), 0.45);
+  for (const Planner planner : kPlanners) search_with_ompl(w.map, w.roadmap, w.a, w.b, with(planner), 0.45);
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(OmplSearch, SaysWhyThereIsNoPath) {
   const Winding w;
-  for (const char* planner : kPlanners) {
+  for (const Planner planner : kPlanners) {
     const Path none = search_with_ompl(w.map, w.roadmap, w.a, {0, 0, 50}, with(planner), 0.45);
-    EXPECT_EQ(none.status, PlanStatus::goal_blocked) << planner;
-    EXPECT_FALSE(none.reason.empty()) << planner;
+    EXPECT_EQ(none.status, PlanStatus::goal_blocked) << name_of(planner);
+    EXPECT_FALSE(none.reason.empty()) << name_of(planner);
   }
-  PlanningOptions hasty = with("rrt_star");
+  PlanningOptions hasty = with(Planner::rrt_star);
   hasty.planner_iterations = 1;
   const Path none = search_with_ompl(w.map, w.roadmap, w.a, w.b, hasty, 0.45);
   EXPECT_EQ(none.status, PlanStatus::gave_up);
@@ -104,7 +104,7 @@ TEST(PlanningOptions, AnUnknownPlannerIsRefusedWithTheNearestName) {
   OptionTable table;
   table.section("planning", options);
   table.set("mission", "planning.planner", "bit_star");
-  EXPECT_EQ(options.planner, "bit_star");
+  EXPECT_EQ(options.planner, Planner::bit_star);
   try {
     table.set("mission", "planning.planner", "rrt_conect");
     FAIL() << "accepted";

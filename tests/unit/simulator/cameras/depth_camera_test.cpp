@@ -172,7 +172,7 @@ TEST(DepthCamera, ClearAirIsTheSameForBothKindsAndForCloudsElsewhere) {
   cave::Cloud behind;
   behind.position = {-5, 0, 0};
   EXPECT_EQ(take({behind}), stereo);
-  o.kind = "tof";
+  o.kind = sim::DepthCameraKind::tof;
   EXPECT_EQ(take({behind}), stereo);
 }
 

@@ -91,9 +91,10 @@ TEST(ObjectDetector, TheColourCameraNeedsItsLampAndDustDims) {
   const core::CameraModel camera = sim::rgb_camera_model(rgb)->camera;
   const Pose eye{{0, 0, 2}, Quat::Identity()};
   EXPECT_EQ(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true).size(), 1u);
-  rgb.light = "spot", rgb.beam_rad = 0.3;  // 8.6 degrees to each side; the object is 20 degrees off
+  rgb.light = sim::LampLight::spot,
+  rgb.beam_rad = 0.3;  // 8.6 degrees to each side; the object is 20 degrees off
   EXPECT_TRUE(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true).empty());
-  rgb.light = "flood", rgb.intensity_cd = 30;  // 1.6 lux at 4.3 m
+  rgb.light = sim::LampLight::flood, rgb.intensity_cd = 30;  // 1.6 lux at 4.3 m
   EXPECT_TRUE(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true).empty());
   rgb.intensity_cd = 1000;
   cave::Cloud dust;

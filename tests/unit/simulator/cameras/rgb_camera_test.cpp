@@ -73,7 +73,7 @@ TEST(RgbCamera, OrenAndNayarsHeadOnValueAndLambertsLimit) {
 
 TEST(RgbCamera, ASpotIsDarkOutsideItsBeamAndAFloodIsNot) {
   RgbOptions o = plain();
-  o.light = "spot";
+  o.light = sim::LampLight::spot;
   o.beam_rad = 0.4;
   EXPECT_EQ(sim::beam_fraction(o, std::cos(0.19f)), 1);
   EXPECT_EQ(sim::beam_fraction(o, std::cos(0.25f)), 0);
@@ -84,7 +84,7 @@ TEST(RgbCamera, ASpotIsDarkOutsideItsBeamAndAFloodIsNot) {
   const auto spot = RgbCamera(o).light(box, {});
   EXPECT_EQ(spot.front().y(), 0);
   EXPECT_GT(spot[spot.size() / 2 + 32].y(), 0);
-  o.light = "flood";
+  o.light = sim::LampLight::flood;
   EXPECT_GT(RgbCamera(o).light(box, {}).front().y(), 0);
   EXPECT_EQ(sim::beam_fraction(o, -0.1f), 0);
 }
@@ -188,7 +188,7 @@ TEST(RgbCamera, TheSamePlaceLooksTheSameFromElsewhereAndOtherPlacesDoNot) {
 
 TEST(RgbCamera, AutomaticExposurePutsTheMeanInTheMiddleAndFixedDoesNot) {
   RgbOptions o = plain();
-  const auto mean_of = [&](double wall_m, const std::string& exposure) {
+  const auto mean_of = [&](double wall_m, sim::Exposure exposure) {
     o.exposure = exposure;
     const cave::Cave box = make_cave(box_mesh({-20, -20, -20}, {wall_m + 0.15, 20, 20}));
     const auto rgb = RgbCamera(o).picture(box, {}, core::Random(1));
@@ -196,9 +196,9 @@ TEST(RgbCamera, AutomaticExposurePutsTheMeanInTheMiddleAndFixedDoesNot) {
     for (const std::uint8_t v : rgb) sum += v;
     return sum / static_cast<double>(rgb.size());
   };
-  EXPECT_NEAR(mean_of(2, "auto"), mean_of(4, "auto"), 12);
-  EXPECT_NEAR(mean_of(3, "auto"), 118, 25);  // 18 % of white is 118 in sRGB
-  EXPECT_GT(mean_of(2, "fixed"), mean_of(4, "fixed") + 30);
+  EXPECT_NEAR(mean_of(2, sim::Exposure::automatic), mean_of(4, sim::Exposure::automatic), 12);
+  EXPECT_NEAR(mean_of(3, sim::Exposure::automatic), 118, 25);  // 18 % of white is 118 in sRGB
+  EXPECT_GT(mean_of(2, sim::Exposure::fixed), mean_of(4, sim::Exposure::fixed) + 30);
 }
 
 TEST(RgbCamera, PicturesAreTheSameOnAnyThreadAndDifferByTheirNoiseAlone) {

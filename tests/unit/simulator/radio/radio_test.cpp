@@ -26,7 +26,7 @@ const cave::RayScene& hall() {
   static const cave::RayScene scene(box_mesh({-500, -500, -50}, {500, 500, 50}));
   return scene;
 }
-RadioOptions clean(const char* propagation = "distance") {
+RadioOptions clean(Propagation propagation = Propagation::distance) {
   RadioOptions o;
   o.link.propagation = propagation;
   o.link.fading_db = 0;
@@ -64,7 +64,7 @@ TEST(RadioLink, TheBudgetIsUsedUpAtTheRangeAndByRock) {
   EXPECT_NEAR(link_margin_db(o, hall(), {0, 0, 0}, {50, 0, 0}), 0, 1e-9);
   EXPECT_NEAR(link_margin_db(o, hall(), {0, 0, 0}, {5, 0, 0}), 20, 1e-9);
   EXPECT_NEAR(link_margin_db(o, two_halls(), {5, 5, 2}, {20, 5, 2}), 20 * std::log10(50 / 15.0) - 9, 1e-3);
-  o.propagation = "distance";
+  o.propagation = Propagation::distance;
   EXPECT_GT(link_margin_db(o, two_halls(), {5, 5, 2}, {20, 5, 2}), 0);
   EXPECT_LT(link_margin_db(o, hall(), {0, 0, 0}, {50.1, 0, 0}), 0);
 }
@@ -184,7 +184,7 @@ TEST(Radio, WhatHappensToAPacketDependsOnNothingElse) {
 }
 
 TEST(Radio, LossCorruptionAndFadingComeInTheirShares) {
-  RadioOptions o = clean("rock");
+  RadioOptions o = clean(Propagation::rock);
   o.loss = 0.3, o.corrupt = 0.5, o.link.fading_db = 3;
   Radio radio(o, 7);
   radio.place(0, {0, 0, 0}), radio.place(1, {10, 0, 0}), radio.place(2, {0, 50, 0});
