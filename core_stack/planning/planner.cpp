@@ -62,10 +62,10 @@ bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOpt
   while (to + 1 < path.points.size() && !good_end(path.points[to])) ++to;
   PlanningOptions local = options;
   local.max_expansions = std::min(options.max_expansions, kNearExpansions);
-  const Path path = plan_on_grid(map, path.points[from], path.points[to], local);
-  if (!path.found() || (path.escape_points > 0 && from > path.escape_points)) return false;
+  const Path bypass = plan_on_grid(map, path.points[from], path.points[to], local);
+  if (!bypass.found() || (bypass.escape_points > 0 && from > path.escape_points)) return false;
   std::vector<Vec3> points(path.points.begin(), path.points.begin() + static_cast<std::ptrdiff_t>(from));
-  points.insert(points.end(), path.points.begin(), path.points.end());
+  points.insert(points.end(), bypass.points.begin(), bypass.points.end());
   points.insert(points.end(), path.points.begin() + static_cast<std::ptrdiff_t>(to) + 1, path.points.end());
   path.points = std::move(points);
   measure(path, std::numeric_limits<double>::infinity());

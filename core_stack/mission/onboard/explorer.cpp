@@ -74,7 +74,7 @@ TreeFacts Explorer::land(const Vec3& hover, TimeNs team_time) {
   return team_.homing()->land(world_.map(), world_.usual().roadmap(), hover, team_time);
 }
 
-std::optional<WaitingPlace> Explorer::refuge(RoomQuery query) {
+std::optional<WaitingPlace> Explorer::find_waiting_place(RoomQuery query) {
   query.vehicle_radius_m = limits_.hull_radius_m;
   return waiting_place(world_.map(), world_.usual().roadmap(), query);
 }

@@ -68,7 +68,7 @@ class Explorer {
   /// It landed below `hover`: what to report.
   TreeFacts land(const Vec3& hover, TimeNs team_time);
   /// Where it makes room for another vehicle; the vehicle's radius is filled in.
-  std::optional<WaitingPlace> refuge(RoomQuery query);
+  std::optional<WaitingPlace> find_waiting_place(RoomQuery query);
 
   const VoxelMap& map() const { return world_.map(); }
   const Vec3& home() const { return world_.home(); }

@@ -153,9 +153,9 @@ TEST(Explorer, APolicyMayHoldAStandingVehicleForTwoSecondsAndNoLonger) {
   // As it was: a policy that now held, now proposed what had to be refused, held the vehicle for 14 s.
   Room room;
   const auto hold = [](const DecisionRequest&) { return Decision{}; };
-  for (int round = 0; round < 4; ++round) {
-    room.input.now = round * kSecond / 2;
-    EXPECT_EQ((round == 2 ? room.propose(Vec3(50, 50, 50)) : room.decide(hold)).policy, "scripted") << round;
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    room.input.now = cycle * kSecond / 2;
+    EXPECT_EQ((cycle == 2 ? room.propose(Vec3(50, 50, 50)) : room.decide(hold)).policy, "scripted") << cycle;
   }
   room.input.now = 2 * kSecond;
   EXPECT_EQ(room.decide(hold).policy, "fallback");
@@ -280,13 +280,13 @@ TEST(Explorer, WhenTheBatteryAllowsNoGoalTheFlightIsOver) {
   Room room;
   room.input.seconds_left = 21;
   Outcome last = Outcome::hold;
-  int rounds = 0;
-  for (; rounds < 10 && last == Outcome::hold; ++rounds) {
-    room.input.now = rounds * kSecond;
+  int cycles = 0;
+  for (; cycles < 10 && last == Outcome::hold; ++cycles) {
+    room.input.now = cycles * kSecond;
     last = room.propose(Vec3(6.5, 4, 2)).outcome;
   }
   EXPECT_EQ(last, Outcome::explored);
-  EXPECT_LE(rounds, 5);
+  EXPECT_LE(cycles, 5);
 }
 
 TEST(Explorer, AnAbandonedGoalIsNotAcceptedAgainWhileTheMapIsUnchanged) {
