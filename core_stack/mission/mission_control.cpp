@@ -372,8 +372,8 @@ void MissionControl::note_verdict(const SafetyVerdict& before) {
   if (turns_back) note("home", *verdict_.go_home);
 }
 
-/// It brakes when a cause comes up. What it may fly at and whether it may explore hold as long as the cause
-/// does: that may have come up, or be gone, in a phase in which it made no difference.
+/// It brakes when a cause comes up. How fast it may fly and whether it may explore depend on the causes there
+/// are now: one may have come up, or gone, in a phase in which it made no difference.
 void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
   const double fraction = verdict_.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_fraction;

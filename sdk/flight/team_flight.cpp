@@ -111,7 +111,7 @@ void TeamFlight::talk(Lockstep& flight, TimeNs now) {
   for (const auto& m : members_) attempt(m->id(), [&] { m->receive(now); });
   for (const auto& n : nodes_) attempt(n->self(), [&] { core::receive(*n, radio_of(*n), now); });
 
-  for (const auto& m : members_) object_log_.robot(now, m->member(), log_);
+  for (const auto& m : members_) object_log_.robot(now, m->node(), log_);
   object_log_.base(now, base_, log_);
   if (now % kBaseLogPeriod == 0) {
     log_base(now);
@@ -132,7 +132,7 @@ void TeamFlight::on_phase(const Lockstep& flight, std::size_t robot, TimeNs now)
     world_.wreck(robot, state.ended->reason);  // what is left of it sends nothing
   log_.event(now, "phase", {{"robot", id_of(robot)}, {"phase", core::name_of(state.phase)}});
   if (!done) return;
-  const auto& claim = members_[robot]->member().landing_of(id_of(robot));
+  const auto& claim = members_[robot]->node().landing_of(id_of(robot));
   log_.event(now, "end",
              {{"robot", id_of(robot)},
               {"outcome", core::name_of(state.ended->outcome)},
@@ -162,7 +162,7 @@ void TeamFlight::inject_faults(const Lockstep& flight, TimeNs now) {
 
 RobotResult TeamFlight::result_of(const Lockstep& flight, std::size_t robot, TimeNs now) const {
   const SeatState& state = flight.state(robot);
-  const core::TeamNode& member = members_[robot]->member();
+  const core::TeamNode& member = members_[robot]->node();
   const std::vector<RobotId> connected = base_.graph().connected(now);
   RobotResult r;
   r.mission = state.ended.value_or(
@@ -187,7 +187,7 @@ std::uint64_t TeamFlight::log_traffic(TimeNs now) {
     bytes += traffic.bytes_sent;
   };
   note(base_);
-  for (const auto& m : members_) note(m->member());
+  for (const auto& m : members_) note(m->node());
   for (const auto& n : nodes_) note(*n);
   return bytes;
 }
