@@ -1,5 +1,5 @@
 // What the documentation quotes is there: code of examples, fields of the ABI, reasons for refusing a goal,
-// pages linked.
+// pages linked, sources named.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,6 +60,38 @@ TEST(Documents, LinkPagesThatThereAre) {
     for (const std::smatch& m : all_matches(text, std::regex("\\]\\(([^)#: ]+)(#[^)]*)?\\)")))
       EXPECT_TRUE(fs::exists(page.parent_path() / m[1].str())) << page << " links " << m[1];
   }
+}
+
+/// Whether a source is named so: by its path, or by the end of its path.
+bool is_source(const std::string& name) {
+  static const std::vector<std::string> sources = [] {
+    std::vector<std::string> all;
+    for (const char* folder : {"core_stack", "sdk", "plugins", "policies", "tests", "examples", "cmake"})
+      for (const auto& e : fs::recursive_directory_iterator(root / folder))
+        all.push_back("/" + fs::relative(e.path(), root).string());
+    return all;
+  }();
+  return std::any_of(sources.begin(), sources.end(),
+                     [&](const std::string& path) { return path.ends_with("/" + name); });
+}
+
+TEST(Documents, NameSourcesThatThereAre) {
+  const std::regex file("`([\\w./-]+\\.(h|hpp|cpp|c|py|sh|cmake))`"),
+      place("`((core_stack|sdk|plugins|policies)/[\\w./-]*\\w)/?`");
+  std::size_t names = 0;
+  for (const fs::path& page : pages()) {
+    const std::string text = text_of(page);
+    for (const std::smatch& m : all_matches(text, file)) {
+      EXPECT_TRUE(is_source(m[1])) << page << " names " << m[1];
+      ++names;
+    }
+    for (const std::smatch& m : all_matches(text, place)) {
+      const std::string name = m[1];  // with or without the ending
+      EXPECT_TRUE(is_source(name) || is_source(name + ".h") || is_source(name + ".cpp"))
+          << page << " names " << name;
+    }
+  }
+  EXPECT_GT(names, 200u);
 }
 
 /// The fields of every struct in the ABI's headers, by the struct's name (with _t).
