@@ -63,7 +63,11 @@ void describe(OptionTable& t, LoamOptions& o) {
 }
 
 Loam::Loam(const LoamOptions& options, const Pose& T_world_start)
-    : options_(options), map_(options.map), last_sweep_(options.map), T_world_last_(T_world_start) {}
+    : options_(options),
+      map_(options.map),
+      last_sweep_(options.map),
+      workspace_{static_cast<int>(options.threads), {}},
+      T_world_last_(T_world_start) {}
 
 Loam::Prediction Loam::predict(const Sweep& sweep, double length_s, const StateHistory& states) const {
   const std::optional<Pose> end = predicted_pose(states, sweep.stamp);
@@ -87,26 +91,21 @@ LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
   return locate(clean, predicted);
 }
 
-LoamPose Loam::begin_map(const Cloud& cloud, LoamPose pose, bool bent, bool anew) {
+LoamPose Loam::begin_map(const Cloud& cloud, LoamPose pose, bool bent) {
   map_.clear();
   pose.valid = true;
-  if (anew) {
-    pose.problem = "the local map began anew where the vehicle was predicted to be";
-    pose.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
-  }
-  accept(pose, cloud, false);
+  accept(pose, cloud);
   first_is_bent_ = bent;
   return pose;
 }
 
 LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
-  const int threads = static_cast<int>(options_.threads);
   const double length_s = length_of(sweep), since_s = seconds(sweep.stamp - *last_valid_);
   const Prediction prediction = predict(sweep, length_s, states);
   LoamPose out;
   out.stamp = sweep.stamp, out.T_world_body = prediction.T_world_body;
 
-  const Features features = find_features(sweep.points, options_.features, threads);
+  const Features features = find_features(sweep.points, options_.features, workspace_.threads);
   const std::size_t count = features.edges.size() + features.planes.size();
   if (count < static_cast<std::size_t>(options_.registration.min_matches)) {
     out.problem = "too few features: " + counted(count, "in ") + counted(sweep.points.size(), "points");
@@ -121,11 +120,15 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   };
   Cloud cloud = cloud_with(prediction);
   const bool lost = since_s > options_.restart_s;
-  if (map_.empty() || lost) return begin_map(cloud, out, !prediction.covered && !sweep.compensated, lost);
+  if (lost) {
+    out.problem = "the local map began anew where the vehicle was predicted to be";
+    out.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
+  }
+  if (map_.empty() || lost) return begin_map(cloud, out, !prediction.covered && !sweep.compensated);
 
   const std::size_t coarsest = map_.surfaces().size() - 1;
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
-    return fit_to_map(cloud, map, guess, first_level, options_.registration, threads, scratch_);
+    return fit_to_map(cloud, map, guess, first_level, options_.registration, workspace_);
   };
   const bool weak = !prediction.covered || since_s > kLongGap;
   const bool scan_to_scan =
@@ -162,12 +165,13 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   } else {
     out.valid = true;
     out.T_world_body = found.T_world_body;
-    accept(out, cloud, scan_to_scan);
+    accept(out, cloud);
+    if (scan_to_scan) last_sweep_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
   }
   return out;
 }
 
-void Loam::accept(const LoamPose& pose, const Cloud& cloud, bool keep_sweep) {
+void Loam::accept(const LoamPose& pose, const Cloud& cloud) {
   const double dt_s = seconds(pose.stamp - *last_valid_);
   twist_ = dt_s > 0 && dt_s < kHeld ? twist_between(T_world_last_, pose.T_world_body, dt_s) : Twist{};
   last_valid_ = pose.stamp;
@@ -178,7 +182,6 @@ void Loam::accept(const LoamPose& pose, const Cloud& cloud, bool keep_sweep) {
   first_is_bent_ = false;
   if (map_.is_new_place(place)) map_.insert(transformed(pose.T_world_body, cloud), place);
   last_sweep_.clear();
-  if (keep_sweep) last_sweep_.insert(transformed(pose.T_world_body, cloud), place);
 }
 
 }  // namespace karst::core

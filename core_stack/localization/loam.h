@@ -64,13 +64,13 @@ class Loam {
   };
   Prediction predict(const Sweep& sweep, double length_s, const StateHistory& states) const;
   LoamPose locate(const Sweep& sweep, const StateHistory& states);
-  LoamPose begin_map(const Cloud& cloud, LoamPose pose, bool bent, bool anew);
-  void accept(const LoamPose& pose, const Cloud& cloud, bool keep_sweep);
+  LoamPose begin_map(const Cloud& cloud, LoamPose pose, bool bent);
+  void accept(const LoamPose& pose, const Cloud& cloud);
 
   LoamOptions options_;
   LocalMap map_;
   LocalMap last_sweep_;  // in the world; empty unless scan to scan is in use
-  Grids scratch_;
+  Workspace workspace_;
   Pose T_world_last_;  // of the last valid pose, the start before that
   Twist twist_;        // at the last valid pose
   std::optional<TimeNs> last_stamp_, last_valid_;

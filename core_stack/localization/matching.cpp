@@ -67,24 +67,25 @@ std::vector<Vec3f> one_a_voxel(const std::vector<Vec3f>& places, const VoxelGrid
 }  // namespace
 
 Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T_world_body,
-                     std::size_t first_level, int threads, Grids& scratch) {
+                     std::size_t first_level, Workspace& workspace) {
   const Cloud world = transformed(T_world_body, cloud_body);
   const std::vector<VoxelGrid>& levels = map.surfaces();
-  fill_grids(world.surface, levels, first_level, scratch);
+  Grids& grids = workspace.grids;
+  fill_grids(world.surface, levels, first_level, grids);
 
-  const std::vector<Vec3f> places = one_a_voxel(world.planes, scratch[first_level]);
+  const std::vector<Vec3f> places = one_a_voxel(world.planes, grids[first_level]);
   std::vector<Match> lines(world.edges.size());
-  for_each_chunk(lines.size(), kFeaturesPerChunk, threads,
+  for_each_chunk(lines.size(), kFeaturesPerChunk, workspace.threads,
                  [&](std::size_t, std::size_t first, std::size_t end) {
                    for (std::size_t i = first; i < end; ++i)
                      match_line(map.edges(), world.edges[i], lines[i]);
                  });
   std::vector<PlaneMatch> planes(places.size());
-  for_each_chunk(places.size(), kFeaturesPerChunk, threads,
+  for_each_chunk(places.size(), kFeaturesPerChunk, workspace.threads,
                  [&](std::size_t, std::size_t first, std::size_t end) {
                    for (std::size_t i = first; i < end; ++i)
                      for (std::size_t l = first_level; l < levels.size() && planes[i].match.normals == 0; ++l)
-                       if (match_plane(levels[l], scratch[l], places[i], planes[i])) planes[i].level = l;
+                       if (match_plane(levels[l], grids[l], places[i], planes[i])) planes[i].level = l;
                  });
 
   Matches out;
@@ -97,7 +98,7 @@ Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T
   for (const Match& m : lines)
     if (m.normals) ++out.edges, add(m);
   std::vector<std::vector<char>> taken;  // a coarse voxel may have been asked for by several fine ones
-  for (const VoxelGrid& g : scratch) taken.emplace_back(g.voxels().size());
+  for (const VoxelGrid& g : grids) taken.emplace_back(g.voxels().size());
   for (const PlaneMatch& m : planes) {
     if (!m.match.normals) continue;
     ++out.planes;

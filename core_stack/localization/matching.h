@@ -29,9 +29,14 @@ struct Matches {
   int places = 0;  // that were looked for: edges and voxels with a planar feature
 };
 
-/// Matches of a sweep seen from about `T_world_body`, in surfaces of `first_level` and coarser. `scratch`
-/// holds the sweep's grids; it is handed in to keep its memory.
+/// What the work is done with; results do not depend on it.
+struct Workspace {
+  int threads = 1;
+  Grids grids;  // of the sweep: kept for their memory
+};
+
+/// Matches of a sweep seen from about `T_world_body`, in surfaces of `first_level` and coarser.
 Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T_world_body,
-                     std::size_t first_level, int threads, Grids& scratch);
+                     std::size_t first_level, Workspace& workspace);
 
 }  // namespace karst::core

@@ -97,13 +97,13 @@ Step solve(const NormalEquations& equations, double degenerate_fraction) {
 }
 
 Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, std::size_t first_level,
-               const RegistrationOptions& options, int threads, Grids& scratch) {
+               const RegistrationOptions& options, Workspace& workspace) {
   Fit fit;
   fit.T_world_body = guess;
   for (std::int64_t pass = 0; pass < options.max_passes; ++pass) {
     const std::size_t level = first_level - std::min(first_level, static_cast<std::size_t>(pass));
     const double voxel_m = map.surfaces()[level].voxel_m();
-    const Matches matches = find_matches(cloud_body, map, fit.T_world_body, level, threads, scratch);
+    const Matches matches = find_matches(cloud_body, map, fit.T_world_body, level, workspace);
     fit.edges = matches.edges, fit.planes = matches.planes;
     fit.matched_fraction =
         (matches.edges + matches.planes) / std::max(1.0, static_cast<double>(matches.places));
@@ -114,7 +114,7 @@ Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, 
 
     double moved = 0, width_m = voxel_m;
     for (std::int64_t i = 0; i < options.max_steps; ++i) {
-      const NormalEquations equations = linearize(matches.all, fit.T_world_body, width_m, threads);
+      const NormalEquations equations = linearize(matches.all, fit.T_world_body, width_m, workspace.threads);
       const Step step = solve(equations, options.degenerate_fraction);
       Pose& T = fit.T_world_body;
       T.position += step.change.head<3>();

@@ -42,7 +42,7 @@ struct Fit {
 
 /// Starts from `guess` with surfaces of `first_level` and goes on to the finest.
 Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, std::size_t first_level,
-               const RegistrationOptions& options, int threads, Grids& scratch);
+               const RegistrationOptions& options, Workspace& workspace);
 
 /// Weighted sums over all matches at a pose.
 struct NormalEquations {

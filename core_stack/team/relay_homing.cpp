@@ -57,19 +57,18 @@ std::optional<Vec3> ground_of_node(const VoxelMap& map, const Release& release) 
 
 }  // namespace
 
-RelayHoming::RelayHoming(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
-                         const PlanningOptions& planning, const MotionLimits& limits, double vehicle_radius_m)
+RelayHoming::RelayHoming(RobotId self, const RelayHomingSetup& setup)
     : self_(self),
-      strategy_(team.strategy),
-      options_(homing),
-      planning_(planning),
-      limits_(limits),
-      radius_m_(vehicle_radius_m),
-      separation_m_(homing.landing.separation_m),
-      tree_(homing.tree, cruise_speed_mps(limits)) {
+      strategy_(setup.team.strategy),
+      options_(setup.homing),
+      planning_(setup.planning),
+      limits_(setup.motion),
+      radius_m_(setup.vehicle_radius_m),
+      separation_m_(setup.homing.landing.separation_m),
+      tree_(setup.homing.tree, cruise_speed_mps(setup.motion)) {
   const FreeRay unseen = [](const Vec3&, const Vec3&) { return false; };
-  tree_.insert_communication({kBase, 1}, to_centimetres(base), 0, unseen);
-  relays_ = {{kBase, base, base}};
+  tree_.insert_communication({kBase, 1}, to_centimetres(setup.base), 0, unseen);
+  relays_ = {{kBase, setup.base, setup.base}};
 }
 
 TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here,

@@ -44,12 +44,18 @@ struct TeamNews {
   TimeNs ends = 0;          // its own battery, by the team's clock
 };
 
+struct RelayHomingSetup {
+  TeamOptions team;  // strategy return_to_base keeps the tree for the others, and knows no places
+  HomingOptions homing;
+  PlanningOptions planning;
+  MotionLimits motion;
+  double vehicle_radius_m = 0;
+  Vec3 base = Vec3::Zero();  // the base's antenna
+};
+
 class RelayHoming {
  public:
-  /// `base` is the base's antenna. Strategy return_to_base keeps the tree for the others, and knows no
-  /// places.
-  RelayHoming(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
-              const PlanningOptions& planning, const MotionLimits& limits, double vehicle_radius_m);
+  RelayHoming(RobotId self, const RelayHomingSetup& setup);
 
   /// Takes in what others told and what it has seen since: a pose node at `here`, rays near cells in `closed`
   /// that became rock. The roadmap must be up to date. Returns what to tell the others.

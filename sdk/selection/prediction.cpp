@@ -69,46 +69,48 @@ double predict(const Values& v, const std::vector<double>& level, const std::vec
 }
 
 std::vector<double> kernel_weights(const std::vector<KnownCave>& caves, const CaveFigures& cave,
-                                   const std::vector<double>& scales, double bandwidth) {
+                                   const Kernel& kernel) {
   std::vector<double> squared, weight;
   for (const KnownCave& known : caves) {
-    const Distance d = distance_between(cave, known.figures, scales);
+    const Distance d = distance_between(cave, known.figures, kernel.scales);
     squared.push_back(d.shared == 0
                           ? std::numeric_limits<double>::infinity()
                           : d.value * d.value * shared_weight(cave, known.figures) / total_weight());
   }
   // Relative to the nearest: far from everything, the weights would all vanish.
   const double least = *std::min_element(squared.begin(), squared.end());
+  const double h = kernel.bandwidth;
   for (const double s : squared)
-    weight.push_back(std::isinf(s) ? 0.0 : std::exp(-0.5 * (s - least) / (bandwidth * bandwidth)));
+    weight.push_back(std::isinf(s) ? 0.0 : std::exp(-0.5 * (s - least) / (h * h)));
   return weight;
 }
 
 std::vector<double> left_out_residuals(const Experience& e, const Values& v, const std::vector<double>& level,
-                                       const std::vector<double>& scales, double bandwidth,
-                                       bool of_advantage) {
+                                       const Kernel& kernel, Predicted what) {
   std::vector<double> residuals(v.mean.size(), kUnknown);
   for (std::size_t c = 0; c < v.caves; ++c) {
     if (std::isnan(level[c])) continue;
     std::vector<KnownCave> others = e.caves;
     others[c].figures = {};  // of which nothing is known weighs nothing
-    const std::vector<double> weight = kernel_weights(others, e.caves[c].figures, scales, bandwidth);
+    const std::vector<double> weight = kernel_weights(others, e.caves[c].figures, kernel);
     double expected_level = 0, all = 0;
     for (std::size_t o = 0; o < v.caves; ++o)
       if (!std::isnan(level[o])) all += weight[o], expected_level += weight[o] * level[o];
     for (std::size_t k = 0; k < v.contestants; ++k)
       if (!std::isnan(v.at(k, c)))
         residuals[k * v.caves + c] = v.at(k, c) - predict(v, level, weight, k) -
-                                     (of_advantage ? level[c] - expected_level / all : 0.0);
+                                     (what == Predicted::advantage ? level[c] - expected_level / all : 0.0);
   }
   return residuals;
 }
 
 double best_bandwidth(const Experience& e, const Values& v, const std::vector<double>& level,
                       const std::vector<double>& scales) {
+  Kernel kernel{scales, 0};
   double best = kBandwidths.back(), least = std::numeric_limits<double>::infinity();
   for (auto h = kBandwidths.rbegin(); h != kBandwidths.rend(); ++h) {
-    const std::vector<double> residuals = left_out_residuals(e, v, level, scales, *h, true);
+    kernel.bandwidth = *h;
+    const std::vector<double> residuals = left_out_residuals(e, v, level, kernel, Predicted::advantage);
     double sum = 0;
     int n = 0;
     for (std::size_t i = 0; i < residuals.size(); ++i) {

@@ -23,15 +23,24 @@ std::vector<double> levels(const Values& values);
 double predict(const Values& values, const std::vector<double>& level, const std::vector<double>& weight,
                std::size_t contestant);
 
+/// How alike caves count.
+struct Kernel {
+  std::vector<double> scales;  // of the figures
+  double bandwidth = 0;
+};
+
 /// Weights of the known caves for a cave. Figures that are not known count as no difference here: the fewer
 /// are known, the less the weights differ.
 std::vector<double> kernel_weights(const std::vector<KnownCave>& caves, const CaveFigures& cave,
-                                   const std::vector<double>& scales, double bandwidth);
+                                   const Kernel& kernel);
+
+/// What is predicted: a contestant's value, or its advantage over the cave's level.
+enum class Predicted { value, advantage };
 
 /// Residuals of predicting each cave from the others, by contestant and cave; NaN where there is none.
 std::vector<double> left_out_residuals(const Experience& experience, const Values& values,
-                                       const std::vector<double>& level, const std::vector<double>& scales,
-                                       double bandwidth, bool of_advantage);
+                                       const std::vector<double>& level, const Kernel& kernel,
+                                       Predicted what);
 
 /// The bandwidth at which caves left out are predicted best, in what tells contestants apart, as a share of
 /// the cave's level. Infinity stands for caves that tell nothing.

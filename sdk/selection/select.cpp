@@ -65,9 +65,8 @@ std::vector<Expected> ranking_of(const Values& v, const std::vector<double>& lev
 
 /// Student's interval of the errors made in caves left out: of the mean in a new cave.
 void give_intervals(const Experience& e, const Values& v, const std::vector<double>& level,
-                    const std::vector<double>& scales, double bandwidth, double probability,
-                    std::vector<Expected>& ranking) {
-  const std::vector<double> residuals = left_out_residuals(e, v, level, scales, bandwidth, false);
+                    const Kernel& kernel, double probability, std::vector<Expected>& ranking) {
+  const std::vector<double> residuals = left_out_residuals(e, v, level, kernel, Predicted::value);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double x : v.mean)
     if (!std::isnan(x)) least = std::min(least, x), most = std::max(most, x);
@@ -147,8 +146,9 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
   Selected s;
   s.flown = !same.empty();
   s.bandwidth = best_bandwidth(e, values, level, scales);
+  const Kernel kernel{scales, s.bandwidth};
   s.limit = farthest_neighbour(e.caves, scales);
-  std::vector<double> weight = kernel_weights(e.caves, cave, scales, s.bandwidth);
+  std::vector<double> weight = kernel_weights(e.caves, cave, kernel);
   if (s.flown) std::fill(weight.begin(), weight.end(), 0.0);
   for (const std::size_t c : same) weight[c] = 1;
   double all = 0;
@@ -167,7 +167,7 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
   if (s.flown)
     give_intervals_there(e, metric, same, options.level, s.ranking);
   else
-    give_intervals(e, values, level, scales, s.bandwidth, options.level, s.ranking);
+    give_intervals(e, values, level, kernel, options.level, s.ranking);
   s.confidence = confidence_of(values, weight, sign, s.ranking.front().contestant, !s.flown);
   s.refused = !s.flown && s.near.front().distance.value > s.limit;
   s.reason = s.refused ? why_far(e, cave, s.near.front(), s.limit)

@@ -68,7 +68,7 @@ void landing() {
   HomingOptions options;
   options.landing.link.range_m = 1000, options.landing.link.rock_db_per_m = 0;
   const Vec3 base = cave.line.front();
-  RelayHoming homing(1, {}, options, base, planning, limits, 0.3);
+  RelayHoming homing(1, {{}, options, planning, limits, 0.3, base});
   TeamNews news;
   news.relays = {{kBase, base, base}};
   bench::Times update, nearest, gets_by;

@@ -40,27 +40,32 @@ void finish(OcTree& tree, OcTreeNode* node) {
   if (!tree.pruneNode(node)) node->updateOccupancyChildren();
 }
 
-/// True if some cell of the cube of edge 1 << bits at (x, y, z) in the block is known.
-bool any_known(const Block& b, std::uint32_t x, std::uint32_t y, std::uint32_t z, int bits) {
-  const std::uint32_t edge = 1u << bits;
-  for (std::uint32_t k = z; k < z + edge; ++k)
-    for (std::uint32_t j = y; j < y + edge; ++j)
-      for (std::uint32_t i = x; i < x + edge; ++i)
+/// Cells of a block: the cube of edge 1 << bits at (x, y, z).
+struct Cube {
+  std::uint32_t x = 0, y = 0, z = 0;
+  int bits = 3;
+};
+
+/// True if some cell of the cube is known.
+bool any_known(const Block& b, const Cube& c) {
+  const std::uint32_t edge = 1u << c.bits;
+  for (std::uint32_t k = c.z; k < c.z + edge; ++k)
+    for (std::uint32_t j = c.y; j < c.y + edge; ++j)
+      for (std::uint32_t i = c.x; i < c.x + edge; ++i)
         if (b.log_odds[i | j << 3 | k << 6] != kUnknown) return true;
   return false;
 }
 
-void build_in_block(OcTree& tree, OcTreeNode* node, const Block& b, std::uint32_t x, std::uint32_t y,
-                    std::uint32_t z, int bits) {
-  if (bits == 0) {
-    node->setLogOdds(static_cast<float>(b.log_odds[x | y << 3 | z << 6]) / kLogOddsScale);
+void build_in_block(OcTree& tree, OcTreeNode* node, const Block& b, const Cube& c) {
+  if (c.bits == 0) {
+    node->setLogOdds(static_cast<float>(b.log_odds[c.x | c.y << 3 | c.z << 6]) / kLogOddsScale);
     return;
   }
-  const std::uint32_t half = 1u << (bits - 1);
+  const std::uint32_t half = 1u << (c.bits - 1);
   for (unsigned i = 0; i < 8; ++i) {
-    const std::uint32_t cx = x + (i & 1 ? half : 0), cy = y + (i & 2 ? half : 0), cz = z + (i & 4 ? half : 0);
-    if (any_known(b, cx, cy, cz, bits - 1))
-      build_in_block(tree, child_of(tree, node, i), b, cx, cy, cz, bits - 1);
+    const Cube octant{c.x + (i & 1 ? half : 0), c.y + (i & 2 ? half : 0), c.z + (i & 4 ? half : 0),
+                      c.bits - 1};
+    if (any_known(b, octant)) build_in_block(tree, child_of(tree, node, i), b, octant);
   }
   finish(tree, node);
 }
@@ -68,7 +73,7 @@ void build_in_block(OcTree& tree, OcTreeNode* node, const Block& b, std::uint32_
 /// `leaves` are all blocks below `node`, which stands `levels` above them.
 void build(OcTree& tree, OcTreeNode* node, std::span<const Leaf> leaves, int levels) {
   if (levels == 0) {
-    build_in_block(tree, node, *leaves.front().block, 0, 0, 0, 3);
+    build_in_block(tree, node, *leaves.front().block, Cube{});
     return;
   }
   for (std::size_t begin = 0, end = 0; begin < leaves.size(); begin = end) {
@@ -88,7 +93,7 @@ std::unique_ptr<OcTree> to_octree(const VoxelMap& map) {
   auto tree = std::make_unique<OcTree>(map.resolution_m());
   std::vector<Leaf> leaves;
   for (const auto& b : VoxelReader(map).blocks().all())
-    if (any_known(*b, 0, 0, 0, 3)) leaves.push_back({morton_of(b->id), b.get()});
+    if (any_known(*b, Cube{})) leaves.push_back({morton_of(b->id), b.get()});
   if (leaves.empty()) return tree;
   std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) { return a.morton < b.morton; });
 

@@ -28,8 +28,8 @@ MotionLimits with_room_to_catch_up(MotionLimits limits) {
 
 }  // namespace
 
-MotionLimits slowed(MotionLimits limits, double max_speed_mps) {
-  if (max_speed_mps > 0) limits.max_speed_mps = std::min(limits.max_speed_mps, max_speed_mps);
+MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps) {
+  if (max_speed_mps) limits.max_speed_mps = std::min(limits.max_speed_mps, *max_speed_mps);
   limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
   return limits;
 }
@@ -64,19 +64,20 @@ ImuSample Flight::expected_imu(TimeNs now) const {
   return {now, Vec3(0, 0, command_.thrust_n / mass_.mass_kg()), command_.body_rate_radps};
 }
 
-void Flight::follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-                    const HeadingPlan& heading, double max_speed_mps, const SlowPlaces& slow,
-                    const Trajectory* ready) {
-  heading_ = heading;
-  path_speed_mps_ = max_speed_mps;
-  slow_ = slow;
-  braking_ = false;
-  trajectory_ = ready
-                    ? *ready
-                    : sample_trajectory(points, start_speed_mps, start, limits(max_speed_mps), heading, slow);
+void Flight::follow(const Course& c) {
+  follow(c,
+         sample_trajectory(c.points, c.start_speed_mps, c.start, limits(c.max_speed_mps), c.heading, c.slow));
 }
 
-MotionLimits Flight::limits(double max_speed_mps) const {
+void Flight::follow(const Course& course, const Trajectory& ready) {
+  heading_ = course.heading;
+  path_speed_mps_ = course.max_speed_mps;
+  slow_ = course.slow;
+  braking_ = false;
+  trajectory_ = ready;
+}
+
+MotionLimits Flight::limits(std::optional<double> max_speed_mps) const {
   MotionLimits limits = limits_;
   limits.max_speed_mps = std::min(limits.max_speed_mps, speed_cap_mps_);
   return slowed(limits, max_speed_mps);
@@ -89,7 +90,12 @@ void Flight::cap_speed(TimeNs now, double max_speed_mps) {
   const CommittedSegment left = until_end(now);
   HeadingPlan heading = heading_;
   heading.start_heading_rad = left.heading_rad;
-  follow(left.points, left.speed_mps, now, heading, path_speed_mps_, slow_);
+  follow({.points = left.points,
+          .start_speed_mps = left.speed_mps,
+          .start = now,
+          .heading = heading,
+          .max_speed_mps = path_speed_mps_,
+          .slow = slow_});
 }
 
 TimeNs Flight::time_nearest(const Vec3& p) const {

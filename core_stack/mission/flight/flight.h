@@ -1,6 +1,7 @@
 // The inner loop: state estimate, trajectory, MPC reference, SE(3) command. Mission control hands it paths.
 #pragma once
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core_stack/control/mass_estimate.h"
@@ -14,8 +15,18 @@
 
 namespace karst::core {
 
-/// The limits of a path with a speed limit of its own; 0: none.
-MotionLimits slowed(MotionLimits limits, double max_speed_mps);
+/// A path as it is to be flown.
+struct Course {
+  std::vector<Vec3> points;  // the first is where the reference will be at `start`
+  double start_speed_mps = 0;
+  TimeNs start = 0;  // not before now
+  HeadingPlan heading = {};
+  std::optional<double> max_speed_mps = {};  // a limit of its own, within the mission's
+  SlowPlaces slow = {};
+};
+
+/// The limits of a path that may have a speed limit of its own.
+MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps);
 
 class Flight {
  public:
@@ -34,14 +45,11 @@ class Flight {
   /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.
   AttitudeRateCommand control(TimeNs now);
 
-  /// Flies along `points` from `start` on (not before now); the first point is where the reference will be
-  /// then. Not faster than `max_speed_mps`, if that is below the mission's limit and not 0. `ready` is the
-  /// trajectory if it was made beforehand, where the map is.
-  void follow(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
-              const HeadingPlan& heading, double max_speed_mps = 0, const SlowPlaces& slow = {},
-              const Trajectory* ready = nullptr);
+  void follow(const Course& course);
+  /// By the trajectory along it that was made beforehand, where the map is.
+  void follow(const Course& course, const Trajectory& ready);
   /// The limits `follow` keeps.
-  MotionLimits limits(double max_speed_mps) const;
+  MotionLimits limits(std::optional<double> max_speed_mps = std::nullopt) const;
   /// Flies no faster than this, from now on and along what is left of the present path.
   void cap_speed(TimeNs now, double max_speed_mps);
   /// Straight up or down at `speed_mps` by `height_m` from the present reference.
@@ -98,7 +106,7 @@ class Flight {
   Trajectory trajectory_;
   HeadingPlan heading_;  // of the path under way, as are its own speed limit and its slow places
   SlowPlaces slow_;
-  double path_speed_mps_ = 0;  // 0: none
+  std::optional<double> path_speed_mps_;
   double speed_cap_mps_ = std::numeric_limits<double>::infinity();
   EmergencyLanding emergency_landing_;
   enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: they never run again

@@ -23,7 +23,7 @@ std::string why_sampled(const std::optional<PolynomialTrajectory>& polynomial) {
 RouteStart PathExecution::start(Flight::CommittedSegment committed, TimeNs at) const {
   return {.at = at,
           .committed = std::move(committed),
-          .limits = flight_.limits(0),
+          .limits = flight_.limits(),
           .narrow_places = narrow_places_};
 }
 
@@ -35,7 +35,7 @@ void PathExecution::follow(const Route& route, TimeNs now) {
   const auto& polynomial = route.polynomial;
   const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now &&
                     (flight_.expected(now).position - route.points.front()).norm() < 0.01 &&
-                    flight_.limits(0).max_speed_mps >= polynomial->speed_limit_mps;
+                    flight_.limits().max_speed_mps >= polynomial->speed_limit_mps;
   const nlohmann::json points = list(route.points);
   nlohmann::json plan{{"length", path_length_m(route.points)},
                       {"from", points.front()},
@@ -52,12 +52,21 @@ void PathExecution::follow(const Route& route, TimeNs now) {
   const double start_speed_mps = flight_.at_rest(now) ? 0.0 : route.start_speed_mps;
   const bool still_so = !route.sampled.samples.empty() && start_speed_mps == route.start_speed_mps &&
                         flight_.limits(route.max_speed_mps) == route.limits;
-  Trajectory sampled = route.sampled;
-  sampled.start = now;
-  flight_.follow(route.points, start_speed_mps, now, route.heading, route.max_speed_mps, route.slow,
-                 fits       ? &polynomial->trajectory
-                 : still_so ? &sampled
-                            : nullptr);
+  const Course course{.points = route.points,
+                      .start_speed_mps = start_speed_mps,
+                      .start = now,
+                      .heading = route.heading,
+                      .max_speed_mps = route.max_speed_mps,
+                      .slow = route.slow};
+  if (fits) {
+    flight_.follow(course, polynomial->trajectory);
+  } else if (still_so) {
+    Trajectory sampled = route.sampled;
+    sampled.start = now;
+    flight_.follow(course, sampled);
+  } else {
+    flight_.follow(course);
+  }
   narrow_places_ = route.slow.places;
   speed_limited_ = route.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = route.path;

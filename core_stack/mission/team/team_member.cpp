@@ -15,8 +15,12 @@ TeamMember::TeamMember(RobotId id, const CoreOptions& options, const VehicleDesc
     : port_(port),
       first_node_(options.team.robots + (id - 1) * options.team.nodes + 1),
       node_(id, options.team, options.homing, setup.base, setup.seed, setup.key),
-      homing_(id, options.team, options.homing, setup.base, options.planning, options.motion,
-              vehicle.radius_m),
+      homing_(id, {.team = options.team,
+                   .homing = options.homing,
+                   .planning = options.planning,
+                   .motion = options.motion,
+                   .vehicle_radius_m = vehicle.radius_m,
+                   .base = setup.base}),
       teamwork_(node_, homing_, options.team, starts_at) {
   TeamState waiting;
   waiting.position = vehicle.T_world_start.position;

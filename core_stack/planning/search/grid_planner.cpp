@@ -65,10 +65,13 @@ Path search_path(const VoxelMap& map, const Vec3& start, const Vec3& goal, const
     path.escape_points = escape->size() - 1;
   }
   const Vec3 from = path.points.back(), half = Vec3::Constant(0.5);
-  const GridSearchResult found =
-      search_grid(map, free, rule, cells_that_see(free, from, clearance), from / res - half,
-                  cells_that_see(free, goal, clearance), goal / res - half, options.heuristic_weight,
-                  options.max_expansions);
+  const GridSearchResult found = search_grid(map, free, rule,
+                                             {.starts = cells_that_see(free, from, clearance),
+                                              .goals = cells_that_see(free, goal, clearance),
+                                              .from = from / res - half,
+                                              .to = goal / res - half,
+                                              .weight = options.heuristic_weight,
+                                              .max_expansions = options.max_expansions});
   if (found.end == GridSearchResult::End::gave_up)
     return fail(PlanStatus::gave_up, "gave up after " + std::to_string(options.max_expansions) + " cells");
   if (found.end == GridSearchResult::End::exhausted)

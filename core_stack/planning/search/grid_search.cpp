@@ -43,13 +43,13 @@ struct SearchTile {
 
 class Search {
  public:
-  Search(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule, const std::vector<CellKey>& goals,
-         const Vec3& to, double weight)
-      : map_(map), free_(free), rule_(rule), goals_(goals), to_(to), weight_(static_cast<float>(weight)) {}
+  Search(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule, const GridQuery& query)
+      : map_(map), free_(free), rule_(rule), query_(query), weight_(static_cast<float>(query.weight)) {}
 
-  GridSearchResult run(const std::vector<CellKey>& starts, const Vec3& from, std::int64_t max_expansions) {
-    for (const CellKey& k : starts)
-      reach(tile_at(tile_of(k)), k, static_cast<float>(octile_cells(Vec3(k.x, k.y, k.z) - from)), kRoot);
+  GridSearchResult run() {
+    for (const CellKey& k : query_.starts)
+      reach(tile_at(tile_of(k)), k, static_cast<float>(octile_cells(Vec3(k.x, k.y, k.z) - query_.from)),
+            kRoot);
     GridSearchResult result;
     while (!heap_.empty()) {
       const OpenNode top = heap_.pop();
@@ -60,7 +60,7 @@ class Search {
       }
       SearchTile& tile = *tiles_[top.node / kTileCells];
       tile.parent[top.node % kTileCells] |= kClosed;
-      if (++result.expansions > max_expansions) {
+      if (++result.expansions > query_.max_expansions) {
         result.end = GridSearchResult::End::gave_up;
         return result;
       }
@@ -88,7 +88,9 @@ class Search {
     return i;
   }
 
-  float to_go(const CellKey& k) const { return static_cast<float>(octile_cells(to_ - Vec3(k.x, k.y, k.z))); }
+  float to_go(const CellKey& k) const {
+    return static_cast<float>(octile_cells(query_.to - Vec3(k.x, k.y, k.z)));
+  }
 
   void reach(std::uint32_t tile_index, const CellKey& k, float cost, std::uint8_t by) {
     SearchTile& tile = *tiles_[tile_index];
@@ -105,7 +107,8 @@ class Search {
     const TileKey home = table_.keys()[here];
     const CellKey k = cell_in_tile(tiles_[here]->corner, at.node % kTileCells);
     const float cost = tiles_[here]->cost[at.node % kTileCells];
-    if (std::find(goals_.begin(), goals_.end(), k) != goals_.end() && cost + to_go(k) < goal_cost_) {
+    const std::vector<CellKey>& goals = query_.goals;
+    if (std::find(goals.begin(), goals.end(), k) != goals.end() && cost + to_go(k) < goal_cost_) {
       goal_cost_ = cost + to_go(k);
       goal_cell_ = k;
       heap_.push_or_lower({goal_cost_, goal_cost_, kGoal});
@@ -133,8 +136,7 @@ class Search {
   const VoxelMap& map_;
   FreeTiles& free_;
   const ClearanceRule& rule_;
-  const std::vector<CellKey>& goals_;
-  Vec3 to_;
+  const GridQuery& query_;
   float weight_;
   TileTable table_;
   std::vector<std::unique_ptr<SearchTile>> tiles_;
@@ -160,10 +162,8 @@ double octile_cells(const Vec3& displacement) {
 }
 
 GridSearchResult search_grid(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule,
-                             const std::vector<CellKey>& starts, const Vec3& from,
-                             const std::vector<CellKey>& goals, const Vec3& to, double weight,
-                             std::int64_t max_expansions) {
-  return Search(map, free, rule, goals, to, weight).run(starts, from, max_expansions);
+                             const GridQuery& query) {
+  return Search(map, free, rule, query).run();
 }
 
 }  // namespace karst::core

@@ -16,12 +16,16 @@ struct GridSearchResult {
 /// space.
 double octile_cells(const Vec3& displacement);
 
-/// Shortest way through clear cells from any of `starts` to any of `goals`, at most `weight` times longer
-/// than the best; ends count with their octile distance to `from` and `to` (in cells, centres at whole
-/// numbers). Tiles of `free` are read from the map as the search gets there.
+/// From any of `starts` to any of `goals`, which count with their octile distance to `from` and `to`.
+struct GridQuery {
+  std::vector<CellKey> starts, goals;
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // in cells, centres at whole numbers
+  double weight = 1;                            // the way is at most so many times longer than the best
+  std::int64_t max_expansions = 0;
+};
+
+/// Shortest way through clear cells. Tiles of `free` are read from the map as the search gets there.
 GridSearchResult search_grid(const VoxelMap& map, FreeTiles& free, const ClearanceRule& rule,
-                             const std::vector<CellKey>& starts, const Vec3& from,
-                             const std::vector<CellKey>& goals, const Vec3& to, double weight,
-                             std::int64_t max_expansions);
+                             const GridQuery& query);
 
 }  // namespace karst::core

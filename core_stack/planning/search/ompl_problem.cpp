@@ -129,24 +129,26 @@ class Shortest : public ob::PathLengthOptimizationObjective {
 
 }  // namespace
 
-OmplProblem make_problem(const FreeTiles& free, std::shared_ptr<const SampledCells> cells, const Vec3& low,
-                         const Vec3& high, const Vec3& start, const Vec3& goal, double clearance_m) {
+OmplProblem make_problem(const FreeTiles& free, std::shared_ptr<const SampledCells> cells,
+                         const OmplQuery& query) {
   const auto space = std::make_shared<ob::RealVectorStateSpace>(3);
   ob::RealVectorBounds bounds(3);
   for (unsigned int axis = 0; axis < 3; ++axis)
-    bounds.setLow(axis, low[axis]), bounds.setHigh(axis, high[axis]);
+    bounds.setLow(axis, query.low[axis]), bounds.setHigh(axis, query.high[axis]);
   space->setBounds(bounds);
   const double resolution_m = free.resolution_m();
   space->setStateSamplerAllocator([cells, resolution_m](const ob::StateSpace* s) -> ob::StateSamplerPtr {
     return std::make_shared<CellSampler>(s, cells, resolution_m);
   });
   OmplProblem problem{std::make_shared<ob::SpaceInformation>(space), nullptr};
-  problem.space->setStateValidityChecker(std::make_shared<ClearState>(problem.space, free, clearance_m));
-  problem.space->setMotionValidator(std::make_shared<ClearMotion>(problem.space, free, clearance_m));
+  problem.space->setStateValidityChecker(
+      std::make_shared<ClearState>(problem.space, free, query.clearance_m));
+  problem.space->setMotionValidator(std::make_shared<ClearMotion>(problem.space, free, query.clearance_m));
   problem.space->setup();
   problem.definition = std::make_shared<ob::ProblemDefinition>(problem.space);
   ob::ScopedState<> from(space), to(space);
-  set_point(from.get(), start), set_point(to.get(), goal);
+  set_point(from.get(), query.start);
+  set_point(to.get(), query.goal);
   problem.definition->setStartAndGoalStates(from, to);
   problem.definition->setOptimizationObjective(std::make_shared<Shortest>(problem.space));
   return problem;

@@ -32,14 +32,20 @@ struct SampledCells {
   std::vector<std::uint64_t> up_to;  // number of cells in the blocks up to and with each
 };
 
+struct OmplQuery {
+  Vec3 low, high;  // of the box that is searched
+  Vec3 start, goal;
+  double clearance_m;
+};
+
 /// A query as all planners are asked it. `free` must live as long as this.
 struct OmplProblem {
   ompl::base::SpaceInformationPtr space;
   ompl::base::ProblemDefinitionPtr definition;
 };
 
-/// R^3 between `low` and `high`; a state is valid if it is clear, and a motion if every point of it is.
-OmplProblem make_problem(const FreeTiles& free, std::shared_ptr<const SampledCells> cells, const Vec3& low,
-                         const Vec3& high, const Vec3& start, const Vec3& goal, double clearance_m);
+/// R^3 within the box; a state is valid if it is clear, and a motion if every point of it is.
+OmplProblem make_problem(const FreeTiles& free, std::shared_ptr<const SampledCells> cells,
+                         const OmplQuery& query);
 
 }  // namespace karst::core

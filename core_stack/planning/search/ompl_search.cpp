@@ -157,7 +157,7 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
     ompl::msg::noOutputHandler();  // our stdout belongs to the user; what matters is in the result
     ompl::RNG::setSeed(seed_of(from, goal));
     const OmplProblem problem =
-        make_problem(graph.free, cells_between(graph, low, high), low, high, from, goal, clearance_m);
+        make_problem(graph.free, cells_between(graph, low, high), {low, high, from, goal, clearance_m});
     const std::int64_t steps =
         options.planner_iterations * (options.planner == Planner::bit_star ? kEdgesPerIteration : 1);
     found = solved(problem, make_planner(problem.space, map, at_clearance), steps);

@@ -39,17 +39,23 @@ std::size_t middle(const std::vector<double>& at, std::size_t from, std::size_t 
   return best;
 }
 
-void split(const std::vector<Vec3>& points, const std::vector<double>& at, std::size_t from, std::size_t to,
-           double tolerance_m, double max_m, std::vector<std::size_t>& out) {
+struct Splitting {
+  const std::vector<Vec3>& points;
+  std::vector<double> at;  // lengths along them
+  double tolerance_m, max_m;
+};
+
+void split(const Splitting& s, std::size_t from, std::size_t to, std::vector<std::size_t>& out) {
   std::size_t farthest = from;
-  double most = tolerance_m;
+  double most = s.tolerance_m;
   for (std::size_t i = from + 1; i < to; ++i)
-    if (const double d = deviation_m(points[i], points[from], points[to]); d > most) most = d, farthest = i;
-  if (farthest == from && at[to] - at[from] > max_m) farthest = middle(at, from, to);
+    if (const double d = deviation_m(s.points[i], s.points[from], s.points[to]); d > most)
+      most = d, farthest = i;
+  if (farthest == from && s.at[to] - s.at[from] > s.max_m) farthest = middle(s.at, from, to);
   if (farthest == from) return;
-  split(points, at, from, farthest, tolerance_m, max_m, out);
+  split(s, from, farthest, out);
   out.push_back(farthest);
-  split(points, at, farthest, to, tolerance_m, max_m, out);
+  split(s, farthest, to, out);
 }
 
 /// Points no two of which coincide, close enough for waypoints to be chosen among them.
@@ -134,7 +140,7 @@ Vec3 at_most(const Vec3& v, double most) { return v.norm() > most ? Vec3(v * (mo
 
 std::vector<std::size_t> corners(const std::vector<Vec3>& points, double tolerance_m, double max_m) {
   std::vector<std::size_t> out{0};
-  split(points, lengths_along(points), 0, points.size() - 1, tolerance_m, max_m, out);
+  split({points, lengths_along(points), tolerance_m, max_m}, 0, points.size() - 1, out);
   out.push_back(points.size() - 1);
   return out;
 }

@@ -27,13 +27,19 @@ Station section(const CaveRecipe& recipe, double s, double width_factor, std::ui
   return out;
 }
 
-double freest_turn(const CavePlan& plan, const CaveRecipe& recipe, const Vec3& p, double heading,
-                   double pitch, const Vec3& but, const Passage& own) {
+/// Where a passage has come to, and where it leads on.
+struct Front {
+  Vec3 at;
+  double heading_rad, pitch_rad;
+};
+
+double freest_turn(const CavePlan& plan, const CaveRecipe& recipe, const Front& front, const Vec3& but,
+                   const Passage& own) {
   double best = 0, best_score = -1e9;
   for (const double offset : {0.0, 0.12, -0.12, 0.25, -0.25, 0.4, -0.4}) {
-    const Vec3 ahead = direction(heading + offset, pitch);
-    const double near = room(plan, recipe, p + 5 * ahead, but, own),
-                 far = room(plan, recipe, p + 10 * ahead, but, own);
+    const Vec3 ahead = direction(front.heading_rad + offset, front.pitch_rad);
+    const double near = room(plan, recipe, front.at + 5 * ahead, but, own),
+                 far = room(plan, recipe, front.at + 10 * ahead, but, own);
     const double score = std::min(near, 2.0) + 0.5 * std::min(far, 2.0) - 2.5 * std::abs(offset);
     if (score > best_score) best_score = score, best = offset;
   }
@@ -101,7 +107,7 @@ Passage walk_passage(const CavePlan& plan, const CaveRecipe& recipe, std::uint64
     double pitch = trend + steepness * 1.3 * gradient_noise(s / 14, noise + 7);
     pitch = std::clamp(pitch, -1.05, 1.05);
     if (w.level_start && s < kLevelStartM) pitch = 0;
-    const double best = freest_turn(plan, recipe, p, heading + turn, pitch, w.from, passage);
+    const double best = freest_turn(plan, recipe, {p, heading + turn, pitch}, w.from, passage);
     heading += turn + best;
     p += kStationStepM * direction(heading, pitch);
     // A walk that has come up against another passage ends there.

@@ -148,9 +148,8 @@ PoseError recovered(std::uint64_t seed, double wrong_m, double wrong_rad, std::s
   const Pose truth{Vec3(0.9, 0.5, 0.2), exp_so3(random_vector(r, 0.2))};
   const Pose guess{truth.position + random_vector(r, wrong_m),
                    truth.orientation * exp_so3(random_vector(r, wrong_rad))};
-  Grids scratch;
-  const Fit fit =
-      fit_to_map(cloud_of(world, truth, seed + 99, 0.02), map, guess, first_level, {}, 1, scratch);
+  Workspace workspace;
+  const Fit fit = fit_to_map(cloud_of(world, truth, seed + 99, 0.02), map, guess, first_level, {}, workspace);
   EXPECT_TRUE(fit.good);
   EXPECT_EQ(fit.free_directions, 0);
   return error_between(fit.T_world_body, truth);
@@ -176,10 +175,10 @@ TEST(Registration, ASweepOfAnotherPlaceIsNotGood) {
   const World elsewhere = room({{50, 50, 50}, {60, 58, 54}});
   LocalMap map{LocalMapOptions{}};
   map.insert(cloud_of(furnished_room(), {}, 1, 0.02), Vec3::Zero());
-  Grids scratch;
+  Workspace workspace;
   const Pose far{{55, 54, 52}, Quat::Identity()};
-  EXPECT_FALSE(fit_to_map(cloud_of(elsewhere, far, 2, 0.02), map, far, 0, {}, 1, scratch).good);
-  EXPECT_FALSE(fit_to_map({}, map, {}, 0, {}, 1, scratch).good);
+  EXPECT_FALSE(fit_to_map(cloud_of(elsewhere, far, 2, 0.02), map, far, 0, {}, workspace).good);
+  EXPECT_FALSE(fit_to_map({}, map, {}, 0, {}, workspace).good);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ class OnboardTest : public ::testing::Test {
   /// Flies straight ahead, for that far.
   void fly_ahead(double metres) {
     const Vec3 from = onboard.flight.reference().position;
-    onboard.flight.follow({from, from + Vec3(metres, 0, 0)}, 0, now(), {});
+    onboard.flight.follow({.points = {from, from + Vec3(metres, 0, 0)}, .start = now()});
   }
   std::string events() {
     recorder.flush();

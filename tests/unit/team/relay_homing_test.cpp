@@ -43,7 +43,7 @@ struct Flown : ::testing::Test {
 
   Flown() { roadmap.update(map, changes), options.landing.link.spare_db = 6; }
   RelayHoming homing(LandingStrategy strategy) const {
-    return {1, team_with(strategy), options, base, planning, limits, kRadius};
+    return {1, {team_with(strategy), options, planning, limits, kRadius, base}};
   }
   void fly(RelayHoming& homing, double from_x, double to_x) {
     for (double x = from_x; x <= to_x; x += 1) homing.update(map, roadmap, {x, 0.1, 1}, news, {});
@@ -255,7 +255,7 @@ TEST(RelayHomingInACave, EveryPlaceIsOnTheRockItselfClearOfItAndReachable) {
   roadmap.update(drawn.map, testing::all_cells(drawn.map));
   const Vec3 base = made.start.position;
   const HomingOptions options;
-  RelayHoming homing(1, team_with(LandingStrategy::relay_chain), options, base, planning, {}, kRadius);
+  RelayHoming homing(1, {team_with(LandingStrategy::relay_chain), options, planning, {}, kRadius, base});
   const TeamNews news = hearing(base);
   for (const auto& axis : made.axes)
     for (const Vec3& p : axis)

@@ -48,7 +48,7 @@ TEST(Flight, TakesNoMemoryInTheAirNorForTheEmergencyLanding) {
   f.flight.climb(0, 0.5, 0.5);
   f.advance(5);
   HeadingPlan heading;
-  f.flight.follow({Vec3(0, 0, 0.5), Vec3(20, 0, 0.5)}, 0, f.now, heading);
+  f.flight.follow({.points = {Vec3(0, 0, 0.5), Vec3(20, 0, 0.5)}, .start = f.now, .heading = heading});
   f.advance(3);
   const long before = allocations;
   f.advance(2);

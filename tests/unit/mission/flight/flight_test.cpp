@@ -34,7 +34,7 @@ TEST(Flight, MotorsThatWereSwitchedOffStayOff) {
   f.advance(3);
   f.flight.disarm();
   f.flight.climb(f.now, 1.0, 0.5);
-  f.flight.follow({Vec3::Zero(), Vec3(5, 0, 0)}, 0, f.now, {});
+  f.flight.follow({.points = {Vec3::Zero(), Vec3(5, 0, 0)}, .start = f.now});
   f.flight.land_now(f.now);
   EXPECT_FALSE(f.flight.control(f.now + 10 * kMillisecond).armed);
   EXPECT_FALSE(f.flight.airborne());
@@ -47,13 +47,13 @@ TEST(Flight, LandsAtOnceWhateverElseItIsTold) {
   const Vec3 from = f.flight.reference().position;
   HeadingPlan heading;
   heading.along_path = false;
-  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
   f.advance(4);
   const Vec3 at = f.flight.reference().position;
   const double speed = f.flight.reference().velocity_mps.norm();
   ASSERT_GT(speed, 1.5);
   f.flight.land_now(f.now);
-  f.flight.follow({at, at + Vec3(0, 20, 0)}, 0, f.now, heading);
+  f.flight.follow({.points = {at, at + Vec3(0, 20, 0)}, .start = f.now, .heading = heading});
   f.advance(1);
   f.flight.brake(f.now);
   f.flight.cap_speed(f.now, 0.5);
@@ -81,7 +81,7 @@ TEST(Flight, BrakesOnThePathAndWithinTheStoppingDistance) {
   const Vec3 from = f.flight.reference().position;
   HeadingPlan heading;
   heading.along_path = false;
-  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
   f.advance(5);
   const Vec3 at_brake = f.flight.reference().position;
   const double speed = f.flight.reference().velocity_mps.norm();
@@ -102,7 +102,7 @@ TEST(Flight, TheStretchUntilStopBeginsWhereTheReferenceWillBe) {
   const Vec3 from = f.flight.reference().position;
   HeadingPlan heading;
   heading.along_path = false;
-  f.flight.follow({from, from + Vec3(20, 0, 0)}, 0, f.now, heading);
+  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
   f.advance(4);
   const Flight::CommittedSegment ahead = f.flight.until_stop(f.now + 300 * kMillisecond);
   const Flight::CommittedSegment all = f.flight.until_end(f.now + 300 * kMillisecond);
@@ -120,7 +120,7 @@ TEST(Flight, ACapOnSpeedHoldsUntilItIsLifted) {
   const Vec3 from = f.flight.reference().position;
   HeadingPlan heading;
   heading.along_path = false;
-  f.flight.follow({from, from + Vec3(30, 0, 0)}, 0, f.now, heading);
+  f.flight.follow({.points = {from, from + Vec3(30, 0, 0)}, .start = f.now, .heading = heading});
   f.advance(4);
   ASSERT_GT(f.flight.reference().velocity_mps.norm(), 1.7);
   f.flight.cap_speed(f.now, 0.8);
@@ -144,7 +144,7 @@ TEST(Flight, ABrakeForgetsTheHeadingThatThePathWasToEndWith) {
   HeadingPlan heading;
   heading.along_path = false;
   heading.goal_heading_rad = 3.0;
-  f.flight.follow({from, from + Vec3(30, 0, 0)}, 0, f.now, heading);
+  f.flight.follow({.points = {from, from + Vec3(30, 0, 0)}, .start = f.now, .heading = heading});
   f.advance(1);
   f.flight.brake(f.now);
   f.advance(0.2);

@@ -32,12 +32,11 @@ class TeamPartsTest : public OnboardTest {
 
   TeamNode node = teammate(2), first = teammate(1);
   RelayHoming homing{2,
-                     onboard.options.team,
-                     onboard.options.homing,
-                     Vec3::Zero(),
-                     onboard.options.planning,
-                     onboard.options.motion,
-                     onboard.vehicle.radius_m};
+                     {.team = onboard.options.team,
+                      .homing = onboard.options.homing,
+                      .planning = onboard.options.planning,
+                      .motion = onboard.options.motion,
+                      .vehicle_radius_m = onboard.vehicle.radius_m}};
   Teamwork work{node, homing, onboard.options.team, 0};
   TeamSharing sharing{onboard, work, {phases, path, endurance}};
   RightOfWay right_of_way{onboard, work, {phases, goals, path, flown_path}};

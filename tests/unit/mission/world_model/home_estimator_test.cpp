@@ -91,7 +91,7 @@ TEST(HomeEstimator, InATeamALandingSpotCountsIfItTakesLessTime) {
   options.homing.landing.link.spare_db = 6;
   Estimating e(testing::passage(4, 3.2, 60), options);
   e.world.set_home(base);
-  RelayHoming homing(1, options.team, options.homing, base, options.planning, options.motion, 0.3);
+  RelayHoming homing(1, {options.team, options.homing, options.planning, options.motion, 0.3, base});
   TeamNews news;
   news.relays = {{kBase, base, base}};
   news.ends = 600 * kSecond;

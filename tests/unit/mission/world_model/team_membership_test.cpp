@@ -16,7 +16,7 @@ struct Passage {
   TeamNews news;
 
   Passage() { roadmap.update(map, changes); }
-  RelayHoming homing() const { return {1, {}, {}, Vec3(-8, 0.1, 1), planning, {}, 0.3}; }
+  RelayHoming homing() const { return {1, {{}, {}, planning, {}, 0.3, Vec3(-8, 0.1, 1)}}; }
   /// What a robot reports in sum that flies past and is told of a wall in between.
   std::size_t rays_reported(TeamMembership& team, const std::vector<CellChange>& seen) {
     std::size_t rays = 0;
