@@ -4,13 +4,14 @@ JOBS ?= $(shell nproc)
 CMAKE_FLAGS ?=
 DEMO_RUN ?= runs/demo
 
-.PHONY: help demo test build bench faults format check-format lint asan tsan fuzz install clean
+.PHONY: help demo test build bench faults format check-format lint lint-changed asan asan-readers tsan fuzz install clean
 help:
 	@echo "make demo     install, build, generate a cave, fly a mission through it, write the report"
 	@echo "make test     install, build, run every test"
 	@echo "make bench    benchmarks: ratios against stock OctoMap, NLopt and the naive way"
 	@echo "make faults   FAULT_TRIALS=1000 short flights with one fault each, resumable (docs/fault_campaign.md)"
-	@echo "make format   clang-format on every source file;  make lint  checks format, tidiness, layering"
+	@echo "make format   clang-format on every source file;  make lint  checks format and tidiness"
+	@echo "make lint-changed  the tidiness of what a branch changes;  make asan-readers  what reads files, under ASan and UBSan"
 	@echo "make asan     unit tests under AddressSanitizer and UBSan;  make tsan  under ThreadSanitizer"
 	@echo "make fuzz     every reader of files under libFuzzer, FUZZ_SECONDS=30 each"
 	@echo "make install  into PREFIX (/usr/local)"
@@ -57,12 +58,23 @@ lint:
 	@$(MAKE) check-format
 	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=ON $(CMAKE_FLAGS) >/dev/null
 	@.ci/tidy $(BUILD)
+lint-changed:
+	@.ci/install test
+	@cmake -S . -B build-lint -G Ninja -DKARST_TESTS=OFF -DKARST_UNITY=OFF >/dev/null
+	@.ci/tidy build-lint changed
 
 asan:
 	@.ci/install test
 	@cmake -S . -B build-asan -G Ninja -DKARST_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
 	@cmake --build build-asan -j $(JOBS)
 	@.ci/ctest build-asan -LE flight
+# What reads files of others, and compiles soon.
+READERS = common_test replay_test simulator_cave_test
+asan-readers:
+	@.ci/install test
+	@cmake -S . -B build-asan -G Ninja -DKARST_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
+	@cmake --build build-asan -j $(JOBS) --target $(READERS)
+	@for test in $(READERS); do build-asan/bin/$$test --gtest_brief=1 || exit 1; done
 tsan:
 	@.ci/install test
 	@cmake -S . -B build-tsan -G Ninja -DKARST_SANITIZE=thread -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
