@@ -92,7 +92,8 @@ void JerkMpc::roll_out(const Motion& start) {
   }
 }
 
-void JerkMpc::start_multipliers(bool warm, std::span<const MotionTarget> targets) {
+void JerkMpc::start_multipliers(Start start, std::span<const MotionTarget> targets) {
+  const bool warm = start == Start::warm;
   cost_ = 0;
   for (std::size_t i = 0; i < stages_.size(); ++i)
     cost_ += setup_.position_weight / 2 * (plan_.motion[i].position - targets[i].position).squaredNorm();
@@ -226,14 +227,14 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
 }
 
 /// Iterates from the present plan and multipliers; false if it gave up.
-bool JerkMpc::iterate(const Motion& start, std::span<const MotionTarget> targets, bool patient) {
+bool JerkMpc::iterate(const Motion& start, std::span<const MotionTarget> targets, Patience patience) {
   const auto for_each_ball = [this](auto&& f) {
     for (Stage& s : stages_) f(s.speed), f(s.acceleration), f(s.jerk);
   };
   double shrink = 0.2;
   int creeping = 0;
   bool whole_step = false;
-  for (int i = 0; i < kMaxIterations && (patient || creeping < 4); ++i) {
+  for (int i = 0; i < kMaxIterations && (patience == Patience::full || creeping < 4); ++i) {
     ++plan_.iterations;
     double mu = 0;
     for_each_ball([&](const Ball& b) { mu += b.slack * b.multiplier; });
@@ -276,7 +277,7 @@ const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget
   const auto start_cold = [&] {
     std::fill(plan_.jerk_mps3.begin(), plan_.jerk_mps3.end(), Vec3::Zero());
     roll_out(start);
-    start_multipliers(false, targets);
+    start_multipliers(Start::cold, targets);
   };
   plan_.iterations = 0;
   softness_ = kHard;
@@ -288,17 +289,17 @@ const JerkPlan& JerkMpc::solve(const Motion& start, std::span<const MotionTarget
     roll_out(start);
     shifted_ = plan_.jerk_mps3;
     shifted_excess = excess();
-    start_multipliers(plan_.converged, targets);
-    solved = iterate(start, targets, false);
+    start_multipliers(plan_.converged ? Start::warm : Start::cold, targets);
+    solved = iterate(start, targets, Patience::little);
   }
   if (!solved) {
     start_cold();
-    solved = iterate(start, targets, true);
+    solved = iterate(start, targets, Patience::full);
   }
   if (!solved) {
     softness_ = kSoft;
     start_cold();
-    solved = iterate(start, targets, true);
+    solved = iterate(start, targets, Patience::full);
   }
   plan_.converged = solved;
   if (solved) return plan_;

@@ -78,15 +78,16 @@ class JerkMpc {
   };
   void shift(double elapsed_s, const Motion& start);
   void roll_out(const Motion& start);
-  double excess() const;  // of the plan over its limits, as a share of them; negative within
+  double excess() const;            // of the plan over its limits, as a share of them; negative within
+  enum class Start { cold, warm };  // warm: from the last solution
   /// What the plan to start from costs scales the first mu.
-  void start_multipliers(bool warm, std::span<const MotionTarget> targets);
+  void start_multipliers(Start start, std::span<const MotionTarget> targets);
   /// Fills in all steps; returns the share of them that keeps slacks and multipliers positive.
   /// Also notes what the present plan costs.
   double newton_step(std::span<const MotionTarget> targets, double mu);
-  /// From the present plan and multipliers to the optimum; false if it gave up. An impatient one gives up
-  /// soon where the start was bad.
-  bool iterate(const Motion& start, std::span<const MotionTarget> targets, bool patient);
+  enum class Patience { little, full };  // with little it gives up soon where the start was bad
+  /// From the present plan and multipliers to the optimum; false if it gave up.
+  bool iterate(const Motion& start, std::span<const MotionTarget> targets, Patience patience);
 
   JerkMpcSetup setup_;
   Eigen::Matrix3d terminal_;

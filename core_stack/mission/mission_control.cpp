@@ -412,10 +412,10 @@ void MissionControl::record() {
     return_home_.begin("the run directory cannot be written any more (disk full?)");
 }
 
-void MissionControl::on_ground(TimeNs stamp, bool standing) {
-  standing_ = standing;
+void MissionControl::on_ground(TimeNs stamp) {
+  standing_ = true;
   const bool takes_off = !flown_path_.begun() && !phases_.in(Phase::land);  // it may touch once more
-  if (standing && !takes_off && !phases_.in(Phase::done)) touch_down(stamp);
+  if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
 /// Motors off, before anything else: who has lost the pose would never come down again.

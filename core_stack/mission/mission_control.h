@@ -78,7 +78,8 @@ class MissionControl final : public VehicleSink {
     if (s.stamp <= now()) onboard_.flight.on_barometer(s);
   }
   void on_battery(const BatteryStatus& s) override { endurance_.note(s); }
-  void on_ground(TimeNs stamp, bool standing) override;
+  void on_ground(TimeNs stamp) override;
+  void on_lift_off(TimeNs) override { standing_ = false; }
   void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) override;
 
  private:

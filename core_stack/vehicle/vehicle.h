@@ -41,8 +41,10 @@ class VehicleSink {
   virtual void on_barometer(const BarometerSample&) {}
   virtual void on_pose(const PoseSample&) = 0;
   virtual void on_battery(const BatteryStatus&) = 0;
-  /// The vehicle stands on the ground, or has left it.
-  virtual void on_ground(TimeNs stamp, bool standing) = 0;
+  /// The vehicle stands on the ground.
+  virtual void on_ground(TimeNs stamp) = 0;
+  /// It has left the ground.
+  virtual void on_lift_off(TimeNs stamp) = 0;
   /// Nothing more will come from this vehicle (crash, empty battery, end of a recording).
   virtual void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) = 0;
 };

@@ -31,11 +31,11 @@ bool is_one_of(const std::string& name, std::initializer_list<const char*> names
 
 }  // namespace
 
-double value_at(const char* at, ValueType type, bool swap_bytes) {
+double value_at(const char* at, ValueType type, std::endian order) {
   std::array<char, 8> raw;
   const std::size_t n = size_of(type);
   std::memcpy(raw.data(), at, n);
-  if (swap_bytes) std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(n));
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(n));
   switch (type) {
     case ValueType::int8:
       return value_as<std::int8_t>(raw.data());
@@ -151,14 +151,14 @@ void ScanBuilder::end_point() {
 }
 
 Scan decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields,
-            bool swap_bytes) {
+            std::endian order) {
   std::vector<Field> used;
   std::copy_if(fields.begin(), fields.end(), std::back_inserter(used),
                [](const Field& f) { return f.role != Role::none; });
   ScanBuilder builder(used);
   for (std::size_t i = 0; i < count; ++i) {
     for (const Field& f : used)
-      builder.set(f.role, value_at(bytes.data() + f.offset + i * f.stride, f.type, swap_bytes));
+      builder.set(f.role, value_at(bytes.data() + f.offset + i * f.stride, f.type, order));
     builder.end_point();
   }
   return builder.take();

@@ -1,5 +1,6 @@
 // Which numbers of a record are a point's coordinates, intensity, time and ring, and how they are stored.
 #pragma once
+#include <bit>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -53,11 +54,11 @@ class ScanBuilder {
   bool finite_ = true;
 };
 
-/// The number stored at an address.
-double value_at(const char* at, ValueType type, bool swap_bytes);
+/// The number stored at an address, its bytes in that order.
+double value_at(const char* at, ValueType type, std::endian order);
 
 /// Decodes `count` records; the caller has made sure that all of them lie within `bytes`.
 Scan decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields,
-            bool swap_bytes);
+            std::endian order);
 
 }  // namespace karst::replay

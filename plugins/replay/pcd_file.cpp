@@ -120,7 +120,7 @@ Scan read_binary(const std::string& path, const PcdHeader& h, std::string_view d
     fields.push_back({h.roles[i], h.types[i], offset, record});
     offset += size_of(h.types[i]) * h.counts[i];
   }
-  return decode(data, h.points, fields, false);
+  return decode(data, h.points, fields, std::endian::little);
 }
 
 /// Two sizes, then LZF of all values of the first field, all of the second, and so on.
@@ -151,7 +151,7 @@ Scan read_compressed(const std::string& path, const PcdHeader& h, std::string_vi
     fields.push_back({h.roles[i], h.types[i], offset, stride});
     offset += stride * h.points;
   }
-  return decode(*bytes, h.points, fields, false);
+  return decode(*bytes, h.points, fields, std::endian::little);
 }
 
 Scan read_ascii(const std::string& path, const PcdHeader& h, std::string_view data) {

@@ -134,7 +134,7 @@ Scan read_ply(const std::string& path, const FieldNames& names) {
                          " vertices of " + std::to_string(vertex->record()) + " bytes, of which " +
                          std::to_string(have / vertex->record()) + " are there");
   return decode(data.substr(std::min(skipped_bytes, data.size())), vertex->count, fields,
-                little != (std::endian::native == std::endian::little));
+                little ? std::endian::little : std::endian::big);
 }
 
 std::size_t ply_faces(const std::string& path) {

@@ -139,7 +139,7 @@ void take_point_times(const Recording& r, const RecordedFile& f, std::size_t dec
                          std::to_string(declared) + " points" +
                          (scan.dropped > 0 ? ", some of which are not finite" : ""));
   for (std::size_t i = 0; i < scan.points.size(); ++i)
-    scan.points[i].time = value_at(bytes.data() + i * size_of(type), type, false);
+    scan.points[i].time = value_at(bytes.data() + i * size_of(type), type, std::endian::little);
   scan.has_time = true;
   scan.time_is_whole = is_whole(type);
 }

@@ -40,7 +40,7 @@ Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout&
     throw InputError(path, "byte " + std::to_string(bytes.size() - bytes.size() % record),
                      "ends within a record: its " + std::to_string(bytes.size()) +
                          " bytes are no multiple of the " + std::to_string(record) + " of a point");
-  return decode(bytes, bytes.size() / record, fields, false);
+  return decode(bytes, bytes.size() / record, fields, std::endian::little);
 }
 
 }  // namespace karst::replay

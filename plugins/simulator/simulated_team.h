@@ -36,7 +36,7 @@ class SimulatedTeam final : public SimulatedWorld {
   std::string start_of(std::size_t i) const override;
   core::Vec3 base() const override { return cave_.description.start.position; }
   void meet(core::TimeNs now) override;
-  void silence(std::size_t radio) override { radio_.set_on(static_cast<int>(radio), false); }
+  void silence(std::size_t radio) override { radio_.switch_off(static_cast<int>(radio)); }
   void wreck(std::size_t robot, const std::string& reason) override;
   RadioTraffic traffic(std::size_t radio) const override;
   void finish() override;

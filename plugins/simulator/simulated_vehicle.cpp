@@ -116,7 +116,7 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
       log_.object(now(), "placed", i + 1, cave_->description.objects[i]);
     log_truth();
     sink_->on_battery(quadrotor_.battery().status(now()));
-    sink_->on_ground(now(), true);
+    sink_->on_ground(now());
   });
   if (options_.motors.weak > 0)
     executive.at(now() + core::from_seconds(options_.motors.weak_after_s), [this] {
@@ -207,10 +207,10 @@ void SimulatedVehicle::react(QuadrotorEvent event) {
       return;
     case QuadrotorEvent::take_off:
       log_.event(now(), "take-off", s, "");
-      return sink_->on_ground(now(), false);
+      return sink_->on_lift_off(now());
     case QuadrotorEvent::landed:
       log_.event(now(), "landed", s, "");
-      return sink_->on_ground(now(), true);
+      return sink_->on_ground(now());
     case QuadrotorEvent::crashed: {
       const Touch& t = *quadrotor_.last_touch();
       char text[200];
@@ -266,7 +266,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
   if (faults_of(Sensor::camera).lost()) return;
   auto image = std::make_shared<core::DepthImage>();
   const auto& camera = cameras_[index];
-  look_for_objects(camera->model(), false);
+  look_for_objects(camera->model(), Light::own);
   const std::string& name = camera->model()->name;
   executive_->job(
       "depth camera", Lane::sensing, kCameraBudget,
@@ -282,7 +282,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
 void SimulatedVehicle::take_picture() {
   if (faults_of(Sensor::camera).lost()) return;
   const core::Pose& T_world_body = quadrotor_.state().T_world_body;
-  look_for_objects({rgb_->model(), &rgb_->model()->camera}, true);
+  look_for_objects({rgb_->model(), &rgb_->model()->camera}, Light::lamp);
   log_.picture(now(), T_world_body * rgb_->model()->camera.T_body_camera, *rgb_->model());
   auto frame = std::make_shared<core::RgbFrame>(core::RgbFrame{now(), rgb_->model(), {}});
   const bool draw = rgb_->takes_pictures();
@@ -298,19 +298,19 @@ void SimulatedVehicle::take_picture() {
 }
 
 /// In the image that `camera` takes now. What is in view goes into the truth, what is recognized to the core.
-void SimulatedVehicle::look_for_objects(std::shared_ptr<const core::CameraModel> camera, bool lit) {
+void SimulatedVehicle::look_for_objects(std::shared_ptr<const core::CameraModel> camera, Light light) {
   if (!description_.detects_objects) return;
   const core::Pose T_world_camera = quadrotor_.state().T_world_body * camera->T_body_camera;
   const std::string stream = "objects " + camera->name;
   const std::vector<InView> in_view =
-      detector_.in_view(*seen_, T_world_camera, *camera, lit, air_for(stream).clouds);
+      detector_.in_view(*seen_, T_world_camera, *camera, light, air_for(stream).clouds);
   for (const InView& o : in_view) {
     const int looks = ++looks_[o.object];
     if (looks == 1 || looks == kSeenAfter)
       log_.object(now(), looks == 1 ? "in view" : "seen", o.object + 1, cave_->description.objects[o.object]);
   }
   core::ObjectDetections look{now(), camera, {}};
-  look.found = detector_.detect(*seen_, T_world_camera, *camera, lit, in_view, measurement_random(stream));
+  look.found = detector_.detect(*seen_, T_world_camera, *camera, light, in_view, measurement_random(stream));
   if (look.found.empty()) return;
   executive_->at(now() + core::from_seconds(options_.objects.delay_s), [this, look] {
     if (!lost_) sink_->on_objects(look);

@@ -27,30 +27,29 @@ struct Places {
 /// Any turn that brings the z axis to `axis`.
 Quat axis_frame(const Vec3& axis) { return Quat::FromTwoVectors(Vec3::UnitZ(), axis).normalized(); }
 
-/// Rock points about `spacing_m` apart with their axes; with `both_sides` each twice, with the axis turned
-/// over.
-std::vector<PlaceFrame> frames_of(const MapPiece& piece, double spacing_m, bool gravity_known,
-                                  bool both_sides) {
+/// The axes of places: up, or a place's normal, or that both ways.
+enum class Axes { up, normal, both_normals };
+
+/// Rock points about `spacing_m` apart with their axes.
+std::vector<PlaceFrame> frames_of(const MapPiece& piece, double spacing_m, Axes axes) {
   std::vector<PlaceFrame> frames;
   for (const Vec3f& p : thinned_out(piece.surface, spacing_m)) {
     const std::uint32_t i = piece.tree->nearest(p.cast<double>())->index;
     const Vec3 position = piece.surface[i].cast<double>();
-    if (gravity_known) {
+    if (axes == Axes::up) {
       frames.push_back({position, Quat::Identity()});
       continue;
     }
     const Vec3 normal = piece.normals[i].cast<double>();
     frames.push_back({position, axis_frame(normal)});
-    if (both_sides) frames.push_back({position, axis_frame(-normal)});
+    if (axes == Axes::both_normals) frames.push_back({position, axis_frame(-normal)});
   }
   return frames;
 }
 
-Places places_of(const MapPiece& piece, double cell_m, double spacing_m, std::size_t most, bool gravity_known,
-                 bool both_sides) {
-  std::vector<PlaceFrame> frames = frames_of(piece, spacing_m, gravity_known, both_sides);
-  for (; frames.size() > 4 * most; frames = frames_of(piece, spacing_m, gravity_known, both_sides))
-    spacing_m *= 1.5;
+Places places_of(const MapPiece& piece, double cell_m, double spacing_m, std::size_t most, Axes axes) {
+  std::vector<PlaceFrame> frames = frames_of(piece, spacing_m, axes);
+  for (; frames.size() > 4 * most; frames = frames_of(piece, spacing_m, axes)) spacing_m *= 1.5;
   const PointTree thin(thinned_out(piece.surface, kThin_m));
   Places places;
   const double stride = std::max(1.0, static_cast<double>(frames.size()) / static_cast<double>(most));
@@ -90,11 +89,12 @@ std::vector<std::size_t> largest(const Eigen::VectorXf& values, std::size_t coun
 std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, double cell_m,
                                 const CoarseOptions& options) {
   // Where free space is not known a normal's sign is not, either; one side of the pair tries both.
-  const bool both_sides = !(target.knows_free_space() && source.knows_free_space());
-  const Places to =
-      places_of(target, cell_m, options.spacing_m, options.max_target_places, options.gravity_known, false);
-  const Places from = places_of(source, cell_m, 1.5 * options.spacing_m, options.max_source_places,
-                                options.gravity_known, both_sides);
+  const bool sign_known = target.knows_free_space() && source.knows_free_space();
+  const Axes to_axes = options.gravity_known ? Axes::up : Axes::normal;
+  const Axes from_axes = options.gravity_known ? Axes::up : sign_known ? Axes::normal : Axes::both_normals;
+  const Places to = places_of(target, cell_m, options.spacing_m, options.max_target_places, to_axes);
+  const Places from =
+      places_of(source, cell_m, 1.5 * options.spacing_m, options.max_source_places, from_axes);
   if (to.frames.empty() || from.frames.empty()) return {};
   const Invariants to_all = stacked(to);
   std::vector<Pose> poses;

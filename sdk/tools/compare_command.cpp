@@ -153,7 +153,7 @@ int compare(const CompareArguments& args) {
   options.batch = args.batch;
   options.jobs = args.jobs;
   options.keep = *core::parse<campaign::Keep>(args.keep);
-  options.any_binary = args.any_binary;
+  options.binaries = args.any_binary ? campaign::AcceptedBinaries::any : campaign::AcceptedBinaries::same;
   options.stop = &watch_for_interrupt();
 
   bool done = false;

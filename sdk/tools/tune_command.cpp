@@ -166,7 +166,7 @@ int tune(const TuneArguments& args) {
     run.karst = fs::read_symlink("/proc/self/exe");
     run.jobs = args.jobs;
     run.keep = campaign::Keep::figures;
-    run.any_binary = args.any_binary;
+    run.binaries = args.any_binary ? campaign::AcceptedBinaries::any : campaign::AcceptedBinaries::same;
     run.stop = &interrupted;
     if (interrupted || !campaign::run_campaign(c, run)) return std::nullopt;
     return campaign::read_results(run.folder);

@@ -29,10 +29,9 @@ inline CaveMap map_of_cave(const cave::TriangleMesh& mesh, const Vec3& start) {
                                {mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(),
                                 mesh.vertices[t[2]].cast<double>()},
                                res);
-  bool escaped = false;
-  const evaluation::CellSet free = evaluation::flood(rock, true, out.map.key_of(start), escaped);
-  if (escaped) throw std::runtime_error("the cave is open");
-  free.for_each([&](const CellKey& k) { out.free.push_back(k); });
+  const std::optional<evaluation::CellSet> free = evaluation::flood_between(rock, out.map.key_of(start));
+  if (!free) throw std::runtime_error("the cave is open");
+  free->for_each([&](const CellKey& k) { out.free.push_back(k); });
   for (const CellKey& k : out.free) out.map.assign(k, 1, -1.0f);
   for (const CellKey& k : out.free)
     for (int i = 0; i < 27; ++i) {

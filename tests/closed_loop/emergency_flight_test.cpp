@@ -154,8 +154,11 @@ class StarvedSink final : public VehicleSink {
   void on_battery(const BatteryStatus& s) override {
     call([&] { sink_.on_battery(s); });
   }
-  void on_ground(TimeNs t, bool standing) override {
-    call([&] { sink_.on_ground(t, standing); });
+  void on_ground(TimeNs t) override {
+    call([&] { sink_.on_ground(t); });
+  }
+  void on_lift_off(TimeNs t) override {
+    call([&] { sink_.on_lift_off(t); });
   }
   void on_lost(TimeNs t, MissionOutcome outcome, const std::string& why) override {
     sink_.on_lost(t, outcome, why);
@@ -279,8 +282,8 @@ Ended fly(const Fault& fault, int seed, const Scene& scene = {}) {
     return TeamNode(id, options.team, options.homing, base, setup.seed, key_of_seed(setup.seed));
   };
   TeamNode node = teammate(2);
-  RelayHoming homing(2, options.team, options.homing, base, options.planning, options.motion,
-                     described.radius_m);
+  RelayHoming homing(
+      2, {options.team, options.homing, options.planning, options.motion, described.radius_m, base});
   Teamwork team(node, homing, options.team, 0);
   MissionControl control(options, vehicle, executive, policy, recorder, scene.in_team ? &team : nullptr);
   std::optional<Oncoming> other;

@@ -35,14 +35,15 @@ std::vector<Vec3f> obstacle_centers(const VoxelMap& map, const CellKey& low, con
 }  // namespace
 
 struct ObstacleTree::Storage {
+  enum class Wanted { nearest, any };
   KdPoints cloud;
   KdIndex index;
 
   explicit Storage(std::vector<Vec3f> points)
       : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
 
-  NearestWithin search(const Vec3& p, double radius_m, bool first_will_do) const {
-    NearestWithin result{static_cast<float>(radius_m * radius_m), first_will_do};
+  NearestWithin search(const Vec3& p, double radius_m, Wanted wanted) const {
+    NearestWithin result{static_cast<float>(radius_m * radius_m), wanted == Wanted::any};
     const Vec3f query = p.cast<float>();
     if (!cloud.points.empty() && query.allFinite())
       index.findNeighbors(result, query.data(), nanoflann::SearchParams());
@@ -65,7 +66,8 @@ double ObstacleTree::distance(const Vec3& p) const {
 }
 
 bool ObstacleTree::nearest(const Vec3& p, Vec3& center, double& distance_m) const {
-  const NearestWithin found = storage_->search(p, std::numeric_limits<double>::infinity(), false);
+  const NearestWithin found =
+      storage_->search(p, std::numeric_limits<double>::infinity(), Storage::Wanted::nearest);
   if (!found.found) return false;
   center = storage_->cloud.points[found.index].cast<double>();
   distance_m = (center - p).norm();
@@ -73,7 +75,7 @@ bool ObstacleTree::nearest(const Vec3& p, Vec3& center, double& distance_m) cons
 }
 
 bool ObstacleTree::any_within(const Vec3& p, double radius_m) const {
-  return storage_->search(p, radius_m, true).found;
+  return storage_->search(p, radius_m, Storage::Wanted::any).found;
 }
 
 }  // namespace karst::core

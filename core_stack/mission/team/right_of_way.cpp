@@ -65,7 +65,8 @@ void RightOfWay::note_arrival() {
   const TimeNs now = onboard_.now();
   if (!yield_state_.on_the_way() || planning_ || !onboard_.flight.at_rest(now)) return;
   const bool there = (onboard_.flight.reference().position - waiting_place_.place).norm() < kAtWaitingPlace_m;
-  yield_state_.arrived(there && waiting_place_.keeps_passage_open, now);
+  const bool aside = there && waiting_place_.keeps_passage_open;
+  yield_state_.arrived(aside ? YieldState::Place::aside : YieldState::Place::in_the_way, now);
   onboard_.recorder.event(
       now, "team", {{"action", "wait"}, {"others_get_by", there && waiting_place_.keeps_passage_open}});
 }

@@ -73,14 +73,18 @@ void TeamSharing::drop_node(const NodeDrop& drop) {
   onboard_.recorder.event(now, "drop", {{"ground", list(drop.ground)}, {"left", nodes_left_}});
 }
 
-void TeamSharing::claim_goal(const Goal& goal) { publish_goal(goal.position, false); }
-void TeamSharing::give_up_goals() { publish_goal(onboard_.flight.reference().position, true); }
-
-void TeamSharing::publish_goal(const Vec3& position, bool given_up) {
+void TeamSharing::claim_goal(const Goal& goal) {
   GoalClaim claim;
   claim.stamp = team_.team_time(onboard_.now());
-  claim.position = position;
-  claim.given_up = given_up;
+  claim.position = goal.position;
+  team_.publish(claim);
+}
+
+void TeamSharing::give_up_goals() {
+  GoalClaim claim;
+  claim.stamp = team_.team_time(onboard_.now());
+  claim.position = onboard_.flight.reference().position;
+  claim.given_up = true;
   team_.publish(claim);
 }
 

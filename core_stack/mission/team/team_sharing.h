@@ -44,7 +44,6 @@ class TeamSharing {
   std::vector<TeammateState> teammates() const { return team_.teammates(onboard_.now()); }
 
  private:
-  void publish_goal(const Vec3& position, bool given_up);
   void drop_node(const NodeDrop& drop);
   bool may_drop() const;
 

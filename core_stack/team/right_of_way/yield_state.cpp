@@ -76,7 +76,7 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   if (on_the_way_ && std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
         return stops_on_the_way(rule, self, o, o.robot == *with_);
       })) {
-    arrived(false, now);
+    arrived(Place::in_the_way, now);
     return Action::stop;
   }
   const double d = distance_m(self, *other);
@@ -90,10 +90,10 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   return Action::make_room;
 }
 
-void YieldState::arrived(bool keeps_passage_open, TimeNs now) {
+void YieldState::arrived(Place place, TimeNs now) {
   on_the_way_ = false;
-  aside_ = keeps_passage_open;
-  if (keeps_passage_open) attempts_ = 0;
+  aside_ = place == Place::aside;
+  if (aside_) attempts_ = 0;
   since_ = nearest_at_ = now;
   nearest_m_ = 1e9;  // from here on it counts anew how near the other comes
 }

@@ -22,8 +22,9 @@ class YieldState {
 
   /// It is on its way to where it makes room.
   void set_out() { on_the_way_ = true, aside_ = false; }
-  /// It is at rest again: where others get by it, or not there.
-  void arrived(bool keeps_passage_open, TimeNs now);
+  enum class Place { aside, in_the_way };  // aside: where others get by
+  /// It is at rest again.
+  void arrived(Place place, TimeNs now);
   /// There is no place to make room; of a `crowd`, further vehicles may be in the way, which make room
   /// themselves.
   void no_room(TimeNs now, bool crowd);

@@ -23,7 +23,7 @@ std::pair<Vec3, Vec3> across(const Vec3& d) {
 }  // namespace
 
 std::vector<InView> ObjectDetector::in_view(const cave::Cave& cave, const core::Pose& T_world_camera,
-                                            const core::CameraModel& camera, bool lit,
+                                            const core::CameraModel& camera, Light light,
                                             std::span<const cave::Cloud> clouds) const {
   const core::Pose T_camera_world = T_world_camera.inverse();
   const Vec3& eye = T_world_camera.position;
@@ -41,7 +41,7 @@ std::vector<InView> ObjectDetector::in_view(const cave::Cave& cave, const core::
     const Vec3 sight = (o.position - eye) / away_m;
     const double cosine = o.normal.isZero() ? 1 : -sight.dot(o.normal);
     if (cosine < std::cos(options_.max_incidence_rad)) continue;
-    if (lit) {  // the lamp is beside the lens
+    if (light == Light::lamp) {  // the lamp is beside the lens
       const double fraction =
           static_cast<double>(beam_fraction(rgb_, static_cast<float>(place.x() / away_m)));
       if (rgb_.intensity_cd * fraction * cosine / (away_m * away_m) < kMinLux) continue;
@@ -59,12 +59,13 @@ std::vector<InView> ObjectDetector::in_view(const cave::Cave& cave, const core::
 }
 
 /// Off by noise, which is told along with it.
-ObjectDetection ObjectDetector::measured(ObjectKind kind, const Vec3& place, bool lit, Random& random) const {
+ObjectDetection ObjectDetector::measured(ObjectKind kind, const Vec3& place, Light light,
+                                         Random& random) const {
   ObjectDetection d;
   d.kind = kind;
   const double range_m = place.norm();
   d.bearing_sigma_rad = options_.bearing_noise_rad;
-  const double fraction = lit ? options_.size_noise : options_.depth_noise;
+  const double fraction = light == Light::lamp ? options_.size_noise : options_.depth_noise;
   d.range_m = std::max(0.1, range_m * (1 + fraction * random.normal()));
   d.range_sigma_m = fraction * d.range_m;  // as the detector itself can tell
   const Vec3 u = place / range_m;
@@ -75,12 +76,12 @@ ObjectDetection ObjectDetector::measured(ObjectKind kind, const Vec3& place, boo
 }
 
 std::vector<ObjectDetection> ObjectDetector::detect(const cave::Cave& cave, const core::Pose& T_world_camera,
-                                                    const core::CameraModel& camera, bool lit,
+                                                    const core::CameraModel& camera, Light light,
                                                     const std::vector<InView>& in_view, Random random) const {
   std::vector<ObjectDetection> found;
   for (const InView& o : in_view) {
     const bool recognized = random.uniform() < options_.detection * o.clear;
-    ObjectDetection d = measured(cave.description.objects[o.object].kind, o.place, lit, random);
+    ObjectDetection d = measured(cave.description.objects[o.object].kind, o.place, light, random);
     d.confidence = random.uniform(0.5, 1);
     if (recognized) found.push_back(d);
   }
@@ -93,7 +94,7 @@ std::vector<ObjectDetection> ObjectDetector::detect(const cave::Cave& cave, cons
         cave.scene.ray_cast(T_world_camera.position, T_world_camera.orientation * d,
                             std::min(options_.range_m, static_cast<double>(camera.max_range_m)));
     if (std::isfinite(range_m) && range_m > 0.1) {
-      ObjectDetection wrong = measured(kind, range_m * d, lit, random);
+      ObjectDetection wrong = measured(kind, range_m * d, light, random);
       wrong.confidence = random.uniform(0.3, 0.7);
       found.push_back(wrong);
     }

@@ -22,21 +22,23 @@ struct InView {
   double clear = 1;                       // share of light that is left, there and back
 };
 
+/// What a camera sees by: depth cameras bring their own light, pictures need the vehicle's lamp.
+enum class Light { own, lamp };
+
 class ObjectDetector {
  public:
   ObjectDetector(const ObjectOptions& o, const RgbOptions& rgb) : options_(o), rgb_(rgb) {}
 
-  /// `lit`: by the colour camera's lamp, as its pictures need; depth cameras bring their own light.
   std::vector<InView> in_view(const cave::Cave& cave, const core::Pose& T_world_camera,
-                              const core::CameraModel& camera, bool lit,
+                              const core::CameraModel& camera, Light light,
                               std::span<const cave::Cloud> clouds = {}) const;
   /// What is reported of one image.
   std::vector<core::ObjectDetection> detect(const cave::Cave& cave, const core::Pose& T_world_camera,
-                                            const core::CameraModel& camera, bool lit,
+                                            const core::CameraModel& camera, Light light,
                                             const std::vector<InView>& in_view, core::Random random) const;
 
  private:
-  core::ObjectDetection measured(core::ObjectKind kind, const core::Vec3& place, bool lit,
+  core::ObjectDetection measured(core::ObjectKind kind, const core::Vec3& place, Light light,
                                  core::Random& random) const;
 
   ObjectOptions options_;

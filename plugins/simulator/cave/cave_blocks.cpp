@@ -145,8 +145,8 @@ Fault read_fault(const std::string& source, const pt::ptree& tree) {
   fault.sensor = *sensor;
   if (fault.kind != Fault::Kind::lost && fault.sensor != Fault::Sensor::lidar)
     throw InputError(source, "fault.kind",
-                     "expected lost, which is all that can happen to the " + name_of(fault.sensor) +
-                         ", got \"" + name_of(fault.kind) + "\"");
+                     "expected lost, which is all that can happen to the " + core::name_of(fault.sensor) +
+                         ", got \"" + core::name_of(fault.kind) + "\"");
   return fault;
 }
 

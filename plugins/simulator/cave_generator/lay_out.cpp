@@ -82,9 +82,12 @@ void add_dome(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
   }
 }
 
-/// A vertical way from a station, with a foot passage if it goes down.
-void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, bool down, std::uint64_t seed,
+enum class Vertical { shaft, chimney };
+
+/// A vertical way from a station: a shaft down, with a foot passage, or a chimney up.
+void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, Vertical kind, std::uint64_t seed,
                   const std::string& name) {
+  const bool down = kind == Vertical::shaft;
   for (int attempt = 0; attempt < 12; ++attempt) {
     const auto spot = pick(plan, random, 10);
     if (!spot) return;
@@ -210,9 +213,9 @@ CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m) 
     }
   };
   each(recipe.shafts, "shaft",
-       [&](Random& r, const std::string& n) { add_vertical(plan, recipe, r, true, seed, n); });
+       [&](Random& r, const std::string& n) { add_vertical(plan, recipe, r, Vertical::shaft, seed, n); });
   each(recipe.chimneys, "chimney",
-       [&](Random& r, const std::string& n) { add_vertical(plan, recipe, r, false, seed, n); });
+       [&](Random& r, const std::string& n) { add_vertical(plan, recipe, r, Vertical::chimney, seed, n); });
   each(recipe.loops, "loop", [&](Random& r, const std::string&) { add_loop(plan, recipe, r); });
   each(recipe.domes, "dome", [&](Random& r, const std::string&) { add_dome(plan, recipe, r); });
   return plan;

@@ -114,11 +114,12 @@ void separate_sheets(Samples& s) {
 }
 
 void keep_one_cave(Samples& s, const core::Vec3& start) {
-  const auto mark = [&s](std::vector<std::vector<bool>>& marks, std::vector<Node> queue, bool hollow) {
+  const auto mark = [&s](std::vector<std::vector<bool>>& marks, std::vector<Node> queue,
+                         const auto& belongs) {
     while (!queue.empty()) {
       const Node n = queue.back();
       queue.pop_back();
-      if (!s.has_block(n) || s.hollow(n) != hollow) continue;
+      if (!s.has_block(n) || !belongs(n)) continue;
       std::vector<bool>& block = marks[s.block_of(n)];
       if (block.empty()) block.resize(Samples::kEdge * Samples::kEdge * Samples::kEdge);
       if (block[Samples::inside(n)]) continue;
@@ -127,13 +128,13 @@ void keep_one_cave(Samples& s, const core::Vec3& start) {
     }
   };
   std::vector<std::vector<bool>> cave(s.block_count()), rock(s.block_count());
-  mark(cave, {s.nearest(start)}, true);
+  mark(cave, {s.nearest(start)}, [&s](const Node& n) { return s.hollow(n); });
   std::vector<Node> outer;
   s.for_each([&](const Node& n) {
     for (const Node& f : kFaces)
       if (!s.has_block(n + f)) outer.push_back(n);
   });
-  mark(rock, std::move(outer), false);
+  mark(rock, std::move(outer), [&s](const Node& n) { return !s.hollow(n); });
   const auto marked = [&](const std::vector<std::vector<bool>>& marks, const Node& n) {
     const std::vector<bool>& block = marks[s.block_of(n)];
     return !block.empty() && block[Samples::inside(n)];

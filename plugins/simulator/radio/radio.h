@@ -54,7 +54,8 @@ class Radio {
   /// A radio by its number; to be called again whenever it has moved. Base stations and dropped nodes, too.
   void place(int radio, const core::Vec3& position) { radios_[radio].position = position; }
   /// A radio that is off neither sends nor hears.
-  void set_on(int radio, bool on) { radios_.at(radio).on = on; }
+  void switch_off(int radio) { radios_.at(radio).on = false; }
+  void switch_on(int radio) { radios_.at(radio).on = true; }
 
   /// Puts a packet on the air as soon as the channel is free; stamps must not go back. Throws
   /// std::out_of_range if the radio was never placed.

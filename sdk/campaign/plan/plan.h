@@ -61,9 +61,12 @@ std::string definition_of(const Plan& plan);
 Plan plan_of(const std::string& definition, const std::string& source);
 StoreHead head_of(const Plan& plan);
 
+/// Whether a campaign goes on only with the karst and the plugins that it began with.
+enum class AcceptedBinaries { same, any };
+
 /// What `now` changes of what `then` was, a sentence each; more contestants, caves and seeds behind those
-/// there were are no change, nor are name, timeout and, if `any_binary`, what flies.
-std::vector<std::string> changes(const Plan& then, const Plan& now, bool any_binary);
+/// there were are no change, nor are name, timeout and, with any binaries, what flies.
+std::vector<std::string> changes(const Plan& then, const Plan& now, AcceptedBinaries binaries);
 
 /// All trials: by contestant, cave, seed.
 std::vector<TrialKey> trials_of(const Plan& plan);

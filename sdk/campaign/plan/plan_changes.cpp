@@ -11,13 +11,15 @@ namespace {
 
 using Facts = std::map<std::string, std::string>;
 
-Facts facts_of(const PlannedContestant& c, bool any_binary) {
+Facts facts_of(const PlannedContestant& c, AcceptedBinaries binaries) {
   Facts facts{{"policy", c.policy}, {"plugin", c.plugin}};
-  if (!any_binary) facts["binary"] = c.binary_version, facts["version"] = c.version;
+  if (binaries == AcceptedBinaries::same) facts["binary"] = c.binary_version, facts["version"] = c.version;
   for (const auto& [key, value] : core::leaves_of(c.mission)) facts[key] = value;
   return facts;
 }
-Facts facts_of(const PlannedCave& c, bool) { return {{"start", c.start}, {"content", c.hash.substr(0, 12)}}; }
+Facts facts_of(const PlannedCave& c, AcceptedBinaries) {
+  return {{"start", c.start}, {"content", c.hash.substr(0, 12)}};
+}
 
 void compare_facts(const std::string& what, const Facts& then, const Facts& now,
                    std::vector<std::string>& out) {
@@ -37,23 +39,22 @@ void compare_facts(const std::string& what, const Facts& then, const Facts& now,
 
 template <class Named>
 void compare_lists(const std::string& what, const std::vector<Named>& then, const std::vector<Named>& now,
-                   bool any_binary, std::vector<std::string>& out) {
+                   AcceptedBinaries binaries, std::vector<std::string>& out) {
   for (std::size_t i = 0; i < then.size(); ++i) {
     if (i >= now.size() || now[i].name != then[i].name)
       out.push_back(what + " " + std::to_string(i + 1) + " was " + then[i].name + ", is " +
                     (i < now.size() ? now[i].name : "missing"));
     else
-      compare_facts(what + " " + then[i].name, facts_of(then[i], any_binary), facts_of(now[i], any_binary),
-                    out);
+      compare_facts(what + " " + then[i].name, facts_of(then[i], binaries), facts_of(now[i], binaries), out);
   }
 }
 
 }  // namespace
 
-std::vector<std::string> changes(const Plan& then, const Plan& now, bool any_binary) {
+std::vector<std::string> changes(const Plan& then, const Plan& now, AcceptedBinaries binaries) {
   std::vector<std::string> out;
-  compare_lists("contestant", then.contestants, now.contestants, any_binary, out);
-  compare_lists("cave", then.caves, now.caves, any_binary, out);
+  compare_lists("contestant", then.contestants, now.contestants, binaries, out);
+  compare_lists("cave", then.caves, now.caves, binaries, out);
   if (now.seeds.size() < then.seeds.size() ||
       !std::equal(then.seeds.begin(), then.seeds.end(), now.seeds.begin()))
     out.push_back("seeds were " + seeds_text(then.seeds) + ", are " + seeds_text(now.seeds));

@@ -40,12 +40,13 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(-1) {
 
 FolderLock::~FolderLock() { close(descriptor_); }
 
-Store open_for(const Plan& plan, const fs::path& folder, bool any_binary, const std::string& source) {
+Store open_for(const Plan& plan, const fs::path& folder, AcceptedBinaries binaries,
+               const std::string& source) {
   const fs::path file = folder / "campaign.sqlite";
   if (!fs::exists(file)) return Store::create(file, head_of(plan));
   Store store = Store::open(file);
   const Plan then = plan_of(store.head().definition, file.string());
-  const std::vector<std::string> differences = changes(then, plan, any_binary);
+  const std::vector<std::string> differences = changes(then, plan, binaries);
   if (!differences.empty()) {
     std::string text;
     for (std::size_t i = 0; i < std::min(differences.size(), kChangesNamed); ++i)

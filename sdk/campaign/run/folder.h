@@ -29,7 +29,7 @@ class FolderLock {
 /// Opens the folder's store for a plan, or makes it; the metric that was declared first stays. Throws
 /// core::InputError, naming what differs in `source` (the campaign's file), if the campaign there is another
 /// one.
-Store open_for(const Plan& plan, const std::filesystem::path& folder, bool any_binary,
+Store open_for(const Plan& plan, const std::filesystem::path& folder, AcceptedBinaries binaries,
                const std::string& source = "what is there now");
 
 std::filesystem::path mission_file(const Plan& plan, const TrialKey& trial);  // in the folder

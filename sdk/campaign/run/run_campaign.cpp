@@ -121,8 +121,8 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
   const Plan plan = plan_for(campaign, options);
   const Binaries binaries(plan, options);
   const FolderLock lock(options.folder);
-  Store store = campaign ? open_for(plan, options.folder, options.any_binary, campaign->source)
-                         : open_for(plan, options.folder, options.any_binary);
+  Store store = campaign ? open_for(plan, options.folder, options.binaries, campaign->source)
+                         : open_for(plan, options.folder, options.binaries);
   write_missions(plan, options.folder);
 
   const std::set<TrialKey> stored = store.finished();

@@ -51,7 +51,7 @@ struct RunOptions {
   std::size_t batch = 0;            // trials a Slurm task flies; 0: as many as are ten seconds of work
   std::size_t jobs = 1;
   Keep keep = Keep::replay;
-  bool any_binary = false;  // go on although karst or a plugin is another one than before
+  AcceptedBinaries binaries = AcceptedBinaries::same;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Plan&, const Progress&)> progress;
 };

@@ -49,8 +49,8 @@ std::string cell(double v) {
 ordered_json value(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
 
 ordered_json parsed(const std::string& text) {
-  auto json = ordered_json::parse(text, nullptr, false);
-  return json.is_discarded() ? ordered_json(nullptr) : json;
+  auto read = ordered_json::parse(text, nullptr, false);
+  return read.is_discarded() ? ordered_json(nullptr) : read;
 }
 
 ordered_json trial_json(const CampaignResults& results, const TrialResult& t, const TrialExtras& extras) {

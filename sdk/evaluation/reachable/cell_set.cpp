@@ -86,10 +86,15 @@ CellKey CellSet::corner_of(std::size_t index) const {
                      static_cast<std::int32_t>(index / (nx * ny))});
 }
 
-CellSet flood(const CellSet& set, bool complement, const CellKey& seed, bool& escaped) {
+namespace {
+
+enum class Filled { set, complement };
+
+/// Nothing if a complement leads out.
+std::optional<CellSet> flooded(const CellSet& set, Filled what, const CellKey& seed) {
+  const bool complement = what == Filled::complement;
   const CellKey n = set.blocks_along();
   CellSet filled(set.first_cell({0, 0, 0}), set.first_cell({n.x - 1, n.y - 1, n.z - 1}));
-  escaped = false;
   const auto allowed = [&](const CellKey& place) {
     CellSet::Block b{};
     if (const auto* found = set.find(place)) b = *found;
@@ -106,10 +111,8 @@ CellSet flood(const CellSet& set, bool complement, const CellKey& seed, bool& es
     queue.pop_front();
     queued[set.index_of(place)] = false;
     if (complement && (place.x == 0 || place.y == 0 || place.z == 0 || place.x == n.x - 1 ||
-                       place.y == n.y - 1 || place.z == n.z - 1)) {
-      escaped = true;
-      return filled;
-    }
+                       place.y == n.y - 1 || place.z == n.z - 1))
+      return std::nullopt;
     fill_block(filled.at(place), allowed(place));
     const CellSet::Block cells = filled.at(place);
     for (int side = 0; side < 6; ++side) {
@@ -133,6 +136,14 @@ CellSet flood(const CellSet& set, bool complement, const CellKey& seed, bool& es
     }
   }
   return filled;
+}
+
+}  // namespace
+
+CellSet flood(const CellSet& set, const CellKey& seed) { return *flooded(set, Filled::set, seed); }
+
+std::optional<CellSet> flood_between(const CellSet& set, const CellKey& seed) {
+  return flooded(set, Filled::complement, seed);
 }
 
 }  // namespace karst::evaluation

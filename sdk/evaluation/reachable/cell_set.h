@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -83,9 +84,10 @@ class CellSet {
   std::vector<Block> blocks_;
 };
 
-/// The 6-connected part of `set` (or, with `complement`, of the bounds' cells that are not in it) that holds
-/// `seed`; empty if the seed does not belong. A complement's fill stops when it enters the outermost blocks
-/// of the bounds and then tells so in `escaped`.
-CellSet flood(const CellSet& set, bool complement, const CellKey& seed, bool& escaped);
+/// The 6-connected part of `set` that holds `seed`; empty if the seed does not belong.
+CellSet flood(const CellSet& set, const CellKey& seed);
+/// The same of the bounds' cells that are not in `set`. Nothing if it leads out: into the outermost blocks of
+/// the bounds.
+std::optional<CellSet> flood_between(const CellSet& set, const CellKey& seed);
 
 }  // namespace karst::evaluation

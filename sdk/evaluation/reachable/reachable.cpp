@@ -100,12 +100,12 @@ Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const 
 
   Reachable r;
   r.options = options;
-  bool escaped = false;
-  r.free = flood(rock, true, seed, escaped);
-  if (escaped)
+  std::optional<CellSet> free = flood_between(rock, seed);
+  if (!free)
     throw InputError(
         name, where,
         "free space leads outside the mesh near " + place_text(center_of(find_opening(rock, seed), edge)));
+  r.free = std::move(*free);
 
   CellSet clear = r.free;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -115,7 +115,7 @@ Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const 
     throw InputError(name, where,
                      "no place with " + number_text(options.clearance_m) +
                          " m to rock in a straight line within " + number_text(kStartSearchM) + " m");
-  r.flyable = flood(clear, false, *first, escaped);
+  r.flyable = flood(clear, *first);
   r.free_cells = r.free.size();
   r.flyable_cells = r.flyable.size();
   return r;

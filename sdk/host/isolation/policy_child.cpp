@@ -18,7 +18,8 @@ constexpr std::size_t kMaxRequestBytes = std::size_t{4} << 30;
 
 class Server {
  public:
-  Server(const RingMemory& own, const RingMemory& hosts) : ring_(own, hosts, [] {}), requests_(false) {}
+  Server(const RingMemory& own, const RingMemory& hosts)
+      : ring_(own, hosts, [] {}), requests_(RequestReader::Keeps::map) {}
 
   int run() {
     start();
@@ -97,7 +98,8 @@ class Server {
 }  // namespace
 
 int serve_policy() {
-  RingMemory hosts(kRequestsDescriptor, false), own(kAnswersDescriptor, true);
+  RingMemory hosts(kRequestsDescriptor, RingMemory::Access::read);
+  RingMemory own(kAnswersDescriptor, RingMemory::Access::write);
   hosts.close_descriptor(), own.close_descriptor();
   return Server(own, hosts).run();
 }

@@ -58,8 +58,9 @@ RingMemory::RingMemory() : descriptor_(memfd_create("karst-policy", MFD_CLOEXEC 
   data_ = static_cast<std::byte*>(at);
 }
 
-RingMemory::RingMemory(int descriptor, bool writable) : descriptor_(descriptor) {
-  void* at = mmap(nullptr, kSize, writable ? PROT_READ | PROT_WRITE : PROT_READ, MAP_SHARED, descriptor_, 0);
+RingMemory::RingMemory(int descriptor, Access access) : descriptor_(descriptor) {
+  const int protection = access == Access::write ? PROT_READ | PROT_WRITE : PROT_READ;
+  void* at = mmap(nullptr, kSize, protection, MAP_SHARED, descriptor_, 0);
   if (at == MAP_FAILED) no_memory("shared memory cannot be mapped");
   data_ = static_cast<std::byte*>(at);
 }

@@ -29,10 +29,12 @@ struct RingMessage {
 /// The memory of one end, as the other maps it. Unmapped, and its descriptor closed, with the object.
 class RingMemory {
  public:
+  enum class Access { read, write };
+
   /// New memory, to be written.
   RingMemory();
   /// Memory that is there: `descriptor`, which is closed with this object.
-  RingMemory(int descriptor, bool writable);
+  RingMemory(int descriptor, Access access);
   ~RingMemory();
   RingMemory(const RingMemory&) = delete;
   RingMemory& operator=(const RingMemory&) = delete;

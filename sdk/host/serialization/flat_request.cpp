@@ -291,7 +291,7 @@ void RequestReader::read_map(FlatReader& in) {
   if (!in.flag()) return;
   core::PlanningOptions options;
   options.clearance_m = in.number<double>(), options.search_slack_cells = in.number<double>();
-  if (with_roadmap_) update_roadmap(options, changes);
+  if (keeps_ == Keeps::map_and_roadmap) update_roadmap(options, changes);
 }
 
 void RequestReader::update_roadmap(const core::PlanningOptions& options,

@@ -27,9 +27,10 @@ void seal(std::span<std::byte> request);
 /// Reads requests one after the other, and holds the last.
 class RequestReader {
  public:
-  /// With a roadmap, it is kept up to date from request to request: some time for a large map the first time.
-  /// Without, `request().roadmap` is null.
-  explicit RequestReader(bool with_roadmap) : with_roadmap_(with_roadmap) {}
+  /// What is kept up to date from request to request. A roadmap takes some time for a large map the first
+  /// time; without, `request().roadmap` is null.
+  enum class Keeps { map, map_and_roadmap };
+  explicit RequestReader(Keeps keeps) : keeps_(keeps) {}
   RequestReader(const RequestReader&) = delete;
   RequestReader& operator=(const RequestReader&) = delete;
 
@@ -46,7 +47,7 @@ class RequestReader {
   void read_imaged(FlatReader& in);
   void update_roadmap(const core::PlanningOptions& options, std::span<const core::CellChange> changes);
 
-  bool with_roadmap_;
+  Keeps keeps_;
   std::optional<core::VoxelMap> map_;
   std::optional<core::Roadmap> roadmap_;
   core::VehicleDescription vehicle_;

@@ -87,7 +87,7 @@ class RequestLogReader {
   std::ifstream in_;
   std::uint64_t size_ = 0, at_ = 0, record_ = 0, skipped_bytes_ = 0;
   RequestLogHeader header_;
-  RequestReader requests_{true};
+  RequestReader requests_{RequestReader::Keeps::map_and_roadmap};
   std::string answer_;
   core::PolicyEvent event_{};
 };

@@ -45,9 +45,13 @@ class Listener final : public VehicleSink {
   void on_battery(const BatteryStatus& s) override {
     log << "battery " << s.energy_left_wh << '\n', ++battery;
   }
-  void on_ground(TimeNs t, bool standing) override {
-    log << "ground " << t << standing << '\n';
-    grounds += standing ? 'G' : 'A';
+  void on_ground(TimeNs t) override {
+    log << "ground " << t << '\n';
+    grounds += 'G';
+  }
+  void on_lift_off(TimeNs t) override {
+    log << "lift-off " << t << '\n';
+    grounds += 'A';
   }
   void on_lost(TimeNs t, MissionOutcome outcome, const std::string& why) override {
     log << "lost " << t << ' ' << name_of(outcome) << ' ' << why << '\n';

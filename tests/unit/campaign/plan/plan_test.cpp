@@ -33,7 +33,7 @@ Plan small_plan() {
 
 TEST(Plan, ComesBackFromItsDefinition) {
   const Plan plan = small_plan(), back = plan_of(definition_of(plan), "here");
-  EXPECT_TRUE(changes(plan, back, false).empty());
+  EXPECT_TRUE(changes(plan, back, AcceptedBinaries::same).empty());
   EXPECT_EQ(definition_of(back), definition_of(plan));
   EXPECT_EQ(back.seeds, plan.seeds);
   EXPECT_EQ(back.contestants[1].settings, plan.contestants[1].settings);
@@ -100,10 +100,10 @@ TEST(Plan, ADefinitionOfSomebodyElsesIsBoundedAndOpensNothing) {
 }
 
 TEST(Plan, WhatChangedIsNamed) {
-  const auto changed = [](auto change, bool any_binary = false) {
+  const auto changed = [](auto change, AcceptedBinaries binaries = AcceptedBinaries::same) {
     Plan now = small_plan();
     change(now);
-    const auto all = changes(small_plan(), now, any_binary);
+    const auto all = changes(small_plan(), now, binaries);
     return all.empty() ? std::string() : all.front();
   };
   EXPECT_EQ(changed([](Plan& p) { p.contestants[0].mission.put("motion.max_speed", "2 m/s"); }),
@@ -115,7 +115,7 @@ TEST(Plan, WhatChangedIsNamed) {
             "cave maze: content was \"h1\", is \"other\"");
   EXPECT_EQ(changed([](Plan& p) { p.seeds = {1, 3}; }), "seeds were 1 2 3, are 1 3");
   EXPECT_TRUE(says(changed([](Plan& p) { p.contestants[0].binary_version = "0.2.0"; }), "binary"));
-  EXPECT_EQ(changed([](Plan& p) { p.contestants[0].binary_version = "0.2.0"; }, true), "");
+  EXPECT_EQ(changed([](Plan& p) { p.contestants[0].binary_version = "0.2.0"; }, AcceptedBinaries::any), "");
   EXPECT_EQ(changed([](Plan& p) { p.seeds.push_back(9), p.contestants.push_back(p.contestants[0]); }), "");
   EXPECT_EQ(changed([](Plan& p) { p.caves[0].file = "/moved/maze.info"; }), "") << "the same cave elsewhere";
 }
@@ -141,16 +141,16 @@ TEST(Folder, OnlyOneCampaignWritesIntoIt) {
 
 TEST(Folder, AnotherCampaignsStoreIsRefusedSayingWhatDiffers) {
   const fs::path dir = fresh_folder("other_campaign");
-  { open_for(small_plan(), dir, false); }
-  { open_for(small_plan(), dir, false); }
+  { open_for(small_plan(), dir, AcceptedBinaries::same); }
+  { open_for(small_plan(), dir, AcceptedBinaries::same); }
   Plan other = small_plan();
   other.contestants[0].mission.put("motion.max_speed", "2 m/s");
-  const std::string e = error_of([&] { open_for(other, dir, false, "c.info"); });
+  const std::string e = error_of([&] { open_for(other, dir, AcceptedBinaries::same, "c.info"); });
   EXPECT_TRUE(says(e, "c.info: is another campaign than the one in")) << e;
   EXPECT_TRUE(says(e, "contestant near: motion.max_speed was \"1 m/s\", is \"2 m/s\"")) << e;
   Plan more = small_plan();
   more.seeds.push_back(4);
-  { open_for(more, dir, false); }
+  { open_for(more, dir, AcceptedBinaries::same); }
   EXPECT_EQ(Store::open(dir / "campaign.sqlite").head().seeds, more.seeds);
 }
 
@@ -158,10 +158,10 @@ TEST(Folder, TheMetricThatWasDeclaredFirstStays) {
   const fs::path dir = fresh_folder("metric_stays");
   Plan plan = small_plan();
   plan.metric = "depth_m";
-  { open_for(plan, dir, false); }
+  { open_for(plan, dir, AcceptedBinaries::same); }
   plan.metric = "coverage";  // another one after the flights would be a choice by what they found
   plan.seeds.push_back(4);
-  { open_for(plan, dir, false); }
+  { open_for(plan, dir, AcceptedBinaries::same); }
   const CampaignResults results = read_results(dir);
   EXPECT_EQ(results.metric, "depth_m");
   EXPECT_EQ(results.profile, "full");

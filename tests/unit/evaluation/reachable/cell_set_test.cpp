@@ -54,11 +54,9 @@ RC_GTEST_PROP(Flood, AgreesWithCellByCellSearch, ()) {
                                 CellKey{0, 0, 1}, CellKey{0, 0, -1}})
       if (cells.count(k + step) && oracle.insert(k + step).second) queue.push_back(k + step);
   }
-  bool escaped = false;
-  const CellSet filled = flood(set, false, seed, escaped);
+  const CellSet filled = flood(set, seed);
   RC_ASSERT(filled.size() == oracle.size());
   for (const CellKey& k : oracle) RC_ASSERT(filled.contains(k));
-  RC_ASSERT(!escaped);
 }
 
 TEST(Flood, TellsWhenAComplementLeadsOut) {
@@ -68,11 +66,10 @@ TEST(Flood, TellsWhenAComplementLeadsOut) {
     for (k.y = -6; k.y <= 6; ++k.y)
       for (k.x = -6; k.x <= 6; ++k.x)
         if (std::max({std::abs(k.x), std::abs(k.y), std::abs(k.z)}) == 6) shell.insert(k);
-  bool escaped = true;
-  EXPECT_EQ(flood(shell, true, {0, 0, 0}, escaped).size(), 11u * 11 * 11);
-  EXPECT_FALSE(escaped);
-  flood(shell, true, {0, 0, 10}, escaped);
-  EXPECT_TRUE(escaped);
+  const std::optional<CellSet> inside = flood_between(shell, {0, 0, 0});
+  ASSERT_TRUE(inside);
+  EXPECT_EQ(inside->size(), 11u * 11 * 11);
+  EXPECT_FALSE(flood_between(shell, {0, 0, 10}));
 }
 
 }  // namespace

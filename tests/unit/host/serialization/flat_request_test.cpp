@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 /// What read() throws; "" if it reads.
 std::string refusal(std::span<const std::byte> bytes) {
-  RequestReader reader(false);
+  RequestReader reader(RequestReader::Keeps::map);
   try {
     reader.read(bytes);
   } catch (const host::FlatError& e) {
@@ -57,7 +57,7 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
   room.request.frontiers[0].path_length_m = std::numeric_limits<double>::infinity();
   room.request.teammates = {{1, -5, {1, 2, 3}, {0.1, 0, 0}, Vec3(7, 8, 9), 12.5},
                             {4, 6, {-1, 0, 2}, {0, 0, 0}, std::nullopt, 0}};
-  RequestReader reader(false);
+  RequestReader reader(RequestReader::Keeps::map);
   const core::DecisionRequest& read = reader.read(flatten(room.request));
   expect_same_cells(*read.map, room.map);
   EXPECT_EQ(read.roadmap, nullptr);
@@ -93,7 +93,7 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
 TEST(FlatRequest, WithoutMapVehicleAndFrontiersIsARequestToo) {
   core::DecisionRequest bare;
   bare.sequence = 9;
-  RequestReader reader(true);
+  RequestReader reader(RequestReader::Keeps::map_and_roadmap);
   const core::DecisionRequest& read = reader.read(flatten(bare));
   EXPECT_EQ(read.sequence, 9u);
   EXPECT_EQ(read.map, nullptr);
@@ -108,7 +108,7 @@ TEST(FlatRequest, ChangesAddUpToTheMapAndItsRoadmap) {
     core::Roadmap roadmap(core::PlanningOptions{.clearance_m = 0.3});
     core::DecisionRequest request;
     request.map = &map, request.roadmap = &roadmap;
-    RequestReader reader(true);
+    RequestReader reader(RequestReader::Keeps::map_and_roadmap);
     std::uint64_t since = 0;
     const int steps = *rc::gen::inRange(1, 5);
     for (int step = 0; step < steps; ++step) {
@@ -148,7 +148,7 @@ TEST(FlatRequest, OnlyWhatChangedIsWritten) {
 TEST(FlatRequest, ChangesOfAMapNotHeldAreRefused) {
   Room room;
   EXPECT_THAT(refusal(flatten(room.request, room.map.revision())), HasSubstr("is not here"));
-  RequestReader reader(false);
+  RequestReader reader(RequestReader::Keeps::map);
   reader.read(flatten(room.request));
   const host::Bytes late = flatten(room.request, room.map.revision() - 1);
   EXPECT_THROW(reader.read(late), host::FlatError);

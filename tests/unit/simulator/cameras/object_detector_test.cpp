@@ -48,7 +48,7 @@ TEST(ObjectDetector, SeesWhatBruteForceSees) {
       const Pose T{{random.uniform(4, 26), random.uniform(-1, 1), random.uniform(-1, 1)},
                    Quat(Eigen::AngleAxisd(random.uniform(-3, 3), random_unit(random)))};
       std::vector<bool> told(c.description.objects.size(), false);
-      for (const sim::InView& v : detector.in_view(c, T, camera, false)) {
+      for (const sim::InView& v : detector.in_view(c, T, camera, sim::Light::own)) {
         told[v.object] = true;
         EXPECT_LT((T * v.place - c.description.objects[v.object].position).norm(), 1e-9);
       }
@@ -78,9 +78,9 @@ TEST(ObjectDetector, AnotherVehicleHidesWhatIsBehindIt) {
   Pose eye{{0, 0, 2}, Quat::Identity()};
   eye = eye * camera.T_body_camera;
   const sim::ObjectDetector detector({}, {});
-  EXPECT_EQ(detector.in_view(c, eye, camera, false).size(), 1u);
+  EXPECT_EQ(detector.in_view(c, eye, camera, sim::Light::own).size(), 1u);
   c.scene = c.scene.with_boulders({{{1.5, 0, 2}, 0.3}});
-  EXPECT_TRUE(detector.in_view(c, eye, camera, false).empty());
+  EXPECT_TRUE(detector.in_view(c, eye, camera, sim::Light::own).empty());
 }
 
 TEST(ObjectDetector, TheColourCameraNeedsItsLampAndDustDims) {
@@ -90,20 +90,21 @@ TEST(ObjectDetector, TheColourCameraNeedsItsLampAndDustDims) {
   rgb.fitted = true;
   const core::CameraModel camera = sim::rgb_camera_model(rgb)->camera;
   const Pose eye{{0, 0, 2}, Quat::Identity()};
-  EXPECT_EQ(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true).size(), 1u);
-  rgb.light = sim::LampLight::spot,
+  EXPECT_EQ(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, sim::Light::lamp).size(), 1u);
+  rgb.light = sim::LampLight::spot;
   rgb.beam_rad = 0.3;  // 8.6 degrees to each side; the object is 20 degrees off
-  EXPECT_TRUE(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true).empty());
-  rgb.light = sim::LampLight::flood, rgb.intensity_cd = 30;  // 1.6 lux at 4.3 m
-  EXPECT_TRUE(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true).empty());
+  EXPECT_TRUE(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, sim::Light::lamp).empty());
+  rgb.light = sim::LampLight::flood;
+  rgb.intensity_cd = 30;  // 1.6 lux at 4.3 m
+  EXPECT_TRUE(sim::ObjectDetector({}, rgb).in_view(c, eye, camera, sim::Light::lamp).empty());
   rgb.intensity_cd = 1000;
   cave::Cloud dust;
   dust.position = {2, 0.75, 2}, dust.half_size_m.setConstant(1);
   for (const auto& [extinction, seen] :
        {std::pair{0.3, 1u}, {1.0, 0u}}) {  // exp(-2 * 2 m * extinction) is left
     dust.extinction_1pm = extinction;
-    const auto in_view =
-        sim::ObjectDetector({}, rgb).in_view(c, eye, camera, true, std::vector<cave::Cloud>{dust});
+    const auto in_view = sim::ObjectDetector({}, rgb).in_view(c, eye, camera, sim::Light::lamp,
+                                                              std::vector<cave::Cloud>{dust});
     EXPECT_EQ(in_view.size(), seen) << extinction;
     if (seen && !in_view.empty()) {
       EXPECT_NEAR(in_view[0].clear, std::exp(-4 * extinction), 0.02);
@@ -120,7 +121,7 @@ TEST(ObjectDetector, MissesAndErrsAsOftenAndAsMuchAsItSays) {
   o.detection = 0.8;
   o.false_per_min = 30;  // at 5 images a second: in a tenth of them
   const sim::ObjectDetector detector(o, {});
-  const auto in_view = detector.in_view(c, eye, camera, false);
+  const auto in_view = detector.in_view(c, eye, camera, sim::Light::own);
   ASSERT_EQ(in_view.size(), 1u);
   const Vec3 truth = in_view[0].place;
   constexpr int kImages = 20000;
@@ -128,7 +129,7 @@ TEST(ObjectDetector, MissesAndErrsAsOftenAndAsMuchAsItSays) {
   double range2 = 0, off2 = 0;
   for (int i = 0; i < kImages; ++i)
     for (const core::ObjectDetection& d :
-         detector.detect(c, eye, camera, false, in_view, Random::stream(7, std::to_string(i)))) {
+         detector.detect(c, eye, camera, sim::Light::own, in_view, Random::stream(7, std::to_string(i)))) {
       EXPECT_NEAR(d.direction.norm(), 1, 1e-9);
       if (d.kind != ObjectKind::drill || d.direction.dot(truth.normalized()) < 0.98) {
         ++wrong;

@@ -130,7 +130,7 @@ TEST(Radio, EveryByteIsAccountedFor) {
     Radio radio(o, random.bits());
     constexpr int n = 5;
     for (int i = 0; i < n; ++i) radio.place(i, {random.uniform(-40, 40), random.uniform(-40, 40), 0});
-    radio.set_on(4, false);
+    radio.switch_off(4);
     std::uint64_t taken = 0;
     core::TimeNs now = 0;
     for (int k = 0; k < 200; ++k) {
@@ -208,14 +208,14 @@ TEST(Radio, LossCorruptionAndFadingComeInTheirShares) {
 TEST(Radio, ARelayThatFailsNeitherSendsNorHears) {
   Radio radio(clean(), 1);
   radio.place(0, {0, 0, 0}), radio.place(1, {1, 0, 0});
-  radio.set_on(1, false);
+  radio.switch_off(1);
   radio.send(hall(), 0, bytes_of(10), 0);
   radio.send(hall(), 1, bytes_of(10), 0);
   EXPECT_TRUE(radio.receive(0, kSecond).empty());
   EXPECT_TRUE(radio.receive(1, kSecond).empty());
   EXPECT_EQ(radio.counts(1).bytes_deaf, 10u);
   EXPECT_EQ(radio.counts(1).bytes_dropped, 10u);
-  radio.set_on(1, true);
+  radio.switch_on(1);
   radio.send(hall(), 0, bytes_of(10), kSecond);
   EXPECT_EQ(radio.receive(1, 2 * kSecond).size(), 1u);
   EXPECT_THROW(radio.send(hall(), 9, bytes_of(1), 0), std::out_of_range);

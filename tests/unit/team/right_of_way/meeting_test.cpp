@@ -83,9 +83,10 @@ class Pilot {
   bool at_rest() const { return speed_mps_ == 0 && std::abs(target_m_ - x_m_) < 0.05; }
 
   void separation(TimeNs now) {
-    if (yield_state_.on_the_way() && at_rest())
-      yield_state_.arrived(waiting_place_.keeps_passage_open && (place() - waiting_place_.place).norm() < 0.5,
-                           now);
+    if (yield_state_.on_the_way() && at_rest()) {
+      const bool aside = waiting_place_.keeps_passage_open && (place() - waiting_place_.place).norm() < 0.5;
+      yield_state_.arrived(aside ? YieldState::Place::aside : YieldState::Place::in_the_way, now);
+    }
     const std::vector<Neighbour> others = node_.neighbours(now);
     const bool held = yield_state_.holds();
     const auto action =

@@ -83,7 +83,7 @@ TEST(YieldState, MakesRoomForOneThatComesAndWaitsUntilItIsPast) {
   m.yield_state.set_out();
   EXPECT_EQ(m.run(1), Action::hold) << "on its way";
   m.self.position.y() = 2;  // beside the other's way
-  m.yield_state.arrived(true, m.now);
+  m.yield_state.arrived(YieldState::Place::aside, m.now);
   EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::aside);
   while (m.other.position.x() > -3) ASSERT_EQ(m.step(), Action::hold) << m.other.position.x();
   while (m.step() == Action::hold) ASSERT_GT(m.other.position.x(), -8) << "it waits for ever";
@@ -97,7 +97,7 @@ TEST(YieldState, GoesOnWhenTheOtherDoesNotComeOrIsNoMoreHeard) {
   EXPECT_EQ(m.run(10), Action::make_room) << "it may want to get by";
   m.yield_state.set_out();
   m.self.position.x() = -4;
-  m.yield_state.arrived(true, m.now);
+  m.yield_state.arrived(YieldState::Place::aside, m.now);
   EXPECT_EQ(m.run(9), Action::hold);
   EXPECT_EQ(m.run(5), Action::go_on) << "it stays where it is";
 
@@ -111,7 +111,7 @@ TEST(YieldState, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
   Meeting m;
   ASSERT_EQ(m.run(4), Action::make_room);
   m.yield_state.set_out();
-  m.yield_state.arrived(true, m.now);
+  m.yield_state.arrived(YieldState::Place::aside, m.now);
   m.other.velocity_mps.setZero();
   m.other.position = {3.5, 0, 0};
   EXPECT_EQ(m.run(12), Action::make_room);
