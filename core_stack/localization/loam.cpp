@@ -157,7 +157,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   const bool far = correction.position.norm() > options_.max_correction_m ||
                    log_so3(correction.orientation).norm() > options_.max_correction_rad;
   if (!found.good) {
-    const auto matched = static_cast<std::size_t>(found.edges + found.planes);
+    const auto matched = static_cast<std::size_t>(found.edges) + static_cast<std::size_t>(found.planes);
     out.problem = "the sweep does not lie on the local map: " + counted(matched, "of ") +
                   counted(count, "features match");
   } else if (far) {

@@ -113,7 +113,7 @@ class Search {
       goal_cell_ = k;
       heap_.push_or_lower({goal_cost_, goal_cost_, kGoal});
     }
-    for (std::uint8_t m = 0; m < moves.size(); ++m) {
+    for (std::uint8_t m = 0; m < std::uint8_t{moves.size()}; ++m) {
       const CellKey n = k + CellKey{moves[m].dx, moves[m].dy, moves[m].dz};
       const TileKey t = tile_of(n);
       reach(t == home ? here : tile_at(t), n, cost + moves[m].cost, m);
