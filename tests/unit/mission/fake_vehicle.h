@@ -65,7 +65,7 @@ class FakeVehicle final : public Vehicle {
   VehicleDescription description() const override { return description_; }
   void command(const AttitudeRateCommand& command) override { command_ = command; }
   void start(Executive& executive, VehicleSink& sink) override {
-    executive.at(0, [&sink] { sink.on_ground(0, true); });
+    executive.at(0, [&sink] { sink.on_ground(0); });
     executive.every("vehicle", kTick, kTick, [this, &executive, &sink] {
       if (!crashed_) tick(executive.now(), sink);
     });
@@ -94,7 +94,7 @@ class FakeVehicle final : public Vehicle {
   Vec3 move(TimeNs now, VehicleSink& sink) {
     const double dt_s = seconds(kTick), thrust_n = command_.armed ? command_.thrust_n : 0;
     if (standing_ && thrust_n <= description_.mass_kg * kGravity_mps2) return {0, 0, kGravity_mps2};
-    if (std::exchange(standing_, false)) sink.on_ground(now, false);
+    if (std::exchange(standing_, false)) sink.on_lift_off(now);
     const Quat before = pose_.orientation;
     pose_.orientation = (before * exp_so3(command_.body_rate_radps * dt_s)).normalized();
     const Vec3 force_mps2 =
@@ -113,7 +113,7 @@ class FakeVehicle final : public Vehicle {
       pose_.orientation = from_heading(heading_of(pose_.orientation));
       velocity_mps_.setZero();
       standing_ = true;
-      sink.on_ground(now, true);
+      sink.on_ground(now);
     }
     for (const Vec3& path : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)})
       crashed_ = crashed_ || range_to_rock_m(rooms_, pose_.position, path) < description_.radius_m;
