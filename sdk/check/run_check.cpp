@@ -54,7 +54,7 @@ std::string quoted(const std::string& word) {
 
 std::string repeat_command(const CheckOptions& o, const std::string& policy, const Test& test) {
   return "karst policy check " + quoted(o.file) + (policy.empty() ? "" : " --policy " + policy) + " --seed " +
-         std::to_string(o.seed) + " --level " + name_of(o.level) + " --test " + test.name;
+         std::to_string(o.seed) + " --level " + core::name_of(o.level) + " --test " + test.name;
 }
 
 bool stopped(const CheckOptions& o) { return o.stop != nullptr && *o.stop; }
@@ -90,10 +90,12 @@ TestResult run_in_child(const CheckOptions& o, const std::string& policy, const 
   const Progress progress(folder / "progress");
   TestResult r{
       &test, policy, Verdict::passed, "", ordered_json::object(), 0, repeat_command(o, policy, test)};
-  std::vector<std::string> argv = {
-      o.karst.string(), "policy",         "check-one", fs::absolute(o.file).string(),
-      "--test",         test.name,        "--seed",    std::to_string(o.seed),
-      "--level",        name_of(o.level), "--work",    work.path};
+  std::vector<std::string> argv = {o.karst.string(), "policy",
+                                   "check-one",      fs::absolute(o.file).string(),
+                                   "--test",         test.name,
+                                   "--seed",         std::to_string(o.seed),
+                                   "--level",        core::name_of(o.level),
+                                   "--work",         work.path};
   if (!policy.empty()) argv.insert(argv.end(), {"--policy", policy});
   const auto begin = Clock::now();
   host::ProcessEnd end;

@@ -48,7 +48,7 @@ void run_test(Context& context, const Test& test, const std::filesystem::path& w
     verdict = Verdict::failed, reason = e.what();
   }
   const nlohmann::ordered_json result{
-      {"outcome", name_of(verdict)}, {"reason", reason}, {"figures", context.figures}};
+      {"outcome", core::name_of(verdict)}, {"reason", reason}, {"figures", context.figures}};
   std::ofstream out(work / "result.json");
   out << core::json_text(result) << "\n";
   if (!out.flush()) throw core::InputError((work / "result.json").string(), "", "cannot be written");

@@ -44,9 +44,9 @@ int list_tests(bool json) {
   ordered_json out = ordered_json::array();
   for (const Test& t : check::all_tests()) {
     if (json)
-      out.push_back({{"name", t.name}, {"level", name_of(t.level)}, {"description", t.description}});
+      out.push_back({{"name", t.name}, {"level", core::name_of(t.level)}, {"description", t.description}});
     else
-      print_out("%-30s %-9s %s\n", t.name, name_of(t.level), t.description);
+      print_out("%-30s %-9s %s\n", t.name, core::name_of(t.level), t.description);
   }
   if (json) print_json(out);
   return 0;
@@ -61,7 +61,9 @@ std::string figures_text(const ordered_json& figures) {
 
 void print(const TestResult& r) {
   const bool failed = r.verdict == Verdict::failed;
-  const char* mark = failed ? "FAILED" : r.verdict == Verdict::not_applicable ? "n/a" : name_of(r.verdict);
+  const char* mark = failed                                 ? "FAILED"
+                     : r.verdict == Verdict::not_applicable ? "n/a"
+                                                            : core::name_of(r.verdict);
   const std::string say = r.verdict == Verdict::passed ? figures_text(r.figures) : r.reason;
   print_out("  %-8s %-30s %s\n", mark, r.test->name, say.c_str());
   if (failed) print_out("           %s\n           repeat: %s\n", r.test->description, r.repeat.c_str());
@@ -70,9 +72,9 @@ void print(const TestResult& r) {
 
 ordered_json to_json(const TestResult& r) {
   ordered_json j{
-      {"name", r.test->name}, {"level", name_of(r.test->level)}, {"description", r.test->description}};
+      {"name", r.test->name}, {"level", core::name_of(r.test->level)}, {"description", r.test->description}};
   if (!r.policy.empty()) j["policy"] = r.policy;
-  j["outcome"] = name_of(r.verdict);
+  j["outcome"] = core::name_of(r.verdict);
   if (!r.reason.empty()) j["reason"] = r.reason;
   if (!r.figures.empty()) j["figures"] = r.figures;
   if (r.verdict == Verdict::failed) j["repeat"] = r.repeat;
@@ -90,7 +92,7 @@ int check_file(CheckArguments& args) {
   args.options.stop = &interrupted;
   std::string policy;
   if (!args.json)
-    print_out("%s, level %s, seed %llu\n", args.options.file.c_str(), name_of(args.options.level),
+    print_out("%s, level %s, seed %llu\n", args.options.file.c_str(), core::name_of(args.options.level),
               static_cast<unsigned long long>(args.options.seed));
   const std::vector<TestResult> results = check::run_check(args.options, [&](const TestResult& r) {
     if (args.json) return;
@@ -108,7 +110,7 @@ int check_file(CheckArguments& args) {
   if (args.json)
     print_json(ordered_json{{"schema", 1},
                             {"file", args.options.file},
-                            {"level", name_of(args.options.level)},
+                            {"level", core::name_of(args.options.level)},
                             {"seed", args.options.seed},
                             {"passed", passed},
                             {"tests", tests}});

@@ -229,7 +229,7 @@ TEST(Documentation, ListsEveryTestAsTheCommandDoes) {
   for (std::size_t at = page.find("\n| `"); at != std::string::npos; at = page.find("\n| `", at + 1)) ++rows;
   EXPECT_EQ(rows, all_tests().size());
   for (const auto& t : all_tests())
-    EXPECT_THAT(page, HasSubstr("| `" + std::string(t.name) + "` | " + name_of(t.level) + " | " +
+    EXPECT_THAT(page, HasSubstr("| `" + std::string(t.name) + "` | " + core::name_of(t.level) + " | " +
                                 t.description + " |"));
 }
 

@@ -120,7 +120,7 @@ TEST(Tune, FindsTheOptimumThroughNoiseThatAllCandidatesShare) {
   // The default loses 0.1 (ln(4)^2 + ln(4)^2) = 0.38. The seeds' luck is 0.05, what candidates do not share
   // 0.01.
   for (const SearchMethod m : {SearchMethod::bobyqa, SearchMethod::direct, SearchMethod::crs}) {
-    const char* method = name_of(m);
+    const char* method = karst::core::name_of(m);
     Field field;
     TuneOptions o = options(12 + 6 * 30);
     o.search.method = m;
@@ -169,7 +169,7 @@ TEST(Tune, OneParameterAndWholeNumbersDoNotGoOnForEver) {
   TuneOptions o = options(12 + 6 * 40);
   o.axes = {axis("turn", 1, 6, 3, true)};  // six values there are
   for (const SearchMethod m : {SearchMethod::bobyqa, SearchMethod::direct, SearchMethod::crs}) {
-    const char* method = name_of(m);
+    const char* method = karst::core::name_of(m);
     o.search.method = m;
     const TuneResult r = tune(o, std::ref(field));
     EXPECT_LE(r.tried.size(), 6u) << method;
