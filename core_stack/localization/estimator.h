@@ -17,6 +17,7 @@
 
 #include "core_stack/localization/compass.h"
 #include "core_stack/localization/height_offset.h"
+#include "core_stack/localization/hypothesis.h"
 #include "core_stack/localization/inertial_filter.h"
 
 namespace karst::core {
@@ -58,8 +59,7 @@ class Estimator {
   /// a position or heading known too badly to fly fast.
   Diagnosis diagnose(TimeNs now) const;
   Health health(TimeNs now) const { return diagnose(now).health; }
-  /// The hypothesis believed: lidar or magnetic.
-  const char* believed() const { return magnetic_believed_ ? "magnetic" : "lidar"; }
+  Hypothesis believed() const { return magnetic_believed_ ? Hypothesis::magnetic : Hypothesis::lidar; }
   int restarts() const { return restarts_; }
   TimeNs last_imu() const { return last_imu_; }
   const InertialFilter& active() const { return magnetic_believed_ ? magnetic_ : lidar_; }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
@@ -187,7 +186,7 @@ void MissionControl::end_flight(const char* reason, double max_path_m) noexcept 
   try {  // telling of it may fail, too
     *emergency_ = reason;
     enter(Phase::land, reason);
-    onboard_.recorder.event(now(), "safety", {{"action", "land"}, {"reason", reason}});
+    onboard_.recorder.write(now(), event::Safety{SafetyAction::land, reason});
   } catch (...) {
   }
 }
@@ -200,16 +199,14 @@ void MissionControl::finish(MissionOutcome outcome, const std::string& reason) {
   result_->reason = reason;
   enter(Phase::done, reason);
   objects_.finish(outcome == MissionOutcome::landed || (team_ && result_->stands));
-  onboard_.recorder.event(
-      now(), "outcome",
-      {{"outcome", name_of(outcome)}, {"reason", reason}, {"mass_kg", onboard_.flight.mass_kg()}});
+  onboard_.recorder.write(now(), event::Outcome{outcome, reason, onboard_.flight.mass_kg()});
   onboard_.recorder.flush();
 }
 
 void MissionControl::enter(Phase phase, const std::string& reason) {
   phases_.enter(phase, now());
   if (phase == Phase::explore) exploration_.begin();
-  onboard_.recorder.event(now(), "phase", {{"phase", name_of(phase)}, {"reason", reason}});
+  onboard_.recorder.write(now(), event::Phase{phase, reason});
 }
 
 void MissionControl::on_imu(const ImuSample& s) {
@@ -235,7 +232,7 @@ void MissionControl::report_to_watcher() {
                              onboard_.flight.state().velocity_mps.norm(),
                              goals_.goal() ? goals_.goal()->why : ""};
   if (const int overruns = onboard_.executive.overruns(); overruns > overruns_) {
-    onboard_.recorder.event(now(), "overrun", {{"count", overruns - overruns_}});
+    onboard_.recorder.write(now(), event::Overrun{overruns - overruns_});
     overruns_ = overruns;
   }
   if (!watch_(status)) end_flight("stopped by the operator", kAnyPath_m);
@@ -280,6 +277,7 @@ void MissionControl::fly_phase() {
       land();
       break;
     case Phase::done:
+    case Phase::replay:
       break;
   }
 }
@@ -363,13 +361,13 @@ void MissionControl::keep_safe() {
 
 /// Every change is an event, and only one where the same cause slows the vehicle and sends it home.
 void MissionControl::note_verdict(const SafetyVerdict& before) {
-  const auto note = [this](const char* action, const std::string& reason) {
-    onboard_.recorder.event(now(), "safety", {{"action", action}, {"reason", reason}});
+  const auto note = [this](SafetyAction action, const std::string& reason) {
+    onboard_.recorder.write(now(), event::Safety{action, reason});
   };
   const bool turns_back = verdict_.go_home && verdict_.go_home != before.go_home;
   if (!verdict_.same_motion(before) && !(turns_back && verdict_.reason == *verdict_.go_home))
-    note(name_of(verdict_.action), verdict_.reason);
-  if (turns_back) note("home", *verdict_.go_home);
+    note(verdict_.action, verdict_.reason);
+  if (turns_back) note(SafetyAction::home, *verdict_.go_home);
 }
 
 /// It brakes when a cause comes up. How fast it may fly and whether it may explore depend on the causes there
@@ -395,7 +393,7 @@ void MissionControl::record() {
   const Flight& flight = onboard_.flight;
   const BatteryStatus& battery = endurance_.battery();
   onboard_.recorder.pose(flight.state());
-  onboard_.recorder.telemetry({now(), name_of(phase()), flight.state(), flight.reference().position,
+  onboard_.recorder.telemetry({now(), phase(), flight.state(), flight.reference().position,
                                battery.fraction_left, battery.seconds_left, sensors_.explored_m3(),
                                return_home_.distance_m()});
   if (flown_path_.begun()) flown_path_.note(flight.reference().position);

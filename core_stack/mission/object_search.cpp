@@ -11,18 +11,6 @@ namespace {
 
 constexpr std::uint32_t kReported = 0;  // in place of a record's number, which is 1 at least
 
-const char* name_of(ObjectNews::State state) {
-  switch (state) {
-    case ObjectNews::State::found:
-      return "found";
-    case ObjectNews::State::revised:
-      return "revised";
-    case ObjectNews::State::withdrawn:
-      break;
-  }
-  return "withdrawn";
-}
-
 }  // namespace
 
 void ObjectSearch::on_objects(const ObjectDetections& look) {
@@ -30,8 +18,8 @@ void ObjectSearch::on_objects(const ObjectDetections& look) {
   const auto& known = onboard_.flight.estimator().history().states();
   if (known.empty() || look.stamp < known.front().stamp) {  // where the camera was then is not known any more
     if (!std::exchange(late_looks_reported_, true))
-      onboard_.recorder.event(onboard_.now(), "log",
-                              {{"text", "the object detector is too slow: its news is dropped"}});
+      onboard_.recorder.write(onboard_.now(),
+                              event::Log{"the object detector is too slow: its news is dropped"});
     return;
   }
   const Pose T_world_camera =
@@ -44,14 +32,9 @@ void ObjectSearch::on_objects(const ObjectDetections& look) {
 void ObjectSearch::report(Report which) {
   for (const ObjectNews& news : objects_.take_news(onboard_.now(), which == Report::all)) {
     const FoundObject& o = news.object;
-    const bool withdrawn = news.state == ObjectNews::State::withdrawn;
-    onboard_.recorder.event(onboard_.now(), "object",
-                            {{"number", o.number},
-                             {"state", name_of(news.state)},
-                             {"what", core::name_of(o.kind)},
-                             {"position", list(o.position)},
-                             {"deviation", o.deviation_m},
-                             {"sightings", o.sightings}});
+    const bool withdrawn = news.state == ObjectState::withdrawn;
+    onboard_.recorder.write(
+        onboard_.now(), event::Object{news.state, o.number, o.kind, o.position, o.deviation_m, o.sightings});
     if (!team_) continue;
     const ObjectKind kind = withdrawn ? ObjectKind::none : o.kind;
     const std::uint32_t record =
@@ -69,7 +52,7 @@ void ObjectSearch::note_at_base() {
   const std::uint32_t known = team_->known_at_base();
   for (auto& [number, record] : records_) {
     if (record == kReported || record > known) continue;
-    onboard_.recorder.event(onboard_.now(), "object", {{"number", number}, {"state", "reported"}});
+    onboard_.recorder.write(onboard_.now(), event::Object{.state = ObjectState::reported, .number = number});
     record = kReported;
   }
 }
@@ -82,7 +65,8 @@ void ObjectSearch::finish(bool landed) {
   if (team_) return note_at_base();
   if (!landed) return;
   for (const FoundObject& o : objects_.objects())
-    onboard_.recorder.event(onboard_.now(), "object", {{"number", o.number}, {"state", "reported"}});
+    onboard_.recorder.write(onboard_.now(),
+                            event::Object{.state = ObjectState::reported, .number = o.number});
 }
 
 void ObjectSearch::write() const {

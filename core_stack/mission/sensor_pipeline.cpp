@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "core_stack/mission/recording/picture_file.h"
 #include "core_stack/perception/intensity_filter.h"
@@ -65,18 +64,17 @@ void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
                                                              " directions held from the prediction"
                                                        : "";
   const Estimator& e = onboard_.flight.estimator();
-  const std::string believed = e.believed();
+  const Hypothesis believed = e.believed();
   onboard_.recorder.located({onboard_.now(), pose, accepted, e.active().position_sigma_m(),
                              e.active().heading_sigma_rad(), believed});
   if (state == localization_state_ && believed == believed_) return;
   localization_state_ = state;
   believed_ = believed;
-  onboard_.recorder.event(onboard_.now(), "localization",
-                          {{"valid", pose.valid},
-                           {"accepted", accepted},
-                           {"free_directions", pose.free_directions},
-                           {"believed", believed},
-                           {"reason", state}});
+  onboard_.recorder.write(onboard_.now(), event::Localization{.reason = state,
+                                                              .valid = pose.valid,
+                                                              .accepted = accepted,
+                                                              .free_directions = pose.free_directions,
+                                                              .believed = believed});
 }
 
 void SensorPipeline::map_scan(std::shared_ptr<const LidarScan> scan) {
@@ -114,8 +112,8 @@ void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
     file = name.data();
     keep_picture(frame, file);
   } else if (!frame->rgb.empty() && pictures_lost_++ == 0) {
-    onboard_.recorder.event(onboard_.now(), "log",
-                            {{"text", "pictures come faster than they can be written: some are not kept"}});
+    onboard_.recorder.write(onboard_.now(),
+                            event::Log{"pictures come faster than they can be written: some are not kept"});
   }
   onboard_.recorder.frame(*frame, T_world_camera, file);
 }
@@ -134,7 +132,7 @@ void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
       },
       [this, problem] {
         if (!problem->empty() && pictures_lost_++ == 0)
-          onboard_.recorder.event(onboard_.now(), "log", {{"text", *problem}});
+          onboard_.recorder.write(onboard_.now(), event::Log{*problem});
       });
 }
 

@@ -70,9 +70,10 @@ class SensorPipeline {
   bool closed_ = false;
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;
-  TimeNs last_seen_ = 0;                                 // when a scan or an image was last taken in
-  int pictures_lost_ = 0;                                // not kept
-  std::string localization_state_, believed_ = "lidar";  // as last noted in the events
+  TimeNs last_seen_ = 0;            // when a scan or an image was last taken in
+  int pictures_lost_ = 0;           // not kept
+  std::string localization_state_;  // as last noted in the events, as the next
+  Hypothesis believed_ = Hypothesis::lidar;
 };
 
 }  // namespace karst::core

@@ -107,7 +107,7 @@ void ObjectMap::merge_into(Track& kept) {
       std::swap(kept.reported, o->reported);
       std::swap(kept.reported_at, o->reported_at);
     }
-    if (o->reported) withdrawn_.push_back({ObjectNews::State::withdrawn, *o->reported});
+    if (o->reported) withdrawn_.push_back({ObjectState::withdrawn, *o->reported});
     for (const auto& [a, b] : std::set(apart_))
       if (a == o->id || b == o->id) apart_.insert(std::minmax(a == o->id ? b : a, kept.id));
     o->id = 0;
@@ -140,7 +140,7 @@ std::vector<ObjectNews> ObjectMap::take_news(TimeNs now, bool all) {
   withdrawn_.clear();
   for (Track& t : tracks_) {
     if (!worth_telling(t, now, all)) continue;
-    news.push_back({t.reported ? ObjectNews::State::revised : ObjectNews::State::found, found(t)});
+    news.push_back({t.reported ? ObjectState::revised : ObjectState::found, found(t)});
     t.reported = news.back().object;
     t.reported_at = now;
   }

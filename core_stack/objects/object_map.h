@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core_stack/objects/object_options.h"
+#include "core_stack/objects/object_state.h"
 #include "core_stack/objects/sighting.h"
 
 namespace karst::core {
@@ -30,8 +31,7 @@ struct FoundObject {
 
 /// What is to be told of an object since it was last told.
 struct ObjectNews {
-  enum class State { found, revised, withdrawn };  // withdrawn: it is another one of its numbers
-  State state = State::found;
+  ObjectState state = ObjectState::found;
   FoundObject object;
 };
 

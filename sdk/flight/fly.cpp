@@ -135,8 +135,7 @@ void MissionFlight::assemble() {
     r.lockstep.emplace(r.team->options(), how, seats(), &*r.team);
   } else {
     if (!mission_.policy_selection.empty())
-      r.recorders.front()->event(0, "selection",
-                                 {{"policy", mission_.policy}, {"reason", mission_.policy_selection}});
+      r.recorders.front()->write(0, core::event::Selection{mission_.policy, mission_.policy_selection});
     host::HostedPolicy& policy = *policies_.front();
     if (request_.record_requests)
       r.recording.emplace(policy, request_.run_dir / host::kRequestLogName,

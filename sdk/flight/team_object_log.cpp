@@ -23,8 +23,10 @@ void TeamObjectLog::news(core::TimeNs now, const char* kind, const core::Reporte
     const auto before = noted.find(key);
     if (before != noted.end() && before->second.stamp == seen.stamp && before->second.kind == seen.kind)
       continue;
-    const char* state = seen.kind == 0 ? "withdrawn" : before == noted.end() ? "found" : "revised";
-    nlohmann::json fields{{"robot", key.first}, {"number", key.second}, {"state", state}};
+    const core::ObjectState state = seen.kind == 0          ? core::ObjectState::withdrawn
+                                    : before == noted.end() ? core::ObjectState::found
+                                                            : core::ObjectState::revised;
+    nlohmann::json fields{{"robot", key.first}, {"number", key.second}, {"state", core::name_of(state)}};
     if (seen.kind != 0) {
       fields["what"] = core::name_of(static_cast<core::ObjectKind>(seen.kind));
       fields["position"] = core::rounded_list(seen.position);

@@ -60,13 +60,15 @@ class ReplayFiles {
     if (pose.valid) trajectory_ << line.data();
     const bool was_lost = lost_;
     lost_ = !pose.valid;
-    if (lost_ != was_lost)
-      recorder_.event(pose.stamp, "localization",
-                      {{"state", lost_ ? "lost" : "found"}, {"reason", lost_ ? pose.problem : ""}});
+    if (lost_ != was_lost) {
+      using enum core::event::LocalizationState;
+      recorder_.write(pose.stamp, core::event::Localization{.reason = lost_ ? pose.problem : "",
+                                                            .state = lost_ ? lost : found});
+    }
     recorder_.map_changes(pose.stamp, changes);
     core::Telemetry row;
     row.stamp = pose.stamp;
-    row.phase = "replay";
+    row.phase = core::Phase::replay;
     row.state = {pose.stamp, p, velocity_mps, q, Vec3::Zero()};
     row.reference = Vec3::Constant(std::nan(""));
     row.battery_fraction = row.battery_seconds_left = row.home_distance_m = std::nan("");
@@ -75,14 +77,14 @@ class ReplayFiles {
   }
 
   void end(TimeNs stamp, core::MissionOutcome outcome, const std::string& reason, const core::VoxelMap& map) {
-    recorder_.event(stamp, "outcome", {{"outcome", core::name_of(outcome)}, {"reason", reason}});
+    recorder_.write(stamp, core::event::Outcome{outcome, reason});
     recorder_.final_map(map);
     trajectory_.flush();
     if (!recorder_.flush() || !trajectory_)
       throw core::InputError(recorder_.directory().string(), "", "cannot be written: is the disk full?");
   }
   void begin(std::size_t scans) {
-    recorder_.event(0, "phase", {{"phase", "replay"}, {"reason", std::to_string(scans) + " scans"}});
+    recorder_.write(0, core::event::Phase{core::Phase::replay, std::to_string(scans) + " scans"});
   }
 
  private:

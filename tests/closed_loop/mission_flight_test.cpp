@@ -6,8 +6,10 @@
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
+#include "core_stack/mission/recording/run_event.h"
 #include "tests/closed_loop/command.h"
 
 namespace karst {
@@ -15,6 +17,19 @@ namespace {
 
 nlohmann::json metrics_of(const std::filesystem::path& run) {
   return nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
+}
+
+/// Every line is an event, which is written in the same bytes.
+void expect_events(const std::filesystem::path& file) {
+  std::istringstream lines(bytes_of(file));
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    const nlohmann::json parsed = nlohmann::json::parse(line);
+    const auto event = core::event::read(parsed);
+    ASSERT_TRUE(event) << line;
+    EXPECT_EQ(core::event::line_of(core::from_seconds(parsed["t"]), *event), line);
+  }
+  EXPECT_GT(count, 20u);
 }
 
 class EveryPolicy : public ::testing::TestWithParam<const char*> {};
@@ -35,6 +50,7 @@ TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
   for (const char* file : {"mission.info", "events.jsonl", "trajectory.tum", "ground_truth.tum", "map.bt",
                            "map.ot", "map.ply", "timing.json", "report.html", "telemetry.csv"})
     EXPECT_GT(std::filesystem::file_size(run / file), 0u) << file;
+  expect_events(run / "events.jsonl");
 }
 INSTANTIATE_TEST_SUITE_P(Policies, EveryPolicy,
                          ::testing::Values("nearest_frontier", "lateral_frontier", "highest_frontier",

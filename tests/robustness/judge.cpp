@@ -47,8 +47,8 @@ const nlohmann::json* last_of(const RunRecord& run, std::initializer_list<const 
 }
 
 std::string reason_of(const RunRecord& run) {
-  if (const auto* outcome = run.last_event("outcome"))
-    return event_text(*outcome, "outcome") + ": " + event_text(*outcome, "reason");
+  if (const auto end = run.last<core::event::Outcome>())
+    return core::name_of(end->outcome) + (": " + end->reason);
   return "the mission did not end";
 }
 

@@ -11,16 +11,10 @@
 #include "core_stack/common/enum_names.h"
 #include "core_stack/common/time.h"
 #include "core_stack/localization/estimator.h"
+#include "core_stack/mission/flight/safety_action.h"
 #include "core_stack/mission/options/safety_options.h"
 
 namespace karst::core {
-
-/// On the motion, in order of severity.
-enum class SafetyAction { none, slow, brake, land };
-constexpr auto names_of(SafetyAction) {
-  using enum SafetyAction;
-  return std::to_array<Named<SafetyAction>>({{none, "none"}, {slow, "slow"}, {brake, "brake"}, {land, "land"}});
-}
 
 struct SafetyObservation {
   TimeNs now = 0;

@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
-
-#include "core_stack/common/json_text.h"
-#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::core {
 namespace {
@@ -17,8 +13,7 @@ constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer 
 
 /// A drawing's fields in the event. Made on the map lane: a hundred thousand points take a fifth of a second.
 std::string text_of(const Drawing& d) {
-  return json_text(nlohmann::json{
-      {"shape", name_of(d.kind)}, {"points", list(d.points)}, {"rgb", d.rgb}, {"text", d.text}});
+  return event::fields_text(event::Drawing{d.kind, d.points, d.rgb, d.text});
 }
 
 bool reached(const Reference& r, const Goal& goal) {
@@ -193,28 +188,24 @@ void Exploration::record_cycle(const CycleInput& input, const CycleResult& resul
   const TimeNs now = onboard_.now();
   Recorder& recorder = onboard_.recorder;
   recorder.decision_cost(now, result.decide_ms, result.plan_ms);
-  recorder.event(now, "decision",
-                 {{"policy", result.policy},
-                  {"outcome", name_of(result.outcome)},
-                  {"goals", result.goals_proposed},
-                  {"reason", result.reason},
-                  {"appending", input.appending},
-                  {"frontiers", result.frontiers.size()}});
-  nlohmann::json clusters = nlohmann::json::array();
+  recorder.write(now, event::Decision{.outcome = result.outcome,
+                                      .policy = result.policy,
+                                      .reason = result.reason,
+                                      .goals = result.goals_proposed,
+                                      .frontiers = result.frontiers.size(),
+                                      .appending = input.appending});
+  event::Frontiers offered;
   for (const FrontierCluster& c : result.frontiers)
-    clusters.push_back({c.id, c.centroid.x(), c.centroid.y(), c.centroid.z(), c.unknown_cells});
-  recorder.event(now, "frontiers", {{"clusters", clusters}});
+    offered.clusters.push_back({c.id, c.centroid, c.unknown_cells});
+  recorder.write(now, offered);
   if (!result.policy_failure.empty())
-    recorder.event(now, "safety",
-                   {{"action", "fallback"}, {"reason", "the policy failed: " + result.policy_failure}});
+    recorder.write(now, event::Safety{SafetyAction::fallback, "the policy failed: " + result.policy_failure});
   for (const UnseenFrontier& u : result.unseen)
-    recorder.event(
-        now, "frontier",
-        {{"id", u.id}, {"position", list(u.position)}, {"state", "refused"}, {"reason", u.reason}});
+    recorder.write(now, event::Frontier{event::FrontierState::refused, u.id, u.position, u.reason});
   for (const RejectedGoal& r : result.rejected)
-    recorder.event(now, "goal", to_json(r.goal, "rejected", r.reason));
-  for (const std::string& drawing : result.drawing_texts) recorder.event_of_text(now, "drawing", drawing);
-  for (const std::string& text : result.log) recorder.event(now, "log", {{"text", text}});
+    recorder.write(now, goal_event(r.goal, event::GoalState::rejected, r.reason));
+  for (const std::string& drawing : result.drawing_texts) recorder.write(now, event::Drawing::kKind, drawing);
+  for (const std::string& text : result.log) recorder.write(now, event::Log{text});
 }
 
 }  // namespace karst::core

@@ -1,10 +1,7 @@
 #include "core_stack/mission/phases/goal_tracker.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
-
-#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::core {
 namespace {
@@ -13,39 +10,32 @@ constexpr double kSameGoal_m = 0.3;
 
 struct FateEvent {
   PolicyEvent::Kind kind;
-  const char* state;
+  event::GoalState state;
 };
 
 /// How a goal's end is told: to the policy, and in the events.
 FateEvent event_of(GoalFate fate) {
   switch (fate) {
     case GoalFate::reached:
-      return {PolicyEvent::Kind::goal_reached, "reached"};
+      return {PolicyEvent::Kind::goal_reached, event::GoalState::reached};
     case GoalFate::unreachable:
-      return {PolicyEvent::Kind::goal_unreachable, "unreachable"};
+      return {PolicyEvent::Kind::goal_unreachable, event::GoalState::unreachable};
     case GoalFate::abandoned:
-      return {PolicyEvent::Kind::goal_abandoned, "abandoned"};
+      return {PolicyEvent::Kind::goal_abandoned, event::GoalState::abandoned};
     case GoalFate::superseded:
-      return {PolicyEvent::Kind::goal_superseded, "superseded"};
+      return {PolicyEvent::Kind::goal_superseded, event::GoalState::superseded};
     case GoalFate::rejected:
     case GoalFate::none:
     case GoalFate::under_way:
       break;
   }
-  return {PolicyEvent::Kind::goal_rejected, "rejected"};
+  return {PolicyEvent::Kind::goal_rejected, event::GoalState::rejected};
 }
 
 }  // namespace
 
-nlohmann::json to_json(const Goal& goal, const char* state, const std::string& reason) {
-  nlohmann::json j{{"position", list(goal.position)},
-                   {"frontier", goal.frontier_id},
-                   {"score", goal.score},
-                   {"why", goal.why},
-                   {"state", state},
-                   {"reason", reason}};
-  j["heading"] = std::isfinite(goal.heading_rad) ? nlohmann::json(goal.heading_rad) : nlohmann::json();
-  return j;
+event::Goal goal_event(const Goal& goal, event::GoalState state, const std::string& reason) {
+  return {state, goal.position, goal.heading_rad, goal.score, goal.frontier_id, goal.why, reason};
 }
 
 bool GoalTracker::is_under_way(const Goal& goal) const {
@@ -53,7 +43,7 @@ bool GoalTracker::is_under_way(const Goal& goal) const {
 }
 
 void GoalTracker::accept(const Goal& goal, TimeNs now) {
-  recorder_.event(now, "goal", to_json(goal, "accepted", ""));
+  recorder_.write(now, goal_event(goal, event::GoalState::accepted, ""));
   if (!is_under_way(goal))
     close_goal(GoalFate::superseded,
                frontier_open_ ? "the policy chose another" : "its frontier has been seen", now);
@@ -62,7 +52,7 @@ void GoalTracker::accept(const Goal& goal, TimeNs now) {
 }
 
 void GoalTracker::append(const Goal& goal, TimeNs now) {
-  recorder_.event(now, "goal", to_json(goal, "accepted", ""));
+  recorder_.write(now, goal_event(goal, event::GoalState::accepted, ""));
   next_ = goal;
   frontier_open_ = true;
 }
@@ -74,7 +64,7 @@ void GoalTracker::pass(TimeNs now) {
 
 void GoalTracker::report(const Goal& goal, GoalFate fate, const std::string& reason, TimeNs now) {
   const FateEvent how = event_of(fate);
-  recorder_.event(now, "goal", to_json(goal, how.state, reason));
+  recorder_.write(now, goal_event(goal, how.state, reason));
   events_.push_back({how.kind, now, goal, reason});
 }
 

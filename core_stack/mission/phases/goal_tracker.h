@@ -55,7 +55,6 @@ class GoalTracker {
   std::vector<std::uint32_t> looked_at_;  // frontiers reached, or seen on the way
 };
 
-/// A goal as the fields of an event.
-nlohmann::json to_json(const Goal& goal, const char* state, const std::string& reason);
+event::Goal goal_event(const Goal& goal, event::GoalState state, const std::string& reason);
 
 }  // namespace karst::core

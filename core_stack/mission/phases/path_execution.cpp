@@ -1,9 +1,6 @@
 #include "core_stack/mission/phases/path_execution.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-
-#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::core {
 namespace {
@@ -36,19 +33,18 @@ void PathExecution::follow(const Route& route, TimeNs now) {
   const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now &&
                     (flight_.expected(now).position - route.points.front()).norm() < 0.01 &&
                     flight_.limits().max_speed_mps >= polynomial->speed_limit_mps;
-  const nlohmann::json points = list(route.points);
-  nlohmann::json plan{{"length", path_length_m(route.points)},
-                      {"from", points.front()},
-                      {"to", points.back()},
-                      {"narrow", route.path.narrow()},
-                      {"length_bound", route.path.length_bound},
-                      {"points", points}};
+  event::Plan plan{.points = route.points,
+                   .from = route.points.front(),
+                   .to = route.points.back(),
+                   .length_m = path_length_m(route.points),
+                   .length_bound = route.path.length_bound,
+                   .narrow = route.path.narrow()};
   if (options_.motion.trajectory == TrajectoryKind::polynomial) {
-    plan["trajectory"] = fits ? "polynomial" : "sampled";
-    plan["rounds"] = polynomial ? polynomial->rounds : 0;
-    plan["fell_back"] = fits ? "" : why_sampled(polynomial);
+    plan.trajectory = fits ? TrajectoryKind::polynomial : TrajectoryKind::sampled;
+    plan.rounds = polynomial ? polynomial->rounds : 0;
+    plan.fell_back = fits ? "" : why_sampled(polynomial);
   }
-  recorder_.event(now, "plan", plan);
+  recorder_.write(now, plan);
   const double start_speed_mps = flight_.at_rest(now) ? 0.0 : route.start_speed_mps;
   const bool still_so = !route.sampled.samples.empty() && start_speed_mps == route.start_speed_mps &&
                         flight_.limits(route.max_speed_mps) == route.limits;
@@ -103,14 +99,13 @@ void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now
   const bool takes_off = phases.in(Phase::takeoff);
   if (after_m > needed_m && !takes_off) {
     if (as_come_) return;  // nothing else leads home; from near, what is there may look otherwise
-    if (!detour_due_)
-      recorder_.event(now, "safety", {{"action", "replan"}, {"reason", reason}, {"after_m", after_m}});
+    if (!detour_due_) recorder_.write(now, event::Safety{SafetyAction::replan, reason, after_m});
     detour_due_ = true;
     return;
   }
   blocked_ = !takes_off;  // from there, exploring goes on below the roof
   detour_due_ = false;
-  recorder_.event(now, "safety", {{"action", "brake"}, {"reason", reason}, {"after_m", after_m}});
+  recorder_.write(now, event::Safety{SafetyAction::brake, reason, after_m});
   brake(now);
 }
 

@@ -8,7 +8,7 @@
 
 namespace karst::core {
 
-enum class Phase { standby, takeoff, look, explore, home, land, done };
+enum class Phase { standby, takeoff, look, explore, home, land, done, replay };  // replay: all of a recording
 constexpr auto names_of(Phase) {
   using enum Phase;
   return std::to_array<Named<Phase>>({{standby, "standby"},
@@ -17,7 +17,8 @@ constexpr auto names_of(Phase) {
                                       {explore, "explore"},
                                       {home, "home"},
                                       {land, "land"},
-                                      {done, "done"}});
+                                      {done, "done"},
+                                      {replay, "replay"}});
 }
 
 struct Transition {

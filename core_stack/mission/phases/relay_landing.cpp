@@ -1,9 +1,6 @@
 #include "core_stack/mission/phases/relay_landing.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
-
-#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::core {
 namespace {
@@ -42,25 +39,25 @@ void RelayLanding::on_choice(const std::optional<LandingSpot>& before, const std
   if (spot_ && before && spot_->hover == before->hover) return;
   changed();
   if (!spot_) {
-    onboard_.recorder.event(now, "landing", {{"state", "start"}, {"reason", "no landing place is nearer"}});
+    onboard_.recorder.write(
+        now, event::Landing{.state = event::LandingState::start, .reason = "no landing place is nearer"});
     return;
   }
   team_.publish(
       LandingClaim{team_.team_time(now), spot_->ground, spot_->hover, LandingClaim::State::claimed});
-  onboard_.recorder.event(now, "landing",
-                          {{"state", "claimed"},
-                           {"ground", list(spot_->ground)},
-                           {"hover", list(spot_->hover)},
-                           {"node", spot_->node},
-                           {"node_claimed", spot_->claimed},
-                           {"distance", spot_->length_m},
-                           {"seconds_needed", spot_->time_s},
-                           {"seconds_left", seconds_left}});
+  onboard_.recorder.write(now, event::Landing{.state = event::LandingState::claimed,
+                                              .ground = spot_->ground,
+                                              .hover = spot_->hover,
+                                              .node = spot_->node,
+                                              .node_claimed = spot_->claimed,
+                                              .distance_m = spot_->length_m,
+                                              .seconds_needed = spot_->time_s,
+                                              .seconds_left = seconds_left});
 }
 
 void RelayLanding::give_up(const std::string& reason, Because because) {
   const TimeNs now = onboard_.now();
-  onboard_.recorder.event(now, "landing", {{"state", "given up"}, {"reason", reason}});
+  onboard_.recorder.write(now, event::Landing{.state = event::LandingState::given_up, .reason = reason});
   team_.publish(
       LandingClaim{team_.team_time(now), spot_->ground, spot_->hover, LandingClaim::State::given_up});
   onboard_.map.job("give up", kChoiceBudget, [homing = team_.homing(), spot = *spot_, because](Explorer&) {

@@ -1,6 +1,5 @@
 #include "core_stack/mission/phases/return_home.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace karst::core {
@@ -63,11 +62,8 @@ void ReturnHome::on_estimate(const HomeEstimate& estimate) {
   const double slack_s = home_slack_s(seconds_left, estimate.time_s, o.home_margin, o.home_reserve_s);
   if (!return_trigger_.due(slack_s)) return;
   const bool by_time = seconds_left < parts_.endurance.battery().seconds_left;
-  onboard_.recorder.event(onboard_.now(), "homing",
-                          {{"reason", by_time ? "time limit" : "battery"},
-                           {"distance", distance_m_},
-                           {"seconds_left", seconds_left},
-                           {"seconds_needed", seconds_left - slack_s}});
+  onboard_.recorder.write(onboard_.now(), event::Homing{by_time ? "time limit" : "battery", distance_m_,
+                                                        seconds_left, seconds_left - slack_s});
   begin("the time left only just suffices for the way home");
 }
 
@@ -121,7 +117,7 @@ void ReturnHome::watch_patience(bool at_home) {
   const TimeNs still = still_.still_for(onboard_.flight.reference().position, now);
   if (at_home || still <= (wiring_.in_company() ? kPatienceInCompany : kPatience)) return;
   constexpr const char* kReason = "no way home, and waiting does not help";
-  onboard_.recorder.event(now, "safety", {{"action", "land"}, {"reason", kReason}});
+  onboard_.recorder.write(now, event::Safety{SafetyAction::land, kReason});
   wiring_.land_here(kReason);
 }
 
@@ -154,7 +150,7 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
     ++failures_;
   path.block();
   path.take_no_detour();
-  onboard_.recorder.event(now, "log", {{"text", "no path home: " + route.path.reason}});
+  onboard_.recorder.write(now, event::Log{"no path home: " + route.path.reason});
   path.stop(now);
 }
 
@@ -177,8 +173,8 @@ void ReturnHome::fly_back_as_come() {
         planning_ = false;
         if (!parts_.phases.in(Phase::home) || parts_.path.outdated(begun)) return;
         const TimeNs now = onboard_.now();
-        onboard_.recorder.event(
-            now, "safety", {{"action", "home"}, {"reason", "no path through the map: back the way it came"}});
+        onboard_.recorder.write(
+            now, event::Safety{SafetyAction::home, "no path through the map: back the way it came"});
         parts_.path.follow(route, now);
         parts_.path.fly_as_come();
         failures_ = 0;

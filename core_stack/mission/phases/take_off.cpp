@@ -1,7 +1,5 @@
 #include "core_stack/mission/phases/take_off.h"
 
-#include <nlohmann/json.hpp>
-
 namespace karst::core {
 namespace {
 
@@ -37,9 +35,8 @@ void TakeOff::choose_hover() {
 void TakeOff::on_hover(const Vec3& hover) {
   if (!phases_.in(Phase::takeoff)) return;
   const double up_m = hover.z() - onboard_.vehicle.T_world_start.position.z();
-  onboard_.recorder.event(onboard_.now(), "log",
-                          {{"text", "a low roof: it hovers " + metres(up_m) + " up, not " +
-                                        metres(onboard_.options.mission.takeoff_height_m)}});
+  onboard_.recorder.write(onboard_.now(), event::Log{"a low roof: it hovers " + metres(up_m) + " up, not " +
+                                                     metres(onboard_.options.mission.takeoff_height_m)});
   onboard_.flight.climb(onboard_.now(), hover.z() - onboard_.flight.reference().position.z(),
                         kClimbSpeed_mps);
 }

@@ -47,16 +47,10 @@ Recorder::Recorder(const std::filesystem::path& run_dir) : directory_(run_dir) {
   decisions_ << "t_s,decide_ms,plan_ms\n";
 }
 
-void Recorder::event(TimeNs t, const std::string& kind, const nlohmann::json& fields) {
-  nlohmann::ordered_json line{{"t", seconds(t)}, {"kind", kind}};
-  line.update(fields);
-  events_ << json_text(line) << '\n';
-}
+void Recorder::write(TimeNs t, const event::Event& event) { events_ << event::line_of(t, event) << '\n'; }
 
-void Recorder::event_of_text(TimeNs t, const std::string& kind, const std::string& fields) {
-  std::string head = json_text(nlohmann::ordered_json{{"t", seconds(t)}, {"kind", kind}});
-  head.back() = ',';
-  events_ << head << std::string_view(fields).substr(1) << '\n';
+void Recorder::write(TimeNs t, const char* kind, const std::string& fields) {
+  events_ << event::line_of(t, kind, fields) << '\n';
 }
 
 void Recorder::pose(const State& s) {
@@ -68,7 +62,7 @@ void Recorder::pose(const State& s) {
 void Recorder::telemetry(const Telemetry& r) {
   const Vec3 &p = r.state.position, &v = r.state.velocity_mps;
   telemetry_ << formatted("%.2f,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.4f,%.4f,%.4f,%.5f,%.1f,%.3f,%.2f\n",
-                          seconds(r.stamp), r.phase.c_str(), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
+                          seconds(r.stamp), name_of(r.phase), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
                           heading_of(r.state.orientation), r.reference.x(), r.reference.y(), r.reference.z(),
                           r.battery_fraction, r.battery_seconds_left, r.explored_m3, r.home_distance_m);
 }
@@ -77,7 +71,7 @@ void Recorder::located(const Located& r) {
   const LoamPose& p = r.pose;
   localization_ << formatted("%.3f,%.3f,%d,%d,%d,%d,%.4f,%.4f,%.5f,%s,", seconds(p.stamp), seconds(r.used_at),
                              r.accepted, p.free_directions, p.edges, p.planes, p.rms_residual_m,
-                             r.position_sigma_m, r.heading_sigma_rad, r.believed.c_str())
+                             r.position_sigma_m, r.heading_sigma_rad, name_of(r.believed))
                 << p.problem << '\n';
 }
 

@@ -9,6 +9,7 @@
 
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mission/recording/run_event.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
 
 namespace karst::core {
@@ -16,7 +17,7 @@ namespace karst::core {
 /// One line of telemetry.csv.
 struct Telemetry {
   TimeNs stamp = 0;
-  std::string phase;
+  Phase phase = Phase::standby;
   State state;
   Vec3 reference = Vec3::Zero();
   double battery_fraction = 0, battery_seconds_left = 0;
@@ -30,7 +31,7 @@ struct Located {
   LoamPose pose;
   bool accepted = false;
   double position_sigma_m = 0, heading_sigma_rad = 0;  // of the estimate, after it
-  std::string believed;
+  Hypothesis believed = Hypothesis::lidar;
 };
 
 class Recorder {
@@ -38,10 +39,10 @@ class Recorder {
   /// Creates the directory; throws InputError if it cannot be written or holds another run's files.
   explicit Recorder(const std::filesystem::path& run_dir);
 
-  /// A line of events.jsonl: {"t": ..., "kind": kind, ...fields}.
-  void event(TimeNs t, const std::string& kind, const nlohmann::json& fields);
-  /// The same of fields that were made into text elsewhere, where there is time for it: a JSON object.
-  void event_of_text(TimeNs t, const std::string& kind, const std::string& fields);
+  /// A line of events.jsonl.
+  void write(TimeNs t, const event::Event& event);
+  /// The same of fields that were made into text elsewhere, where there is time for it (event::fields_text).
+  void write(TimeNs t, const char* kind, const std::string& fields);
   void pose(const State& state);
   void telemetry(const Telemetry& row);
   void located(const Located& row);

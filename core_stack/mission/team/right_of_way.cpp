@@ -1,10 +1,7 @@
 #include "core_stack/mission/team/right_of_way.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
-
-#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::core {
 namespace {
@@ -27,6 +24,7 @@ TeamPhase phase_for_team(Phase phase) {
     case Phase::home:
       return TeamPhase::home;
     case Phase::done:
+    case Phase::replay:
       return TeamPhase::landed;
   }
   return TeamPhase::lost;
@@ -54,7 +52,8 @@ void RightOfWay::step() {
                           others, now, onboard_.flight.at_rest(now));
   on_change(held, held_for);
   if (action == YieldState::Action::stop) {
-    onboard_.recorder.event(now, "team", {{"action", "stop"}, {"robot", yield_state_.with()}});
+    onboard_.recorder.write(now,
+                            event::Team{.action = event::TeamAction::stop, .robot = yield_state_.with()});
     parts_.path.stop(now);
   }
   if (action == YieldState::Action::make_room && !planning_) make_room(others);
@@ -65,10 +64,10 @@ void RightOfWay::note_arrival() {
   const TimeNs now = onboard_.now();
   if (!yield_state_.on_the_way() || planning_ || !onboard_.flight.at_rest(now)) return;
   const bool there = (onboard_.flight.reference().position - waiting_place_.place).norm() < kAtWaitingPlace_m;
-  const bool aside = there && waiting_place_.keeps_passage_open;
-  yield_state_.arrived(aside ? YieldState::Place::aside : YieldState::Place::in_the_way, now);
-  onboard_.recorder.event(
-      now, "team", {{"action", "wait"}, {"others_get_by", there && waiting_place_.keeps_passage_open}});
+  const bool keeps_passage_open = there && waiting_place_.keeps_passage_open;
+  yield_state_.arrived(keeps_passage_open ? YieldState::Place::aside : YieldState::Place::in_the_way, now);
+  onboard_.recorder.write(
+      now, event::Team{.action = event::TeamAction::wait, .keeps_passage_open = keeps_passage_open});
 }
 
 /// It was held for that robot, and is not any more; or it is held for another one.
@@ -76,13 +75,14 @@ void RightOfWay::on_change(bool held, RobotId held_for) {
   const TimeNs now = onboard_.now();
   const bool holds = yield_state_.holds(), same = held && holds && yield_state_.with() == held_for;
   if (held && !same) {
-    onboard_.recorder.event(now, "team", {{"action", "go on"}, {"robot", held_for}});
+    onboard_.recorder.write(now, event::Team{.action = event::TeamAction::go_on, .robot = held_for});
     failed_places_.clear();
     parts_.path.block();  // from wherever that led: a new way is due
     if (!holds) parts_.path.stop(now);
   }
   if (holds && !same) {
-    onboard_.recorder.event(now, "team", {{"action", "give way"}, {"robot", yield_state_.with()}});
+    onboard_.recorder.write(now,
+                            event::Team{.action = event::TeamAction::give_way, .robot = yield_state_.with()});
     parts_.goals.drop_next(GoalFate::superseded, "another vehicle is in the way", now);
     parts_.path.block();
     parts_.path.stop(now);
@@ -137,16 +137,14 @@ void RightOfWay::on_room(const Room& room, TimeNs begun, bool crowd) {
   if (!yield_state_.holds() || parts_.path.braked_since(begun)) return;
   if (!room.waiting_place) {
     yield_state_.no_room(now, crowd);
-    onboard_.recorder.event(now, "team", {{"action", "no room"}, {"robot", yield_state_.with()}});
+    onboard_.recorder.write(now,
+                            event::Team{.action = event::TeamAction::no_room, .robot = yield_state_.with()});
     return;
   }
   waiting_place_ = *room.waiting_place;
   yield_state_.set_out();
-  onboard_.recorder.event(now, "team",
-                          {{"action", "make room"},
-                           {"robot", yield_state_.with()},
-                           {"to", list(waiting_place_.place)},
-                           {"others_get_by", waiting_place_.keeps_passage_open}});
+  onboard_.recorder.write(now, event::Team{event::TeamAction::make_room, yield_state_.with(),
+                                           waiting_place_.place, waiting_place_.keeps_passage_open});
   if (room.route.path.found()) parts_.path.follow(room.route, now);
 }
 

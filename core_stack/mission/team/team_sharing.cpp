@@ -1,9 +1,6 @@
 #include "core_stack/mission/team/team_sharing.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-
-#include "core_stack/mission/recording/json_point.h"
 
 namespace karst::core {
 namespace {
@@ -70,7 +67,7 @@ void TeamSharing::drop_node(const NodeDrop& drop) {
   --nodes_left_;
   dropped_at_ = now;
   team_.drop_node(drop);
-  onboard_.recorder.event(now, "drop", {{"ground", list(drop.ground)}, {"left", nodes_left_}});
+  onboard_.recorder.write(now, event::Drop{drop.ground, nodes_left_});
 }
 
 void TeamSharing::claim_goal(const Goal& goal) {

@@ -8,16 +8,9 @@
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
 #include "core_stack/common/time.h"
+#include "core_stack/planning/trajectory/trajectory_kind.h"
 
 namespace karst::core {
-
-/// How paths become motion: by the paper's sampling, or as minimum-snap polynomials
-/// (polynomial_trajectory.h).
-enum class TrajectoryKind { sampled, polynomial };
-constexpr auto names_of(TrajectoryKind) {
-  using enum TrajectoryKind;
-  return std::to_array<Named<TrajectoryKind>>({{sampled, "sampled"}, {polynomial, "polynomial"}});
-}
 
 struct MotionLimits {
   double max_speed_mps = 2.0;

@@ -145,13 +145,8 @@ Fault read_fault(const std::string& source, const pt::ptree& tree) {
   fault.sensor = *sensor;
   if (fault.kind != Fault::Kind::lost && fault.sensor != Fault::Sensor::lidar)
     throw InputError(source, "fault.kind",
-<<<<<<< ours
-                     "expected lost, which is all that can happen to the " + core::name_of(fault.sensor) +
-                         ", got \"" + core::name_of(fault.kind) + "\"");
-=======
                      std::string("expected lost, which is all that can happen to the ") +
                          core::name_of(fault.sensor) + ", got \"" + core::name_of(fault.kind) + "\"");
->>>>>>> theirs
   return fault;
 }
 

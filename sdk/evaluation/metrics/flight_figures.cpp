@@ -10,16 +10,18 @@
 namespace karst::evaluation {
 namespace {
 
+using core::MissionOutcome;
 using core::Vec3;
+namespace event = core::event;
 
 constexpr double kStandingSpeed_mps = 0.2;
 constexpr double kProgress_m = 0.5;
 constexpr double kAtStart_m = 1;  // the mission's own bound for a landing at the start
 
-bool within(const RunRecord& run, double t_s, std::initializer_list<const char*> names) {
+bool within(const RunRecord& run, double t_s, std::initializer_list<core::Phase> phases) {
   for (const Phase& p : run.phases)
-    for (const char* name : names)
-      if (p.name == name && t_s >= p.begin_s && t_s <= p.end_s) return true;
+    for (const core::Phase phase : phases)
+      if (p.is(phase) && t_s >= p.begin_s && t_s <= p.end_s) return true;
   return false;
 }
 
@@ -61,7 +63,8 @@ Exploring exploring(const RunRecord& run) {
   }
   double exploring = 0, standing = 0, length_m = 0;
   for (std::size_t i = 1; i < t_s.size(); ++i) {
-    if (!within(run, t_s[i - 1], {"explore"}) || !within(run, t_s[i], {"explore"})) continue;
+    if (!within(run, t_s[i - 1], {core::Phase::explore}) || !within(run, t_s[i], {core::Phase::explore}))
+      continue;
     exploring += t_s[i] - t_s[i - 1];
     length_m += speed[i] * (t_s[i] - t_s[i - 1]);
     if (speed[i] < kStandingSpeed_mps) standing += t_s[i] - t_s[i - 1];
@@ -74,7 +77,7 @@ std::optional<double> longest_stall_s(const RunRecord& run, const std::vector<St
   std::optional<double> longest_s;
   const StampedPose* landmark = nullptr;
   for (const StampedPose& p : poses) {
-    if (!within(run, p.t_s, {"explore", "home"})) continue;
+    if (!within(run, p.t_s, {core::Phase::explore, core::Phase::home})) continue;
     if (!landmark || (p.T_world_body.position - landmark->T_world_body.position).norm() > kProgress_m)
       landmark = &p;
     longest_s = std::max(longest_s.value_or(0), p.t_s - landmark->t_s);
@@ -89,7 +92,8 @@ std::optional<double> min_clearance_m(const RunRecord& run) {
   std::optional<double> least;
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const double c = (*clearance)[i];
-    if (std::isfinite(c) && within(run, (*t_s)[i], {"look", "explore", "home"}))
+    if (std::isfinite(c) &&
+        within(run, (*t_s)[i], {core::Phase::look, core::Phase::explore, core::Phase::home}))
       least = std::min(least.value_or(c), c);
   }
   return least;
@@ -97,12 +101,13 @@ std::optional<double> min_clearance_m(const RunRecord& run) {
 
 /// Touches the simulator saw, or, without its record, the one that ended the flight, if one did.
 std::optional<std::int64_t> contacts(const RunRecord& run) {
-  const nlohmann::json* outcome = run.last_event("outcome");
-  const bool nobody_watched = !outcome || event_text(*outcome, "outcome") == "replayed";
+  const auto end = run.last<event::Outcome>();
+  const bool nobody_watched = !end || end->outcome == MissionOutcome::replayed;
   if (run.truth_events.empty() && nobody_watched) return std::nullopt;
   std::int64_t count = 0;
-  for (const auto& e : run.truth_events) count += event_text(e, "event") == "contact";
-  const bool ended_so = outcome && event_text(*outcome, "outcome") == "contact";
+  for (const auto& e : run.truth_events)
+    count += event_text(e, "event") == core::name_of(MissionOutcome::contact);
+  const bool ended_so = end && end->outcome == MissionOutcome::contact;
   return std::max<std::int64_t>(count, ended_so ? 1 : 0);
 }
 
@@ -117,7 +122,9 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
   RootMeanSquare rms;
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const Vec3 off((*c[0])[i] - (*c[3])[i], (*c[1])[i] - (*c[4])[i], (*c[2])[i] - (*c[5])[i]);
-    if (off.allFinite() && within(run, (*t_s)[i], {"takeoff", "look", "explore", "home", "land"}))
+    if (off.allFinite() && within(run, (*t_s)[i],
+                                  {core::Phase::takeoff, core::Phase::look, core::Phase::explore,
+                                   core::Phase::home, core::Phase::land}))
       rms.add(off.norm());
   }
   return rms.value();
@@ -166,22 +173,24 @@ std::optional<double> last_finite(const std::vector<double>* column) {
 }
 
 bool completed(const RunRecord& run, std::optional<double> landing_error_m) {
-  const nlohmann::json* outcome = run.last_event("outcome");
-  if (!outcome || event_text(*outcome, "outcome") != "landed") return false;
+  const auto end = run.last<event::Outcome>();
+  if (!end || end->outcome != MissionOutcome::landed) return false;
   if (landing_error_m.value_or(0) > kAtStart_m) return false;
   double explored_until_s = -1;
   for (const Phase& p : run.phases)
-    if (p.name == "explore") explored_until_s = p.end_s;
+    if (p.is(core::Phase::explore)) explored_until_s = p.end_s;
   if (explored_until_s < 0) return false;
   return std::none_of(run.events.begin(), run.events.end(), [&](const nlohmann::json& e) {
-    const std::string action = e["kind"] == "safety" ? event_text(e, "action") : "";
-    return (action == "home" || action == "land") && event_number(e, "t").value_or(0) <= explored_until_s;
+    const auto safety = event::as<event::Safety>(e);
+    return safety &&
+           (safety->action == core::SafetyAction::home || safety->action == core::SafetyAction::land) &&
+           e["t"].get<double>() <= explored_until_s;
   });
 }
 
 double flight_begin_s(const RunRecord& run) {
   for (const Phase& p : run.phases)
-    if (p.name != "standby") return p.begin_s;
+    if (!p.is(core::Phase::standby)) return p.begin_s;
   const auto* t_s = run.telemetry.times();
   return t_s && !t_s->empty() ? t_s->front() : 0.0;
 }
@@ -192,7 +201,8 @@ FlightFigures flight_figures(const RunRecord& run) {
   f.contacts = contacts(run);
   if (end_s > begin_s) f.flight_time_s = end_s - begin_s;
   for (const Phase& p : run.phases)
-    if (p.name == "explore") f.exploration_time_s = f.exploration_time_s.value_or(0) + p.end_s - p.begin_s;
+    if (p.is(core::Phase::explore))
+      f.exploration_time_s = f.exploration_time_s.value_or(0) + p.end_s - p.begin_s;
   const auto& poses = run.truth.empty() ? run.estimate : run.truth;
   if (!poses.empty()) f.path_length_m = path_length_m(poses, begin_s, end_s);
   if (f.path_length_m && f.flight_time_s) f.mean_speed_mps = *f.path_length_m / *f.flight_time_s;

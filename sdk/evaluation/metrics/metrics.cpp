@@ -22,6 +22,7 @@ using core::CellKey;
 using core::Vec3;
 using nlohmann::json;
 using nlohmann::ordered_json;
+namespace event = core::event;
 
 /// Null for what is not known; otherwise rounded, so that a number's text is short and the same everywhere.
 ordered_json value(std::optional<double> v) {
@@ -40,15 +41,16 @@ ordered_json text_or_null(const std::string& text) {
   return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }
 
-std::size_t count_goals(const RunRecord& run, const char* state) {
+std::size_t count_goals(const RunRecord& run, event::GoalState state) {
   return static_cast<std::size_t>(std::count_if(run.events.begin(), run.events.end(), [&](const json& e) {
-    return e["kind"] == "goal" && event_text(e, "state") == state;
+    const auto goal = event::as<event::Goal>(e);
+    return goal && goal->state == state;
   }));
 }
 
 std::size_t count_events(const RunRecord& run, const char* kind) {
-  return static_cast<std::size_t>(
-      std::count_if(run.events.begin(), run.events.end(), [&](const json& e) { return e["kind"] == kind; }));
+  return static_cast<std::size_t>(std::count_if(run.events.begin(), run.events.end(),
+                                                [&](const json& e) { return event::is_kind(e, kind); }));
 }
 
 struct Volume {
@@ -132,8 +134,8 @@ ErrorStatistics map_error(const RunRecord& run, const core::VoxelMap* map, const
 }  // namespace
 
 ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
-  const json* end = run.last_event("outcome");
-  const std::string outcome = end ? event_text(*end, "outcome") : "aborted";
+  const auto end = run.last<event::Outcome>();
+  const core::MissionOutcome outcome = end ? end->outcome : core::MissionOutcome::aborted;
   const std::string cave = first_setting(run, {"cave.file", "cave"});
   const std::string seed = first_setting(run, {"seed", "mission.seed"});
   const Volume volume = volume_of(run, map, truth);
@@ -152,8 +154,8 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
     const json number = json::parse(seed, nullptr, false);
     if (number.is_number_integer()) m["seed"] = number;
   }
-  m["outcome"] = outcome;
-  m["reason"] = end ? event_text(*end, "reason") : "the record ends without an outcome";
+  m["outcome"] = core::name_of(outcome);
+  m["reason"] = end ? end->reason : "the record ends without an outcome";
   m["completed"] =
       has_events ? ordered_json(completed(run, f.landing_error_m) ? 1 : 0) : ordered_json(nullptr);
   m["contacts"] = f.contacts ? ordered_json(*f.contacts) : ordered_json(nullptr);
@@ -184,16 +186,18 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["depth_m"] = value(f.depth_m);
   m["vertical_reach_m"] = value(f.vertical_reach_m);
   m["min_clearance_m"] = value(f.min_clearance_m);
-  m["landing_error_m"] = value(outcome == "landed" ? f.landing_error_m : std::nullopt);
+  m["landing_error_m"] = value(outcome == core::MissionOutcome::landed ? f.landing_error_m : std::nullopt);
   m["battery_left"] = value(f.battery_left);
   m["map_error_mean_m"] = value(error.count ? std::optional(error.mean) : std::nullopt);
   m["map_error_std_m"] = value(error.count ? std::optional(error.std) : std::nullopt);
   m["drift_percent"] = value(f.drift_percent);
   m["heading_error_rad"] = value(f.heading_error_rad);
   m["tracking_rms_m"] = value(f.tracking_rms_m);
-  m["goals_accepted"] = has_events ? ordered_json(count_goals(run, "accepted")) : ordered_json(nullptr);
-  m["goals_rejected"] = has_events ? ordered_json(count_goals(run, "rejected")) : ordered_json(nullptr);
-  m["overruns"] = has_events ? ordered_json(count_events(run, "overrun")) : ordered_json(nullptr);
+  m["goals_accepted"] =
+      has_events ? ordered_json(count_goals(run, event::GoalState::accepted)) : ordered_json(nullptr);
+  m["goals_rejected"] =
+      has_events ? ordered_json(count_goals(run, event::GoalState::rejected)) : ordered_json(nullptr);
+  m["overruns"] = has_events ? ordered_json(count_events(run, event::Overrun::kKind)) : ordered_json(nullptr);
   set_figures(m, object_figures(run));
   for (const char* key :
        {"data_at_base_share", "robots_landed", "robots_connected", "exploration_time_1_s",

@@ -1,7 +1,5 @@
 #include "sdk/evaluation/metrics/object_events.h"
 
-#include <cmath>
-
 #include "sdk/evaluation/record/run_record.h"
 
 namespace karst::evaluation {
@@ -14,6 +12,10 @@ constexpr double kFarthest_m = 1e6;  // what lies farther is damaged
 
 }  // namespace
 
+std::optional<Vec3> near_enough(const std::optional<Vec3>& p) {
+  return p && (p->array().abs() < kFarthest_m).all() ? p : std::nullopt;
+}
+
 std::optional<Vec3> position_of(const json& e) {
   const auto p = e.find("position");
   if (p == e.end() || !p->is_array() || p->size() != 3) return std::nullopt;
@@ -21,9 +23,8 @@ std::optional<Vec3> position_of(const json& e) {
   for (int i = 0; i < 3; ++i) {
     if (!(*p)[static_cast<std::size_t>(i)].is_number()) return std::nullopt;
     v[i] = (*p)[static_cast<std::size_t>(i)].get<double>();
-    if (!(std::abs(v[i]) < kFarthest_m)) return std::nullopt;
   }
-  return v;
+  return near_enough(v);
 }
 
 std::int64_t whole_number(const json& e, const char* key) {
@@ -49,15 +50,18 @@ std::vector<TrueObject> listed(const TrueObjects& truth) {
   return list;
 }
 
-void note(KnownObjects& known, const KnownObjects::key_type& key, const json& e, const char* reported_by) {
-  const std::string state = event_text(e, "state");
-  if (state == "withdrawn") {
+void note(KnownObjects& known, const KnownObjects::key_type& key, const ObjectReport& report,
+          std::optional<core::ObjectState> counts_as_reported) {
+  if (report.state == core::ObjectState::withdrawn) {
     known.erase(key);
     return;
   }
   KnownObject& o = known[key];
-  if (const auto p = position_of(e)) o.what = event_text(e, "what"), o.position = *p;
-  if (state == reported_by && !o.reported_s) o.reported_s = event_number(e, "t");
+  if (report.position) {
+    o.what = report.what;
+    o.position = *report.position;
+  }
+  if (report.state == counts_as_reported && !o.reported_s) o.reported_s = report.t_s;
 }
 
 std::vector<KnownObject> listed(const KnownObjects& known) {

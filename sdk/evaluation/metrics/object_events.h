@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core_stack/common/geometry.h"
+#include "core_stack/objects/object_state.h"
 
 namespace karst::evaluation {
 
@@ -34,6 +35,16 @@ using KnownObjects = std::map<std::pair<std::int64_t, std::int64_t>, KnownObject
 std::vector<TrueObject> listed(const TrueObjects& truth);
 std::vector<KnownObject> listed(const KnownObjects& known);
 
+/// What a line says of an object; what and where are not always said again.
+struct ObjectReport {
+  core::ObjectState state;
+  std::string what;
+  std::optional<core::Vec3> position;
+  double t_s = 0;
+};
+
+/// None if it lies where no object can be: then it is damaged.
+std::optional<core::Vec3> near_enough(const std::optional<core::Vec3>& position);
 /// None if it is missing or damaged.
 std::optional<core::Vec3> position_of(const nlohmann::json& event);
 /// -1 if it is none.
@@ -42,8 +53,8 @@ std::int64_t whole_number(const nlohmann::json& event, const char* key);
 /// Of truth_objects.jsonl.
 TrueObjects true_objects(const std::vector<nlohmann::json>& events);
 
-/// Takes in what an event says of an object; `reported_by` is the state that counts as reported.
-void note(KnownObjects& known, const KnownObjects::key_type& key, const nlohmann::json& event,
-          const char* reported_by);
+/// Takes in a report; with the state `counts_as_reported` the base knows of the object.
+void note(KnownObjects& known, const KnownObjects::key_type& key, const ObjectReport& report,
+          std::optional<core::ObjectState> counts_as_reported);
 
 }  // namespace karst::evaluation

@@ -73,8 +73,10 @@ ObjectFigures object_figures(const RunRecord& run) {
   if (run.truth_objects.empty()) return {};
   KnownObjects known;
   for (const json& e : run.events)
-    if (e["kind"] == "object" && whole_number(e, "number") >= 0)
-      note(known, {0, whole_number(e, "number")}, e, "reported");
+    if (const auto o = core::event::as<core::event::Object>(e))
+      note(known, {0, o->number},
+           {o->state, o->what ? core::name_of(*o->what) : "", near_enough(o->position), e["t"]},
+           core::ObjectState::reported);
   std::vector<KnownObject> found = listed(known), at_base;
   std::copy_if(found.begin(), found.end(), std::back_inserter(at_base),
                [](const KnownObject& o) { return o.reported_s.has_value(); });

@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
+namespace event = core::event;
 
 /// From the phase events, or else from the telemetry's phase column.
 std::vector<Phase> find_phases(const RunRecord& run) {
@@ -26,8 +27,8 @@ std::vector<Phase> find_phases(const RunRecord& run) {
     phases.push_back({name, t_s, t_s});
   };
   for (const json& e : run.events) {
-    if (e["kind"] == "phase" && !event_text(e, "phase").empty()) enter(event_text(e, "phase"), e["t"]);
-    if (e["kind"] == "outcome" && !phases.empty()) enter("done", e["t"]);
+    if (const auto phase = event::as<event::Phase>(e)) enter(core::name_of(phase->phase), e["t"]);
+    if (event::as<event::Outcome>(e) && !phases.empty()) enter(core::name_of(core::Phase::done), e["t"]);
   }
   if (phases.empty()) {
     const auto* t_s = run.telemetry.times();
@@ -35,8 +36,8 @@ std::vector<Phase> find_phases(const RunRecord& run) {
     if (t_s && names != run.telemetry.text.end())
       for (std::size_t i = 0; i < t_s->size(); ++i) enter(names->second[i], (*t_s)[i]);
   }
-  if (!phases.empty() && phases.back().name != "done") phases.back().end_s = run.last_time_s();
-  std::erase_if(phases, [](const Phase& p) { return p.name == "done"; });
+  if (!phases.empty() && !phases.back().is(core::Phase::done)) phases.back().end_s = run.last_time_s();
+  std::erase_if(phases, [](const Phase& p) { return p.is(core::Phase::done); });
   return phases;
 }
 
@@ -44,6 +45,14 @@ void note_absent(const RunRecord& run, const char* file, const char* consequence
                  std::vector<std::string>& problems) {
   if (!fs::exists(run.directory / file))
     problems.push_back(std::string(file) + ": not there; " + consequence);
+}
+
+void check_stamped(const json& line, const char* time, const char* kind) {
+  if (!line.is_object() || !event_number(line, time) || event_text(line, kind).empty())
+    throw event::Malformed(std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind +
+                           "\")");
+  if (std::abs(*event_number(line, time)) > kLongestRun_s)
+    throw event::Malformed(std::string("its \"") + time + "\" is longer than a mission can last");
 }
 
 }  // namespace
@@ -75,12 +84,6 @@ std::optional<double> RunRecord::number(const std::string& key) const {
 double RunRecord::map_resolution_m() const {
   const double r = number("map.resolution").value_or(0.2);
   return r > 0 ? r : 0.2;
-}
-
-const json* RunRecord::last_event(const std::string& kind) const {
-  for (auto e = events.rbegin(); e != events.rend(); ++e)
-    if ((*e)["kind"] == kind) return &*e;
-  return nullptr;
 }
 
 double RunRecord::last_time_s() const {
@@ -117,20 +120,20 @@ json read_json(const fs::path& file, std::vector<std::string>& problems) {
 }
 
 std::vector<json> read_events(const fs::path& file, const char* time, const char* kind,
-                              std::vector<std::string>& problems) {
+                              std::vector<std::string>& problems,
+                              const std::function<void(const json&)>& check) {
   std::vector<json> events;
   BadLines bad(file);
   const std::vector<std::string> lines = read_lines(file, problems);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    json event = core::json_of(lines[i]);
-    const bool valid = event.is_object() && event_number(event, time) && !event_text(event, kind).empty();
-    if (!valid)
-      bad.add(i + 1,
-              std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind + "\")");
-    else if (std::abs(*event_number(event, time)) > kLongestRun_s)
-      bad.add(i + 1, std::string("its \"") + time + "\" is longer than a mission can last");
-    else
-      events.push_back(std::move(event));
+    json line = core::json_of(lines[i]);
+    try {
+      check_stamped(line, time, kind);
+      check(line);
+      events.push_back(std::move(line));
+    } catch (const event::Malformed& e) {
+      bad.add(i + 1, e.what());
+    }
   }
   bad.report(problems);
   return events;
@@ -148,7 +151,8 @@ RunRecord read_run(const fs::path& run_dir) {
   note_absent(run, "map_growth.bin", "the map cannot be drawn", problems);
   note_absent(run, "map.bt", "the run did not come to its end; the volume is the telemetry's last", problems);
   run.settings = read_settings(run_dir / "mission.info", problems);
-  run.events = read_events(run_dir / "events.jsonl", "t", "kind", problems);
+  run.events = read_events(run_dir / "events.jsonl", "t", "kind", problems,
+                           [](const json& line) { event::read(line); });
   run.truth_events = read_events(run_dir / "truth_events.jsonl", "time_s", "event", problems);
   run.truth_objects = read_events(run_dir / "truth_objects.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);

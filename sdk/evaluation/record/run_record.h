@@ -2,11 +2,13 @@
 // still gives a record of what is there; `problems` says what is not.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core_stack/mission/recording/run_event.h"
 #include "sdk/evaluation/record/map_growth.h"
 #include "sdk/evaluation/record/poses.h"
 #include "sdk/evaluation/record/table.h"
@@ -22,15 +24,16 @@ struct Setting {
 };
 
 struct Phase {
-  std::string name;  // standby, takeoff, look, explore, home, land
+  std::string name;  // a core::Phase's, or of a team flying
   double begin_s = 0, end_s = 0;
+  bool is(core::Phase phase) const { return name == core::name_of(phase); }
 };
 
 struct RunRecord {
   std::filesystem::path directory;
-  std::vector<Setting> settings;              // mission.info, in its order
-  std::vector<nlohmann::json> events;         // each an object with "t" and "kind", in the file's order
-  std::vector<nlohmann::json> truth_events;   // the simulator's: each an object with "time_s" and "event"
+  std::vector<Setting> settings;             // mission.info, in its order
+  std::vector<nlohmann::json> events;        // in the file's order, none malformed: read with core::event::as
+  std::vector<nlohmann::json> truth_events;  // the simulator's: each an object with "time_s" and "event"
   std::vector<nlohmann::json> truth_objects;  // likewise, of objects of interest
   std::vector<StampedPose> estimate, truth;
   Table telemetry, truth_table, decisions;
@@ -45,25 +48,31 @@ struct RunRecord {
   /// The number a setting begins with.
   std::optional<double> number(const std::string& key) const;
   double map_resolution_m() const;  // 0.2 if the settings do not say
-  /// The last event of a kind, or null.
-  const nlohmann::json* last_event(const std::string& kind) const;
+  /// The last event of a kind, such as core::event::Outcome.
+  template <class E>
+  std::optional<E> last() const {
+    for (auto e = events.rbegin(); e != events.rend(); ++e)
+      if (auto event = core::event::as<E>(*e)) return event;
+    return std::nullopt;
+  }
   /// The latest time found anywhere in the record, seconds.
   double last_time_s() const;
 };
 
-/// A text field of an event, "" if there is none.
+/// A text field of a line that has no type, "" if there is none.
 std::string event_text(const nlohmann::json& event, const char* key);
-/// A number field of an event; none if there is none.
+/// A number field, likewise; none if there is none.
 std::optional<double> event_number(const nlohmann::json& event, const char* key);
 
 /// The leaves of an INFO file, and a JSON file; nothing, and a problem if it is damaged, where it is not to
 /// be had.
 std::vector<Setting> read_settings(const std::filesystem::path& file, std::vector<std::string>& problems);
 nlohmann::json read_json(const std::filesystem::path& file, std::vector<std::string>& problems);
-/// One JSON object a line, each with a number and a text of the given names; other lines are left out and
-/// reported.
-std::vector<nlohmann::json> read_events(const std::filesystem::path& file, const char* time, const char* kind,
-                                        std::vector<std::string>& problems);
+/// One JSON object a line, each with a number and a text of the given names; other lines, and those at which
+/// `check` throws, are left out and reported.
+std::vector<nlohmann::json> read_events(
+    const std::filesystem::path& file, const char* time, const char* kind, std::vector<std::string>& problems,
+    const std::function<void(const nlohmann::json&)>& check = [](const auto&) {});
 
 /// Throws InputError only if `run_dir` is no directory.
 RunRecord read_run(const std::filesystem::path& run_dir);

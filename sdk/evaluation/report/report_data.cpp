@@ -44,7 +44,9 @@ ordered_json curves(const RunRecord& run) {
 ordered_json event_rows(const RunRecord& run) {
   ordered_json rows = ordered_json::array();
   for (const json& e : run.events) {
-    if (e["kind"] == "frontiers" || e["kind"] == "drawing") continue;
+    if (core::event::is_kind(e, core::event::Frontiers::kKind) ||
+        core::event::is_kind(e, core::event::Drawing::kKind))
+      continue;
     ordered_json row = e;
     for (const char* bulk : {"points", "from", "to"}) row.erase(bulk);
     rows.push_back(std::move(row));

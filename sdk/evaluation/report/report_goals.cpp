@@ -1,12 +1,14 @@
 #include "sdk/evaluation/report/report_goals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace karst::evaluation {
 namespace {
 
 using core::Vec3;
+namespace event = core::event;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
@@ -20,12 +22,8 @@ struct GoalSpan {
   std::string why, fate, fate_reason;
 };
 
-std::optional<Vec3> position_of(const json& event) {
-  const auto p = event.find("position");
-  if (p == event.end() || !p->is_array() || p->size() != 3) return std::nullopt;
-  if (!std::all_of(p->begin(), p->end(), [](const json& v) { return v.is_number(); })) return std::nullopt;
-  return Vec3((*p)[0].get<double>(), (*p)[1].get<double>(), (*p)[2].get<double>());
-}
+std::optional<Vec3> known(const Vec3& p) { return p.allFinite() ? std::optional(p) : std::nullopt; }
+std::optional<double> known(double v) { return std::isfinite(v) ? std::optional(v) : std::nullopt; }
 
 double distance(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
   return a && b ? (*a - *b).norm() : std::numeric_limits<double>::infinity();
@@ -51,7 +49,8 @@ class GoalSpans {
       return distance(spans_[a].position, position) < distance(spans_[b].position, position);
     });
     if (position && !(distance(spans_[*nearest].position, position) < kSameGoal_m)) return;  // ended before
-    for (auto i = open_.begin(); i != nearest; ++i) close(*i, t_s, "superseded", "");
+    for (auto i = open_.begin(); i != nearest; ++i)
+      close(*i, t_s, core::name_of(event::GoalState::superseded), "");
     close(*nearest, t_s, fate, reason);
     open_.erase(open_.begin(), nearest + 1);
   }
@@ -67,7 +66,7 @@ class GoalSpans {
     spans_[i].fate_reason = reason;
   }
   void close_last(double t_s) {
-    close(open_.back(), t_s, "superseded", "");
+    close(open_.back(), t_s, core::name_of(event::GoalState::superseded), "");
     open_.pop_back();
   }
 
@@ -83,14 +82,15 @@ ordered_json goal_spans(const RunRecord& run) {
   GoalSpans goals;
   for (const json& e : run.events) {
     const double t_s = e["t"];
-    const std::string state = event_text(e, "state");
-    if (e["kind"] == "phase" && event_text(e, "phase") != "explore") goals.end_all(t_s);
-    if (e["kind"] != "goal") continue;
-    if (state == "accepted")
-      goals.accept({t_s, std::nullopt, position_of(e), event_number(e, "heading"), event_number(e, "score"),
-                    event_text(e, "why"), "", ""});
-    if (state == "reached" || state == "unreachable" || state == "abandoned" || state == "superseded")
-      goals.end(t_s, position_of(e), state, event_text(e, "reason"));
+    const auto phase = event::as<event::Phase>(e);
+    if (phase && phase->phase != core::Phase::explore) goals.end_all(t_s);
+    const auto goal = event::as<event::Goal>(e);
+    if (!goal || goal->state == event::GoalState::rejected) continue;
+    if (goal->state == event::GoalState::accepted)
+      goals.accept({t_s, std::nullopt, known(goal->position), known(goal->heading_rad), known(goal->score),
+                    goal->why, "", ""});
+    else
+      goals.end(t_s, known(goal->position), core::name_of(goal->state), goal->reason);
   }
   ordered_json list = ordered_json::array();
   for (const GoalSpan& g : goals.spans()) {

@@ -10,27 +10,24 @@
 namespace karst::evaluation {
 namespace {
 
+using core::Vec3;
 using nlohmann::json;
 using nlohmann::ordered_json;
+namespace event = core::event;
 
 constexpr std::size_t kMaxCloudPoints = 300000;
 constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, all moments together
 
 double centimetres(double metres) { return std::round(metres * 100) / 100; }
 
-/// A list of number lists, each at least `least` long, as rounded numbers; others are left out.
-ordered_json rounded_points(const json& event, const char* key, std::size_t least) {
-  ordered_json points = ordered_json::array();
-  const auto list = event.find(key);
-  if (list == event.end() || !list->is_array()) return points;
-  for (const json& p : *list) {
-    const auto number = [](const json& v) { return v.is_number(); };
-    if (!p.is_array() || p.size() < least || !std::all_of(p.begin(), p.end(), number)) continue;
-    ordered_json point = ordered_json::array();
-    for (const json& v : p) point.push_back(centimetres(v.get<double>()));
-    points.push_back(std::move(point));
-  }
-  return points;
+ordered_json rounded(const Vec3& p) { return {centimetres(p.x()), centimetres(p.y()), centimetres(p.z())}; }
+
+/// Points that are not known are left out.
+ordered_json rounded(const std::vector<Vec3>& points) {
+  ordered_json all = ordered_json::array();
+  for (const Vec3& p : points)
+    if (p.allFinite()) all.push_back(rounded(p));
+  return all;
 }
 
 struct Moment {
@@ -119,9 +116,14 @@ ordered_json scene_track(const std::vector<StampedPose>& poses, std::size_t max_
 ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& problems) {
   std::vector<Moment> moments;
   for (const json& e : run.events) {
-    if (e["kind"] != "frontiers") continue;
-    ordered_json clusters = rounded_points(e, "clusters", 5);
-    for (ordered_json& c : clusters) c.erase(c.begin());  // the id
+    const auto frontiers = event::as<event::Frontiers>(e);
+    if (!frontiers) continue;
+    ordered_json clusters = ordered_json::array();
+    for (const event::Cluster& c : frontiers->clusters) {
+      if (!c.centroid.allFinite()) continue;
+      clusters.push_back(rounded(c.centroid));
+      clusters.back().push_back(c.unknown_cells);
+    }
     const std::size_t count = clusters.size();
     moments.push_back({e["t"], std::move(clusters), count});
   }
@@ -131,8 +133,9 @@ ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& pro
 ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problems) {
   std::vector<Moment> moments;
   for (const json& e : run.events) {
-    if (e["kind"] != "plan") continue;
-    ordered_json points = rounded_points(e, "points", 3);
+    const auto plan = event::as<event::Plan>(e);
+    if (!plan) continue;
+    ordered_json points = rounded(plan->points);
     const std::size_t count = points.size();
     moments.push_back({e["t"], std::move(points), count});
   }
@@ -140,20 +143,16 @@ ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problem
 }
 
 ordered_json scene_objects(const RunRecord& run) {
-  std::map<double, ordered_json> found;  // by number
+  std::map<std::uint32_t, ordered_json> found;  // by number
   ordered_json moments = ordered_json::array();
   for (const json& e : run.events) {
-    const std::string state = event_text(e, "state");
-    if (e["kind"] != "object" || state == "reported") continue;
-    const double number = event_number(e, "number").value_or(-1);
-    json place;
-    place["at"] = json::array({e.value("position", json())});
-    const ordered_json at = rounded_points(place, "at", 3);
-    if (state == "withdrawn" || at.empty()) {
-      found.erase(number);
+    const auto o = event::as<event::Object>(e);
+    if (!o || o->state == core::ObjectState::reported) continue;
+    if (o->state == core::ObjectState::withdrawn || !o->position || !o->position->allFinite()) {
+      found.erase(o->number);
     } else {
-      found[number] = at[0];
-      found[number].push_back(event_text(e, "what"));
+      found[o->number] = rounded(*o->position);
+      found[o->number].push_back(o->what ? core::name_of(*o->what) : "");
     }
     ordered_json all = ordered_json::array();
     for (const auto& [n, object] : found) all.push_back(object);
@@ -166,17 +165,16 @@ ordered_json scene_drawings(const RunRecord& run, std::vector<std::string>& prob
   std::vector<Moment> moments;
   for (const json& e : run.events) {
     // A decision without drawings clears those of the one before.
-    const bool drawing = e["kind"] == "drawing", decision = e["kind"] == "decision";
-    if (!drawing && !decision) continue;
+    const auto drawing = event::as<event::Drawing>(e);
+    if (!drawing && !event::is_kind(e, event::Decision::kKind)) continue;
     if (moments.empty() || moments.back().t_s != e["t"].get<double>())
       moments.push_back({e["t"], ordered_json::array(), 0});
     if (!drawing) continue;
-    ordered_json points = rounded_points(e, "points", 3);
+    ordered_json points = rounded(drawing->points);
     moments.back().marks += points.size();
-    const double rgb = event_number(e, "rgb").value_or(0xffffff);
-    moments.back().content.push_back({{"shape", event_text(e, "shape")},
-                                      {"rgb", std::clamp(rgb, 0.0, double{0xffffff})},
-                                      {"text", event_text(e, "text")},
+    moments.back().content.push_back({{"shape", core::name_of(drawing->shape)},
+                                      {"rgb", std::min(drawing->rgb, 0xffffffu)},
+                                      {"text", drawing->text},
                                       {"points", std::move(points)}});
   }
   return thinned(std::move(moments), "policy's drawings", problems);

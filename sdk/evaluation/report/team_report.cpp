@@ -15,6 +15,8 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+namespace event = core::event;
+using event::is_kind;
 
 constexpr std::size_t kTrackPoses = 3000;  // of one robot
 
@@ -107,10 +109,11 @@ ordered_json event_rows(const TeamRecord& team) {
     if (e["kind"] != "base" && e["kind"] != "tree" && e["kind"] != "traffic") rows.push_back(ordered_json(e));
   for (std::size_t i = 0; i < team.robots.size(); ++i)
     for (const json& e : team.robots[i].events)
-      if (e["kind"] == "homing" || e["kind"] == "landing" || e["kind"] == "team" || e["kind"] == "safety") {
+      if (is_kind(e, event::Homing::kKind) || is_kind(e, event::Landing::kKind) ||
+          is_kind(e, event::Team::kKind) || is_kind(e, event::Safety::kKind)) {
         rows.push_back(ordered_json(e));
         rows.back()["robot"] = i + 1;
-        if (e["kind"] == "team") rows.back()["kind"] = "keep apart";
+        if (is_kind(e, event::Team::kKind)) rows.back()["kind"] = "keep apart";
         if (e.contains("robot")) rows.back()["with"] = e["robot"];
       }
   std::stable_sort(rows.begin(), rows.end(), [](const ordered_json& a, const ordered_json& b) {

@@ -7,11 +7,13 @@ namespace {
 
 using nlohmann::json;
 
-/// Whether a team's log says whose object it is, which, and, unless it is withdrawn, what and where.
-bool is_whole_report(const json& e) {
-  if (whole_number(e, "robot") < 0 || whole_number(e, "number") < 0 || event_text(e, "state").empty())
-    return false;
-  return event_text(e, "state") == "withdrawn" || (position_of(e) && !event_text(e, "what").empty());
+/// A line of a team's log, if it says whose object it is, which, and, unless it is withdrawn, what and where.
+std::optional<ObjectReport> report_of(const json& e) {
+  const auto state = core::parse<core::ObjectState>(event_text(e, "state"));
+  if (whole_number(e, "robot") < 0 || whole_number(e, "number") < 0 || !state) return std::nullopt;
+  ObjectReport report{*state, event_text(e, "what"), position_of(e), e["t"]};
+  if (*state != core::ObjectState::withdrawn && (!report.position || report.what.empty())) return std::nullopt;
+  return report;
 }
 
 /// What the base makes of all reports; `at_base` says when each report came. Counts what is damaged.
@@ -55,14 +57,15 @@ ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::strin
   std::size_t damaged = 0;
   for (const json& e : team.events) {
     const std::string kind = event_text(e, "kind");
-    const bool one = kind == "object" || kind == "object_known";
-    if (one && !is_whole_report(e))
+    if (kind == "objects") merged = together(e, at_base, damaged);
+    if (kind != "object" && kind != "object_known") continue;
+    const KnownObjects::key_type key{whole_number(e, "robot"), whole_number(e, "number")};
+    if (const auto report = report_of(e); !report)
       ++damaged;
-    else if (one)
-      note(kind == "object" ? told : at_base, {whole_number(e, "robot"), whole_number(e, "number")}, e,
-           kind == "object" ? "" : "found");
-    else if (kind == "objects")
-      merged = together(e, at_base, damaged);
+    else if (kind == "object")
+      note(told, key, *report, std::nullopt);
+    else
+      note(at_base, key, *report, core::ObjectState::found);
   }
   if (damaged > 0)
     problems.push_back("team.jsonl: " + std::to_string(damaged) +

@@ -114,7 +114,7 @@ RunRecord merged_record(const TeamRecord& team) {
   all.growth = united(team.robots);
   double begin_s = team.duration_s;
   for (const RunRecord& r : team.robots) begin_s = std::min(begin_s, flight_begin_s(r));
-  all.phases = {{"standby", 0, begin_s}, {"flying", begin_s, team.duration_s}};
+  all.phases = {{core::name_of(core::Phase::standby), 0, begin_s}, {"flying", begin_s, team.duration_s}};
   set_horizon(all, *std::max_element(team.starts_s.begin(), team.starts_s.end()));
   const VolumeCurve curve = team_volume_curve(
       team.robots, all.growth, team.map ? std::optional(team.map->free_volume_m3()) : std::nullopt);

@@ -117,7 +117,7 @@ TEST(FilterBank, FollowsPosesOfALidarThatArriveLate) {
   EXPECT_LT(worst_m, 0.05);
   EXPECT_LT(worst_rad, 0.01);
   EXPECT_EQ(b.e.health(b.now), Health::good);
-  EXPECT_STREQ(b.e.believed(), "lidar");
+  EXPECT_EQ(b.e.believed(), Hypothesis::lidar);
 }
 
 TEST(FilterBank, ASinglePoseFarOffChangesNothing) {
@@ -191,14 +191,14 @@ TEST(FilterBank, TheCompassHoldsTheHeadingThatTheLidarLeavesOpen) {
   Bench with;
   with.pose = open_heading, with.hovering = true;
   with.run_until(200);
-  EXPECT_STREQ(with.e.believed(), "magnetic");
+  EXPECT_EQ(with.e.believed(), Hypothesis::magnetic);
   EXPECT_LT(with.heading_error_rad(), 0.05);
 
   Bench without;
   without.pose = open_heading, without.hovering = true;
   without.field = [](double t) { return t < 10 ? kEarthField : Vec3(30, 5, -60); };
   without.run_until(200);
-  EXPECT_STREQ(without.e.believed(), "lidar") << "a field of another strength is not trusted";
+  EXPECT_EQ(without.e.believed(), Hypothesis::lidar) << "a field of another strength is not trusted";
   EXPECT_GT(without.heading_error_rad(), 0.0);
 }
 

@@ -131,7 +131,7 @@ TEST(ObjectMap, MergesWhatComesToLieAtOnePlaceAndTakesOneBack) {
   EXPECT_EQ(found[0].number, 1u) << "the lower number was told first and stays";
   bool withdrawn = false;
   for (const ObjectNews& n : map.take_news(from_seconds(60)))
-    withdrawn = withdrawn || (n.state == ObjectNews::State::withdrawn && n.object.number == 2);
+    withdrawn = withdrawn || (n.state == ObjectState::withdrawn && n.object.number == 2);
   EXPECT_TRUE(withdrawn);
 }
 
@@ -144,11 +144,11 @@ TEST(ObjectMap, TellsAgainWhatItKnowsMuchBetterButNotAllTheTime) {
   sight(0, 1), sight(1, 1);
   auto news = sight(2, 1);
   ASSERT_EQ(news.size(), 1u);
-  EXPECT_EQ(news[0].state, ObjectNews::State::found);
+  EXPECT_EQ(news[0].state, ObjectState::found);
   EXPECT_TRUE(sight(3, 0.05).empty()) << "told a second ago";
   news = sight(7.5, 0.05);
   ASSERT_EQ(news.size(), 1u);
-  EXPECT_EQ(news[0].state, ObjectNews::State::revised);
+  EXPECT_EQ(news[0].state, ObjectState::revised);
   EXPECT_TRUE(sight(20, 0.05).empty()) << "hardly better than what was told";
   EXPECT_EQ(map.take_news(from_seconds(21), true).size(), 1u) << "but at the end it is told";
   EXPECT_TRUE(map.take_news(from_seconds(22), true).empty());

@@ -18,31 +18,20 @@ fs::path fresh(const std::string& name) {
   return dir;
 }
 
-TEST(Recorder, WritesEventsAsOneJsonObjectALine) {
+TEST(Recorder, WritesAnEventALine) {
   const fs::path dir = fresh("recorder_events");
   Recorder recorder(dir);
-  recorder.event(1500 * kMillisecond, "phase", {{"phase", "takeoff"}});
-  recorder.event(2 * kSecond, "log", {{"text", "bad \xff utf-8"}});
+  const event::Event log = event::Log{"away"};
+  recorder.write(1500 * kMillisecond, event::Phase{Phase::takeoff, "clear"});
+  recorder.write(2 * kSecond, log);
+  recorder.write(2 * kSecond, event::Log::kKind, event::fields_text(log));
   ASSERT_TRUE(recorder.flush());
   std::ifstream in(dir / "events.jsonl");
-  std::string line;
-  ASSERT_TRUE(std::getline(in, line));
-  EXPECT_EQ(line, R"({"t":1.5,"kind":"phase","phase":"takeoff"})");
-  ASSERT_TRUE(std::getline(in, line));
-  EXPECT_EQ(nlohmann::json::parse(line)["kind"], "log");
-}
-
-TEST(Recorder, WritesFieldsMadeIntoTextElsewhereAsItWouldItself) {
-  const fs::path dir = fresh("recorder_texts");
-  Recorder recorder(dir);
-  const nlohmann::json fields{{"text", "a \"b\""}, {"points", {{1.5, 2, 3}}}, {"alpha", 1}};
-  recorder.event(1500 * kMillisecond, "drawing", fields);
-  recorder.event_of_text(1500 * kMillisecond, "drawing", fields.dump());
-  ASSERT_TRUE(recorder.flush());
-  std::ifstream in(dir / "events.jsonl");
-  std::string one, other;
-  ASSERT_TRUE(std::getline(in, one) && std::getline(in, other));
-  EXPECT_EQ(one, other);
+  const std::string lines(std::istreambuf_iterator<char>(in), {});
+  EXPECT_EQ(lines, R"({"t":1.5,"kind":"phase","phase":"takeoff","reason":"clear"}
+{"t":2.0,"kind":"log","text":"away"}
+{"t":2.0,"kind":"log","text":"away"}
+)");
 }
 
 TEST(Recorder, GrowthHoldsTheComingAndGoingOfOccupiedCellsOnly) {
