@@ -57,8 +57,10 @@ void describe(OptionTable& t, LoamOptions& o) {
         "fit each sweep to the one before first; auto: where the prediction does not cover it");
   t.add("max_correction", o.max_correction_m, "m", 0.05, 20, "a fit farther from its guess is not believed");
   t.add("max_correction_angle", o.max_correction_rad, "rad", 0.01, 3.1, "nor one turned by more");
-  t.add("restart", o.restart_s, "s", 0.5, 1000,
-        "without a valid pose for so long the local map begins anew where the vehicle is predicted to be");
+  t.add(
+      "restart", o.restart_s, "s", 0.5, 1000,
+      "without a valid pose for so long a sweep that does not lie on the local map begins another, where the "
+      "vehicle is predicted to be");
   t.add("threads", o.threads, 1, 64, "that share the work; results do not depend on it");
 }
 
@@ -119,12 +121,9 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
                        }));
   };
   Cloud cloud = cloud_with(prediction);
-  const bool lost = since_s > options_.restart_s;
-  if (lost) {
-    out.problem = "the local map began anew where the vehicle was predicted to be";
-    out.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
-  }
-  if (map_.empty() || lost) return begin_map(cloud, out, !prediction.covered && !sweep.compensated);
+  const bool bent = !prediction.covered && !sweep.compensated;
+  if (map_.empty()) return begin_map(cloud, out, bent);
+  LoamPose anew = out;
 
   const std::size_t coarsest = map_.surfaces().size() - 1;
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
@@ -167,6 +166,12 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     out.T_world_body = found.T_world_body;
     accept(out, cloud);
     if (scan_to_scan) last_sweep_.insert(transformed(out.T_world_body, cloud), out.T_world_body.position);
+  }
+  if (!out.valid && since_s > options_.restart_s) {
+    anew.anew = true;
+    anew.problem = "the local map began anew where the vehicle was predicted to be";
+    anew.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
+    return begin_map(cloud_with(prediction), anew, bent);
   }
   return out;
 }

@@ -28,7 +28,7 @@ struct LoamOptions {
   ScanToScan scan_to_scan = ScanToScan::automatic;
   double max_correction_m = 1.5;  // of the guess by a fit; a larger one is not believed
   double max_correction_rad = 0.35;
-  double restart_s = 5;  // without a valid pose: the local map begins anew at the prediction
+  double restart_s = 5;  // without a valid pose: a sweep that does not lie on the local map begins another
   std::int64_t threads = 1;
 };
 void describe(OptionTable& t, LoamOptions& o);
@@ -39,7 +39,8 @@ struct LoamPose {
   Matrix6 covariance = Matrix6::Zero();  // translation (world, m), rotation (body, rad); (100 m)^2 where free
   int free_directions = 0;               // along which the sweep says nothing: held from the prediction
   bool valid = false;
-  std::string problem;  // why it is not
+  bool anew = false;    // the local map begins anew with it: it is where the prediction was
+  std::string problem;  // why it is not valid, or what else is wrong with it
   double rms_residual_m = 0;
   int edges = 0, planes = 0;  // matched
 };

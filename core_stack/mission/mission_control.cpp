@@ -303,13 +303,24 @@ void MissionControl::take_off() {
 
 /// As it would in an emergency: where the ground is fit to land on, as far as that is known.
 void MissionControl::land_here(const std::string& reason) {
-  const bool lost = onboard_.flight.estimator().diagnose(now()).health == Health::lost;
-  onboard_.flight.land_now(now(), lost ? kDoubtfulPath_m : kAnyPath_m);
+  lands_lost_ = onboard_.flight.estimator().health(now()) == Health::lost;
+  onboard_.flight.land_now(now(), lands_lost_ ? kDoubtfulPath_m : kAnyPath_m);
   enter(Phase::land, reason);
+}
+
+/// It lands for want of a pose and has one again, in the map that it would fly home by.
+bool MissionControl::found_again() const {
+  return lands_lost_ && flown_path_.begun() && sensors_.located_in_first_map() &&
+         onboard_.flight.estimator().health(now()) == Health::good;
 }
 
 void MissionControl::land() {
   if (standing_) return touch_down(now());  // it had not left the ground yet
+  if (found_again()) {
+    lands_lost_ = false;
+    onboard_.flight.break_off_landing(now());
+    return return_home_.begin("the pose is known again");
+  }
   if (!onboard_.flight.at_rest(now())) return;
   // Down until the ground is felt; the height above it is not known to better than the map.
   const MissionOptions& o = onboard_.options.mission;

@@ -107,6 +107,7 @@ class MissionControl final : public VehicleSink {
   void end_flight(const char* reason, double max_path_m) noexcept;
   void land_here(const std::string& reason);
   void land();
+  bool found_again() const;
   MapQuestion map_question() const;
   void on_map(const MapNews& news);
   void record();
@@ -136,6 +137,7 @@ class MissionControl final : public VehicleSink {
   Watch watch_;
   int overruns_ = 0;  // of the executive, as last noted
   bool standing_ = true;
+  bool lands_lost_ = false;               // for want of a pose
   std::optional<std::string> emergency_;  // why it lands at once, if it does
   std::optional<MissionResult> result_;
 };

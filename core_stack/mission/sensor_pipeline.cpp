@@ -28,7 +28,8 @@ SensorPipeline::SensorPipeline(Onboard& onboard, Wiring wiring)
 }
 
 void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
-  if (scan->stamp > onboard_.now()) return;  // of a clock gone wrong
+  scan = stamped_right(std::move(scan));
+  if (!scan) return;
   if (!loam_) return map_scan(std::move(scan));
   if (onboard_.executive.under_way("localization") > 1)
     return;  // in real time, where it falls behind: the newest scans are of no use if they are late
@@ -52,6 +53,24 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
       });
 }
 
+/// The scan with a stamp that can be right; null if there is none.
+std::shared_ptr<const LidarScan> SensorPipeline::stamped_right(std::shared_ptr<const LidarScan> scan) {
+  const TimeNs before = lidar_clock_.correction();
+  const std::optional<TimeNs> taken = lidar_clock_.taken_at(scan->stamp, onboard_.now());
+  if (!taken) return nullptr;
+  if (lidar_clock_.correction() != before)
+    onboard_.recorder.event(
+        onboard_.now(), "log",
+        {{"text", lidar_clock_.correction() == 0
+                      ? "the LiDAR's clock is right again"
+                      : "the LiDAR's clock was set: the stamps of its scans are corrected"},
+         {"correction", seconds(lidar_clock_.correction())}});
+  if (*taken == scan->stamp) return scan;
+  auto corrected = std::make_shared<LidarScan>(*scan);
+  corrected->stamp = *taken;
+  return corrected;
+}
+
 void SensorPipeline::on_pose(const PoseSample& s) {
   if (!loam_ && s.stamp <= onboard_.now()) onboard_.flight.on_pose(s);
 }
@@ -63,6 +82,7 @@ void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
                             : pose.free_directions > 0 ? std::to_string(pose.free_directions) +
                                                              " directions held from the prediction"
                                                        : "";
+  in_first_map_ = in_first_map_ && !pose.anew;
   const Estimator& e = onboard_.flight.estimator();
   const Hypothesis believed = e.believed();
   onboard_.recorder.located({onboard_.now(), pose, accepted, e.active().position_sigma_m(),

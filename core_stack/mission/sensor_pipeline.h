@@ -11,6 +11,7 @@
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/moving_bodies.h"
 #include "core_stack/mission/onboard/onboard.h"
+#include "core_stack/perception/scan_clock.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::core {
@@ -42,6 +43,7 @@ class SensorPipeline {
   };
   SensorPipeline(Onboard& onboard, Wiring wiring);
 
+  /// A scan of which it is not known when it was taken is not used.
   void on_lidar(std::shared_ptr<const LidarScan> scan);
   void on_depth(std::shared_ptr<const DepthImage> image);
   void on_rgb(const std::shared_ptr<const RgbFrame>& frame);
@@ -57,8 +59,11 @@ class SensorPipeline {
   TimeNs blind_for() const { return onboard_.now() - last_seen_; }
   /// On the ground there is nothing to see.
   void see_nothing_needed() { last_seen_ = onboard_.now(); }
+  /// Poses are of the map that the flight began with: localization has never had to begin another.
+  bool located_in_first_map() const { return in_first_map_; }
 
  private:
+  std::shared_ptr<const LidarScan> stamped_right(std::shared_ptr<const LidarScan> scan);
   void note_localization(const LoamPose& pose, bool accepted);
   void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
   void map_scan(std::shared_ptr<const LidarScan> scan);
@@ -67,6 +72,8 @@ class SensorPipeline {
   Onboard& onboard_;
   Wiring wiring_;
   std::optional<LaneBound<Loam>> loam_;  // on vehicles that a LiDAR locates
+  ScanClock lidar_clock_;
+  bool in_first_map_ = true;
   bool closed_ = false;
   double explored_m3_ = 0;
   std::optional<double> hull_clearance_m_;

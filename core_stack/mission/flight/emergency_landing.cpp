@@ -89,6 +89,12 @@ void EmergencyLanding::plan_move(TimeNs start, double max_path_m) noexcept {
   }
 }
 
+void EmergencyLanding::break_off() {
+  begun_ = false;
+  places_ = 0;
+  brake_.samples.clear();
+}
+
 const Trajectory& EmergencyLanding::trajectory(TimeNs now) const {
   if (now < move_.start) return brake_;
   return now < descent_.start ? move_ : descent_;

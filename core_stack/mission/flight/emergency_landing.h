@@ -22,6 +22,8 @@ class EmergencyLanding {
   void begin(const Trajectory& under_way, TimeNs now,
              double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
   bool begun() const { return begun_; }
+  /// What it was for is over: as if it had not begun, and no way were known.
+  void break_off();
   /// What to follow at `now`, once it has begun.
   const Trajectory& trajectory(TimeNs now) const;
 

@@ -152,6 +152,16 @@ void Flight::land_now(TimeNs now, double max_path_m) noexcept {
   emergency_landing_.begin(trajectory_, now, max_path_m);
 }
 
+/// Where the reference is by the pose found again, it may have drifted to beside the way down.
+void Flight::break_off_landing(TimeNs now) {
+  emergency_landing_.break_off();
+  const TrajectorySample here{state().position, heading_of(state().orientation)};
+  trajectory_ = {};
+  trajectory_.start = now;
+  trajectory_.samples = {here};
+  tracker_.reset(now, here.position, here.heading_rad);
+}
+
 void Flight::disarm() noexcept {
   motors_ = Motors::off;
   trajectory_.samples.resize(1);

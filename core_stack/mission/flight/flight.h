@@ -63,6 +63,8 @@ class Flight {
   /// Brakes, flies that way unless it is longer than `max_path_m`, and comes straight down, whatever else
   /// it is told from now on. Needs no memory.
   void land_now(TimeNs now, double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
+  /// Lands no more: hovers where it is, and does as it is told again.
+  void break_off_landing(TimeNs now);
   /// Motors off, for good: on the ground.
   void disarm() noexcept;
 

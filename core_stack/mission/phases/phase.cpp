@@ -18,6 +18,7 @@ constexpr std::array kTransitions{
         "nothing is left to explore, the policy or the safety supervisor asks for it, the time left only "
         "just suffices, or the record cannot be written"},
     Transition{Phase::home, Phase::land, "it hovers where it lands, or no way leads there"},
+    Transition{Phase::land, Phase::home, "the pose is known again, for want of which it came down"},
     Transition{{}, Phase::land, "the safety supervisor, an error or the operator ends the flight"},
     Transition{{}, Phase::done, "it stands, or is lost"},
 };

@@ -40,7 +40,7 @@ void ReturnHome::begin(const std::string& reason) {
   parts_.path.ask_for_detour();
   wiring_.enter(Phase::home, reason);
   still_.restart(onboard_.flight.reference().position, now);
-  reason_ = reason;
+  if (reason_.empty()) reason_ = reason;
   wiring_.give_up_goals();
   if (parts_.landing) choose_landing();
 }

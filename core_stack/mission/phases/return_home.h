@@ -39,7 +39,7 @@ class ReturnHome {
   void set_home(const Vec3& hover);
   /// While it explores: once a second, whether it has to turn back.
   void watch_time();
-  /// It turns back now.
+  /// It turns back now, or goes on home after it was to land elsewhere.
   void begin(const std::string& reason);
   /// Ten times a second on the way.
   void step();
@@ -50,7 +50,7 @@ class ReturnHome {
   const Vec3& hover() const;
   /// The landing place in a team, if it has one.
   std::optional<LandingSpot> landing_spot() const;
-  /// Why it went home; empty until then.
+  /// Why it first went home; empty until then.
   const std::string& reason() const { return reason_; }
   /// By path, as last estimated.
   double distance_m() const { return distance_m_; }

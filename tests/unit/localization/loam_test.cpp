@@ -312,6 +312,18 @@ TEST(Loam, AfterASecondWithoutScansItFindsBackFromADriftedPrediction) {
   EXPECT_LT(after.worst_m, 0.01);
 }
 
+TEST(Loam, LostForLongItFindsBackIntoItsMapFromAPredictionThatDrifted) {
+  LoamOptions o;
+  o.restart_s = 2;
+  Loam loam(o, lap(kPeriod));
+  fly(loam, furnished_room(), lap, 1, 30);
+  const Pose drift{{0.4, -0.3, 0.1}, exp_so3({0.02, 0.01, 0.05})};
+  const Flown after = fly(loam, furnished_room(), lap, 90, 90, drift);
+  ASSERT_TRUE(after.poses.front().valid) << after.poses.front().problem;
+  EXPECT_FALSE(after.poses.front().anew);
+  EXPECT_LT(after.worst_m, 0.02) << "most of what it sees there the map does not hold yet";
+}
+
 TEST(Loam, LostForLongItBeginsAnewAtThePredictionAndSaysSo) {
   LoamOptions o;
   o.restart_s = 2;
@@ -325,6 +337,7 @@ TEST(Loam, LostForLongItBeginsAnewAtThePredictionAndSaysSo) {
   ASSERT_NE(restart, lost.poses.end());
   EXPECT_NEAR(seconds(restart->stamp), 3.1, 0.11);
   EXPECT_NE(restart->problem.find("anew"), std::string::npos);
+  EXPECT_TRUE(restart->anew);
   EXPECT_TRUE(lost.poses.back().valid);
   EXPECT_LT(error_between(lost.poses.back().T_world_body, there(0)).position_m, 0.01);
 }

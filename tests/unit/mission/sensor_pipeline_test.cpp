@@ -49,6 +49,24 @@ TEST_F(SensorPipelineTest, AScanOfTheFutureAndWhateverComesAfterTheEndAreNotMapp
   EXPECT_TRUE(news.empty());
 }
 
+TEST_F(SensorPipelineTest, ScansOfAClockThatWasSetBackAreMappedAsOfWhenTheyWereTaken) {
+  const auto fly = [this](double until_s, TimeNs off) {
+    while (now() < from_seconds(until_s)) {
+      advance(0.1);
+      sensors.on_lidar(scan(now() + off));
+    }
+    advance(0.1);
+  };
+  fly(2, 0);
+  const std::size_t before = news.size();
+  fly(4, -250 * kMillisecond);
+  EXPECT_EQ(news.size(), before + 18) << "all but the first";
+  EXPECT_EQ(told("the LiDAR's clock was set"), 1u);
+  EXPECT_EQ(told("\"correction\":0.25"), 1u);
+  fly(6, 0);
+  EXPECT_EQ(told("the LiDAR's clock is right again"), 1u);
+}
+
 TEST_F(SensorPipelineTest, APoseSensorLocatesTheVehicleOnlyWhereNoLidarDoes) {
   PoseSample pose;
   pose.T_world_body.position = {0.5, 0, 0};

@@ -66,6 +66,40 @@ TEST(Flight, LandsAtOnceWhateverElseItIsTold) {
   EXPECT_LT(end.z(), at.z() - 0.8);
 }
 
+TEST(Flight, ThatBreaksOffItsLandingHoversWhereThePoseFoundAgainSaysNotWhereTheReferenceWas) {
+  // As it was: the reference stayed in the column that the vehicle was to come down in by the pose that had
+  // drifted away by half a metre, and the vehicle shot there, through what was between.
+  IdealFlight f;
+  f.flight.climb(0, 2.0, 0.5);
+  f.advance(6);
+  f.flight.land_now(f.now);
+  f.advance(3);
+  ASSERT_LT(f.flight.reference().velocity_mps.z(), -0.2);
+  const Vec3 found(0.5, -0.3, 1.2);
+  for (int i = 0; i < 100; ++i) {
+    f.now += 10 * kMillisecond;
+    f.flight.on_imu({f.now, Vec3(0, 0, 9.81), Vec3::Zero()});
+    PoseSample pose;
+    pose.stamp = f.now;
+    pose.T_world_body.position = found;
+    f.flight.on_pose(pose);
+  }
+  f.flight.break_off_landing(f.now);
+  const Vec3 here = f.flight.state().position;
+  EXPECT_LT((here - found).norm(), 0.1);
+  EXPECT_TRUE(f.flight.at_rest(f.now));
+  f.advance(1);
+  EXPECT_LT((f.flight.reference().position - here).norm(), 1e-6);
+
+  f.flight.follow({here, here + Vec3(3, 0, 0)}, 0, f.now, {});
+  f.advance(1);
+  EXPECT_GT(f.flight.reference().velocity_mps.x(), 0.5) << "it does as it is told again";
+  const double height_m = f.flight.reference().position.z();
+  f.flight.land_now(f.now);
+  f.advance(4);
+  EXPECT_LT(f.flight.reference().position.z(), height_m - 0.5) << "and may land a second time";
+}
+
 TEST(Flight, ClimbsToTheHeightAndRests) {
   IdealFlight f;
   f.flight.climb(0, 1.0, 0.5);
