@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/common/json_point.h"
 #include "core_stack/mission/recording/object_log.h"
 
 namespace karst::core {

@@ -5,7 +5,7 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/common/json_point.h"
 #include "core_stack/mission/recording/object_log.h"
 
 namespace karst::flight {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core_stack/common/error.h"
-#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/common/json_point.h"
 
 namespace karst::flight {
 
@@ -14,7 +14,7 @@ TeamLog::TeamLog(const std::filesystem::path& run_dir) : file_(run_dir / "team.j
 }
 
 void TeamLog::event(core::TimeNs t, const std::string& kind, const nlohmann::json& fields) {
-  nlohmann::ordered_json line{{"t", core::rounded(core::seconds(t))}, {"kind", kind}};
+  nlohmann::ordered_json line{{"t", core::to_thousandths(core::seconds(t))}, {"kind", kind}};
   for (const auto& [key, value] : fields.items()) line[key] = value;
   file_ << line.dump() << '\n';
 }
@@ -23,7 +23,7 @@ void TeamLog::base(core::TimeNs t, const core::TeamNode& base) {
   nlohmann::json links = nlohmann::json::array(), held = nlohmann::json::array(),
                  relays = nlohmann::json::array(), dead = nlohmann::json::array();
   for (const core::RelayLink& l : base.graph().links(t))
-    links.push_back({l.a, l.b, core::rounded(l.transmissions)});
+    links.push_back({l.a, l.b, core::to_thousandths(l.transmissions)});
   for (core::RobotId r = 1; r < core::kMaxRobots; ++r) {
     if (const std::uint32_t n = base.gossip().held(r).first(); n > 0) held.push_back({r, n});
     if (base.reported_dead(r)) dead.push_back(r);
@@ -48,9 +48,9 @@ void TeamLog::tree(core::TimeNs t, const core::HomingTree& tree) {
     reported->second = next;
     nlohmann::json row{n.id.robot,
                        n.id.number,
-                       core::rounded(n.position.x()),
-                       core::rounded(n.position.y()),
-                       core::rounded(n.position.z()),
+                       core::to_thousandths(n.position.x()),
+                       core::to_thousandths(n.position.y()),
+                       core::to_thousandths(n.position.z()),
                        n.kind == core::NodeKind::communication ? 1 : 0};
     if (next) row.insert(row.end(), {next->robot, next->number});
     changed.push_back(std::move(row));

@@ -1,18 +1,17 @@
 #include "sdk/flight/team_metrics.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::flight {
 namespace {
 
+using core::to_millionths;
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-double rounded(double v) { return std::round(v * 1e6) / 1e6; }
 
 ordered_json text_or_null(const std::string& text) {
   return text.empty() ? ordered_json() : ordered_json(text);
@@ -25,7 +24,7 @@ ordered_json sum(const std::vector<json>& robots, const std::string& key) {
     if (!r.contains(key) || !r[key].is_number()) return nullptr;
     all += r[key].get<double>();
   }
-  return rounded(all);
+  return to_millionths(all);
 }
 
 }  // namespace
@@ -67,34 +66,34 @@ ordered_json team_metrics(const Mission& mission, const TeamResult& result, cons
       {mission.policy, mission.cave, mission.seed,
        landed == n ? core::MissionOutcome::landed : core::MissionOutcome::incomplete, reason},
       robots);
-  m["exploration_time_s"] = rounded(explored_s / static_cast<double>(n));
+  m["exploration_time_s"] = to_millionths(explored_s / static_cast<double>(n));
   std::uint64_t reported = 0, at_base = 0;
   for (const RobotResult& r : result.robots) {
     reported += r.records;
     at_base += r.records_at_base;
   }
   if (reported > 0)
-    m["data_at_base_share"] = rounded(static_cast<double>(at_base) / static_cast<double>(reported));
-  m["robots_landed"] = rounded(static_cast<double>(landed) / static_cast<double>(n));
+    m["data_at_base_share"] = to_millionths(static_cast<double>(at_base) / static_cast<double>(reported));
+  m["robots_landed"] = to_millionths(static_cast<double>(landed) / static_cast<double>(n));
   m["robots_connected"] =
-      landed > 0 ? ordered_json(rounded(static_cast<double>(connected) / static_cast<double>(landed)))
+      landed > 0 ? ordered_json(to_millionths(static_cast<double>(connected) / static_cast<double>(landed)))
                  : ordered_json(nullptr);
   for (std::size_t i = 0; i < result.robots.size(); ++i)
     if (const std::string key = "exploration_time_" + std::to_string(i + 1) + "_s"; m.contains(key))
-      m[key] = rounded(result.robots[i].exploration_time_s);  // of as many as campaigns compare
+      m[key] = to_millionths(result.robots[i].exploration_time_s);  // of as many as campaigns compare
 
   m["strategy"] = core::name_of(mission.core.team.strategy);
-  m["duration_s"] = rounded(result.duration_s);
+  m["duration_s"] = to_millionths(result.duration_s);
   m["bytes_on_air"] = result.bytes_on_air;
   m["robots"] = ordered_json::array();
   for (const RobotResult& r : result.robots)
     m["robots"].push_back({{"outcome", core::name_of(r.mission.outcome)},
                            {"reason", r.mission.reason},
-                           {"start_s", rounded(r.start_s)},
-                           {"end_s", rounded(r.end_s)},
-                           {"exploration_time_s", rounded(r.exploration_time_s)},
+                           {"start_s", to_millionths(r.start_s)},
+                           {"end_s", to_millionths(r.end_s)},
+                           {"exploration_time_s", to_millionths(r.exploration_time_s)},
                            {"homing_reason", r.homing_reason},
-                           {"battery_left", rounded(r.battery_left)},
+                           {"battery_left", to_millionths(r.battery_left)},
                            {"connected", r.connected},
                            {"records", r.records},
                            {"records_at_base", r.records_at_base}});

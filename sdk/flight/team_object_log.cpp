@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/common/json_point.h"
 #include "core_stack/vehicle/object_detection.h"
 
 namespace karst::flight {
@@ -30,7 +30,7 @@ void TeamObjectLog::news(core::TimeNs now, const char* kind, const core::Reporte
     if (seen.kind != 0) {
       fields["what"] = core::name_of(static_cast<core::ObjectKind>(seen.kind));
       fields["position"] = core::rounded_list(seen.position);
-      fields["deviation"] = core::rounded(seen.deviation_m);
+      fields["deviation"] = core::to_thousandths(seen.deviation_m);
     }
     log.event(now, kind, fields);
     noted[key] = seen;

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_point.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/cave.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
@@ -133,9 +134,9 @@ void generate(const GenerateArguments& args) {
 }
 
 ordered_json json_of(const InfoArguments& args, const selection::MeshFacts& m) {
-  const auto vector = [](const Vec3& v) { return ordered_json{v.x(), v.y(), v.z()}; };
-  return {{"file", args.file},        {"triangles", m.triangles},   {"low_m", vector(m.low)},
-          {"high_m", vector(m.high)}, {"closed", m.odd_edges == 0}, {"edges", m.edges},
+  return {{"file", args.file},          {"triangles", m.triangles},
+          {"low_m", core::list(m.low)}, {"high_m", core::list(m.high)},
+          {"closed", m.odd_edges == 0}, {"edges", m.edges},
           {"odd_edges", m.odd_edges}};
 }
 
@@ -179,7 +180,7 @@ void info(const InfoArguments& args) {
   });
   if (args.json) {
     ordered_json j = json_of(args, facts);
-    j["start"] = {start.x(), start.y(), start.z()};
+    j["start"] = core::list(start);
     j["start_heading_rad"] = cave.description.start.heading_rad;
     j["start_clearance_m"] = clearance_m;
     j["resolution_m"] = r.options.resolution_m;

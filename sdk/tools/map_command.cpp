@@ -10,6 +10,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/map_merge/map_inputs.h"
 #include "sdk/terminal/terminal.h"
@@ -19,6 +20,7 @@ namespace karst::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using core::to_millionths;
 using nlohmann::ordered_json;
 
 constexpr int kNotMerged = 2;  // exit code: read well, but not to be put together
@@ -35,28 +37,26 @@ struct Placed {
   map_merge::MapRegistration registration;
 };
 
-double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
-
 ordered_json json_of(const Placed& p) {
   const map_merge::MapRegistration& r = p.registration;
   const Eigen::Matrix3d R = r.T_target_source.orientation.toRotationMatrix();
   ordered_json rows = ordered_json::array();
   for (int i = 0; i < 3; ++i)
-    rows.push_back(
-        {rounded(R(i, 0)), rounded(R(i, 1)), rounded(R(i, 2)), rounded(r.T_target_source.position[i])});
+    rows.push_back({to_millionths(R(i, 0)), to_millionths(R(i, 1)), to_millionths(R(i, 2)),
+                    to_millionths(r.T_target_source.position[i])});
   rows.push_back({0, 0, 0, 1});
   return {{"map", p.map->name},
           {"file", p.map->file},
           {"trusted", r.trusted},
           {"reason", r.reason},
           {"T_first_map", rows},
-          {"residual_m", rounded(r.overlay.residual_m())},
-          {"overlap_of_map", rounded(r.overlay.source_overlap())},
-          {"overlap_of_rest", rounded(r.overlay.target_overlap())},
-          {"shared_m2", rounded(r.shared_m2)},
-          {"agreement", rounded(r.overlay.agreement())},
-          {"hold", rounded(r.hold)},
-          {"rival", rounded(r.rival)}};
+          {"residual_m", to_millionths(r.overlay.residual_m())},
+          {"overlap_of_map", to_millionths(r.overlay.source_overlap())},
+          {"overlap_of_rest", to_millionths(r.overlay.target_overlap())},
+          {"shared_m2", to_millionths(r.shared_m2)},
+          {"agreement", to_millionths(r.overlay.agreement())},
+          {"hold", to_millionths(r.hold)},
+          {"rival", to_millionths(r.rival)}};
 }
 
 map_merge::MapRegistrationOptions options_of(const MergeArguments& args) {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/common/json_point.h"
 #include "core_stack/vehicle/object_detection.h"
 
 namespace karst::core {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core_stack/common/json_text.h"
-#include "core_stack/mission/recording/json_point.h"
+#include "core_stack/common/json_point.h"
 
 namespace karst::core::event {
 namespace {

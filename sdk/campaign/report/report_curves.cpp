@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core_stack/common/rounded.h"
 #include "sdk/campaign/report/report_parts.h"
 
 namespace karst::campaign {
@@ -50,7 +51,7 @@ Values on_grid(const TrialResult& trial, Quantity quantity, const Values& times)
 ordered_json short_number(double v) {
   if (!std::isfinite(v)) return nullptr;
   const double unit = v == 0 ? 1 : std::pow(10.0, 3 - std::floor(std::log10(std::abs(v))));
-  return number_or_null(std::round(v * unit) / unit);
+  return number_or_null(core::rounded(v, unit));
 }
 
 /// Mean and interval at every time; `curves[cave]` are its trials'.

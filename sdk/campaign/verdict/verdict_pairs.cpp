@@ -1,14 +1,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core_stack/common/rounded.h"
 #include "sdk/campaign/verdict/verdict_parts.h"
 
 namespace karst::campaign {
 namespace {
 
 /// Figures have six decimals; so have their differences, or equal ones would not be ties in the last bits.
-double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
-
 void add_pair(const TrialResult& a, double figure_a, double figure_b, Comparison& c) {
   c.pair_a.push_back(figure_a);
   c.pair_b.push_back(figure_b);
@@ -63,7 +62,7 @@ evaluation::Differences differences_of(const Comparison& c) {
   evaluation::Differences differences;
   for (std::size_t i = 0; i < c.pairs; ++i) {
     if (i == 0 || c.pair_cave[i] != c.pair_cave[i - 1]) differences.emplace_back();
-    differences.back().push_back(rounded(c.pair_a[i] - c.pair_b[i]));
+    differences.back().push_back(core::to_millionths(c.pair_a[i] - c.pair_b[i]));
   }
   return differences;
 }

@@ -8,6 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/accuracy/map_error.h"
 #include "sdk/evaluation/accuracy/umeyama.h"
 #include "sdk/evaluation/page/decimate.h"
@@ -17,26 +18,29 @@ namespace {
 
 using core::InputError;
 using core::Pose;
+using core::to_millionths;
+using core::to_thousandths;
 using core::Vec3;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxPlotted = 1600;
 constexpr int kBins = 60;
 
-double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
-
 ordered_json json_of(const ErrorStatistics& s) {
-  return {{"count", s.count},        {"rmse", rounded(s.rmse)},
-          {"mean", rounded(s.mean)}, {"median", rounded(s.median)},
-          {"std", rounded(s.std)},   {"min", rounded(s.min)},
-          {"max", rounded(s.max)}};
+  return {{"count", s.count},
+          {"rmse", to_millionths(s.rmse)},
+          {"mean", to_millionths(s.mean)},
+          {"median", to_millionths(s.median)},
+          {"std", to_millionths(s.std)},
+          {"min", to_millionths(s.min)},
+          {"max", to_millionths(s.max)}};
 }
 ordered_json json_of(const PoseErrors& e) {
   return {{"translation_m", json_of(statistics_of(e.translation_m))},
           {"rotation_rad", json_of(statistics_of(e.rotation_rad))}};
 }
 ordered_json json_of(const std::optional<double>& v) {
-  return v ? ordered_json(rounded(*v)) : ordered_json(nullptr);
+  return v ? ordered_json(to_millionths(*v)) : ordered_json(nullptr);
 }
 
 /// Brings the estimates to the truth's frame as the options ask; says how.
@@ -50,9 +54,10 @@ ordered_json align(std::vector<PosePair>& pairs, const EvaluateOptions& options)
   const core::Quat& q = found->T_to_from.orientation;
   const Vec3& t = found->T_to_from.position;
   return {{"kind", options.scale ? "umeyama with scale" : "umeyama"},
-          {"scale", rounded(found->scale)},
-          {"rotation_xyzw", {rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())}},
-          {"translation_m", {rounded(t.x()), rounded(t.y()), rounded(t.z())}}};
+          {"scale", to_millionths(found->scale)},
+          {"rotation_xyzw",
+           {to_millionths(q.x()), to_millionths(q.y()), to_millionths(q.z()), to_millionths(q.w())}},
+          {"translation_m", {to_millionths(t.x()), to_millionths(t.y()), to_millionths(t.z())}}};
 }
 
 /// The truth at every estimate, and the first poses on each other if the frames differ.
@@ -71,11 +76,11 @@ std::vector<PosePair> pairs_for_drift(const std::vector<StampedPose>& truth,
 ordered_json drawn(const std::vector<PosePair>& pairs, double begin_s) {
   ordered_json rows = ordered_json::array();
   const std::size_t stride = pairs.size() / kMaxPlotted + 1;
-  const auto mm = [](double v) { return std::round(v * 1000) / 1000 + 0.0; };
   for (std::size_t i = 0; i < pairs.size(); i += stride) {
     const Vec3 &a = pairs[i].truth.position, &b = pairs[i].estimate.position;
-    rows.push_back({mm(pairs[i].t_s - begin_s), mm(a.x()), mm(a.y()), mm(a.z()), mm(b.x()), mm(b.y()),
-                    mm(b.z()), rounded((a - b).norm())});
+    rows.push_back({to_thousandths(pairs[i].t_s - begin_s), to_thousandths(a.x()), to_thousandths(a.y()),
+                    to_thousandths(a.z()), to_thousandths(b.x()), to_thousandths(b.y()),
+                    to_thousandths(b.z()), to_millionths((a - b).norm())});
   }
   return rows;
 }
@@ -87,7 +92,7 @@ ordered_json curve(const std::vector<PosePair>& pairs, const std::vector<double>
   const Curve c = decimate(t, y, kMaxPlotted);
   ordered_json points = ordered_json::array();
   for (std::size_t i = 0; i < c.x.size(); ++i)
-    points.push_back({std::round(c.x[i] * 1000) / 1000, rounded(factor * c.y[i])});
+    points.push_back({to_thousandths(c.x[i]), to_millionths(factor * c.y[i])});
   return points;
 }
 
@@ -148,17 +153,17 @@ ordered_json trajectory_evaluation(const std::vector<StampedPose>& truth,
   const double path_m = true_path_m(raw);
   const auto end_m = end_error_m(raw);
   const SegmentDrift segments = segment_drift(raw);
-  e["path_length_m"] = rounded(path_m);
+  e["path_length_m"] = to_millionths(path_m);
   e["drift"] = {{"end_error_m", json_of(end_m)},
-                {"end_percent",
-                 path_m > 0 && end_m ? ordered_json(rounded(100 * *end_m / path_m)) : ordered_json(nullptr)},
+                {"end_percent", path_m > 0 && end_m ? ordered_json(to_millionths(100 * *end_m / path_m))
+                                                    : ordered_json(nullptr)},
                 {"segments", segments.segments},
                 {"segment_unit_m", segments.unit_m}};
   const bool any = segments.segments > 0;
   e["drift"]["segment_percent"] =
-      any ? ordered_json(rounded(segments.translation_percent)) : ordered_json(nullptr);
+      any ? ordered_json(to_millionths(segments.translation_percent)) : ordered_json(nullptr);
   e["drift"]["segment_rotation_radpm"] =
-      any ? ordered_json(rounded(segments.rotation_radpm)) : ordered_json(nullptr);
+      any ? ordered_json(to_millionths(segments.rotation_radpm)) : ordered_json(nullptr);
   e["heading_error_rad"] = json_of(heading_rms_rad(raw));
 
   const double begin_s = estimate.front().t_s;
@@ -183,7 +188,7 @@ ordered_json map_evaluation(const std::vector<Vec3>& points, const MapReference&
   const double top = sorted.empty() ? 1 : std::max(0.01, sorted[sorted.size() * 995 / 1000]);
   std::vector<std::size_t> bins(kBins, 0);
   for (const double d : errors) ++bins[static_cast<std::size_t>(std::min(kBins - 1.0, kBins * d / top))];
-  e["plots"] = {{"bin_m", rounded(top / kBins)}, {"counts", bins}};
+  e["plots"] = {{"bin_m", to_millionths(top / kBins)}, {"counts", bins}};
   return e;
 }
 

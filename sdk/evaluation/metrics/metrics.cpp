@@ -7,6 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/rounded.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
 #include "sdk/evaluation/accuracy/map_error.h"
 #include "sdk/evaluation/metrics/coverage_curve.h"
@@ -27,8 +28,7 @@ namespace event = core::event;
 /// Null for what is not known; otherwise rounded, so that a number's text is short and the same everywhere.
 ordered_json value(std::optional<double> v) {
   if (!v || !std::isfinite(*v)) return nullptr;
-  const double rounded = std::round(*v * 1e6) / 1e6;
-  return rounded == 0 ? 0.0 : rounded;  // no negative zero
+  return core::to_millionths(*v);
 }
 
 std::string first_setting(const RunRecord& run, std::initializer_list<const char*> keys) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/metrics/object_events.h"
 
 namespace karst::evaluation {
@@ -95,7 +96,7 @@ void set_figures(nlohmann::ordered_json& m, const ObjectFigures& f) {
        {"objects_false", f.wrong}}};
   for (const auto& [key, v] : all) {
     m[key] = nullptr;
-    if (v) m[key] = std::round(*v * 1e6) / 1e6;
+    if (v) m[key] = core::to_millionths(*v);
   }
 }
 

@@ -1,15 +1,12 @@
 #include "sdk/evaluation/report/report_curve.h"
 
-#include <cmath>
-
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/page/decimate.h"
 
 namespace karst::evaluation {
 namespace {
 
 constexpr std::size_t kMaxPlotSamples = 1600;
-
-double thousandths(double v) { return std::round(v * 1000) / 1000; }
 
 }  // namespace
 
@@ -20,7 +17,7 @@ nlohmann::ordered_json report_curve(const std::vector<double>* t_s, const std::v
   if (c.x.empty()) return nullptr;
   nlohmann::ordered_json points = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < c.x.size(); ++i)
-    points.push_back({thousandths(c.x[i]), thousandths(scale * c.y[i])});
+    points.push_back({core::to_thousandths(c.x[i]), core::to_thousandths(scale * c.y[i])});
   return points;
 }
 

@@ -13,6 +13,7 @@
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/input_file.h"
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/page/base64.h"
 #include "sdk/evaluation/record/table.h"
 
@@ -22,6 +23,7 @@ namespace {
 constexpr std::size_t kMax = 240;
 constexpr int kWidth = 240, kQuality = 60;
 
+using core::to_thousandths;
 using Coder = std::unique_ptr<void, int (*)(void*)>;
 
 void require(bool fine, const Coder& coder) {
@@ -76,7 +78,6 @@ nlohmann::ordered_json report_pictures(const std::filesystem::path& run_dir,
   nlohmann::ordered_json pictures = nlohmann::ordered_json::array();
   std::size_t lost = 0;
   const std::size_t shown = std::min(kept.size(), kMax);
-  const auto mm = [](double v) { return std::round(v * 1000) / 1000; };
   for (std::size_t n = 0; n < shown; ++n) {
     const std::size_t row = kept[n * kept.size() / shown];
     const std::string& file = files->second[row];
@@ -88,11 +89,14 @@ nlohmann::ordered_json report_pictures(const std::filesystem::path& run_dir,
       const std::vector<std::uint8_t> small = thumbnail(bytes_of(run_dir / relative), kWidth);
       const core::Quat q((*pose[6])[row], (*pose[3])[row], (*pose[4])[row], (*pose[5])[row]);
       const core::Vec3 axis = q.normalized() * core::Vec3::UnitX();
-      pictures.push_back({{"t", (*t_s)[row]},
-                          {"file", file},
-                          {"position", {mm((*pose[0])[row]), mm((*pose[1])[row]), mm((*pose[2])[row])}},
-                          {"axis", {mm(axis.x()), mm(axis.y()), mm(axis.z())}},
-                          {"jpeg", base64(std::as_bytes(std::span(small)))}});
+      pictures.push_back(
+          {{"t", (*t_s)[row]},
+           {"file", file},
+           {"position",
+            {to_thousandths((*pose[0])[row]), to_thousandths((*pose[1])[row]),
+             to_thousandths((*pose[2])[row])}},
+           {"axis", {to_thousandths(axis.x()), to_thousandths(axis.y()), to_thousandths(axis.z())}},
+           {"jpeg", base64(std::as_bytes(std::span(small)))}});
     } catch (const std::runtime_error&) {
       ++lost;
     }

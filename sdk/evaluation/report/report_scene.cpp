@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/page/base64.h"
 #include "sdk/evaluation/report/cloud.h"
 
@@ -18,9 +19,7 @@ namespace event = core::event;
 constexpr std::size_t kMaxCloudPoints = 300000;
 constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, all moments together
 
-double centimetres(double metres) { return std::round(metres * 100) / 100; }
-
-ordered_json rounded(const Vec3& p) { return {centimetres(p.x()), centimetres(p.y()), centimetres(p.z())}; }
+ordered_json rounded(const Vec3& p) { return {core::to_hundredths(p.x()), core::to_hundredths(p.y()), core::to_hundredths(p.z())}; }
 
 /// Points that are not known are left out.
 ordered_json rounded(const std::vector<Vec3>& points) {

@@ -1,14 +1,15 @@
 // Points as the lists of numbers that events and logs hold.
 #pragma once
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core_stack/common/geometry.h"
+#include "core_stack/common/rounded.h"
 
 namespace karst::core {
 
-inline nlohmann::json list(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+/// Zero has no sign, as in rounded().
+inline nlohmann::json list(const Vec3& p) { return {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}; }
 
 inline nlohmann::json list(const std::vector<Vec3>& points) {
   nlohmann::json all = nlohmann::json::array();
@@ -17,7 +18,8 @@ inline nlohmann::json list(const std::vector<Vec3>& points) {
 }
 
 /// To thousandths: a log needs no more, and is half as long.
-inline double rounded(double v) { return std::round(v * 1000) / 1000; }
-inline nlohmann::json rounded_list(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
+inline nlohmann::json rounded_list(const Vec3& p) {
+  return {to_thousandths(p.x()), to_thousandths(p.y()), to_thousandths(p.z())};
+}
 
 }  // namespace karst::core
