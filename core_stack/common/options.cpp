@@ -81,7 +81,10 @@ std::string nearest_name(const std::string& key, const std::vector<std::string>&
   for (const std::string& c : candidates) {
     // A right name in the wrong section is the commonest slip: compare the last parts as well.
     const std::size_t d = std::min(edit_distance(key, c), edit_distance(last_part(key), last_part(c)) + 1);
-    if (d < best_distance) best_distance = d, best = c;
+    if (d < best_distance) {
+      best_distance = d;
+      best = c;
+    }
   }
   return best;
 }

@@ -229,7 +229,11 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
 /// Iterates from the present plan and multipliers; false if it gave up.
 bool JerkMpc::iterate(const Motion& start, std::span<const MotionTarget> targets, Patience patience) {
   const auto for_each_ball = [this](auto&& f) {
-    for (Stage& s : stages_) f(s.speed), f(s.acceleration), f(s.jerk);
+    for (Stage& s : stages_) {
+      f(s.speed);
+      f(s.acceleration);
+      f(s.jerk);
+    }
   };
   double shrink = 0.2;
   int creeping = 0;

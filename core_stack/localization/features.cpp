@@ -38,7 +38,10 @@ struct Ring {
 
   Ring(std::span<const SweepPoint> p, float step, float jump_m) : points(p) {
     const std::size_t n = p.size();
-    range.resize(n), sum.resize(n + 1), segment_begin.resize(n), segment_end.resize(n);
+    range.resize(n);
+    sum.resize(n + 1);
+    segment_begin.resize(n);
+    segment_end.resize(n);
     sum[0].setZero();
     for (std::size_t i = 0; i < n; ++i) {
       range[i] = p[i].position.norm();
@@ -154,8 +157,11 @@ Features find_features(const std::vector<SweepPoint>& points, const FeatureOptio
   const auto append = [](std::vector<Feature>& to, const std::vector<Feature>& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
-  for (const Features& f : found)
-    append(all.edges, f.edges), append(all.planes, f.planes), append(all.surface, f.surface);
+  for (const Features& f : found) {
+    append(all.edges, f.edges);
+    append(all.planes, f.planes);
+    append(all.surface, f.surface);
+  }
   return all;
 }
 

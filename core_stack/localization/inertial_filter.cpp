@@ -111,7 +111,8 @@ std::optional<std::size_t> InertialFilter::step_at(TimeNs stamp) const {
 void InertialFilter::go_back_to(std::size_t step) {
   const Step& s = steps_[step];
   state_ = s.state;
-  accel_bias_mps2_ = s.accel_bias_mps2, gyro_bias_radps_ = s.gyro_bias_radps;
+  accel_bias_mps2_ = s.accel_bias_mps2;
+  gyro_bias_radps_ = s.gyro_bias_radps;
   covariance_ = s.covariance;
 }
 

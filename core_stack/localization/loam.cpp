@@ -81,7 +81,8 @@ Loam::Prediction Loam::predict(const Sweep& sweep, double length_s, const StateH
 LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
   if (last_stamp_ && sweep.stamp <= *last_stamp_) {
     LoamPose refused;
-    refused.stamp = sweep.stamp, refused.T_world_body = T_world_last_;
+    refused.stamp = sweep.stamp;
+    refused.T_world_body = T_world_last_;
     refused.problem = "the sweep is not newer than the last one";
     return refused;
   }
@@ -105,7 +106,8 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   const double length_s = length_of(sweep), since_s = seconds(sweep.stamp - *last_valid_);
   const Prediction prediction = predict(sweep, length_s, states);
   LoamPose out;
-  out.stamp = sweep.stamp, out.T_world_body = prediction.T_world_body;
+  out.stamp = sweep.stamp;
+  out.T_world_body = prediction.T_world_body;
 
   const Features features = find_features(sweep.points, options_.features, workspace_.threads);
   const std::size_t count = features.edges.size() + features.planes.size();
@@ -149,9 +151,11 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     found = fit(map_, found.T_world_body, 0);
   }
 
-  out.edges = found.edges, out.planes = found.planes;
+  out.edges = found.edges;
+  out.planes = found.planes;
   out.rms_residual_m = found.rms_residual_m;
-  out.covariance = found.covariance, out.free_directions = found.free_directions;
+  out.covariance = found.covariance;
+  out.free_directions = found.free_directions;
   const Pose correction = prediction.T_world_body.inverse() * found.T_world_body;
   const bool far = correction.position.norm() > options_.max_correction_m ||
                    log_so3(correction.orientation).norm() > options_.max_correction_rad;

@@ -35,7 +35,9 @@ bool match_plane(const VoxelGrid& map, const VoxelGrid& sweep, const Vec3f& plac
   const MeanPair means = means_of(map, key, of_map, sweep.window_around(key));
   if (means.points < 3) return false;
   out.match.normals = 1;
-  out.match.p = means.b, out.match.q = means.a, out.match.n1 = s.axes.col(0);
+  out.match.p = means.b;
+  out.match.q = means.a;
+  out.match.n1 = s.axes.col(0);
   out.match.variance_m2 =
       thick * thick * (2 / means.points + kRoughFraction * kRoughFraction) + kMinDeviation * kMinDeviation;
   out.voxel = static_cast<std::size_t>(voxel - sweep.voxels().data());
@@ -49,7 +51,10 @@ bool match_line(const VoxelGrid& map, const Vec3f& place, Match& m) {
   if (s.points < kLinePoints || spread < kLineSpread * map.voxel_m() || thick > kLineThickness * spread)
     return false;
   m.normals = 2;
-  m.p = place.cast<double>(), m.q = s.mean, m.n1 = s.axes.col(0), m.n2 = s.axes.col(1);
+  m.p = place.cast<double>();
+  m.q = s.mean;
+  m.n1 = s.axes.col(0);
+  m.n2 = s.axes.col(1);
   m.variance_m2 = thick * thick + kMinDeviation * kMinDeviation;
   return true;
 }
@@ -96,7 +101,10 @@ Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T
     out.all.push_back(m);
   };
   for (const Match& m : lines)
-    if (m.normals) ++out.edges, add(m);
+    if (m.normals) {
+      ++out.edges;
+      add(m);
+    }
   std::vector<std::vector<char>> taken;  // a coarse voxel may have been asked for by several fine ones
   for (const VoxelGrid& g : grids) taken.emplace_back(g.voxels().size());
   for (const PlaneMatch& m : planes) {

@@ -67,9 +67,13 @@ NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world
       });
   NormalEquations sums;
   for (const NormalEquations& p : parts) {
-    sums.information += p.information, sums.gradient += p.gradient;
-    sums.weight += p.weight, sums.squared_distance += p.squared_distance;
-    sums.robust += p.robust, sums.absolute += p.absolute, sums.squared += p.squared;
+    sums.information += p.information;
+    sums.gradient += p.gradient;
+    sums.weight += p.weight;
+    sums.squared_distance += p.squared_distance;
+    sums.robust += p.robust;
+    sums.absolute += p.absolute;
+    sums.squared += p.squared;
   }
   sums.information.triangularView<Eigen::Upper>() = sums.information.transpose();
   return sums;
@@ -119,7 +123,8 @@ Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, 
       Pose& T = fit.T_world_body;
       T.position += step.change.head<3>();
       T.orientation = (T.orientation * exp_so3(step.change.tail<3>())).normalized();
-      fit.covariance = step.covariance, fit.free_directions = step.free_directions;
+      fit.covariance = step.covariance;
+      fit.free_directions = step.free_directions;
       fit.rms_residual_m = std::sqrt(equations.squared / equations.robust);
       const double step_m = moved_m(step.change, std::sqrt(equations.squared_distance / equations.weight));
       moved += step_m;

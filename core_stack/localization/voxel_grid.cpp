@@ -74,7 +74,10 @@ void VoxelGrid::rebuild(std::size_t slots) {
 VoxelSums& VoxelGrid::made(Key key) {
   std::size_t slot = slot_of(key);
   if (table_[slot].voxel == 0) {
-    if (2 * (voxels_.size() + 1) > table_.size()) rebuild(2 * table_.size()), slot = slot_of(key);
+    if (2 * (voxels_.size() + 1) > table_.size()) {
+      rebuild(2 * table_.size());
+      slot = slot_of(key);
+    }
     voxels_.push_back({key, {}});
     table_[slot] = {key, static_cast<std::uint32_t>(voxels_.size())};
   }
@@ -88,15 +91,20 @@ void VoxelGrid::insert(std::span<const Vec3f> points) {
   for (const Vec3f& p : points) {
     const Key key = key_of(p);
     if (key != last_key) {  // neighbours in a ring mostly share a voxel
-      v = &made(key), last_key = key;
+      v = &made(key);
+      last_key = key;
       centre = centre_of(key).cast<float>();
     }
     if (v->points >= max_points_) continue;
     const Vec3f d = p - centre;
     v->points += 1;
     v->sum += d;
-    v->products[0] += d.x() * d.x(), v->products[1] += d.x() * d.y(), v->products[2] += d.x() * d.z();
-    v->products[3] += d.y() * d.y(), v->products[4] += d.y() * d.z(), v->products[5] += d.z() * d.z();
+    v->products[0] += d.x() * d.x();
+    v->products[1] += d.x() * d.y();
+    v->products[2] += d.x() * d.z();
+    v->products[3] += d.y() * d.y();
+    v->products[4] += d.y() * d.z();
+    v->products[5] += d.z() * d.z();
   }
 }
 

@@ -42,7 +42,10 @@ ObjectMap::Track* ObjectMap::best_fit(const Sighting& s, const std::set<std::uin
   double least = kGate2;
   for (Track& t : tracks_) {
     if (t.kind != s.kind || taken.contains(t.id)) continue;
-    if (const double misfit = misfit2(t, s.position, s.covariance); misfit < least) least = misfit, best = &t;
+    if (const double misfit = misfit2(t, s.position, s.covariance); misfit < least) {
+      least = misfit;
+      best = &t;
+    }
   }
   return best;
 }
@@ -62,7 +65,8 @@ void ObjectMap::note(const ObjectDetections& look, const Pose& T_world_camera, d
     Track* t = best_fit(s, seen);
     if (t) {
       const Fused better = fuse(t->position, t->covariance, s.position, s.covariance);
-      t->position = better.position, t->covariance = better.covariance;
+      t->position = better.position;
+      t->covariance = better.covariance;
       t->own_variance_m2 = mean_of(t->own_variance_m2, t->sightings, own_m2, 1);
     } else {
       tracks_.push_back({next_id_++, 0, s.kind, s.position, s.covariance, own_m2, 0, look.stamp, 0, {}, 0});
@@ -97,7 +101,8 @@ void ObjectMap::merge_into(Track& kept) {
       continue;
     }
     const Fused both = fuse(kept.position, kept.covariance, o->position, o->covariance);
-    kept.position = both.position, kept.covariance = both.covariance;
+    kept.position = both.position;
+    kept.covariance = both.covariance;
     kept.own_variance_m2 = mean_of(kept.own_variance_m2, kept.sightings, o->own_variance_m2, o->sightings);
     kept.sightings += o->sightings;
     kept.first_seen = std::min(kept.first_seen, o->first_seen);

@@ -73,7 +73,9 @@ RelayHoming::RelayHoming(RobotId self, const RelayHomingSetup& setup)
 
 TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here,
                               const TeamNews& news, std::span<const CellKey> closed) {
-  relays_ = news.relays, taken_ = news.taken, goals_ = news.goals;
+  relays_ = news.relays;
+  taken_ = news.taken;
+  goals_ = news.goals;
   std::erase_if(relays_, [&](const Relay& r) {
     return r.stands_by && (strategy_ != LandingStrategy::relay_chain ||
                            *r.stands_by + kSurelyBefore > news.ends || has_failed(r));
@@ -93,11 +95,16 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
   const bool judged = std::any_of(passed_.begin(), passed_.end(), [&](const Vec3& p) {
     return (p - here).norm() < options_.tree.min_edge_m;
   });
-  if (!judged) passed_.push_back(here), to_judge_.push_back(here);
+  if (!judged) {
+    passed_.push_back(here);
+    to_judge_.push_back(here);
+  }
   if (!closed.empty()) {
     Vec3 low = map.center_of(closed.front()), high = low;
-    for (const CellKey& k : closed)
-      low = low.cwiseMin(map.center_of(k)), high = high.cwiseMax(map.center_of(k));
+    for (const CellKey& k : closed) {
+      low = low.cwiseMin(map.center_of(k));
+      high = high.cwiseMax(map.center_of(k));
+    }
     append(out, tree_.recheck(low, high, kRecheckMargin_m, stamp, free,
                               rock_rays(map, radius_m_ + kRockMargin_m)));
   }
@@ -164,7 +171,11 @@ void RelayHoming::find_links(const VoxelMap& map) {
       if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
       const double db = margin_db(map, p.ground, r);
       const double min_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
-      if (db >= min_db && db >= best_db) best_db = db, p.node = r.robot, p.claimed = r.stands_by.has_value();
+      if (db >= min_db && db >= best_db) {
+        best_db = db;
+        p.node = r.robot;
+        p.claimed = r.stands_by.has_value();
+      }
     }
   }
 }
@@ -221,7 +232,10 @@ std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const LandingSite& p = *open[first + i].site;
       const double s = time_s(p, lengths[i]);
-      if (s < best_s) best_s = s, best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], s};
+      if (s < best_s) {
+        best_s = s;
+        best = {p.hover, p.ground, *p.node, p.claimed, lengths[i], s};
+      }
     }
   }
   return best;

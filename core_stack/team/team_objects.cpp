@@ -34,7 +34,8 @@ std::vector<TeamObject> merged(const ReportedObjects& reports) {
       if (separation_m > kSize_m + kDeviations * std::hypot(o.deviation_m, deviation_m) ||
           separation_m > min_m)
         continue;
-      min_m = separation_m, nearest = &o;
+      min_m = separation_m;
+      nearest = &o;
     }
     if (!nearest) {
       all.push_back({seen.kind, seen.position, deviation_m, {key}});

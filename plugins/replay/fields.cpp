@@ -130,7 +130,8 @@ void ScanBuilder::set(Role role, double value) {
       point_.intensity = std::isfinite(value) ? static_cast<float>(value) : 0.0f;
       break;
     case Role::time:
-      point_.time = value, finite_ = finite_ && std::isfinite(value);
+      point_.time = value;
+      finite_ = finite_ && std::isfinite(value);
       break;
     case Role::ring:
       finite_ = finite_ && value >= 0 && value <= 65535;

@@ -23,7 +23,10 @@ ImuFile::ImuFile(const std::string& path, const std::string& columns, core::Time
   std::string_view rest = columns;
   for (auto name = next_word(rest); !name.empty(); name = next_word(rest), ++columns_)
     for (std::size_t i = 0; i < kNames.size(); ++i)
-      if (name == kNames[i]) at_[i] = columns_, found[i] = true;
+      if (name == kNames[i]) {
+        at_[i] = columns_;
+        found[i] = true;
+      }
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (!found[i]) throw InputError(path, "imu.columns", std::string("no column is called ") + kNames[i]);
 }

@@ -70,7 +70,10 @@ PcdHeader read_header(const std::string& path, std::string_view bytes, const Fie
       for (std::size_t i = 0; i < words.size(); ++i) header.counts.push_back(number(i));
     if (key == "WIDTH") width = number(0);
     if (key == "HEIGHT") height = number(0);
-    if (key == "POINTS") header.points = number(0), has_points = true;
+    if (key == "POINTS") {
+      header.points = number(0);
+      has_points = true;
+    }
     if (key != "DATA") continue;
     header.data = words.empty() ? "" : words[0];
     header.data_at = reader.position();

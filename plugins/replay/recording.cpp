@@ -33,7 +33,8 @@ bool before(const std::string& a, const std::string& b) {
   while (i < a.size() && j < b.size()) {
     if (!digit(a[i]) || !digit(b[j])) {
       if (a[i] != b[j]) return a[i] < b[j];
-      ++i, ++j;
+      ++i;
+      ++j;
       continue;
     }
     const auto number = [&](const std::string& s, std::size_t& at) {

@@ -54,7 +54,10 @@ class DeepCave : public karst::Policy {
     std::vector<const karst::Frontier*> reachable;
     std::vector<karst::Vec3> places;
     for (const karst::Frontier& f : request.frontiers)
-      if (f.reachable()) reachable.push_back(&f), places.push_back(f.viewpoint);
+      if (f.reachable()) {
+        reachable.push_back(&f);
+        places.push_back(f.viewpoint);
+      }
     places.push_back(request.position());
     std::vector<double> depths_m = request.path_lengths(*home_, places, request.clearance_m);
     for (std::size_t i = 0; i < depths_m.size(); ++i)

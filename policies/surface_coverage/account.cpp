@@ -50,9 +50,11 @@ ImagingCamera camera_of(const karst::Request& request) {
     }
   camera.sensor.kind = KARST_SENSOR_RGB;
   camera.sensor.T_body_sensor.orientation.w = 1;
-  camera.sensor.min_range_m = 0.3, camera.sensor.max_range_m = 6;
+  camera.sensor.min_range_m = 0.3;
+  camera.sensor.max_range_m = 6;
   camera.sensor.horizontal_fov_rad = 80 * kDegree;
-  camera.sensor.low_elevation_rad = -32 * kDegree, camera.sensor.high_elevation_rad = 32 * kDegree;
+  camera.sensor.low_elevation_rad = -32 * kDegree;
+  camera.sensor.high_elevation_rad = 32 * kDegree;
   return camera;
 }
 

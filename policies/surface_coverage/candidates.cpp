@@ -39,7 +39,10 @@ std::vector<Patch> patches_of(const std::vector<SurfaceCell>& cells, double edge
   std::vector<Patch> patches;
   for (const auto& [place, group] : groups) {
     Vec3 center, normal;
-    for (const SurfaceCell* c : group) center = center + c->center, normal = normal + c->normal;
+    for (const SurfaceCell* c : group) {
+      center = center + c->center;
+      normal = normal + c->normal;
+    }
     center = (1.0 / static_cast<double>(group.size())) * center;
     // A mean of cells around a corner may lie in the rock, or in the air: the cell nearest to it stands for
     // them.
@@ -113,8 +116,10 @@ std::vector<Viewpoint> places_for(const karst::Request& request, const ImagingCa
   std::vector<Viewpoint> open;
   std::vector<karst_segment_t> sights;
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (cells[i] == karst::Cell::free)
-      open.push_back(places[i].at), sights.push_back({places[i].at.position, target});
+    if (cells[i] == karst::Cell::free) {
+      open.push_back(places[i].at);
+      sights.push_back({places[i].at.position, target});
+    }
   const auto ends = request.map.cast(sights, false);
   std::vector<Viewpoint> out;
   for (std::size_t i = 0; i < open.size() && out.size() < most; ++i) {

@@ -206,7 +206,10 @@ class SurfaceCoverage : public karst::Policy {
       for (std::size_t i = 0; i < all.size(); ++i) {
         const double keep = now && distance(all[i].at.position, now->at.position) < 0.3 ? 1.3 : 1.0;
         const double worth = keep * all[i].gain * std::exp(-all[i].time_s / patience_s_);
-        if (worth > most) best = i, most = worth;
+        if (worth > most) {
+          best = i;
+          most = worth;
+        }
       }
       if (best == all.size()) break;
       chosen.push_back(std::move(all[best]));
@@ -230,8 +233,11 @@ class SurfaceCoverage : public karst::Policy {
     if (chosen.size() < 2) return chosen;
     std::vector<double> gain, first_s;
     std::vector<Vec3> places;
-    for (const Stop& s : chosen)
-      gain.push_back(s.gain), first_s.push_back(s.time_s), places.push_back(s.at.position);
+    for (const Stop& s : chosen) {
+      gain.push_back(s.gain);
+      first_s.push_back(s.time_s);
+      places.push_back(s.at.position);
+    }
     std::vector<std::vector<double>> between_s;
     constexpr double kNoPath_s = 1e4;
     for (const Stop& from : chosen) {

@@ -22,7 +22,10 @@ class Search {
  private:
   void extend(double arrival_s, double sum) {
     if (order_.size() == gain_.size()) {
-      if (best_.empty() || sum > best_sum_) best_ = order_, best_sum_ = sum;
+      if (best_.empty() || sum > best_sum_) {
+        best_ = order_;
+        best_sum_ = sum;
+      }
       return;
     }
     // All that is left, had at once, would not be enough.
@@ -30,11 +33,13 @@ class Search {
     for (std::size_t i = 0; i < gain_.size(); ++i) {
       if (used_[i]) continue;
       const double there_s = arrival_s + (order_.empty() ? first_s_[i] : between_s_[order_.back()][i]);
-      used_[i] = true, left_ -= gain_[i];
+      used_[i] = true;
+      left_ -= gain_[i];
       order_.push_back(i);
       extend(there_s, sum + gain_[i] * std::exp(-there_s / patience_s_));
       order_.pop_back();
-      used_[i] = false, left_ += gain_[i];
+      used_[i] = false;
+      left_ += gain_[i];
     }
   }
 

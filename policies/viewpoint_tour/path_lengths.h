@@ -85,7 +85,10 @@ class PathLengths {
     std::vector<karst::Vec3> others;
     std::vector<std::size_t> index;
     for (std::size_t i = 0; i < sites_.size(); ++i)
-      if (i != from) others.push_back(sites_[i].position), index.push_back(i);
+      if (i != from) {
+        others.push_back(sites_[i].position);
+        index.push_back(i);
+      }
     const std::vector<double> found =
         request.path_lengths(sites_[from].position, others, request.map.resolution_m());
     for (std::size_t k = 0; k < index.size(); ++k)

@@ -58,7 +58,9 @@ inline bool sweep(const Problem& p, std::size_t fixed, Order& order, double& cos
   const auto consider = [&] {
     const double c = latency(p, trial);
     if (!(c < cost - 1e-9)) return;
-    cost = c, order = trial, better = true;
+    cost = c;
+    order = trial;
+    better = true;
   };
   for (std::size_t i = fixed; i < n; ++i)
     for (std::size_t j = i + 2; j <= n; ++j) {
@@ -107,7 +109,10 @@ inline Order min_latency(const Problem& p) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < std::min(starts, firsts.size()); ++i) {
     Order order = improved(p, 0, greedy(p, firsts[i]));
-    if (const double cost = latency(p, order); cost < least) least = cost, best = std::move(order);
+    if (const double cost = latency(p, order); cost < least) {
+      least = cost;
+      best = std::move(order);
+    }
   }
   return best;
 }

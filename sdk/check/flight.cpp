@@ -23,8 +23,10 @@ core::VehicleDescription a_vehicle() {
   v.lidar = std::make_shared<core::LidarModel>(lidar);
   core::CameraModel camera;
   camera.name = "down";
-  camera.width = 80, camera.height = 60;
-  camera.horizontal_fov_rad = 1.4, camera.vertical_fov_rad = 1.1;
+  camera.width = 80;
+  camera.height = 60;
+  camera.horizontal_fov_rad = 1.4;
+  camera.vertical_fov_rad = 1.1;
   camera.T_body_camera.orientation = core::Quat(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY()));
   v.cameras.push_back(std::make_shared<core::CameraModel>(camera));
   return v;

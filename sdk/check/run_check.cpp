@@ -65,7 +65,10 @@ std::string wait_for(pid_t child, const Progress& progress, const CheckOptions& 
   std::uint64_t count = progress.count();
   auto changed = begin;
   while (!host::has_ended(child, end)) {
-    if (progress.count() != count) count = progress.count(), changed = Clock::now();
+    if (progress.count() != count) {
+      count = progress.count();
+      changed = Clock::now();
+    }
     const bool inside = count % 2 == 1;
     const bool hangs = inside && seconds_since(changed) > o.hang_limit_s;
     if (stopped(o)) {
@@ -131,7 +134,8 @@ void check_names(const CheckOptions& o) {
   std::vector<std::string> names;
   for (const Test& t : all_tests()) {
     const std::string name = t.name;
-    names.push_back(name), names.push_back(name.substr(0, name.find('.')));
+    names.push_back(name);
+    names.push_back(name.substr(0, name.find('.')));
   }
   for (const std::string& asked : o.tests) {
     if (std::find(names.begin(), names.end(), asked) != names.end()) continue;

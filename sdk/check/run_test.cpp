@@ -41,11 +41,14 @@ void run_test(Context& context, const Test& test, const std::filesystem::path& w
     if (test.of == Test::Of::policy || test.of == Test::Of::policy_gate) choose_policy(context);
     test.run(context);
   } catch (const Failed& f) {
-    verdict = Verdict::failed, reason = f.reason;
+    verdict = Verdict::failed;
+    reason = f.reason;
   } catch (const NotApplicable& n) {
-    verdict = Verdict::not_applicable, reason = n.reason;
+    verdict = Verdict::not_applicable;
+    reason = n.reason;
   } catch (const std::exception& e) {
-    verdict = Verdict::failed, reason = e.what();
+    verdict = Verdict::failed;
+    reason = e.what();
   }
   const nlohmann::ordered_json result{
       {"outcome", core::name_of(verdict)}, {"reason", reason}, {"figures", context.figures}};

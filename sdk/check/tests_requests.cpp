@@ -52,7 +52,8 @@ void thousands(Context& c) {
     f.cells.resize(8 + i % 40);
     f.centroid = f.low = f.high = free[(i * 7919u) % free.size()];
     f.normal = core::Vec3::UnitX();
-    f.unknown_cells = i % 100, f.free_cells = i % 300;
+    f.unknown_cells = i % 100;
+    f.free_cells = i % 300;
   }
   ask_changed(c, flight, 3, [&](core::DecisionRequest& r, int) {
     r.frontiers.clear();
@@ -91,13 +92,20 @@ void extremes(Context& c) {
       [](core::DecisionRequest& r) { r.seconds_before_homing = -1e6; },
       [](core::DecisionRequest& r) { r.seconds_before_homing = inf; },
       [](core::DecisionRequest& r) { r.max_speed_mps = 1e-6; },
-      [](core::DecisionRequest& r) { r.max_speed_mps = 1e3, r.clearance_m = 50; },
-      [](core::DecisionRequest& r) { r.clearance_m = 0, r.vehicle_radius_m = 0; },
+      [](core::DecisionRequest& r) {
+        r.max_speed_mps = 1e3;
+        r.clearance_m = 50;
+      },
+      [](core::DecisionRequest& r) {
+        r.clearance_m = 0;
+        r.vehicle_radius_m = 0;
+      },
       [](core::DecisionRequest& r) {
         r.state.position = {6500, -6500, 6500};
       },
       [](core::DecisionRequest& r) {
-        r.state.velocity_mps = {300, 0, -300}, r.state.body_rate_radps = {50, 50, 50};
+        r.state.velocity_mps = {300, 0, -300};
+        r.state.body_rate_radps = {50, 50, 50};
       },
       [](core::DecisionRequest& r) {
         r.direction_of_flight = {0, 0, 1};
@@ -109,7 +117,8 @@ void extremes(Context& c) {
         r.T_world_start.position = {-6500, 6500, 0};
       },
       [](core::DecisionRequest& r) {
-        r.last_goal = {6500, 6500, 6500}, r.last_fate = core::GoalFate::rejected;
+        r.last_goal = {6500, 6500, 6500};
+        r.last_fate = core::GoalFate::rejected;
       },
       [](core::DecisionRequest& r) { r.deadline = r.stamp; },
       [](core::DecisionRequest& r) { r.sequence = 0xfffffff0u; },

@@ -24,7 +24,9 @@ Vec3f normal_at(const PointTree& tree, const Vec3f& p, double radius_m) {
   double n = 0;
   for (const std::uint32_t i : tree.within(p.cast<double>(), radius_m)) {
     const Vec3 d = (tree.points()[i] - p).cast<double>();
-    sum += d, squares += d * d.transpose(), n += 1;
+    sum += d;
+    squares += d * d.transpose();
+    n += 1;
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(squares / n - (sum / n) * (sum / n).transpose());

@@ -37,8 +37,13 @@ Distance distance_between(const CaveFigures& a, const CaveFigures& b, const std:
     if (!std::isfinite(a.*f.value) || !std::isfinite(b.*f.value)) continue;
     const double off = (scaled(f, a.*f.value) - scaled(f, b.*f.value)) / scales[i],
                  square = f.weight * off * off;
-    sum += square, weights += f.weight, ++d.shared;
-    if (square > largest) largest = square, d.farthest = static_cast<int>(i);
+    sum += square;
+    weights += f.weight;
+    ++d.shared;
+    if (square > largest) {
+      largest = square;
+      d.farthest = static_cast<int>(i);
+    }
   }
   if (d.shared > 0) d.value = std::sqrt(sum / weights);
   return d;

@@ -47,7 +47,11 @@ Vec3 climbed(const FreeSpace& space, const Vec3& from, double reach) {
         const Vec3 p = best + step * Vec3(x, y, z);
         if ((p - from).norm() > reach || (p - best).norm() >= height) continue;
         const double h = space.distance_to_rock(p);
-        if (h > height + 1e-9) best = p, height = h, up = true;
+        if (h > height + 1e-9) {
+          best = p;
+          height = h;
+          up = true;
+        }
       }
     }
   return best;
@@ -107,7 +111,8 @@ double verticality(const std::vector<PassageNode>& nodes, const std::vector<Slic
       at = static_cast<std::size_t>(nodes[at].below.front());
     if (done < steps) continue;
     const Vec3 along = slices[i].centroid - slices[at].centroid;
-    up += std::abs(along.z()), all += along.norm();
+    up += std::abs(along.z());
+    all += along.norm();
   }
   return all > 0 ? up / all : kUnknown;
 }
@@ -146,7 +151,8 @@ CaveFigures describe(const FreeSpace& space) {
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double z = (cells.key(i).z + 0.5) * edge;
-    lowest = std::min(lowest, z), highest = std::max(highest, z);
+    lowest = std::min(lowest, z);
+    highest = std::max(highest, z);
   }
   f.drop_m = highest - lowest + 2 * space.clearance_m;
   f.verticality = verticality(nodes, slices, least);

@@ -118,7 +118,10 @@ Fared fared_of(const std::string& text, double most, const std::string& file, co
   std::string rest;
   const bool good = static_cast<bool>(in >> f.mean >> f.flights);
   const bool spread = good && in >> f.deviation;
-  if (good && !spread) in.clear(), f.deviation = kUnknown;
+  if (good && !spread) {
+    in.clear();
+    f.deviation = kUnknown;
+  }
   const bool sound = good && std::isfinite(f.mean) && f.flights > 0 && (!spread || f.deviation >= 0);
   if (!sound || in >> rest)
     throw InputError(file, place, "expected \"mean flights [deviation]\", got \"" + text + "\"");

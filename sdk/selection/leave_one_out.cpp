@@ -32,12 +32,16 @@ Selected regardless_of_cave(const Experience& rest, const SelectOptions& options
 }
 
 void add(LeaveOneOut::Shares& s, bool best, bool within, double regret) {
-  s.best += best, s.within += within, s.regret += regret;
+  s.best += best;
+  s.within += within;
+  s.regret += regret;
 }
 
 void divide(LeaveOneOut::Shares& s, std::size_t n) {
   const double d = n > 0 ? static_cast<double>(n) : kUnknown;
-  s.best /= d, s.within /= d, s.regret /= d;
+  s.best /= d;
+  s.within /= d;
+  s.regret /= d;
 }
 
 }  // namespace
@@ -100,7 +104,9 @@ LeaveOneOut leave_one_out(const Experience& e, const SelectOptions& options, con
       add(selected, l.selected_value == l.best_value, l.selected_within,
           lost(l.selected_value, l.best_value));
       add(overall, l.overall_value == l.best_value, l.overall_within, lost(l.overall_value, l.best_value));
-      chance.best += l.chance_best, chance.within += l.chance_within, chance.regret += chance_regret;
+      chance.best += l.chance_best;
+      chance.within += l.chance_within;
+      chance.regret += chance_regret;
     };
     count(out.selected, out.overall, out.chance);
     if (l.refused)

@@ -41,7 +41,8 @@ class Sets {
     return i;
   }
   void unite(int a, int b) {
-    a = of(a), b = of(b);
+    a = of(a);
+    b = of(b);
     parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
 
@@ -115,7 +116,8 @@ class Uniting {
     return out;
   }
   void unite(int a, int b) {
-    a = sets_.of(a), b = sets_.of(b);
+    a = sets_.of(a);
+    b = sets_.of(b);
     if (a == b) return;
     sets_.unite(a, b);
     PassageNode& kept = nodes_[static_cast<std::size_t>(std::min(a, b))];
@@ -142,7 +144,8 @@ std::vector<int> dead_end(const std::vector<PassageNode>& nodes, int end) {
       for (const int m : *side)
         if (m != before) next = m;
     if (next < 0) return {};
-    before = node, node = next;
+    before = node;
+    node = next;
   }
   return path;
 }
@@ -180,7 +183,10 @@ std::vector<PassageNode> passage_nodes(const CellIndex& cells, const std::vector
       nodes[static_cast<std::size_t>(std::min(a, b))].above.push_back(std::max(a, b));
       nodes[static_cast<std::size_t>(std::max(a, b))].below.push_back(std::min(a, b));
     });
-  for (PassageNode& n : nodes) sort_unique(n.below), sort_unique(n.above);
+  for (PassageNode& n : nodes) {
+    sort_unique(n.below);
+    sort_unique(n.above);
+  }
   return nodes;
 }
 
@@ -194,7 +200,10 @@ std::vector<PassageNode> without_short_loops(const std::vector<PassageNode>& nod
       int lowest = -1;
       for (const int a : kept) {
         std::vector<int> path = graph.highest_path(a, b, nodes[static_cast<std::size_t>(u)].band);
-        if (graph.lowest_band(path) > lowest) lowest = graph.lowest_band(path), shortest = std::move(path);
+        if (graph.lowest_band(path) > lowest) {
+          lowest = graph.lowest_band(path);
+          shortest = std::move(path);
+        }
       }
       if (!shortest.empty() && nodes[static_cast<std::size_t>(u)].band - lowest < least)
         graph.fold(shortest);
@@ -226,7 +235,10 @@ std::vector<PassageNode> without_short_ends(const std::vector<PassageNode>& node
   std::vector<int> number(kept.size(), -1);
   std::vector<PassageNode> out;
   for (std::size_t i = 0; i < kept.size(); ++i)
-    if (!gone[i]) number[i] = static_cast<int>(out.size()), out.push_back(kept[i]);
+    if (!gone[i]) {
+      number[i] = static_cast<int>(out.size());
+      out.push_back(kept[i]);
+    }
   for (PassageNode& n : out)
     for (auto* side : {&n.below, &n.above})
       for (int& m : *side) m = number[static_cast<std::size_t>(m)];

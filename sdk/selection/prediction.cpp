@@ -50,7 +50,10 @@ std::vector<double> levels(const Values& v) {
     double sum = 0;
     int n = 0;
     for (std::size_t k = 0; k < v.contestants; ++k)
-      if (const double x = v.at(k, c); !std::isnan(x) && (everywhere[k] || !some)) sum += x, ++n;
+      if (const double x = v.at(k, c); !std::isnan(x) && (everywhere[k] || !some)) {
+        sum += x;
+        ++n;
+      }
     if (n > 0) level[c] = sum / n;
   }
   return level;
@@ -61,9 +64,12 @@ double predict(const Values& v, const std::vector<double>& level, const std::vec
   double all = 0, levels = 0, flown = 0, advantages = 0;
   for (std::size_t c = 0; c < v.caves; ++c) {
     if (std::isnan(level[c])) continue;
-    all += weight[c], levels += weight[c] * level[c];
-    if (const double x = v.at(k, c); !std::isnan(x))
-      flown += weight[c], advantages += weight[c] * (x - level[c]);
+    all += weight[c];
+    levels += weight[c] * level[c];
+    if (const double x = v.at(k, c); !std::isnan(x)) {
+      flown += weight[c];
+      advantages += weight[c] * (x - level[c]);
+    }
   }
   return all > 0 && flown >= kMinFraction * all ? levels / all + advantages / flown : kUnknown;
 }
@@ -95,7 +101,10 @@ std::vector<double> left_out_residuals(const Experience& e, const Values& v, con
     const std::vector<double> weight = kernel_weights(others, e.caves[c].figures, kernel);
     double expected_level = 0, all = 0;
     for (std::size_t o = 0; o < v.caves; ++o)
-      if (!std::isnan(level[o])) all += weight[o], expected_level += weight[o] * level[o];
+      if (!std::isnan(level[o])) {
+        all += weight[o];
+        expected_level += weight[o] * level[o];
+      }
     for (std::size_t k = 0; k < v.contestants; ++k)
       if (!std::isnan(v.at(k, c)))
         residuals[k * v.caves + c] = v.at(k, c) - predict(v, level, weight, k) -
@@ -116,9 +125,13 @@ double best_bandwidth(const Experience& e, const Values& v, const std::vector<do
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       const double l = level[i % v.caves];
       if (std::isnan(residuals[i]) || l == 0) continue;
-      sum += residuals[i] * residuals[i] / (l * l), ++n;
+      sum += residuals[i] * residuals[i] / (l * l);
+      ++n;
     }
-    if (n > 0 && sum / n < least * (1 - 1e-9)) least = sum / n, best = *h;
+    if (n > 0 && sum / n < least * (1 - 1e-9)) {
+      least = sum / n;
+      best = *h;
+    }
   }
   return best;
 }

@@ -53,7 +53,10 @@ std::vector<Expected> ranking_of(const Values& v, const std::vector<double>& lev
                                  const std::vector<double>& weight, double sign) {
   std::vector<Expected> ranking;
   double sum = 0, squares = 0;
-  for (const double w : weight) sum += w, squares += w * w;
+  for (const double w : weight) {
+    sum += w;
+    squares += w * w;
+  }
   for (std::size_t k = 0; k < v.contestants; ++k) {
     const double value = predict(v, level, weight, k);
     if (!std::isnan(value)) ranking.push_back({k, value, kUnknown, kUnknown, sum * sum / squares});
@@ -69,16 +72,23 @@ void give_intervals(const Experience& e, const Values& v, const std::vector<doub
   const std::vector<double> residuals = left_out_residuals(e, v, level, kernel, Predicted::value);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double x : v.mean)
-    if (!std::isnan(x)) least = std::min(least, x), most = std::max(most, x);
+    if (!std::isnan(x)) {
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
   for (Expected& x : ranking) {
     double squares = 0;
     int n = 0;
     for (std::size_t c = 0; c < v.caves; ++c)
-      if (const double r = residuals[x.contestant * v.caves + c]; !std::isnan(r)) squares += r * r, ++n;
+      if (const double r = residuals[x.contestant * v.caves + c]; !std::isnan(r)) {
+        squares += r * r;
+        ++n;
+      }
     if (n < static_cast<int>(kFewestCaves)) continue;
     const boost::math::students_t student(n - 1);
     const double half = boost::math::quantile(student, 0.5 + probability / 2) * std::sqrt(squares / n);
-    x.low = x.value - half, x.high = x.value + half;
+    x.low = x.value - half;
+    x.high = x.value + half;
     if (least >= 0) x.low = std::max(0.0, x.low);
     if (least >= 0 && most <= 1) x.high = std::min(1.0, x.high);
   }
@@ -95,12 +105,14 @@ void give_intervals_there(const Experience& e, std::size_t metric, const std::ve
     int degrees = 0;
     for (const std::size_t c : there) {
       const Fared& f = e.at(x.contestant, c, metric);
-      variance += f.deviation * f.deviation / f.flights / (caves * caves), degrees += f.flights - 1;
+      variance += f.deviation * f.deviation / f.flights / (caves * caves);
+      degrees += f.flights - 1;
     }
     if (!std::isfinite(variance)) continue;
     const boost::math::students_t student(degrees);
     const double half = boost::math::quantile(student, 0.5 + probability / 2) * std::sqrt(variance);
-    x.low = std::max(figure.least, x.value - half), x.high = std::min(figure.most, x.value + half);
+    x.low = std::max(figure.least, x.value - half);
+    x.high = std::min(figure.most, x.value + half);
   }
 }
 

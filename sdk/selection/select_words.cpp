@@ -27,8 +27,10 @@ std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave
   const FigureDefinition& f = figure_definitions()[static_cast<std::size_t>(nearest.distance.farthest)];
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const KnownCave& k : e.caves)
-    if (const double x = k.figures.*f.value; std::isfinite(x))
-      low = std::min(low, x), high = std::max(high, x);
+    if (const double x = k.figures.*f.value; std::isfinite(x)) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
   const std::string unit = f.unit.empty() ? "" : " " + std::string(f.unit);
   return text(
       "nothing like this cave was flown: the nearest, %s, is at distance %.2f, and caves farther than %.2f "

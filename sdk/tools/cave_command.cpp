@@ -176,7 +176,8 @@ void info(const InfoArguments& args) {
   double lowest = 1e9, highest = -1e9;
   r.flyable.for_each([&](const core::CellKey& k) {
     const double z = (k.z + 0.5) * r.options.resolution_m;
-    lowest = std::min(lowest, z), highest = std::max(highest, z);
+    lowest = std::min(lowest, z);
+    highest = std::max(highest, z);
   });
   if (args.json) {
     ordered_json j = json_of(args, facts);

@@ -105,7 +105,10 @@ int check_file(CheckArguments& args) {
   }
   std::map<Verdict, int> count;
   ordered_json tests = ordered_json::array();
-  for (const TestResult& r : results) ++count[r.verdict], tests.push_back(to_json(r));
+  for (const TestResult& r : results) {
+    ++count[r.verdict];
+    tests.push_back(to_json(r));
+  }
   const bool passed = count[Verdict::failed] == 0;
   if (args.json)
     print_json(ordered_json{{"schema", 1},

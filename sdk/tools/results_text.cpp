@@ -32,7 +32,10 @@ void print_row(const CampaignResults& results, const campaign::RankedContestant&
                const std::vector<std::vector<double>>& means) {
   int trials = 0, failed = 0;
   for (const campaign::TrialResult& t : results.trials)
-    if (t.contestant == place.contestant) ++trials, failed += t.failed;
+    if (t.contestant == place.contestant) {
+      ++trials;
+      failed += t.failed;
+    }
   const std::string best = std::to_string(place.best), worst = std::to_string(place.worst);
   std::string line = "| " + (best == worst ? best : best + "-" + worst) + " | " +
                      results.contestants[place.contestant].name + " | " + std::to_string(trials) + " | " +
@@ -67,7 +70,8 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   std::string head = "| place | contestant | trials | failed |", rule = "|---:|---|---:|---:|";
   std::vector<std::vector<double>> means;
   for (const std::string& f : figures) {
-    head += " " + f + " |", rule += "---:|";
+    head += " " + f + " |";
+    rule += "---:|";
     means.push_back(campaign::comparable_means(results, evaluation::metric_index(f)));
   }
   print_out("%s: means over %s, of the flights that all have flown\n\n%s\n%s\n", results.name.c_str(),

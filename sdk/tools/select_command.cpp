@@ -172,9 +172,11 @@ void leave_one_out(const SelectArguments& args) {
     const auto fractions = [&j](const char* name, const selection::LeaveOneOut::Shares& s) {
       j[name] = {{"best", known(s.best)}, {"within_5_percent", known(s.within)}, {"lost", known(s.regret)}};
     };
-    fractions("selected", l.selected), fractions("overall_best", l.overall), fractions("chance", l.chance);
-    fractions("selected_answered", l.selected_answered),
-        fractions("overall_best_answered", l.overall_answered);
+    fractions("selected", l.selected);
+    fractions("overall_best", l.overall);
+    fractions("chance", l.chance);
+    fractions("selected_answered", l.selected_answered);
+    fractions("overall_best_answered", l.overall_answered);
     fractions("chance_answered", l.chance_answered);
     print_json(j);
     return;
@@ -214,9 +216,12 @@ int run(const SelectArguments& args) {
   const int wanted = !args.cave.empty() + !args.learn.empty() + args.leave_one_out;
   if (wanted != 1)
     throw InputError("karst select", "", "needs one of --cave FILE, --learn STORE, --leave-one-out");
-  if (!args.learn.empty()) return learn(args), 0;
-  if (args.leave_one_out) return leave_one_out(args), 0;
-  return select_for(args);
+  if (!args.cave.empty()) return select_for(args);
+  if (args.leave_one_out)
+    leave_one_out(args);
+  else
+    learn(args);
+  return 0;
 }
 
 }  // namespace

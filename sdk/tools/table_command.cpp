@@ -134,7 +134,10 @@ void add_table_command(CLI::App& app) {
   table->add_option("runs", *runs, "run directories")->required();
   table->callback([runs] {
     std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
-    for (const Column& c : kColumns) head += std::string(" ") + c.title + " |", rule += "---:|";
+    for (const Column& c : kColumns) {
+      head += std::string(" ") + c.title + " |";
+      rule += "---:|";
+    }
     print_out("%s\n%s\n", head.c_str(), rule.c_str());
     std::vector<std::string> problems;
     std::vector<nlohmann::json> all;

@@ -26,7 +26,10 @@ double mean_of(const CampaignResults& r, std::size_t contestant, int metric) {
   std::map<std::size_t, std::pair<double, int>> caves;
   for (const campaign::TrialResult& t : r.trials) {
     const double v = campaign::figure_of(t, metric, r.horizon_s);
-    if (t.contestant == contestant && std::isfinite(v)) caves[t.cave].first += v, ++caves[t.cave].second;
+    if (t.contestant == contestant && std::isfinite(v)) {
+      caves[t.cave].first += v;
+      ++caves[t.cave].second;
+    }
   }
   double sum = 0;
   for (const auto& [cave, of] : caves) sum += of.first / of.second;
@@ -66,7 +69,10 @@ std::optional<campaign::Comparison> comparison(const CampaignResults& r, const s
 CampaignResults joined(const CampaignResults& a, const CampaignResults& b) {
   CampaignResults all = a;
   all.contestants.push_back(b.contestants.front());
-  for (campaign::TrialResult t : b.trials) t.contestant = 1, all.trials.push_back(std::move(t));
+  for (campaign::TrialResult t : b.trials) {
+    t.contestant = 1;
+    all.trials.push_back(std::move(t));
+  }
   return all;
 }
 

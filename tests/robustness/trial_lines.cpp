@@ -1,19 +1,18 @@
 #include "tests/robustness/trial_lines.h"
 
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/rounded.h"
 #include "sdk/evaluation/record/lines.h"
 
 namespace karst::robustness {
 namespace {
 
+using core::to_thousandths;
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-double rounded(double v) { return std::round(v * 1e3) / 1e3; }
 
 }  // namespace
 
@@ -44,12 +43,13 @@ std::string to_json(const TrialLine& l) {
   j["fault"] = l.fault;
   j["what"] = l.fault_text;
   j["outcome"] = name_of(l.verdict.outcome);
-  j["least_clearance_m"] =
-      l.verdict.least_clearance_m ? ordered_json(rounded(*l.verdict.least_clearance_m)) : ordered_json();
-  j["stall_s"] = rounded(l.verdict.stall_s);
-  j["in_air_s"] = rounded(l.verdict.in_air_s);
+  j["least_clearance_m"] = l.verdict.least_clearance_m
+                               ? ordered_json(to_thousandths(*l.verdict.least_clearance_m))
+                               : ordered_json();
+  j["stall_s"] = to_thousandths(l.verdict.stall_s);
+  j["in_air_s"] = to_thousandths(l.verdict.in_air_s);
   j["exit"] = l.exit_code;
-  j["wall_s"] = rounded(l.wall_s);
+  j["wall_s"] = to_thousandths(l.wall_s);
   j["reason"] = l.verdict.reason;
   return core::json_text(j);
 }

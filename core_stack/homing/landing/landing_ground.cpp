@@ -34,7 +34,8 @@ void fit_plane(const std::vector<Vec3>& points, Ground& out) {
   for (const Vec3& p : points) {
     const Vec3 d = p - mean;
     const double above = d.z() - gradient.dot(d.head<2>());
-    low = std::min(low, above), high = std::max(high, above);
+    low = std::min(low, above);
+    high = std::max(high, above);
   }
   out.slope_rad = std::atan(gradient.norm());
   out.step_m = high - low;
@@ -47,7 +48,8 @@ class Pieces {
     std::vector<int> open;
     for (std::size_t seed = 0; seed < set.size(); ++seed) {
       if (!set[seed] || of_[seed] >= 0) continue;
-      of_[seed] = count_, open = {static_cast<int>(seed)};
+      of_[seed] = count_;
+      open = {static_cast<int>(seed)};
       while (!open.empty()) {
         const int i = open.back(), x = i % edge, y = i / edge % edge, z = i / edge / edge;
         open.pop_back();
@@ -55,7 +57,10 @@ class Pieces {
           const int u = x + n % 3 - 1, v = y + n / 3 % 3 - 1, w = z + n / 9 - 1;
           if (std::min({u, v, w}) < 0 || std::max({u, v, w}) >= edge) continue;
           const auto k = static_cast<std::size_t>((w * edge + v) * edge + u);
-          if (set[k] && of_[k] < 0) of_[k] = count_, open.push_back(static_cast<int>(k));
+          if (set[k] && of_[k] < 0) {
+            of_[k] = count_;
+            open.push_back(static_cast<int>(k));
+          }
         }
       }
       ++count_;
@@ -74,15 +79,16 @@ class Pieces {
 Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radius_m,
                     const GroundOptions& options) {
   Ground out;
+  const auto refused = [&out](GroundVerdict why) {
+    out.verdict = why;
+    return out;
+  };
   const double res = map.resolution_m(), radius_m = vehicle_radius_m + options.margin_m;
   const CellKey top = map.key_of(place);
   const int most = static_cast<int>(std::ceil(options.max_drop_m / res));
   const auto floor = first_below(map, top, most);
   if (!floor || floor->z == top.z) return out;
-  if (map.at(*floor) != Cell::occupied) {
-    out.verdict = GroundVerdict::unknown;
-    return out;
-  }
+  if (map.at(*floor) != Cell::occupied) return refused(GroundVerdict::unknown);
   out.ground = {place.x(), place.y(), map.center_of(*floor).z() + res / 2};
   // Ground may fall away by the whole of the step and slope; farther down there is none.
   const double fall_m =
@@ -96,9 +102,9 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
       const Vec3 c = map.center_of(column);
       if ((c - place).head<2>().norm() > radius_m) continue;
       const auto k = first_below(map, column, lowest);
-      if (!k) return out.verdict = GroundVerdict::rough, out;
-      if (map.at(*k) == Cell::unknown) return out.verdict = GroundVerdict::unknown, out;
-      if (k->z == top.z) return out.verdict = GroundVerdict::obstructed, out;
+      if (!k) return refused(GroundVerdict::rough);
+      if (map.at(*k) == Cell::unknown) return refused(GroundVerdict::unknown);
+      if (k->z == top.z) return refused(GroundVerdict::obstructed);
       ground.push_back({c.x(), c.y(), map.center_of(*k).z() + res / 2});
     }
   fit_plane(ground, out);

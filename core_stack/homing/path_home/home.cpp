@@ -60,7 +60,8 @@ double home_slack_s(double seconds_left, double home_time, double margin, double
 
 bool ReturnTrigger::due(double slack_s) {
   if (slack_s > 0) {
-    before_s_ = slack_s, doubted_ = 0;
+    before_s_ = slack_s;
+    doubted_ = 0;
     return false;
   }
   return before_s_ - slack_s <= kAtOnce_s || ++doubted_ > kDoubtedTimes;

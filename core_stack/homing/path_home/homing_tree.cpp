@@ -24,7 +24,8 @@ bool meets_box(const Vec3& a, const Vec3& b, const Vec3& low, const Vec3& high) 
       continue;
     }
     const double s = (low[i] - a[i]) / d, t = (high[i] - a[i]) / d;
-    first = std::max(first, std::min(s, t)), last = std::min(last, std::max(s, t));
+    first = std::max(first, std::min(s, t));
+    last = std::min(last, std::max(s, t));
   }
   return first <= last;
 }
@@ -197,7 +198,8 @@ bool HomingTree::set_life(const LifeFact& fact) {
   if (!i) return false;
   Entry& e = entries_[*i];
   if (fact.stamp < e.life_stamp || (fact.stamp == e.life_stamp && fact.alive)) return true;
-  e.alive = fact.alive, e.life_stamp = fact.stamp;
+  e.alive = fact.alive;
+  e.life_stamp = fact.stamp;
   if (e.known) paths_.set_source(*i, e.alive && e.node.kind == NodeKind::communication);
   return true;
 }

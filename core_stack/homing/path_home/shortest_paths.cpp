@@ -22,7 +22,8 @@ void ShortestPaths::part(std::uint32_t a, std::uint32_t b) {
   // Those that go this way must be told before the edge is gone.
   if (nodes_[a].next == b) forget(a);
   if (nodes_[b].next == a) forget(b);
-  drop(a, b), drop(b, a);
+  drop(a, b);
+  drop(b, a);
 }
 
 void ShortestPaths::set_source(std::uint32_t n, bool source) {
@@ -38,7 +39,8 @@ void ShortestPaths::forget(std::uint32_t n) {
   while (!open.empty()) {
     const std::uint32_t m = open.back();
     open.pop_back();
-    nodes_[m].cost = unreachable, nodes_[m].next = none;
+    nodes_[m].cost = unreachable;
+    nodes_[m].next = none;
     lost_.push_back(m);
     for (const Edge& e : nodes_[m].edges)
       if (nodes_[e.to].next == m) open.push_back(e.to);
@@ -53,7 +55,8 @@ void ShortestPaths::offer(std::uint32_t n, double cost, std::uint32_t by) {
   Node& node = nodes_[n];
   if (cost == node.cost && by != none && node.next != none && comes_before(by, node.next)) node.next = by;
   if (cost >= node.cost) return;
-  node.cost = cost, node.next = by;
+  node.cost = cost;
+  node.next = by;
   heap_.push_back({cost, n});
   std::push_heap(heap_.begin(), heap_.end(), [](const Entry& a, const Entry& b) { return a.cost > b.cost; });
 }
@@ -80,7 +83,8 @@ void ShortestPaths::relax() {
         if (nodes_[a].cost < unreachable) offer(b, nodes_[a].cost + e.cost, a);
         if (nodes_[b].cost < unreachable) offer(a, nodes_[b].cost + e.cost, b);
       }
-  lost_.clear(), joined_.clear();
+  lost_.clear();
+  joined_.clear();
 
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), [](const Entry& a, const Entry& b) { return a.cost > b.cost; });

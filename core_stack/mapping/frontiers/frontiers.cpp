@@ -39,12 +39,15 @@ class FaceReaders {
 std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b) {
   std::size_t n = 0;
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (*i == *j)
-      ++n, ++i, ++j;
-    else if (*i < *j)
+    if (*i == *j) {
+      ++n;
       ++i;
-    else
       ++j;
+    } else if (*i < *j) {
+      ++i;
+    } else {
+      ++j;
+    }
   }
   return n;
 }

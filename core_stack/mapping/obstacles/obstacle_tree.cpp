@@ -21,7 +21,9 @@ struct NearestWithin {
   float worstDist() const { return bound; }
   bool addPoint(float squared_distance, std::uint32_t i) {
     if (squared_distance >= bound) return true;
-    bound = squared_distance, index = i, found = true;
+    bound = squared_distance;
+    index = i;
+    found = true;
     return !first_will_do;
   }
 };

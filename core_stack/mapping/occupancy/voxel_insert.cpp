@@ -41,7 +41,10 @@ class RaySet {
   bool place(std::uint64_t ray) {
     for (std::size_t i = slot_of(ray, slots_.size());; i = (i + 1) & (slots_.size() - 1)) {
       if (slots_[i] == ray) return false;
-      if (slots_[i] == 0) return slots_[i] = ray, true;
+      if (slots_[i] == 0) {
+        slots_[i] = ray;
+        return true;
+      }
     }
   }
   void grow() {
@@ -81,7 +84,10 @@ class Marker {
   void enter(BlockId id) {
     id_ = id;
     last_ = &blocks_.find_or_add(id);
-    if (!last_->touched) last_->touched = true, touched_.push_back(last_);
+    if (!last_->touched) {
+      last_->touched = true;
+      touched_.push_back(last_);
+    }
   }
 
   BlockTable& blocks_;
@@ -134,7 +140,9 @@ std::vector<CellChange> VoxelMap::insert(std::span<const Ray> rays) {
     for (std::size_t w = 0; w < b->miss.size(); ++w) b->miss[w] &= ~b->hit[w];
     for_each_bit(b->hit, [&](std::uint32_t i) { add(i, s.hit, s.high); });
     for_each_bit(b->miss, [&](std::uint32_t i) { add(i, s.miss, s.low); });
-    b->hit.fill(0), b->miss.fill(0), b->touched = false;
+    b->hit.fill(0);
+    b->miss.fill(0);
+    b->touched = false;
   }
   sort_by_key(changes);
   return changes;

@@ -25,11 +25,13 @@ CellCounts VoxelReader::count(const CellKey& low, const CellKey& high) const {
               occupied_at[x] = static_cast<std::int16_t>(occupied_at[x] + (row[x] >= 0));
             }
           }
-        for (auto x = static_cast<std::size_t>(x0); x <= static_cast<std::size_t>(x1); ++x)
-          free += static_cast<std::uint32_t>(free_at[x]),
-              occupied += static_cast<std::uint32_t>(occupied_at[x]);
+        for (auto x = static_cast<std::size_t>(x0); x <= static_cast<std::size_t>(x1); ++x) {
+          free += static_cast<std::uint32_t>(free_at[x]);
+          occupied += static_cast<std::uint32_t>(occupied_at[x]);
+        }
       }
-  counts.free = free, counts.occupied = occupied;
+  counts.free = free;
+  counts.occupied = occupied;
   counts.unknown = span(low.x, high.x) * span(low.y, high.y) * span(low.z, high.z) - free - occupied;
   return counts;
 }

@@ -17,7 +17,10 @@ class VoxelReader {
   Cell at(const CellKey& k) {
     if (!in_world(k)) return Cell::unknown;
     const BlockId id = block_of(k);
-    if (id != id_) id_ = id, block_ = blocks_.find(id);
+    if (id != id_) {
+      id_ = id;
+      block_ = blocks_.find(id);
+    }
     return block_ == nullptr ? Cell::unknown : class_of(block_->log_odds[local_of(k)]);
   }
   /// Counts the cells of a closed box by class, about a nanosecond a cell.

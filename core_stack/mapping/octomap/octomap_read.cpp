@@ -32,7 +32,8 @@ class Reader {
     MapOptions options;
     options.resolution_m = header.resolution_m;
     const auto logit = [](double p) { return static_cast<float>(std::log(p / (1 - p))); };
-    free_ = logit(options.min_probability), occupied_ = logit(options.max_probability);
+    free_ = logit(options.min_probability);
+    occupied_ = logit(options.max_probability);
     if (header.nodes > 0) {
       const CellKey low{-kWorldEdge / 2, -kWorldEdge / 2, -kWorldEdge / 2};
       header.binary ? read_classes(low, kWorldEdge) : read_values(low, kWorldEdge);

@@ -39,7 +39,10 @@ std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double cleara
   for (int i = 0; i < 27; ++i) {
     const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1, d = x * x + y * y + z * z;
     if (d >= least) continue;
-    if (const Vec3 q = p + step_m * Vec3(x, y, z); is_clear(map, q, clearance_m)) best = q, least = d;
+    if (const Vec3 q = p + step_m * Vec3(x, y, z); is_clear(map, q, clearance_m)) {
+      best = q;
+      least = d;
+    }
   }
   return best;
 }
@@ -86,7 +89,10 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
   double least = 1e9;
   for (const CellKey& k : cluster.cells) {
     const double d = (map.center_of(k) - cluster.centroid).squaredNorm();
-    if (d < least) least = d, target = map.center_of(k);
+    if (d < least) {
+      least = d;
+      target = map.center_of(k);
+    }
   }
   std::optional<Viewpoint> best;
   double best_value = 0;
@@ -97,7 +103,10 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
     const Vec3 away = position - target;
     const double value =
         cells_seen(map, cluster, vehicle, v) - away.normalized().dot(cluster.normal) - 0.2 * away.norm();
-    if (!best || value > best_value) best = v, best_value = value;
+    if (!best || value > best_value) {
+      best = v;
+      best_value = value;
+    }
   };
   for (const bool narrow : {false, true}) {
     for (const double radius : kShells) {

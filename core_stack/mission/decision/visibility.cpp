@@ -48,7 +48,10 @@ Levels levels_beside(const Vec3& p, const std::vector<Vec3>& flown, std::size_t 
 std::size_t before_the_window(const std::vector<Vec3>& flight_path) {
   double run_m = 0;
   std::size_t i = flight_path.size();
-  while (i > 1 && run_m <= kClimbWindow_m) --i, run_m += (flight_path[i] - flight_path[i - 1]).norm();
+  while (i > 1 && run_m <= kClimbWindow_m) {
+    --i;
+    run_m += (flight_path[i] - flight_path[i - 1]).norm();
+  }
   return run_m > kClimbWindow_m ? i : 0;
 }
 
@@ -83,7 +86,8 @@ std::optional<std::string> blind_climb(const SteepestView& view, const std::vect
     for (std::size_t from = to; from-- > 0;) {
       run_m += (flight_path[from + 1] - flight_path[from]).norm();
       if (run_m > kClimbWindow_m) break;
-      low = low.cwiseMin(flight_path[from]), high = high.cwiseMax(flight_path[from]);
+      low = low.cwiseMin(flight_path[from]);
+      high = high.cwiseMax(flight_path[from]);
       const double rise_m = flight_path[to].z() - flight_path[from].z(),
                    extent_m = (high - low).head<2>().norm();
       const double limit_rad = rise_m > 0 ? view.up_rad : view.down_rad;

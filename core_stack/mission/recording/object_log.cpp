@@ -17,7 +17,7 @@ nlohmann::json list_of(const std::vector<TeamObject>& objects) {
   for (const TeamObject& o : objects)
     all.push_back({{"what", name(o.kind)},
                    {"position", rounded_list(o.position)},
-                   {"deviation", rounded(o.deviation_m)},
+                   {"deviation", to_thousandths(o.deviation_m)},
                    {"told_by", o.reported_by}});
   return all;
 }

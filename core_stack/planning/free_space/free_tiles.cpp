@@ -152,7 +152,8 @@ NearestObstacle FreeTiles::nearest(const Vec3& p, double limit_m) const {
     const auto consider = [&](int dx) {
       const double rx = c.x + dx - q.x(), d2 = row2 + rx * rx;
       if (d2 >= best2) return;
-      best2 = d2, best = std::sqrt(d2);
+      best2 = d2;
+      best = std::sqrt(d2);
       out = {best * resolution_m_, center_of({c.x + dx, c.y + o.dy, c.z + o.dz})};
     };
     if (right != 0) consider(std::countr_zero(right));

@@ -14,7 +14,10 @@ namespace karst::core {
 
 struct Interval {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  void cover(double a, double b) { low = std::min(low, a), high = std::max(high, b); }
+  void cover(double a, double b) {
+    low = std::min(low, a);
+    high = std::max(high, b);
+  }
 };
 
 /// Rows near one segment; what all its rows share is worked out once.
@@ -44,7 +47,8 @@ class RowsNearSegment {
     }
     Interval along;  // where 0 <= t <= |d|^2
     if (std::abs(d_.x()) > 1e-9) {
-      along.cover(-k / d_.x(), -k / d_.x()), along.cover((l2_ - k) / d_.x(), (l2_ - k) / d_.x());
+      along.cover(-k / d_.x(), -k / d_.x());
+      along.cover((l2_ - k) / d_.x(), (l2_ - k) / d_.x());
     } else if (k >= 0 && k <= l2_) {
       along.cover(-1e9, 1e9);
     }

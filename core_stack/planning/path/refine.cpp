@@ -41,7 +41,10 @@ void lift(const FreeTiles& free, double clearance_m, std::vector<Vec3>& points) 
       for (int m = 0; m < 27; ++m) {
         const Vec3 q = points[i] + step * Vec3(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
         const double d = free.nearest(q, clearance_m).distance_m;
-        if (d > distance + 1e-6 && free.at(free.key_of(q))) distance = d, best = q;
+        if (d > distance + 1e-6 && free.at(free.key_of(q))) {
+          distance = d;
+          best = q;
+        }
       }
       if (best == points[i]) step /= 2;
       points[i] = best;

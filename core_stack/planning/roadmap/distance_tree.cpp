@@ -56,7 +56,8 @@ struct DistanceTree::Tree {
   void forget_paths_through(const RoadmapGraph& g, std::vector<PastNode> gone, std::vector<NodeRef>& lost);
   void relax(const RoadmapGraph& g, const std::vector<NodeRef>& lost);
   void forget(const NodeRef& n, std::vector<PastNode>& gone, std::vector<NodeRef>& lost) {
-    length(n) = kUnreached_m, next(n) = kNothing;
+    length(n) = kUnreached_m;
+    next(n) = kNothing;
     lost.push_back(n);
     gone.push_back({n.tile, tiles[n.tile].nodes[n.local]});
   }
@@ -78,7 +79,9 @@ void DistanceTree::Tree::take_over(const RoadmapGraph& g, std::uint32_t tile, st
         std::find(before.nodes.begin(), before.nodes.end(), now.nodes[i]) - before.nodes.begin();
     const auto k = static_cast<std::size_t>(same);
     if (k < before.nodes.size()) {
-      now.length_m[i] = before.length_m[k], now.next[i] = before.next[k], kept[k] = true;
+      now.length_m[i] = before.length_m[k];
+      now.next[i] = before.next[k];
+      kept[k] = true;
     } else {
       lost.push_back({tile, i});
     }
@@ -123,7 +126,8 @@ void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>
     // Of equally long ways the one by the least place is kept: it does not depend on the map's history.
     if (length_m == length(n) && by < next(n)) next(n) = by;
     if (length_m >= length(n)) return;
-    length(n) = length_m, next(n) = by;
+    length(n) = length_m;
+    next(n) = by;
     heap.push_back({length_m, n});
     std::push_heap(heap.begin(), heap.end());
   };
@@ -171,7 +175,10 @@ std::optional<Join> DistanceTree::Tree::best_join(const RoadmapGraph& g, const V
   std::optional<Join> best;
   length_m = kUnreached_m;
   for (const Join& j : g.joins(from))
-    if (j.length_m + length(j.node) < length_m) length_m = j.length_m + length(j.node), best = j;
+    if (j.length_m + length(j.node) < length_m) {
+      length_m = j.length_m + length(j.node);
+      best = j;
+    }
   return best;
 }
 
@@ -204,7 +211,8 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
   Path path;
   const auto fail = [&path](PlanStatus status, const char* reason) {
     path = Path{};
-    path.status = status, path.reason = reason;
+    path.status = status;
+    path.reason = reason;
     return path;
   };
   if (!tree_->root || !g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");

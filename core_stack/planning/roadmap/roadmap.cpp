@@ -236,7 +236,8 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
   Path path;
   const auto fail = [&path](PlanStatus status, const char* reason) {
     path = Path{};
-    path.status = status, path.reason = reason;
+    path.status = status;
+    path.reason = reason;
     return path;
   };
   if (!g.rule) return fail(PlanStatus::no_path, "the roadmap is empty");
@@ -255,7 +256,10 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
   double best = kInf;
   search.run(outs, goal, [&](std::uint32_t node, double length) {
     for (const Join& j : ins)
-      if (search.index_of(j.node) == node && length + j.length_m < best) best = length + j.length_m, in = &j;
+      if (search.index_of(j.node) == node && length + j.length_m < best) {
+        best = length + j.length_m;
+        in = &j;
+      }
     // No later node can lead to a shorter way than the least estimate settled so far.
     return length + (g.position_of(search.node_at(node)) - goal).norm() >= best;
   });

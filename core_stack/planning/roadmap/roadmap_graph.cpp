@@ -102,7 +102,10 @@ std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {
   const auto add = [&out](const NodeRef& n, double length_m, std::optional<CellKey> via) {
     for (Join& j : out)
       if (j.node.tile == n.tile && j.node.local == n.local) {
-        if (length_m < j.length_m) j.length_m = length_m, j.via = via;
+        if (length_m < j.length_m) {
+          j.length_m = length_m;
+          j.via = via;
+        }
         return;
       }
     out.push_back({n, length_m, via});

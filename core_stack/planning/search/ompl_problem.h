@@ -18,7 +18,9 @@ inline Vec3 point_of(const ompl::base::State* s) {
 }
 inline void set_point(ompl::base::State* s, const Vec3& p) {
   double* v = s->as<ompl::base::RealVectorStateSpace::StateType>()->values;
-  v[0] = p.x(), v[1] = p.y(), v[2] = p.z();
+  v[0] = p.x();
+  v[1] = p.y();
+  v[2] = p.z();
 }
 
 /// Cells that states are drawn from: a cave fills so little of its bounding box that drawing from the box

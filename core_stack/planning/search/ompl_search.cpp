@@ -130,7 +130,8 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
   Path path;
   const auto fail = [&path](PlanStatus status, std::string reason) {
     path = Path{};
-    path.status = status, path.reason = std::move(reason);
+    path.status = status;
+    path.reason = std::move(reason);
     return path;
   };
   if (!graph.free.is_clear(goal, clearance_m))
@@ -147,8 +148,12 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
   const Vec3 from = path.points.back();
 
   Vec3 low = from.cwiseMin(goal), high = from.cwiseMax(goal);
-  for (const Vec3& p : coarse.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  low.array() -= kAround_m, high.array() += kAround_m;
+  for (const Vec3& p : coarse.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  low.array() -= kAround_m;
+  high.array() += kAround_m;
   PlanningOptions at_clearance = options;
   at_clearance.clearance_m = clearance_m;
   std::vector<Vec3> found;

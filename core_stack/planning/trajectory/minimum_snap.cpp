@@ -119,7 +119,8 @@ Polynomial minimum_snap(const std::vector<Vec3>& waypoints, const std::vector<do
   const std::size_t last = waypoints.size() - 1;
   std::vector<std::array<Vec3, kEnd>> ends(waypoints.size());
   for (std::size_t i = 0; i <= last; ++i) ends[i] = {waypoints[i], Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  ends[0][1] = departure.velocity_mps, ends[0][2] = departure.acceleration_mps2;
+  ends[0][1] = departure.velocity_mps;
+  ends[0][2] = departure.acceleration_mps2;
 
   // The cost of a piece is d' H d of its ends' derivatives d; summed up, what multiplies two unknowns is the
   // system's matrix, and what multiplies an unknown and a given value its right side.

@@ -92,7 +92,8 @@ std::vector<double> sampled_times(const std::vector<Vec3>& points, const std::ve
     while (k < sampled.samples.size()) {
       step_m = (sampled.samples[k].position - sampled.samples[k - 1].position).norm();
       if (flown_m + step_m >= at[c]) break;
-      flown_m += step_m, ++k;
+      flown_m += step_m;
+      ++k;
     }
     const double part = k < sampled.samples.size() && step_m > 0 ? (at[c] - flown_m) / step_m : 0;
     const double now_s = seconds(sampled.period) * (static_cast<double>(k - 1) + part);

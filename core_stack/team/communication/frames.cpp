@@ -10,7 +10,9 @@ constexpr std::uint16_t kMark = 0x724b;  // "Kr"
 constexpr double kMaxSpeed_cmps = 10000;
 
 void write(PartWriter& w, const TeamState& s) {
-  w.robot(s.robot), w.time(s.stamp), w.place(s.position);
+  w.robot(s.robot);
+  w.time(s.stamp);
+  w.place(s.position);
   for (int i = 0; i < 3; ++i) w.scaled(s.velocity_mps[i], 0.01, kMaxSpeed_cmps, 2);
   w.byte(static_cast<std::uint8_t>(s.phase));
   if (!(s.seconds_left >= 0)) w.refuse();
@@ -26,7 +28,9 @@ void write(PartWriter& w, const TeamState& s) {
 
 TeamState read_state(PartReader& r) {
   TeamState s;
-  s.robot = r.robot(), s.stamp = r.time(), s.position = r.place();
+  s.robot = r.robot();
+  s.stamp = r.time();
+  s.position = r.place();
   for (int i = 0; i < 3; ++i) s.velocity_mps[i] = static_cast<double>(r.whole(2)) / 100.0;
   if (s.velocity_mps.cwiseAbs().maxCoeff() > kMaxSpeed_cmps / 100) r.refuse(Refusal::range);
   s.phase = r.one_of<TeamPhase>(9);
@@ -41,11 +45,14 @@ TeamState read_state(PartReader& r) {
 }
 
 void write(PartWriter& w, const Held& h) {
-  w.robot(h.author), w.limited(h.first, kMaxNumber), w.compact(h.beyond);
+  w.robot(h.author);
+  w.limited(h.first, kMaxNumber);
+  w.compact(h.beyond);
 }
 
 void write(PartWriter& w, const SentRecord& r) {
-  w.robot(r.author), w.limited(r.number, kMaxNumber);
+  w.robot(r.author);
+  w.limited(r.number, kMaxNumber);
   if (r.number == 0) w.refuse();
   w.count(r.bytes.size());
   for (const std::uint8_t b : r.bytes) w.byte(b);
@@ -68,15 +75,19 @@ std::size_t record_bytes(const SentRecord& r) { return bytes_of(r); }
 std::optional<Bytes> write_frame(const Frame& frame, const MissionKey& key) {
   Bytes out;
   PartWriter w(out);
-  w.number(kMark, 2), w.byte(kWireVersion),
-      w.byte(static_cast<std::uint8_t>(frame.sender | frame.reports_held << 7));
+  w.number(kMark, 2);
+  w.byte(kWireVersion);
+  w.byte(static_cast<std::uint8_t>(frame.sender | frame.reports_held << 7));
   if (frame.sender >= kMaxRobots) w.refuse();
-  w.time(frame.sent), w.number(frame.sequence, 2);
+  w.time(frame.sent);
+  w.number(frame.sequence, 2);
   const auto parts = [&w](const auto& list) {
     w.count(list.size());
     for (const auto& part : list) write(w, part);
   };
-  parts(frame.states), parts(frame.held), parts(frame.records);
+  parts(frame.states);
+  parts(frame.held);
+  parts(frame.records);
   if (!w.fine() || out.size() + kTagBytes > kFrameBytes) return std::nullopt;
   const Tag tag = tag_of(out, key);
   out.insert(out.end(), tag.begin(), tag.end());
@@ -105,12 +116,15 @@ std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, const Missi
   for (std::size_t n = r.count(24); n > 0 && r.fine(); --n) frame.states.push_back(read_state(r));
   for (std::size_t n = r.count(3); n > 0 && r.fine(); --n) {
     Held h;
-    h.author = r.robot(), h.first = r.limited(kMaxNumber), h.beyond = r.compact();
+    h.author = r.robot();
+    h.first = r.limited(kMaxNumber);
+    h.beyond = r.compact();
     frame.held.push_back(h);
   }
   for (std::size_t n = r.count(3); n > 0 && r.fine(); --n) {
     SentRecord record;
-    record.author = r.robot(), record.number = r.limited(kMaxNumber);
+    record.author = r.robot();
+    record.number = r.limited(kMaxNumber);
     if (record.number == 0) r.refuse(Refusal::range);
     const auto body = r.bytes(r.byte());
     record.bytes.assign(body.begin(), body.end());

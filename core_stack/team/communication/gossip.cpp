@@ -198,7 +198,10 @@ void Gossip::answer(RobotId peer, TimeNs now) {
     const HeldNumbers &mine = store_.held(author), &theirs = peers_[peer].held[author];
     for (std::uint32_t n = theirs.first() + 1;
          theirs.takes(n) && n <= mine.first() + 1 + HeldNumbers::window && queued < kMaxAnswered; ++n)
-      if (mine.holds(n) && !theirs.holds(n)) queue(author, n, due), ++queued;
+      if (mine.holds(n) && !theirs.holds(n)) {
+        queue(author, n, due);
+        ++queued;
+      }
   }
 }
 
@@ -293,7 +296,11 @@ Frame Gossip::own_news(TimeNs now) {
   }
   state_.heard = contacts(now, 0);
   if (bytes + 2 * state_.heard.size() > kFrameBytes)  // what is held beyond the first one lacking can wait
-    for (Held& h : frame.held) bytes -= held_bytes(h), h.beyond = 0, bytes += held_bytes(h);
+    for (Held& h : frame.held) {
+      bytes -= held_bytes(h);
+      h.beyond = 0;
+      bytes += held_bytes(h);
+    }
   if (const std::size_t room = (kFrameBytes - bytes) / 2; state_.heard.size() > room) {
     std::stable_sort(state_.heard.begin(), state_.heard.end(),
                      [](const RadioContact& a, const RadioContact& b) { return a.quality > b.quality; });
@@ -315,7 +322,8 @@ std::size_t Gossip::add_states(Frame& frame, std::size_t& room) {
     const bool is_new = s && (!reported_[i].stamp || s->stamp > *reported_[i].stamp + newer_by);
     if (s && (!many || is_new || reported_[i].times < kTimesReported)) {
       if (state_bytes(*s) > room) break;
-      frame.states.push_back(*s), room -= state_bytes(*s);
+      frame.states.push_back(*s);
+      room -= state_bytes(*s);
       if (is_new) reported_[i] = {s->stamp, 0};
       ++reported_[i].times;
     }

@@ -24,7 +24,10 @@ class PartWriter : public WireWriter {
     if (v >= below) refuse();
     compact(v);
   }
-  void node_id(const NodeId& id) { robot(id.robot), limited(id.number, kMaxNumber); }
+  void node_id(const NodeId& id) {
+    robot(id.robot);
+    limited(id.number, kMaxNumber);
+  }
   /// Milliseconds in four bytes: 49 days.
   void time(TimeNs t) {
     if (t < 0 || t / kMillisecond > 0xffffffffll) refuse();

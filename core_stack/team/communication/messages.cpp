@@ -12,7 +12,9 @@ namespace {
 enum class Kind : std::uint8_t { tree, goal, landing, object, receipt };
 
 void write(PartWriter& w, const TreeFacts& facts) {
-  w.count(facts.nodes.size()), w.count(facts.rays.size()), w.count(facts.lives.size());
+  w.count(facts.nodes.size());
+  w.count(facts.rays.size());
+  w.count(facts.lives.size());
   for (const TreeNode& n : facts.nodes) {
     w.node_id(n.id);
     w.byte(static_cast<std::uint8_t>(n.kind));
@@ -23,11 +25,18 @@ void write(PartWriter& w, const TreeFacts& facts) {
   for (const RayFact& r : facts.rays) {
     const bool same = before && before->a == r.a && before->stamp == r.stamp;
     w.byte(static_cast<std::uint8_t>((same ? 2 : 0) | (r.free ? 1 : 0)));
-    if (!same) w.node_id(r.a), w.time(r.stamp);
+    if (!same) {
+      w.node_id(r.a);
+      w.time(r.stamp);
+    }
     w.node_id(r.b);
     before = &r;
   }
-  for (const LifeFact& l : facts.lives) w.node_id(l.id), w.byte(l.alive), w.time(l.stamp);
+  for (const LifeFact& l : facts.lives) {
+    w.node_id(l.id);
+    w.byte(l.alive);
+    w.time(l.stamp);
+  }
 }
 
 TreeFacts read_tree(PartReader& r) {
@@ -43,9 +52,11 @@ TreeFacts read_tree(PartReader& r) {
     RayFact ray;
     if (flags > 3 || (flags & 2 && i == 0)) r.refuse(Refusal::kind);
     if (flags & 2 && i > 0) {
-      ray.a = facts.rays.back().a, ray.stamp = facts.rays.back().stamp;
+      ray.a = facts.rays.back().a;
+      ray.stamp = facts.rays.back().stamp;
     } else {
-      ray.a = r.node_id(), ray.stamp = r.time();
+      ray.a = r.node_id();
+      ray.stamp = r.time();
     }
     ray.b = r.node_id();
     ray.free = flags & 1;
@@ -60,18 +71,31 @@ TreeFacts read_tree(PartReader& r) {
   return facts;
 }
 
-void write(PartWriter& w, const GoalClaim& g) { w.time(g.stamp), w.place(g.position), w.byte(g.given_up); }
+void write(PartWriter& w, const GoalClaim& g) {
+  w.time(g.stamp);
+  w.place(g.position);
+  w.byte(g.given_up);
+}
 void write(PartWriter& w, const LandingClaim& l) {
-  w.time(l.stamp), w.place(l.ground), w.place(l.hover), w.byte(static_cast<std::uint8_t>(l.state));
+  w.time(l.stamp);
+  w.place(l.ground);
+  w.place(l.hover);
+  w.byte(static_cast<std::uint8_t>(l.state));
 }
 void write(PartWriter& w, const ObjectSeen& o) {
-  w.time(o.stamp), w.limited(o.object, kMaxNumber), w.byte(o.kind), w.place(o.position);
+  w.time(o.stamp);
+  w.limited(o.object, kMaxNumber);
+  w.byte(o.kind);
+  w.place(o.position);
   w.scaled(o.deviation_m, 0.1, 255, 1);
 }
 void write(PartWriter& w, const Receipt& receipt) {
   if (receipt.rows.size() > kMaxRobots) w.refuse();
   w.count(receipt.rows.size());
-  for (const Receipt::Row& row : receipt.rows) w.robot(row.robot), w.limited(row.records, kMaxNumber);
+  for (const Receipt::Row& row : receipt.rows) {
+    w.robot(row.robot);
+    w.limited(row.records, kMaxNumber);
+  }
 }
 
 Record read_body(Kind kind, PartReader& r) {
@@ -80,18 +104,25 @@ Record read_body(Kind kind, PartReader& r) {
       return read_tree(r);
     case Kind::goal: {
       GoalClaim g;
-      g.stamp = r.time(), g.position = r.place(), g.given_up = r.yes_or_no();
+      g.stamp = r.time();
+      g.position = r.place();
+      g.given_up = r.yes_or_no();
       return g;
     }
     case Kind::landing: {
       LandingClaim l;
-      l.stamp = r.time(), l.ground = r.place(), l.hover = r.place();
+      l.stamp = r.time();
+      l.ground = r.place();
+      l.hover = r.place();
       l.state = r.one_of<LandingClaim::State>(3);
       return l;
     }
     case Kind::object: {
       ObjectSeen o;
-      o.stamp = r.time(), o.object = r.limited(kMaxNumber), o.kind = r.byte(), o.position = r.place();
+      o.stamp = r.time();
+      o.object = r.limited(kMaxNumber);
+      o.kind = r.byte();
+      o.position = r.place();
       o.deviation_m = 0.1 * r.byte();
       return o;
     }

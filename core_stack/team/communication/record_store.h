@@ -32,7 +32,10 @@ class HeldNumbers {
     for (; beyond_ & 1; beyond_ >>= 1) ++first_;
     beyond_ >>= 1;
   }
-  void set(const Held& h) { first_ = h.first, beyond_ = h.beyond; }
+  void set(const Held& h) {
+    first_ = h.first;
+    beyond_ = h.beyond;
+  }
   Held summary(RobotId author) const { return {author, first_, beyond_}; }
 
  private:

@@ -57,7 +57,10 @@ std::vector<RobotId> RelayGraph::connected(TimeNs now, const Robots& relays, dou
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i] != kBase && !relays[out[i]]) continue;
     for (RobotId to = 0; to < kMaxRobots; ++to)
-      if (!seen[to] && cost[out[i]][to] > 0) seen[to] = true, out.push_back(to);
+      if (!seen[to] && cost[out[i]][to] > 0) {
+        seen[to] = true;
+        out.push_back(to);
+      }
   }
   std::sort(out.begin() + 1, out.end());
   return out;

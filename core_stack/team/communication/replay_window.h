@@ -16,14 +16,17 @@ class ReplayWindow {
   /// taken once.
   Verdict take(TimeNs sent, std::uint16_t sequence) {
     if (!sent_) {
-      sent_ = sent, sequence_ = sequence, heard_ = 1;
+      sent_ = sent;
+      sequence_ = sequence;
+      heard_ = 1;
       return Verdict::newest;
     }
     const int ahead = static_cast<std::int16_t>(sequence - sequence_);
     if (sent > *sent_ || (sent == *sent_ && ahead > 0)) {
       // Behind the newest by its time, but not by its number: the sender began anew.
       heard_ = ahead <= 0 ? ~std::uint64_t{0} : ahead < kBits ? heard_ << ahead | 1 : 1;
-      sent_ = sent, sequence_ = sequence;
+      sent_ = sent;
+      sequence_ = sequence;
       return Verdict::newest;
     }
     if (ahead > 0 || ahead <= -kBits || heard_ >> -ahead & 1) return Verdict::refused;

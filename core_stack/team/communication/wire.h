@@ -60,7 +60,10 @@ class WireReader {
     return static_cast<std::uint32_t>(fail());
   }
   std::span<const std::uint8_t> bytes(std::size_t n) {
-    if (in_.size() < n) return fail(), std::span<const std::uint8_t>{};
+    if (in_.size() < n) {
+      fail();
+      return {};
+    }
     const auto out = in_.first(n);
     in_ = in_.subspan(n);
     return out;
@@ -70,7 +73,8 @@ class WireReader {
 
  private:
   std::uint64_t fail() {
-    bad_ = true, in_ = {};
+    bad_ = true;
+    in_ = {};
     return 0;
   }
 

@@ -51,7 +51,10 @@ bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const N
     }
     return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
   }
-  if (d < nearest_m_ - kNearer_m) nearest_m_ = d, nearest_at_ = now;
+  if (d < nearest_m_ - kNearer_m) {
+    nearest_m_ = d;
+    nearest_at_ = now;
+  }
   if (on_the_way_ || d < kGoOn * rule.distance_m) return false;
   return d > nearest_m_ + kPast_m || now - nearest_at_ > kStaysAway;
 }
@@ -100,7 +103,10 @@ void YieldState::arrived(Place place, TimeNs now) {
 
 void YieldState::no_room(TimeNs now, bool crowd) {
   aside_ = false;
-  if (++attempts_ >= (crowd ? kMaxAttemptsInCrowd : kMaxAttempts)) boxed_until_ = now + kBoxed, attempts_ = 0;
+  if (++attempts_ >= (crowd ? kMaxAttemptsInCrowd : kMaxAttempts)) {
+    boxed_until_ = now + kBoxed;
+    attempts_ = 0;
+  }
 }
 
 }  // namespace karst::core

@@ -40,7 +40,10 @@ Order short_tour(const PathLengths& path_m) {
     for (std::size_t i = 1; i + 1 < order.size(); ++i)
       for (std::size_t j = i + 1; j < order.size(); ++j)
         for (const Order& other : changed(order, i, j))
-          if (length_m(path_m, other) < length_m(path_m, order) - 1e-6) order = other, shorter = true;
+          if (length_m(path_m, other) < length_m(path_m, order) - 1e-6) {
+            order = other;
+            shorter = true;
+          }
   }
   return order;
 }

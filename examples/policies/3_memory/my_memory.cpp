@@ -62,7 +62,11 @@ class MyMemory : public karst::Policy, public karst::Restorable {
     if (event.goal.frontier_id == under_way_) under_way_ = 0;
   }
 
-  void memory(karst::Memory& m) override { m.add(first_seen_s_), m.add(failed_), m.add(under_way_); }
+  void memory(karst::Memory& m) override {
+    m.add(first_seen_s_);
+    m.add(failed_);
+    m.add(under_way_);
+  }
 
  private:
   struct FailedGoal {

@@ -44,7 +44,10 @@ float tof_range(const PixelLight& rock, std::span<const PixelLight> veil, float 
   };
   std::complex<double> sum = phasor(rock);
   double lengths = rock.strength;
-  for (const PixelLight& v : veil) sum += phasor(v), lengths += v.strength;
+  for (const PixelLight& v : veil) {
+    sum += phasor(v);
+    lengths += v.strength;
+  }
   if (std::abs(sum) < min_strength) return kInf;
   if (std::abs(sum) < kMinAgreement * lengths) return kNan;
   const double turned = std::atan2(sum.imag(), sum.real()) / (2 * std::numbers::pi);
@@ -59,14 +62,18 @@ std::shared_ptr<const core::CameraModel> camera_model(const CameraOptions& o, Fa
   m->period = core::from_seconds(std::max(std::round(200 / o.rate_hz), 1.0) * 0.005);
   if (facing == Facing::forward) {
     m->name = "forward";
-    m->width = 80, m->height = 64;
-    m->horizontal_fov_rad = 79 * kDegree, m->vertical_fov_rad = 64 * kDegree;
+    m->width = 80;
+    m->height = 64;
+    m->horizontal_fov_rad = 79 * kDegree;
+    m->vertical_fov_rad = 64 * kDegree;
     m->max_range_m = 4.5f;
     m->T_body_camera.position = {0.15, 0, 0};
     return m;
   }
-  m->width = 80, m->height = 56;
-  m->horizontal_fov_rad = 86 * kDegree, m->vertical_fov_rad = 58 * kDegree;
+  m->width = 80;
+  m->height = 56;
+  m->horizontal_fov_rad = 86 * kDegree;
+  m->vertical_fov_rad = 58 * kDegree;
   m->max_range_m = 5.0f;
   const double up = facing == Facing::up ? 1 : -1;
   m->name = facing == Facing::up ? "up" : "down";

@@ -44,7 +44,10 @@ float white_of(const RgbOptions& o, const std::vector<Vec3f>& light) {
   double sum = 0;
   std::size_t count = 0;
   for (const Vec3f& l : light)
-    if (const float y = l.mean(); y > 1e-3f * fixed) sum += std::log(static_cast<double>(y)), ++count;
+    if (const float y = l.mean(); y > 1e-3f * fixed) {
+      sum += std::log(static_cast<double>(y));
+      ++count;
+    }
   if (count == 0) return fixed;
   const auto mean = static_cast<float>(std::exp(sum / static_cast<double>(count)));
   return std::clamp(mean / 0.18f, fixed / 16, fixed * 16);
@@ -78,7 +81,8 @@ std::shared_ptr<const core::RgbCameraModel> rgb_camera_model(const RgbOptions& o
   auto m = std::make_shared<core::RgbCameraModel>();
   core::CameraModel& c = m->camera;
   c.name = "rgb";
-  c.width = static_cast<int>(o.width), c.height = static_cast<int>(o.height);
+  c.width = static_cast<int>(o.width);
+  c.height = static_cast<int>(o.height);
   c.horizontal_fov_rad = o.fov_rad;
   c.vertical_fov_rad =
       2 * std::atan(std::tan(o.fov_rad / 2) * static_cast<double>(c.height) / static_cast<double>(c.width));

@@ -76,7 +76,8 @@ bool write_all(int to, const void* data, std::size_t size) {
     const ssize_t n = write(to, at, size);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
-    at += n, size -= static_cast<std::size_t>(n);
+    at += n;
+    size -= static_cast<std::size_t>(n);
   }
   return true;
 }
@@ -91,7 +92,8 @@ bool read_all(int from, void* data, std::size_t size) {
     const ssize_t n = read(from, at, size);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
-    at += n, size -= static_cast<std::size_t>(n);
+    at += n;
+    size -= static_cast<std::size_t>(n);
   }
   return true;
 }

@@ -61,8 +61,12 @@ void box_of_triangle(const RTCBoundsFunctionArguments* args) {
   const Vec3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
   const float slack = slack_m(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff());
   RTCBounds& box = *args->bounds_o;
-  box.lower_x = low.x() - slack, box.lower_y = low.y() - slack, box.lower_z = low.z() - slack;
-  box.upper_x = high.x() + slack, box.upper_y = high.y() + slack, box.upper_z = high.z() + slack;
+  box.lower_x = low.x() - slack;
+  box.lower_y = low.y() - slack;
+  box.lower_z = low.z() - slack;
+  box.upper_x = high.x() + slack;
+  box.upper_y = high.y() + slack;
+  box.upper_z = high.z() + slack;
 }
 
 constexpr unsigned kPacket = 8;
@@ -179,11 +183,18 @@ void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<Hit>
     for (unsigned k = 0; k < kPacket; ++k) {
       const Ray& ray = rays[first + std::min<std::size_t>(k, n - 1)];
       valid[k] = k < n ? -1 : 0;
-      p.ray.org_x[k] = ray.origin.x(), p.ray.org_y[k] = ray.origin.y(), p.ray.org_z[k] = ray.origin.z();
-      p.ray.dir_x[k] = ray.direction.x(), p.ray.dir_y[k] = ray.direction.y(),
+      p.ray.org_x[k] = ray.origin.x();
+      p.ray.org_y[k] = ray.origin.y();
+      p.ray.org_z[k] = ray.origin.z();
+      p.ray.dir_x[k] = ray.direction.x();
+      p.ray.dir_y[k] = ray.direction.y();
       p.ray.dir_z[k] = ray.direction.z();
-      p.ray.tnear[k] = 0, p.ray.tfar[k] = max_range_m + slack_m(max_range_m), p.ray.time[k] = 0;
-      p.ray.mask[k] = ~0u, p.ray.id[k] = k, p.ray.flags[k] = 0;
+      p.ray.tnear[k] = 0;
+      p.ray.tfar[k] = max_range_m + slack_m(max_range_m);
+      p.ray.time[k] = 0;
+      p.ray.mask[k] = ~0u;
+      p.ray.id[k] = k;
+      p.ray.flags[k] = 0;
       p.hit.primID[k] = p.hit.geomID[k] = p.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     search.range_m.fill(static_cast<double>(max_range_m));
@@ -218,8 +229,12 @@ int RayScene::crossings(const Ray& ray) const {
   rtcInitIntersectContext(&search.context);
   search.crossings = &ranges;
   RTCRayHit r{};
-  r.ray.org_x = ray.origin.x(), r.ray.org_y = ray.origin.y(), r.ray.org_z = ray.origin.z();
-  r.ray.dir_x = ray.direction.x(), r.ray.dir_y = ray.direction.y(), r.ray.dir_z = ray.direction.z();
+  r.ray.org_x = ray.origin.x();
+  r.ray.org_y = ray.origin.y();
+  r.ray.org_z = ray.origin.z();
+  r.ray.dir_x = ray.direction.x();
+  r.ray.dir_y = ray.direction.y();
+  r.ray.dir_z = ray.direction.z();
   r.ray.tfar = kInfinity;
   r.ray.mask = ~0u;
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -228,14 +243,18 @@ int RayScene::crossings(const Ray& ray) const {
   int n = 0;
   double counted = -1;
   for (const double range : ranges)
-    if (counted < 0 || range > counted + kOneSurface_m) ++n, counted = range;
+    if (counted < 0 || range > counted + kOneSurface_m) {
+      ++n;
+      counted = range;
+    }
   return n;
 }
 
 Nearest RayScene::nearest(const Vec3& p, double within_m) const {
   NearestSearch search{mesh_.get(), p, {within_m, p, false}, 0};
   RTCPointQuery query;
-  query.x = static_cast<float>(p.x()), query.y = static_cast<float>(p.y()),
+  query.x = static_cast<float>(p.x());
+  query.y = static_cast<float>(p.y());
   query.z = static_cast<float>(p.z());
   query.time = 0;
   query.radius = query_radius(p, within_m);

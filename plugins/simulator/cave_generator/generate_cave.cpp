@@ -63,7 +63,11 @@ Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double path_radius_m,
   double best_error = std::numeric_limits<double>::infinity(), best_ratio = 1;
   const auto measure = [&] {
     const double r = ratio(fit), error = std::abs(std::log(r));
-    if (error < best_error) best_error = error, best_ratio = r, best = fit;
+    if (error < best_error) {
+      best_error = error;
+      best_ratio = r;
+      best = fit;
+    }
     return r;
   };
   for (int round = 0; round < kRounds && best_error > 0.15; ++round)

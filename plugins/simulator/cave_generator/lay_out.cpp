@@ -57,7 +57,10 @@ void add_dome(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
     double nearest = 1e9;
     for (const Chamber& c : plan.chambers)
       nearest = std::min(nearest, (c.center - plan.passages[other->passage][other->station].center).norm());
-    if (nearest > apart) apart = nearest, spot = other;
+    if (nearest > apart) {
+      apart = nearest;
+      spot = other;
+    }
   }
   const double size = recipe.passage_width_m * random.uniform(0.9, 1.6), high = random.uniform(0.6, 1.3),
                oblong = random.uniform(0.75, 1.3), heading = random.uniform(0, std::numbers::pi);
@@ -146,7 +149,10 @@ void add_loop(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
       continue;
     const double clear = std::min(room(plan, recipe, 0.5 * (sa.center + sb.center), sa.center), 3.0);
     const double score = 3 + clear - apart / longest;
-    if (score > best_score) best_score = score, best = {*a, *b};
+    if (score > best_score) {
+      best_score = score;
+      best = {*a, *b};
+    }
   }
   if (!best) return;
   const Station a = plan.passages[best->first.passage][best->first.station];

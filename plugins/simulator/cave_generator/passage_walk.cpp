@@ -41,7 +41,10 @@ double freest_turn(const CavePlan& plan, const CaveRecipe& recipe, const Front& 
     const double near = room(plan, recipe, front.at + 5 * ahead, but, own),
                  far = room(plan, recipe, front.at + 10 * ahead, but, own);
     const double score = std::min(near, 2.0) + 0.5 * std::min(far, 2.0) - 2.5 * std::abs(offset);
-    if (score > best_score) best_score = score, best = offset;
+    if (score > best_score) {
+      best_score = score;
+      best = offset;
+    }
   }
   return best;
 }
@@ -99,7 +102,10 @@ Passage walk_passage(const CavePlan& plan, const CaveRecipe& recipe, std::uint64
     const double s = i * kStationStepM;
     Station station = section(recipe, s, w.width_factor, noise, keyhole);
     station.center = p;
-    if (w.level_start && s < kLevelStartM) station.floor_m = p.z(), station.slot = 0;
+    if (w.level_start && s < kLevelStartM) {
+      station.floor_m = p.z();
+      station.slot = 0;
+    }
     passage.push_back(station);
     turn = 0.8 * turn + 0.07 * random.normal();
     // Water follows joints: now and then it turns a corner.

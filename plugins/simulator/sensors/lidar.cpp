@@ -136,17 +136,24 @@ core::LidarScan Lidar::sweep(const cave::Cave& cave, const PoseTrack& T_world_bo
       }
       if (options_.dust_fraction > 0 && random.uniform() < options_.dust_fraction) {
         const auto dust = static_cast<float>(random.uniform(0.4, 3.0));
-        if (dust < range) range = dust, intensity = static_cast<float>(random.uniform(0, 0.02));
+        if (dust < range) {
+          range = dust;
+          intensity = static_cast<float>(random.uniform(0, 0.02));
+        }
       }
       if (!air.clouds.empty()) {
         path.trace(air.clouds, rays[j]);
         if (!path.clear()) {
           const Return r = through(path, {range, intensity}, air.random);
-          range = r.range_m, intensity = r.intensity;
+          range = r.range_m;
+          intensity = r.intensity;
         }
       }
       range = kRangeStep_m * std::round(range / kRangeStep_m);
-      if (range < model_->min_range_m) range = std::numeric_limits<float>::quiet_NaN(), intensity = 0;
+      if (range < model_->min_range_m) {
+        range = std::numeric_limits<float>::quiet_NaN();
+        intensity = 0;
+      }
       scan.range_m[first + j] = range;
       scan.intensity[first + j] = intensity;
     }

@@ -64,7 +64,10 @@ RunRecord recording_of(const TrialResult& trial) {
     s.from_ms -= begin_ms;
     if (s.until_ms != evaluation::OccupiedSpan::kNever) s.until_ms -= begin_ms;
   }
-  for (evaluation::Phase& p : run.phases) p.begin_s -= begin_s, p.end_s -= begin_s;
+  for (evaluation::Phase& p : run.phases) {
+    p.begin_s -= begin_s;
+    p.end_s -= begin_s;
+  }
   run.events.clear();
   run.truth_events.clear();
   return run;

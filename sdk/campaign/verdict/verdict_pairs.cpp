@@ -41,7 +41,8 @@ void pair_trials(const std::vector<const TrialResult*>& trials_a,
     } else {
       ++c.unknown;
     }
-    ++a, ++b;
+    ++a;
+    ++b;
   }
   c.unpaired += static_cast<std::size_t>((trials_a.end() - a) + (trials_b.end() - b));
 

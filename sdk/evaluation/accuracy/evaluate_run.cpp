@@ -47,7 +47,10 @@ ordered_json json_of(const std::optional<double>& v) {
 ordered_json align(std::vector<PosePair>& pairs, const EvaluateOptions& options) {
   if (!options.align) return {{"kind", "none"}};
   std::vector<Vec3> from, to;
-  for (const PosePair& p : pairs) from.push_back(p.estimate.position), to.push_back(p.truth.position);
+  for (const PosePair& p : pairs) {
+    from.push_back(p.estimate.position);
+    to.push_back(p.truth.position);
+  }
   const auto found = umeyama(from, to, options.scale);
   if (!found) return {{"kind", "none"}, {"reason", "fewer than three poses, or all on a line"}};
   for (PosePair& p : pairs) p.estimate = *found * p.estimate;

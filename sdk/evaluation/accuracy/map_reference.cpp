@@ -55,7 +55,10 @@ std::vector<Vec3f> sample_surface(const cave::TriangleMesh& mesh, double points_
       throw InputError(name, "", "needs more than 60 million points; choose a smaller --density");
     for (; owed >= 1; owed -= 1) {
       auto [u, v] = even(count++);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
       points.push_back((a + u * (b - a) + v * (c - a)).cast<float>());
     }
   }

@@ -32,7 +32,10 @@ double flight_end_s(const RunRecord& run) {
 /// Root of the mean of the squares; none without samples.
 class RootMeanSquare {
  public:
-  void add(double v) { sum_ += v * v, ++count_; }
+  void add(double v) {
+    sum_ += v * v;
+    ++count_;
+  }
   std::optional<double> value() const {
     if (count_ == 0) return std::nullopt;
     return std::sqrt(sum_ / static_cast<double>(count_));

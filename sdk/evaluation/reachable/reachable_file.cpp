@@ -107,9 +107,13 @@ std::optional<Reachable> read(const fs::path& file, std::uint64_t key, const Rea
     const CellKey p{static_cast<std::int32_t>(e.place % nx), static_cast<std::int32_t>(e.place / nx % ny),
                     static_cast<std::int32_t>(e.place / (nx * ny))};
     if (!r.free.has_place(p)) return std::nullopt;
-    r.free.at(p) = e.free, r.flyable.at(p) = e.flyable, r.reachable.at(p) = e.reachable;
+    r.free.at(p) = e.free;
+    r.flyable.at(p) = e.flyable;
+    r.reachable.at(p) = e.reachable;
   }
-  r.free_cells = r.free.size(), r.flyable_cells = r.flyable.size(), r.reachable_cells = r.reachable.size();
+  r.free_cells = r.free.size();
+  r.flyable_cells = r.flyable.size();
+  r.reachable_cells = r.reachable.size();
   return r;
 }
 

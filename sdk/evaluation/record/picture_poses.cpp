@@ -36,7 +36,10 @@ std::vector<PicturePose> read_picture_poses(const std::filesystem::path& file,
   for (std::size_t row = 0; row < table.rows; ++row) {
     std::array<double, kColumns.size()> v{};
     bool good = true;
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = (*column[i])[row], good = good && std::isfinite(v[i]);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      v[i] = (*column[i])[row];
+      good = good && std::isfinite(v[i]);
+    }
     const core::Quat q(v[7], v[4], v[5], v[6]);
     if (!good || std::abs(q.norm() - 1) > 1e-3 || v[8] <= 0 || v[9] <= 0 || v[11] <= 0) {
       ++bad;

@@ -33,7 +33,10 @@ void delay(RunRecord& run, double s) {
     for (const char* key : {"t_s", "time_s"})
       if (const auto column = table->numbers.find(key); column != table->numbers.end())
         for (double& t : column->second) t += s;
-  for (Phase& p : run.phases) p.begin_s += s, p.end_s += s;
+  for (Phase& p : run.phases) {
+    p.begin_s += s;
+    p.end_s += s;
+  }
 }
 
 double start_of(const std::vector<json>& events, std::size_t robot, std::vector<std::string>& problems) {

@@ -139,7 +139,8 @@ void LoadedPolicy::end() noexcept {
     return KARST_OK;
   };
   call("destroy", quit);
-  self_ = nullptr, active_ = false;
+  self_ = nullptr;
+  active_ = false;
 }
 
 core::Decision LoadedPolicy::failed(const std::string& why) {

@@ -54,7 +54,8 @@ void IsolatedPolicy::start() {
   order.memory_limit_bytes = static_cast<std::uint64_t>(choice_.memory_limit_mib) << 20;
   order.legacy = legacy_;
   process_.reset();
-  map_sent_ = nullptr, revision_sent_ = 0;
+  map_sent_ = nullptr;
+  revision_sent_ = 0;
   process_ = std::make_unique<PolicyProcess>(policy_child_program(),
                                              CallLimits{choice_.hang_limit_s, choice_.cpu_limit_s});
   const RingMessage said = question("create", Said::start, flatten(order), nullptr);

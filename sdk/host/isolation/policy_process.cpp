@@ -114,7 +114,8 @@ PolicyProcess::PolicyProcess(const std::string& program, CallLimits limits)
   if (landlock_version() == 0) hide_this_process();
   started_by_.emplace([&] { return spawn(program, requests.value, theirs_.descriptor()); });
   id_ = started_by_->process();
-  ours_.close_descriptor(), theirs_.close_descriptor();
+  ours_.close_descriptor();
+  theirs_.close_descriptor();
 }
 
 PolicyProcess::~PolicyProcess() {

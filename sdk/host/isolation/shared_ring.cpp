@@ -127,7 +127,8 @@ void RingEnd::read(std::span<std::byte> bytes) {
 
 void RingEnd::send(std::uint32_t kind, std::span<const std::byte> body) {
   FlatWriter head;
-  head.put(kind), head.put<std::uint64_t>(body.size());
+  head.put(kind);
+  head.put<std::uint64_t>(body.size());
   write(head.bytes());
   write(body);
 }

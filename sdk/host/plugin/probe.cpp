@@ -86,7 +86,9 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
 
 [[noreturn]] void run_child(const std::string& file, int out) {
   const int null = open("/dev/null", O_RDWR);
-  dup2(null, STDIN_FILENO), dup2(null, STDOUT_FILENO), dup2(null, STDERR_FILENO);
+  dup2(null, STDIN_FILENO);
+  dup2(null, STDOUT_FILENO);
+  dup2(null, STDERR_FILENO);
   const std::string text = answer(file);
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t n = ::write(out, text.data() + sent, text.size() - sent);
@@ -132,7 +134,8 @@ std::vector<PolicyListing> probe(const std::string& file, double limit_s) {
     return broken(file, std::string("cannot be probed: ") + std::strerror(errno));
   const pid_t child = fork();
   if (child < 0) {
-    close(ends[0]), close(ends[1]);
+    close(ends[0]);
+    close(ends[1]);
     return broken(file, std::string("cannot be probed: ") + std::strerror(errno));
   }
   if (child == 0) run_child(file, ends[1]);

@@ -41,7 +41,8 @@ boost::property_tree::ptree tree(FlatReader& in) {
 }
 
 void put(FlatWriter& out, const PolicyLegacy& l) {
-  out.put(l.numbers_drawn), out.put(l.state.has_value());
+  out.put(l.numbers_drawn);
+  out.put(l.state.has_value());
   if (!l.state) return;
   out.put<std::uint64_t>(l.state->size());
   out.put_raw(l.state->data(), l.state->size());
@@ -57,14 +58,20 @@ PolicyLegacy legacy(FlatReader& in) {
 }
 
 void put(FlatWriter& out, const core::Goal& g) {
-  out.put(g.position), out.put(g.heading_rad), out.put(g.tolerance_m), out.put(g.max_speed_mps);
-  out.put(g.frontier_id), out.put(g.score), out.put(g.why);
+  out.put(g.position);
+  out.put(g.heading_rad);
+  out.put(g.tolerance_m);
+  out.put(g.max_speed_mps);
+  out.put(g.frontier_id);
+  out.put(g.score);
+  out.put(g.why);
 }
 
 core::Goal goal(FlatReader& in) {
   core::Goal g;
   g.position = in.vec3();
-  g.heading_rad = in.number<double>(), g.tolerance_m = in.number<double>();
+  g.heading_rad = in.number<double>();
+  g.tolerance_m = in.number<double>();
   g.max_speed_mps = in.number<double>();
   g.frontier_id = in.number<std::uint32_t>();
   g.score = in.number<double>();
@@ -100,9 +107,13 @@ core::Drawing drawing(FlatReader& in, std::uint64_t& points_left) {
 
 Bytes flatten(const StartOrder& o) {
   FlatWriter out;
-  out.put(o.file), out.put(o.policy), out.put(o.source);
+  out.put(o.file);
+  out.put(o.policy);
+  out.put(o.source);
   put(out, o.parameters);
-  out.put(o.seed), out.put(o.failures_allowed), out.put(o.memory_limit_bytes);
+  out.put(o.seed);
+  out.put(o.failures_allowed);
+  out.put(o.memory_limit_bytes);
   put(out, o.legacy);
   return out.take();
 }
@@ -110,7 +121,9 @@ Bytes flatten(const StartOrder& o) {
 StartOrder read_start_order(std::span<const std::byte> bytes) {
   FlatReader in(bytes);
   StartOrder o;
-  o.file = in.text(kLongestText), o.policy = in.text(kLongestText), o.source = in.text(kLongestText);
+  o.file = in.text(kLongestText);
+  o.policy = in.text(kLongestText);
+  o.source = in.text(kLongestText);
   o.parameters = tree(in);
   o.seed = in.number<std::uint64_t>();
   o.failures_allowed = in.number<int>();
@@ -139,12 +152,15 @@ ReadyReport read_ready_report(std::span<const std::byte> bytes) {
 Bytes flatten(const DecisionReport& r) {
   FlatWriter out;
   const core::Decision& d = r.decision;
-  out.put(static_cast<std::uint32_t>(d.outcome)), out.put(d.reason);
+  out.put(static_cast<std::uint32_t>(d.outcome));
+  out.put(d.reason);
   out.put<std::uint64_t>(d.goals.size());
   for (const core::Goal& g : d.goals) put(out, g);
   out.put<std::uint64_t>(d.drawings.size());
   for (const core::Drawing& w : d.drawings) {
-    out.put(static_cast<std::uint32_t>(w.kind)), out.put(w.rgb), out.put(w.text);
+    out.put(static_cast<std::uint32_t>(w.kind));
+    out.put(w.rgb);
+    out.put(w.text);
     out.put<std::uint64_t>(w.points.size());
     for (const Vec3& p : w.points) out.put(p);
   }
@@ -176,7 +192,8 @@ DecisionReport read_decision_report(std::span<const std::byte> bytes) {
 
 Bytes flatten(const core::PolicyEvent& e) {
   FlatWriter out;
-  out.put(static_cast<std::uint32_t>(e.kind)), out.put(e.stamp);
+  out.put(static_cast<std::uint32_t>(e.kind));
+  out.put(e.stamp);
   put(out, e.goal);
   out.put(e.reason);
   return out.take();
@@ -196,7 +213,8 @@ core::PolicyEvent read_event(std::span<const std::byte> bytes) {
 
 Bytes flatten(const LengthsQuestion& q) {
   FlatWriter out;
-  out.put(q.from), out.put(q.tolerance_m);
+  out.put(q.from);
+  out.put(q.tolerance_m);
   out.put<std::uint64_t>(q.goals.size());
   for (const Vec3& g : q.goals) out.put(g);
   return out.take();

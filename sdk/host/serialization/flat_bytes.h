@@ -34,9 +34,21 @@ class FlatWriter {
     put_raw(&v, sizeof v);
   }
   void put(bool v) { put<std::uint8_t>(v ? 1 : 0); }
-  void put(const core::Vec3& v) { put(v.x()), put(v.y()), put(v.z()); }
-  void put(const core::Quat& q) { put(q.w()), put(q.x()), put(q.y()), put(q.z()); }
-  void put(const core::Pose& p) { put(p.position), put(p.orientation); }
+  void put(const core::Vec3& v) {
+    put(v.x());
+    put(v.y());
+    put(v.z());
+  }
+  void put(const core::Quat& q) {
+    put(q.w());
+    put(q.x());
+    put(q.y());
+    put(q.z());
+  }
+  void put(const core::Pose& p) {
+    put(p.position);
+    put(p.orientation);
+  }
   void put(const std::string& s) {
     put<std::uint64_t>(s.size());
     put_raw(s.data(), s.size());

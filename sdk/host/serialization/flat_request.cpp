@@ -38,17 +38,25 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
   return sum;
 }
 
-void put(FlatWriter& out, const core::CellKey& k) { out.put(k.x), out.put(k.y), out.put(k.z); }
+void put(FlatWriter& out, const core::CellKey& k) {
+  out.put(k.x);
+  out.put(k.y);
+  out.put(k.z);
+}
 core::CellKey key(FlatReader& in) {
   const auto x = in.number<std::int32_t>(), y = in.number<std::int32_t>(), z = in.number<std::int32_t>();
   return {x, y, z};
 }
 
 void put(FlatWriter& out, const core::LidarModel& l) {
-  out.put(l.name), out.put(l.columns);
+  out.put(l.name);
+  out.put(l.columns);
   out.put<std::uint64_t>(l.elevation_rad.size());
   for (const float e : l.elevation_rad) out.put(e);
-  out.put(l.min_range_m), out.put(l.max_range_m), out.put(l.period), out.put(l.T_body_lidar);
+  out.put(l.min_range_m);
+  out.put(l.max_range_m);
+  out.put(l.period);
+  out.put(l.T_body_lidar);
 }
 
 core::LidarModel lidar(FlatReader& in) {
@@ -57,24 +65,34 @@ core::LidarModel lidar(FlatReader& in) {
   l.columns = in.number<int>();
   l.elevation_rad.resize(in.count(sizeof(float), kMaxChannels, "channels"));
   for (float& e : l.elevation_rad) e = in.number<float>();
-  l.min_range_m = in.number<float>(), l.max_range_m = in.number<float>();
+  l.min_range_m = in.number<float>();
+  l.max_range_m = in.number<float>();
   l.period = in.number<core::TimeNs>();
   l.T_body_lidar = in.pose();
   return l;
 }
 
 void put(FlatWriter& out, const core::CameraModel& c) {
-  out.put(c.name), out.put(c.width), out.put(c.height), out.put(c.horizontal_fov_rad);
-  out.put(c.vertical_fov_rad), out.put(c.min_range_m), out.put(c.max_range_m), out.put(c.period);
+  out.put(c.name);
+  out.put(c.width);
+  out.put(c.height);
+  out.put(c.horizontal_fov_rad);
+  out.put(c.vertical_fov_rad);
+  out.put(c.min_range_m);
+  out.put(c.max_range_m);
+  out.put(c.period);
   out.put(c.T_body_camera);
 }
 
 core::CameraModel camera(FlatReader& in) {
   core::CameraModel c;
   c.name = in.text(kLongestName);
-  c.width = in.number<int>(), c.height = in.number<int>();
-  c.horizontal_fov_rad = in.number<double>(), c.vertical_fov_rad = in.number<double>();
-  c.min_range_m = in.number<float>(), c.max_range_m = in.number<float>();
+  c.width = in.number<int>();
+  c.height = in.number<int>();
+  c.horizontal_fov_rad = in.number<double>();
+  c.vertical_fov_rad = in.number<double>();
+  c.min_range_m = in.number<float>();
+  c.max_range_m = in.number<float>();
   c.period = in.number<core::TimeNs>();
   c.T_body_camera = in.pose();
   return c;
@@ -88,7 +106,10 @@ void put_vehicle(FlatWriter& out, const core::VehicleDescription* v) {
   out.put<std::uint64_t>(v->cameras.size());
   for (const auto& c : v->cameras) put(out, *c);
   out.put(v->rgb != nullptr);
-  if (v->rgb) put(out, v->rgb->camera), out.put(v->rgb->max_incidence_rad);
+  if (v->rgb) {
+    put(out, v->rgb->camera);
+    out.put(v->rgb->max_incidence_rad);
+  }
 }
 
 void put_imaged(FlatWriter& out, const core::ImagedSurface* imaged) {
@@ -104,9 +125,16 @@ void put_frontiers(FlatWriter& out, const std::vector<core::FrontierOffer>& offe
   out.put<std::uint64_t>(offers.size());
   for (const core::FrontierOffer& o : offers) {
     const core::FrontierCluster& c = *o.cluster;
-    out.put(c.id), out.put(c.centroid), out.put(c.low), out.put(c.high), out.put(c.normal);
-    out.put(c.unknown_cells), out.put(c.free_cells);
-    out.put(o.viewpoint), out.put(o.viewpoint_heading_rad), out.put(o.path_length_m);
+    out.put(c.id);
+    out.put(c.centroid);
+    out.put(c.low);
+    out.put(c.high);
+    out.put(c.normal);
+    out.put(c.unknown_cells);
+    out.put(c.free_cells);
+    out.put(o.viewpoint);
+    out.put(o.viewpoint_heading_rad);
+    out.put(o.path_length_m);
     out.put<std::uint64_t>(c.cells.size());
     for (const core::CellKey& k : c.cells) put(out, k);
   }
@@ -115,7 +143,10 @@ void put_frontiers(FlatWriter& out, const std::vector<core::FrontierOffer>& offe
 void put_teammates(FlatWriter& out, const std::vector<core::OtherVehicle>& teammates) {
   out.put<std::uint64_t>(teammates.size());
   for (const core::OtherVehicle& v : teammates) {
-    out.put(v.id), out.put(v.heard), out.put(v.position), out.put(v.velocity_mps);
+    out.put(v.id);
+    out.put(v.heard);
+    out.put(v.position);
+    out.put(v.velocity_mps);
     out.put(v.goal.has_value());
     if (v.goal) out.put(*v.goal);
     out.put(v.seconds_before_homing);
@@ -126,7 +157,9 @@ void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t sinc
   out.put(r.map != nullptr);
   if (r.map == nullptr) return;
   const std::vector<core::ClassBlock> blocks = core::blocks_changed_after(*r.map, since);
-  out.put(r.map->resolution_m()), out.put(r.map->revision()), out.put(since);
+  out.put(r.map->resolution_m());
+  out.put(r.map->revision());
+  out.put(since);
   out.put<std::uint64_t>(blocks.size());
   out.reserve(blocks.size() * kBlockBytes);
   for (const core::ClassBlock& b : blocks) {
@@ -136,7 +169,8 @@ void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t sinc
   out.put(r.roadmap != nullptr);
   if (r.roadmap == nullptr) return;
   const core::PlanningOptions& planned = r.roadmap->options();
-  out.put(planned.clearance_m), out.put(planned.search_slack_cells);
+  out.put(planned.clearance_m);
+  out.put(planned.search_slack_cells);
 }
 
 /// The body behind a header that agrees with it.
@@ -159,14 +193,26 @@ FlatReader body_of(std::span<const std::byte> bytes) {
 
 Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   FlatWriter out;
-  out.put(kMagic), out.put(kVersion), out.put<std::uint32_t>(0);
+  out.put(kMagic);
+  out.put(kVersion);
+  out.put<std::uint32_t>(0);
   out.put<std::uint64_t>(0), out.put<std::uint64_t>(0);
-  out.put(r.stamp), out.put(r.deadline), out.put(r.sequence);
-  out.put(r.state.stamp), out.put(r.state.position), out.put(r.state.velocity_mps);
-  out.put(r.state.orientation), out.put(r.state.body_rate_radps);
-  out.put(r.direction_of_flight), out.put(r.T_world_start), out.put(r.seconds_before_homing);
-  out.put(r.max_speed_mps), out.put(r.clearance_m), out.put(r.vehicle_radius_m);
-  out.put(static_cast<std::uint32_t>(r.last_fate)), out.put(r.last_goal);
+  out.put(r.stamp);
+  out.put(r.deadline);
+  out.put(r.sequence);
+  out.put(r.state.stamp);
+  out.put(r.state.position);
+  out.put(r.state.velocity_mps);
+  out.put(r.state.orientation);
+  out.put(r.state.body_rate_radps);
+  out.put(r.direction_of_flight);
+  out.put(r.T_world_start);
+  out.put(r.seconds_before_homing);
+  out.put(r.max_speed_mps);
+  out.put(r.clearance_m);
+  out.put(r.vehicle_radius_m);
+  out.put(static_cast<std::uint32_t>(r.last_fate));
+  out.put(r.last_goal);
   put_vehicle(out, r.vehicle);
   put_frontiers(out, r.frontiers);
   put_teammates(out, r.teammates);
@@ -187,15 +233,19 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
   try {
     FlatReader in = body_of(bytes);
     core::DecisionRequest& r = request_;
-    r.stamp = in.number<core::TimeNs>(), r.deadline = in.number<core::TimeNs>();
+    r.stamp = in.number<core::TimeNs>();
+    r.deadline = in.number<core::TimeNs>();
     r.sequence = in.number<std::uint32_t>();
     r.state.stamp = in.number<core::TimeNs>();
-    r.state.position = in.vec3(), r.state.velocity_mps = in.vec3();
-    r.state.orientation = in.quat(), r.state.body_rate_radps = in.vec3();
+    r.state.position = in.vec3();
+    r.state.velocity_mps = in.vec3();
+    r.state.orientation = in.quat();
+    r.state.body_rate_radps = in.vec3();
     r.direction_of_flight = in.vec3();
     r.T_world_start = in.pose();
     r.seconds_before_homing = in.number<double>();
-    r.max_speed_mps = in.number<double>(), r.clearance_m = in.number<double>();
+    r.max_speed_mps = in.number<double>();
+    r.clearance_m = in.number<double>();
     r.vehicle_radius_m = in.number<double>();
     r.last_fate = static_cast<core::GoalFate>(
         in.choice(0, static_cast<std::uint32_t>(core::GoalFate::superseded), "the last goal's fate"));
@@ -208,7 +258,8 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     in.require_end();
   } catch (...) {
     request_ = {};
-    roadmap_.reset(), map_.reset();
+    roadmap_.reset();
+    map_.reset();
     throw;
   }
   return request_;
@@ -244,12 +295,17 @@ void RequestReader::read_frontiers(FlatReader& in) {
   request_.frontiers.clear();
   for (core::FrontierCluster& c : clusters_) {
     c.id = in.number<std::uint32_t>();
-    c.centroid = in.vec3(), c.low = in.vec3(), c.high = in.vec3(), c.normal = in.vec3();
-    c.unknown_cells = in.number<std::uint32_t>(), c.free_cells = in.number<std::uint32_t>();
+    c.centroid = in.vec3();
+    c.low = in.vec3();
+    c.high = in.vec3();
+    c.normal = in.vec3();
+    c.unknown_cells = in.number<std::uint32_t>();
+    c.free_cells = in.number<std::uint32_t>();
     core::FrontierOffer offer;
     offer.cluster = &c;
     offer.viewpoint = in.vec3();
-    offer.viewpoint_heading_rad = in.number<double>(), offer.path_length_m = in.number<double>();
+    offer.viewpoint_heading_rad = in.number<double>();
+    offer.path_length_m = in.number<double>();
     c.cells.resize(in.count(kKeyBytes, kMaxCells, "cells in a cluster"));
     for (core::CellKey& k : c.cells) k = key(in);
     request_.frontiers.push_back(offer);
@@ -259,15 +315,18 @@ void RequestReader::read_frontiers(FlatReader& in) {
 void RequestReader::read_teammates(FlatReader& in) {
   request_.teammates.assign(in.count(kTeammateBytes, kMaxTeammates, "teammates"), {});
   for (core::OtherVehicle& v : request_.teammates) {
-    v.id = in.number<std::uint32_t>(), v.heard = in.number<core::TimeNs>();
-    v.position = in.vec3(), v.velocity_mps = in.vec3();
+    v.id = in.number<std::uint32_t>();
+    v.heard = in.number<core::TimeNs>();
+    v.position = in.vec3();
+    v.velocity_mps = in.vec3();
     if (in.flag()) v.goal = in.vec3();
     v.seconds_before_homing = in.number<double>();
   }
 }
 
 void RequestReader::read_map(FlatReader& in) {
-  request_.map = nullptr, request_.roadmap = nullptr;
+  request_.map = nullptr;
+  request_.roadmap = nullptr;
   if (!in.flag()) return;
   const auto resolution = in.number<double>();
   if (!(resolution >= 0.001 && resolution <= 100.0)) in.fail("the map's resolution is out of range");

@@ -46,15 +46,20 @@ core::Goal goal_of(const ordered_json& j) {
   g.position = {p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()};
   const ordered_json& heading = j.at("heading");
   g.heading_rad = heading.is_null() ? std::numeric_limits<double>::quiet_NaN() : heading.get<double>();
-  g.tolerance_m = j.at("tolerance"), g.max_speed_mps = j.at("max_speed"), g.frontier_id = j.at("frontier");
-  g.score = j.at("score"), g.why = j.at("why");
+  g.tolerance_m = j.at("tolerance");
+  g.max_speed_mps = j.at("max_speed");
+  g.frontier_id = j.at("frontier");
+  g.score = j.at("score");
+  g.why = j.at("why");
   return g;
 }
 
 RequestLogHeader header_of(const ordered_json& j) {
   if (j.at("schema") != kSchema) throw std::runtime_error("it is of another version");
   RequestLogHeader h;
-  h.policy = j.at("policy"), h.version = j.at("version"), h.seed = j.at("seed");
+  h.policy = j.at("policy");
+  h.version = j.at("version");
+  h.seed = j.at("seed");
   for (const auto& [id, value] : j.at("parameters").items())
     h.parameters.push_back({id, boost::property_tree::ptree(value.get<std::string>())});
   return h;

@@ -117,12 +117,18 @@ karst_sensor_t to_abi(const core::RgbCameraModel& c) {
 RequestPack::RequestPack(const core::DecisionRequest& r, const karst_map_t* map) {
   for (const core::FrontierOffer& offer : r.frontiers) frontiers_.push_back(to_abi(offer));
   if (r.vehicle != nullptr) {
-    if (r.vehicle->lidar)
-      sensor_names_.push_back(r.vehicle->lidar->name), sensors_.push_back(to_abi(*r.vehicle->lidar));
-    for (const auto& camera : r.vehicle->cameras)
-      sensor_names_.push_back(camera->name), sensors_.push_back(to_abi(*camera));
-    if (r.vehicle->rgb)
-      sensor_names_.push_back(r.vehicle->rgb->camera.name), sensors_.push_back(to_abi(*r.vehicle->rgb));
+    if (r.vehicle->lidar) {
+      sensor_names_.push_back(r.vehicle->lidar->name);
+      sensors_.push_back(to_abi(*r.vehicle->lidar));
+    }
+    for (const auto& camera : r.vehicle->cameras) {
+      sensor_names_.push_back(camera->name);
+      sensors_.push_back(to_abi(*camera));
+    }
+    if (r.vehicle->rgb) {
+      sensor_names_.push_back(r.vehicle->rgb->camera.name);
+      sensors_.push_back(to_abi(*r.vehicle->rgb));
+    }
     for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i].name = view_of(sensor_names_[i]);
   }
   request_.size = sizeof request_;

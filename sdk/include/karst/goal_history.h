@@ -43,10 +43,12 @@ class GoalHistory {
     for (const Entry& p : entries_) {
       if (distance(p.position, f.viewpoint) > same_place_m) continue;
       v.revisit_penalty_m += visit_cost_m * p.visits;
-      if (p.visits >= max_visits || p.failures >= max_failures)
+      if (p.visits >= max_visits || p.failures >= max_failures) {
         v.open = false;
-      else if (now_ns < p.closed_until_ns)
-        v.open = false, v.closed_now = true;
+      } else if (now_ns < p.closed_until_ns) {
+        v.open = false;
+        v.closed_now = true;
+      }
     }
     return v;
   }

@@ -81,7 +81,8 @@ class Memory {
   }
   template <class A, class B>
   void add(std::pair<A, B>& pair) {
-    add(pair.first), add(pair.second);
+    add(pair.first);
+    add(pair.second);
   }
   template <class T>
   void add(std::optional<T>& value) {

@@ -22,7 +22,10 @@ class OpenFrontiers {
   }
 
   void on_event(const Event& event) { entries_.on_event(event); }
-  void memory(Memory& m) { m.add(entries_), m.add(idle_since_ns_); }
+  void memory(Memory& m) {
+    m.add(entries_);
+    m.add(idle_since_ns_);
+  }
 
   struct Candidate {
     const Frontier* frontier;

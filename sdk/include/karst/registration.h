@@ -148,7 +148,9 @@ struct Entry {
 template <class P>
 std::unique_ptr<Entry> make_entry(const char* id, const char* version, const char* one_line) {
   auto e = std::make_unique<Entry>();
-  e->id = id, e->version = version, e->one_line = one_line;
+  e->id = id;
+  e->version = version;
+  e->one_line = one_line;
   P defaults;
   static_cast<Policy&>(defaults).parameters(e->table);  // may be private in P
   e->parameters = e->table.declarations();

@@ -68,7 +68,9 @@ class Bench {
     frontiers.clear();
     for (const Frontier& f : find_frontiers(host_.map(), position, min_cells)) {
       Frontier& mine = offer(f.id, f.viewpoint, f.centroid, f.cells);
-      mine.low = f.low, mine.high = f.high, mine.normal = f.normal;
+      mine.low = f.low;
+      mine.high = f.high;
+      mine.normal = f.normal;
       mine.viewpoint_heading_rad = f.viewpoint_heading_rad;
     }
   }
@@ -187,7 +189,8 @@ class Bench {
     if (self_ == nullptr) return;
     if (active_) policy_->deactivate(self_);
     policy_->destroy(self_);
-    self_ = nullptr, active_ = false;
+    self_ = nullptr;
+    active_ = false;
   }
   const karst_state_extension_t& state() {
     const void* table = nullptr;
