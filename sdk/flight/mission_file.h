@@ -13,7 +13,7 @@
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/vehicle.h"
 #include "sdk/flight/team_faults.h"
-#include "sdk/host/hosted_policy.h"
+#include "sdk/host/plugin/hosted_policy.h"
 
 namespace karst::flight {
 

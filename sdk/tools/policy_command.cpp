@@ -16,6 +16,7 @@ namespace karst::tools {
 namespace {
 
 using host::ParameterListing;
+using host::ParameterType;
 using host::PolicyListing;
 using nlohmann::ordered_json;
 

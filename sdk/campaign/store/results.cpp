@@ -43,7 +43,8 @@ std::size_t index_of(const fs::path& file, std::int64_t id, std::size_t count) {
   return static_cast<std::size_t>(id - 1);
 }
 
-/// What a definition tells of how all flew: fills what it knows of profile, metric and shared settings.
+}  // namespace
+
 void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results) {
   const boost::property_tree::ptree tree = core::parse_info(definition, source + ": campaign.definition");
   results.profile = tree.get("profile", "");
@@ -56,8 +57,6 @@ void read_conditions(const std::string& definition, const std::string& source, C
     return;  // what the others have in common with it
   }
 }
-
-}  // namespace
 
 ResultsWithExtras read_with_extras(const fs::path& folder_or_file) {
   const fs::path file = store_file(folder_or_file);

@@ -48,4 +48,8 @@ struct CampaignResults {
   std::vector<std::pair<std::string, std::string>> shared = {};
 };
 
+/// What a campaign's definition tells of how all flew: fills what it knows of profile, metric and shared
+/// settings. `source` names the store in errors. Throws core::InputError for text that is no definition.
+void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results);
+
 }  // namespace karst::campaign

@@ -115,9 +115,10 @@ class FakeVehicle final : public Vehicle {
       standing_ = true;
       sink.on_ground(now);
     }
-    for (const Vec3& path : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)})
-      crashed_ = crashed_ || range_to_rock_m(rooms_, pose_.position, path) < description_.radius_m;
-    if (crashed_) sink.on_lost(now, "contact", "touched rock");
+    for (const Vec3& direction :
+         {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)})
+      crashed_ = crashed_ || range_to_rock_m(rooms_, pose_.position, direction) < description_.radius_m;
+    if (crashed_) sink.on_lost(now, MissionOutcome::contact, "touched rock");
   }
 
   std::shared_ptr<const LidarScan> scan(TimeNs now) const {

@@ -43,7 +43,7 @@ Decision explored() {
 class MissionControlTest : public ::testing::Test {
  protected:
   MissionControlTest() {
-    options.localization.source = "pose_sensor";
+    options.localization.source = PoseSource::pose_sensor;
     options.map.resolution_m = 0.4;                                      // ample for a few rays
     policy.script = [there = false](const DecisionRequest& r) mutable {  // to and fro
       const double x_m = r.state.position.x();
@@ -111,7 +111,7 @@ TEST_F(MissionControlTest, ExploresAsThePolicySaysComesHomeAndLandsAtTheStart) {
   double farthest_m = 0;
   const MissionResult result =
       fly([&](MissionControl&) { farthest_m = std::max(farthest_m, vehicle.pose().position.x()); });
-  EXPECT_EQ(result.outcome, "landed");
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
   EXPECT_EQ(result.reason, "at the start");
   EXPECT_TRUE(result.stands);
   EXPECT_EQ(result.record_problem, "");
@@ -129,7 +129,7 @@ TEST_F(MissionControlTest, ExploresAsThePolicySaysComesHomeAndLandsAtTheStart) {
 
 TEST_F(MissionControlTest, APolicyThatHasNothingSendsItHomeFromItsHover) {
   policy.script = [](const DecisionRequest&) { return explored(); };
-  EXPECT_EQ(fly().outcome, "landed");
+  EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "explored: all seen");
   ASSERT_EQ(policy.heard.size(), 1u);
@@ -145,7 +145,7 @@ TEST_F(MissionControlTest, TurnsBackWhileTheBatteryLastsForTheWayHome) {
     slowly.goals.front().max_speed_mps = 0.5;
     return slowly;
   };
-  EXPECT_EQ(fly().outcome, "landed");
+  EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "the time left only just suffices for the way home");
   EXPECT_EQ(told("homing", "reason"), Texts{"battery"});
@@ -155,7 +155,7 @@ TEST_F(MissionControlTest, TurnsBackWhileTheBatteryLastsForTheWayHome) {
 TEST_F(MissionControlTest, LandsWhereItIsWhenTheOperatorEndsTheFlight) {
   const MissionResult result =
       fly([](MissionControl&) {}, [this](const MissionStatus&) { return vehicle.pose().position.x() < 5; });
-  EXPECT_EQ(result.outcome, "aborted");
+  EXPECT_EQ(result.outcome, MissionOutcome::aborted);
   EXPECT_TRUE(result.reason.starts_with("stopped by the operator: on the ground ")) << result.reason;
   EXPECT_TRUE(result.stands);
   EXPECT_EQ(phases(), kCutShort);
@@ -166,7 +166,7 @@ TEST_F(MissionControlTest, LandsWhereItIsWhenTheOperatorEndsTheFlight) {
 TEST_F(MissionControlTest, LandsWhereItIsWhenTheEstimateIsLost) {
   const MissionResult result =
       fly([this](MissionControl&) { vehicle.pose_sensor_works &= vehicle.pose().position.x() < 5; });
-  EXPECT_EQ(result.outcome, "stuck");
+  EXPECT_EQ(result.outcome, MissionOutcome::stuck);
   EXPECT_TRUE(result.reason.starts_with("on the ground ")) << result.reason;
   EXPECT_TRUE(result.stands);
   EXPECT_EQ(phases(), kCutShort);
@@ -177,7 +177,7 @@ TEST_F(MissionControlTest, LandsWhereItIsWhenTheEstimateIsLost) {
 TEST_F(MissionControlTest, LandsByItsCommandsAndPosesWhenTheImuStops) {
   const MissionResult result =
       fly([this](MissionControl&) { vehicle.imu_works &= vehicle.pose().position.x() < 5; });
-  EXPECT_EQ(result.outcome, "stuck");
+  EXPECT_EQ(result.outcome, MissionOutcome::stuck);
   EXPECT_TRUE(result.stands);
   EXPECT_EQ(phases(), kCutShort);
   EXPECT_EQ(safety(), (Texts{"slow: the state estimate is degraded: no IMU",
@@ -187,7 +187,7 @@ TEST_F(MissionControlTest, LandsByItsCommandsAndPosesWhenTheImuStops) {
 TEST_F(MissionControlTest, IsOverWhenTheVehicleHitsRock) {
   const MissionResult result =
       fly([this](MissionControl&) { vehicle.wind_push_mps2.y() = vehicle.pose().position.x() < 5 ? 0 : 20; });
-  EXPECT_EQ(result.outcome, "contact");
+  EXPECT_EQ(result.outcome, MissionOutcome::contact);
   EXPECT_EQ(result.reason, "touched rock");
   EXPECT_FALSE(result.stands);
   EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "done"}));
@@ -210,7 +210,7 @@ TEST_F(MissionControlTest, IgnoresSensorMessagesFromTheFuture) {
     scan.intensity.assign(scan.range_m.size(), 0.5f);
     mission.on_lidar(std::make_shared<LidarScan>(scan));
   });
-  EXPECT_EQ(result.outcome, "landed");
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(safety(), Texts{});
   EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
@@ -220,7 +220,7 @@ TEST_F(MissionControlTest, ComesHomeWhenTheDiskIsFullAndSaysThatTheRecordIsIncom
   std::filesystem::create_directories(run);
   std::filesystem::create_symlink("/dev/full", run / "telemetry.csv");
   const MissionResult result = fly();
-  EXPECT_EQ(result.outcome, "landed");
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "the run directory cannot be written any more (disk full?)");
   EXPECT_NE(result.record_problem, "");
@@ -231,7 +231,7 @@ TEST_F(MissionControlTest, GoesHomeSlowlyWhenTheEstimateStaysDegraded) {
   EXPECT_EQ(fly([this](MissionControl& mission) {
               if (mission.phase() == Phase::explore && vehicle.pose().position.x() > 3) degrade(mission);
             }).outcome,
-            "landed");
+            MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "the state estimate stays degraded");
   EXPECT_EQ(safety(), (Texts{kDegraded, "home: the state estimate stays degraded", "none: "}));
@@ -240,7 +240,7 @@ TEST_F(MissionControlTest, GoesHomeSlowlyWhenTheEstimateStaysDegraded) {
 TEST_F(MissionControlTest, BrakesWhenBlindAndThenGoesHomeThroughTheKnownMap) {
   options.safety.blind_home_s = 3;
   EXPECT_EQ(fly([this](MissionControl&) { vehicle.lidar_works &= vehicle.pose().position.x() < 5; }).outcome,
-            "landed");
+            MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "no sensor sees the cave any more");
   EXPECT_EQ(safety(), (Texts{"brake: no sensor sees the cave", "home: no sensor sees the cave any more"}));
@@ -248,7 +248,7 @@ TEST_F(MissionControlTest, BrakesWhenBlindAndThenGoesHomeThroughTheKnownMap) {
 
 TEST_F(MissionControlTest, AnEstimateDegradedSinceTakeOffSendsItHome) {
   options.safety.degraded_home_s = 1;
-  EXPECT_EQ(fly([this](MissionControl& mission) { degrade(mission); }).outcome, "landed");
+  EXPECT_EQ(fly([this](MissionControl& mission) { degrade(mission); }).outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "the state estimate stays degraded");
   EXPECT_EQ(safety(), (Texts{kDegraded, "home: the state estimate stays degraded"}));
@@ -257,7 +257,7 @@ TEST_F(MissionControlTest, AnEstimateDegradedSinceTakeOffSendsItHome) {
 TEST_F(MissionControlTest, BlindSinceTakeOffItGoesHome) {
   options.safety.blind_home_s = 2;
   vehicle.lidar_works = false;
-  EXPECT_EQ(fly().outcome, "landed");
+  EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "no sensor sees the cave any more");
 }
@@ -290,7 +290,7 @@ TEST_F(MissionControlTest, BrakesForWhatPushesItOffItsPathOnTheWayHomeWithADegra
               const TimeNs since = executive.now() - pushed.value_or(executive.now());
               vehicle.wind_push_mps2 = {since > kSecond && since < 2 * kSecond ? 9.0 : 0.0, 0, 0};
             }).outcome,
-            "landed");
+            MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "the state estimate stays degraded");
   const Texts all = safety();

@@ -8,6 +8,7 @@
 #include "sdk/campaign/plan/hash.h"
 #include "sdk/campaign/plan/plan_text.h"
 #include "sdk/campaign/run/folder.h"
+#include "sdk/campaign/store/results.h"
 #include "sdk/host/isolation/process.h"
 #include "tests/unit/campaign/store/store_fixture.h"
 

@@ -58,7 +58,7 @@ TEST(OmplSearch, AQueryGivesTheSamePathWhateverWasAskedBeforeAndMeanwhile) {
   for (const Planner planner : kPlanners) {
     const auto ask = [&] { return search_with_ompl(w.map, w.roadmap, w.a, w.b, with(planner), 0.45).points; };
     const std::vector<Vec3> first = ask();
-    for (const char* other : kPlanners)
+    for (const Planner other : kPlanners)
       search_with_ompl(w.map, w.roadmap, w.b, w.cave.line[6], with(other), 0.45);
     EXPECT_EQ(ask(), first) << name_of(planner);
     std::vector<Vec3> one, two;

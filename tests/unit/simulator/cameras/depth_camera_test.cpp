@@ -97,7 +97,7 @@ struct Droplets {
   double invented = 0;  // share that sees something more than 0.3 m in front of it
 };
 
-Droplets before_a_wall(const char* kind, double extinction_1pm) {
+Droplets before_a_wall(sim::DepthCameraKind kind, double extinction_1pm) {
   const cave::Cave box = make_cave(box_mesh({-9, -9, -9}, {3.15, 9, 9}));
   CameraOptions o;
   o.kind = kind;
@@ -122,8 +122,8 @@ Droplets before_a_wall(const char* kind, double extinction_1pm) {
 TEST(DepthCamera, TimeOfFlightMissesWhatIsBehindDropletsAndStereoHoldsUp) {
   std::printf("  extinction 1/m   missed: stereo    tof    invented: stereo    tof\n");
   for (const double extinction_1pm : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8}) {
-    const Droplets stereo = before_a_wall("stereo", extinction_1pm),
-                   tof = before_a_wall("tof", extinction_1pm);
+    const Droplets stereo = before_a_wall(sim::DepthCameraKind::stereo, extinction_1pm),
+                   tof = before_a_wall(sim::DepthCameraKind::tof, extinction_1pm);
     std::printf("  %14.2f %16.3f %6.3f %19.3f %6.3f\n", extinction_1pm, stereo.missed, tof.missed,
                 stereo.invented, tof.invented);
     if (extinction_1pm == 0.1) {
