@@ -11,8 +11,7 @@ constexpr double kGoodQuality = 0.2;  // of a link to land by: gossip copes with
 /// Each way, of links that a dropped node is counted on over: nobody looked whether it is heard where it
 /// lies, and what is just in reach comes and goes.
 constexpr double kNodeQuality = 0.45;
-constexpr double kAntenna_m = 0.3;         // above the ground, of a landed robot
-constexpr TimeNs kStateAge = 3 * kSecond;  // of a position to keep apart from
+constexpr double kAntenna_m = 0.3;  // above the ground, of a landed robot
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
 constexpr double kHeardNow = 1.0 / 3;  // of link_age: it is alive, whoever told it dead
 constexpr double kNear_m = 20.0;       // another vehicle in the air: positions are told more often
@@ -198,14 +197,27 @@ bool TeamNode::base_in_contact(TimeNs now, TimeNs since) const {
   return false;
 }
 
-std::vector<Neighbour> TeamNode::neighbours(TimeNs now) const {
+std::vector<Neighbour> TeamNode::neighbours(TimeNs now, TimeNs oldest) const {
   std::vector<Neighbour> out;
   for (const TeamState& s : gossip_.states()) {
-    if (s.robot == kBase || s.robot == self() || now - s.stamp > kStateAge || !in_the_air(s.phase)) continue;
+    if (s.robot == kBase || s.robot == self() || now - s.stamp > oldest || !in_the_air(s.phase)) continue;
     const double age_s = std::max(0.0, seconds(now - s.stamp));
     out.push_back({s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase, age_s});
   }
   return out;
+}
+
+bool TeamNode::may_meet_unheard(TimeNs now) const {
+  const std::vector<TeamState> states = gossip_.states();
+  for (RobotId r = 1; r <= team_.robots; ++r) {
+    if (r == self()) continue;
+    const auto state =
+        std::find_if(states.begin(), states.end(), [r](const TeamState& s) { return s.robot == r; });
+    const bool waits =
+        state != states.end() && !in_the_air(state->phase) && state->phase != TeamPhase::standby;
+    if (!waits && (state == states.end() || now - state->stamp > kNewsHold)) return true;
+  }
+  return false;
 }
 
 std::vector<TeammateState> TeamNode::teammates(TimeNs now) const {

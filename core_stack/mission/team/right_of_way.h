@@ -5,6 +5,7 @@
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
 #include "core_stack/mission/phases/path_execution.h"
+#include "core_stack/mission/phases/still_watch.h"
 #include "core_stack/team/right_of_way/yield_state.h"
 #include "core_stack/team/teamwork.h"
 
@@ -32,6 +33,8 @@ class RightOfWay {
  private:
   void note_arrival();
   void on_change(bool held, RobotId held_for);
+  void look_out();
+  void note_failed(const Vec3& place);
   void make_room(const std::vector<Neighbour>& others);
   struct Room {
     std::optional<WaitingPlace> waiting_place;
@@ -44,8 +47,9 @@ class RightOfWay {
   Teamwork& team_;
   Parts parts_;
   YieldState yield_state_;
+  StillWatch still_;
   WaitingPlace waiting_place_;       // where it last made room
-  std::vector<Vec3> failed_places_;  // the other did not get by there
+  std::vector<Vec3> failed_places_;  // it waited there for long, or in the other's way
   bool planning_ = false;
 };
 

@@ -34,7 +34,7 @@ class TeamSharing {
   /// stands.
   void become_relay(bool stands, const std::optional<Vec3>& landed_below);
 
-  /// No other vehicle is near the place where it hovers first.
+  /// No other vehicle is near the place where it hovers first, or comes home to land near it.
   bool airspace_clear() const;
   /// Another flies near: what is in the way may be gone in a moment.
   bool in_company() const;

@@ -9,14 +9,17 @@ constexpr double kGoOn = 1.3;                // times the distance at which it s
 constexpr double kPast_m = 2.0;              // so much farther away than it was: the other is past
 constexpr double kNearer_m = 0.3;            // so much nearer: it comes
 constexpr double kMoves_mps = 0.15;          // so fast: it comes, or goes
-constexpr TimeNs kLook = 3 * kSecond;        // another that stands near may want to get by
-constexpr TimeNs kStands = 8 * kSecond;      // it does not get by, so the place is no good
+constexpr TimeNs kLook = 2 * kSecond;        // another that stands near may want to get by
+constexpr TimeNs kStays = 6 * kSecond;       // in one place; then the place is no good,
+constexpr TimeNs kPasses = 2 * kSecond;      // unless the other has come nearer since
 constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
 constexpr TimeNs kSeen = kSecond;            // one that stands aside is in the map by then
-constexpr TimeNs kFirst = 15 * kSecond;      // who goes before waits no longer for room
+// One that is seen, but not heard, and stands: each waits so much longer than who has the number before.
+constexpr TimeNs kTurn = 3 * kSecond;
+constexpr TimeNs kFirst = 8 * kSecond;  // who goes before waits no longer for room
 constexpr TimeNs kAskAgain = 2 * kSecond;
 constexpr int kMaxAttempts = 2, kMaxAttemptsInCrowd = 8;
-constexpr TimeNs kBoxed = 30 * kSecond;
+constexpr TimeNs kBoxed = 15 * kSecond;
 
 double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
 
@@ -47,8 +50,9 @@ bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const N
   if (goes_before(self, other)) {
     if (other.phase == TeamPhase::aside) {
       if (!aside_since_) aside_since_ = now;
-      return now - *aside_since_ > kSeen;
+      return now - *aside_since_ > kSeen + (other.heard ? 0 : (self.robot - 1) * kTurn);
     }
+    aside_since_.reset();
     return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
   }
   if (d < nearest_m_ - kNearer_m) {
@@ -60,7 +64,8 @@ bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const N
 }
 
 YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self,
-                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest) {
+                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest,
+                                      TimeNs still_for) {
   if (now < boxed_until_) self.phase = TeamPhase::boxed;
   const std::vector<Neighbour> near = give_way_to(rule, self, others);
   const auto other = std::find_if(others.begin(), others.end(),
@@ -82,13 +87,16 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     arrived(Place::in_the_way, now);
     return Action::stop;
   }
-  const double d = distance_m(self, *other);
-  if (!at_rest || on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain)
-    return Action::hold;
-  const bool in_its_way = aside_ ? d < 2 * rule.distance_m && now - std::max(nearest_at_, since_) > kStands &&
-                                       std::abs(coming_mps(self, *other)) < kMoves_mps
-                                 : coming_mps(self, *other) > kMoves_mps || now - since_ > kLook;
-  if (!in_its_way) return Action::hold;
+  if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
+  const bool comes = coming_mps(self, *other) > kMoves_mps;
+  // Who is not heard may not know of this one, and come straight at it.
+  const bool leaves = !other->heard && comes;
+  if (!leaves && !at_rest) return Action::hold;
+  if (leaves || (still_for > kStays && now - nearest_at_ > kPasses)) {
+    asked_at_ = now;
+    return Action::leave;
+  }
+  if (aside_ || !(comes || now - since_ > kLook)) return Action::hold;
   asked_at_ = now;
   return Action::make_room;
 }
