@@ -59,12 +59,12 @@ std::shared_ptr<const LidarScan> SensorPipeline::stamped_right(std::shared_ptr<c
   const std::optional<TimeNs> taken = lidar_clock_.taken_at(scan->stamp, onboard_.now());
   if (!taken) return nullptr;
   if (lidar_clock_.correction() != before)
-    onboard_.recorder.event(
-        onboard_.now(), "log",
-        {{"text", lidar_clock_.correction() == 0
-                      ? "the LiDAR's clock is right again"
-                      : "the LiDAR's clock was set: the stamps of its scans are corrected"},
-         {"correction", seconds(lidar_clock_.correction())}});
+    onboard_.recorder.write(
+        onboard_.now(),
+        event::Log{.text = lidar_clock_.correction() == 0
+                               ? "the LiDAR's clock is right again"
+                               : "the LiDAR's clock was set: the stamps of its scans are corrected",
+                   .correction_s = seconds(lidar_clock_.correction())});
   if (*taken == scan->stamp) return scan;
   auto corrected = std::make_shared<LidarScan>(*scan);
   corrected->stamp = *taken;

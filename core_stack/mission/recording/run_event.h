@@ -169,7 +169,10 @@ struct Object {
 struct Log {
   static constexpr const char* kKind = "log";
   std::string text;
-  static constexpr auto fields() { return std::make_tuple(Field{"text", &Log::text}); }
+  std::optional<double> correction_s = {};  // of the LiDAR's stamps
+  static constexpr auto fields() {
+    return std::make_tuple(Field{"text", &Log::text}, Field{"correction", &Log::correction_s});
+  }
 };
 
 struct Homing {
