@@ -1,12 +1,12 @@
-// Where a robot would land as a relay, and how long it takes to come to the ground there: asked every second
-// and for every goal, by the strategy of the mission.
+// Chooses where a robot lands as a relay, and estimates how long it takes to land there. It is asked every
+// second and for every goal. The mission's strategy decides:
 //
-// relay_tree (the paper): along the homing tree to the nearest communication node, and down where that node
-// comes into reach. relay_chain: to the nearest of all landing places it knows, of whichever node. Places are
-// judged while it flies by, every few metres. It also counts on robots that are on their way down and have
-// claimed a place, if their batteries end before its own.
+// relay_tree (the paper): fly along the homing tree to the nearest communication node and land where that
+// node comes into range. relay_chain: fly to the nearest of all known landing sites, whichever node it links
+// to. The robot judges sites every few metres as it flies past. It also counts on robots that are descending
+// to a claimed site, if their batteries run out before its own.
 //
-// It lives where the map lives, on the map lane.
+// This class runs on the map lane.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,20 +21,20 @@
 
 namespace karst::core {
 
-/// Where to come down. `time_s` is flight, a moment to hear whether it is in contact there, and descent.
+/// A landing site. `time_s` covers the flight, a moment to check for radio contact there, and the descent.
 struct LandingSpot {
   Vec3 hover = Vec3::Zero(), ground = Vec3::Zero();  // straight below
-  RobotId node = kBase;                              // that it counts on
+  RobotId node = kBase;                              // that it links to
   bool claimed = false;                              // the node is yet to land there
   double length_m = 0, time_s = 0;
 };
 
-/// Of a node that is dropped: it goes on with the vehicle's speed.
+/// The state in which a node is dropped: it keeps the vehicle's velocity.
 struct Release {
   Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
 };
 
-/// What a robot heard since the last time.
+/// What a robot received since the last update.
 struct TeamNews {
   TimeNs stamp = 0;  // the team's time
   TreeFacts facts;
@@ -57,28 +57,29 @@ class RelayHoming {
  public:
   RelayHoming(RobotId self, const RelayHomingSetup& setup);
 
-  /// Takes in what others told and what it has seen since: a pose node at `here`, rays near cells in `closed`
-  /// that became rock. The roadmap must be up to date. Returns what to tell the others.
+  /// Updates the tree with the reports of other robots and with the robot's own observations: adds a pose
+  /// node at `here` and checks rays near the cells in `closed`, which became occupied. The roadmap must be up
+  /// to date. Returns the facts to publish.
   TreeFacts update(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here, const TeamNews& news,
                    std::span<const CellKey> closed);
 
-  /// Judges the ground of the last poses and of `here` too, as far as it has been seen: when a place is
-  /// needed now.
+  /// Judges the ground below the last poses and below `here` at once, as far as it has been observed. For
+  /// when a landing site is needed now.
   void look_around(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here);
-  /// The place by the strategy that takes the least time from `from`, if that is less than `sooner_than_s`.
+  /// The site, by the mission's strategy, that takes the least time from `from`, if below `sooner_than_s`.
   std::optional<LandingSpot> spot_from(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from,
                                        double sooner_than_s) const;
-  /// Never again to this place: it was tried in vain.
+  /// Blacklists this site: an attempt to land there failed.
   void give_up(const Vec3& hover) { given_up_.push_back(hover); }
-  /// Nobody was heard there. The map promises more of that node's link than there is; and one that should
-  /// have landed by now has not, or not there. Links are to be found anew: update() or look_around().
+  /// Reports that the robot had no radio contact at the site. The link to its node is worse than the map
+  /// predicts, or the expected relay has not landed there. Call update() or look_around() to find new links.
   void no_contact_at(const LandingSpot& spot);
 
-  /// Where a communication node that is dropped `here` would come to lie, if by the map a relay is in reach
-  /// of it there, and none would be of one dropped `ahead`.
+  /// Where a communication node dropped `here` would come to rest, if the map predicts that it is in range of
+  /// a relay and that a node dropped `ahead` would not be.
   std::optional<Vec3> relay_drop_site(const VoxelMap& map, const Release& here, const Release& ahead) const;
 
-  /// It has landed: its communication node, above where it stands.
+  /// Reports the landing: returns its communication node, above where it stands.
   TreeFacts land(const VoxelMap& map, const Roadmap& roadmap, const Vec3& hover, TimeNs stamp);
 
   const HomingTree& tree() const { return tree_; }
@@ -88,7 +89,7 @@ class RelayHoming {
  private:
   struct LandingSite {
     Vec3 hover, ground;
-    std::optional<RobotId> node;  // in reach by the map
+    std::optional<RobotId> node;  // predicted in range by the map
     bool claimed = false;
   };
 
@@ -100,7 +101,7 @@ class RelayHoming {
                                            double sooner_than_s) const;
   std::optional<LandingSpot> up_the_tree(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
   double down_s(const LandingSite& site) const;
-  /// To spare of the link between who stands on `ground` and a relay, as far as the map tells.
+  /// Link margin between a vehicle on `ground` and a relay, predicted from the map.
   double margin_db(const VoxelMap& map, const Vec3& ground, const Relay& to) const;
 
   RobotId self_;
@@ -111,12 +112,12 @@ class RelayHoming {
   double radius_m_, separation_m_;
   HomingTree tree_;
   std::uint32_t nodes_made_ = 0;
-  std::vector<Vec3> passed_;    // poses whose ground is judged, or will be
-  std::vector<Vec3> to_judge_;  // of these, yet to be seen from farther on
+  std::vector<Vec3> passed_;    // poses whose ground has been judged, or will be
+  std::vector<Vec3> to_judge_;  // those to be observed from farther on first
   std::vector<LandingSite> sites_;
   std::vector<Vec3> given_up_;
   std::array<double, kMaxRobots> doubt_db_{};                      // of each node's links
-  std::array<std::optional<Vec3>, kMaxRobots> failed_antennas_{};  // antennas, where they were to stand
+  std::array<std::optional<Vec3>, kMaxRobots> failed_antennas_{};  // of expected relays that never answered
   std::vector<Relay> relays_;
   std::vector<Vec3> taken_, goals_;
 };

@@ -1,5 +1,5 @@
-// One robot among the others, or the base: what it says over the radio, and what it knows of the team by what
-// it heard. All times are the team's.
+// One node of the team, a robot or the base: what it transmits, and what it knows of the team from what it
+// received. All times are team time.
 #pragma once
 #include <array>
 #include <optional>
@@ -18,40 +18,40 @@ constexpr TimeNs kNewsHold = 3 * kSecond;
 struct Relay {
   RobotId robot = 0;
   Vec3 antenna = Vec3::Zero(), hover = Vec3::Zero();
-  std::optional<TimeNs> stands_by{};  // it is yet to land there: then its battery ends
+  std::optional<TimeNs> stands_by{};  // set if it has yet to land there: when its battery ends
 };
 
-/// Another robot as it was last heard of.
+/// Another robot's state as last received.
 struct TeammateState {
   RobotId robot = 0;
-  TimeNs heard = 0;  // when this was true
+  TimeNs heard = 0;  // time of this state
   Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
   std::optional<Vec3> goal;  // claimed, if it explores
   bool explores = false;
-  double seconds_left = 0;  // of its battery, then
+  double seconds_left = 0;  // of battery at that time
 };
 
 class TeamNode {
  public:
-  /// `base` is the base's antenna; the seed is for waits only.
+  /// `base` is the base's antenna. The seed only randomizes waits.
   TeamNode(RobotId self, const TeamOptions& team, const HomingOptions& homing, const Vec3& base,
            std::uint64_t seed, const MissionKey& key);
 
   // The radio.
   void receive(std::span<const std::uint8_t> bytes, TimeNs now);
-  /// Frames to send now; to be called ten times a second.
+  /// Returns the frames to send now. Call it ten times a second.
   std::vector<Bytes> transmit(TimeNs now);
 
-  // What it has to say.
+  // What it publishes.
   void set_state(const TeamState& state) { gossip_.set_state(state); }
-  /// Returns the record's number, 0 if it could not be written.
+  /// Returns the record's number, or 0 if the record could not be written.
   std::uint32_t publish(const Record& record);
 
   // What it knows.
-  /// Communication nodes that reached the base when last heard of, and are not told dead; the base first, and
-  /// last those that have claimed a place and are on the way there.
+  /// Communication nodes that had a route to the base when last heard and are not reported dead. The base
+  /// comes first, robots on their way to a claimed landing site come last.
   std::vector<Relay> relays() const;
-  /// It hears somebody who reaches the base well enough to land by; not before `since` the last time.
+  /// Whether since `since` it has heard a node whose link to the base is good enough for a relay landing.
   bool base_in_contact(TimeNs now, TimeNs since) const;
   /// Vehicles in the air that were heard of not longer ago than `oldest`, where they should be by now.
   std::vector<Neighbour> neighbours(TimeNs now, TimeNs oldest = kNewsHold) const;
@@ -59,15 +59,16 @@ class TeamNode {
   bool may_meet_unheard(TimeNs now) const;
   /// All robots that have started and were ever heard of, by number.
   std::vector<TeammateState> teammates(TimeNs now) const;
-  /// Others' goals that are still claimed.
+  /// Goals that other robots currently claim.
   std::vector<Vec3> claimed_goals(TimeNs now) const;
-  /// Where others stand, or are about to land. Of two that claim one place the earlier claim holds.
+  /// Ground where other robots stand or are about to land. If two robots claim a site, the earlier claim
+  /// holds.
   std::vector<Vec3> taken_ground() const;
-  /// Its own claim was made later than another's of nearly the same place.
+  /// Whether another robot claimed nearly the same site before this one did.
   bool overruled() const;
-  /// Facts of the homing tree that others told since the last call; the base's own too.
+  /// Facts of the homing tree received since the last call, the base's own included.
   TreeFacts take_facts();
-  /// Objects of interest as their finders last told of them, its own among them.
+  /// Objects of interest as last reported by their finders, its own included.
   const ReportedObjects& objects() const { return objects_; }
 
   const Gossip& gossip() const { return gossip_; }
@@ -93,7 +94,7 @@ class TeamNode {
   ReportedObjects objects_;
   std::array<std::optional<GoalClaim>, kMaxRobots> goals_;
   std::array<std::optional<LandingClaim>, kMaxRobots> landings_;
-  std::array<std::optional<NodeId>, kMaxRobots> nodes_;  // of robots that landed
+  std::array<std::optional<NodeId>, kMaxRobots> nodes_;  // of landed robots
   std::array<std::optional<LifeFact>, kMaxRobots> lives_;
   std::array<std::optional<TimeNs>, kMaxRobots> heard_at_;  // since it landed itself
   std::array<bool, kMaxRobots> silent_{};                   // since then

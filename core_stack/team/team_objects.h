@@ -1,4 +1,4 @@
-// Objects of interest as a team knows them: what each finder told, and what that comes to together.
+// Objects of interest known to a team: the reports of each finder, and the objects merged from them.
 #pragma once
 #include <map>
 #include <utility>
@@ -8,11 +8,11 @@
 
 namespace karst::core {
 
-/// By finder and the finder's own number: what it told last. Those taken back stay, with kind 0, so that what
-/// is late cannot bring them back.
+/// The last report of each finder under each of its numbers. Withdrawn objects stay, with kind 0, so that a
+/// late report cannot restore them.
 using ReportedObjects = std::map<std::pair<RobotId, std::uint32_t>, ObjectSeen>;
 
-/// Of two reports under one number the later holds.
+/// The later of two reports under one number holds.
 void note(ReportedObjects& objects, RobotId finder, const ObjectSeen& seen);
 
 struct TeamObject {
@@ -22,10 +22,9 @@ struct TeamObject {
   std::vector<std::pair<RobotId, std::uint32_t>> reported_by;  // keys of ReportedObjects
 };
 
-/// Reports of different finders about one kind are one object if they are nearer to each other than 1 m and
-/// three times what both may be off by, and no more than 3 m: the average, weighted by the inverse squares of
-/// the deviations. Two of one finder are two objects. A function of the reports, not of their order of
-/// arrival.
+/// Merges reports of one kind by different finders into one object if they lie within 1 m plus three times
+/// their combined deviation of each other, and within 3 m. Its position is their mean weighted by inverse variance.
+/// Two reports of one finder are always two objects. The result does not depend on the order of arrival.
 std::vector<TeamObject> merged(const ReportedObjects& reports);
 
 }  // namespace karst::core

@@ -1,4 +1,4 @@
-// The mission file's sections `team` and `homing`: how many fly, and how they come to the ground.
+// The mission file's sections `team` and `homing`: the team's size, and how its robots land.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/homing/landing/landing_options.h"
@@ -18,20 +18,20 @@ constexpr auto names_of(LandingStrategy) {
 
 struct TeamOptions {
   std::int64_t robots = 1;
-  std::int64_t nodes = 0;  // that each carries
+  std::int64_t nodes = 0;  // carried by each robot
   double stagger_s = 60;
   LandingStrategy strategy = LandingStrategy::relay_chain;
   double separation_m = 3.0;
   double claim_radius_m = 4.0;
   double claim_age_s = 60;
   double linger_s = 60;
-  std::string key_file;  // of the radio; none: a key of the mission's seed
+  std::string key_file;  // of the radio; empty: a key derived from the mission's seed
 };
 void describe(OptionTable& t, TeamOptions& o);
 
 struct HomingOptions {
   double arrival_probability = 0.99;
-  // Of flown over estimated time. Flights home took 0.82 to 0.91 of the estimate.
+  // Ratio of flown to estimated time. Measured flights home took 0.82 to 0.91 of the estimate.
   double flown_mean = 0.87, flown_deviation = 0.04;
   HomingTreeOptions tree;
   LandingOptions landing;
@@ -40,12 +40,12 @@ struct HomingOptions {
 };
 void describe(OptionTable& t, HomingOptions& o);
 
-/// Throws InputError naming `source` if options that are fine by themselves do not fit together.
+/// Throws InputError naming `source` if individually valid options contradict each other.
 void check(const TeamOptions& team, const HomingOptions& homing, const std::string& source);
 
-/// The share to add to an estimated flight time so that the flight takes no longer with the probability asked
-/// for: mean + z(p) deviation - 1, flown over estimated time being normal. Negative where flights are faster
-/// than estimated.
+/// The fraction to add to an estimated flight time so that the flight keeps within it with the configured
+/// probability: mean + z(p) * deviation - 1, as the ratio of flown to estimated time is normally distributed.
+/// Negative where flights are faster than estimated.
 double homing_margin(const HomingOptions& o);
 
 }  // namespace karst::core

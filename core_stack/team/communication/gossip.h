@@ -1,15 +1,15 @@
-// Store and forward: every robot comes to hold every record of every robot, over links that lose, corrupt and
-// come and go.
+// Store and forward: every robot receives every record of every other robot over intermittent links that lose
+// and corrupt frames.
 //
-// Each robot says every period what it holds (a version vector) and how it is; three times as often while
-// those around it do not hold the same, and while another flies near. Who hears that the other lacks
-// something it holds itself sends it (anti-entropy; Demers et al., Epidemic Algorithms for Replicated
-// Database Maintenance, 1987). Records are forwarded by whoever first hears them, after a random wait, unless
-// by then another was heard to send it or all in contact are known to hold it: the radio is heard by all
-// around, and one of several neighbours is enough. Nothing is assumed about contact: a robot that was away
-// for an hour is brought up to date by the first it meets. What is heard says how good links are: the gaps in
-// the numbers of a robot's frames. A frame counts once, and soon after it was sent (replay_window.h); what it
-// says counts if it can be true (plausible.h).
+// Each robot broadcasts its state and a version vector of the records it holds once a period, and three times
+// as often while its neighbours do not hold the same records or another robot flies nearby. Each robot sends
+// the records its peer lacks (anti-entropy; Demers et al., Epidemic Algorithms for Replicated Database
+// Maintenance, 1987). A robot that receives a new record forwards it after a random wait, unless it has heard
+// another robot send it by then, or knows that all robots in contact hold it: the radio is a broadcast
+// medium, so one sender among several neighbours suffices. The protocol assumes nothing about contact: the
+// first robot that meets one that was away for an hour brings it up to date. Gaps in the sequence numbers of
+// received frames measure link quality. Each frame is accepted once and only while it is recent
+// (replay_window.h), and its content only if it is plausible (plausible.h).
 #pragma once
 #include <array>
 #include <optional>
@@ -22,15 +22,14 @@
 
 namespace karst::core {
 
-constexpr std::size_t kFewRadios = 8;  // others whose states one frame a period tells often enough
-/// Of many in a chain the oldest state was 0.9 to 1.7 periods a radio old.
+constexpr std::size_t kFewRadios = 8;  // with no more, one frame a period reports all states often enough
+/// Worst state age in a multi-hop chain, in periods per radio; measured: 0.9 to 1.7.
 constexpr double kPeriodsPerRadio = 1.8;
 
 struct GossipOptions {
-  double period_s = 1.0;      // of telling its state and what it holds
-  double bytes_per_s = 1120;  // of its own frames, as a mean; a burst may be ten frames
-  double contact_age_s =
-      5.0;  // a robot not heard for longer is out of contact, a frame older than that stale
+  double period_s = 1.0;             // between broadcasts of its state and version vector
+  double bytes_per_s = 1120;         // mean rate of its own frames; a burst may hold ten frames
+  double contact_age_s = 5.0;        // a robot silent for longer is out of contact, an older frame is stale
   std::int64_t max_records = 20000;  // of one robot
 };
 void describe(OptionTable& t, GossipOptions& o);
@@ -38,10 +37,10 @@ void describe(OptionTable& t, GossipOptions& o);
 struct GossipCounts {
   std::uint64_t frames_sent = 0, bytes_sent = 0, frames_heard = 0, bytes_heard = 0;
   std::array<std::uint64_t, kRefusals> refused{};  // frames, by Refusal
-  std::uint64_t records_refused = 0;  // in good frames: no record, not plausible, too far ahead, too many
-  std::uint64_t states_refused = 0;   // not plausible
-  std::uint64_t claims_refused = 0;   // that somebody holds more of its records than there are
-  std::uint64_t contradictions = 0;   // another text under a number that is known
+  std::uint64_t records_refused = 0;  // in valid frames: malformed, implausible, too far ahead, too many
+  std::uint64_t states_refused = 0;   // implausible
+  std::uint64_t claims_refused = 0;   // a peer claims more of its records than exist
+  std::uint64_t contradictions = 0;   // different bytes under a known number
   std::uint64_t records_taken = 0, records_again = 0;
 };
 
@@ -53,36 +52,36 @@ struct Delivery {
 
 class Gossip {
  public:
-  /// `seed` is for waits only.
+  /// The seed only randomizes waits.
   Gossip(const TeamRadio& radio, const GossipOptions& options, std::uint64_t seed);
 
-  /// A new record of its own; tree facts are split. Returns the number of the last record made of it, 0 if it
-  /// cannot be written or there is no room for it.
+  /// Adds a new record of its own; splits tree facts. Returns the number of the last record made of it, or 0
+  /// if it cannot be written or the store is full.
   std::uint32_t publish(const Record& record);
-  /// How it is, to be told with the next frame; robot and heard are filled in.
+  /// Sets the state to broadcast with the next frame; `robot` and `heard` are filled in.
   void set_state(const TeamState& state) { state_ = state; }
-  /// Tells its state more often: another vehicle is near.
+  /// Broadcasts its state more often while another vehicle is near.
   void hurry(bool near) { hurried_ = near; }
 
   /// Bytes from the radio.
   void receive(std::span<const std::uint8_t> bytes, TimeNs now);
-  /// Frames to send now; to be called often (ten times a second), `now` never going back.
+  /// Returns the frames to send now. Call it ten times a second; `now` must not decrease.
   std::vector<Bytes> send(TimeNs now);
 
-  /// Records of others since the last call, each once, in the order they arrived.
+  /// Records received from others since the last call, each once, in order of arrival.
   std::vector<Delivery> take_delivered();
-  /// The newest state known of each robot, its own left out, by robot.
+  /// The newest known state of each other robot, by robot.
   std::vector<TeamState> states() const;
-  /// Its own as last told, with whom it heard: what a relay graph is to note beside the others'.
+  /// Its own state as last broadcast, with its radio contacts; a relay graph needs it beside the others'.
   const TeamState& reported_state() const { return state_; }
-  /// Robots heard of late, and not before `since`, with the share of frames that arrived.
+  /// Robots heard recently and since `since`, with the fraction of their frames that arrived.
   std::vector<RadioContact> contacts(TimeNs now, TimeNs since) const;
 
-  /// What it holds, to be published: by the base, whenever something arrived that its finder waits for.
+  /// The receipt that the base publishes whenever a record has arrived that its author waits for.
   Receipt receipt() const;
   const HeldNumbers& held(RobotId author) const { return store_.held(author); }
-  /// How many of its own records the base is known to hold, counted from the first, by what the base itself
-  /// said when heard or by its receipts.
+  /// How many of its own records, counted from the first, the base is known to hold, from frames of the base
+  /// itself or from its receipts.
   std::uint32_t known_at_base() const { return known_at_base_; }
   const GossipCounts& counts() const { return counts_; }
   RobotId self() const { return radio_.self; }
@@ -142,7 +141,7 @@ class Gossip {
   TimeNs next_news_ = 0, all_states_due_ = 0, last_send_ = 0;
   bool hurried_ = false;
   double allowance_bytes_;
-  RobotId next_reported_ = 0;  // whose state is passed on next
+  RobotId next_reported_ = 0;  // whose state it forwards next
   GossipCounts counts_;
 };
 

@@ -1,4 +1,4 @@
-// The parts that messages are made of, each with its range checked. Private to team.
+// The fields of messages, each with a range check. Private to team.
 #pragma once
 #include <cmath>
 
@@ -36,7 +36,7 @@ class PartWriter : public WireWriter {
   void place(const Vec3& p) {
     for (int i = 0; i < 3; ++i) scaled(p[i], 0.01, kMaxCoordinate_m * 100, 3);
   }
-  /// v in steps, no farther from 0 than `most` of them.
+  /// Writes v in units of `step`; refuses more than `most` of them in magnitude.
   void scaled(double v, double step, double most, int bytes) {
     const double steps = std::round(v / step);
     if (!(std::abs(steps) <= most)) return refuse();
@@ -54,11 +54,11 @@ class PartReader : public WireReader {
   bool fine() const { return !bad() && !refused_; }
   bool finished() const { return fine() && left() == 0; }
   Refusal why() const { return refused_ ? *refused_ : Refusal::truncated; }
-  /// The first reason counts, unless it came of reading past the end.
+  /// Keeps the first reason, unless a read past the end caused it.
   void refuse(Refusal why) {
     if (fine()) refused_ = why;
   }
-  /// How many parts of at least `min_bytes` follow: no more than there is room for.
+  /// Reads a count of parts of at least `min_bytes` each; refuses a count that exceeds the bytes left.
   std::size_t count(std::size_t min_bytes) {
     const std::size_t n = byte();
     if (n * min_bytes <= left()) return n;

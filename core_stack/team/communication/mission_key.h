@@ -1,8 +1,8 @@
 // The key that a team's frames are authenticated with: one for all of its radios, and one for each mission.
 //
-// The tag of a frame is the keyed BLAKE2b-128 of its bytes (RFC 7693), cut to 64 bits. Who does not hold the
-// key forges a frame with probability 2^-64; a radio of 64 kbit/s carries some 10^9 frames a year. What a tag
-// cannot show, which of those that hold the key wrote the frame, plausible.h makes bearable.
+// The tag of a frame is the keyed BLAKE2b-128 of its bytes (RFC 7693), truncated to 64 bits. An attacker
+// without the key forges a frame with probability 2^-64; a radio of 64 kbit/s carries some 10^9 frames a
+// year. A tag cannot show which holder of the key wrote the frame; plausible.h limits the damage of that.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,16 +16,16 @@ struct MissionKey {
   std::array<std::uint8_t, 32> bytes{};
 };
 
-/// For simulation: who knows the seed, which is in every run directory, knows this key.
+/// For simulation only: every run directory holds the seed, and so gives away this key.
 MissionKey key_of_seed(std::uint64_t seed);
-/// From a regular file that holds 64 hexadecimal digits and white space. Throws InputError naming the file,
-/// never what is in it.
+/// Reads the key from a regular file that holds 64 hexadecimal digits and white space. Throws InputError
+/// naming the file, never its content.
 MissionKey read_key(const std::string& file);
 
 constexpr std::size_t kTagBytes = 8;
 using Tag = std::array<std::uint8_t, kTagBytes>;
 Tag tag_of(std::span<const std::uint8_t> bytes, const MissionKey& key);
-/// Takes the same time whichever byte differs.
+/// Runs in constant time, whichever byte differs.
 bool has_tag(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t> tag, const MissionKey& key);
 
 }  // namespace karst::core

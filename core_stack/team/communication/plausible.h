@@ -1,5 +1,5 @@
-// What a team's member cannot have said truly, whoever says so. Frames are authenticated (mission_key.h);
-// these rules hold for frames with a valid tag, too: a member whose software or clock is wrong costs nobody a
+// Plausibility checks of received messages. Frames are authenticated (mission_key.h); these rules also apply
+// to frames with a valid tag, so that a member with faulty software or a wrong clock endangers no other
 // vehicle.
 #pragma once
 #include "core_stack/team/communication/messages.h"
@@ -7,8 +7,8 @@
 
 namespace karst::core {
 
-/// One of a team's radios. Number 0 is the base's, 1 to `robots` are the robots', then come the nodes' that
-/// they drop.
+/// One of a team's radios. Number 0 is the base, 1 to `robots` are the robots, and the nodes that they drop
+/// follow.
 struct TeamRadio {
   RobotId self = 0;
   RobotId robots = kMaxRobots - 1, nodes = 0;  // nodes of each
@@ -19,14 +19,14 @@ struct TeamRadio {
   bool is_robot(RobotId id) const { return id != kBase && id <= robots; }
 };
 
-/// What is said of a later time would stand in the way of all that follows. The team's clocks are set
-/// together before the mission; in an hour quartz of 20 ppm strays by 0.07 s.
+/// A message stamped in the future would block all later ones, since newer messages replace older ones. The
+/// team's clocks are synchronized before the mission; a 20 ppm quartz drifts by 0.07 s an hour.
 constexpr TimeNs kClockTolerance = 250 * kMillisecond;
 
-/// A member's, not of the future, and only robots fly.
+/// The sender is a member, the stamp is not in the future, and only robots fly.
 bool plausible(const TeamRadio& team, const TeamState& state, TimeNs now);
-/// Of members, not of the future; nodes of the tree are made by their author, goals claimed by robots, and
-/// receipts given by the base.
+/// The author is a member, and the stamp is not in the future. Authors publish only tree nodes of their own,
+/// only robots claim goals, and only the base gives receipts.
 bool plausible(const TeamRadio& team, RobotId author, const Record& record, TimeNs now);
 
 }  // namespace karst::core

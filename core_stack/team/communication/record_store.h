@@ -1,4 +1,4 @@
-// The records a robot holds of every author, its own included, and what of them others hold.
+// The records that a robot holds of every author, its own included.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace karst::core {
 
-/// Which of an author's records somebody holds.
+/// The set of an author's records that a robot holds, as a compact version vector entry.
 class HeldNumbers {
  public:
-  static constexpr std::uint32_t window = 32;  // records are taken up to so far behind the first one lacking
+  static constexpr std::uint32_t window = 32;  // how far beyond the first missing record others are accepted
 
   bool operator==(const HeldNumbers&) const = default;
   std::uint32_t first() const { return first_; }
@@ -21,7 +21,7 @@ class HeldNumbers {
            (number > first_ + 1 && number - first_ - 2 < window && (beyond_ >> (number - first_ - 2) & 1));
   }
   bool takes(std::uint32_t number) const { return number <= first_ + 1 + window; }
-  /// `number` must be one it takes.
+  /// Requires takes(number).
   void add(std::uint32_t number) {
     if (number <= first_) return;
     if (number > first_ + 1) {

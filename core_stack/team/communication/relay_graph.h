@@ -1,9 +1,9 @@
-// Who can talk to whom, as one robot knows it, and so who reaches the base.
+// The team's radio links as known to one robot, and which robots have a route to the base.
 //
-// A link is known by what both ends say they hear of the other (TeamState::heard), each with the time it was
-// said. It stands while both are fresh: a word that is not heard back is no link, for what arrives must be
-// confirmed. It costs 1 / (quality there * quality back) transmissions (ETX; De Couto et al., A
-// High-Throughput Path Metric for Multi-Hop Wireless Routing, 2003).
+// Both ends of a link report the quality at which they receive the other (TeamState::heard). The link holds
+// while both reports are recent: a one-way connection is no link, because deliveries must be acknowledged. It
+// costs 1 / (quality there * quality back) transmissions (ETX; De Couto et al., A High-Throughput Path Metric
+// for Multi-Hop Wireless Routing, 2003).
 #pragma once
 #include <array>
 #include <optional>
@@ -15,7 +15,7 @@
 namespace karst::core {
 
 struct RelayOptions {
-  double link_age_s = 15.0;  // what was said longer ago no longer counts; longer in a team of many radios
+  double link_age_s = 15.0;  // older reports do not count; grows with the number of radios
   double min_quality = 0.1;  // of a link, each way
 };
 void describe(OptionTable& t, RelayOptions& o);
@@ -29,21 +29,21 @@ class RelayGraph {
  public:
   explicit RelayGraph(const RelayOptions& options) : options_(options) {}
 
-  /// What a robot says of whom it hears; older news than what is known changes nothing. What it does not name
-  /// any more it does not hear.
+  /// Takes a robot's report of its radio contacts. A report older than the known one changes nothing. A robot
+  /// that is not in the report is no longer received.
   void note(const TeamState& state);
-  /// When a robot was last heard of, through whomever.
+  /// When a robot was last heard, directly or through others.
   std::optional<TimeNs> last_heard_of(RobotId robot) const { return stamps_[robot]; }
 
   std::vector<RelayLink> links(TimeNs now) const;
   using Robots = std::array<bool, kMaxRobots>;
-  /// Robots that reach the base over links, itself first, the rest in order.
+  /// Robots with a route to the base; the base comes first, the rest in order.
   std::vector<RobotId> connected(TimeNs now) const;
-  /// Whether a robot does over others that are among `relays` only; the base need not be.
+  /// Whether a robot has a route to the base through `relays` only; the base need not be among them.
   bool reaches_base(TimeNs now, RobotId robot, const Robots& relays) const {
     return reaches_base(now, robot, relays, options_.min_quality);
   }
-  /// And over links of at least that quality each way.
+  /// The same over links of at least `min_quality` each way.
   bool reaches_base(TimeNs now, RobotId robot, const Robots& relays, double min_quality) const;
 
  private:
@@ -54,7 +54,7 @@ class RelayGraph {
   bool fresh(RobotId robot, TimeNs now) const;
 
   RelayOptions options_;
-  std::array<std::optional<TimeNs>, kMaxRobots> stamps_;  // of what each said last
+  std::array<std::optional<TimeNs>, kMaxRobots> stamps_;  // of each robot's last report
   std::array<Row, kMaxRobots> heard_{};                   // [by][whom], 0..1
 };
 

@@ -1,5 +1,5 @@
-// Which frames of one sender were heard already, so that none is believed twice (as in IPsec; RFC 4303,
-// section 3.4.3). Survives loss, frames that overtake one another, and a sender that counts anew from 0.
+// Anti-replay window: which frames of one sender were received already (as in IPsec; RFC 4303,
+// section 3.4.3). Tolerates loss, reordering, and a sender that restarts its count at 0.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,8 +12,8 @@ class ReplayWindow {
  public:
   enum class Verdict { newest, late, refused };
 
-  /// `sent` by the sender's clock, `sequence` counts its frames. Of frames up to 63 behind the newest each is
-  /// taken once.
+  /// `sent` is the sender's time, `sequence` counts its frames. A frame up to 63 behind the newest is
+  /// accepted once.
   Verdict take(TimeNs sent, std::uint16_t sequence) {
     if (!sent_) {
       sent_ = sent;
@@ -23,7 +23,7 @@ class ReplayWindow {
     }
     const int ahead = static_cast<std::int16_t>(sequence - sequence_);
     if (sent > *sent_ || (sent == *sent_ && ahead > 0)) {
-      // Behind the newest by its time, but not by its number: the sender began anew.
+      // Newer by time, but not by number: the sender restarted its count.
       heard_ = ahead <= 0 ? ~std::uint64_t{0} : ahead < kBits ? heard_ << ahead | 1 : 1;
       sent_ = sent;
       sequence_ = sequence;
@@ -38,7 +38,7 @@ class ReplayWindow {
   static constexpr int kBits = 64;
   std::optional<TimeNs> sent_;  // of the newest
   std::uint16_t sequence_ = 0;
-  std::uint64_t heard_ = 0;  // bit i: number sequence_ - i was, or must not be believed any more
+  std::uint64_t heard_ = 0;  // bit i: number sequence_ - i was received, or is no longer accepted
 };
 
 }  // namespace karst::core

@@ -1,4 +1,4 @@
-// Bytes on the air: little-endian whole numbers, written and read with every length checked.
+// The wire format's integers: little-endian, with every length checked.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -28,8 +28,7 @@ class WireWriter {
   Bytes& out_;
 };
 
-/// Reads past the end give nothing, and once that has happened `bad()` holds for good: one check at the end
-/// will do.
+/// Reads past the end return zero and set `bad()` permanently, so a single check at the end suffices.
 class WireReader {
  public:
   explicit WireReader(std::span<const std::uint8_t> in) : in_(in) {}
@@ -52,7 +51,7 @@ class WireReader {
     for (int shift = 0; shift < 35; shift += 7) {
       const std::uint8_t b = byte();
       v |= std::uint64_t{b & 0x7fu} << shift;
-      // One number, one way to write it: no leading zeros, no more than 32 bits.
+      // Each number has one encoding: no leading zeros, no more than 32 bits.
       if (b < 0x80)
         return (b == 0 && shift > 0) || v > 0xffffffffu ? static_cast<std::uint32_t>(fail())
                                                         : static_cast<std::uint32_t>(v);

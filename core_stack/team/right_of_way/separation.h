@@ -1,4 +1,4 @@
-// Which of two vehicles gives way.
+// Separation and right of way: which of two vehicles gives way, and at what distance.
 #pragma once
 #include <vector>
 
@@ -17,35 +17,36 @@ struct Neighbour {
 
 struct SeparationRule {
   double distance_m = 3.0;
-  double reaction_s =
-      1.5;  // news are a third of a second old and sometimes a second, and a brake takes its time to begin
-  double own_s = 0.3;  // the brake alone
+  double reaction_s = 1.5;  // a state is 0.3 s old, sometimes 1 s; braking takes another moment to begin
+  double own_s = 0.3;       // the latency of its own braking
   double brake_mps2 = 1.0;
 };
 
-/// The distance below which one of the two has to stop: what is kept, and what both need to stop if they
-/// approach.
+/// The distance below which one of the two must stop: the separation, plus the braking distance of both if
+/// they approach each other.
 double yield_distance_m(const SeparationRule& rule, const Neighbour& a, const Neighbour& b);
-/// The distance below which both stop, whoever goes first.
+/// The distance below which both stop, whichever has the right of way.
 double stop_distance_m(const SeparationRule& rule, const Neighbour& a, const Neighbour& b);
 
-/// Whether `self` on its way to make room has to stop for this one: it flies towards it, and what both need
-/// to stop would leave less than half the distance that is kept; of one that it makes room for, and that
-/// stops for it, what it needs itself. Not for one that waits aside, and is an obstacle in the map.
+/// Whether `self`, while it flies to its waiting place, must stop for `other`: it approaches, and after both
+/// have braked less than half the separation would remain. A vehicle that `self` makes room for stops
+/// anyway, so only the braking distance of `self` counts. A vehicle that waits aside is an obstacle in the
+/// map, and `self` does not stop for it.
 bool stops_on_the_way(const SeparationRule& rule, const Neighbour& self, const Neighbour& other,
                       bool makes_room_for_it);
 
-/// Speed at which the distance shrinks; negative if it grows.
+/// Closing speed; negative if the distance grows.
 double closing_mps(const Neighbour& a, const Neighbour& b);
 
-/// Whether a goes before b: one order of all vehicles, so no two both go first and no three wait in a circle.
-/// First who takes off or lands, and cannot stop; then who has nowhere to make room; who goes home, whose
-/// time is short; who explores; last who waits aside. Of two alike the lower number: it started first, and
-/// has less time left.
+/// Whether a has the right of way over b. This is a strict total order of all vehicles, so no two both go
+/// first and no cycle of vehicles waits for each other. Highest rank: a vehicle that takes off or lands, as
+/// it cannot stop. Then a vehicle without a waiting place, one that flies home and is short of time, one
+/// that explores, and last one that waits aside. At equal rank the lower number goes first: it started first
+/// and has less time left.
 bool goes_before(const Neighbour& a, const Neighbour& b);
 
-/// The others that a vehicle has to stop for: those too near that go before it, and those that both stop for.
-/// Not those that wait aside: they stand still, and are obstacles in the map.
+/// The vehicles that `self` must stop for: those too near that have the right of way, and those so near that
+/// both stop. Vehicles that wait aside are left out: they hover, and are obstacles in the map.
 std::vector<Neighbour> give_way_to(const SeparationRule& rule, const Neighbour& self,
                                    const std::vector<Neighbour>& others);
 

@@ -1,4 +1,4 @@
-// Where a vehicle makes room for another, and waits until it is past.
+// Finds the place where a vehicle waits until another has passed.
 #pragma once
 #include <optional>
 #include <vector>
@@ -15,19 +15,20 @@ struct WaitingPlace {
 
 struct RoomQuery {
   Vec3 from = Vec3::Zero();
-  std::vector<Vec3> flown;     // the path it came along, the oldest point first
-  Vec3 other = Vec3::Zero();   // the vehicle that it makes room for
-  std::vector<Vec3> moving;    // all further ones that may move
-  std::vector<Vec3> standing;  // and those that wait: obstacles in the map
-  std::vector<Vec3> failed;    // places where the other did not get by; two are enough
-  double separation_m = 1.5;   // the place is so far from all others, or as far as it is now
+  std::vector<Vec3> flown;     // its flown path, oldest point first
+  Vec3 other = Vec3::Zero();   // the vehicle to make room for
+  std::vector<Vec3> moving;    // all further vehicles that may move
+  std::vector<Vec3> standing;  // those that wait: obstacles in the map
+  std::vector<Vec3> failed;    // where the other could not pass; two suffice
+  double separation_m = 1.5;   // from all others, or the present distance if that is less
   double vehicle_radius_m = 0;
 };
 
-/// The nearest place that the vehicle comes to before *every* other, not only the one that it makes room for,
-/// and where others get by: places connected by the planning clearance still are when those too near to it
-/// are taken out. If there is none, as far back along the path flown as it stays ahead of all. Who comes to a
-/// place first does not pass another on its way: where it does, that one would be nearer.
+/// The nearest place that the vehicle reaches before *every* other vehicle, not only the one that it makes
+/// room for, and that keeps the passage open: connectivity at the planning clearance is preserved when the
+/// cells too near to the place are removed. If there is none, the farthest place back along the flown path at
+/// which the vehicle still arrives first. A vehicle that reaches a place first passes no other on the way
+/// there, since a vehicle on that path would be nearer to the place.
 std::optional<WaitingPlace> waiting_place(const VoxelMap& map, const Roadmap& roadmap,
                                           const RoomQuery& query);
 

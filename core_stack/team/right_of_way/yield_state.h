@@ -1,5 +1,5 @@
-// What a vehicle does about another that comes near: it stops, makes room, and goes on once the other is
-// past.
+// How a vehicle yields to another that comes near: it stops, makes room, and goes on once the other has
+// passed.
 #pragma once
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace karst::core {
 class YieldState {
  public:
   enum class Action {
-    go_on,      // nobody is in the way
+    go_on,      // no vehicle is in the way
     hold,       // stop, or stay where it is
     stop,       // on its way to make room it comes too near to somebody: brake, and look for another place
     make_room,  // it stands in another's way: to be answered by set_out() or no_room()
@@ -22,7 +22,7 @@ class YieldState {
   Action update(const SeparationRule& rule, Neighbour self, const std::vector<Neighbour>& others, TimeNs now,
                 bool at_rest, TimeNs still_for);
 
-  /// It is on its way to where it makes room.
+  /// The vehicle has left for its waiting place.
   void set_out() { on_the_way_ = true, aside_ = false; }
   enum class Place { aside, in_the_way };  // aside: where others get by
   /// It is at rest again.
@@ -33,11 +33,11 @@ class YieldState {
   void forget() { *this = {}; }
 
   bool holds() const { return with_.has_value(); }
-  /// It waits where the other gets by.
+  /// It waits where the other can pass.
   bool stands_aside() const { return with_ && aside_; }
   bool on_the_way() const { return on_the_way_; }
   RobotId with() const { return with_.value_or(kBase); }
-  /// What to tell of itself instead of `phase`.
+  /// The phase to report to the team instead of `phase`.
   TeamPhase reported(TeamPhase phase, TimeNs now) const;
 
  private:
@@ -47,9 +47,9 @@ class YieldState {
   std::optional<RobotId> with_;
   TimeNs since_ = 0, nearest_at_ = 0, asked_at_ = 0;
   double nearest_m_ = 0;
-  std::optional<TimeNs> aside_since_;  // of the other
+  std::optional<TimeNs> aside_since_;  // the other vehicle
   bool on_the_way_ = false, aside_ = false;
-  int attempts_ = 0;  // places asked for
+  int attempts_ = 0;  // waiting places asked for
   TimeNs boxed_until_ = 0;
 };
 
