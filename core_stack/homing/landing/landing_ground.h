@@ -1,4 +1,4 @@
-// Is there ground to land on below a place, and do others still get by?
+// Checks whether there is ground to land on below a position, and whether others can still pass.
 #pragma once
 #include <optional>
 
@@ -7,10 +7,10 @@
 namespace karst::core {
 
 struct GroundOptions {
-  double margin_m = 0.2;      // beyond the vehicle's radius: ground looked at, and air above it
-  double max_slope_deg = 15;  // of the plane that fits the ground best
-  double max_step_m = 0.25;   // between the highest and the lowest of the ground above that plane
-  double max_drop_m = 2.0;    // from the place down to the ground
+  double margin_m = 0.2;      // beyond the vehicle's radius, of the ground and of the air above it
+  double max_slope_deg = 15;  // of the plane fitted to the ground
+  double max_step_m = 0.25;   // between the highest and lowest ground relative to that plane
+  double max_drop_m = 2.0;    // from the position down to the ground
 };
 
 enum class GroundVerdict { good, no_floor, unknown, obstructed, steep, rough };
@@ -21,20 +21,19 @@ struct Ground {
   double slope_rad = 0, step_m = 0;
 };
 
-/// Looks straight down from `place` in all columns of cells whose centre is within the vehicle's radius and
-/// the margin of it, from the cell of `place` on: air that is known to be free, then a cell that is known to
-/// be rock. `ground` is valid unless there is no floor below the place itself.
+/// Scans down from `place` in every column of cells whose centre lies within the vehicle's radius plus the
+/// margin: each must hold known free cells from the height of `place` down to an occupied cell. `ground` is
+/// valid unless there is no floor below `place` itself.
 Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radius_m,
                     const GroundOptions& options);
 
-/// A landed vehicle reaches so much farther in another's map than its radius: whole cells are occupied, and
-/// it does not stand to the centimetre where it meant to.
+/// How much larger than its radius a landed vehicle appears in another's map: whole cells are occupied, and
+/// it stands a few centimetres off its intended position.
 constexpr double kAsMapped_m = 0.3;
 
-/// Whether another vehicle can still fly from everywhere to everywhere within the cube of half edge `reach_m`
-/// around a landed one whose centre is at `standing`: what was connected within the cube by places clear by
-/// `clearance_m`, from one of its faces to another, still is when places within `clearance_m` of the landed
-/// vehicle's sphere are taken out.
+/// Whether connectivity is preserved within the cube of half edge `radius_m` around a landed vehicle whose
+/// centre is at `standing`: faces of the cube that were connected by cells with clearance `clearance_m` stay
+/// connected when all cells within `clearance_m` of the landed vehicle's sphere are removed.
 bool keeps_passage_open(const VoxelMap& map, const Vec3& standing, double vehicle_radius_m,
                         double clearance_m, double radius_m);
 

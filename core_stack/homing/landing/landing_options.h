@@ -8,8 +8,8 @@ namespace karst::core {
 struct LandingOptions {
   GroundOptions ground;
   LinkEstimateOptions link;
-  double separation_m = 2.0;       // from places that others stand at or claim
-  double passage_radius_m = 3.0;   // others must get by within that
+  double separation_m = 2.0;       // from sites where others stand or that they claim
+  double passage_radius_m = 3.0;   // others must be able to pass within this radius
   double landing_speed_mps = 0.4;  // mission.landing_speed
 };
 void describe(OptionTable& t, LandingOptions& o);

@@ -1,13 +1,13 @@
-// The homing tree (Algorithm 1 of the paper): from every place where robots were, the quickest known way to
-// the nearest communication node.
+// The homing tree (Algorithm 1 of the paper): from every place that robots have visited, the quickest known
+// path to the nearest communication node.
 //
-// Pose nodes are past poses of any robot, communication nodes the base, landed robots and dropped nodes. Two
-// nodes no farther apart than the longest edge are joined if a vehicle can fly the straight line between them
-// (a free ray). Every node knows the least flight time over free rays to a living communication node
-// (ShortestPaths). docs/homing.md says where this goes beyond the paper, and why.
+// Pose nodes are past poses of any robot. Communication nodes are the base, landed robots and dropped nodes.
+// Two nodes within the longest edge of each other are joined if a vehicle can fly the straight line between
+// them (a free ray). Every node stores its minimal flight time over free rays to a live communication node
+// (ShortestPaths). docs/homing.md describes how this extends the paper, and why.
 //
-// The tree is a function of the set of facts that went into it (tree_facts.h): robots that hold the same
-// facts hold the same tree to the last bit, whatever the order in which they heard them.
+// The tree is a function of the set of facts that it has received (tree_facts.h): robots with the same facts
+// hold bitwise equal trees, whatever the order in which the facts arrived.
 #pragma once
 #include <functional>
 #include <optional>
@@ -21,60 +21,61 @@
 
 namespace karst::core {
 
-/// Whether a vehicle can fly the straight line between two points. Asked with the node of the lesser id
-/// first.
+/// Whether a vehicle can fly the straight line between two points. It is called with the node of the smaller
+/// id first.
 using FreeRay = std::function<bool(const Vec3& from, const Vec3& to)>;
 
 struct HomingTreeOptions {
-  double min_edge_m = 2.0;       // d_e: a pose nearer than that to any node adds none
-  double longest_edge_m = 15.0;  // rays are looked at up to this length
+  double min_edge_m = 2.0;       // d_e: a pose nearer than this to a node adds none
+  double longest_edge_m = 15.0;  // rays are checked up to this length
   std::int64_t max_nodes = 20000;
 };
 void describe(OptionTable& t, HomingTreeOptions& o);
 
 struct HomingRoute {
-  std::vector<Vec3> points;   // from where it was asked for to the communication node
-  std::vector<NodeId> nodes;  // behind the first point
+  std::vector<Vec3> points;   // from the start to the communication node
+  std::vector<NodeId> nodes;  // those of all points but the first
   double length_m = 0;
-  double time_s = 0;  // at the cruise speed; ramps come on top once a flight: flight_time_s(length_m)
+  double time_s = 0;  // at cruise speed; flight_time_s(length_m) adds acceleration and braking, once a flight
 };
 
 class HomingTree {
  public:
-  /// An edge's cost is its length over `cruise_mps`: what adds up along a way. Starting and stopping do not,
-  /// and are the same for every way.
+  /// An edge's cost is its length over `cruise_mps`, which adds up along a path. The time to start and stop
+  /// does not, but is the same for every path.
   HomingTree(const HomingTreeOptions& options, double cruise_mps);
 
-  /// Algorithm 1 for a pose. Returns the facts to share; none, and no node, if the pose is nearer than the
-  /// least edge to a node or there is no room for more. A ray is asked for to every node within reach.
+  /// Algorithm 1 for a pose. Checks the ray to every node within the longest edge and returns the facts to
+  /// share. Adds no node and returns no facts if the pose is nearer than the minimal edge to a node or the
+  /// tree is full.
   TreeFacts insert_pose(const NodeId& id, const Vec3& position, TimeNs stamp, const FreeRay& free_ray);
-  /// Algorithm 1 for a communication node, wherever it is.
+  /// Algorithm 1 for a communication node; the minimal edge does not apply.
   TreeFacts insert_communication(const NodeId& id, const Vec3& position, TimeNs stamp,
                                  const FreeRay& free_ray);
   TreeFacts set_alive(const NodeId& id, bool alive, TimeNs stamp);
-  /// Asks for the rays of a node that nobody has said anything of: for nodes that others told of.
+  /// Checks those rays of a node that no robot has checked: for nodes that others have reported.
   TreeFacts look_from(const NodeId& id, TimeNs stamp, const FreeRay& free_ray);
-  /// The map changed within the box: asks again for every ray that passes within `margin_m` of it. A ray that
-  /// is known to be free is taken back only if `rock` says that the map shows rock in it: what is unknown
-  /// here another robot may have seen through. The facts are what changed by it.
+  /// Rechecks every ray that passes within `margin_m` of a box in which the map has changed. A free ray is
+  /// revoked only if `rock` finds occupied cells in it: another robot may have observed cells that are
+  /// unknown here. Returns the changed facts.
   TreeFacts recheck(const Vec3& low, const Vec3& high, double margin_m, TimeNs stamp, const FreeRay& free_ray,
                     const FreeRay& rock);
 
-  /// Takes in what others told. Returns how many facts had to be refused: positions that are not finite,
-  /// nodes beyond max_nodes, rays to themselves or beyond what a node can have.
+  /// Applies facts reported by others. Returns how many were refused: positions that are not finite, nodes
+  /// beyond max_nodes, rays from a node to itself or beyond the number that a node can have.
   std::size_t apply(const TreeFacts& facts);
-  /// All it holds, sorted by id.
+  /// All facts of the tree, sorted by id.
   TreeFacts facts() const;
 
-  /// The quickest way from a place, its first ray asked for in the map; nothing if there is none.
+  /// The quickest path from a position; its first ray is checked in the map. Nothing if there is none.
   std::optional<HomingRoute> route(const Vec3& from, const FreeRay& free_ray) const;
-  /// Flight time from a node to its communication node; unreachable (infinity) without a way.
+  /// Flight time from a node to its communication node; unreachable (infinity) without a path.
   double cost_s(const NodeId& id) const;
-  /// The next node on that way; nothing for a living communication node or without a way.
+  /// The next node on that path; nothing for a live communication node or without a path.
   std::optional<NodeId> next(const NodeId& id) const;
 
   std::vector<TreeNode> nodes() const;  // sorted by id
-  bool alive(const NodeId& id) const;   // a living communication node
+  bool alive(const NodeId& id) const;   // whether it is a live communication node
   std::size_t node_count() const { return known_; }
 
  private:
@@ -83,7 +84,8 @@ class HomingTree {
     bool free;
     TimeNs stamp;
   };
-  /// A node that was only named, by a ray that came before it, has no place yet and takes no part.
+  /// An entry that is not `known` was only named by a ray that arrived before its node: it has no position
+  /// yet, and is left out of all paths.
   struct Entry {
     TreeNode node;
     bool known = false, alive = true;

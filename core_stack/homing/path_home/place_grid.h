@@ -1,4 +1,4 @@
-// Finds the nodes near a place: a hash of cubes whose edge is the greatest reach that will be asked for.
+// Finds the nodes near a position: a spatial hash of cubes, best with an edge of the greatest query radius.
 #pragma once
 #include <algorithm>
 #include <unordered_map>
@@ -16,7 +16,7 @@ class PlaceGrid {
   void remove(std::uint32_t index, const Vec3& p) {
     std::erase_if(cubes_[cube_of(p)], [index](const Entry& e) { return e.index == index; });
   }
-  /// Calls f(index, position) for all in the closed box, cube by cube; within a cube as they were added.
+  /// Calls f(index, position) for all nodes in the closed box, cube by cube, in a cube in order of insertion.
   template <class F>
   void for_each_in_box(const Vec3& low, const Vec3& high, F&& f) const {
     const CellKey a = cube_of(low), b = cube_of(high);
@@ -29,7 +29,7 @@ class PlaceGrid {
             if ((e.p.array() >= low.array()).all() && (e.p.array() <= high.array()).all()) f(e.index, e.p);
         }
   }
-  /// The same for all within `reach_m` of p.
+  /// The same for all nodes within `radius_m` of p.
   template <class F>
   void for_each_within(const Vec3& p, double radius_m, F&& f) const {
     const Vec3 radius = Vec3::Constant(radius_m);

@@ -1,11 +1,12 @@
-// Least costs from every node of a graph to the nearest of several sources, kept as the graph changes.
+// Dynamic shortest paths: the minimal cost from every node of a graph to the nearest of several sources,
+// updated incrementally as the graph changes.
 //
-// Edges may come and go, sources too. What a change makes dearer is forgotten and settled anew from the
-// neighbours that still know a way; what it makes cheaper is passed on, cheapest first (Ramalingam and Reps,
-// An Incremental Algorithm for a Generalization of the Shortest-Path Problem, 1996). A change costs as much
-// as there are nodes whose cost it changes. Costs are the same bits as Dijkstra's algorithm gives from
-// scratch, and so are the ways: of equally cheap ones the node of the least name is kept. So both depend on
-// the graph only, not on the order in which it came about.
+// Edges and sources may be added and removed. Nodes that become more expensive are invalidated and relaxed
+// again from neighbours that still have a path; nodes that become cheaper propagate, cheapest first
+// (Ramalingam and Reps, An Incremental Algorithm for a Generalization of the Shortest-Path Problem, 1996).
+// The work is proportional to the number of nodes whose cost changes. Costs are bitwise equal to those of
+// Dijkstra's algorithm from scratch, and so are the paths: among equal costs the node with the smallest name
+// wins. Both therefore depend on the graph only, not on the order of its changes.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -18,20 +19,20 @@ class ShortestPaths {
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   static constexpr double unreachable = std::numeric_limits<double>::infinity();
 
-  /// A new node with an own `name`; returns its index, one more than the last.
+  /// Adds a node with a unique `name`; returns its index, one more than the last.
   std::uint32_t add(std::uint64_t name);
-  /// Joins two nodes both ways; they must not be joined yet. `cost` is finite and large enough to be felt
-  /// when added to a way's cost, or ways could run in circles.
+  /// Joins two nodes in both directions; they must not be joined yet. `cost` must be finite, and large enough
+  /// not to be lost to rounding when added to a path's cost; otherwise paths could contain cycles.
   void join(std::uint32_t a, std::uint32_t b, double cost);
   void part(std::uint32_t a, std::uint32_t b);
   void set_source(std::uint32_t n, bool source);
-  /// To be called after changes, before anything is asked.
+  /// Recomputes the costs. Call it after changes and before queries.
   void relax();
 
   std::size_t size() const { return nodes_.size(); }
-  /// Cost of the cheapest way from n to a source.
+  /// Cost of the cheapest path from n to a source.
   double cost(std::uint32_t n) const { return nodes_[n].cost; }
-  /// The next node on that way; none for a source, or if there is no way.
+  /// The next node on that path; none for a source, or if there is no path.
   std::uint32_t next(std::uint32_t n) const { return nodes_[n].next; }
   bool is_source(std::uint32_t n) const { return nodes_[n].source; }
 
@@ -40,7 +41,7 @@ class ShortestPaths {
     double cost;
   };
   const std::vector<Edge>& edges(std::uint32_t n) const { return nodes_[n].edges; }
-  /// Nodes that the last settle() took up: what it cost.
+  /// Number of nodes that the last relax() visited: its cost.
   std::size_t touched() const { return touched_; }
 
  private:
@@ -61,8 +62,8 @@ class ShortestPaths {
   bool comes_before(std::uint32_t a, std::uint32_t b) const;
 
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> lost_;                              // know no way until settled
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;  // edges not yet looked at
+  std::vector<std::uint32_t> lost_;                              // without a path until relaxed
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;  // edges not yet relaxed
   std::vector<Entry> heap_;
   std::size_t touched_ = 0;
 };

@@ -1,5 +1,5 @@
-// What robots tell one another of the homing tree: nodes, rays between them, and which communication nodes
-// live. Facts are never taken back, only overruled by later ones, so they may arrive in any order and more
+// The facts of the homing tree that robots exchange: nodes, rays between them, and which communication nodes
+// are alive. Facts are never revoked, only superseded by later ones, so they may arrive in any order and more
 // than once.
 #pragma once
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace karst::core {
 using RobotId = std::uint8_t;
 constexpr RobotId kBase = 0;
 
-/// Who made a node, and its how many-th it was.
+/// A node's author and sequence number.
 struct NodeId {
   RobotId robot = 0;
   std::uint32_t number = 0;
@@ -24,23 +24,24 @@ struct NodeId {
 
 enum class NodeKind : std::uint8_t { pose, communication };
 
-/// A place in free air: where a robot was, or hovered above where it landed. World frame, whole centimetres.
+/// A position in free air: a robot's past pose, or the hover above its landing site. World frame, rounded to
+/// centimetres.
 struct TreeNode {
   NodeId id;
   NodeKind kind = NodeKind::pose;
   Vec3 position = Vec3::Zero();
 };
 
-/// The straight line between two nodes can be flown, or not, as seen at `stamp`. Of two facts the later
-/// holds; of two at one time the one that says no.
+/// Whether the straight line between two nodes can be flown, as observed at `stamp`. A later fact supersedes
+/// an earlier one; of two at the same time, "not free" wins.
 struct RayFact {
   NodeId a, b;
   bool free = false;
   TimeNs stamp = 0;
 };
 
-/// A communication node answers, or not, as known at `stamp`; the later holds, and no before yes. Without any
-/// it does.
+/// Whether a communication node is alive, as known at `stamp`. A later fact supersedes an earlier one; of two
+/// at the same time, "dead" wins. A node without a fact is alive.
 struct LifeFact {
   NodeId id;
   bool alive = false;
@@ -54,7 +55,7 @@ struct TreeFacts {
   bool empty() const { return nodes.empty() && rays.empty() && lives.empty(); }
 };
 
-/// Positions and times as messages carry them: every robot computes with the same numbers.
+/// Positions and times rounded as in messages, so that every robot computes with the same numbers.
 inline Vec3 to_centimetres(const Vec3& p) { return (p * 100.0).array().round() / 100.0; }
 inline TimeNs to_milliseconds(TimeNs t) { return t / kMillisecond * kMillisecond; }
 
