@@ -1,5 +1,5 @@
-// Mission control: the top loop. Sensor messages come in, the policy's goals become paths, paths become
-// commands; and whatever happens, the vehicle comes home and lands.
+// Mission control, the top loop: it turns sensor messages into a map, the policy's goals into paths, and
+// paths into commands. Whatever happens, the vehicle returns home and lands.
 //
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done       (phases/phase.cpp)
 //
@@ -22,7 +22,7 @@
 
 namespace karst::core {
 
-/// For a person watching.
+/// Status for an operator.
 struct MissionStatus {
   TimeNs time = 0;
   Phase phase = Phase::standby;
@@ -30,25 +30,25 @@ struct MissionStatus {
   std::string goal;
 };
 
-/// Called every second of flight; returns false to have the vehicle land where it is.
+/// Called every second of flight; returns false to make the vehicle land where it is.
 using Watch = std::function<bool(const MissionStatus&)>;
 
 struct MissionResult {
   MissionOutcome outcome = MissionOutcome::aborted;
   std::string reason;
-  bool stands = false;              // whole, on the ground
-  std::string record_problem = {};  // why the run directory is not complete; empty if it is
+  bool stands = false;              // undamaged, on the ground
+  std::string record_problem = {};  // why the run directory is incomplete; empty if it is complete
 };
 
 class MissionControl final : public VehicleSink {
  public:
   MissionControl(const CoreOptions& options, Vehicle& vehicle, Executive& executive, PolicyPort& policy,
                  Recorder& recorder, Teamwork* team = nullptr);
-  ~MissionControl() override { onboard_.executive.drain(); }  // no job may outlive what it works on
+  ~MissionControl() override { onboard_.executive.drain(); }  // no job may outlive its data
 
   /// Flies the mission.
   MissionResult run(const Watch& watch);
-  /// The same but for end().
+  /// The same without end().
   void fly(const Watch& watch);
 
   // The same in steps, for a team: begin once, advance until it returns false, end once.
@@ -57,10 +57,10 @@ class MissionControl final : public VehicleSink {
   bool advance(TimeNs until);
   MissionResult end();
   Phase phase() const { return phases_.phase(); }
-  /// For what failed, or at the operator's wish: it brakes and lands where it is, and does nothing else any
-  /// more. Needs no memory.
+  /// Brakes and lands at once, after a failure or at the operator's request, and does nothing else from then
+  /// on. Allocates no memory.
   void land_now(const char* reason) noexcept;
-  /// Why it went home; empty until then.
+  /// Why the vehicle went home; empty until then.
   const std::string& homing_reason() const { return return_home_.reason(); }
 
   void on_lidar(std::shared_ptr<const LidarScan> scan) override { sensors_.on_lidar(std::move(scan)); }
@@ -68,8 +68,8 @@ class MissionControl final : public VehicleSink {
   void on_rgb(std::shared_ptr<const RgbFrame> frame) override { sensors_.on_rgb(frame); }
   void on_pose(const PoseSample& s) override { sensors_.on_pose(s); }
   void on_objects(const ObjectDetections& look) override { objects_.on_objects(look); }
-  // What is stamped later than now is of a clock gone wrong: taken in, it would make all that follows look
-  // old.
+  // A message stamped in the future comes from a faulty clock and is ignored: it would make all later ones
+  // look old.
   void on_imu(const ImuSample& s) override;
   void on_magnetometer(const MagnetometerSample& s) override {
     if (s.stamp <= now()) onboard_.flight.on_magnetometer(s);
@@ -83,12 +83,12 @@ class MissionControl final : public VehicleSink {
   void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) override;
 
  private:
-  /// What it has as one of a team.
+  /// Its parts as a member of a team.
   struct InTeam {
     Teamwork& work;
     TeamSharing sharing;
     RightOfWay right_of_way;
-    std::optional<RelayLanding> landing;  // unless all land at their start
+    std::optional<RelayLanding> landing;  // empty if all land at their start
   };
   std::optional<InTeam> in_team(Teamwork* team);
   SensorPipeline::Wiring sensor_wiring();
@@ -135,7 +135,7 @@ class MissionControl final : public VehicleSink {
   SafetyVerdict verdict_;
   StepWatch control_watch_, supervision_watch_;
   Watch watch_;
-  int overruns_ = 0;  // of the executive, as last noted
+  int overruns_ = 0;  // of the executive, as last recorded
   bool standing_ = true;
   bool lands_lost_ = false;               // for want of a pose
   std::optional<std::string> emergency_;  // why it lands at once, if it does

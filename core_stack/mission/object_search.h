@@ -1,5 +1,5 @@
-// Objects of interest: what the detector says goes into the object map, and what that finds is told: in the
-// events, to the team, and at the end in objects.json.
+// Search for objects of interest: it feeds detections into the object map and reports the objects found, in
+// the events, to the team, and at the end in objects.json.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -12,14 +12,14 @@ namespace karst::core {
 
 class ObjectSearch {
  public:
-  /// `team` is null for a vehicle that flies alone.
+  /// `team` is null if the vehicle flies alone.
   ObjectSearch(Onboard& onboard, Teamwork* team)
       : onboard_(onboard), team_(team), objects_(onboard.options.objects) {}
 
   void on_objects(const ObjectDetections& look);
-  /// In a team: tells of each object once that the base knows it.
+  /// In a team: records for each object, once, that the base knows it.
   void note_at_base();
-  /// The flight is over. `landed`: it can report where it stands.
+  /// Call at the end of the flight. `landed`: the vehicle can still report.
   void finish(bool landed);
   void write() const;
 
@@ -30,7 +30,8 @@ class ObjectSearch {
   Onboard& onboard_;
   Teamwork* team_;
   ObjectMap objects_;
-  std::map<std::uint32_t, std::uint32_t> records_;  // by object: that told of it first; 0 once the base knows
+  std::map<std::uint32_t, std::uint32_t>
+      records_;  // by object: the first record about it; 0 once the base knows it
   bool late_looks_reported_ = false;
 };
 

@@ -1,5 +1,5 @@
-// From the sensors to the map: a scan is located by LOAM, its pose goes into the state estimate, and the rays
-// of what is located go into the map. Images go into the map where the estimate says they were taken.
+// From the sensors to the map: LOAM locates each scan, its pose goes into the state estimate, and its rays go
+// into the map. Images are integrated at their estimated poses.
 #pragma once
 #include <functional>
 #include <memory>
@@ -16,12 +16,12 @@
 
 namespace karst::core {
 
-/// What is looked up in the map as soon as new rays are in it.
+/// Queries answered as soon as new rays are in the map.
 struct MapQuestion {
-  std::vector<Vec3> ahead;                   // the trajectory that has to be clear; empty: none
-  std::vector<Vec3> narrow_places;           // near which less clearance will do
-  bool touch_only = false;                   // only what the vehicle would touch is in its way
-  std::uint32_t frontier = 0;                // of the goal under way; 0: none
+  std::vector<Vec3> ahead;                   // the trajectory that must be clear; may be empty
+  std::vector<Vec3> narrow_places;           // near which less clearance suffices
+  bool touch_only = false;                   // only a collision counts, not a lack of clearance
+  std::uint32_t frontier = 0;                // of the current goal; 0: none
   std::optional<DescentQuery> descent_path;  // for a vehicle that may have to land at once
 };
 
@@ -50,17 +50,17 @@ class SensorPipeline {
   void on_lidar(std::shared_ptr<const LidarScan> scan);
   void on_depth(std::shared_ptr<const DepthImage> image);
   void on_rgb(const std::shared_ptr<const RgbFrame>& frame);
-  /// A pose sensor counts only where no LiDAR locates the vehicle.
+  /// Used only if no LiDAR locates the vehicle.
   void on_pose(const PoseSample& s);
-  /// Nothing is mapped any more: the flight ends without the map.
+  /// Stops mapping: the flight ends without the map.
   void close() { closed_ = true; }
 
   double explored_m3() const { return explored_m3_; }
-  /// Of the hull from the nearest obstacle, where that is near.
+  /// Of the hull from the nearest obstacle, if that is near.
   const std::optional<double>& hull_clearance_m() const { return hull_clearance_m_; }
-  /// For how long nothing has come into the map.
+  /// Time since the last scan or image in the map.
   TimeNs blind_for() const { return onboard_.now() - last_seen_; }
-  /// On the ground there is nothing to see.
+  /// Resets blind_for() on the ground, where the sensors may see nothing.
   void see_nothing_needed() { last_seen_ = onboard_.now(); }
   /// Poses are of the map that the flight began with: localization has never had to begin another.
   bool located_in_first_map() const { return in_first_map_; }

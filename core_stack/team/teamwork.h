@@ -1,5 +1,5 @@
-// A robot's part in its team, as its mission control sees it. Times here are the vehicle's own; the team's
-// clock is ahead of them by when the vehicle was switched on.
+// Mission control's interface to the team. Times are the vehicle's own; team time is ahead of them by the
+// moment at which the vehicle was switched on.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace karst::core {
 
-/// A communication node leaves the vehicle about `from` and should come to lie on `ground`.
+/// The drop of a communication node: released at about `from`, it should come to rest on `ground`.
 struct NodeDrop {
   Vec3 from = Vec3::Zero(), ground = Vec3::Zero();
 };
@@ -22,7 +22,7 @@ class Teamwork {
   Teamwork(TeamNode& node, RelayHoming& homing, const TeamOptions& options, TimeNs ahead)
       : node_(&node), homing_(&homing), options_(options), ahead_(ahead) {}
 
-  /// To be touched on the map lane only.
+  /// Use on the map lane only.
   RelayHoming* homing() const { return homing_; }
   const TeamOptions& options() const { return options_; }
   bool lands_as_relay() const { return options_.strategy != LandingStrategy::return_to_base; }
@@ -33,7 +33,7 @@ class Teamwork {
     state.stamp = team_time(now);
     node_->set_state(state);
   }
-  /// What was heard since the last call.
+  /// What was received since the last call.
   TeamNews take_news(TimeNs now, double seconds_left) {
     return {team_time(now),
             node_->take_facts(),
@@ -42,7 +42,7 @@ class Teamwork {
             node_->claimed_goals(team_time(now)),
             team_time(now) + from_seconds(seconds_left)};
   }
-  /// That robot is on the way to a landing place that it has claimed, and its battery lasts yet.
+  /// Whether that robot is on its way to a claimed landing site and its battery has not run out.
   bool lands_soon(RobotId robot, TimeNs now) const {
     const std::vector<Relay> relays = node_->relays();
     return std::any_of(relays.begin(), relays.end(), [&](const Relay& r) {
@@ -50,17 +50,17 @@ class Teamwork {
     });
   }
   std::uint32_t publish(const Record& record) { return node_->publish(record); }
-  /// How many of its own records the base is known to hold.
+  /// How many of this robot's records the base is known to hold.
   std::uint32_t known_at_base() const { return node_->gossip().known_at_base(); }
   std::vector<TeamObject> objects() const { return merged(node_->objects()); }
   bool base_in_contact(TimeNs now, TimeNs since) const {
     return node_->base_in_contact(team_time(now), team_time(since));
   }
   void drop_node(const NodeDrop& drop) { drop_ = drop; }
-  /// What was dropped since the last call.
+  /// The drop requested since the last call.
   std::optional<NodeDrop> take_drop() { return std::exchange(drop_, std::nullopt); }
   bool overruled() const { return node_->overruled(); }
-  /// The others as last heard of, by this vehicle's own clock.
+  /// The others' last received states, by this vehicle's clock.
   std::vector<TeammateState> teammates(TimeNs now) const {
     std::vector<TeammateState> all = node_->teammates(team_time(now));
     for (TeammateState& m : all) m.heard -= ahead_;

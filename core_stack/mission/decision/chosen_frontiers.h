@@ -1,5 +1,5 @@
-// Frontiers as they were when a goal was accepted for them: what has become of them since tells whether they
-// are still worth flying to.
+// Remembers frontiers as they were when a goal was accepted for them. How they have changed since shows
+// whether they are still worth flying to.
 #pragma once
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
-// A decision cycle: the policy is offered the open frontiers, and the first of its goals that can be flown to
-// is taken. Narrow passages are offered when there is nothing else in reach.
+// A decision cycle: it offers the open frontiers to the policy and accepts the first of its goals that the
+// vehicle can fly to. It offers narrow passages when nothing else is reachable.
 //
-// It lives on the map lane.
+// It runs on the map lane.
 #pragma once
 #include <vector>
 
@@ -15,20 +15,20 @@ namespace karst::core {
 
 class DecisionCycle {
  public:
-  /// All but the options and the vehicle outlive it.
+  /// `policy`, `world` and `home` must outlive it.
   DecisionCycle(const CoreOptions& options, const VehicleDescription& vehicle, PolicyPort& policy,
                 WorldModel& world, HomeEstimator& home);
   DecisionCycle(const DecisionCycle&) = delete;  // its parts refer to each other
   DecisionCycle& operator=(const DecisionCycle&) = delete;
 
   CycleResult decide(const CycleInput& input, const Claims& claims);
-  /// Tells the policy what happened to its goals. The places of those abandoned are closed.
+  /// Notifies the policy of what happened to its goals. Closes the positions of abandoned goals.
   void tell(const std::vector<PolicyEvent>& events, TimeNs now);
-  /// True if the cluster is still open enough to be worth flying to.
+  /// Whether the cluster is still open enough to be worth flying to.
   bool cluster_alive(std::uint32_t id) const;
 
  private:
-  /// Asked of the policy about one roadmap.
+  /// A request to the policy on one roadmap.
   struct Question {
     DecisionRequest request;
     GoalQuery goals;

@@ -1,6 +1,6 @@
-// The frontiers a policy may choose from, each with a viewpoint and the length of the path there.
+// The frontiers that the policy may choose from, each with a viewpoint and the path length to it.
 //
-// It lives on the map lane.
+// It runs on the map lane.
 #pragma once
 #include <map>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace karst::core {
 
-/// A frontier that no sensor of the vehicle could see from where it could fly to.
+/// A frontier that no sensor of the vehicle sees from any reachable place.
 struct UnseenFrontier {
   std::uint32_t id = 0;
   Vec3 position = Vec3::Zero();
@@ -24,30 +24,30 @@ struct UnseenFrontier {
 };
 
 struct OfferQuery {
-  const ClearanceRoadmap* roadmap = nullptr;  // up to date; viewpoints are clear by its clearance
+  const ClearanceRoadmap* roadmap = nullptr;  // up to date; viewpoints have its clearance
   Vec3 from = Vec3::Zero();                   // where a new path would begin
   TimeNs now = 0;
-  std::optional<std::uint32_t> leave_out;  // a frontier that will have been looked at by then
+  std::optional<std::uint32_t> leave_out;  // a frontier that will have been seen by then
   Claims claims;                           // of other vehicles
 };
 
 struct Offers {
   std::vector<FrontierOffer> frontiers;  // by id; they point to the world's clusters
-  ClosureRules rules;                    // by which places are open: to judge the policy's goals by
+  ClosureRules rules;                    // for checking the policy's goals
 };
 
 class FrontierOffers {
  public:
-  /// `world` and `ledger` outlive it.
+  /// `world` and `ledger` must outlive it.
   FrontierOffers(const CoreOptions& options, const VehicleDescription& vehicle, const WorldModel& world,
                  const GoalLedger& ledger);
 
-  /// The open frontiers that have an open viewpoint. If there are none, those that other vehicles claim; if
-  /// there are still none, those as well that were tried a few times and must otherwise wait.
+  /// The open frontiers with an open viewpoint. If there are none, those claimed by other vehicles; failing
+  /// that, also those whose closure has not expired.
   Offers find(const OfferQuery& query);
 
-  /// The frontiers that find() had to leave out because no sensor of the vehicle sees them; each frontier is
-  /// returned once in a flight.
+  /// The frontiers that find() left out because no sensor of the vehicle sees them. Each is returned once in
+  /// a flight.
   std::vector<UnseenFrontier> take_unseen();
 
  private:

@@ -1,8 +1,8 @@
-// From a ranked list of goals, the first that the vehicle can fly to, and come home from.
+// Selects from a ranked list of goals the first that the vehicle can fly to and return home from.
 //
-// A goal must lie in known free space, clear of rock and of what is unknown, at a place that is not closed;
-// there must be a path to it that climbs no steeper than the sensors look; and flying there and home must
-// leave the reserve. It lives on the map lane.
+// A goal must lie in known free space with clearance from rock and unknown cells, at a place that is not
+// closed. There must be a path to it that climbs no steeper than the sensors see, and the flight there and
+// home must leave the reserve. It runs on the map lane.
 #pragma once
 #include <optional>
 #include <string>
@@ -23,16 +23,16 @@ struct GoalQuery {
 };
 
 struct GoalChoice {
-  std::optional<Goal> goal;  // with `path` to it; nothing if none of those tried will do
+  std::optional<Goal> goal;  // with `path` to it; nothing if all tried were rejected
   Path path;
   std::vector<RejectedGoal> rejected;  // those before it in the list
-  bool all_too_far = false;            // that is why they were rejected, each of them
-  bool more_to_try = false;            // in the next cycle: the places of those rejected are closed by then
+  bool all_too_far = false;            // every one was rejected for its distance
+  bool more_to_try = false;            // in the next cycle, when the rejected places are closed
 };
 
 class GoalSelection {
  public:
-  /// `world`, `home` and `ledger` outlive it. Places that no path was found to are closed in the ledger.
+  /// `world`, `home` and `ledger` must outlive it. Closes unreachable places in the ledger.
   GoalSelection(const CoreOptions& options, const VehicleDescription& vehicle, const WorldModel& world,
                 HomeEstimator& home, GoalLedger& ledger);
 

@@ -1,4 +1,4 @@
-// What every part of a mission works with on board one vehicle.
+// The components of one vehicle that all parts of a mission use.
 #pragma once
 #include "core_stack/common/lane_bound.h"
 #include "core_stack/mission/flight/flight.h"
@@ -7,7 +7,7 @@
 
 namespace karst::core {
 
-/// A scan counts in the map this long after it came in.
+/// The latency from a scan's arrival to its integration into the map.
 constexpr TimeNs kMappingBudget = 60 * kMillisecond;
 
 struct Onboard {

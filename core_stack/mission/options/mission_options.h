@@ -1,4 +1,4 @@
-// Every setting of the core stack, as one struct and one table: the mission file's sections.
+// All settings of the core stack in one struct and one table: the mission file's sections.
 #pragma once
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
@@ -44,12 +44,12 @@ struct CoreOptions {
   MotionLimits motion;
   MpcOptions tracker;
   Se3Options controller;
-  TeamOptions team;  // described apart: a single vehicle has none
+  TeamOptions team;  // described separately: a single vehicle has none
   HomingOptions homing;
 };
 void describe(OptionTable& t, CoreOptions& o);
 
-/// Settings that are fine each for itself but do not fit together, or not this vehicle: throws InputError.
+/// Throws InputError if individually valid settings contradict each other or do not fit the vehicle.
 void check(const CoreOptions& o, const VehicleDescription& vehicle);
 
 }  // namespace karst::core

@@ -1,4 +1,4 @@
-// How long the vehicle can still fly.
+// The remaining flight time.
 #pragma once
 #include <algorithm>
 
@@ -13,7 +13,7 @@ class Endurance {
   }
   void note(const BatteryStatus& battery) { battery_ = battery; }
   const BatteryStatus& battery() const { return battery_; }
-  /// By the battery, and by the time that the mission allows.
+  /// Limited by the battery and by the mission's maximum flight time.
   double seconds_left(TimeNs now) const {
     return std::min(battery_.seconds_left, max_flight_time_s_ - seconds(now));
   }

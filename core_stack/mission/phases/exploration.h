@@ -1,4 +1,4 @@
-// Exploring: when the policy is asked, and how its goal joins the trajectory in flight.
+// Exploration: decides when to ask the policy, and joins its goal to the current trajectory.
 #pragma once
 #include <functional>
 #include <string>
@@ -16,8 +16,8 @@ class Exploration {
  public:
   struct Wiring {
     std::function<void(const std::string& reason)> go_home;
-    std::function<void(const Goal&)> claim;                 // tells the team of an accepted goal
-    std::function<std::vector<TeammateState>()> teammates;  // the others of a team
+    std::function<void(const Goal&)> claim;                 // claims an accepted goal in the team
+    std::function<std::vector<TeammateState>()> teammates;  // empty without a team
   };
   struct Parts {
     const PhaseMachine& phases;
@@ -30,11 +30,11 @@ class Exploration {
       : onboard_(onboard), parts_(parts), wiring_(std::move(wiring)) {}
 
   void begin();
-  /// Ten times a second.
+  /// Call ten times a second.
   void step();
 
  private:
-  enum class Joins { at_stop, at_end };  // where the new path begins: appended, or as soon as it can
+  enum class Joins { at_stop, at_end };  // where the vehicle can stop, or at the end of the current path
   void pass_goal();
   void choose();
   void begin_cycle(Joins joins);
@@ -50,7 +50,7 @@ class Exploration {
   Wiring wiring_;
   StillWatch still_;
   bool cycle_running_ = false;
-  bool append_tried_ = false;  // behind the goal under way
+  bool append_tried_ = false;  // to the current goal
   TimeNs last_cycle_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The way the vehicle came: its last resort for the way home.
+// The flown path: the last resort for the return home.
 #pragma once
 #include <vector>
 
@@ -8,10 +8,10 @@ namespace karst::core {
 
 class FlownPath {
  public:
-  /// From the first hover.
+  /// Starts at the first hover.
   void begin(const Vec3& hover) { points_ = {hover}; }
   bool begun() const { return !points_.empty(); }
-  /// The vehicle is here now; a place every quarter of a metre is kept.
+  /// Adds the vehicle's position; keeps a point every quarter of a metre.
   void note(const Vec3& here) {
     constexpr double kStep_m = 0.25;
     const double step_m = (points_.back() - here).norm();
@@ -21,7 +21,7 @@ class FlownPath {
   }
   const std::vector<Vec3>& points() const { return points_; }
   double length_m() const { return length_m_; }
-  /// The last `length_m` of it, from the last pose back: a pose a metre.
+  /// The last `length_m` of the path, backwards from its end, with a point every metre.
   std::vector<Vec3> back(double length_m) const {
     constexpr double kApart_m = 1;
     std::vector<Vec3> out;

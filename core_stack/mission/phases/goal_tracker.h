@@ -1,5 +1,5 @@
-// The goal under way and the one appended behind it; what became of the last; and what the policy has yet to
-// be told of them.
+// Tracks the current goal, the goal appended to it, the fate of the last one, and the events that the policy
+// has yet to receive.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,32 +16,32 @@ class GoalTracker {
 
   const std::optional<Goal>& goal() const { return goal_; }
   const std::optional<Goal>& next() const { return next_; }
-  /// Of the goal under way; 0: none.
+  /// The current goal's frontier; 0: none.
   std::uint32_t frontier() const { return goal_ ? goal_->frontier_id : 0; }
-  /// False once that frontier has been seen on the way to it.
+  /// False once that frontier has been seen from afar.
   bool frontier_open() const { return frontier_open_; }
-  /// The goal under way is this one, as far as it matters.
+  /// Whether `goal` is practically the same as the current goal.
   bool is_under_way(const Goal& goal) const;
 
-  /// The policy's new goal, flown to from now on. One under way is superseded, unless it is the same.
+  /// Makes `goal` the current goal. A previous one is superseded, unless it is the same.
   void accept(const Goal& goal, TimeNs now);
-  /// The same, flown to once the goal under way is reached.
+  /// Appends a goal that becomes current once the current one is reached.
   void append(const Goal& goal, TimeNs now);
-  /// The goal under way is passed, and the appended one takes its place.
+  /// Closes the current goal as passed and makes the appended one current.
   void pass(TimeNs now);
-  /// The goal under way came to its end. Nothing happens if there is none.
+  /// Closes the current goal with this fate. Does nothing if there is none.
   void close_goal(GoalFate fate, const std::string& reason, TimeNs now);
-  /// The appended goal is given up.
+  /// Drops the appended goal.
   void drop_next(GoalFate fate, const std::string& reason, TimeNs now);
-  /// With no goal under way, one was proposed and refused.
+  /// Notes a refused goal when there is no current one.
   void refuse(const Goal& goal);
-  /// What the map says of the frontier that was asked for.
+  /// Notes whether a frontier is still open in the map.
   void note_frontier(std::uint32_t id, bool open);
   void note_homing(const std::string& reason, TimeNs now);
 
-  /// What a round of decision has to know; what is told here is not told again.
+  /// Fills in a decision cycle's input. Events and frontiers are passed on only once.
   void tell(CycleInput& input);
-  /// What the policy has yet to be told.
+  /// The events that the policy has yet to receive.
   std::vector<PolicyEvent> take_events();
 
  private:
@@ -52,7 +52,7 @@ class GoalTracker {
   GoalFate last_fate_ = GoalFate::none;
   bool frontier_open_ = true;
   std::vector<PolicyEvent> events_;
-  std::vector<std::uint32_t> looked_at_;  // frontiers reached, or seen on the way
+  std::vector<std::uint32_t> looked_at_;  // frontiers reached or seen in passing
 };
 
 event::Goal goal_event(const Goal& goal, event::GoalState state, const std::string& reason);

@@ -1,4 +1,4 @@
-// The phases of a mission, and which may follow which.
+// The phases of a mission and the transitions between them.
 #pragma once
 #include <optional>
 #include <span>
@@ -22,19 +22,19 @@ constexpr auto names_of(Phase) {
 }
 
 struct Transition {
-  std::optional<Phase> from;  // nothing: from any
+  std::optional<Phase> from;  // nothing: any phase
   Phase to;
   const char* when;
 };
 
-/// All there are.
+/// The transition table.
 std::span<const Transition> transitions();
 
 class PhaseMachine {
  public:
   Phase phase() const { return phase_; }
   bool in(Phase phase) const { return phase_ == phase; }
-  /// It flies by its map: an obstacle ahead stops it, and others keep apart from it.
+  /// Whether the vehicle flies by its map: it stops for obstacles ahead, and separation rules apply to it.
   bool under_way() const { return in(Phase::explore) || in(Phase::home); }
   /// When the phase began.
   TimeNs since() const { return since_; }

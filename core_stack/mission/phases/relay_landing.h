@@ -1,4 +1,4 @@
-// Where a robot of a team lands as a relay: the place it chooses, claims, and once it hovers there, confirms.
+// Chooses and claims the site where a robot lands as a relay, and confirms it once the robot hovers there.
 #pragma once
 #include <functional>
 #include <optional>
@@ -16,20 +16,20 @@ class RelayLanding {
   RelayLanding(Onboard& onboard, Teamwork& team, const PhaseMachine& phases, const Endurance& endurance)
       : onboard_(onboard), team_(team), phases_(phases), endurance_(endurance) {}
 
-  /// Without one it lands at its start.
+  /// Without a site the robot lands at its start.
   const std::optional<LandingSpot>& spot() const { return spot_; }
-  /// Looks for a place; if the start is nearer in time, there is none. `over` is called when the choice is
-  /// made, and then `changed` if it leads elsewhere than the one before.
+  /// Looks for a site; there is none if the start can be reached sooner. Calls `over` when the choice is
+  /// made, and then `changed` if the site differs from the previous one.
   void choose(double flown_length_m, std::function<void()> over, std::function<void()> changed);
-  /// It comes too late to the place that it flies to: time to look for another.
+  /// Whether it is time to look for another site, since it would arrive too late at this one.
   bool look_again_due() const { return look_again_ && onboard_.now() >= *look_again_; }
-  /// Another robot claimed it before.
+  /// Whether another robot claimed the site earlier.
   bool overruled() const { return spot_ && team_.overruled(); }
 
   enum class Heard { waits, lands, nobody };
-  /// Asked while it hovers there: what is heard decides whether to land, and `why` it does.
+  /// Call while hovering at the site: radio contact decides whether to land. Sets `why` if it lands.
   Heard listen(std::string& why);
-  /// It does not hover there any more.
+  /// Call when it no longer hovers there.
   void stop_listening() { unheard_since_.reset(); }
 
   enum class Because { not_to_be_had, no_contact };
@@ -44,7 +44,7 @@ class RelayLanding {
   const Endurance& endurance_;
   std::optional<LandingSpot> spot_;
   std::optional<TimeNs> look_again_;
-  std::optional<TimeNs> unheard_since_;  // it hovers there and hears nobody who reaches the base
+  std::optional<TimeNs> unheard_since_;  // since when it hovers there without contact to the base
 };
 
 }  // namespace karst::core

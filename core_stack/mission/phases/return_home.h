@@ -1,5 +1,5 @@
-// Going home while the battery still lasts for it: when to turn back, the way there through the map or back
-// along the way come, and in a team the landing place instead of the start.
+// Returns home while the battery suffices: decides when to turn back, and flies home through the map or back
+// along the flown path. In a team it may fly to a relay landing site instead of the start.
 #pragma once
 #include <functional>
 #include <optional>
@@ -19,10 +19,9 @@ class ReturnHome {
  public:
   struct Wiring {
     std::function<void(Phase, const std::string& reason)> enter;
-    std::function<void(const std::string& reason)> land_here;  // not where it should
-    std::function<bool()>
-        in_company;  // another vehicle flies near: what is in the way may be gone in a moment
-    std::function<void()> give_up_goals;  // tells the team that it explores no more
+    std::function<void(const std::string& reason)> land_here;  // away from home
+    std::function<bool()> in_company;     // whether another vehicle is near, which may block the path briefly
+    std::function<void()> give_up_goals;  // withdraws its claims in the team
   };
   struct Parts {
     const PhaseMachine& phases;
@@ -30,29 +29,29 @@ class ReturnHome {
     PathExecution& path;
     const FlownPath& flown_path;
     const Endurance& endurance;
-    RelayLanding* landing;  // null: it lands at its start
+    RelayLanding* landing;  // null: lands at its start
   };
   ReturnHome(Onboard& onboard, const Parts& parts, Wiring wiring)
       : onboard_(onboard), parts_(parts), wiring_(std::move(wiring)) {}
 
-  /// The first hover is where it comes back to.
+  /// Sets home to the first hover.
   void set_home(const Vec3& hover);
-  /// While it explores: once a second, whether it has to turn back.
+  /// Checks once a second during exploration whether to turn back.
   void watch_time();
   /// It turns back now, or goes on home after it was to land elsewhere.
   void begin(const std::string& reason);
-  /// Ten times a second on the way.
+  /// Call ten times a second during the return.
   void step();
-  /// Another robot has claimed the landing place before: it looks for one more.
+  /// Looks for another landing site, since another robot claimed this one earlier.
   void give_way_at_landing();
 
-  /// Where it flies to when it goes home, and comes down.
+  /// The hover above where it will land.
   const Vec3& hover() const;
-  /// The landing place in a team, if it has one.
+  /// The relay landing site, if it has one.
   std::optional<LandingSpot> landing_spot() const;
   /// Why it first went home; empty until then.
   const std::string& reason() const { return reason_; }
-  /// By path, as last estimated.
+  /// Path length home, as last estimated.
   double distance_m() const { return distance_m_; }
 
  private:

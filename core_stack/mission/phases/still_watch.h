@@ -1,4 +1,4 @@
-// How long the vehicle has kept to one place.
+// Measures how long the vehicle has stayed in one place.
 #pragma once
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/time.h"
@@ -11,9 +11,9 @@ class StillWatch {
     place_ = here;
     since_ = now;
   }
-  /// The clock alone begins anew.
+  /// Restarts the clock only.
   void wait(TimeNs now) { since_ = now; }
-  /// For how long it has been within 0.5 m of one place; 0 once it is farther away.
+  /// How long the vehicle has been within 0.5 m of one place; 0 once it leaves it.
   TimeNs still_for(const Vec3& here, TimeNs now) {
     constexpr double kPlace_m = 0.5;
     if ((here - place_).norm() > kPlace_m) restart(here, now);

@@ -1,4 +1,4 @@
-// The take-off: up to the first hover, and below a low roof to where there is room.
+// Take-off: climbs to the first hover, or below a low roof to a hover with enough room.
 #pragma once
 #include "core_stack/mission/phases/path_execution.h"
 
@@ -12,9 +12,9 @@ class TakeOff {
   void begin();
   enum class State { climbs, hovers, does_not_lift };
   State step(bool standing);
-  /// It comes down again from below a roof: what is in the map above the ground is no reason to stop.
+  /// Whether it descends again from a low roof: obstacles near the ground do not stop it then.
   bool below_roof() const { return below_roof_; }
-  /// Below this height the ground is near.
+  /// The height below which the ground is near.
   double ground_m() const;
 
  private:

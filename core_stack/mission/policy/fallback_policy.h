@@ -1,4 +1,4 @@
-// The core's own policy, used when the mission's has failed or gets nowhere: the nearest frontier by path.
+// The core's own policy, used when the mission's has failed or makes no progress: nearest frontier by path.
 #pragma once
 #include "core_stack/mission/policy/policy_port.h"
 

@@ -1,5 +1,5 @@
-// What mission control asks of an exploration policy, in core types. The host implements it over the ABI;
-// a test implements it in five lines.
+// The interface of an exploration policy, in core types. The host implements it over the ABI; a test
+// implements it in five lines.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -19,29 +19,29 @@ namespace karst::core {
 /// A frontier cluster as offered to the policy.
 struct FrontierOffer {
   const FrontierCluster* cluster = nullptr;
-  Vec3 viewpoint =
-      Vec3::Zero();  // a clear, reachable place from which the cluster is seen; NaN if none was found
+  Vec3 viewpoint = Vec3::Zero();  // clear, reachable, sees the cluster; NaN if none is found
   double viewpoint_heading_rad = 0;
-  double path_length_m = 0;  // from where a new path would begin to the viewpoint; +inf if no way is known
+  double path_length_m = 0;  // from the start of a new path to the viewpoint; +inf if no path is known
 };
 
-/// Another vehicle of the team, as last heard.
+/// Another vehicle of the team, in its last received state.
 struct OtherVehicle {
   std::uint32_t id = 0;  // 1, 2, ...
-  TimeNs heard = 0;      // when this was true, by one's own clock: negative before one's own start
+  TimeNs heard = 0;      // time of this state by this vehicle's clock: negative before its start
   Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
-  std::optional<Vec3> goal;          // that it has claimed
-  double seconds_before_homing = 0;  // about; 0: it explores no more; NaN: no way home from there is known
+  std::optional<Vec3> goal;  // its claimed goal
+  double seconds_before_homing =
+      0;  // estimate; 0: it no longer explores; NaN: no path home from there is known
 };
 
 enum class GoalFate { none, under_way, reached, rejected, unreachable, abandoned, superseded };
 
 struct DecisionRequest {
   TimeNs stamp = 0;
-  TimeNs deadline = 0;                       // the result is used at this time
+  TimeNs deadline = 0;                       // the answer takes effect at this time
   std::uint32_t sequence = 0;                // 1, 2, ...
   State state;                               // expected at the deadline
-  Vec3 direction_of_flight = Vec3::UnitX();  // unit, world frame; heading when it stands
+  Vec3 direction_of_flight = Vec3::UnitX();  // unit, world frame; the heading when at rest
   Pose T_world_start;
   double seconds_before_homing = 0;
   double max_speed_mps = 0, clearance_m = 0, vehicle_radius_m = 0;
@@ -49,7 +49,7 @@ struct DecisionRequest {
   Vec3 last_goal = Vec3::Zero();
   const VoxelMap* map = nullptr;
   const Roadmap* roadmap = nullptr;
-  const ImagedSurface* imaged = nullptr;  // by the colour camera; null if there is none
+  const ImagedSurface* imaged = nullptr;  // by the colour camera; null without one
   const VehicleDescription* vehicle = nullptr;
   std::vector<FrontierOffer> frontiers;  // by id
   std::vector<OtherVehicle> teammates;   // by id
@@ -82,8 +82,8 @@ class PolicyPort {
  public:
   virtual ~PolicyPort() = default;
   virtual std::string name() const = 0;
-  /// Called on the map lane, never concurrently. Throws PolicyFailure when the policy failed for good
-  /// (late beyond recovery, error, garbage): mission control then asks the fallback.
+  /// Called on the map lane, never concurrently. Throws PolicyFailure when the policy has failed for good
+  /// (hung, returned an error or an invalid answer); mission control then asks the fallback.
   virtual Decision decide(const DecisionRequest& request) = 0;
   virtual void notify(const PolicyEvent& event) = 0;
 };

@@ -1,7 +1,7 @@
-// The policy, and the fallback that decides in its place: for good once the policy has failed, and for one
-// decision cycle when it has let the vehicle stand idle for too long.
+// The policy with a fallback that replaces it: permanently once the policy has failed, and for one decision
+// cycle when it has left the vehicle idle for too long.
 //
-// It lives on the map lane.
+// It runs on the map lane.
 #pragma once
 #include <optional>
 #include <string>
@@ -15,25 +15,25 @@ namespace karst::core {
 enum class DecidedBy { policy, fallback };
 
 struct PolicyAnswer {
-  Decision decision;  // within the flight's limits of drawings and log
+  Decision decision;  // drawings and log are within the flight's limits
   DecidedBy by = DecidedBy::policy;
-  std::string name;     // of who decided
+  std::string name;     // of the policy that decided
   std::string failure;  // of the policy, if it failed in this call
 };
 
 class PolicyWithFallback {
  public:
-  /// `policy` outlives it.
+  /// `policy` must outlive it.
   explicit PolicyWithFallback(PolicyPort& policy) : policy_(&policy) {}
 
-  /// Who is to be asked all through the decision cycle that begins now.
+  /// Chooses who is asked throughout the decision cycle that begins now.
   DecidedBy begin_cycle(TimeNs now);
   PolicyAnswer ask(const DecisionRequest& request, DecidedBy by);
   PolicyAnswer ask_fallback(const DecisionRequest& request);
-  /// A policy that has failed is not told any more.
+  /// A policy that has failed is no longer notified.
   void notify(const PolicyEvent& event);
 
-  // How the cycle ended: with the vehicle under way or a goal for it, or without either.
+  // How the cycle ended: busy if the vehicle flies or has a goal, else idle.
 
   void note_busy() { idle_since_.reset(); }
   void note_idle(TimeNs now) {

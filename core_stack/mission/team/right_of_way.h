@@ -1,4 +1,4 @@
-// Two vehicles meet: who goes first, and where the other makes room.
+// Right of way when vehicles meet: which goes first, and where the other makes room.
 #pragma once
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace karst::core {
 
-/// What the others are told of a phase.
+/// The phase as reported to the team.
 TeamPhase phase_for_team(Phase phase);
 
 class RightOfWay {
@@ -25,9 +25,9 @@ class RightOfWay {
   RightOfWay(Onboard& onboard, Teamwork& team, const Parts& parts)
       : onboard_(onboard), team_(team), parts_(parts) {}
 
-  /// Ten times a second: stops the vehicle for another that goes first, and has it make room.
+  /// Call ten times a second: stops the vehicle for another with the right of way, and makes room for it.
   void step();
-  /// What to tell of itself.
+  /// The phase to report now.
   TeamPhase phase_to_report() const;
 
  private:

@@ -1,6 +1,5 @@
-// One robot of a team: its knowledge of the others, its choice of a landing place, and the port through which
-// it exchanges both. Mission control works with its Teamwork; whoever runs the loop calls transmit() and
-// receive() ten times a second.
+// A robot as a member of a team: its knowledge of the others, its landing sites, and its radio port. Mission
+// control uses its Teamwork; the owner of the loop calls transmit() and receive() ten times a second.
 #pragma once
 #include <optional>
 
@@ -11,7 +10,7 @@
 
 namespace karst::core {
 
-/// What all members of a team are given alike.
+/// Settings shared by all members of a team.
 struct TeamSetup {
   Vec3 base = Vec3::Zero();  // the base's antenna, world frame
   std::uint64_t seed = 1;
@@ -26,13 +25,13 @@ struct DroppedNode {
 
 class TeamMember {
  public:
-  /// `starts_at`: when the vehicle is switched on, by the team's clock. The port outlives the member.
+  /// `starts_at`: when the vehicle is switched on, in team time. The port must outlive the member.
   TeamMember(RobotId id, const CoreOptions& options, const VehicleDescription& vehicle,
              const TeamSetup& setup, TimeNs starts_at, TeamPort& port);
 
   void transmit(TimeNs team_time);
   void receive(TimeNs team_time);
-  /// Drops the communication node that mission control has asked for since the last call, if it has.
+  /// Drops a communication node if mission control has requested it since the last call.
   std::optional<DroppedNode> drop_due_node();
 
   RobotId id() const { return node_.self(); }
@@ -47,7 +46,7 @@ class TeamMember {
   Teamwork teamwork_;
 };
 
-/// Sends what `mate` has to say, and lets it hear what has come in.
+/// Sends the node's frames, or passes received frames to it.
 void transmit(TeamNode& node, RadioPort& radio, TimeNs team_time);
 void receive(TeamNode& node, RadioPort& radio, TimeNs team_time);
 

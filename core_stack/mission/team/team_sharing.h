@@ -1,5 +1,5 @@
-// What a vehicle does because it is one of a team: it tells the others where it is, what it explores and what
-// it finds, takes in what they tell, and drops communication nodes behind it.
+// A vehicle's exchange with its team: it reports its position, its goals and its findings, receives those of
+// the others, and drops communication nodes.
 #pragma once
 #include <optional>
 #include <vector>
@@ -23,23 +23,23 @@ class TeamSharing {
   TeamSharing(Onboard& onboard, Teamwork& team, const Parts& parts)
       : onboard_(onboard), team_(team), parts_(parts), nodes_left_(team.options().nodes) {}
 
-  /// Ten times a second.
+  /// Call ten times a second.
   void report(TeamPhase phase);
-  /// Once a second in the air: takes in what was heard, tells what was found since, and drops a node where
-  /// the others would be out of reach next.
+  /// Call once a second in the air: applies what was received, publishes new findings, and drops a node
+  /// before the others go out of range.
   void share();
   void claim_goal(const Goal& goal);
   void give_up_goals();
-  /// On the ground, for good. Called when nothing runs on the map lane any more. `hover`: above where it
-  /// stands.
+  /// Turns a landed vehicle into a relay. Call it when no job runs on the map lane. `landed_below`: the hover
+  /// above where it stands.
   void become_relay(bool stands, const std::optional<Vec3>& landed_below);
 
   /// No other vehicle is near the place where it hovers first, or comes home to land near it.
   bool airspace_clear() const;
-  /// Another flies near: what is in the way may be gone in a moment.
+  /// Whether another vehicle flies near, which may block the path briefly.
   bool in_company() const;
-  /// Where the others are that move, at `stamp`: those that stand, aside or landed, are obstacles like any
-  /// other.
+  /// The moving vehicles' positions at `stamp`. Vehicles that stand, aside or landed, are left out: they are
+  /// obstacles in the map.
   std::vector<MovingBody> others_at(TimeNs stamp) const;
   std::vector<TeammateState> teammates() const { return team_.teammates(onboard_.now()); }
 
@@ -50,7 +50,7 @@ class TeamSharing {
   Onboard& onboard_;
   Teamwork& team_;
   Parts parts_;
-  std::int64_t nodes_left_;  // that it carries
+  std::int64_t nodes_left_;  // on board
   std::optional<TimeNs> dropped_at_;
 };
 

@@ -1,5 +1,5 @@
-// How much room there is around the vehicle, by the map: along the path it flies, around its hull, below a
-// roof, and beside the path flown.
+// Clearance checks against the map: along the path ahead, around the hull, below a roof, and beside the flown
+// path.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,31 +10,31 @@
 
 namespace karst::core {
 
-/// What a flight's clearances are measured by.
+/// The clearances that a flight must keep.
 struct ClearanceLimits {
   double usual_m = 0;            // of a path
-  bool narrow_passages = false;  // may be flown, with less
+  bool narrow_passages = false;  // whether they may be flown, with less clearance
   double hull_radius_m = 0;
-  double ground_z_m = 0;  // of the vehicle where it starts: its hull touches the ground there
+  double ground_z_m = 0;  // of the vehicle's centre when standing at the start
 };
 ClearanceLimits clearance_limits(const PlanningOptions& options, const VehicleDescription& vehicle);
 
-/// Index of the first segment of `points` nearer to an obstacle's cell than the vehicle's radius, or -1.
+/// Index of the first segment of `points` within the vehicle's radius of an obstacle cell, or -1.
 int touching_segment(const VoxelMap& map, const ClearanceLimits& limits, const std::vector<Vec3>& points);
 
-/// Index of the first segment of `points` that the map now forbids, or -1. Near the `narrow_places` of the
-/// path it allows for less clearance.
+/// Index of the first segment of `points` that lacks clearance in the current map, or -1. Near the path's
+/// `narrow_places` less clearance is required.
 int blocked_segment(const VoxelMap& map, const ClearanceLimits& limits, const std::vector<Vec3>& points,
                     const std::vector<Vec3>& narrow_places);
 
-/// Distance of the vehicle's hull at `p` from the nearest obstacle's cell; nothing if that is far.
+/// Distance of the vehicle's hull at `p` from the nearest obstacle cell; nothing if that is far.
 std::optional<double> hull_clearance_m(const VoxelMap& map, const ClearanceLimits& limits, const Vec3& p);
 
-/// Where to hover straight below `highest`: as high as the usual clearance above and below allows, or with
-/// the most room above and below where there is not so much.
+/// Where to hover straight below `highest`: as high as the usual clearance above and below allows, or halfway
+/// between floor and roof where there is less room.
 Vec3 hover_below(const VoxelMap& map, const ClearanceLimits& limits, const Vec3& highest);
 
-/// Poses flown, from the last to the first, without the loops that the map shows a clear line across.
+/// The flown path reversed, with loops cut where the map shows a clear line.
 std::vector<Vec3> flown_back(const VoxelMap& map, const ClearanceLimits& limits,
                              const std::vector<Vec3>& flown);
 

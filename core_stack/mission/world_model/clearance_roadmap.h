@@ -1,7 +1,7 @@
-// The roadmap of the places that are clear by one clearance, with the shortest paths home along it.
+// A roadmap of all places with a given clearance, and the shortest paths home along it.
 //
-// There is one for the mission's usual clearance. Where the mission allows narrow passages, there is one for
-// those too: it is used only when nothing else is left, or from a place inside a narrow passage.
+// There is one for the mission's usual clearance. If the mission allows narrow passages, there is another one
+// for these, which is used only when nothing else is left, or from inside a narrow passage.
 #pragma once
 #include <optional>
 #include <span>
@@ -19,9 +19,9 @@ class ClearanceRoadmap {
   ClearanceRoadmap(const PlanningOptions& options, Passages passages)
       : passages_(passages), roadmap_(options) {}
 
-  /// Keeps changes of the map for the next update: scans are far more frequent than questions.
+  /// Stores changes of the map for the next update: scans are far more frequent than queries.
   void note(std::span<const CellChange> changes);
-  /// Takes in the changes noted. The answers below hold for `map` and `home` as they are now.
+  /// Applies the stored changes. The queries below refer to `map` and `home` as of this call.
   void update(const VoxelMap& map, const Vec3& home);
 
   Passages passages() const { return passages_; }
@@ -31,7 +31,7 @@ class ClearanceRoadmap {
 
   /// Length of the shortest path home; nothing if none is known.
   std::optional<double> home_length_m(const VoxelMap& map, const Vec3& from) const;
-  /// That path, to where home is approached; raw: pass it to plan_along.
+  /// That path, up to the approach point of home. It is raw: pass it to plan_along.
   Path path_home(const VoxelMap& map, const Vec3& from) const;
 
  private:
@@ -41,10 +41,10 @@ class ClearanceRoadmap {
   std::vector<CellChange> noted_;
 };
 
-/// The clearance in narrow passages; nothing if the options do not allow for less than the usual.
+/// The clearance in narrow passages; nothing if the options require the usual clearance everywhere.
 std::optional<double> narrow_clearance_m(const PlanningOptions& options, double vehicle_radius_m);
 
-/// The roadmap for narrow passages; it has all known cells of the map noted.
+/// Creates the roadmap for narrow passages, with all known cells of the map noted.
 ClearanceRoadmap narrow_roadmap(const VoxelMap& map, const PlanningOptions& options, double clearance_m);
 
 }  // namespace karst::core

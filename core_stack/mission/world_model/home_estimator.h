@@ -1,7 +1,7 @@
-// Where a flight can end, at home or at a relay's landing spot, and how long it takes to get there. It is
-// asked every second, and for every goal before it is accepted.
+// Estimates where a flight can end, at home or at a relay landing site, and how long it takes to get there.
+// It is called every second, and for every goal before it is accepted.
 //
-// It lives on the map lane.
+// It runs on the map lane.
 #pragma once
 #include <optional>
 
@@ -17,19 +17,19 @@ struct HomeEstimate {
 
 class HomeEstimator {
  public:
-  /// `world` and `team` outlive it.
+  /// `world` and `team` must outlive it.
   HomeEstimator(const CoreOptions& options, const VehicleDescription& vehicle, WorldModel& world,
                 const TeamMembership& team);
 
-  /// Home or a landing spot, whichever takes less time: through the map, or if it knows no path home,
-  /// `flown_m` long.
+  /// Home or a landing site, whichever takes less time. If the map shows no path home, its length is taken as
+  /// `flown_m`.
   HomeEstimate estimate(const Vec3& from, double flown_m);
-  /// Where to land as a relay, if that takes less time than the path home. The ground here is judged too.
+  /// Where to land as a relay, if that takes less time than flying home. Also judges the ground right here.
   std::optional<LandingSpot> landing_spot(const Vec3& from, double flown_m);
   /// Seconds of flight left before the vehicle must turn back.
   double slack_s(double seconds_left, const HomeEstimate& home) const;
-  /// A teammate reports its battery, not its plans: when it must turn back is worked out on one's own map, as
-  /// for oneself.
+  /// A teammate reports its battery, not when it must turn back: that is estimated on this vehicle's own map,
+  /// as for this vehicle itself.
   OtherVehicle seen_by_policy(const TeammateState& teammate, TimeNs now);
 
  private:

@@ -1,7 +1,7 @@
-// What ties a vehicle's map to its team: the homing tree it shares, the rock it has yet to report, and the
-// goals that other vehicles claim. Alone, a vehicle claims and reports nothing.
+// Connects a vehicle's map to its team: the shared homing tree, the occupied cells it has yet to report, and
+// the goals that other vehicles claim. A vehicle that flies alone claims and reports nothing.
 //
-// It lives on the map lane.
+// It runs on the map lane.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace karst::core {
 
-/// Frontiers within `radius_m` of `goals` are left to the vehicles that claim these.
+/// Goals claimed by other vehicles. Frontiers within `radius_m` of them are left to these vehicles.
 struct Claims {
   std::vector<Vec3> goals;
   double radius_m = 0;
@@ -23,19 +23,19 @@ class TeamMembership {
     homing_ = homing;
     claim_radius_m_ = claim_radius_m;
   }
-  /// Null: it flies alone. The members below are then not called, but for note and claims.
+  /// Null if the vehicle flies alone. Then only note() and claims() may be called.
   RelayHoming* homing() const { return homing_; }
 
-  /// Keeps the cells that became rock until they are shared.
+  /// Stores the cells that became occupied until they are shared.
   void note(std::span<const CellChange> changes);
-  /// Takes in what was heard; returns what to report. The roadmap must be up to date.
+  /// Applies received facts and returns the facts to publish. The roadmap must be up to date.
   TreeFacts share(const VoxelMap& map, const Roadmap& roadmap, const Vec3& here, const TeamNews& news);
   Claims claims() const;
 
  private:
   RelayHoming* homing_ = nullptr;
   double claim_radius_m_ = 0;
-  std::vector<CellKey> became_rock_;  // since the team was last told
+  std::vector<CellKey> became_rock_;  // since the last share()
 };
 
 }  // namespace karst::core

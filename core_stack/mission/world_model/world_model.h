@@ -1,7 +1,7 @@
-// What is known of the cave: the map with its frontiers, the rock surface imaged, the roadmaps made from the
-// map, and home. It takes in rays and plans paths.
+// The knowledge of the cave: the map with its frontiers, the imaged rock surface, the roadmaps, and home. It
+// integrates rays and plans paths.
 //
-// It lives on the map lane and does not change within a decision cycle.
+// It runs on the map lane and does not change within a decision cycle.
 #pragma once
 #include <memory>
 #include <optional>
@@ -18,10 +18,10 @@ class WorldModel {
  public:
   WorldModel(const CoreOptions& options, const VehicleDescription& vehicle);
 
-  /// Takes one sensor's rays into the map; returns what changed.
+  /// Integrates one sensor's rays into the map; returns the changed cells.
   std::vector<CellChange> integrate(const std::vector<Ray>& rays);
   std::vector<CellChange> declare_launch_site(const Vec3& hover_point);
-  /// A picture was taken from there, by the vehicle's colour camera.
+  /// Notes a picture of the vehicle's colour camera, taken from that pose.
   void note_picture(const Pose& T_world_camera);
 
   const VoxelMap& map() const { return map_; }
@@ -31,22 +31,22 @@ class WorldModel {
   const Vec3& home() const { return home_; }
   void set_home(const Vec3& hover_point) { home_ = hover_point; }
 
-  // Each brings the roadmap that it returns up to date.
+  // Each of these updates the roadmap that it returns.
 
   const ClearanceRoadmap& usual();
   bool allows_narrow() const { return narrow_clearance_m_.has_value(); }
-  /// Made when it is first asked for; null if the mission does not allow narrow passages.
+  /// Created on first use; null if the mission does not allow narrow passages.
   const ClearanceRoadmap* narrow();
-  /// The same, but null as long as nobody has needed it.
+  /// The same, but null until it has been created.
   const ClearanceRoadmap* narrow_if_made() { return narrow_ ? narrow() : nullptr; }
-  /// The roadmap to plan on from `from`: the one for narrow passages inside of one.
+  /// The roadmap for plans from `from`: inside a narrow passage, the one for narrow passages.
   const ClearanceRoadmap& roadmap_at(const Vec3& from);
 
-  /// Along one roadmap; it must be up to date.
+  /// Plans along one roadmap, which must be up to date.
   Path plan(const ClearanceRoadmap& on, const Vec3& from, const Vec3& to) const;
-  /// For going home or around a new obstacle; through narrow passages if there is no other path.
+  /// Plans a path home or around a new obstacle; through narrow passages if there is no other path.
   Path plan_to(const Vec3& from, const Vec3& to);
-  /// Length of those parts of `path` that lead through narrow passages, where flight is slow.
+  /// Total length of the parts of `path` in narrow passages, where flight is slow.
   double narrow_length_m(const Path& path) const;
 
  private:
