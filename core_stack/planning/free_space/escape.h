@@ -1,5 +1,5 @@
-// The way out of a place that is nearer to an obstacle than the clearance: the map changed, or the vehicle
-// was pushed there.
+// The escape path from a position that is nearer to an obstacle than the clearance, because the map has
+// changed or the vehicle was pushed there.
 #pragma once
 #include <optional>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace karst::core {
 
-/// From `start`, which lies in a free cell, through free cells whose distance to the nearest obstacle never
-/// shrinks, to the first clear cell's centre: the shortest such way within about two clearances. It begins
-/// with `start`. Nothing if there is none.
+/// The shortest path from `start`, which must lie in a free cell, to the centre of a clear cell within about
+/// two clearances. It leads through free cells whose distance to the nearest obstacle never decreases. It
+/// begins with `start`. Nothing if there is none.
 std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& free, const Vec3& start,
                                              double clearance_m);
 

@@ -1,8 +1,8 @@
-// The map's free cells as bits, and the questions of clearance answered on them.
+// The map's free cells as bitmaps, and clearance queries on them.
 //
-// What must be kept away from are occupied cells and unknown cells that touch free ones. For a point in a
-// free cell that is the same as keeping away from every cell that is not free: from a cell that is not free,
-// a step along an axis towards the point leads nearer to it, so the nearest such cell touches a free one.
+// Obstacles are occupied cells, and unknown cells that touch free ones. For a point in a free cell, clearance
+// from these equals clearance from all cells that are not free: a step along an axis from such a cell towards
+// the point leads nearer to it, so the nearest cell that is not free touches a free one.
 #pragma once
 #include <array>
 #include <memory>
@@ -14,14 +14,14 @@ namespace karst::core {
 
 using TileBits = std::array<std::uint32_t, kTileRows>;
 
-/// Cells that must be free around a point: rows (dy, dz) of them, |dx| <= half_width. The point is a cell's
-/// centre, or shifted from it by half a cell in each axis marked in `shift` (bits x, y, z); with a shift in x
-/// the rows reach one cell farther to that side.
+/// The cells that must be free around a point, as rows (dy, dz) with |dx| <= half_width. The point is a
+/// cell's centre, shifted by half a cell along each axis marked in `shift` (bits x, y, z). With a shift in x
+/// the rows extend one cell farther to that side.
 class Ball {
  public:
   explicit Ball(double radius_cells, int shift = 0);
-  /// A ball around a centre that also holds the cells that a move to one of the 26 neighbours would come
-  /// nearer to than the radius: moves between cells that have it free are clear.
+  /// A ball around a cell's centre that also covers the cells within the radius of any move to one of the 26
+  /// neighbours: moves between cells whose ball is free are clear.
   static Ball with_moves(double radius_cells);
   struct Row {
     int dy, dz, half_width;
@@ -41,13 +41,13 @@ class Ball {
 /// Which cells a search may use.
 class ClearanceRule {
  public:
-  /// Those whose centre is clear, as is every move between them. Throws InputError beyond 14 cells.
+  /// Cells whose centre is clear, as is every move between them. Throws InputError beyond 14 cells.
   explicit ClearanceRule(double clearance_cells);
-  /// Those that are so by `search_cells` only, if their centre or a point half a cell from it in some axes is
-  /// clear by the whole clearance.
+  /// Cells clear by `search_cells` only, provided that their centre or a point half a cell from it along some
+  /// axes has the whole clearance.
   ClearanceRule(double clearance_cells, double search_cells);
   const Ball& moves() const { return moves_; }
-  /// Around the centre and around the points half a cell up from it. None: `moves` alone decides.
+  /// Balls around the centre and the points half a cell up from it. Empty: `moves` alone decides.
   const std::vector<Ball>& points() const { return points_; }
   int extent() const;
 
@@ -58,18 +58,18 @@ class ClearanceRule {
 
 struct NearestObstacle {
   double distance_m;
-  Vec3 center;  // of the obstacle's cell; not set if there is none within the limit
+  Vec3 center;  // of the obstacle cell; not set if there is none within the limit
 };
 
 class FreeTiles {
  public:
   explicit FreeTiles(double resolution_m) : resolution_m_(resolution_m) {}
 
-  /// Reads the tiles that touch the closed box of cells and have not been read yet. What was never read
-  /// counts as unknown.
+  /// Reads the tiles that touch the closed box of cells and have not been read yet. Cells never read count as
+  /// unknown.
   void load(const VoxelMap& map, const CellKey& low, const CellKey& high);
   void load_near(const VoxelMap& map, const Vec3& p, double radius_m);
-  /// Notes a cell's present class.
+  /// Updates a cell to its current class.
   void refresh(const VoxelMap& map, const CellKey& k);
 
   bool at(const CellKey& k) const;
@@ -78,10 +78,10 @@ class FreeTiles {
   /// Cells of tile `t` that a search may use.
   TileBits clear_cells(const TileKey& t, const ClearanceRule& rule) const;
 
-  /// No obstacle's centre is nearer than `clearance_m` to the segment, and it runs through free cells.
+  /// Whether the segment runs through free cells, with no obstacle's centre within `clearance_m`.
   bool segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const;
   bool is_clear(const Vec3& p, double clearance_m) const { return segment_clear(p, p, clearance_m); }
-  /// Nearest obstacle's centre, looked for up to `limit_m` (at most 15 cells); without one, the limit.
+  /// The nearest obstacle's centre within `limit_m` (at most 15 cells); the limit if there is none.
   NearestObstacle nearest(const Vec3& p, double limit_m) const;
 
   double resolution_m() const { return resolution_m_; }

@@ -20,7 +20,7 @@ struct Interval {
   }
 };
 
-/// Rows near one segment; what all its rows share is worked out once.
+/// Rows near one segment; common terms of all rows are computed once.
 class RowsNearSegment {
  public:
   RowsNearSegment(const Vec3& a, const Vec3& b, double r)

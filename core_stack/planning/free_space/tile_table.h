@@ -1,4 +1,4 @@
-// Finds tiles of cells by their place: an open-addressed table from a tile's name to its dense index.
+// An open-addressed hash table from a tile's key to its dense index.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -38,7 +38,7 @@ class TileTable {
     for (std::size_t i = slot_of(t);; i = (i + 1) & (slots_.size() - 1))
       if (slots_[i].index == none || slots_[i].key == t) return slots_[i].index;
   }
-  /// Names the next index; `t` must be new.
+  /// Assigns the next index to `t`, which must be new.
   std::uint32_t add(const TileKey& t) {
     if (2 * (keys_.size() + 1) > slots_.size()) {
       slots_.assign(2 * slots_.size(), {});

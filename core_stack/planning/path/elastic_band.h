@@ -7,13 +7,13 @@
 
 namespace karst::core {
 
-/// Moves the inner points until they settle. Obstacles push up to `preferred_m`. No point or segment that is
-/// clear (at `clearance_m`) becomes unclear; one that is not clear never comes nearer to obstacles.
+/// Moves the inner points until they converge. Obstacles repel up to `preferred_m`. A point or segment with
+/// clearance `clearance_m` keeps it; one without never comes nearer to obstacles.
 std::vector<Vec3> smooth_band(const FreeTiles& free, double clearance_m, double preferred_m,
                               std::vector<Vec3> points);
 
-/// A smooth curve through the points (Catmull-Rom), sampled at most `spacing_m` apart; pieces of it that
-/// would not be clear stay straight.
+/// A Catmull-Rom curve through the points, sampled at most `spacing_m` apart; pieces that would not be clear
+/// stay straight.
 std::vector<Vec3> fine_curve(const FreeTiles& free, double clearance_m, const std::vector<Vec3>& points,
                              double spacing_m);
 

@@ -1,11 +1,11 @@
-// Distances over the roadmap from everywhere to one place, and the ways there, kept up to date as the roadmap
-// changes: asking takes microseconds however far the place is.
+// Shortest paths over the roadmap from all places to one root, updated incrementally as the roadmap changes.
+// A query takes microseconds, however far the root is.
 //
-// Every node knows the length of its shortest way to the root. When nodes vanish, those whose way led through
-// them forget theirs; they and the new nodes then take the best that their neighbours offer, and what gets
-// shorter is passed on, shortest first (after Ramalingam and Reps, 1996). So an update costs as much as there
-// are nodes whose distance changes: few at the edge of the explored, all that lies behind a rockfall. The
-// lengths are the same as if computed from scratch, to the last bit.
+// Every node stores the length of its shortest path to the root. When nodes vanish, nodes whose path led
+// through them are invalidated. These and new nodes then relax from their neighbours, and improvements
+// propagate, shortest first (after Ramalingam and Reps, 1996). The cost of an update is proportional to the
+// number of nodes whose distance changes: few at the edge of the explored space, all that lie behind a
+// rockfall. The lengths are bitwise equal to those computed from scratch.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,19 +21,19 @@ class DistanceTree {
   DistanceTree(DistanceTree&&) noexcept;
   DistanceTree& operator=(DistanceTree&&) noexcept;
 
-  /// To be called after each update of the roadmap, always the same one, before anything is asked. A root
-  /// that is not clear by the search's clearance has no distances; a root that moves costs a computation from
+  /// Call after each update of the roadmap, which must always be the same one, and before queries. If the
+  /// root lacks the search clearance there are no distances. If the root moves, all are computed from
   /// scratch.
   void update(const Roadmap& roadmap, const Vec3& root);
 
-  /// Length in metres of the shortest way from `from` to the root on the roadmap, an escape from a tight
-  /// place included; nothing if there is none.
+  /// Length in metres of the shortest path from `from` to the root on the roadmap, including an escape from a
+  /// tight place; nothing if there is none.
   std::optional<double> length_m(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
-  /// That way, of the search's clearance; raw: pass it to refine_path. It depends on the map only, not on how
-  /// the map came about.
+  /// That path, with the search clearance. It is raw: pass it to refine_path. It depends on the current map
+  /// only, not on the map's history.
   Path find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
 
-  /// Nodes whose distance the last update looked at: what it cost.
+  /// Number of nodes whose distance the last update visited: its cost.
   std::size_t touched() const;
 
  private:

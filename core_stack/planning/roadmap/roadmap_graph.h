@@ -1,4 +1,4 @@
-// What a roadmap holds: clear cells by tile, and the nodes made from them. Private to planning.
+// The roadmap's data: clear cells by tile, and the nodes built from them. Private to planning.
 #pragma once
 #include "core_stack/planning/free_space/block_bits.h"
 #include "core_stack/planning/free_space/free_tiles.h"
@@ -10,7 +10,7 @@ constexpr std::uint32_t kTileBlocks = 32;  // 8 x 2 x 2 blocks; index x | y << 3
 
 struct RoadmapNode {
   BlockBits cells = 0;
-  CellKey place;  // the cell it is placed at
+  CellKey place;  // the cell of its position
   bool operator==(const RoadmapNode&) const = default;
 };
 
@@ -23,12 +23,12 @@ struct RoadmapTile {
   std::uint64_t changed = 0;  // the update, counted from 1, that last changed its nodes
 };
 
-/// A node's name: its tile and its place in the tile's list.
+/// A node's identifier: its tile, and its index in the tile's list.
 struct NodeRef {
   std::uint32_t tile = 0, local = 0;
 };
 
-/// A node seen from a point, and the cell through which the way leads if it does not lead straight there.
+/// A connection from a point to a node, straight or through the cell `via`.
 struct Join {
   NodeRef node;
   double length_m = 0;
@@ -59,7 +59,7 @@ struct RoadmapGraph {
   void for_each_neighbour(const NodeRef& n, Visit&& visit) const {
     for_each_touching(n.tile, tiles[n.tile].nodes[n.local], visit);
   }
-  /// Nodes that a node of tile `tile_index`, present or past, is joined to.
+  /// Nodes that a present or former node of tile `tile_index` is joined to.
   template <class Visit>
   void for_each_touching(std::uint32_t tile_index, const RoadmapNode& node, Visit&& visit) const {
     const RoadmapTile& tile = tiles[tile_index];
@@ -78,13 +78,13 @@ struct RoadmapGraph {
                              });
     }
   }
-  /// Ways from a clear point into the graph.
+  /// Connections from a clear point into the graph.
   std::vector<Join> joins(const Vec3& p) const;
-  /// Clear cells from a to b, both included, inside the blocks that hold them. They must be connected there.
+  /// Clear cells from a to b, both included, in the blocks that contain them. They must be connected there.
   std::vector<CellKey> cells_between(const CellKey& a, const CellKey& b) const;
 
  private:
-  /// The same, with the tile known; TileTable::none has no nodes.
+  /// The same with a known tile; TileTable::none has no nodes.
   template <class Visit>
   void for_each_node_in_block(std::uint32_t tile_index, const CellKey& k, Visit&& visit) const {
     if (tile_index == TileTable::none) return;

@@ -1,4 +1,4 @@
-// From nodes of the roadmap to points in space. Private to planning.
+// Converts nodes of the roadmap to a path of points. Private to planning.
 #pragma once
 #include <vector>
 
@@ -6,11 +6,11 @@
 
 namespace karst::core {
 
-/// From `p` to a clear point: p itself, or the way out of a tight place. Empty if there is none.
+/// The path from `p` to a clear point: p itself, or the escape from a tight place. Empty if there is none.
 std::vector<Vec3> path_to_clear(const VoxelMap& map, const RoadmapGraph& graph, const Vec3& p);
 
-/// Appends to `points`, which end where `out` was asked for, the way through the nodes (at least one, each
-/// joined to the next) and by `in` to `goal`: straight where that is clear, else cell by cell.
+/// Appends to `points`, which end where `out` begins, the path through the nodes (at least one, each joined
+/// to the next) and by `in` to `goal`: straight lines where they are clear, else cell by cell.
 void append_path(const RoadmapGraph& graph, const Join& out, const std::vector<NodeRef>& nodes,
                  const Join& in, const Vec3& goal, std::vector<Vec3>& points);
 

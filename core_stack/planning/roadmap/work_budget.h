@@ -1,4 +1,4 @@
-// How much work an answer may cost, counted in steps and not by a clock: every run stops at the same place.
+// Limits the work of a query, counted in steps rather than time, so that every run stops at the same point.
 #pragma once
 #include <cstdint>
 
@@ -8,7 +8,7 @@ class WorkBudget {
  public:
   explicit WorkBudget(std::uint64_t steps) : left_(steps) {}
 
-  /// False once more has been asked for than there was.
+  /// Returns false once the budget has been exceeded.
   bool spend(std::uint64_t steps) {
     exhausted_ = exhausted_ || steps > left_;
     if (!exhausted_) left_ -= steps;

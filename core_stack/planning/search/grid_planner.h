@@ -6,21 +6,21 @@
 
 namespace karst::core {
 
-/// Unknown space is never assumed free. If the start itself is nearer to an obstacle than the clearance (the
-/// map changed, or the vehicle was pushed), the search may first leave through free cells of growing
-/// clearance. The result is raw: pass it to refine_path.
+/// Unknown space is never assumed to be free. If the start itself lacks the clearance (the map has changed,
+/// or the vehicle was pushed), the path may first escape through free cells of increasing clearance. The
+/// result is raw: pass it to refine_path.
 Path plan_on_grid(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options);
 
-/// As above, and also through cells where a point half a cell beside the centre is clear: centres sample
-/// space at the resolution only, and the middle of a narrow passage may lie between two of them. The raw path
-/// is clear by search_clearance_m; refine_path lifts it to the whole clearance.
+/// The same, but also uses cells in which a point half a cell from the centre is clear: centres sample space
+/// at the resolution only, and the middle of a narrow passage may lie between two of them. The raw path has
+/// the clearance search_clearance_m; refine_path moves it to the full clearance.
 Path plan_on_grid_squeezing(const VoxelMap& map, const Vec3& start, const Vec3& goal,
                             const PlanningOptions& options);
 
-/// Feasibility as the planner judges it: p's cell is free, and no obstacle's centre is nearer than the
-/// clearance. False if p is not finite.
+/// The planner's feasibility test: p's cell is free, and no obstacle's centre is nearer than the clearance.
+/// False if p is not finite.
 bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m);
-/// Every point of the segment is clear.
+/// Whether every point of the segment is clear.
 bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m);
 /// Index of the first segment of `points` that is not clear, or -1.
 int first_blocked_segment(const VoxelMap& map, const std::vector<Vec3>& points, double clearance_m);

@@ -12,7 +12,7 @@ struct GridSearchResult {
   std::int64_t expansions = 0;
 };
 
-/// Octile length of a displacement in cells: the cost of the cheapest lattice way between two cells in free
+/// Octile length of a displacement in cells: the cost of the cheapest lattice path between two cells in free
 /// space.
 double octile_cells(const Vec3& displacement);
 

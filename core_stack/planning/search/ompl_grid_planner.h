@@ -7,9 +7,8 @@
 namespace karst::core {
 
 /// Solves by plan_on_grid; optimal on the grid to within options.heuristic_weight. Start and goal must be
-/// clear by options.clearance_m. It proves that there is no way (ABORT), and gives up (TIMEOUT) after
-/// options.max_expansions only: a termination condition that is true from the beginning is honoured, later
-/// ones are not asked.
+/// clear by options.clearance_m. It proves that there is no path (ABORT), and gives up (TIMEOUT) only after
+/// options.max_expansions: it checks the termination condition at the start, and not again.
 class OmplGridPlanner : public ompl::base::Planner {
  public:
   OmplGridPlanner(const ompl::base::SpaceInformationPtr& si, const VoxelMap& map,

@@ -1,5 +1,5 @@
-// A planning query in OMPL's terms: the same state space, validity and sampling for every planner. Private to
-// planning: OMPL's headers are seen by two .cpp files only.
+// A planning query in OMPL's terms, with the same state space, validity check and sampling for every planner.
+// Private to planning: only two .cpp files include OMPL's headers.
 #pragma once
 #include <ompl/base/MotionValidator.h>
 #include <ompl/base/ProblemDefinition.h>
@@ -23,15 +23,15 @@ inline void set_point(ompl::base::State* s, const Vec3& p) {
   v[2] = p.z();
 }
 
-/// Cells that states are drawn from: a cave fills so little of its bounding box that drawing from the box
-/// would hit rock nearly always.
+/// The cells that states are sampled from: a cave fills so little of its bounding box that samples from the
+/// box would nearly always hit rock.
 struct SampledCells {
   struct Block {
     CellKey corner;
     BlockBits cells;
   };
   std::vector<Block> blocks;
-  std::vector<std::uint64_t> up_to;  // number of cells in the blocks up to and with each
+  std::vector<std::uint64_t> up_to;  // cumulative number of cells, each block included
 };
 
 struct OmplQuery {

@@ -1,5 +1,5 @@
-// The open list of a grid search: a binary heap in which every node stands once and is moved up when a
-// cheaper way to it is found. Each node knows its place in the heap, so nothing is ever looked for.
+// The open list of a grid search: a binary heap that holds every node once and moves it up when a cheaper
+// path to it is found (decrease-key). Each node stores its index in the heap, so no lookup is needed.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -8,9 +8,9 @@
 namespace karst::core {
 
 struct OpenNode {
-  float estimate, cost;  // of the whole way through the node, and of the way to it
+  float estimate, cost;  // of the whole path through the node, and of the path to it
   std::uint32_t node;
-  /// Least estimate first, then the one farther on its way, then the older node.
+  /// Smallest estimate first, then the larger cost so far, then the older node.
   bool before(const OpenNode& o) const {
     if (estimate != o.estimate) return estimate < o.estimate;
     if (cost != o.cost) return cost > o.cost;
@@ -18,14 +18,15 @@ struct OpenNode {
   }
 };
 
-/// `PlaceOf(node)` gives a reference to the node's own std::uint32_t, 0 to begin with, which the heap keeps.
+/// `HeapIndexOf(node)` returns a reference to the node's std::uint32_t, initially 0, which the heap
+/// maintains.
 template <class HeapIndexOf>
 class SearchHeap {
  public:
   explicit SearchHeap(HeapIndexOf heap_index_of) : heap_index_of_(std::move(heap_index_of)) {}
 
   bool empty() const { return heap_.empty(); }
-  /// Adds a node, or moves it up if it is in the heap already and `n` comes before what is known of it.
+  /// Adds a node, or moves it up if it is in the heap and `n` comes before its entry there.
   void push_or_lower(const OpenNode& n) {
     const std::uint32_t heap_index = heap_index_of_(n.node);
     if (heap_index == 0) {
@@ -52,7 +53,7 @@ class SearchHeap {
     for (; i > 0 && n.before(heap_[(i - 1) / 2]); i = (i - 1) / 2) put(i, heap_[(i - 1) / 2]);
     put(i, n);
   }
-  /// From the top.
+  /// Sinks `n` from the top.
   void sink(const OpenNode& n) {
     std::size_t i = 0;
     for (std::size_t child; (child = 2 * i + 1) < heap_.size(); i = child) {

@@ -1,4 +1,4 @@
-// Heading along a trajectory: what it should be, and a course to it within the limits of turning.
+// Heading along a trajectory: the wanted heading, and a course to it within the turning limits.
 #pragma once
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace karst::core {
 
-/// Brings a heading to wanted values within rate and acceleration limits, one step a sample.
+/// Steers a heading to wanted values within rate and acceleration limits, one step per sample.
 class HeadingCourse {
  public:
   HeadingCourse(double heading_rad, const MotionLimits& limits, double period_s)
@@ -14,7 +14,7 @@ class HeadingCourse {
   double step(double wanted_rad);
   double heading_rad() const { return heading_rad_; }
   double rate_radps() const { return rate_radps_; }
-  /// The wanted heading is reached, and the rate small enough to stop with the next step.
+  /// Whether the wanted heading is reached and the rate is small enough to stop in the next step.
   bool settled_at(double wanted_rad) const;
 
  private:
@@ -29,23 +29,23 @@ class HeadingCourse {
 std::vector<double> headings_along(const std::vector<Vec3>& points, double lookahead_m,
                                    double start_heading_rad);
 
-/// `headings` at evenly spaced `points`, with bends turned through evenly, from before the bend until behind
-/// it: so the rate of turning limits speed less.
+/// Spreads the turn at each bend evenly from before to after it, so that the heading rate limits speed less.
+/// `points` are evenly spaced.
 std::vector<double> turned_early(const std::vector<Vec3>& points, const std::vector<double>& headings);
-/// Turns `headings` towards the look near the place it is for.
+/// Turns `headings` near the look's place towards its heading.
 void look_in_passing(const std::vector<Vec3>& points, const PassingLook& look, std::vector<double>& headings);
 
-/// What `plan` wants at each of `points`, but for the goal's heading, which is turned to late.
+/// The headings wanted by `plan` at each of `points`, except for the goal's heading, which comes late.
 std::vector<double> wanted_headings(const std::vector<Vec3>& points, const HeadingPlan& plan);
-/// A vehicle that (nearly) stands turns first when it would start far off its heading.
+/// Whether a vehicle (nearly) at rest turns on the spot first, since it is far off the wanted heading.
 bool turns_first(const HeadingPlan& plan, double wanted_rad, double speed_mps);
 /// Adds samples at the last one's position until the heading is reached.
 void turn_on_the_spot(HeadingCourse& course, double wanted_rad, std::vector<TrajectorySample>& samples);
-/// When to begin turning to the goal's heading: as late as the rate allows, so as to look ahead until then.
-/// Infinity if there is none.
+/// When to begin turning to the goal's heading: as late as the rate allows, to look ahead until then.
+/// Infinity if the goal has no heading.
 double turn_from_s(const HeadingPlan& plan, double last_wanted_rad, double arrival_s,
                    const MotionLimits& limits);
-/// Turns what is left to the goal's heading, and ends in it exactly.
+/// Completes the turn to the goal's heading, and ends exactly in it.
 void end_facing(HeadingCourse& course, double goal_heading_rad, std::vector<TrajectorySample>& samples);
 
 }  // namespace karst::core

@@ -1,5 +1,5 @@
-// Joining a new path to the stretch of an old one that leads to its beginning, without a corner: a corner has
-// to be slowed down for, and in flight there is one at every new goal.
+// Joins a new path to the committed segment of the old one without a corner. A vehicle must slow down at
+// corners, and without this there would be one at every new goal.
 #pragma once
 #include <functional>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace karst::core {
 
-/// `lead` and then `path`, which begins where the lead ends. The corner between them is replaced by a
-/// parabola that touches both, the longest of a few for which `clear` holds along it and which passes the
-/// corner by no more than `max_cut_m`; without one it stays.
+/// Joins `committed` and `path`, which begins where the former ends. The corner between them is replaced by
+/// the longest of a few parabolas tangent to both for which `clear` holds and whose deviation from the corner
+/// is at most `max_cut_m`. If there is none the corner stays.
 std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vector<Vec3>& path,
                              double max_cut_m, const std::function<bool(const Vec3&, const Vec3&)>& clear);
 

@@ -24,7 +24,7 @@ struct MotionLimits {
 };
 void describe(OptionTable& t, MotionLimits& o);
 
-/// Where a path is flown slower: within `radius_m` of the places.
+/// Places near which flight is slower, within `radius_m`.
 struct SlowPlaces {
   std::vector<Vec3> places;
   double radius_m = 1.0;
@@ -36,7 +36,7 @@ struct TrajectorySample {
   double heading_rad = 0;
 };
 
-/// Samples at `period` from `start`; before it the first holds, after it the last.
+/// Samples at `period` from `start`, clamped to the first sample before and the last one after.
 struct Trajectory {
   TimeNs start = 0;
   TimeNs period = 100 * kMillisecond;
@@ -55,16 +55,16 @@ struct PassingLook {
 };
 
 struct HeadingPlan {
-  bool along_path = true;  // look where the vehicle goes
+  bool along_path = true;  // face the direction of flight
   double start_heading_rad = 0;
   std::optional<PassingLook> passing;
-  std::optional<double> goal_heading_rad;  // turned to over the last stretch and at the goal
+  std::optional<double> goal_heading_rad;  // reached over the last stretch and at the goal
 };
 
 /// Samples `points` from `start_speed_mps` along the path to rest at its end. Accelerations along and across
-/// the path stay within the limits (up to the sampling); turning on the spot comes first where heading must
-/// lead and the path turns by more than the rate allows. A path that would take longer than two hours is
-/// flown in part: the trajectory ends at rest, on the path, before two hours are over.
+/// the path stay within the limits (up to sampling). The vehicle turns on the spot first where it must face
+/// the direction of flight and the path turns faster than the heading rate allows. A path that takes longer
+/// than two hours is cut: the trajectory then ends at rest on the path before that.
 Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
                              const MotionLimits& limits, const HeadingPlan& heading,
                              const SlowPlaces& slow = {});
