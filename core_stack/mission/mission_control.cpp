@@ -13,25 +13,25 @@ namespace {
 constexpr TimeNs kControlPeriod = 10 * kMillisecond;
 constexpr TimeNs kSupervisionPeriod = 100 * kMillisecond;
 
-// A step that has not come for so long does not come any more.
+// A step that has been missing for this long has failed.
 constexpr TimeNs kControlMissed = 100 * kMillisecond, kSupervisionMissed = 500 * kMillisecond;
 
-constexpr TimeNs kSettling = kSecond;             // on the ground, for the estimate
-constexpr double kOverdue_s = 600;                // beyond the time limit: then it is given up
-constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to come in
+constexpr TimeNs kSettling = kSecond;             // on the ground, until the estimate has converged
+constexpr double kOverdue_s = 600;                // beyond the time limit: then the flight is aborted
+constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to arrive
 
-/// How far back along the way flown a vehicle that has to land may look for ground: at 0.6 m/s on average
-/// (EmergencyLanding), and with time to come down.
+/// How far back along the flown path a vehicle that must land may search for ground: at 0.6 m/s on average
+/// (EmergencyLanding), with time left to descend.
 double path_back_m(const BatteryStatus& battery) {
   constexpr double kFarthest_m = 55, kMean_mps = 0.6, kDescent_s = 15;
   return std::clamp(kMean_mps * (battery.seconds_left - kDescent_s), 0.0, kFarthest_m);
 }
 
-/// Sideways on a pose that may not hold any more.
+/// The longest sideways flight on a pose that may no longer be valid.
 constexpr double kDoubtfulPath_m = 4.5;
 constexpr double kAnyPath_m = std::numeric_limits<double>::infinity();
 
-/// What the widest camera sees without turning need not be turned to; a little is seen twice.
+/// The angle to turn when looking around: a full turn less the widest camera's view, with a little overlap.
 double turn_to_see_all_around(const VehicleDescription& vehicle) {
   constexpr double kOverlap_rad = 0.2;
   double seen_rad = 0;
@@ -121,7 +121,7 @@ void MissionControl::begin(const Watch& watch) {
   onboard_.executive.every("watch", kSecond, kSecond, [this] { report_to_watcher(); });
 }
 
-/// Whatever fails, the steps go on: the vehicle has to come down.
+/// Whatever fails, the steps continue: the vehicle must land.
 bool MissionControl::advance(TimeNs until) {
   while (!result_) {
     try {
@@ -136,7 +136,7 @@ bool MissionControl::advance(TimeNs until) {
   return !result_ && now() < from_seconds(onboard_.options.mission.max_flight_time_s + kOverdue_s);
 }
 
-/// What cannot be written does not keep the rest from being written.
+/// A file that cannot be written does not prevent the others from being written.
 MissionResult MissionControl::end() {
   std::string problem;
   const auto attempt = [&problem](const auto& step) {
@@ -182,7 +182,7 @@ void MissionControl::end_flight(const char* reason, double max_path_m) noexcept 
   onboard_.flight.land_now(now(), max_path_m);
   sensors_.close();
   phases_.enter(Phase::land, now());
-  try {  // telling of it may fail, too
+  try {  // recording it may fail, too
     *emergency_ = reason;
     enter(Phase::land, reason);
     onboard_.recorder.write(now(), event::Safety{SafetyAction::land, reason});
@@ -214,7 +214,7 @@ void MissionControl::on_imu(const ImuSample& s) {
   watch_steps();
 }
 
-/// The vehicle's messages are a clock of their own: if the control step does not come, they take its place.
+/// The vehicle's messages serve as a second clock: if the control step is missing, they replace it.
 void MissionControl::watch_steps() {
   if (supervision_watch_.missing(now())) land_now("supervision does not come any more");
   if (control_watch_.missing(now())) land_now("control does not come any more");
@@ -294,13 +294,13 @@ void MissionControl::take_off() {
   const Vec3& hover = onboard_.flight.reference().position;
   flown_path_.begin(hover);
   return_home_.set_home(hover);
-  // A vehicle that sees all around already has nothing to look around for.
+  // A vehicle that sees all around need not turn to look around.
   if (onboard_.vehicle.lidar) return enter(Phase::explore, "");
   onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
   enter(Phase::look, "");
 }
 
-/// As it would in an emergency: where the ground is fit to land on, as far as that is known.
+/// Lands as in an emergency: where the ground is known to be suitable.
 void MissionControl::land_here(const std::string& reason) {
   lands_lost_ = onboard_.flight.estimator().health(now()) == Health::lost;
   onboard_.flight.land_now(now(), lands_lost_ ? kDoubtfulPath_m : kAnyPath_m);
@@ -321,7 +321,7 @@ void MissionControl::land() {
     return return_home_.begin("the pose is known again");
   }
   if (!onboard_.flight.at_rest(now())) return;
-  // Down until the ground is felt; the height above it is not known to better than the map.
+  // Descend until ground contact; the height above ground is known no better than the map.
   const MissionOptions& o = onboard_.options.mission;
   onboard_.flight.climb(now(), -(o.takeoff_height_m + 0.5), o.landing_speed_mps);
 }
@@ -329,7 +329,7 @@ void MissionControl::land() {
 MapQuestion MissionControl::map_question() const {
   MapQuestion question;
   const bool takes_off = phases_.in(Phase::takeoff);
-  if (takes_off || phases_.under_way())  // of what it takes off from, the ground is near
+  if (takes_off || phases_.under_way())  // during take-off the ground is near
     question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
   if (takes_off || phases_.in(Phase::look) || phases_.under_way())
     question.descent_path = DescentQuery{
@@ -360,8 +360,7 @@ void MissionControl::keep_safe() {
   o.now = now();
   o.estimate = flight.estimator().diagnose(now());
   o.tracking_error_m = (flight.state().position - flight.reference().position).norm();
-  if (phases_.under_way())
-    o.hull_clearance_m = sensors_.hull_clearance_m();  // not while it lifts off from the ground
+  if (phases_.under_way()) o.hull_clearance_m = sensors_.hull_clearance_m();  // not during lift-off
   o.blind_s = seconds(sensors_.blind_for());
   o.battery_s = endurance_.battery().seconds_left;
   const SafetyVerdict before = std::exchange(verdict_, safety_.judge(o));
@@ -396,7 +395,7 @@ void MissionControl::react(const SafetyVerdict& before) {
   if (brakes && under_way && !onboard_.flight.at_rest(now())) {
     goals_.drop_next(GoalFate::superseded, verdict_.reason, now());
     path_.brake(now());
-    path_.block();  // and look for a new way from there
+    path_.block();  // and plan a new path from there
   }
 }
 
@@ -427,7 +426,7 @@ void MissionControl::on_ground(TimeNs stamp) {
   if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
-/// Motors off, before anything else: who has lost the pose would never come down again.
+/// Stops the motors before anything else: a vehicle that has lost its pose would never land again.
 void MissionControl::touch_down(TimeNs stamp) {
   onboard_.flight.disarm();
   vehicle_.command(onboard_.flight.control(stamp));

@@ -9,14 +9,15 @@
 namespace karst::core {
 namespace {
 
-constexpr std::uint32_t kReported = 0;  // in place of a record's number, which is 1 at least
+constexpr std::uint32_t kReported = 0;  // instead of a record's number, which is at least 1
 
 }  // namespace
 
 void ObjectSearch::on_objects(const ObjectDetections& look) {
   if (look.stamp > onboard_.now() || !look.camera) return;
   const auto& known = onboard_.flight.estimator().history().states();
-  if (known.empty() || look.stamp < known.front().stamp) {  // where the camera was then is not known any more
+  if (known.empty() ||
+      look.stamp < known.front().stamp) {  // the camera's pose at that time is no longer known
     if (!std::exchange(late_looks_reported_, true))
       onboard_.recorder.write(onboard_.now(),
                               event::Log{"the object detector is too slow: its news is dropped"});
@@ -28,7 +29,7 @@ void ObjectSearch::on_objects(const ObjectDetections& look) {
   report(Report::what_changed);
 }
 
-/// Into the events, and to the team.
+/// Reports to the events and to the team.
 void ObjectSearch::report(Report which) {
   for (const ObjectNews& news : objects_.take_news(onboard_.now(), which == Report::all)) {
     const FoundObject& o = news.object;
@@ -43,11 +44,11 @@ void ObjectSearch::report(Report which) {
     if (withdrawn)
       records_.erase(o.number);
     else if (record != 0)
-      records_.try_emplace(o.number, record);  // the first: from then on the base knows of it
+      records_.try_emplace(o.number, record);  // the first record: with it the base knows the object
   }
 }
 
-/// Of which it knows that the base knows them, once each.
+/// Records each object, once, that the base is known to know.
 void ObjectSearch::note_at_base() {
   const std::uint32_t known = team_->known_at_base();
   for (auto& [number, record] : records_) {
@@ -57,8 +58,8 @@ void ObjectSearch::note_at_base() {
   }
 }
 
-/// At the end of the flight. A vehicle that flies alone reports where it landed, at the start; of a team, one
-/// that crashed tells nothing any more.
+/// Ends the search. A vehicle that flies alone reports where it landed, at the start. In a team, a vehicle
+/// that has crashed reports nothing more.
 void ObjectSearch::finish(bool landed) {
   if (team_ && !landed) return;
   report(Report::all);

@@ -9,13 +9,13 @@
 namespace karst::core {
 namespace {
 
-/// A scan's pose counts this long after the scan came in: with the sensor's own delay of 20 ms the estimate
-/// rests on a scan that ended 80 ms ago when the pose arrives.
+/// The latency from a scan's arrival to its pose: with the sensor's own delay of 20 ms, the scan ended 80 ms
+/// before the estimate receives the pose.
 constexpr TimeNs kLocalizationBudget = 60 * kMillisecond;
-/// In real time, where mapping falls behind: what is seen beyond so many waiting messages is not mapped. In
-/// lockstep no more than a budget's worth waits.
+/// In real time, when mapping falls behind, messages beyond this queue length are not mapped. In lockstep no
+/// more than a budget's worth waits.
 constexpr int kMaxWaiting = 16;
-/// Returns within this margin around the vehicle are the vehicle.
+/// Returns within this margin around the hull belong to the vehicle itself.
 constexpr double kSelfMargin_m = 0.05;
 
 }  // namespace
@@ -32,14 +32,14 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
   if (!scan) return;
   if (!loam_) return map_scan(std::move(scan));
   if (onboard_.executive.under_way("localization") > 1)
-    return;  // in real time, where it falls behind: the newest scans are of no use if they are late
+    return;  // in real time, when localization falls behind: late scans are useless
   const double self_m = onboard_.vehicle.radius_m + kSelfMargin_m;
   loam_->job(
       "localization", kLocalizationBudget,
       [scan, history = onboard_.flight.estimator().history(), self_m,
        filter = onboard_.options.perception](Loam& loam) {
-        // Only the paper's rule: robust matching copes with the dust that is left. What makes the map clean
-        // costs true returns at edges and bumps, and the drift grows threefold (docs/localization.md).
+        // Only the paper's rule: robust matching copes with the remaining dust. The stricter filter of the
+        // map loses true returns at edges and bumps, and triples the drift (docs/localization.md).
         LidarScan filtered = *scan;
         drop_weakest_returns(filtered, filter.percentile, filter.radius_m);
         return loam.process(to_sweep(filtered, self_m), history);
@@ -48,7 +48,7 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
         const bool accepted =
             pose.valid && onboard_.flight.on_lidar_pose({pose.stamp, pose.T_world_body, pose.covariance});
         note_localization(pose, accepted);
-        // What is not known where it was seen would spoil the map.
+        // Without a known pose the scan would corrupt the map.
         if (accepted) map_scan(scan);
       });
 }
@@ -75,7 +75,7 @@ void SensorPipeline::on_pose(const PoseSample& s) {
   if (!loam_ && s.stamp <= onboard_.now()) onboard_.flight.on_pose(s);
 }
 
-/// Into the events, whenever it changes.
+/// Records the state in the events whenever it changes.
 void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
   const std::string state = !pose.valid                ? pose.problem
                             : !accepted                ? "the pose contradicts the IMU"
@@ -115,7 +115,7 @@ void SensorPipeline::on_depth(std::shared_ptr<const DepthImage> image) {
   });
 }
 
-/// Where it was taken is known as well as it can be: scans of that moment have been located since.
+/// By now the pose is as accurate as it gets: scans of that moment have been located.
 void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
   if (frame->stamp > onboard_.now() || !frame->model || closed_) return;
   const Pose T_world_camera =
@@ -135,7 +135,7 @@ void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
   onboard_.recorder.frame(*frame, T_world_camera, file);
 }
 
-/// Nothing waits for it; a disk that refuses costs the picture and a warning, not the flight.
+/// Nothing waits for the picture; a write error costs the picture and a warning, not the flight.
 void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file) {
   auto problem = std::make_shared<std::string>();
   onboard_.executive.job(

@@ -12,23 +12,23 @@
 namespace karst::core {
 namespace {
 
-constexpr double kSiteRadius_m = 3.0;     // of a landing place from the pose that it is judged for
-constexpr std::size_t kJudgedBehind = 3;  // poses: by then the ground there has been seen
+constexpr double kSiteRadius_m = 3.0;     // of a landing site from the pose it is judged for
+constexpr std::size_t kJudgedBehind = 3;  // poses later the ground there has been observed
 constexpr double kRecheckMargin_m = 1.0;
-constexpr double kRockMargin_m = 0.1;   // beyond the vehicle's radius: nearer rock closes a ray
-constexpr double kBesideRoute_m = 4.0;  // landing places so near to the homing route are on it
-/// Kept for hearing whether it is in contact there, and for a step nearer if it is not.
+constexpr double kRockMargin_m = 0.1;   // beyond the vehicle's radius: nearer rock blocks a ray
+constexpr double kBesideRoute_m = 4.0;  // landing sites this near to the homing route are on it
+/// Reserve for checking radio contact at the site, and for moving nearer without contact.
 constexpr double kConfirm_s = 6.0;
-/// Kept for another place where the node is yet to land, and by so much its battery ends before one's own.
+/// Reserve for another site if the node has yet to land, and the margin by which its battery must end first.
 constexpr double kClaimed_s = 10.0;
-/// With each place where a node was not heard the next must have so much more to spare of it: those beside it
-/// would be in vain, too.
+/// Each site without contact to a node raises the link margin required of further sites by this much, since
+/// sites beside it would fail as well.
 constexpr double kDoubt_db = 3.0;
 constexpr double kMaxFall_m = 5.0;  // of a node that is dropped
-/// It is dropped with less than that to spare a second on: nobody looks whether it is heard before it lies
-/// there.
+/// A node is dropped if the link margin one second ahead is below this: its link cannot be tested before it
+/// lies there.
 constexpr double kNodeSpare_db = 1.0;
-constexpr std::size_t kFirstBatch = 8;  // of places that are asked for a way
+constexpr std::size_t kFirstBatch = 8;  // of sites to which a path is planned
 constexpr TimeNs kSurelyBefore = 30 * kSecond;
 
 void append(TreeFacts& to, const TreeFacts& more) {
@@ -37,13 +37,13 @@ void append(TreeFacts& to, const TreeFacts& more) {
   to.lives.insert(to.lives.end(), more.lives.begin(), more.lives.end());
 }
 
-/// Where a node that is dropped falls to: on with the vehicle's speed for as long as it takes. It may come to
-/// lie on a slope or among stones.
+/// Where a dropped node lands: it keeps the vehicle's velocity while it falls. It may come to rest on a slope
+/// or among stones.
 std::optional<Vec3> ground_of_node(const VoxelMap& map, const Release& release) {
   constexpr double kGravity_mps2 = 9.81;
   Vec3 at = release.position;
   Ground below;
-  for (int i = 0; i < 3; ++i) {  // the ground there may be lower than the ground below the vehicle
+  for (int i = 0; i < 3; ++i) {  // the ground there may be lower than below the vehicle
     below = ground_below(map, at, 0, {.margin_m = 0, .max_drop_m = kMaxFall_m});
     if (below.verdict == GroundVerdict::no_floor || below.verdict == GroundVerdict::unknown)
       return std::nullopt;
@@ -91,7 +91,7 @@ TreeFacts RelayHoming::update(const VoxelMap& map, const Roadmap& roadmap, const
     ++nodes_made_;
     append(out, own);
   }
-  // Also where others have made nodes: of their ground it knows nothing.
+  // This includes places with other robots' nodes, as their ground is unknown to this robot.
   const bool judged = std::any_of(passed_.begin(), passed_.end(), [&](const Vec3& p) {
     return (p - here).norm() < options_.tree.min_edge_m;
   });
@@ -131,11 +131,12 @@ void RelayHoming::look_around(const VoxelMap& map, const Roadmap& roadmap, const
   find_links(map);
 }
 
-/// The place near a pose that is reached and landed on soonest.
+/// The site near a pose where the vehicle can land soonest.
 void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3& pose) {
   std::vector<LandingSite> candidates;
   for (const Vec3& p : roadmap.places_near(pose, kSiteRadius_m)) {
-    if (!is_clear(map, p, planning_.clearance_m)) continue;  // by the search's alone no way may lead there
+    if (!is_clear(map, p, planning_.clearance_m))
+      continue;  // with the search clearance alone there may be no path
     const Ground ground = ground_below(map, p, radius_m_, options_.landing.ground);
     if (ground.verdict == GroundVerdict::good) candidates.push_back({p, ground.ground, std::nullopt});
   }
@@ -158,17 +159,17 @@ void RelayHoming::judge(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
   }
 }
 
-/// The node of the best link to each place, as far as the map tells; of those yet to land if there is no
-/// other. A link that was counted on stands while half of what is to spare is left: otherwise a relay that
-/// came down a few centimetres from where it meant to takes a place away from who is far out, and relies on
-/// it.
+/// Assigns to each site the node with the best predicted link; a node that has yet to land only if there is
+/// no other. A link in use is kept while half of its required margin is left. Otherwise a relay that landed a
+/// few centimetres off could invalidate the site that a robot far away relies on.
 void RelayHoming::find_links(const VoxelMap& map) {
   for (LandingSite& p : sites_) {
     double best_db = -std::numeric_limits<double>::infinity();
     const std::optional<RobotId> before = std::exchange(p.node, std::nullopt);
     for (const Relay& r : relays_) {
-      if (r.stands_by && p.node && !p.claimed) break;                                   // these come last
-      if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1) continue;  // spares a long ray
+      if (r.stands_by && p.node && !p.claimed) break;  // nodes yet to land come last
+      if ((r.antenna - p.ground).norm() > options_.landing.link.range_m + 1)
+        continue;  // avoids casting a long ray
       const double db = margin_db(map, p.ground, r);
       const double min_db = before == r.robot ? -options_.landing.link.spare_db / 2 : 0;
       if (db >= min_db && db >= best_db) {
@@ -190,7 +191,7 @@ void RelayHoming::no_contact_at(const LandingSpot& spot) {
     doubt_db_[spot.node] += kDoubt_db;
   std::erase_if(relays_, [this](const Relay& r) { return r.stands_by && has_failed(r); });
   for (LandingSite& p : sites_)
-    if (p.node == spot.node) p.node.reset();  // no link is counted on because it was before
+    if (p.node == spot.node) p.node.reset();  // links in use lose their hysteresis
 }
 
 bool RelayHoming::has_failed(const Relay& relay) const {
@@ -205,7 +206,7 @@ bool RelayHoming::free_to_take(const LandingSite& site) const {
   return !near(taken_, site.ground, separation_m_) && !near(given_up_, site.hover, 1e-3);
 }
 
-/// Nearest first by the straight line, which no way is shorter than: most places are never asked for a way.
+/// Visits sites by straight-line distance, a lower bound of the path length, so that few need a path query.
 std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const Roadmap& roadmap,
                                                       const Vec3& from, double sooner_than_s) const {
   struct Candidate {
@@ -241,7 +242,7 @@ std::optional<LandingSpot> RelayHoming::nearest_place(const VoxelMap& map, const
   return best;
 }
 
-/// The first place beside the homing route from which the route's own node is in reach.
+/// The first site beside the homing route that is in range of the route's node.
 std::optional<LandingSpot> RelayHoming::up_the_tree(const VoxelMap& map, const Roadmap& roadmap,
                                                     const Vec3& from) const {
   const FreeRay free = free_rays(roadmap, search_clearance_m(planning_, map.resolution_m()));

@@ -7,16 +7,16 @@
 namespace karst::core {
 namespace {
 
-constexpr double kGoodQuality = 0.2;  // of a link to land by: gossip copes with losses
-/// Each way, of links that a dropped node is counted on over: nobody looked whether it is heard where it
-/// lies, and what is just in reach comes and goes.
+constexpr double kGoodQuality = 0.2;  // minimal quality of a link for landing: gossip copes with losses
+/// Minimal quality of a dropped node's links, each way. The link could not be tested before the drop, and a
+/// link at the limit of range is intermittent.
 constexpr double kNodeQuality = 0.45;
 constexpr double kAntenna_m = 0.3;  // above the ground, of a landed robot
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
-constexpr double kHeardNow = 1.0 / 3;  // of link_age: it is alive, whoever told it dead
-constexpr double kNear_m = 20.0;       // another vehicle in the air: positions are told more often
+constexpr double kHeardNow = 1.0 / 3;  // of link_age: heard so recently, a node is alive
+constexpr double kNear_m = 20.0;       // to an airborne vehicle: states are sent more often
 
-/// Over a chain of many radios what the far end says is older than link_age (gossip.h).
+/// In a chain of many radios, states from the far end are older than link_age (gossip.h).
 RelayOptions for_chain_of_all(const HomingOptions& homing, const TeamOptions& team) {
   RelayOptions out = homing.relay;
   const auto radios = static_cast<std::size_t>(1 + team.robots * (1 + team.nodes));
@@ -81,7 +81,7 @@ void TeamNode::take(const Delivery& d) {
   };
   if (const auto* facts = std::get_if<TreeFacts>(&d.record)) {
     note_facts(*facts);
-    if (d.author != self() || self() == kBase) {  // a robot's own are in its tree; the base makes none
+    if (d.author != self() || self() == kBase) {  // a robot's tree holds its own facts; the base creates none
       facts_.nodes.insert(facts_.nodes.end(), facts->nodes.begin(), facts->nodes.end());
       facts_.rays.insert(facts_.rays.end(), facts->rays.begin(), facts->rays.end());
       facts_.lives.insert(facts_.lives.end(), facts->lives.begin(), facts->lives.end());
@@ -106,8 +106,8 @@ void TeamNode::note_facts(const TreeFacts& facts) {
   }
 }
 
-/// Who stands still tells of a neighbour that stands still and has fallen silent: once, for others may hear
-/// it yet. Who hears one that is told dead tells that it is alive: as often as it is told dead.
+/// A landed node reports once that a landed neighbour has fallen silent, since others may still hear it. A
+/// node that hears a neighbour reported dead reports that it is alive, every time.
 void TeamNode::watch_relays(TimeNs now) {
   const auto stands = [this](RobotId r) {
     return r == kBase || (landings_[r] && landings_[r]->state == LandingClaim::State::landed);
@@ -136,21 +136,20 @@ RelayGraph::Robots TeamNode::landed() const {
   return out;
 }
 
-/// Who reaches the base over others that have landed: who is in the air passes on what it hears, and flies
-/// away. As of when each was last heard of: since then nobody has told otherwise. News come in pieces, and
-/// who was counted on while it was on its way down is not dropped for that: of whom the landing is known, but
-/// nothing since, counts; and so does one that by its own word hears one that counts, whether or not the rest
-/// of the way to the base is known to be up as of the same time.
+/// The nodes with a route to the base over landed nodes only: an airborne robot forwards frames, but flies
+/// away. Each node's last known links count, until newer reports contradict them. Reports arrive piecemeal,
+/// and a robot that was counted on during its descent must not be dropped for that. A node therefore also
+/// counts if its landing is known but no state since, or if it reports contact with a node that counts, even
+/// if the links from there to the base are known only as of another time.
 RelayGraph::Robots TeamNode::landed_in_range() const {
   const std::vector<TeamState> states = gossip_.states();
   const RelayGraph::Robots landed = this->landed();
   RelayGraph::Robots stands{}, counts{};
   for (const TeamState& state : states) stands[state.robot] = state.phase == TeamPhase::relay;
-  const auto may =
-      [&](RobotId r) {  // by its own word it stands where it claimed: the record of that will come
-        if (r == self() || r == kBase || !landings_[r] || reported_dead(r)) return false;
-        return landed[r] || (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
-      };
+  const auto may = [&](RobotId r) {  // its state says it landed; the record of that will follow
+    if (r == self() || r == kBase || !landings_[r] || reported_dead(r)) return false;
+    return landed[r] || (landings_[r]->state == LandingClaim::State::claimed && stands[r]);
+  };
   counts[kBase] = true;
   for (RobotId r = 1; r < kMaxRobots; ++r) {
     if (!may(r)) continue;

@@ -7,7 +7,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kSize_m = 1.0, kFarthest_m = 3.0, kDeviations = 3.0;
-constexpr double kMinDeviation_m = 0.05;  // they are told in steps of 0.1 m
+constexpr double kMinDeviation_m = 0.05;  // reported in steps of 0.1 m
 
 bool from(const TeamObject& o, RobotId finder) {
   return std::any_of(o.reported_by.begin(), o.reported_by.end(),

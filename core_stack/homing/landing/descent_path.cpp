@@ -11,11 +11,11 @@ namespace karst::core {
 namespace {
 
 constexpr double kFarthest_m = 4, kRing_m = 0.5;
-constexpr double kNearlyThere_m = 2;  // of where it is to land: there it lands, whatever else is fit
+constexpr double kNearlyThere_m = 2;  // of its landing site: preferred over any other ground
 constexpr int kDirections = 16;
-constexpr double kBesideHull_m = 0.15;  // kept free on the line there, and in the column below
+constexpr double kBesideHull_m = 0.15;  // kept free along the line, and in the column below
 
-/// From what is asked of a landing place to what a vehicle just stands on: a slope of 50 deg throws it over.
+/// Limits of the ground, from those of a landing site to what a vehicle just stands on: 50 deg topples it.
 constexpr std::array kGround{
     GroundOptions{.margin_m = kBesideHull_m, .max_slope_deg = 15, .max_step_m = 0.25, .max_drop_m = 20},
     GroundOptions{.margin_m = kBesideHull_m, .max_slope_deg = 30, .max_step_m = 0.4, .max_drop_m = 20}};

@@ -11,14 +11,14 @@
 namespace karst::core {
 namespace {
 
-/// First cell below `k`, itself included, that is not free, no more than `most` cells down.
+/// The first cell at or below `k` that is not free, at most `most` cells down.
 std::optional<CellKey> first_below(const VoxelMap& map, CellKey k, int most) {
   for (int i = 0; i <= most; ++i, --k.z)
     if (map.at(k) != Cell::free) return k;
   return std::nullopt;
 }
 
-/// Slope of the plane that fits best, and the range of heights above it.
+/// The slope of the fitted plane, and the range of heights above it.
 void fit_plane(const std::vector<Vec3>& points, Ground& out) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
@@ -41,7 +41,7 @@ void fit_plane(const std::vector<Vec3>& points, Ground& out) {
   out.step_m = high - low;
 }
 
-/// Which cells of a cube are in one piece with which: components of what is set, 26 neighbours.
+/// The 26-connected components of the set cells of a cube.
 class Pieces {
  public:
   Pieces(const std::vector<char>& set, int edge) : of_(set.size(), -1) {
@@ -90,7 +90,7 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
   if (!floor || floor->z == top.z) return out;
   if (map.at(*floor) != Cell::occupied) return refused(GroundVerdict::unknown);
   out.ground = {place.x(), place.y(), map.center_of(*floor).z() + res / 2};
-  // Ground may fall away by the whole of the step and slope; farther down there is none.
+  // Ground may drop by the full step and slope; farther down it does not count.
   const double fall_m =
       options.max_step_m + 2 * radius_m * std::tan(options.max_slope_deg * std::numbers::pi / 180);
   const int lowest = top.z - floor->z + static_cast<int>(std::ceil(fall_m / res));
@@ -151,7 +151,7 @@ bool keeps_passage_open(const VoxelMap& map, const Vec3& standing, double vehicl
     const CellKey k = cell(i);
     const bool on_face = std::min({k.x, k.y, k.z}) == 0 || std::max({k.x, k.y, k.z}) == edge - 1;
     if (!on_face || !before[i]) continue;
-    if (!after[i]) return false;  // the cube is too small to tell
+    if (!after[i]) return false;  // the cube is too small to decide
     int& piece = became[static_cast<std::size_t>(old_pieces.of(i))];
     if (piece >= 0 && piece != new_pieces.of(i)) return false;
     piece = new_pieces.of(i);

@@ -13,7 +13,7 @@ void describe(OptionTable& t, LinkEstimateOptions& o) {
 }
 
 double not_free_m(const VoxelMap& map, const Vec3& a, const Vec3& b) {
-  // By samples, for which a tenth of a cell is fine enough: a radio's loss is not known any better.
+  // Sampled at a tenth of a cell, which is finer than radio losses are known.
   const double length_m = (b - a).norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(length_m / (0.1 * map.resolution_m()))));
   int outside = 0;

@@ -6,12 +6,12 @@
 namespace karst::core {
 namespace {
 
-/// Mean speed on the roadmap's way over the greatest speed. The way zigzags some per cent longer than what is
-/// flown, and bends and turning cost time. Flights home of 35 to 250 m took 0.88 to 0.98 of the greatest
-/// speed.
+/// Ratio of the mean speed along the roadmap's path to the maximal speed. That path zigzags and is a few per
+/// cent longer than the path flown; bends and turns cost time. Flights home of 35 to 250 m reached 0.88 to
+/// 0.98 of the maximal speed.
 constexpr double kCruiseFraction = 0.8;
 
-/// Flying straight away from home at the greatest speed takes less than 3 s of slack a second.
+/// Flying straight away from home at maximal speed uses less than 3 s of slack a second.
 constexpr double kAtOnce_s = 5.0;
 constexpr int kDoubtedTimes = 3;
 
@@ -45,7 +45,7 @@ double cruise_speed_mps(const MotionLimits& limits) { return kCruiseFraction * l
 
 double flight_time_s(double length_m, const MotionLimits& limits) {
   const double cruise = cruise_speed_mps(limits), a = limits.max_acceleration_mps2;
-  // A ramp up and a ramp down of cruise / a each; shorter ways never reach the cruise.
+  // Acceleration and braking take cruise / a each; short paths never reach cruise speed.
   return length_m >= cruise * cruise / a ? length_m / cruise + cruise / a : 2 * std::sqrt(length_m / a);
 }
 

@@ -6,15 +6,15 @@
 namespace karst::core {
 namespace {
 
-/// Two nodes in one place are still an edge apart, or ways between them could run in circles.
+/// The minimal edge length: with zero-length edges, paths could contain cycles.
 constexpr double kMinLength_m = 0.01;
-constexpr std::size_t kMaxRays = 1024;  // of a node; what flies has tens
+constexpr std::size_t kMaxRays = 1024;  // of a node; in flight there are tens
 
 std::tuple<NodeKind, double, double, double> rank(const TreeNode& n) {
   return {n.kind, n.position.x(), n.position.y(), n.position.z()};
 }
 
-/// The segment comes within the box, judged by its own bounding box first and then by clipping.
+/// Whether the segment intersects the box: tests its bounding box first, then clips.
 bool meets_box(const Vec3& a, const Vec3& b, const Vec3& low, const Vec3& high) {
   double first = 0, last = 1;
   for (int i = 0; i < 3; ++i) {
@@ -100,7 +100,7 @@ TreeFacts HomingTree::recheck(const Vec3& low, const Vec3& high, double margin_m
       const Ray* known = ray(i, k);
       const bool was_free = known != nullptr && known->free;
       if (was_free ? !ask(i, k, rock) : !ask(i, k, free_ray)) continue;
-      // What is seen now overrules what was said before, even by a robot whose clock is ahead.
+      // A new observation supersedes earlier reports, even by a robot whose clock is ahead.
       const TimeNs later = std::max(to_milliseconds(stamp), known ? known->stamp + kMillisecond : 0);
       const RayFact fact{a.id, b.id, !was_free, later};
       if (set_ray(fact)) facts.rays.push_back(fact);
@@ -133,8 +133,8 @@ std::optional<std::uint32_t> HomingTree::find_or_name(const NodeId& id) {
   return i;
 }
 
-/// Two nodes of one id: robots do not do that, but if it happened the tree must not depend on who spoke
-/// first.
+/// Robots do not create two nodes with one id; but if it happens, the tree must not depend on the order of
+/// arrival.
 bool HomingTree::place(const TreeNode& node) {
   if (!node.position.allFinite() || node.position.cwiseAbs().maxCoeff() > 1e6) return false;
   const auto i = find_or_name(node.id);

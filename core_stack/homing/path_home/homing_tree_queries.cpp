@@ -1,4 +1,4 @@
-// What is asked of the homing tree.
+// Queries of the homing tree.
 #include <algorithm>
 
 #include "core_stack/homing/path_home/homing_tree.h"
@@ -19,7 +19,7 @@ std::optional<HomingRoute> HomingTree::route(const Vec3& from, const FreeRay& fr
     if (a.time_s != b.time_s) return a.time_s < b.time_s;
     return entries_[a.node].node.id < entries_[b.node].node.id;
   });
-  // Rays cost more than all the rest: most often the first is free.
+  // Rays are the most expensive part, and usually the first one is free.
   const auto first = std::find_if(starts.begin(), starts.end(), [&](const Start& s) {
     return free_ray(from, entries_[s.node].node.position);
   });

@@ -19,7 +19,7 @@ void ShortestPaths::part(std::uint32_t a, std::uint32_t b) {
   const auto drop = [this](std::uint32_t from, std::uint32_t to) {
     std::erase_if(nodes_[from].edges, [to](const Edge& e) { return e.to == to; });
   };
-  // Those that go this way must be told before the edge is gone.
+  // Invalidate paths over this edge before removing it.
   if (nodes_[a].next == b) forget(a);
   if (nodes_[b].next == a) forget(b);
   drop(a, b);
@@ -33,7 +33,7 @@ void ShortestPaths::set_source(std::uint32_t n, bool source) {
   if (source) lost_.push_back(n);
 }
 
-/// n and all whose way leads through it know no way.
+/// Invalidates n and all nodes whose path leads through it.
 void ShortestPaths::forget(std::uint32_t n) {
   std::vector<std::uint32_t> open{n};
   while (!open.empty()) {
@@ -63,8 +63,8 @@ void ShortestPaths::offer(std::uint32_t n, double cost, std::uint32_t by) {
 
 void ShortestPaths::relax() {
   touched_ = lost_.size();
-  // What others offer the lost is gathered first: an offer that stands on another lost node's would do no
-  // harm, but push entries that go stale.
+  // Collect the offers for all lost nodes first. An offer based on another lost node would be correct, but
+  // push entries that become stale.
   std::vector<Entry> offers(lost_.size(), {unreachable, none});  // node: by whom
   for (std::size_t i = 0; i < lost_.size(); ++i)
     for (const Edge& e : nodes_[lost_[i]].edges) {
@@ -78,7 +78,7 @@ void ShortestPaths::relax() {
     if (offers[i].cost < unreachable) offer(lost_[i], offers[i].cost, offers[i].node);
   }
   for (const auto& [a, b] : joined_)
-    for (const Edge& e : nodes_[a].edges)  // the edge may have been parted again
+    for (const Edge& e : nodes_[a].edges)  // the edge may have been removed again
       if (e.to == b) {
         if (nodes_[a].cost < unreachable) offer(b, nodes_[a].cost + e.cost, a);
         if (nodes_[b].cost < unreachable) offer(a, nodes_[b].cost + e.cost, b);

@@ -17,7 +17,7 @@ bool any_reachable(const std::vector<FrontierOffer>& offers) {
                      [](const FrontierOffer& o) { return std::isfinite(o.path_length_m); });
 }
 
-/// For the report, which does not show their cells.
+/// Copies for the report, which does not show their cells.
 std::vector<FrontierCluster> without_cells(const std::vector<FrontierOffer>& offers) {
   std::vector<FrontierCluster> out;
   for (const FrontierOffer& offer : offers) {
@@ -28,8 +28,8 @@ std::vector<FrontierCluster> without_cells(const std::vector<FrontierOffer>& off
   return out;
 }
 
-/// None of the goals could be accepted. The fallback proposes every frontier in reach: if it has tried all of
-/// them, nothing is left to do.
+/// Handles a list without an acceptable goal. The fallback proposes every reachable frontier: if it has tried
+/// all of them, nothing is left to explore.
 void give_up(const GoalChoice& tried, bool all_too_far, DecidedBy by, CycleResult& result) {
   const bool last_resort = by == DecidedBy::fallback && !tried.more_to_try;
   result.outcome = last_resort ? Outcome::explored : Outcome::hold;
@@ -56,13 +56,13 @@ CycleResult DecisionCycle::decide(const CycleInput& input, const Claims& claims)
   CycleResult result;
   const auto begin = std::chrono::steady_clock::now();
   tell(input.events, input.now);
-  // What was looked at and opens again right there is mostly noise at a wall: it may wait.
+  // A frontier that reopens where one was just seen is mostly noise at a wall: it may wait.
   for (const std::uint32_t id : input.looked_at)
     if (const auto place = chosen_.centroid(id))
       ledger_.close(world_->map(), *place, input.now, "looked at a short while ago");
 
-  // Narrow passages come last: when nothing else is in reach, and when nothing else could be flown to. What
-  // the goal under way will show may still be more.
+  // Narrow passages come last: when nothing else is reachable, or no other goal was acceptable. They must
+  // wait while the current goal may still reveal more.
   const ClearanceRoadmap& first = world_->roadmap_at(input.from);
   const DecidedBy by = policy_.begin_cycle(input.now);
   const Question question = ask_about(first, input, claims);
@@ -133,7 +133,7 @@ DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const Cy
   return request;
 }
 
-/// Of two questions in a cycle the last answer counts.
+/// If a cycle asks twice, the last answer counts.
 void DecisionCycle::answer(const Question& question, DecidedBy by, CycleResult& result) {
   const auto begin = std::chrono::steady_clock::now();
   PolicyAnswer answer = policy_.ask(question.request, by);
@@ -156,7 +156,7 @@ void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer,
   GoalChoice last = own;
   DecidedBy by = answer.by;
   result.rejected.insert(result.rejected.end(), own.rejected.begin(), own.rejected.end());
-  // Waiting brings no battery back: goals that are all too far are no reason to stand and ask again.
+  // Waiting does not recharge the battery: if all goals are too far, asking again is pointless.
   if (!own.goal && own.all_too_far && by == DecidedBy::policy) {
     const PolicyAnswer fallback = policy_.ask_fallback(question.request);
     by = fallback.by;
@@ -175,7 +175,7 @@ void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer,
     policy_.notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});
 }
 
-/// A frontier chosen again counts as it was when it was chosen first.
+/// A frontier that is chosen again keeps its state of the first choice.
 void DecisionCycle::note_chosen(const Goal& goal, const CycleInput& input) {
   if (input.last_goal && input.last_goal->frontier_id == goal.frontier_id) return;
   const auto& clusters = world_->frontiers().clusters();

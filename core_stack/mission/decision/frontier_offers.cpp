@@ -8,13 +8,13 @@
 namespace karst::core {
 namespace {
 
-/// Viewpoints are looked for as far as this from a cluster; a viewpoint holds until the map changes there.
+/// The search range for viewpoints of a cluster; a viewpoint stays valid until the map changes there.
 constexpr double kViewpointRange_m = 4.6;
 
-/// When no other place is left, the pauses of failed places are waived: those of the first three attempts.
+/// When nothing else is left, the pauses of places that failed up to three times are waived.
 constexpr TimeNs kPauseWaived = 40 * kSecond;
-/// In a narrow passage the next place to look at is never far from the last ones: the pauses of two attempts
-/// more are waived, even if the map has not changed there.
+/// In a narrow passage the next viewpoint is always near the last ones: the pauses of two more attempts are
+/// waived, even if the map has not changed there.
 constexpr TimeNs kNarrowPauseWaived = 160 * kSecond;
 
 ClosureRules last_resort_rules(Passages passages, TimeNs now) {
@@ -32,7 +32,7 @@ Offers FrontierOffers::find(const OfferQuery& query) {
   Offers open;
   open.rules = {.at = query.now};
   open.frontiers = find_by(open.rules, query.claims, query);
-  // Rather where another vehicle is about to look than nowhere.
+  // A frontier that another vehicle is about to explore is better than none.
   if (open.frontiers.empty() && !query.claims.goals.empty()) open.frontiers = find_by(open.rules, {}, query);
   if (open.frontiers.empty()) {
     open.rules = last_resort_rules(query.roadmap->passages(), query.now);
@@ -70,7 +70,7 @@ std::vector<FrontierOffer> FrontierOffers::find_by(const ClosureRules& rules, co
   return open;
 }
 
-/// As found before, if nothing has changed near the cluster.
+/// Returns the cached viewpoint if nothing has changed near the cluster.
 FrontierOffers::KnownViewpoint FrontierOffers::viewpoint_for(const FrontierCluster& cluster,
                                                              const ClearanceRoadmap& roadmap) {
   const VoxelMap& map = world_->map();
@@ -89,8 +89,7 @@ FrontierOffers::KnownViewpoint FrontierOffers::viewpoint_for(const FrontierClust
   return entry;
 }
 
-/// If a vehicle that sees in all directions could look into the frontier, then it is the sensors that forbid
-/// it.
+/// If a vehicle with an all-round view could see the frontier, the sensors' field of view is the reason.
 void FrontierOffers::explain_unseen(const FrontierCluster& cluster, double clearance_m) {
   auto sphere = std::make_shared<LidarModel>();
   sphere->elevation_rad = {std::numbers::pi_v<float> / 2, -std::numbers::pi_v<float> / 2};

@@ -10,10 +10,10 @@
 namespace karst::core {
 namespace {
 
-/// A cycle tries no more plans than this for one list: the rest of the list waits for the next cycle.
+/// The number of plans that a cycle tries for one list; the rest waits for the next cycle.
 constexpr int kMaxPlans = 5;
 
-/// A path flown at next to no speed would hold the vehicle until the battery calls it home.
+/// A path flown at nearly zero speed would hold the vehicle until the battery forces it home.
 std::optional<std::string> too_slow(const Goal& goal, const MotionLimits& limits) {
   const double min_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
   if (goal.max_speed_mps == 0 || goal.max_speed_mps >= min_mps) return std::nullopt;

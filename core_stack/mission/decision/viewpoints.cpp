@@ -8,7 +8,7 @@
 namespace karst::core {
 namespace {
 
-/// Distances tried, metres. A little back is best: near enough for a dense scan, far enough to see around.
+/// Candidate distances in metres, best first: near enough for a dense scan, far enough for an overview.
 constexpr std::array kShells = {1.0, 1.8, 2.8, 4.0, 0.4};
 constexpr std::array kElevations = {0.0, -0.35, 0.35, -0.8, 0.8, -1.4, 1.4};
 constexpr int kAzimuths = 12;
@@ -16,7 +16,7 @@ constexpr int kAzimuths = 12;
 /// LiDAR rings spread with range: beyond this a scan is too sparse to close a frontier.
 constexpr double kLidarViewRange_m = 10.0;
 
-/// Cells of the cluster that can be seen along a free line, out of at most eight looked at.
+/// How many of at most eight sampled cells of the cluster have a free line of sight.
 int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const VehicleDescription& vehicle,
                const Viewpoint& from) {
   const std::size_t stride = std::max<std::size_t>(1, cluster.cells.size() / 8);
@@ -28,11 +28,11 @@ int cells_seen(const VoxelMap& map, const FrontierCluster& cluster, const Vehicl
   return seen;
 }
 
-/// `p`, or the nearest point half a cell from it in some axes, that is clear. In a narrow passage clear
-/// points lie along a thread, which candidates that keep their distance to the cluster mostly miss.
+/// `p` if it is clear, or the nearest clear point half a cell from it along some axes. In a narrow passage
+/// the clear points form a thin line, which the shells of candidates mostly miss.
 std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double clearance_m) {
   const double step_m = map.resolution_m() / 2;
-  // Clearance changes no faster than the place: from here no point that near could be clear.
+  // Clearance changes by at most the distance moved: no point that near could be clear.
   if (!is_clear(map, p, clearance_m - std::sqrt(3.0) * step_m - 1e-6)) return std::nullopt;
   std::optional<Vec3> best;
   int least = 4;
@@ -84,7 +84,7 @@ int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
                                         const VehicleDescription& vehicle, double clearance_m,
                                         const Roadmap* roadmap) {
-  // The frontier cell nearest the centroid stands for the cluster: the centroid itself may lie in rock.
+  // The frontier cell nearest to the centroid represents the cluster: the centroid itself may lie in rock.
   Vec3 target = cluster.centroid;
   double least = 1e9;
   for (const CellKey& k : cluster.cells) {
@@ -99,7 +99,7 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
   const auto consider = [&](const Vec3& position, double azimuth) {
     const Viewpoint v{position, azimuth};
     if (!in_view(vehicle, v, target, kLidarViewRange_m) || map.first_not_free(position, target)) return;
-    // Facing the opening squarely counts as one more cell seen.
+    // Facing the opening squarely counts as one more visible cell.
     const Vec3 away = position - target;
     const double value =
         cells_seen(map, cluster, vehicle, v) - away.normalized().dot(cluster.normal) - 0.2 * away.norm();

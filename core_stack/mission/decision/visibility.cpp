@@ -10,18 +10,18 @@
 namespace karst::core {
 namespace {
 
-/// A ledge or the height of a chamber may be climbed blind: every cell of the way has been seen, after all.
+/// A ledge or the height of a chamber may be climbed blind, since every cell of the path has been observed.
 constexpr double kLedge_m = 3.0;
-constexpr double kStep_m = 0.5;  // of the way looked at
+constexpr double kStep_m = 0.5;  // between the path points checked
 constexpr double kDegree_rad = std::numbers::pi / 180;
 
-/// Levels are not new this near, horizontally, to where the vehicle was as high, or as low.
+/// A height is not new within this horizontal distance of where the vehicle has been as high, or as low.
 constexpr double kBeside_m = 4.0;
-/// A way back is not flown to the centimetre. Only where the vehicle was more than kClimbWindow_m of way ago:
-/// else it could go down a shaft by this much at a time.
+/// Tolerance for paths back, which are not flown to the centimetre. It applies only to heights reached more
+/// than kClimbWindow_m of path ago: otherwise the vehicle could descend a shaft by this much at a time.
 constexpr double kSameLevel_m = 0.5;
 
-/// Points of the polyline about kStep_m apart, its end included.
+/// Resamples the polyline at about kStep_m, its end included.
 std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
   std::vector<Vec3> out;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -30,7 +30,7 @@ std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
   return out;
 }
 
-/// The lowest and the highest level flown beside `p`.
+/// The lowest and highest heights flown beside `p`.
 struct Levels {
   double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
 };
@@ -44,7 +44,7 @@ Levels levels_beside(const Vec3& p, const std::vector<Vec3>& flown, std::size_t 
   return l;
 }
 
-/// How many of the points lie more than kClimbWindow_m of way before the last one.
+/// How many of the points lie more than kClimbWindow_m of path before the last one.
 std::size_t before_the_window(const std::vector<Vec3>& flight_path) {
   double run_m = 0;
   std::size_t i = flight_path.size();
@@ -80,7 +80,7 @@ std::optional<std::string> blind_climb(const SteepestView& view, const std::vect
   flight_path.insert(flight_path.end(), after.begin(), after.end());
   const std::size_t long_ago = before_the_window(before);
   for (std::size_t to = before.size(); to < flight_path.size(); ++to) {
-    std::optional<Levels> flown;  // beside there, when it is first asked for
+    std::optional<Levels> flown;  // computed on first use
     Vec3 low = flight_path[to], high = flight_path[to];
     double run_m = 0;
     for (std::size_t from = to; from-- > 0;) {

@@ -7,14 +7,14 @@ namespace karst::core {
 namespace {
 
 constexpr TimeNs kPeriod = 50 * kMillisecond;
-/// Nothing follows that could be missed for a delay: it may use nearly all the acceleration there is.
+/// No later motion depends on its timing, so the brake may use nearly the full acceleration.
 constexpr double kFraction = 0.95;
-/// Between brake and descent: the vehicle itself is a little behind its reference.
+/// The pause between brake and descent: the vehicle lags a little behind its reference.
 constexpr TimeNs kStandStill = 500 * kMillisecond;
 constexpr double kDeepest_m = 1000;
-/// A way that begins farther from where it stopped is of another moment.
+/// A path that begins farther from the stop is out of date.
 constexpr double kStale_m = 2;
-constexpr double kMove_mps = 1.0;  // at most, between two rests
+constexpr double kMove_mps = 1.0;  // at most, from rest to rest
 constexpr std::size_t kMoveSamples = 256;
 
 }  // namespace
@@ -36,9 +36,9 @@ void EmergencyLanding::prepare(std::span<const Vec3> path) noexcept {
   std::copy_n(path.begin(), places_, path_.begin());
 }
 
-/// The trajectory x is flown on ever more slowly: after t of the T = v / a that the brake takes, as far as it
-/// would have come in t - t^2 / (2 T). So it stays on its path, which is known to be free, and from the speed
-/// v comes to rest with the deceleration a.
+/// Brakes by slowing time along the trajectory x: after t of the braking time T = v / a the reference is at
+/// x(t - t^2 / (2 T)). The vehicle thus stays on its path, which is known to be free, and decelerates from v
+/// to rest at the rate a.
 void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double max_path_m) noexcept {
   if (begun_) return;
   begun_ = true;
@@ -60,8 +60,8 @@ void EmergencyLanding::begin(const Trajectory& under_way, TimeNs now, double max
   descent_.samples[1].position.z() -= kDeepest_m;
 }
 
-/// Along the places from rest to rest: of the way L, the share 3 u^2 - 2 u^3 after the share u of the time
-/// 1.5 L / v, so never faster than v. Without a way it rests where it stopped.
+/// Moves along the path from rest to rest: after the fraction u of the time 1.5 L / v, the fraction 3 u^2 - 2
+/// u^3 of the length L, so that the speed never exceeds v. Without a path the vehicle stays where it stopped.
 void EmergencyLanding::plan_move(TimeNs start, double max_path_m) noexcept {
   const TrajectorySample stop = brake_.samples.back();
   move_.start = start;
@@ -74,7 +74,7 @@ void EmergencyLanding::plan_move(TimeNs start, double max_path_m) noexcept {
   if (length_m > max_path_m) return;
   move_.period = from_seconds(1.5 * length_m / kMove_mps / static_cast<double>(kMoveSamples - 1));
   std::size_t leg = 1;
-  double before_m = 0;  // the legs already passed
+  double before_m = 0;  // length of the legs already passed
   for (std::size_t k = 0; k < kMoveSamples; ++k) {
     const double u = static_cast<double>(k) / static_cast<double>(kMoveSamples - 1);
     const double path_m = length_m * u * u * (3 - 2 * u);

@@ -7,18 +7,18 @@ namespace {
 
 constexpr double kControlPeriod_s = 0.01;
 constexpr double kOffGround_m = 0.15;
-constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: commands stand in until the next
+constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: commands replace the IMU until the next
 
-/// Share of the acceleration limit that braking distances count on; the rest is for keeping track.
+/// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
 constexpr double kBrakingFraction = 0.8;
-/// A brake is not followed by anything that could be missed for a delay: it may use nearly all there is.
+/// No later motion depends on a brake's timing, so it may use nearly the full acceleration.
 constexpr double kEmergencyFraction = 0.95;
 
-/// Of the greatest rate of turning, while looking around: what is left makes up for getting up to it.
+/// Fraction of the maximal heading rate while looking around; the rest makes up for the acceleration phase.
 constexpr double kTurningFraction = 0.9;
 
-/// Trajectories keep below the tracker's limits. Were they sampled at the limits themselves, the virtual
-/// vehicle could never make up for a delay: it would fall ever further behind, and cut the corners.
+/// Trajectories stay below the tracker's limits. If they were sampled at the limits, the virtual vehicle
+/// could never catch up after a delay: it would fall ever further behind, and cut corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits) {
   limits.max_speed_mps *= 0.93;
   limits.max_acceleration_mps2 *= 0.75;
@@ -59,7 +59,7 @@ AttitudeRateCommand Flight::control(TimeNs now) {
   return command_;
 }
 
-/// What the IMU should measure while the vehicle does as it was told.
+/// The IMU measurement expected if the vehicle follows its commands.
 ImuSample Flight::expected_imu(TimeNs now) const {
   return {now, Vec3(0, 0, command_.thrust_n / mass_.mass_kg()), command_.body_rate_radps};
 }
@@ -109,7 +109,7 @@ TimeNs Flight::time_nearest(const Vec3& p) const {
 void Flight::climb(TimeNs now, double height_m, double speed_mps) {
   if (motors_ == Motors::off) return;
   if (motors_ == Motors::idle) {
-    // The estimate has settled while standing: begin from it, not from the pose that was declared.
+    // The estimate has converged at rest: begin from it, not from the declared pose.
     tracker_.reset(now, state().position, heading_of(state().orientation));
     controller_.reset();
     mass_.reset();

@@ -68,14 +68,14 @@ class Flight {
   /// Motors off, for good: on the ground.
   void disarm() noexcept;
 
-  /// The trajectory's course from `t` on, for planning ahead.
+  /// The trajectory from `t` on that the vehicle is committed to, for planning ahead.
   struct CommittedSegment {
-    std::vector<Vec3> points;  // from the position at t to where it may turn off; at least one point
+    std::vector<Vec3> points;  // from the position at t to where a new path may begin; at least one
     double speed_mps = 0;      // at t
     double heading_rad = 0;    // at t
     Departure departure;       // at t: the velocity and acceleration, for polynomials
   };
-  /// Up to where the vehicle could have stopped.
+  /// Up to where the vehicle could stop.
   CommittedSegment until_stop(TimeNs t) const;
   /// Up to the trajectory's end.
   CommittedSegment until_end(TimeNs t) const;

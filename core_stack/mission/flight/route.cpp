@@ -29,12 +29,12 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
   out.heading.along_path = !vehicle.lidar;
   out.heading.start_heading_rad = committed.heading_rad;
   if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;
-  // A vehicle that sees all around sees what the passed goal is for anyway.
+  // A vehicle with an all-round view sees the passed goal's frontier anyway.
   if (out.heading.along_path && start.passed && std::isfinite(start.passed->heading_rad))
     out.heading.passing = {start.passed->position, start.passed->heading_rad};
   out.start_speed_mps = committed.speed_mps;
   out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options.motion.max_speed_mps;
-  // The lead may still lead through the narrow places of the path before.
+  // The committed segment may still lead through narrow places of the previous path.
   out.slow = {path.narrow_places, kNarrowRadius_m,
               options.safety.slow_fraction * options.motion.max_speed_mps};
   for (const Vec3& place : start.narrow_places)

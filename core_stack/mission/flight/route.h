@@ -1,4 +1,4 @@
-// From a path to what is flown: joined to the trajectory under way, and timed.
+// Turns a path into a flyable route: joined to the current trajectory, and timed.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,20 +9,20 @@
 
 namespace karst::core {
 
-/// Where and how a new path joins the trajectory under way. Taken on the loop's thread, used on the map lane.
+/// Where and how a new path joins the current trajectory. Created on the loop's thread, used on the map lane.
 struct RouteStart {
-  TimeNs at = 0;                       // it will be followed from then on
-  Flight::CommittedSegment committed;  // the stretch the vehicle is committed to; the path begins at its end
+  TimeNs at = 0;                       // when it will be followed
+  Flight::CommittedSegment committed;  // the path begins at its end
   MotionLimits limits;                 // as they are now
-  std::vector<Vec3> narrow_places;     // that the lead may pass
-  double max_cut_m = 0.3;              // how far the joint may pass by the lead's end
-  std::optional<Goal> passed = {};     // the goal that the lead ends at, if any
+  std::vector<Vec3> narrow_places;     // that the committed segment may pass
+  double max_cut_m = 0.3;              // maximum corner deviation of the join
+  std::optional<Goal> passed = {};     // the goal at the committed segment's end, if any
 };
 
 /// A path as it is flown.
 struct Route {
   Path path;
-  std::vector<Vec3> points;  // the stretch of the trajectory that leads to the path, and the path
+  std::vector<Vec3> points;  // the committed segment and the path
   HeadingPlan heading;
   double start_speed_mps = 0, max_speed_mps = 0;
   SlowPlaces slow;
@@ -31,7 +31,7 @@ struct Route {
   MotionLimits limits;
 };
 
-/// Joins `path` to the start. `goal` is the policy's that it leads to, if any.
+/// Joins `path` to the start. `goal` is the policy's goal that it leads to, if any.
 Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleDescription& vehicle,
                  const RouteStart& start, const Path& path, const std::optional<Goal>& goal);
 

@@ -58,8 +58,8 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
   if (o.planning.clearance_m < min_m)
     refuse("planning.clearance", metres(o.planning.clearance_m) +
                                      " is less than the vehicle's radius and half a cell, " + metres(min_m));
-  // Not silently off: whoever asks for a margin wants narrower passages flown than the clearance allows.
-  // Where refining cannot lift a narrow path to its clearance, a quarter of a cell less must do.
+  // An error rather than silently off: a margin asks for passages narrower than the clearance allows.
+  // Where refining cannot reach the full clearance, a quarter of a cell less must suffice.
   if (const double least = o.map.resolution_m / 4;
       o.planning.narrow_margin_m > 0 && o.planning.narrow_margin_m < least)
     refuse("planning.narrow_margin", metres(o.planning.narrow_margin_m) +
@@ -70,7 +70,7 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
     refuse("planning.narrow_margin", "with the vehicle's radius it makes " + metres(narrow_m) +
                                          ", which is no less than planning.clearance, " +
                                          metres(o.planning.clearance_m));
-  constexpr double kMaxCells = 14;  // that planning on bits can keep clear
+  constexpr double kMaxCells = 14;  // the largest clearance of the bitmap planner
   for (const auto& [key, clearance_m] :
        {std::pair{"planning.clearance", o.planning.clearance_m},
         std::pair{"planning.preferred_clearance", o.planning.preferred_clearance_m}})

@@ -7,11 +7,11 @@
 namespace karst::core {
 namespace {
 
-/// Between two rounds: time for a scan or two to come in at a place just reached.
+/// Between two decision cycles: time for a scan or two at a place just reached.
 constexpr TimeNs kPause = 400 * kMillisecond;
 constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
 
-/// A drawing's fields in the event. Made on the map lane: a hundred thousand points take a fifth of a second.
+/// A drawing's fields in the event. Serialized on the map lane: 100 000 points take 0.2 s.
 std::string text_of(const Drawing& d) {
   return event::fields_text(event::Drawing{d.kind, d.points, d.rgb, d.text});
 }
@@ -27,7 +27,7 @@ struct Cycle {
   Route route;
 };
 
-/// On the map lane. Whatever fails here: the way home must not depend on it.
+/// Runs on the map lane. Catches all failures, as the return home must not depend on the policy.
 Cycle decide(Explorer& explorer, const CycleInput& input, const RouteStart& start, const CoreOptions& options,
              const VehicleDescription& vehicle) {
   Cycle cycle;
@@ -65,7 +65,7 @@ void Exploration::pass_goal() {
   append_tried_ = false;
 }
 
-/// Whether it is time for a new goal.
+/// Begins a decision cycle if it is time for a new goal.
 void Exploration::choose() {
   const TimeNs now = onboard_.now();
   const Flight& flight = onboard_.flight;
@@ -76,14 +76,14 @@ void Exploration::choose() {
   if (now - last_cycle_ < kPause) return;
   if (flight.at_rest(now)) {
     path.take_no_detour();
-    // The sensors look before the next goal is chosen.
+    // The sensors observe this place before the next goal is chosen.
     return goals.goal() && !path.blocked() ? reach_goal(now) : begin_cycle(Joins::at_stop);
   }
-  if (path.blocked() || goals.next()) return;  // it waits for the brake, or for the goal to be passed
+  if (path.blocked() || goals.next()) return;  // wait for the brake, or until the goal is passed
   if (goals.goal() && reached(flight.reference(), *goals.goal())) return reach_goal(now);
   if (goals.goal() && !goals.frontier_open()) return begin_cycle(Joins::at_stop);
   if (flight.remaining_s(now) < o.append_before_s) {
-    // What is appended is flown at its own speed limit, from here on: not where the present path has one.
+    // An appended path's speed limit applies from here on: do not append while the current path has one.
     if (o.append && !append_tried_ && !path.speed_limited()) begin_cycle(Joins::at_end);
     append_tried_ = true;
   } else if (now - last_cycle_ > from_seconds(o.decision_period_s)) {
@@ -127,7 +127,7 @@ void Exploration::begin_cycle(Joins joins) {
   const bool appending = joins == Joins::at_end;
   RouteStart start = appending ? parts_.path.start_at_end(deadline) : parts_.path.start_at_stop(deadline);
   const CycleInput input = cycle_input(start, joins);
-  if (appending) start.passed = parts_.goals.goal();  // the lead of an appended path ends at a goal
+  if (appending) start.passed = parts_.goals.goal();  // an appended path begins at a goal
   if (start.passed) start.max_cut_m = std::min(start.max_cut_m, start.passed->tolerance_m);
   onboard_.map.job(
       "decision", budget,
@@ -145,7 +145,7 @@ void Exploration::on_cycle(const CycleInput& input, const CycleResult& result, c
   PathExecution& path = parts_.path;
   if (!parts_.phases.in(Phase::explore) || (path.blocked() && !at_rest) || path.outdated(input.now)) return;
   if (result.goal) return fly_to(input, result, route);
-  if (input.appending) return;  // it is asked again on arrival
+  if (input.appending) return;  // the policy is asked again on arrival
   if (result.outcome == Outcome::explored && at_rest) {
     wiring_.go_home((result.out_of_time ? "" : "explored: ") + result.reason);
   } else if (result.outcome == Outcome::go_home) {

@@ -13,7 +13,7 @@ struct FateEvent {
   event::GoalState state;
 };
 
-/// How a goal's end is told: to the policy, and in the events.
+/// How a goal's fate appears in the policy's events and in the run's events.
 FateEvent event_of(GoalFate fate) {
   switch (fate) {
     case GoalFate::reached:

@@ -5,11 +5,11 @@
 namespace karst::core {
 namespace {
 
-/// A closed place is flown around if a new path can be found before the vehicle would have to brake for it;
-/// otherwise it brakes at once. Metres kept in hand beyond the braking distance.
+/// The vehicle flies around a blocked place if a new path can be found before it must brake; otherwise it
+/// brakes at once. This is the margin beyond the braking distance, in metres.
 constexpr double kDetourMargin_m = 0.5;
 
-/// Why a route flies sampled, not as the polynomial that it may have.
+/// Why a route is flown as a sampled trajectory instead of its polynomial.
 std::string why_sampled(const std::optional<PolynomialTrajectory>& polynomial) {
   if (!polynomial) return "a way back as come, or through a tight place";
   return polynomial->fell_back.empty() ? "the motion has changed since it was made" : polynomial->fell_back;
@@ -28,7 +28,7 @@ RouteStart PathExecution::start_at_stop(TimeNs at) const { return start(flight_.
 RouteStart PathExecution::start_at_end(TimeNs at) const { return start(flight_.until_end(at), at); }
 
 void PathExecution::follow(const Route& route, TimeNs now) {
-  // Made for the state it was expected to be in now, and the speed allowed then: either may have changed.
+  // It was made for the state expected now and the speed limit at that time: either may have changed.
   const auto& polynomial = route.polynomial;
   const bool fits = polynomial && polynomial->fell_back.empty() && polynomial->trajectory.start == now &&
                     (flight_.expected(now).position - route.points.front()).norm() < 0.01 &&
@@ -91,7 +91,7 @@ std::vector<Vec3> PathExecution::ahead(TimeNs now, std::optional<double> ground_
 
 void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now) {
   const std::string reason = kPathForbidden;
-  // What a decision and its plan take in flight, and then the stretch to stop in.
+  // The distance flown during a decision and its plan, plus the stopping distance.
   const TimeNs decided = now + kMappingBudget + from_seconds(options_.mission.decision_budget_s);
   const Flight::CommittedSegment until_decided = flight_.until_end(now), stop = flight_.until_stop(decided);
   const double needed_m =
@@ -103,7 +103,7 @@ void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now
     detour_due_ = true;
     return;
   }
-  blocked_ = !takes_off;  // from there, exploring goes on below the roof
+  blocked_ = !takes_off;  // below a roof, exploration goes on from there
   detour_due_ = false;
   recorder_.write(now, event::Safety{SafetyAction::brake, reason, after_m});
   brake(now);

@@ -29,7 +29,7 @@ std::span<const Transition> transitions() { return kTransitions; }
 
 void PhaseMachine::enter(Phase to, TimeNs now) {
   const bool begins =
-      in(Phase::standby) && to == Phase::standby;  // the first phase is told as the others are
+      in(Phase::standby) && to == Phase::standby;  // the first phase is recorded like the others
   const bool follows = std::any_of(kTransitions.begin(), kTransitions.end(), [&](const Transition& t) {
     return t.to == to && (!t.from || *t.from == phase_);
   });

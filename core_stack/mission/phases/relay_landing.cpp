@@ -6,14 +6,14 @@ namespace karst::core {
 namespace {
 
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
-constexpr TimeNs kHeardHere = kSecond;    // of who speaks once a second: longer ago, it was somewhere else
-constexpr TimeNs kUnheard = 3 * kSecond;  // hovering where it wants to land, and nobody is heard
+constexpr TimeNs kHeardHere = kSecond;    // states come once a second: earlier ones were received elsewhere
+constexpr TimeNs kUnheard = 3 * kSecond;  // hovering above the site without radio contact
 constexpr TimeNs kLandingAgain = 2 * kSecond;
 
 }  // namespace
 
-/// For a place that it comes to too late it flies, and looks again: who took the place before is a relay as
-/// soon as the rest of that news is there.
+/// It flies on to a site that it reaches too late, and looks again: the robot that took it becomes a relay as
+/// soon as its landing is known.
 void RelayLanding::choose(double flown_length_m, std::function<void()> over, std::function<void()> changed) {
   const std::optional<LandingSpot> before = std::exchange(spot_, std::nullopt);
   unheard_since_.reset();
@@ -68,8 +68,8 @@ void RelayLanding::give_up(const std::string& reason, Because because) {
   });
 }
 
-/// The map's guess of a link decided where to fly; what is heard there decides whether to land. Time for
-/// another place was not kept for ever: with what is left of it the vehicle lands all the same.
+/// The predicted link decided where to fly; the measured one decides whether to land. The reserve for another
+/// site is limited: once it is used up the vehicle lands anyway.
 RelayLanding::Heard RelayLanding::listen(std::string& why) {
   const TimeNs now = onboard_.now();
   if (!unheard_since_) unheard_since_ = now;
@@ -79,7 +79,7 @@ RelayLanding::Heard RelayLanding::listen(std::string& why) {
   }
   if (now - *unheard_since_ < kUnheard) return Heard::waits;
   const bool time_left = endurance_.seconds_left(now) > onboard_.options.mission.home_reserve_s;
-  if (time_left && spot_->claimed && team_.lands_soon(spot_->node, now)) {  // it waits for that one
+  if (time_left && spot_->claimed && team_.lands_soon(spot_->node, now)) {  // it waits for that robot
     unheard_since_ = now;
     return Heard::waits;
   }

@@ -10,8 +10,8 @@ constexpr double kAboveHome_m = 0.4;
 constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 6;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
-// Without progress, it lands where it is. A cave that shuts it in does not open again while it hovers, and
-// the dust under a hovering vehicle does not settle; another vehicle goes away.
+// Without progress the vehicle lands where it is. A blocked cave does not open while it hovers, and dust
+// below a hovering vehicle does not settle; another vehicle, however, moves on.
 constexpr TimeNs kPatience = 12 * kSecond, kPatienceInCompany = 60 * kSecond;
 constexpr TimeNs kAgain = kSecond;
 
@@ -71,7 +71,7 @@ void ReturnHome::on_estimate(const HomeEstimate& estimate) {
 void ReturnHome::step() {
   const TimeNs now = onboard_.now();
   if (parts_.path.held())
-    return still_.wait(now);  // it does not wait for a way, but for what it is to see or to follow
+    return still_.wait(now);  // it waits for sensors or for its trajectory, not for a path
   if (planning_) return;
   if (parts_.path.yields()) {
     if (parts_.landing) parts_.landing->stop_listening();
@@ -89,7 +89,7 @@ void ReturnHome::step() {
   watch_patience(at_home);
 }
 
-/// It hovers above the landing place.
+/// The vehicle hovers above its landing site.
 void ReturnHome::arrive() {
   std::string why;
   switch (parts_.landing->listen(why)) {
@@ -156,14 +156,14 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
   path.stop(now);
 }
 
-/// The way come was flown without touching anything.
+/// The flown path was passed without contact.
 void ReturnHome::fly_back_as_come() {
   planning_ = true;
   const TimeNs begun = onboard_.now();
   std::vector<Vec3> flown = parts_.flown_path.points();
   flown.push_back(onboard_.flight.reference().position);
   RouteStart from_here = start(begun);
-  from_here.at = 0;  // no polynomial is made for it
+  from_here.at = 0;  // no polynomial for it
   onboard_.map.job(
       "way back", kPlanningBudget,
       [this, flown = std::move(flown), from_here](Explorer& explorer) {

@@ -21,7 +21,7 @@ TakeOff::State TakeOff::step(bool standing) {
   return onboard_.executive.under_way("hover") > 0 ? State::climbs : State::hovers;
 }
 
-/// A roof stopped the take-off. To this place it comes back at the end: it had better have room there.
+/// A roof stopped the take-off. Choose a hover with room, since the vehicle returns to it at the end.
 void TakeOff::choose_hover() {
   below_roof_ = true;
   onboard_.map.job(

@@ -3,8 +3,8 @@
 namespace karst::core {
 namespace {
 
-/// A vehicle that stands for so long, because the policy holds it or because none of its goals can be
-/// accepted, gets its next goal from the fallback.
+/// A vehicle that has been idle for this long, because the policy holds it or none of its goals is
+/// acceptable, gets its next goal from the fallback.
 constexpr TimeNs kMaxIdle = 2 * kSecond;
 
 }  // namespace

@@ -20,7 +20,7 @@ TeamPhase phase_for_team(Phase phase) {
       return TeamPhase::standby;
     case Phase::takeoff:
     case Phase::land:
-      return TeamPhase::landing;  // neither can stop for others
+      return TeamPhase::landing;  // in both it cannot stop for others
     case Phase::look:
     case Phase::explore:
       return TeamPhase::explore;
@@ -89,14 +89,14 @@ void RightOfWay::note_arrival() {
       now, event::Team{.action = event::TeamAction::wait, .keeps_passage_open = keeps_passage_open});
 }
 
-/// It was held for that robot, and is not any more; or it is held for another one.
+/// The vehicle is no longer held for that robot, or is now held for another.
 void RightOfWay::on_change(bool held, RobotId held_for) {
   const TimeNs now = onboard_.now();
   const bool holds = yield_state_.holds(), same = held && holds && yield_state_.with() == held_for;
   if (held && !same) {
     onboard_.recorder.write(now, event::Team{.action = event::TeamAction::go_on, .robot = held_for});
     failed_places_.clear();
-    parts_.path.block();  // from wherever that led: a new way is due
+    parts_.path.block();  // a new path is needed from here
     if (!holds) parts_.path.stop(now);
   }
   if (holds && !same) {

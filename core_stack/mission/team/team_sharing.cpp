@@ -15,7 +15,7 @@ constexpr double kMayCome_mps = 1.0;           // on average, through a cave
 // where they are differ by so much, and it may have changed its speed since it told it.
 constexpr double kAboutThere_m = 0.4, kMaxStrayed_m = 1.5;
 
-/// What is to be told, and where a node would fall to if it has to be dropped now.
+/// The facts to publish, and where a node dropped now would land.
 struct Shared {
   TreeFacts facts;
   std::optional<Vec3> drop_ground;
@@ -47,7 +47,7 @@ void TeamSharing::share() {
   const TimeNs now = onboard_.now();
   const Vec3 here = onboard_.flight.reference().position;
   const Release drop = release_at(onboard_.flight, now + kSharingBudget);
-  const Release next = release_at(onboard_.flight, now + kSharingBudget + kSecond);  // when it is asked again
+  const Release next = release_at(onboard_.flight, now + kSharingBudget + kSecond);  // at the next call
   onboard_.map.job(
       "team", kSharingBudget,
       [here, drop, next, may_drop = may_drop(),
@@ -63,7 +63,7 @@ void TeamSharing::share() {
       });
 }
 
-/// A relay is heard yet, and by the map none will be in reach when this is asked the next time.
+/// Drops a node if the base is still in contact; by the map no relay will be in range at the next call.
 void TeamSharing::drop_node(const NodeDrop& drop) {
   const TimeNs now = onboard_.now();
   if (!parts_.phases.in(Phase::explore) || !team_.base_in_contact(now, now - kHeardLately)) return;

@@ -9,10 +9,10 @@
 namespace karst::core {
 namespace {
 
-/// A path under way is judged a little milder than a new one, or noise would stop every flight.
+/// The current path is checked a little more tolerantly than a new one, or noise would stop every flight.
 constexpr double kClearanceSlack_m = 0.12;
 
-/// Poses flown that are nearer to each other than this are joined directly, if the line is clear by this much
+/// Flown poses within this distance of each other are joined directly if the line has this much clearance
 /// beyond the radius.
 constexpr double kShortcut_m = 2.0, kShortcutMargin_m = 0.15;
 
@@ -70,7 +70,7 @@ std::vector<Vec3> flown_back(const VoxelMap& map, const ClearanceLimits& limits,
   const double clearance_m = limits.hull_radius_m + kShortcutMargin_m;
   for (std::size_t i = flown.size(); i-- > 0;) {
     back.push_back(flown[i]);
-    // Joining the earliest pose shortens the path most. The segment to the one before was flown itself.
+    // Joining the earliest pose shortens the path most. The segment to the previous pose was itself flown.
     for (std::size_t j = 0; j + 1 < i; ++j)
       if ((flown[j] - flown[i]).norm() < kShortcut_m && segment_clear(map, flown[i], flown[j], clearance_m)) {
         i = j + 1;

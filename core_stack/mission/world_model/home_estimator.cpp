@@ -35,7 +35,7 @@ double HomeEstimator::time_home_s(double length_m) const {
   return home_time_s(length_m, ground_z_m_, world_->home().z(), motion_, landing_speed_mps_);
 }
 
-/// Narrow passages are flown through slowly.
+/// The extra time for narrow passages, where flight is slow.
 double HomeEstimator::extra_time_s(const Path& path) const {
   return world_->narrow_length_m(path) / slow_speed_mps_;
 }
@@ -50,8 +50,8 @@ HomeEstimate HomeEstimator::to_start(const Vec3& from, double flown_m) {
   return {flown_m, time_home_s(flown_m)};
 }
 
-/// Through narrow passages only where there is no other path home: a passage that was flown through may look
-/// narrower later, and another vehicle may have landed in it.
+/// Uses narrow passages only if there is no other path home: a passage that was flown may look narrower
+/// later, and another vehicle may have landed in it.
 std::optional<LandingSpot> HomeEstimator::nearest_spot(const Vec3& from, double sooner_than_s) {
   const RelayHoming* const homing = team_->homing();
   if (!homing) return std::nullopt;

@@ -6,7 +6,7 @@
 namespace karst::core {
 namespace {
 
-/// A path is narrow where no place this near to it is clear by the usual clearance.
+/// A path is narrow where no place within this distance has the usual clearance.
 constexpr double kBesideNarrow_m = 0.8;
 
 bool starts_clear(const VoxelMap& map, const ClearanceRoadmap& on, const Vec3& from) {
@@ -55,8 +55,8 @@ const ClearanceRoadmap* WorldModel::narrow() {
   return &*narrow_;
 }
 
-/// Inside a narrow passage the path onward leads through it. Brings both roadmaps up to date: the changes
-/// noted by the narrow one would pile up while nobody needs it.
+/// Inside a narrow passage the path continues through it. Updates both roadmaps: otherwise changes would
+/// accumulate in an unused narrow one.
 const ClearanceRoadmap& WorldModel::roadmap_at(const Vec3& from) {
   const ClearanceRoadmap& usual_one = usual();
   const ClearanceRoadmap* const narrow_one = narrow_if_made();

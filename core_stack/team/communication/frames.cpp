@@ -1,4 +1,4 @@
-// Frames: what goes over the air at once.
+// Frames: single radio transmissions.
 #include <algorithm>
 
 #include "core_stack/team/communication/message_parts.h"
@@ -103,7 +103,7 @@ std::optional<Frame> read_frame(std::span<const std::uint8_t> bytes, const Missi
   const auto said = bytes.first(bytes.size() - kTagBytes);
   PartReader r(said);
   if (r.number(2) != kMark) return refuse(Refusal::no_frame);
-  // Said before the tag is looked at: another version may have another one.
+  // Checked before the tag, since another version may have another tag.
   if (r.byte() != kWireVersion) return refuse(Refusal::version);
   if (!has_tag(said, bytes.last(kTagBytes), key)) return refuse(Refusal::forged);
   Frame frame;

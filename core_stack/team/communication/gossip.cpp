@@ -9,12 +9,12 @@ namespace {
 
 constexpr double kBurstFrames = 10;
 constexpr double kLongestWait_s = 0.4;
-constexpr double kHaste = 3;  // times as often while robots in contact do not hold the same, or one is near
-constexpr std::size_t kMaxAnswered = 40;  // records queued for one that lacks more
+constexpr double kHaste = 3;  // rate factor while peers hold different records or another robot is near
+constexpr std::size_t kMaxAnswered = 40;  // records queued for a peer that lacks more
 constexpr std::size_t kMaxWaiting = 400;
-constexpr int kTimesReported = 2;  // each of these states, or too many are lost on their way along a chain
-constexpr TimeNs kSteady = 4 * kSecond;  // of many, who stands is told of again when there is so much news
-/// So long after it was switched on others may remind a robot of records that it wrote before.
+constexpr int kTimesReported = 2;        // broadcasts of each state, or too many are lost along a chain
+constexpr TimeNs kSteady = 4 * kSecond;  // in a large team, the period of unchanged states
+/// How long after its start a robot accepts from others records that it wrote before a restart.
 constexpr TimeNs kReminded = 10 * kSecond;
 
 }  // namespace
@@ -48,7 +48,7 @@ std::uint32_t Gossip::publish(const Record& record) {
   for (const Record& piece : pieces) {
     const auto bytes = write_record(piece);
     if (!bytes) return 0;
-    // The first that it lacks, whatever others say that it wrote: so its own word always has a number.
+    // Numbers follow its own store, whatever others claim that it wrote.
     const std::uint32_t number = store_.held(self()).first() + 1;
     if (store_.take({self(), number, *bytes}) != RecordStore::Taken::fresh) return 0;
     last = number;
@@ -70,12 +70,12 @@ void Gossip::receive(std::span<const std::uint8_t> bytes, TimeNs now) {
   const std::optional<Frame> frame = read_frame(bytes, radio_.key, why);
   if (!frame) {
     ++counts_.refused[static_cast<std::size_t>(why)];
-  } else if (frame->sender != self()) {  // its own voice, thrown back or feigned
+  } else if (frame->sender != self()) {  // its own frame, echoed or forged
     take_frame(*frame, now);
   }
 }
 
-/// What the tag does not show.
+/// Checks that the tag does not cover.
 std::optional<Refusal> Gossip::refused(const Frame& frame, TimeNs now) const {
   if (!radio_.is_member(frame.sender)) return Refusal::stranger;
   if (frame.sent > now + kClockTolerance || now - frame.sent > from_seconds(options_.contact_age_s))
@@ -101,18 +101,18 @@ void Gossip::take_frame(const Frame& frame, TimeNs now) {
   if (newest && frame.reports_held) take_held(frame, now);
 }
 
-/// The sender is in contact.
+/// Handles the sender's newest frame: it is in contact.
 void Gossip::take_newest(const Frame& frame, TimeNs now) {
   Peer& peer = peers_[frame.sender];
   if (in_contact(peer, now)) {
-    // A mean over the last ten frames or so; each gap counts as that many lost.
+    // A moving average over about ten frames; each gap counts as that many losses.
     constexpr double kFraction = 0.1;
     const auto gap = static_cast<std::int16_t>(frame.sequence - peer.sequence);
     for (int lost = std::min<int>(gap, 20); lost > 1; --lost) peer.quality -= kFraction * peer.quality;
     peer.quality += kFraction * (1 - peer.quality);
   } else {
-    peer.quality = 0.5;                         // nothing is known yet
-    for (Reported& t : reported_) t.times = 0;  // nor does it know what was told before
+    peer.quality = 0.5;                         // initial guess
+    for (Reported& t : reported_) t.times = 0;  // it has not received earlier broadcasts
   }
   peer.sequence = frame.sequence;
   peer.heard_at = now;
@@ -125,7 +125,7 @@ void Gossip::take_held(const Frame& frame, TimeNs now) {
   for (const Held& h : frame.held) {
     const std::uint64_t highest = std::uint64_t{h.first} + (h.beyond ? 1 + std::bit_width(h.beyond) : 0);
     if (h.author == self() && highest > own.first()) {
-      ++counts_.claims_refused;  // more than it wrote: then nothing of that is believed
+      ++counts_.claims_refused;  // claims more than was written: ignore all of it
       continue;
     }
     peer.held[h.author].set(h);
@@ -134,7 +134,7 @@ void Gossip::take_held(const Frame& frame, TimeNs now) {
   answer(frame.sender, now);
 }
 
-/// By the base's word; of more than there are nothing is believed.
+/// Notes what the base reports to hold; ignores claims beyond the records written.
 void Gossip::known_to_hold(std::uint32_t own_records) {
   if (own_records <= store_.held(self()).first())
     known_at_base_ = std::max(known_at_base_, own_records);
@@ -151,8 +151,8 @@ void Gossip::take_state(const TeamState& s, TimeNs now) {
   if (s.robot != self() && (!known || s.stamp > known->stamp)) known = s;
 }
 
-/// A robot that started anew with an empty memory goes on behind what it wrote before. Later nobody else can
-/// know what it wrote.
+/// Shortly after a restart with an empty store, others may return a robot's earlier records, so that it
+/// continues their numbering. Later it refuses records of its own that it does not hold.
 bool Gossip::may_be_reminded(TimeNs now) const { return !published_ && began_ && now - *began_ <= kReminded; }
 
 void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
@@ -168,7 +168,7 @@ void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
   switch (store_.take(r)) {
     case RecordStore::Taken::known:
       ++counts_.records_again;
-      // It was just sent; who did not hear it will say so.
+      // It was just sent; a peer that missed it will report that.
       std::erase_if(waiting_,
                     [&r](const Waiting& w) { return w.author == r.author && w.number == r.number; });
       return;
@@ -190,7 +190,7 @@ void Gossip::take_record(const SentRecord& r, RobotId from, TimeNs now) {
   queue(r.author, r.number, now + wait());
 }
 
-/// Queues what a peer lacks, oldest first.
+/// Queues the records that a peer lacks, oldest first.
 void Gossip::answer(RobotId peer, TimeNs now) {
   std::size_t queued = 0;
   const TimeNs due = now + wait();
@@ -211,7 +211,7 @@ void Gossip::queue(RobotId author, std::uint32_t number, TimeNs due) {
   if (!there && waiting_.size() < kMaxWaiting) waiting_.push_back({due, author, number});
 }
 
-/// Somebody in contact is not known to hold it, and would take it.
+/// Whether a peer in contact may lack the record and would accept it.
 bool Gossip::wanted(const Waiting& w, TimeNs now) const {
   return std::any_of(peers_.begin(), peers_.end(), [&](const Peer& p) {
     const HeldNumbers& theirs = p.held[w.author];
@@ -219,7 +219,7 @@ bool Gossip::wanted(const Waiting& w, TimeNs now) const {
   });
 }
 
-/// Somebody in contact holds what this robot lacks, or lacks what it holds, as far as is known.
+/// Whether a peer in contact is known to hold other records than this robot.
 bool Gossip::unsettled(TimeNs now) const {
   for (const Peer& p : peers_)
     for (RobotId a = 0; in_contact(p, now) && a < kMaxRobots; ++a)
@@ -263,12 +263,12 @@ bool Gossip::of_many() const {
   return static_cast<std::size_t>(known) > kFewRadios;
 }
 
-/// Of many radios few states fit into one's own frame; over a chain of them they would be old when they
-/// arrive. So once a period all that are news are told before any records, as far as there is room beside
-/// what it says of itself: that must stay on the beat, others keep apart by it.
+/// In a large team few states fit into a robot's own frame, and along a chain they would be old on arrival.
+/// Once a period all new states are therefore sent before any records, as far as the allowance permits
+/// besides the robot's own state, which must be sent on time, as separation depends on it.
 void Gossip::report_more_states(std::size_t passed, TimeNs now, std::vector<Bytes>& out) {
   if (!of_many() || now < all_states_due_) return;
-  all_states_due_ = now + from_seconds(0.8 * options_.period_s);  // frames are not quite on the beat
+  all_states_due_ = now + from_seconds(0.8 * options_.period_s);  // frames are not exactly periodic
   const double left_bytes = hurried_ ? kHaste * kFrameBytes : -1.0 * kFrameBytes;
   while (passed < kMaxRobots && allowance_bytes_ > left_bytes) {
     Frame frame;
@@ -279,8 +279,8 @@ void Gossip::report_more_states(std::size_t passed, TimeNs now, std::vector<Byte
 }
 
 Frame Gossip::own_news(TimeNs now) {
-  // A little off the beat, or two that fall on one moment would do so forever. While something is yet to be
-  // passed on, every word of what one holds brings it on; of many radios something always is.
+  // Jittered, or two robots that collide once would always do so. While records are outstanding, every
+  // version vector speeds up their delivery; in a large team some always are.
   const double period_s = options_.period_s / (hurried_ || (!of_many() && unsettled(now)) ? kHaste : 1);
   next_news_ = now + from_seconds(period_s * random_.uniform(0.9, 1.1));
   Frame frame;
@@ -310,8 +310,8 @@ Frame Gossip::own_news(TimeNs now) {
   return frame;
 }
 
-/// Others' states where there is room, each in its turn; returns how many radios' turn it was. Of many, only
-/// those that are news.
+/// Adds others' states round-robin as far as there is room; returns how many radios were visited. In a large
+/// team only new states are added.
 std::size_t Gossip::add_states(Frame& frame, std::size_t& room) {
   const bool many = of_many();
   std::size_t passed = 0;
@@ -338,7 +338,7 @@ void Gossip::finish(Frame& frame, TimeNs now, std::vector<Bytes>& out) {
   frame.sequence = sequence_++;
   std::optional<Bytes> bytes = write_frame(frame, radio_.key);
   if (!bytes && !frame.states.empty()) {
-    // Its own state cannot be told (not finite, say): the rest is told all the same.
+    // Its own state cannot be written (for example, not finite): the rest is sent without it.
     frame.states.clear();
     bytes = write_frame(frame, radio_.key);
   }

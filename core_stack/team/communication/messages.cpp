@@ -20,7 +20,7 @@ void write(PartWriter& w, const TreeFacts& facts) {
     w.byte(static_cast<std::uint8_t>(n.kind));
     w.place(n.position);
   }
-  // Most rays of one piece begin at one node and were seen at one time: said once.
+  // Most rays of one piece share a node and a time stamp, which are written once.
   const RayFact* before = nullptr;
   for (const RayFact& r : facts.rays) {
     const bool same = before && before->a == r.a && before->stamp == r.stamp;

@@ -21,7 +21,7 @@ int urgency(TeamPhase phase) {
   }
 }
 
-constexpr double kComes_mps = 0.15;  // slower it does not fly towards another
+constexpr double kComes_mps = 0.15;  // a slower vehicle is not approaching
 
 double braking_room_m(const SeparationRule& rule, double speed_mps) {
   return rule.distance_m / 2 + speed_mps * rule.own_s + speed_mps * speed_mps / (2 * rule.brake_mps2);

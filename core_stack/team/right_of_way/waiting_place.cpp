@@ -11,11 +11,11 @@
 namespace karst::core {
 namespace {
 
-// So far around, and so far back along the path flown.
+// The search radius, and the length of the flown path searched.
 constexpr double kSearchRadius_m = 12.0, kRetreat_m = 60.0, kStep_m = 1.0;
 constexpr double kGetBy_m = 3.0;
-constexpr std::array kGaps_m = {0.5, 0.2};  // beside one that hovers, more than beside rock
-constexpr double kAhead_m = 0.3;            // it comes there before the others by so much of the way
+constexpr std::array kGaps_m = {0.5, 0.2};  // beside a hovering vehicle, more than beside rock
+constexpr double kAhead_m = 0.3;            // path length by which it must arrive before the others
 constexpr double kElsewhere_m = 2.0, kRefusedNear_m = 0.5;
 constexpr std::size_t kMaxFailed = 2, kMaxRefused = 40;
 
@@ -33,8 +33,8 @@ std::vector<Vec3> points_back(const std::vector<Vec3>& flown) {
   return back;
 }
 
-/// How far it is to each place for whoever comes there first of all others; by the straight line where the
-/// map knows no way.
+/// The distance to each place for the first of all others to arrive; along the straight line where the map
+/// has no path.
 std::vector<double> first_of_others_m(const VoxelMap& map, const Roadmap& roadmap, const RoomQuery& query,
                                       const std::vector<Vec3>& places) {
   std::vector<double> first(places.size(), std::numeric_limits<double>::infinity());
@@ -49,7 +49,7 @@ std::vector<double> first_of_others_m(const VoxelMap& map, const Roadmap& roadma
   return first;
 }
 
-/// Too near to another, and nearer than it is now.
+/// Whether the place is too near to another vehicle, and nearer than this one is now.
 bool crowds(const RoomQuery& query, const Vec3& place) {
   const auto by = [&](const Vec3& o) {
     return (o - place).norm() < std::min(query.separation_m, (o - query.from).norm());

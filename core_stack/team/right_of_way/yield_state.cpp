@@ -23,7 +23,7 @@ constexpr TimeNs kBoxed = 15 * kSecond;
 
 double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
 
-/// How fast `other` itself comes.
+/// The speed at which `other` itself approaches.
 double coming_mps(const Neighbour& self, const Neighbour& other) {
   Neighbour still = self;
   still.velocity_mps.setZero();
@@ -80,7 +80,7 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     begin(self, near.front(), now);
     return Action::hold;
   }
-  // Who makes room for one must not fly into another: nobody else is looked at where it flies then.
+  // A vehicle that makes room for one must not fly into another: check all others, too.
   if (on_the_way_ && std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
         return stops_on_the_way(rule, self, o, o.robot == *with_);
       })) {
@@ -106,7 +106,7 @@ void YieldState::arrived(Place place, TimeNs now) {
   aside_ = place == Place::aside;
   if (aside_) attempts_ = 0;
   since_ = nearest_at_ = now;
-  nearest_m_ = 1e9;  // from here on it counts anew how near the other comes
+  nearest_m_ = 1e9;  // restart the record of the closest approach
 }
 
 void YieldState::no_room(TimeNs now, bool crowd) {
