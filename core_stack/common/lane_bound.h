@@ -1,5 +1,5 @@
-// What lives on one lane of the executive: nobody can touch it but its jobs, which run there one after
-// another. So it needs no lock, and the order of what happens to it is the same with any number of threads.
+// An object bound to one lane of the executive: only jobs on that lane can access it, one after another. It
+// needs no lock, and the order of accesses is the same for any number of threads.
 #pragma once
 #include <memory>
 #include <string>
@@ -27,14 +27,14 @@ class LaneBound {
         [this, result, work = std::move(work)]() mutable { *result = work(resident_); },
         [result, use = std::move(use)]() mutable { use(*result); });
   }
-  /// The same with nothing to use.
+  /// The same without a result.
   template <class Work>
   void job(std::string name, TimeNs budget, Work work) {
     executive_.job(
         std::move(name), lane_, budget, [this, work = std::move(work)]() mutable { work(resident_); }, [] {});
   }
 
-  /// For when no job runs: before the first, and after the executive has been drained.
+  /// Direct access while no job runs: before the first one, and after the executive has been drained.
   Resident& while_idle() { return resident_; }
 
  private:

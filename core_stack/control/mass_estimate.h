@@ -1,5 +1,5 @@
-// What the vehicle weighs, learned in the air: with a payload or without the battery it was described with,
-// the thrust for an acceleration is another.
+// Estimates the vehicle's mass in flight: with a payload or another battery than described, the same
+// acceleration needs another thrust.
 #pragma once
 #include "core_stack/common/time.h"
 

@@ -1,4 +1,4 @@
-// What of a sweep is worth matching: the sharpest and the flattest places of each ring, after LOAM (Zhang and
+// Features of a sweep for matching: the sharpest and the flattest points of each ring, after LOAM (Zhang and
 // Singh, RSS 2014).
 //
 // A ring is cut into segments of one surface: where the sensor got no return between two points, or where

@@ -1,11 +1,11 @@
-// What of a sweep corresponds to what of the local map.
+// Correspondences between a sweep and the local map.
 //
 // A planar feature marks a place on a surface. What is compared there is not the feature with a plane, but
 // the sweep's points with the map's, both as means over the same window of voxels (see means_of), along the
 // normal that the map's points have in it. A feature against a plane is biased wherever rock is curved: a
 // plane fitted to a window lies beside the surface by half the curvature times the window's variance, and a
-// pose that is found so creeps by up to a per cent of the way. Means over the same window are beside it
-// alike.
+// pose estimated from it drifts by up to one per cent of the path. Means over the same window have the same
+// bias.
 //
 // An edge feature is compared with the line that the map's edges form around it.
 #pragma once

@@ -1,4 +1,4 @@
-// What a vehicle makes of its detections: objects at places in the world.
+// The objects of interest that a vehicle has found, from its detections.
 //
 // Each object is a point that does not move. A sighting belongs to the object of its kind that it fits best,
 // by Mahalanobis' distance within a gate, and is taken in as a Kalman filter does: for a point at rest that
@@ -29,7 +29,7 @@ struct FoundObject {
   TimeNs first_seen = 0, last_seen = 0;
 };
 
-/// What is to be told of an object since it was last told.
+/// News of an object since its last report.
 struct ObjectNews {
   ObjectState state = ObjectState::found;
   FoundObject object;

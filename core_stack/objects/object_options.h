@@ -1,4 +1,4 @@
-// The mission file's section `objects`: when what a detector says counts as an object.
+// The mission file's section `objects`: when detections count as an object.
 #pragma once
 #include "core_stack/common/options.h"
 

@@ -51,7 +51,7 @@ int first_flaw(const VoxelMap& map, Path& path, const PlanningOptions& options) 
   return -1;
 }
 
-/// Replaces the stretch around segment `flaw` by a way of full clearance; false if there is none nearby.
+/// Replaces the stretch around segment `flaw` by a path of full clearance; false if there is none nearby.
 bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOptions& options) {
   std::size_t from = flaw, to = flaw + 1;
   const Vec3 place = path.points[flaw];
@@ -129,7 +129,7 @@ Path plan_along(const VoxelMap& map, const Roadmap& roadmap, const Path& raw,
     Path around = finished(map, roadmap, wide, options);
     if (around.found()) return around;
   }
-  // A narrow passage and no way around it: keep the clearance that the search found.
+  // A narrow passage without a path around it: keep the clearance that the search found.
   PlanningOptions tight = options;
   tight.clearance_m = min_clearance_m(options, map.resolution_m());
   Path narrow = finished(map, roadmap, raw, tight);

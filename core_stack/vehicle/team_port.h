@@ -1,5 +1,5 @@
-// What a vehicle of a team has beside what a single one has: a radio, and communication nodes to drop.
-// Nothing else passes between it and the others.
+// The additional hardware of a vehicle in a team: a radio, and communication nodes to drop. Nothing else
+// passes between it and the others.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@ class RadioPort {
  public:
   virtual ~RadioPort() = default;
   virtual void send(std::span<const std::uint8_t> frame, TimeNs now) = 0;
-  /// The frames that came in up to `until`, each once.
+  /// The frames received up to `until`, each once.
   virtual std::vector<std::vector<std::uint8_t>> receive(TimeNs until) = 0;
 };
 

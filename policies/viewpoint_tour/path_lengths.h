@@ -1,4 +1,4 @@
-// Lengths of the ways between viewpoints: asked of the path service once for each place, and kept.
+// Path lengths between viewpoints, queried from the path service once for each site and cached.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,13 @@
 
 #include <karst/policy.h>
 
-/// Viewpoints within `same_place_m` of each other share a place, since the core moves a viewpoint a little
-/// whenever the map around it changes. A known way stays known, and a shorter one is learnt when it is asked
-/// for again, after `refresh_s`.
+/// Viewpoints within `same_site_m` of each other share a site, since the core moves a viewpoint a little
+/// whenever the map around it changes. A known length stays valid, and is shortened when it is queried again
+/// after `refresh_s`.
 class PathLengths {
  public:
-  /// [from][to] in metres. Where the service knows no way, as far as through where the vehicle is:
-  /// `from_here_m[i]` is the way from there to viewpoint i.
+  /// Lengths [from][to] in metres. Where the service knows no path, the path through the vehicle's position
+  /// counts: `from_here_m[i]` is the length from there to viewpoint i.
   std::vector<std::vector<double>> between(const karst::Request& request,
                                            const std::vector<karst::Vec3>& viewpoints,
                                            const std::vector<double>& from_here_m) {
@@ -50,7 +50,7 @@ class PathLengths {
   struct Site {
     karst::Vec3 position;
     std::int64_t used_ns = 0, asked_ns = never_ns;
-    std::vector<double> path_m;  // to the places before this one
+    std::vector<double> path_m;  // to the sites before this one
   };
 
   std::size_t site_at(const karst::Vec3& p, std::int64_t now_ns) {
@@ -64,7 +64,7 @@ class PathLengths {
     return sites_.size() - 1;
   }
 
-  /// A decision asks for a few places only; those near the vehicle matter most.
+  /// A decision queries a few sites only; those near the vehicle matter most.
   void ask_nearest(const karst::Request& request, const std::vector<char>& due) {
     std::vector<std::size_t> asked;
     for (std::size_t p = 0; p < due.size(); ++p)
@@ -80,7 +80,7 @@ class PathLengths {
 
   double& length_m(std::size_t a, std::size_t b) { return sites_[std::max(a, b)].path_m[std::min(a, b)]; }
 
-  /// One search from a place to all others: the ways are as long back.
+  /// One search from a site to all others; lengths are symmetric.
   void ask(const karst::Request& request, std::size_t from) {
     std::vector<karst::Vec3> others;
     std::vector<std::size_t> index;

@@ -1,12 +1,12 @@
 /*
- * karst policy ABI 1.0: what a policy is, what it is asked, and how it answers.
+ * karst policy ABI 1.0: what a policy is, its requests, and its answers.
  *
  * Lifecycle: create -> init(parameters) -> activate -> decide ... on_event ... -> deactivate -> destroy.
  * All of it on one thread, the decision thread. An object may be destroyed from any state.
  *
- * Ownership: who allocates frees. What the host passes lives until the call returns, except a map
- * snapshot the policy retained. What the policy passes is copied before the call returns.
- * Descriptors and tables live as long as the process.
+ * Ownership: memory is freed by the side that allocated it. What the host passes lives until the call
+ * returns, except a map snapshot the policy retained. What the policy passes is copied before the call
+ * returns. Descriptors and tables live as long as the process.
  */
 #ifndef KARST_ABI_POLICY_H
 #define KARST_ABI_POLICY_H
@@ -59,7 +59,7 @@ typedef struct karst_policy_descriptor {
   karst_text_t one_line; /* what it does, in one line */
 } karst_policy_descriptor_t;
 
-/* [appendable] What the host asks. Arrays and pointers live until decide() returns. */
+/* [appendable] A request of the host. Arrays and pointers live until decide() returns. */
 typedef struct karst_request {
   uint32_t size;
   uint32_t sequence;                /* 1, 2, ... */
@@ -68,7 +68,7 @@ typedef struct karst_request {
   karst_state_t state;              /* predicted at the deadline when flying */
   karst_vec3_t direction_of_flight; /* unit, world; the heading when the vehicle stands */
   karst_pose_t T_world_start;
-  double seconds_before_homing; /* time left until the way home must begin */
+  double seconds_before_homing; /* time left until the return home must begin */
   double max_speed_mps, clearance_m, vehicle_radius_m;
   karst_vec3_t last_goal; /* meaningless if last_fate is NONE */
   karst_goal_fate_t last_fate;
@@ -85,7 +85,7 @@ typedef struct karst_request {
    may ask again before the tour's end, because what it sees on the way changes what is worth visiting. */
 enum { KARST_DECISION_TOUR = 1u }; /* the goals are to be flown in this order, not ranked choices for one */
 
-/* [appendable] Where an answer goes. [decision thread] {deciding} */
+/* [appendable] Receives the answer. [decision thread] {deciding} */
 typedef struct karst_decision_sink {
   uint32_t size;
   uint32_t max_goals; /* what this host takes in one decision */
@@ -105,7 +105,7 @@ enum {
   KARST_EVENT_GOAL_UNREACHABLE = 3,
   KARST_EVENT_GOAL_ABANDONED = 4,
   KARST_EVENT_GOAL_SUPERSEDED = 5,
-  KARST_EVENT_HOMING = 6,          /* the way home has begun: no more requests */
+  KARST_EVENT_HOMING = 6,          /* the return home has begun: no more requests */
   KARST_EVENT_FRAME_CORRECTED = 7, /* the estimate jumped: positions remembered are off by it */
   KARST_EVENT_MAP_MERGED = 8       /* another vehicle's map came in */
   /* Minor versions add kinds: ignore those you do not know. */

@@ -60,8 +60,8 @@ typedef struct karst_cell_counts {
  * [appendable] The occupancy map.
  *
  * The request's snapshot is a view of the core's map: it lives until decide() returns, unless the policy
- * retains it. Retaining copies (tens of milliseconds for a large map), so that what the policy
- * holds never changes under it. Who retains releases.
+ * retains it. Retaining copies the map (tens of milliseconds for a large one), so a retained
+ * snapshot never changes. The caller of retain() must release the snapshot.
  */
 typedef struct karst_map_service {
   uint32_t size;
@@ -84,29 +84,29 @@ typedef struct karst_map_service {
                            uint64_t capacity, uint64_t* total, karst_error_t*) KARST_NOEXCEPT;
   /* [decision thread] {deciding} Returns a snapshot to keep, or NULL with the error filled. */
   const karst_map_t* (*retain)(const karst_host_t*, const karst_map_t*, karst_error_t*)KARST_NOEXCEPT;
-  /* [any thread] {any state} What retain() returned, once. */
+  /* [any thread] {any state} Releases what retain() returned; call it once. */
   void (*release)(const karst_host_t*, const karst_map_t*) KARST_NOEXCEPT;
 } karst_map_service_t;
 
-/* [appendable] Ways through the map of this request. */
+/* [appendable] Paths through the map of this request. */
 typedef struct karst_path_service {
   uint32_t size;
   uint32_t reserved;
   /* [any thread] {deciding} Length of a clear path from `from` to within `tolerance_m` of each goal, in
-     metres; +infinity if no way is known. (Very many goals far from clear ones: KARST_ERROR_LIMIT.) */
+     metres; +infinity if no path is known. (Too many goals far from clear cells: KARST_ERROR_LIMIT.) */
   int32_t (*lengths)(const karst_host_t*, karst_vec3_t from, const karst_vec3_t* goals, uint64_t count,
                      double tolerance_m, double* out, karst_error_t*) KARST_NOEXCEPT;
 } karst_path_service_t;
 
-/* [appendable] What a look from somewhere would teach. */
+/* [appendable] Information gain of viewpoints. */
 typedef struct karst_gain_service {
   uint32_t size;
   uint32_t reserved;
-  /* [any thread] {any state} Unknown cells each sensor would see from each viewpoint: rays end at occupied
-     cells and at max_range_m and pass unknown ones. out[v * sensor_count + s] is for viewpoint v, sensor s;
-     a cell is counted once for each pair. The cost grows with the cube of max_range_m: pass a shortened
-     sensor to ask only what lies near. Neighbouring rays are at most one cell apart where they end. A range
-     of more cells, or a view of more rays, than the limits above is KARST_ERROR_LIMIT. */
+  /* [any thread] {any state} Number of unknown cells that each sensor would see from each viewpoint: rays
+     end at occupied cells and at max_range_m, and pass unknown ones. out[v * sensor_count + s] is for
+     viewpoint v, sensor s; a cell is counted once for each pair. The cost grows with the cube of max_range_m:
+     pass a shortened sensor to ask only what lies near. Neighbouring rays are at most one cell apart where
+     they end. A range of more cells, or a view of more rays, than the limits above is KARST_ERROR_LIMIT. */
   int32_t (*newly_seen)(const karst_host_t*, const karst_map_t*, const karst_sensor_t* sensors,
                         uint64_t sensor_count, const karst_viewpoint_t* viewpoints, uint64_t count,
                         uint64_t* out, karst_error_t*) KARST_NOEXCEPT;

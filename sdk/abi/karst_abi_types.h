@@ -23,7 +23,7 @@
 #define KARST_NOEXCEPT
 #endif
 
-/* True if `table` (of struct type `type`) was made by someone who knew `slot`, and filled it. */
+/* True if the maker of `table` (of struct type `type`) knew `slot` and filled it. */
 #define KARST_HAS(type, table, slot) \
   ((table)->size >= offsetof(type, slot) + sizeof((table)->slot) && (table)->slot)
 
@@ -37,7 +37,7 @@ typedef struct karst_text {
   uint64_t length; /* bytes */
 } karst_text_t;
 
-/* Results of every call that can fail. Zero is success; what failed stands in the karst_error_t. */
+/* Result of every call that can fail. Zero is success; the karst_error_t says what failed. */
 enum {
   KARST_OK = 0,
   KARST_ERROR_FAILED = 1,      /* the callee's own reason, see the text */
@@ -45,8 +45,8 @@ enum {
   KARST_ERROR_LIMIT = 3,       /* more items than the host takes in one call */
   KARST_ERROR_STATE = 4,       /* not allowed in this state of the lifecycle */
   KARST_ERROR_THREAD = 5,      /* called on a thread the slot does not allow */
-  KARST_ERROR_ABANDONED = 6,   /* the host has given up this policy: return at once */
-  KARST_ERROR_UNAVAILABLE = 7, /* this mission does not offer that */
+  KARST_ERROR_ABANDONED = 6,   /* the host has abandoned this policy: return at once */
+  KARST_ERROR_UNAVAILABLE = 7, /* not available in this mission */
   KARST_ERROR_EXCEPTION = 8    /* the C++ face caught an exception; its what() is the text */
 };
 
@@ -109,15 +109,15 @@ typedef struct karst_frontier_cluster {
   uint32_t unknown_cells;      /* in a box of a few metres around the centroid */
   uint32_t free_cells;         /* in the same box */
   karst_viewpoint_t viewpoint; /* proposed by the core: clear, and sees the cluster; NaN if none was found */
-  double path_length_m; /* to the viewpoint from where a new path would begin; +infinity if no way is known */
+  double path_length_m; /* from the start of a new path to the viewpoint; +infinity if no path is known */
   uint64_t reserved[2];
 } karst_frontier_cluster_t;
 
-/* [frozen] Another vehicle of the team, as last heard. */
+/* [frozen] Another vehicle of the team, in its last received state. */
 typedef struct karst_teammate {
   uint32_t id;
   uint32_t reserved;
-  int64_t stamp_ns; /* when this was true */
+  int64_t stamp_ns; /* time of this state */
   karst_vec3_t position;
   karst_vec3_t velocity;
   karst_vec3_t goal; /* NaN if none is known */
@@ -159,20 +159,20 @@ typedef struct karst_goal {
 typedef uint32_t karst_outcome_t;
 enum {
   KARST_OUTCOME_GOALS = 1,    /* the goals in the sink */
-  KARST_OUTCOME_HOLD = 2,     /* keep to what is under way, or stay; ask again soon */
+  KARST_OUTCOME_HOLD = 2,     /* continue the current goal, or stay; ask again soon */
   KARST_OUTCOME_EXPLORED = 3, /* nothing is left to explore: fly home */
   KARST_OUTCOME_GO_HOME = 4   /* fly home for another reason */
 };
 
-/* What has become of the goal chosen last. */
+/* The fate of the last chosen goal. */
 typedef uint32_t karst_goal_fate_t;
 enum {
-  KARST_FATE_NONE = 0, /* there has been none yet */
+  KARST_FATE_NONE = 0, /* no goal has been chosen yet */
   KARST_FATE_UNDER_WAY = 1,
   KARST_FATE_REACHED = 2,
   KARST_FATE_REJECTED = 3,    /* failed the core's checks */
-  KARST_FATE_UNREACHABLE = 4, /* no path was found to it, or none is left */
-  KARST_FATE_ABANDONED = 5,   /* the core gave it up on the way */
+  KARST_FATE_UNREACHABLE = 4, /* no path to it was found or remains */
+  KARST_FATE_ABANDONED = 5,   /* the core abandoned it in flight */
   KARST_FATE_SUPERSEDED = 6   /* a later decision replaced it */
 };
 

@@ -113,7 +113,7 @@ void make_cave_cache(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
     throw core::InputError("karst fly", "--cave-cache " + folder.string(),
-                           "is no folder that can be written" + (error ? ": " + error.message() : ""));
+                           "is not a writable directory" + (error ? ": " + error.message() : ""));
 }
 
 flight::Mission mission_of(const FlyArguments& args) {

@@ -94,7 +94,7 @@ TEST(BadInput, ACaveCacheThatIsNoFolder) {
   const std::string mesh = written(dir / "box.stl", box_stl(4)), file = written(dir / "taken", "a file");
   for (const std::string& cache : {file, file + "/below"})
     expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0' --cave-cache " + cache),
-                   {"--cave-cache", "no folder that can be written"});
+                   {"--cave-cache", "is not a writable directory"});
   EXPECT_FALSE(fs::exists(dir / "run"));
 }
 

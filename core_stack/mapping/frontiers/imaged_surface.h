@@ -1,4 +1,4 @@
-// What of the rock's surface a colour camera has taken pictures of.
+// The part of the rock surface that a colour camera has imaged.
 //
 // A surface cell is an occupied cell with a free face neighbour. A camera images it if
 // - the face's centre (just outside the cell) is within the camera's range and field of view,

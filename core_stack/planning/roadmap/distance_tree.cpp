@@ -18,7 +18,7 @@ struct TreeTile {
   std::uint64_t seen = 0;
   std::vector<RoadmapNode> nodes;
   std::vector<double> length_m;  // to the root
-  std::vector<CellKey> next;     // the place of the next node on the way
+  std::vector<CellKey> next;     // the cell of the next node on the path
 };
 
 struct PastNode {
@@ -64,7 +64,7 @@ struct DistanceTree::Tree {
   std::optional<Join> best_join(const RoadmapGraph& g, const Vec3& from, double& length_m) const;
 };
 
-/// Copies the tile's nodes as they are now; those that were there before keep what they know.
+/// Copies the tile's current nodes; nodes that existed before keep their lengths.
 void DistanceTree::Tree::take_over(const RoadmapGraph& g, std::uint32_t tile, std::vector<PastNode>& gone,
                                    std::vector<NodeRef>& lost) {
   const TreeTile before = std::exchange(tiles[tile], {});
@@ -90,7 +90,7 @@ void DistanceTree::Tree::take_over(const RoadmapGraph& g, std::uint32_t tile, st
     if (!kept[k] && before.length_m[k] < kUnreached_m) gone.push_back({tile, before.nodes[k]});
 }
 
-/// Nodes that led straight to the root and no longer do, or not as they did, forget it.
+/// Invalidates nodes whose direct connection to the root is gone or has changed.
 void DistanceTree::Tree::check_joins(const RoadmapGraph& g, std::vector<PastNode>& gone,
                                      std::vector<NodeRef>& lost) {
   const std::vector<Join> old_joins = std::exchange(joins, {});
@@ -123,7 +123,7 @@ void DistanceTree::Tree::forget_paths_through(const RoadmapGraph& g, std::vector
 void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>& lost) {
   std::vector<Entry> heap;
   const auto offer = [&](const NodeRef& n, double length_m, const CellKey& by) {
-    // Of equally long ways the one by the least place is kept: it does not depend on the map's history.
+    // Among equally long paths the one with the smallest cell wins, so the result does not depend on history.
     if (length_m == length(n) && by < next(n)) next(n) = by;
     if (length_m >= length(n)) return;
     length(n) = length_m;
@@ -161,7 +161,7 @@ void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>
 void DistanceTree::Tree::update(const RoadmapGraph& g) {
   tiles.resize(g.tiles.size());
   std::vector<PastNode> gone;
-  std::vector<NodeRef> lost;  // nodes that know no way at present
+  std::vector<NodeRef> lost;  // nodes without a path at present
   for (std::uint32_t i = 0; i < tiles.size(); ++i)
     if (g.tiles[i].changed > tiles[i].seen) take_over(g, i, gone, lost);
   check_joins(g, gone, lost);

@@ -15,7 +15,7 @@ constexpr double kStraight_rad = 0.03;
 
 double turn_rad(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Where a polyline has come after `reach_m`: the point, and the index of the vertex behind it.
+/// The point `along_m` along a polyline, and the index of the vertex after it.
 struct JoinPoint {
   Vec3 point;
   std::size_t next;
@@ -52,7 +52,8 @@ std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vect
       const double t = static_cast<double>(i) / n, u = 1 - t;
       curve.push_back(u * u * begin->point + 2 * u * t * corner + t * t * end->point);
     }
-    // Where lead or path bend themselves, the parabola leaves them with corners of its own.
+    // Where the committed segment or the path bends near the corner, the parabola leaves it with corners of
+    // its own.
     const double own =
         std::max(turn_rad(backwards[begin->next - 1] - backwards[begin->next], corner - begin->point),
                  turn_rad(end->point - corner, path[end->next] - path[end->next - 1]));

@@ -15,10 +15,10 @@ class SensorFaults {
 
   struct InjectedFaults {
     std::vector<cave::Fault::Kind> kinds;
-    std::vector<std::string> begun;  // in words, those that strike for the first time
+    std::vector<std::string> begun;  // descriptions of faults that begin with this message
     bool lost() const;
   };
-  /// What strikes a message measured now; times never go back.
+  /// The faults injected into a message measured now; times must not decrease.
   InjectedFaults inject(cave::Fault::Sensor sensor, double t_s);
 
  private:

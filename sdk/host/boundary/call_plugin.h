@@ -1,4 +1,4 @@
-// Calling a slot of a plugin's table.
+// Calls a slot of a plugin's table.
 #pragma once
 #include <type_traits>
 

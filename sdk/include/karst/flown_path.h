@@ -1,4 +1,4 @@
-// The way flown so far, as a policy sees it: through where the vehicle was at each decision.
+// The flown path as a policy knows it: through the vehicle's positions at each decision.
 #pragma once
 #include <algorithm>
 #include <cstddef>

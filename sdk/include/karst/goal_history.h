@@ -1,5 +1,5 @@
-// Places where a goal came to nothing: a frontier still there after a visit cannot be seen from there, and
-// a goal refused is likely to be refused again.
+// Remembers where goals have failed: a frontier that remains after a visit cannot be seen from there, and a
+// rejected goal is likely to be rejected again.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -15,7 +15,7 @@ class GoalHistory {
   struct Verdict {
     bool open = true;              // worth proposing now
     bool closed_now = false;       // not now, but later
-    double revisit_penalty_m = 0;  // to be taken from its score
+    double revisit_penalty_m = 0;  // to be subtracted from its score
   };
 
   void on_event(const Event& event) {

@@ -1,4 +1,4 @@
-// What a flight shows on its way, without a stop for it.
+// What the sensors see in passing, without a stop for it.
 #pragma once
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace karst {
 
-/// Whether some sensor sees to all sides: a camera that looks ahead does not see what it passes.
+/// Whether a sensor has an all-round view: a camera that faces ahead does not see what it passes.
 inline bool sees_all_around(const Request& request) {
   constexpr double nearly_a_turn_rad = 6.0;
   return std::any_of(request.sensors.begin(), request.sensors.end(),
