@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/former_keys.h"
 #include "core_stack/common/units.h"
 
 namespace karst::core {
@@ -131,6 +132,9 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
     if (within != keys.end())
       throw InputError(source, key,
                        "a section of keys (" + *within + " and so on), not one that has a value");
+    const std::string now = renamed(key);
+    if (std::find(keys.begin(), keys.end(), now) != keys.end())
+      throw InputError(source, key, "is now called " + now);
     const std::string near = nearest_name(key, keys);
     throw InputError(source, key, "no such key" + (near.empty() ? "" : "; did you mean " + near + "?"));
   }
