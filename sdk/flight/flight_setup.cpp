@@ -87,7 +87,8 @@ host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& re
   choice.source = mission.file;
   choice.seed = policy_seed(mission);
   choice.isolation = mission.policy_isolation;
-  if (choice.isolation == host::Isolation::process && host::landlock_version() == 0)
+  const bool own_process = choice.isolation == host::Isolation::process;
+  if (own_process && host::landlock_version() == 0)
     std::fputs("warning: this kernel has no Landlock: the policy's process can read what this user can\n",
                stderr);
   choice.memory_limit_mib = mission.policy_memory_limit_mib;

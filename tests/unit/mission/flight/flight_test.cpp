@@ -91,7 +91,7 @@ TEST(Flight, ThatBreaksOffItsLandingHoversWhereThePoseFoundAgainSaysNotWhereTheR
   f.advance(1);
   EXPECT_LT((f.flight.reference().position - here).norm(), 1e-6);
 
-  f.flight.follow({here, here + Vec3(3, 0, 0)}, 0, f.now, {});
+  f.flight.follow({.points = {here, here + Vec3(3, 0, 0)}, .start = f.now});
   f.advance(1);
   EXPECT_GT(f.flight.reference().velocity_mps.x(), 0.5) << "it does as it is told again";
   const double height_m = f.flight.reference().position.z();
