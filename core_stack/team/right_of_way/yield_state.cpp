@@ -11,7 +11,7 @@ constexpr double kNearer_m = 0.3;            // so much nearer: it comes
 constexpr double kMoves_mps = 0.15;          // so fast: it comes, or goes
 constexpr TimeNs kLook = 2 * kSecond;        // another that stands near may want to get by
 constexpr TimeNs kStays = 6 * kSecond;       // in one place; then the place is no good,
-constexpr TimeNs kPasses = 2 * kSecond;      // unless the other has come nearer since
+constexpr TimeNs kPasses = 2 * kSecond;      // unless the other came nearer that lately, or goes
 constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
 constexpr TimeNs kSeen = kSecond;            // one that stands aside is in the map by then
 // One that is seen, but not heard, and stands: each waits so much longer than who has the number before.
@@ -46,6 +46,8 @@ void YieldState::begin(const Neighbour& self, const Neighbour& other, TimeNs now
 }
 
 bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const Neighbour& other, TimeNs now) {
+  // One that is not heard may be leaving, too, and stand but to turn: each goes to where it set out for.
+  if (on_the_way_ && !other.heard) return false;
   const double d = distance_m(self, other);
   if (goes_before(self, other)) {
     if (other.phase == TeamPhase::aside) {
@@ -88,11 +90,13 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     return Action::stop;
   }
   if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
-  const bool comes = coming_mps(self, *other) > kMoves_mps;
+  const double coming = coming_mps(self, *other);
+  const bool comes = coming > kMoves_mps;
   // Who is not heard may not know of this one, and come straight at it.
   const bool leaves = !other->heard && comes;
   if (!leaves && !at_rest) return Action::hold;
-  if (leaves || (still_for > kStays && now - nearest_at_ > kPasses)) {
+  const bool passes = now - nearest_at_ < kPasses || coming < -kMoves_mps;
+  if (leaves || (still_for > kStays && !passes)) {
     asked_at_ = now;
     return Action::leave;
   }

@@ -98,7 +98,7 @@ TEST_F(TeamPartsTest, ItStaysOnTheGroundWhileAnotherComesHomeOrMayHaveComeUnhear
     first.set_state(state);
     for (const Bytes& frame : first.transmit(now())) node.receive(frame, now());
   };
-  hear_at({8, 0, 1}, TeamPhase::explore);
+  hear_at({6, 0, 1}, TeamPhase::explore);
   EXPECT_TRUE(sharing.airspace_clear());
   advance(5);
   EXPECT_FALSE(sharing.airspace_clear()) << "it was near, and is silent";
