@@ -1,7 +1,7 @@
 // Mission control, the top loop: it turns sensor messages into a map, the policy's goals into paths, and
 // paths into commands. Whatever happens, the vehicle returns home and lands.
 //
-//   standby -> takeoff -> (look) -> explore -> home -> land -> done       (phases/phase.cpp)
+//   standby -> takeoff -> (look) -> explore -> home -> land -> done       (state/phase.cpp)
 //
 // Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
 // PathExecution, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class wires

@@ -215,7 +215,9 @@ TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) 
   EXPECT_LT(nearest_m, 15) << "they did not meet in the passage: this shows nothing";
   for (const char* robot : {"robot_1", "robot_2"}) {
     const auto record = evaluation::read_run(folder / "run" / robot);
-    EXPECT_EQ(record.last_event("outcome")->at("outcome"), "landed") << robot;
+    const auto outcome = record.last<core::event::Outcome>();
+    ASSERT_TRUE(outcome.has_value()) << robot;
+    EXPECT_EQ(outcome->outcome, core::MissionOutcome::landed) << robot;
     EXPECT_LT(robustness::longest_stall_s(record), 15) << robot;
   }
 }

@@ -11,8 +11,8 @@
 #include "core_stack/common/enum_names.h"
 #include "core_stack/common/time.h"
 #include "core_stack/localization/estimator.h"
-#include "core_stack/mission/flight/safety_action.h"
 #include "core_stack/mission/options/safety_options.h"
+#include "core_stack/mission/state/safety_action.h"
 
 namespace karst::core {
 

@@ -7,7 +7,7 @@
 #include "core_stack/mission/flight/route.h"
 #include "core_stack/mission/flight/safety.h"
 #include "core_stack/mission/onboard/onboard.h"
-#include "core_stack/mission/phases/phase.h"
+#include "core_stack/mission/state/phase.h"
 
 namespace karst::core {
 

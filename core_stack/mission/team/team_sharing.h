@@ -8,7 +8,7 @@
 #include "core_stack/mission/onboard/onboard.h"
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/path_execution.h"
-#include "core_stack/mission/phases/phase.h"
+#include "core_stack/mission/state/phase.h"
 #include "core_stack/team/teamwork.h"
 
 namespace karst::core {

@@ -1,4 +1,4 @@
-#include "core_stack/mission/phases/phase.h"
+#include "core_stack/mission/state/phase.h"
 
 #include <algorithm>
 #include <array>
