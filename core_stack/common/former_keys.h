@@ -9,14 +9,13 @@
 namespace karst::core {
 
 /// The last part of a key as it was, and as it is.
-inline constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kFormerKeys{{
+inline constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kFormerKeys{{
     {"degenerate_share", "degenerate_fraction"},
     {"keep_apart", "separation"},
     {"least_confidence", "min_confidence"},
     {"least_edge", "min_edge"},
     {"least_quality", "min_quality"},
     {"least_volume", "min_volume"},
-    {"longest_way", "max_path"},
     {"min_matched_share", "min_matched_fraction"},
     {"most_drop", "max_drop"},
     {"most_ratio", "max_ratio"},

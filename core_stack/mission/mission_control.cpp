@@ -317,6 +317,10 @@ void MissionControl::land() {
   if (standing_) return touch_down(now());  // it had not left the ground yet
   if (found_again()) {
     lands_lost_ = false;
+    // What it landed for is over: an action that outlives its cause would have it land again.
+    safety_ = SafetySupervisor(onboard_.options.safety);
+    verdict_ = {};
+    path_.obey(SafetyAction::none);
     onboard_.flight.break_off_landing(now());
     return return_home_.begin("the pose is known again");
   }
@@ -384,8 +388,11 @@ void MissionControl::note_verdict(const SafetyVerdict& before) {
 /// are now: one may have come up, or gone, in a phase in which it made no difference.
 void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
-  if (under_way)
-    onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * path_.speed_fraction());
+  if (under_way) {
+    const double usual_mps = onboard_.options.motion.max_speed_mps * path_.speed_fraction();
+    const auto unseen_mps = team_ ? team_->right_of_way.max_speed_mps() : std::nullopt;
+    onboard_.flight.cap_speed(now(), std::min(usual_mps, unseen_mps.value_or(usual_mps)));
+  }
   if (verdict_.action == SafetyAction::land) {
     path_.brake(now());
     return land_here(verdict_.reason);

@@ -79,6 +79,7 @@ void SensorPipeline::on_pose(const PoseSample& s) {
 void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
   const std::string state = !pose.valid                ? pose.problem
                             : !accepted                ? "the pose contradicts the IMU"
+                            : pose.anew                ? pose.problem
                             : pose.free_directions > 0 ? std::to_string(pose.free_directions) +
                                                              " directions held from the prediction"
                                                        : "";

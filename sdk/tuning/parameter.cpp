@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/former_keys.h"
 #include "core_stack/common/options.h"
 
 namespace karst::tuning {
@@ -58,6 +59,9 @@ std::vector<Axis> axes_of(const host::PolicyListing& policy, const std::vector<s
   }
   for (const std::string& id : ids)
     if (std::none_of(axes.begin(), axes.end(), [&](const Axis& a) { return a.id == id; })) {
+      if (const std::string now = core::renamed(id);
+          std::find(names.begin(), names.end(), now) != names.end())
+        throw core::InputError(policy.id, id, "is now called " + now);
       const std::string near = core::nearest_name(id, names);
       throw core::InputError(policy.id, id,
                              "no such parameter" + (near.empty() ? "" : "; did you mean " + near + "?"));

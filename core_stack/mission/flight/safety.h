@@ -4,11 +4,9 @@
 // what is done about the motion, where the most severe action of all rules counts, and whether exploring has
 // to end. An action is kept for a second after its cause is gone, so that it does not flicker.
 #pragma once
-#include <array>
 #include <optional>
 #include <string>
 
-#include "core_stack/common/enum_names.h"
 #include "core_stack/common/time.h"
 #include "core_stack/localization/estimator.h"
 #include "core_stack/mission/options/safety_options.h"

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core_stack/common/json_text.h"
 #include "core_stack/common/json_point.h"
+#include "core_stack/common/json_text.h"
 
 namespace karst::core::event {
 namespace {

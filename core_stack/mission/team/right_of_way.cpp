@@ -46,14 +46,14 @@ void RightOfWay::look_out() {
   const double heading_rad = onboard_.flight.reference().heading_rad;
   const bool looks =
       ahead.isZero() || ahead.dot(Vec3(std::cos(heading_rad), std::sin(heading_rad), 0)) > kLooks;
-  const double usual_mps = onboard_.options.motion.max_speed_mps * parts_.path.speed_fraction();
-  const bool slow = !looks && team_.may_meet_unheard(onboard_.now());
-  onboard_.flight.cap_speed(onboard_.now(), slow ? std::min(usual_mps, kUnseen_mps) : usual_mps);
+  max_speed_mps_.reset();
+  if (!looks && team_.may_meet_unheard(onboard_.now())) max_speed_mps_ = kUnseen_mps;
 }
 
 void RightOfWay::step() {
   if (!parts_.phases.under_way()) {
     failed_places_.clear();
+    max_speed_mps_.reset();
     yield_state_.forget();
     return parts_.path.yield(yield_state_.holds());
   }

@@ -1,5 +1,6 @@
 // Right of way when vehicles meet: which goes first, and where the other makes room.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core_stack/mission/phases/flown_path.h"
@@ -27,6 +28,8 @@ class RightOfWay {
 
   /// Call ten times a second: stops the vehicle for another with the right of way, and makes room for it.
   void step();
+  /// A limit where it does not look where it flies and may meet a vehicle that it does not hear.
+  std::optional<double> max_speed_mps() const { return max_speed_mps_; }
   /// The phase to report now.
   TeamPhase phase_to_report() const;
 
@@ -50,6 +53,7 @@ class RightOfWay {
   StillWatch still_;
   WaitingPlace waiting_place_;       // where it last made room
   std::vector<Vec3> failed_places_;  // it waited there for long, or in the other's way
+  std::optional<double> max_speed_mps_;
   bool planning_ = false;
 };
 

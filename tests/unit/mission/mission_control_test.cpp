@@ -251,6 +251,20 @@ TEST_F(MissionControlTest, BrakesWhenBlindAndThenGoesHomeThroughTheKnownMap) {
   EXPECT_EQ(safety(), (Texts{"brake: no sensor sees the cave", "home: no sensor sees the cave any more"}));
 }
 
+// As it was: found again within a second, the pose was lost again by the action that outlived its cause, and
+// the vehicle landed in the cave for good.
+TEST_F(MissionControlTest, APoseThatIsLostAndSoonFoundAgainBreaksTheLandingOff) {
+  std::optional<TimeNs> lost;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    if (mission.phase() == Phase::explore && vehicle.pose().position.x() > 5 && !lost) lost = executive.now();
+    vehicle.pose_sensor_works = !lost || mission.phase() != Phase::explore;  // back as soon as it lands
+  });
+  ASSERT_TRUE(lost.has_value()) << "it never came so far: this shows nothing";
+  EXPECT_EQ(homing_reason(), "the pose is known again");
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
+  EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "land", "home", "land", "done"}));
+}
+
 TEST_F(MissionControlTest, AnEstimateDegradedSinceTakeOffSendsItHome) {
   options.safety.degraded_home_s = 1;
   EXPECT_EQ(fly([this](MissionControl& mission) { degrade(mission); }).outcome, MissionOutcome::landed);

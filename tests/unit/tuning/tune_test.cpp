@@ -195,8 +195,8 @@ TEST(Tune, BadOptionsAreErrors) {
   Field field;
   const auto message = [&](const std::function<void(TuneOptions&)>& change) -> std::string {
     TuneOptions o = options(60);
-    change(o);
     try {
+      change(o);
       tune(o, std::ref(field));
     } catch (const InputError& e) {
       return e.what();
