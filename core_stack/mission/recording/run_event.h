@@ -36,6 +36,8 @@ struct Field {
   const char* name;
   T Event::*member;
 };
+template <class Event, class T>
+Field(const char*, T Event::*) -> Field<Event, T>;
 
 struct Phase {
   static constexpr const char* kKind = "phase";
