@@ -23,8 +23,9 @@ struct TeamObject {
 };
 
 /// Merges reports of one kind by different finders into one object if they lie within 1 m plus three times
-/// their combined deviation of each other, and within 3 m. Its position is their mean weighted by inverse variance.
-/// Two reports of one finder are always two objects. The result does not depend on the order of arrival.
+/// their combined deviation of each other, and within 3 m. Its position is their mean weighted by inverse
+/// variance. Two reports of one finder are always two objects. The result does not depend on the order of
+/// arrival.
 std::vector<TeamObject> merged(const ReportedObjects& reports);
 
 }  // namespace karst::core

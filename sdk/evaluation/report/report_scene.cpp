@@ -19,7 +19,9 @@ namespace event = core::event;
 constexpr std::size_t kMaxCloudPoints = 300000;
 constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, all moments together
 
-ordered_json rounded(const Vec3& p) { return {core::to_hundredths(p.x()), core::to_hundredths(p.y()), core::to_hundredths(p.z())}; }
+ordered_json rounded(const Vec3& p) {
+  return {core::to_hundredths(p.x()), core::to_hundredths(p.y()), core::to_hundredths(p.z())};
+}
 
 /// Points that are not known are left out.
 ordered_json rounded(const std::vector<Vec3>& points) {

@@ -12,7 +12,8 @@ std::optional<ObjectReport> report_of(const json& e) {
   const auto state = core::parse<core::ObjectState>(event_text(e, "state"));
   if (whole_number(e, "robot") < 0 || whole_number(e, "number") < 0 || !state) return std::nullopt;
   ObjectReport report{*state, event_text(e, "what"), position_of(e), e["t"]};
-  if (*state != core::ObjectState::withdrawn && (!report.position || report.what.empty())) return std::nullopt;
+  if (*state != core::ObjectState::withdrawn && (!report.position || report.what.empty()))
+    return std::nullopt;
   return report;
 }
 
