@@ -72,11 +72,12 @@ std::optional<MissionControl::InTeam> MissionControl::in_team(Teamwork* team) {
 }
 
 SensorPipeline::Wiring MissionControl::sensor_wiring() {
-  SensorPipeline::Wiring wiring{.ask = [this] { return map_question(); },
-                                .tell = [this](const MapNews& news) { on_map(news); },
-                                .others = {}};
-  if (team_) wiring.others = [this](TimeNs stamp) { return team_->sharing.others_at(stamp); };
-  return wiring;
+  return {.ask = [this] { return map_question(); },
+          .tell = [this](const MapNews& news) { on_map(news); },
+          .others =
+              [this](TimeNs stamp) {
+                return team_ ? team_->sharing.others_at(stamp) : std::vector<MovingBody>{};
+              }};
 }
 
 Exploration::Wiring MissionControl::exploration_wiring() {
@@ -348,7 +349,6 @@ MapQuestion MissionControl::map_question() const {
 void MissionControl::on_map(const MapNews& news) {
   onboard_.recorder.map_changes(now(), news.changes);
   goals_.note_frontier(news.frontier, news.frontier_open);
-  if (team_) team_->work.note_seen(news.bodies, news.stamp);
   onboard_.flight.prepare_landing(news.descent_path);
   if (!news.blocked_after_m || path_.blocked() || onboard_.flight.at_rest(now())) return;
   if (phases_.in(Phase::takeoff) && take_off_.below_roof()) return;
@@ -388,11 +388,8 @@ void MissionControl::note_verdict(const SafetyVerdict& before) {
 /// are now: one may have come up, or gone, in a phase in which it made no difference.
 void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
-  if (under_way) {
-    const double usual_mps = onboard_.options.motion.max_speed_mps * path_.speed_fraction();
-    const auto unseen_mps = team_ ? team_->right_of_way.max_speed_mps() : std::nullopt;
-    onboard_.flight.cap_speed(now(), std::min(usual_mps, unseen_mps.value_or(usual_mps)));
-  }
+  const double fraction = verdict_.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_fraction;
+  if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * fraction);
   if (verdict_.action == SafetyAction::land) {
     path_.brake(now());
     return land_here(verdict_.reason);

@@ -1,7 +1,6 @@
 #include "core_stack/mission/team/right_of_way.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace karst::core {
@@ -9,8 +8,6 @@ namespace {
 
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr double kAtWaitingPlace_m = 0.5;
-constexpr double kFlies_mps = 0.2, kUnseen_mps = 0.5;
-const double kLooks = std::cos(0.75);  // half a camera's field of view
 
 }  // namespace
 
@@ -37,45 +34,29 @@ TeamPhase RightOfWay::phase_to_report() const {
   return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
-/// Where it does not look it flies slowly: one that is not heard does not see where this one comes from
-/// either.
-void RightOfWay::look_out() {
-  if (onboard_.vehicle.lidar) return;
-  const State& s = onboard_.flight.state();
-  const Vec3 ahead = s.velocity_mps.norm() > kFlies_mps ? s.velocity_mps.normalized() : Vec3::Zero();
-  const double heading_rad = onboard_.flight.reference().heading_rad;
-  const bool looks =
-      ahead.isZero() || ahead.dot(Vec3(std::cos(heading_rad), std::sin(heading_rad), 0)) > kLooks;
-  max_speed_mps_.reset();
-  if (!looks && team_.may_meet_unheard(onboard_.now())) max_speed_mps_ = kUnseen_mps;
-}
-
 void RightOfWay::step() {
   if (!parts_.phases.under_way()) {
     failed_places_.clear();
-    max_speed_mps_.reset();
     yield_state_.forget();
     return parts_.path.yield(yield_state_.holds());
   }
   const TimeNs now = onboard_.now();
-  look_out();
   note_arrival();
   const State& s = onboard_.flight.state();
   const std::vector<Neighbour> others = team_.neighbours(now);
   const bool held = yield_state_.holds();
   const RobotId held_for = yield_state_.with();
-  const auto action = yield_state_.update(
-      {.distance_m = team_.options().separation_m},
-      {team_.self(), s.position, s.velocity_mps, phase_for_team(parts_.phases.phase())}, others, now,
-      onboard_.flight.at_rest(now), still_.still_for(onboard_.flight.reference().position, now));
+  const auto action =
+      yield_state_.update({.distance_m = team_.options().separation_m},
+                          {team_.self(), s.position, s.velocity_mps, phase_for_team(parts_.phases.phase())},
+                          others, now, onboard_.flight.at_rest(now));
   on_change(held, held_for);
   if (action == YieldState::Action::stop) {
     onboard_.recorder.write(now,
                             event::Team{.action = event::TeamAction::stop, .robot = yield_state_.with()});
     parts_.path.stop(now);
   }
-  if (action == YieldState::Action::leave) note_failed(onboard_.flight.reference().position);
-  if (action == YieldState::Action::make_room || action == YieldState::Action::leave) make_room(others);
+  if (action == YieldState::Action::make_room && !planning_) make_room(others);
   parts_.path.yield(yield_state_.holds());
 }
 
@@ -108,13 +89,6 @@ void RightOfWay::on_change(bool held, RobotId held_for) {
   }
 }
 
-void RightOfWay::note_failed(const Vec3& place) {
-  const bool known = std::any_of(failed_places_.begin(), failed_places_.end(), [&](const Vec3& known_one) {
-    return (known_one - place).norm() < kAtWaitingPlace_m;
-  });
-  if (!known) failed_places_.push_back(place);
-}
-
 /// To where the one that it gives way to gets by, or before it back along the way come; clear of all others.
 void RightOfWay::make_room(const std::vector<Neighbour>& others) {
   RoomQuery query;
@@ -127,8 +101,10 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
       (o.phase == TeamPhase::aside ? query.standing : query.moving).push_back(o.position);
     }
   }
-  if (!there || planning_) return;
+  if (!there) return;
   planning_ = true;
+  if (yield_state_.stands_aside())
+    failed_places_.push_back(waiting_place_.place);  // it waits there, and the other does not get by
   query.flown = parts_.flown_path.points();
   query.failed = failed_places_;
   query.separation_m = team_.options().separation_m / 2;

@@ -8,9 +8,6 @@ namespace {
 constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
 constexpr TimeNs kHeardLately = 2 * kSecond;   // of who speaks once a second
-constexpr double kComesHome_m = 10.0;          // so near: it lands before another takes off beside its way
-constexpr TimeNs kMayBeNear = 12 * kSecond;    // after its last word
-constexpr double kMayCome_mps = 1.0;           // on average, through a cave
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
 constexpr double kAboutThere_m = 0.4, kMaxStrayed_m = 1.5;
@@ -91,20 +88,10 @@ void TeamSharing::give_up_goals() {
 bool TeamSharing::airspace_clear() const {
   const Vec3 hover =
       onboard_.vehicle.T_world_start.position + Vec3(0, 0, onboard_.options.mission.takeoff_height_m);
-  const double separation_m = team_.options().separation_m;
-  const auto in_the_way = [&](const Neighbour& o) {
-    return (o.position - hover).norm() < (o.phase == TeamPhase::home ? kComesHome_m : separation_m);
-  };
-  // One that has fallen silent may have come from where it was last heard.
-  const auto may_have_come = [&](const Neighbour& o) {
-    const Vec3 reported_at = o.position - o.age_s * o.velocity_mps;
-    return o.age_s > seconds(kNewsHold) &&
-           (reported_at - hover).norm() < separation_m + kMayCome_mps * o.age_s;
-  };
-  const std::vector<Neighbour> others = team_.neighbours(onboard_.now()),
-                               silent = team_.heard(onboard_.now(), kMayBeNear);
-  return std::none_of(others.begin(), others.end(), in_the_way) &&
-         std::none_of(silent.begin(), silent.end(), may_have_come);
+  const std::vector<Neighbour> others = team_.neighbours(onboard_.now());
+  return std::none_of(others.begin(), others.end(), [&](const Neighbour& o) {
+    return (o.position - hover).norm() < team_.options().separation_m;
+  });
 }
 
 bool TeamSharing::in_company() const {

@@ -9,17 +9,14 @@ constexpr double kGoOn = 1.3;                // times the distance at which it s
 constexpr double kPast_m = 2.0;              // so much farther away than it was: the other is past
 constexpr double kNearer_m = 0.3;            // so much nearer: it comes
 constexpr double kMoves_mps = 0.15;          // so fast: it comes, or goes
-constexpr TimeNs kLook = 2 * kSecond;        // another that stands near may want to get by
-constexpr TimeNs kStays = 6 * kSecond;       // in one place; then the place is no good,
-constexpr TimeNs kPasses = 2 * kSecond;      // unless the other came nearer that lately, or goes
+constexpr TimeNs kLook = 3 * kSecond;        // another that stands near may want to get by
+constexpr TimeNs kStands = 8 * kSecond;      // it does not get by, so the place is no good
 constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
 constexpr TimeNs kSeen = kSecond;            // one that stands aside is in the map by then
-// One that is seen, but not heard, and stands: each waits so much longer than who has the number before.
-constexpr TimeNs kTurn = 3 * kSecond;
-constexpr TimeNs kFirst = 8 * kSecond;  // who goes before waits no longer for room
+constexpr TimeNs kFirst = 15 * kSecond;      // who goes before waits no longer for room
 constexpr TimeNs kAskAgain = 2 * kSecond;
 constexpr int kMaxAttempts = 2, kMaxAttemptsInCrowd = 8;
-constexpr TimeNs kBoxed = 15 * kSecond;
+constexpr TimeNs kBoxed = 30 * kSecond;
 
 double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
 
@@ -46,15 +43,12 @@ void YieldState::begin(const Neighbour& self, const Neighbour& other, TimeNs now
 }
 
 bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const Neighbour& other, TimeNs now) {
-  // One that is not heard may be leaving, too, and stand but to turn: each goes to where it set out for.
-  if (on_the_way_ && !other.heard) return false;
   const double d = distance_m(self, other);
   if (goes_before(self, other)) {
     if (other.phase == TeamPhase::aside) {
       if (!aside_since_) aside_since_ = now;
-      return now - *aside_since_ > kSeen + (other.heard ? 0 : (self.robot - 1) * kTurn);
+      return now - *aside_since_ > kSeen;
     }
-    aside_since_.reset();
     return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
   }
   if (d < nearest_m_ - kNearer_m) {
@@ -66,8 +60,7 @@ bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const N
 }
 
 YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self,
-                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest,
-                                      TimeNs still_for) {
+                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest) {
   if (now < boxed_until_) self.phase = TeamPhase::boxed;
   const std::vector<Neighbour> near = give_way_to(rule, self, others);
   const auto other = std::find_if(others.begin(), others.end(),
@@ -89,18 +82,13 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     arrived(Place::in_the_way, now);
     return Action::stop;
   }
-  if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
-  const double coming = coming_mps(self, *other);
-  const bool comes = coming > kMoves_mps;
-  // Who is not heard may not know of this one, and come straight at it.
-  const bool leaves = !other->heard && comes;
-  if (!leaves && !at_rest) return Action::hold;
-  const bool passes = now - nearest_at_ < kPasses || coming < -kMoves_mps;
-  if (leaves || (still_for > kStays && !passes)) {
-    asked_at_ = now;
-    return Action::leave;
-  }
-  if (aside_ || !(comes || now - since_ > kLook)) return Action::hold;
+  const double d = distance_m(self, *other);
+  if (!at_rest || on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain)
+    return Action::hold;
+  const bool in_its_way = aside_ ? d < 2 * rule.distance_m && now - std::max(nearest_at_, since_) > kStands &&
+                                       std::abs(coming_mps(self, *other)) < kMoves_mps
+                                 : coming_mps(self, *other) > kMoves_mps || now - since_ > kLook;
+  if (!in_its_way) return Action::hold;
   asked_at_ = now;
   return Action::make_room;
 }

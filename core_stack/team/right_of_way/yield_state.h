@@ -14,13 +14,11 @@ class YieldState {
     hold,       // stop, or stay where it is
     stop,       // on its way to make room it comes too near to somebody: brake, and look for another place
     make_room,  // it stands in another's way: to be answered by set_out() or no_room()
-    leave,      // the same, and where it is it must not stay
   };
 
-  /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others,
-  /// and has kept to one place for `still_for`, whomever it waited for.
+  /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others.
   Action update(const SeparationRule& rule, Neighbour self, const std::vector<Neighbour>& others, TimeNs now,
-                bool at_rest, TimeNs still_for);
+                bool at_rest);
 
   /// The vehicle has left for its waiting place.
   void set_out() { on_the_way_ = true, aside_ = false; }

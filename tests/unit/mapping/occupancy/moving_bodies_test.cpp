@@ -68,43 +68,5 @@ TEST(MovingBodies, ThatAreNotThereChangeNothing) {
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(rays[i].hit, before[i].hit);
 }
 
-/// What a scan shows of a ball, in a map of the wall alone.
-std::vector<Vec3> found(const Vec3f& ball) {
-  VoxelMap map{MapOptions{}};
-  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
-  return bodies_in_the_air(map, seen(ball));
-}
-
-TEST(BodiesInTheAir, AreWhereAScanHitsWhatWasFree) {
-  const std::vector<Vec3> bodies = found({5, 0.4f, 0.2f});
-  ASSERT_EQ(bodies.size(), 1u);
-  EXPECT_LT((bodies[0] - Vec3(5, 0.4, 0.2)).norm(), 0.35) << "of a ball of 0.3 m the near side is seen";
-}
-
-TEST(BodiesInTheAir, AreFoundCloseByRock) {
-  const std::vector<Vec3> bodies = found({kWall_m - 0.75f, 0, 0});
-  ASSERT_EQ(bodies.size(), 1u);
-  EXPECT_LT((bodies[0] - Vec3(kWall_m - 0.75, 0, 0)).norm(), 0.35);
-}
-
-TEST(BodiesInTheAir, AreFoundInWhatTheyWereTakenForBefore) {
-  VoxelMap map{MapOptions{}};
-  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
-  for (int i = 0; i < 4; ++i) map.insert(seen({5, 0, 0}));
-  ASSERT_EQ(map.at(Vec3(4.7, 0, 0)), Cell::occupied);
-  EXPECT_TRUE(bodies_in_the_air(map, seen({5, 0, 0})).empty()) << "it stands, and is an obstacle";
-  EXPECT_EQ(bodies_in_the_air(map, seen({4.6f, 0.3f, 0})).size(), 1u);
-}
-
-TEST(BodiesInTheAir, NoiseAtTheWallIsNone) {
-  VoxelMap map{MapOptions{}};
-  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
-  std::vector<Ray> noisy = seen({50, 50, 50});
-  for (std::size_t i = 0; i < noisy.size(); ++i)
-    noisy[i].end *= 1 + 0.01f * static_cast<float>(static_cast<int>(i * 7 % 5) - 2);
-  EXPECT_TRUE(bodies_in_the_air(map, noisy).empty());
-  EXPECT_TRUE(bodies_in_the_air(VoxelMap{MapOptions{}}, seen({5, 0, 0})).empty()) << "nothing was free";
-}
-
 }  // namespace
 }  // namespace karst::core
