@@ -13,7 +13,7 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 # No more than x86-64-v2: Debian's libraries are plain x86-64, and Eigen's alignment must agree with theirs.
 # No contraction: a fused multiply-add would make results depend on the compiler's mood.
 add_compile_options(-march=x86-64-v2 -ffp-contract=off)
-set(KARST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+set(KARST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Werror=switch)
 if(KARST_WERROR)
   list(APPEND KARST_WARNINGS -Werror)
 endif()

@@ -19,19 +19,18 @@ class LaneBound {
 
   /// Runs `work(resident)` on the lane, and `use(what it returned)` on the loop's thread at now + budget.
   template <class Work, class Use>
-  void job(std::string name, TimeNs budget, Work work, Use use) {
+  void job(const std::string& name, TimeNs budget, Work work, Use use) {
     using Result = std::invoke_result_t<Work&, Resident&>;
     auto result = std::make_shared<Result>();
     executive_.job(
-        std::move(name), lane_, budget,
-        [this, result, work = std::move(work)]() mutable { *result = work(resident_); },
+        name, lane_, budget, [this, result, work = std::move(work)]() mutable { *result = work(resident_); },
         [result, use = std::move(use)]() mutable { use(*result); });
   }
   /// The same without a result.
   template <class Work>
-  void job(std::string name, TimeNs budget, Work work) {
+  void job(const std::string& name, TimeNs budget, Work work) {
     executive_.job(
-        std::move(name), lane_, budget, [this, work = std::move(work)]() mutable { work(resident_); }, [] {});
+        name, lane_, budget, [this, work = std::move(work)]() mutable { work(resident_); }, [] {});
   }
 
   /// Direct access while no job runs: before the first one, and after the executive has been drained.

@@ -32,6 +32,7 @@ class SweepMotion {
 
   /// A point of the lidar frame at `time_s`, in the body frame at the end.
   Vec3f to_body_at_end(const Vec3f& p, float time_s) const {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative, and lround() is slower
     const auto i = static_cast<std::size_t>(std::max(-time_s, 0.0f) * steps_per_s_ + 0.5f);
     const Step& s = steps_[std::min(i, steps_.size() - 1)];
     return s.rotation * p + s.translation;

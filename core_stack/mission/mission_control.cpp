@@ -77,7 +77,8 @@ SensorPipeline::Wiring MissionControl::sensor_wiring() {
           .others =
               [this](TimeNs stamp) {
                 return team_ ? team_->sharing.others_at(stamp) : std::vector<MovingBody>{};
-              }};
+              },
+          .look_for_others = [this] { return team_ && team_->work.may_meet_unheard(now()); }};
 }
 
 Exploration::Wiring MissionControl::exploration_wiring() {
@@ -336,7 +337,7 @@ MapQuestion MissionControl::map_question() const {
   const bool takes_off = phases_.in(Phase::takeoff);
   if (takes_off || phases_.under_way())  // during take-off the ground is near
     question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
-  if (takes_off || phases_.in(Phase::look) || phases_.under_way())
+  if (takes_off || traits_of(phases_.phase()).above_ground)
     question.descent_path = DescentQuery{
         onboard_.flight.until_stop(now()).points.back(), flown_path_.back(path_back_m(endurance_.battery())),
         onboard_.vehicle.radius_m, flown_path_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
@@ -349,6 +350,7 @@ MapQuestion MissionControl::map_question() const {
 void MissionControl::on_map(const MapNews& news) {
   onboard_.recorder.map_changes(now(), news.changes);
   goals_.note_frontier(news.frontier, news.frontier_open);
+  if (team_) team_->work.note_seen(news.bodies, news.stamp);
   onboard_.flight.prepare_landing(news.descent_path);
   if (!news.blocked_after_m || path_.blocked() || onboard_.flight.at_rest(now())) return;
   if (phases_.in(Phase::takeoff) && take_off_.below_roof()) return;
@@ -388,13 +390,16 @@ void MissionControl::note_verdict(const SafetyVerdict& before) {
 /// are now: one may have come up, or gone, in a phase in which it made no difference.
 void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
-  const double fraction = verdict_.action == SafetyAction::none ? 1.0 : onboard_.options.safety.slow_fraction;
-  if (under_way) onboard_.flight.cap_speed(now(), onboard_.options.motion.max_speed_mps * fraction);
+  if (under_way) {
+    const double usual_mps = onboard_.options.motion.max_speed_mps * path_.speed_fraction();
+    const auto unseen_mps = team_ ? team_->right_of_way.max_speed_mps() : std::nullopt;
+    onboard_.flight.cap_speed(now(), std::min(usual_mps, unseen_mps.value_or(usual_mps)));
+  }
   if (verdict_.action == SafetyAction::land) {
     path_.brake(now());
     return land_here(verdict_.reason);
   }
-  if (verdict_.go_home && phases_.in(Phase::explore)) return_home_.begin(*verdict_.go_home);
+  if (verdict_.go_home && phases_.explores()) return_home_.begin(*verdict_.go_home);
   const bool brakes = verdict_.action == SafetyAction::brake && !verdict_.same_motion(before);
   if (brakes && under_way && !onboard_.flight.at_rest(now())) {
     goals_.drop_next(GoalFate::superseded, verdict_.reason, now());
@@ -420,7 +425,7 @@ void MissionControl::record() {
     }
     objects_.note_at_base();
   }
-  if (each_second && !onboard_.recorder.flush() && phases_.in(Phase::explore))
+  if (each_second && !onboard_.recorder.flush() && phases_.explores())
     return_home_.begin("the run directory cannot be written any more (disk full?)");
 }
 

@@ -99,23 +99,20 @@ void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
 }
 
 void SensorPipeline::map_scan(std::shared_ptr<const LidarScan> scan) {
-  integrate([scan, history = onboard_.flight.estimator().history(), filter = onboard_.options.perception,
-             range_m = onboard_.options.mission.mapping_range_m, others = wiring_.others(scan->stamp),
+  integrate(scan->stamp,
+            [scan, history = onboard_.flight.estimator().history(), filter = onboard_.options.perception,
+             range_m = onboard_.options.mission.mapping_range_m,
              self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
-    LidarScan filtered = *scan;
-    filter_low_intensity(filtered, filter);
-    std::vector<Ray> rays = to_rays(filtered, history, self_m, range_m);
-    leave_out(rays, others);
-    return rays;
-  });
+              LidarScan filtered = *scan;
+              filter_low_intensity(filtered, filter);
+              return to_rays(filtered, history, self_m, range_m);
+            });
 }
 
 void SensorPipeline::on_depth(std::shared_ptr<const DepthImage> image) {
-  integrate([image, history = onboard_.flight.estimator().history(), others = wiring_.others(image->stamp),
-             self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
-    std::vector<Ray> rays = to_rays(*image, history, self_m);
-    leave_out(rays, others);
-    return rays;
+  integrate(image->stamp, [image, history = onboard_.flight.estimator().history(),
+                           self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
+    return to_rays(*image, history, self_m);
   });
 }
 
@@ -157,7 +154,7 @@ void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
       });
 }
 
-void SensorPipeline::integrate(std::function<std::vector<Ray>()> make_rays) {
+void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> make_rays) {
   if (closed_ || onboard_.executive.under_way("mapping") >= kMaxWaiting) return;
   struct Mapped {
     MapNews news;
@@ -166,11 +163,16 @@ void SensorPipeline::integrate(std::function<std::vector<Ray>()> make_rays) {
   };
   onboard_.map.job(
       "mapping", kMappingBudget,
-      [make_rays = std::move(make_rays), here = onboard_.flight.state().position,
+      [make_rays = std::move(make_rays), stamp, others = wiring_.others(stamp),
+       look_for_others = wiring_.look_for_others(), here = onboard_.flight.state().position,
        question = wiring_.ask()](Explorer& explorer) {
         Mapped out;
         MapNews& news = out.news;
-        news.changes = explorer.integrate(make_rays());
+        std::vector<Ray> rays = make_rays();
+        news.stamp = stamp;
+        if (look_for_others) news.bodies = bodies_in_the_air(explorer.map(), rays);
+        leave_out(rays, others);
+        news.changes = explorer.integrate(rays);
         out.explored_m3 = explorer.map().free_volume_m3();
         const std::vector<Vec3>& ahead = question.ahead;
         if (ahead.size() > 1) {

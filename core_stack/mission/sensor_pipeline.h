@@ -31,6 +31,8 @@ struct MapNews {
   std::vector<Vec3> descent_path;         // as asked
   std::uint32_t frontier = 0;             // as asked
   bool frontier_open = true;              // it is worth flying to
+  TimeNs stamp = 0;                       // of what was seen
+  std::vector<Vec3> bodies;               // in the air, where there was nothing before
 };
 
 class SensorPipeline {
@@ -40,6 +42,8 @@ class SensorPipeline {
     std::function<void(const MapNews&)> tell;
     /// Other vehicles, where they were at that time: what is seen of them is no rock.
     std::function<std::vector<MovingBody>(TimeNs stamp)> others;
+    /// Whether to look for vehicles whose place is not known.
+    std::function<bool()> look_for_others;
   };
   SensorPipeline(Onboard& onboard, Wiring wiring);
 
@@ -67,7 +71,7 @@ class SensorPipeline {
   void note_localization(const LoamPose& pose, bool accepted);
   void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
   void map_scan(std::shared_ptr<const LidarScan> scan);
-  void integrate(std::function<std::vector<Ray>()> make_rays);
+  void integrate(TimeNs stamp, std::function<std::vector<Ray>()> make_rays);
 
   Onboard& onboard_;
   Wiring wiring_;

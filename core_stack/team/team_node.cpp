@@ -11,8 +11,7 @@ constexpr double kGoodQuality = 0.2;  // minimal quality of a link for landing: 
 /// Minimal quality of a dropped node's links, each way. The link could not be tested before the drop, and a
 /// link at the limit of range is intermittent.
 constexpr double kNodeQuality = 0.45;
-constexpr double kAntenna_m = 0.3;         // above the ground, of a landed robot
-constexpr TimeNs kStateAge = 3 * kSecond;  // of a position to keep apart from
+constexpr double kAntenna_m = 0.3;  // above the ground, of a landed robot
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
 constexpr double kHeardNow = 1.0 / 3;  // of link_age: heard so recently, a node is alive
 constexpr double kNear_m = 20.0;       // to an airborne vehicle: states are sent more often
@@ -197,14 +196,27 @@ bool TeamNode::base_in_contact(TimeNs now, TimeNs since) const {
   return false;
 }
 
-std::vector<Neighbour> TeamNode::neighbours(TimeNs now) const {
+std::vector<Neighbour> TeamNode::neighbours(TimeNs now, TimeNs oldest) const {
   std::vector<Neighbour> out;
   for (const TeamState& s : gossip_.states()) {
-    if (s.robot == kBase || s.robot == self() || now - s.stamp > kStateAge || !in_the_air(s.phase)) continue;
+    if (s.robot == kBase || s.robot == self() || now - s.stamp > oldest || !in_the_air(s.phase)) continue;
     const double age_s = std::max(0.0, seconds(now - s.stamp));
     out.push_back({s.robot, s.position + age_s * s.velocity_mps, s.velocity_mps, s.phase, age_s});
   }
   return out;
+}
+
+bool TeamNode::may_meet_unheard(TimeNs now) const {
+  const std::vector<TeamState> states = gossip_.states();
+  for (RobotId r = 1; r <= team_.robots; ++r) {
+    if (r == self()) continue;
+    const auto state =
+        std::find_if(states.begin(), states.end(), [r](const TeamState& s) { return s.robot == r; });
+    const bool waits =
+        state != states.end() && !in_the_air(state->phase) && state->phase != TeamPhase::standby;
+    if (!waits && (state == states.end() || now - state->stamp > kNewsHold)) return true;
+  }
+  return false;
 }
 
 std::vector<TeammateState> TeamNode::teammates(TimeNs now) const {

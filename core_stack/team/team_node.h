@@ -11,6 +11,9 @@
 
 namespace karst::core {
 
+/// For so long a position told is one to keep apart from.
+constexpr TimeNs kNewsHold = 3 * kSecond;
+
 /// A communication node as a robot knows it.
 struct Relay {
   RobotId robot = 0;
@@ -50,8 +53,10 @@ class TeamNode {
   std::vector<Relay> relays() const;
   /// Whether since `since` it has heard a node whose link to the base is good enough for a relay landing.
   bool base_in_contact(TimeNs now, TimeNs since) const;
-  /// Vehicles in the air that were heard of in the last seconds, where they should be by now.
-  std::vector<Neighbour> neighbours(TimeNs now) const;
+  /// Vehicles in the air that were heard of not longer ago than `oldest`, where they should be by now.
+  std::vector<Neighbour> neighbours(TimeNs now, TimeNs oldest = kNewsHold) const;
+  /// A robot may fly that was not heard lately, and was not on the ground when it was heard the last time.
+  bool may_meet_unheard(TimeNs now) const;
   /// All robots that have started and were ever heard of, by number.
   std::vector<TeammateState> teammates(TimeNs now) const;
   /// Goals that other robots currently claim.

@@ -3,9 +3,12 @@
 #pragma once
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "core_stack/team/relay_homing.h"
+#include "core_stack/team/right_of_way/seen_vehicles.h"
 
 namespace karst::core {
 
@@ -63,7 +66,22 @@ class Teamwork {
     for (TeammateState& m : all) m.heard -= ahead_;
     return all;
   }
-  std::vector<Neighbour> neighbours(TimeNs now) const { return node_->neighbours(team_time(now)); }
+  /// What was seen in the air at `stamp`.
+  void note_seen(std::span<const Vec3> bodies, TimeNs stamp) {
+    seen_.note(bodies, stamp, node_->neighbours(team_time(stamp)));
+  }
+  /// Those heard not longer ago than `oldest`, even if by now they are elsewhere.
+  std::vector<Neighbour> heard(TimeNs now, TimeNs oldest) const {
+    return node_->neighbours(team_time(now), oldest);
+  }
+  bool may_meet_unheard(TimeNs now) const { return node_->may_meet_unheard(team_time(now)); }
+  /// Other vehicles in the air: those heard, and those that are only seen.
+  std::vector<Neighbour> neighbours(TimeNs now) const {
+    std::vector<Neighbour> all = node_->neighbours(team_time(now));
+    const std::vector<Neighbour> seen = seen_.neighbours(now);
+    all.insert(all.end(), seen.begin(), seen.end());
+    return all;
+  }
 
  private:
   TeamNode* node_;
@@ -71,6 +89,7 @@ class Teamwork {
   TeamOptions options_;
   TimeNs ahead_;
   std::optional<NodeDrop> drop_;
+  SeenVehicles seen_;
 };
 
 }  // namespace karst::core

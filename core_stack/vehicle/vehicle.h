@@ -34,7 +34,7 @@ class VehicleSink {
   virtual ~VehicleSink() = default;
   virtual void on_lidar(std::shared_ptr<const LidarScan>) = 0;
   virtual void on_depth(std::shared_ptr<const DepthImage>) = 0;
-  virtual void on_rgb(std::shared_ptr<const RgbFrame>) {}
+  virtual void on_rgb(const std::shared_ptr<const RgbFrame>&) {}
   virtual void on_objects(const ObjectDetections&) {}
   virtual void on_imu(const ImuSample&) = 0;
   virtual void on_magnetometer(const MagnetometerSample&) = 0;
@@ -86,8 +86,10 @@ class VehiclePlugin {
 
 /// The one symbol a vehicle plugin exports: C++ inside one build, not a promise to outsiders.
 using karst_vehicle_plugin_fn = karst::core::VehiclePlugin* (*)();
+// NOLINTBEGIN(bugprone-macro-parentheses): a type cannot stand in parentheses
 #define KARST_VEHICLE_PLUGIN(Type)                                                                       \
   extern "C" __attribute__((visibility("default"))) karst::core::VehiclePlugin* karst_vehicle_plugin() { \
     static Type plugin;                                                                                  \
     return &plugin;                                                                                      \
   }
+// NOLINTEND(bugprone-macro-parentheses)

@@ -151,7 +151,7 @@ void Lockstep::note_phases() {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     Vehicle& v = *vehicles_[i];
     const Phase phase = v.control ? v.control->phase() : v.state.phase;
-    if (v.state.phase == Phase::explore) v.state.explored_for += kStep;
+    if (core::traits_of(v.state.phase).explores) v.state.explored_for += kStep;
     if (phase == v.state.phase || (phase == Phase::done && !v.state.ended))
       continue;  // it ends with its next step
     v.state.phase = phase;

@@ -136,8 +136,8 @@ class StarvedSink final : public VehicleSink {
   void on_depth(std::shared_ptr<const DepthImage> s) override {
     call([&] { sink_.on_depth(std::move(s)); });
   }
-  void on_rgb(std::shared_ptr<const RgbFrame> s) override {
-    call([&] { sink_.on_rgb(std::move(s)); });
+  void on_rgb(const std::shared_ptr<const RgbFrame>& s) override {
+    call([&] { sink_.on_rgb(s); });
   }
   void on_imu(const ImuSample& s) override {
     call([&] { sink_.on_imu(s); });

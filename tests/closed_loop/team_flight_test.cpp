@@ -3,6 +3,7 @@
 
 #include "tests/closed_loop/command.h"
 #include "tests/closed_loop/drawn_cave.h"
+#include "tests/robustness/judge.h"
 
 namespace karst {
 namespace {
@@ -191,6 +192,53 @@ TEST(Team, GetsByEachOtherInANarrowPassage) {
   }
   EXPECT_LT(met_m, 8) << "they did not meet in the passage: this shows nothing";
   EXPECT_GT(farthest_m[1], 25) << "robot 2 did not get on";
+}
+
+/// Robot 1 goes home, robot 2 flies in, and neither hears the other from before they meet until it is over.
+// As it was: each took the other for rock, which does not move, and braked too late.
+TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) {
+  const auto folder = fresh_folder("team_silence");
+  const std::string cave =
+      draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -1.5, 0}, {60, 1.5, 3}}}, {0, 0, 1});
+  const Flown f = fly(cave, folder / "run",
+                      team_of(2, "return_to_base",
+                              "--set team.stagger=25s --set simulator.battery_minutes=1.2min"
+                              " --set radio.silent_after=5s --set radio.silent_for=200s"));
+  ASSERT_EQ(f.robots.size(), 2u) << f.output.text;
+  EXPECT_EQ(f.count(f.truth, "contact"), 0);
+  double nearest_m = 1e9;
+  for (const json& e : f.truth)
+    if (e["kind"] == "radio") {
+      const double x[] = {e["positions"][1][0], e["positions"][2][0]};
+      if (x[0] > 4 && x[1] > 4) nearest_m = std::min(nearest_m, std::abs(x[0] - x[1]));
+    }
+  EXPECT_LT(nearest_m, 15) << "they did not meet in the passage: this shows nothing";
+  for (const char* robot : {"robot_1", "robot_2"}) {
+    const auto record = evaluation::read_run(folder / "run" / robot);
+    const auto outcome = record.last<core::event::Outcome>();
+    ASSERT_TRUE(outcome.has_value()) << robot;
+    EXPECT_EQ(outcome->outcome, core::MissionOutcome::landed) << robot;
+    EXPECT_LT(robustness::longest_stall_s(record), 15) << robot;
+  }
+}
+
+// As it was: in gusts and dust, rock that the pose's errors moved was taken for 164 vehicles in 80 s.
+TEST(Team, AVehicleThatHearsNobodyAndIsAloneInTheCaveGivesWayToNothing) {
+  const auto folder = fresh_folder("team_alone");
+  const std::string cave = (folder / "cave").string();
+  ASSERT_EQ(run_karst("cave generate --preset small --seed 7 --out " + cave).code, 0);
+  const Flown f = fly(cave + ".info", folder / "run",
+                      " --policy nearest_frontier --set simulator.vehicle=lidar_uav --set team.robots=2"
+                      " --set team.stagger=200s --set radio.silent_after=0.1s --set radio.silent_for=600s"
+                      " --set localization.source=lidar --set simulator.gust=3 --set simulator.air.haze=0.03"
+                      " --set simulator.air.stirred=0.3 --set mission.max_flight_time=60s");
+  ASSERT_EQ(f.robots.size(), 2u) << f.output.text;
+  EXPECT_EQ(f.count(f.truth, "contact"), 0);
+  const auto record = evaluation::read_run(folder / "run" / "robot_1");
+  const auto outcome = record.last<core::event::Outcome>();
+  ASSERT_TRUE(outcome.has_value());
+  EXPECT_EQ(outcome->outcome, core::MissionOutcome::landed) << outcome->reason;
+  EXPECT_FALSE(record.last<core::event::Team>().has_value());
 }
 
 /// Where only one has room, the one that explores goes back before the one that comes home.

@@ -20,8 +20,9 @@ enum class Outcome {
   no_exit,     // its process did not end in time
   not_flown    // there is no record, or karst refused it
 };
-constexpr std::array kOutcomes{Outcome::home,    Outcome::elsewhere, Outcome::stalled,  Outcome::in_the_air,
-                               Outcome::contact, Outcome::no_exit,   Outcome::not_flown};
+inline constexpr std::array kOutcomes{Outcome::home,       Outcome::elsewhere, Outcome::stalled,
+                                      Outcome::in_the_air, Outcome::contact,   Outcome::no_exit,
+                                      Outcome::not_flown};
 const char* name_of(Outcome outcome);
 inline bool is_bad(Outcome outcome) { return outcome > Outcome::elsewhere; }
 

@@ -19,9 +19,9 @@ enum class Fault {
   sigterm,
   disk_full
 };
-constexpr std::array kFaults{Fault::none,     Fault::sensor_gap,   Fault::imu_dropout, Fault::weak_motor,
-                             Fault::rockfall, Fault::policy_crash, Fault::policy_hang, Fault::radio_silence,
-                             Fault::sigterm,  Fault::disk_full};
+inline constexpr std::array kFaults{
+    Fault::none,         Fault::sensor_gap,  Fault::imu_dropout,   Fault::weak_motor, Fault::rockfall,
+    Fault::policy_crash, Fault::policy_hang, Fault::radio_silence, Fault::sigterm,    Fault::disk_full};
 const char* name_of(Fault fault);
 
 /// A cave to choose from: of the generator (a preset), or a mesh with its start.

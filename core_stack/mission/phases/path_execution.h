@@ -55,6 +55,10 @@ class PathExecution {
 
   /// What the safety supervisor has it do.
   void obey(SafetyAction action) { ordered_ = action; }
+  /// The share of the mission's speed that it allows.
+  double speed_fraction() const {
+    return ordered_ == SafetyAction::none ? 1.0 : options_.safety.slow_fraction;
+  }
   bool held() const { return ordered_ == SafetyAction::brake; }
   /// Whether another vehicle has the right of way.
   void yield(bool to_another) { yields_ = to_another; }

@@ -6,7 +6,8 @@ namespace karst::core {
 namespace {
 
 constexpr double kAboveHome_m = 0.4;
-constexpr int kMaxFailures = 3;
+// Of plans in a row: what is in the way may be another vehicle, or where one was seen that has left since.
+constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 6;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 // Without progress the vehicle lands where it is. A blocked cave does not open while it hovers, and dust
@@ -55,7 +56,7 @@ void ReturnHome::watch_time() {
 }
 
 void ReturnHome::on_estimate(const HomeEstimate& estimate) {
-  if (!parts_.phases.in(Phase::explore)) return;
+  if (!parts_.phases.explores()) return;
   const MissionOptions& o = onboard_.options.mission;
   const double seconds_left = parts_.endurance.seconds_left(onboard_.now());
   distance_m_ = estimate.length_m;
@@ -103,7 +104,7 @@ void ReturnHome::arrive() {
 
 void ReturnHome::find_path() {
   const TimeNs now = onboard_.now();
-  if (failures_ < kMaxFailures) {
+  if (failures_ < (wiring_.in_company() ? kMaxFailuresInCompany : kMaxFailures)) {
     if (now >= retry_) plan();
   } else if (landing_spot()) {
     give_up_landing("there is no way there", RelayLanding::Because::not_to_be_had);
@@ -115,7 +116,9 @@ void ReturnHome::find_path() {
 void ReturnHome::watch_patience(bool at_home) {
   const TimeNs now = onboard_.now();
   const TimeNs still = still_.still_for(onboard_.flight.reference().position, now);
-  if (at_home || still <= (wiring_.in_company() ? kPatienceInCompany : kPatience)) return;
+  if (wiring_.in_company()) company_at_ = now;
+  const bool waits_in_vain = still > kPatience && now - company_at_ > kPatience;
+  if (at_home || !(waits_in_vain || still > kPatienceInCompany)) return;
   constexpr const char* kReason = "no way home, and waiting does not help";
   onboard_.recorder.write(now, event::Safety{SafetyAction::land, kReason});
   wiring_.land_here(kReason);
@@ -141,13 +144,12 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
   PathExecution& path = parts_.path;
   if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
   if (route.path.found()) {
+    failures_ = 0;
     path.fly_by_map();
     return path.follow(route, now);
   }
-  if (wiring_.in_company())
-    retry_ = now + kAgain;  // it makes room
-  else
-    ++failures_;
+  ++failures_;
+  if (wiring_.in_company()) retry_ = now + kAgain;  // it makes room
   path.block();
   path.take_no_detour();
   onboard_.recorder.write(now, event::Log{"no path home: " + route.path.reason});

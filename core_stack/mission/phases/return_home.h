@@ -77,6 +77,7 @@ class ReturnHome {
   int failures_ = 0;       // plans in a row that found no way
   bool planning_ = false;  // or choosing where to land
   TimeNs retry_ = 0;       // no way home, with another vehicle near: it is asked for again then
+  TimeNs company_at_ = 0;  // when another vehicle was near the last time
 };
 
 }  // namespace karst::core

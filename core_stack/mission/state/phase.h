@@ -21,6 +21,32 @@ constexpr auto names_of(Phase) {
                                       {replay, "replay"}});
 }
 
+/// What holds of the vehicle in a phase: all that depends on the phase but is not done by it asks here.
+struct PhaseTraits {
+  bool airborne = false;      // from lift-off to touch-down
+  bool above_ground = false;  // airborne, and not on its way up from the ground or down to it
+  bool flies_by_map = false;  // it stops for obstacles ahead, and separation rules apply to it
+  bool explores = false;      // it may be sent home
+};
+constexpr PhaseTraits traits_of(Phase phase) {
+  switch (phase) {  // without a default: the compiler names a phase that is left out
+    case Phase::takeoff:
+    case Phase::land:
+      return {.airborne = true};
+    case Phase::look:
+      return {.airborne = true, .above_ground = true};
+    case Phase::explore:
+      return {.airborne = true, .above_ground = true, .flies_by_map = true, .explores = true};
+    case Phase::home:
+      return {.airborne = true, .above_ground = true, .flies_by_map = true};
+    case Phase::standby:
+    case Phase::done:
+    case Phase::replay:
+      break;
+  }
+  return {};
+}
+
 struct Transition {
   std::optional<Phase> from;  // nothing: any phase
   Phase to;
@@ -34,8 +60,9 @@ class PhaseMachine {
  public:
   Phase phase() const { return phase_; }
   bool in(Phase phase) const { return phase_ == phase; }
-  /// Whether the vehicle flies by its map: it stops for obstacles ahead, and separation rules apply to it.
-  bool under_way() const { return in(Phase::explore) || in(Phase::home); }
+  /// Whether it flies by its map.
+  bool under_way() const { return traits_of(phase_).flies_by_map; }
+  bool explores() const { return traits_of(phase_).explores; }
   /// When the phase began.
   TimeNs since() const { return since_; }
   /// Throws std::logic_error if there is no such transition.

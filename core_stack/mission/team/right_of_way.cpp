@@ -1,6 +1,7 @@
 #include "core_stack/mission/team/right_of_way.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace karst::core {
@@ -8,6 +9,13 @@ namespace {
 
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr double kAtWaitingPlace_m = 0.5;
+constexpr double kFlies_mps = 0.2, kUnseen_mps = 0.5;
+const double kLooks = std::cos(0.75);  // half a camera's field of view
+
+/// For the record: one that is seen and not heard has no number.
+std::optional<std::uint32_t> number_of(RobotId robot) {
+  return robot < kMaxRobots ? std::optional<std::uint32_t>(robot) : std::nullopt;
+}
 
 }  // namespace
 
@@ -34,29 +42,45 @@ TeamPhase RightOfWay::phase_to_report() const {
   return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
+/// Where it does not look it flies slowly: one that is not heard does not see where this one comes from
+/// either.
+void RightOfWay::look_out() {
+  if (onboard_.vehicle.lidar) return;
+  const State& s = onboard_.flight.state();
+  const Vec3 ahead = s.velocity_mps.norm() > kFlies_mps ? s.velocity_mps.normalized() : Vec3::Zero();
+  const double heading_rad = onboard_.flight.reference().heading_rad;
+  const bool looks =
+      ahead.isZero() || ahead.dot(Vec3(std::cos(heading_rad), std::sin(heading_rad), 0)) > kLooks;
+  max_speed_mps_.reset();
+  if (!looks && team_.may_meet_unheard(onboard_.now())) max_speed_mps_ = kUnseen_mps;
+}
+
 void RightOfWay::step() {
   if (!parts_.phases.under_way()) {
     failed_places_.clear();
+    max_speed_mps_.reset();
     yield_state_.forget();
     return parts_.path.yield(yield_state_.holds());
   }
   const TimeNs now = onboard_.now();
+  look_out();
   note_arrival();
   const State& s = onboard_.flight.state();
   const std::vector<Neighbour> others = team_.neighbours(now);
   const bool held = yield_state_.holds();
   const RobotId held_for = yield_state_.with();
-  const auto action =
-      yield_state_.update({.distance_m = team_.options().separation_m},
-                          {team_.self(), s.position, s.velocity_mps, phase_for_team(parts_.phases.phase())},
-                          others, now, onboard_.flight.at_rest(now));
+  const auto action = yield_state_.update(
+      {.distance_m = team_.options().separation_m},
+      {team_.self(), s.position, s.velocity_mps, phase_for_team(parts_.phases.phase())}, others, now,
+      onboard_.flight.at_rest(now), still_.still_for(onboard_.flight.reference().position, now));
   on_change(held, held_for);
   if (action == YieldState::Action::stop) {
-    onboard_.recorder.write(now,
-                            event::Team{.action = event::TeamAction::stop, .robot = yield_state_.with()});
+    onboard_.recorder.write(
+        now, event::Team{.action = event::TeamAction::stop, .robot = number_of(yield_state_.with())});
     parts_.path.stop(now);
   }
-  if (action == YieldState::Action::make_room && !planning_) make_room(others);
+  if (action == YieldState::Action::leave) note_failed(onboard_.flight.reference().position);
+  if (action == YieldState::Action::make_room || action == YieldState::Action::leave) make_room(others);
   parts_.path.yield(yield_state_.holds());
 }
 
@@ -75,18 +99,26 @@ void RightOfWay::on_change(bool held, RobotId held_for) {
   const TimeNs now = onboard_.now();
   const bool holds = yield_state_.holds(), same = held && holds && yield_state_.with() == held_for;
   if (held && !same) {
-    onboard_.recorder.write(now, event::Team{.action = event::TeamAction::go_on, .robot = held_for});
+    onboard_.recorder.write(now,
+                            event::Team{.action = event::TeamAction::go_on, .robot = number_of(held_for)});
     failed_places_.clear();
     parts_.path.block();  // a new path is needed from here
     if (!holds) parts_.path.stop(now);
   }
   if (holds && !same) {
-    onboard_.recorder.write(now,
-                            event::Team{.action = event::TeamAction::give_way, .robot = yield_state_.with()});
+    onboard_.recorder.write(
+        now, event::Team{.action = event::TeamAction::give_way, .robot = number_of(yield_state_.with())});
     parts_.goals.drop_next(GoalFate::superseded, "another vehicle is in the way", now);
     parts_.path.block();
     parts_.path.stop(now);
   }
+}
+
+void RightOfWay::note_failed(const Vec3& place) {
+  const bool known = std::any_of(failed_places_.begin(), failed_places_.end(), [&](const Vec3& known_one) {
+    return (known_one - place).norm() < kAtWaitingPlace_m;
+  });
+  if (!known) failed_places_.push_back(place);
 }
 
 /// To where the one that it gives way to gets by, or before it back along the way come; clear of all others.
@@ -101,10 +133,8 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
       (o.phase == TeamPhase::aside ? query.standing : query.moving).push_back(o.position);
     }
   }
-  if (!there) return;
+  if (!there || planning_) return;
   planning_ = true;
-  if (yield_state_.stands_aside())
-    failed_places_.push_back(waiting_place_.place);  // it waits there, and the other does not get by
   query.flown = parts_.flown_path.points();
   query.failed = failed_places_;
   query.separation_m = team_.options().separation_m / 2;
@@ -137,13 +167,13 @@ void RightOfWay::on_room(const Room& room, TimeNs begun, bool crowd) {
   if (!yield_state_.holds() || parts_.path.braked_since(begun)) return;
   if (!room.waiting_place) {
     yield_state_.no_room(now, crowd);
-    onboard_.recorder.write(now,
-                            event::Team{.action = event::TeamAction::no_room, .robot = yield_state_.with()});
+    onboard_.recorder.write(
+        now, event::Team{.action = event::TeamAction::no_room, .robot = number_of(yield_state_.with())});
     return;
   }
   waiting_place_ = *room.waiting_place;
   yield_state_.set_out();
-  onboard_.recorder.write(now, event::Team{event::TeamAction::make_room, yield_state_.with(),
+  onboard_.recorder.write(now, event::Team{event::TeamAction::make_room, number_of(yield_state_.with()),
                                            waiting_place_.place, waiting_place_.keeps_passage_open});
   if (room.route.path.found()) parts_.path.follow(room.route, now);
 }

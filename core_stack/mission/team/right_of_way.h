@@ -1,10 +1,12 @@
 // Right of way when vehicles meet: which goes first, and where the other makes room.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
 #include "core_stack/mission/phases/path_execution.h"
+#include "core_stack/mission/phases/still_watch.h"
 #include "core_stack/team/right_of_way/yield_state.h"
 #include "core_stack/team/teamwork.h"
 
@@ -26,12 +28,16 @@ class RightOfWay {
 
   /// Call ten times a second: stops the vehicle for another with the right of way, and makes room for it.
   void step();
+  /// A limit where it does not look where it flies and may meet a vehicle that it does not hear.
+  std::optional<double> max_speed_mps() const { return max_speed_mps_; }
   /// The phase to report now.
   TeamPhase phase_to_report() const;
 
  private:
   void note_arrival();
   void on_change(bool held, RobotId held_for);
+  void look_out();
+  void note_failed(const Vec3& place);
   void make_room(const std::vector<Neighbour>& others);
   struct Room {
     std::optional<WaitingPlace> waiting_place;
@@ -44,8 +50,10 @@ class RightOfWay {
   Teamwork& team_;
   Parts parts_;
   YieldState yield_state_;
+  StillWatch still_;
   WaitingPlace waiting_place_;       // where it last made room
-  std::vector<Vec3> failed_places_;  // the other did not get by there
+  std::vector<Vec3> failed_places_;  // it waited there for long, or in the other's way
+  std::optional<double> max_speed_mps_;
   bool planning_ = false;
 };
 

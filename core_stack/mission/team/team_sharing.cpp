@@ -8,6 +8,9 @@ namespace {
 constexpr TimeNs kSharingBudget = 200 * kMillisecond;
 constexpr TimeNs kBetweenDrops = 3 * kSecond;  // by then a node has been heard
 constexpr TimeNs kHeardLately = 2 * kSecond;   // of who speaks once a second
+constexpr double kComesHome_m = 10.0;          // so near: it lands before another takes off beside its way
+constexpr TimeNs kMayBeNear = 12 * kSecond;    // after its last word
+constexpr double kMayCome_mps = 1.0;           // on average, through a cave
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
 constexpr double kAboutThere_m = 0.4, kMaxStrayed_m = 1.5;
@@ -36,7 +39,7 @@ void TeamSharing::report(TeamPhase phase) {
 }
 
 bool TeamSharing::may_drop() const {
-  return nodes_left_ > 0 && parts_.phases.in(Phase::explore) &&
+  return nodes_left_ > 0 && parts_.phases.explores() &&
          (!dropped_at_ || onboard_.now() - *dropped_at_ > kBetweenDrops);
 }
 
@@ -63,7 +66,7 @@ void TeamSharing::share() {
 /// Drops a node if the base is still in contact; by the map no relay will be in range at the next call.
 void TeamSharing::drop_node(const NodeDrop& drop) {
   const TimeNs now = onboard_.now();
-  if (!parts_.phases.in(Phase::explore) || !team_.base_in_contact(now, now - kHeardLately)) return;
+  if (!parts_.phases.explores() || !team_.base_in_contact(now, now - kHeardLately)) return;
   --nodes_left_;
   dropped_at_ = now;
   team_.drop_node(drop);
@@ -88,10 +91,20 @@ void TeamSharing::give_up_goals() {
 bool TeamSharing::airspace_clear() const {
   const Vec3 hover =
       onboard_.vehicle.T_world_start.position + Vec3(0, 0, onboard_.options.mission.takeoff_height_m);
-  const std::vector<Neighbour> others = team_.neighbours(onboard_.now());
-  return std::none_of(others.begin(), others.end(), [&](const Neighbour& o) {
-    return (o.position - hover).norm() < team_.options().separation_m;
-  });
+  const double separation_m = team_.options().separation_m;
+  const auto in_the_way = [&](const Neighbour& o) {
+    return (o.position - hover).norm() < (o.phase == TeamPhase::home ? kComesHome_m : separation_m);
+  };
+  // One that has fallen silent may have come from where it was last heard.
+  const auto may_have_come = [&](const Neighbour& o) {
+    const Vec3 reported_at = o.position - o.age_s * o.velocity_mps;
+    return o.age_s > seconds(kNewsHold) &&
+           (reported_at - hover).norm() < separation_m + kMayCome_mps * o.age_s;
+  };
+  const std::vector<Neighbour> others = team_.neighbours(onboard_.now()),
+                               silent = team_.heard(onboard_.now(), kMayBeNear);
+  return std::none_of(others.begin(), others.end(), in_the_way) &&
+         std::none_of(silent.begin(), silent.end(), may_have_come);
 }
 
 bool TeamSharing::in_company() const {

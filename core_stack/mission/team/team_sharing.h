@@ -34,7 +34,7 @@ class TeamSharing {
   /// above where it stands.
   void become_relay(bool stands, const std::optional<Vec3>& landed_below);
 
-  /// No other vehicle is near the place where it hovers first.
+  /// No other vehicle is near the place where it hovers first, or comes home to land near it.
   bool airspace_clear() const;
   /// Whether another vehicle flies near, which may block the path briefly.
   bool in_company() const;

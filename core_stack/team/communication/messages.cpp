@@ -9,8 +9,6 @@
 namespace karst::core {
 namespace {
 
-enum class Kind : std::uint8_t { tree, goal, landing, object, receipt };
-
 void write(PartWriter& w, const TreeFacts& facts) {
   w.count(facts.nodes.size());
   w.count(facts.rays.size());
@@ -39,8 +37,7 @@ void write(PartWriter& w, const TreeFacts& facts) {
   }
 }
 
-TreeFacts read_tree(PartReader& r) {
-  TreeFacts facts;
+void read(PartReader& r, TreeFacts& facts) {
   const std::size_t nodes = r.count(12), rays = r.count(3), lives = r.count(7);
   for (std::size_t i = 0; i < nodes && r.fine(); ++i) {
     const NodeId id = r.node_id();
@@ -68,7 +65,6 @@ TreeFacts read_tree(PartReader& r) {
     const bool alive = r.yes_or_no();
     facts.lives.push_back({id, alive, r.time()});
   }
-  return facts;
 }
 
 void write(PartWriter& w, const GoalClaim& g) {
@@ -98,45 +94,44 @@ void write(PartWriter& w, const Receipt& receipt) {
   }
 }
 
-Record read_body(Kind kind, PartReader& r) {
-  switch (kind) {
-    case Kind::tree:
-      return read_tree(r);
-    case Kind::goal: {
-      GoalClaim g;
-      g.stamp = r.time();
-      g.position = r.place();
-      g.given_up = r.yes_or_no();
-      return g;
-    }
-    case Kind::landing: {
-      LandingClaim l;
-      l.stamp = r.time();
-      l.ground = r.place();
-      l.hover = r.place();
-      l.state = r.one_of<LandingClaim::State>(3);
-      return l;
-    }
-    case Kind::object: {
-      ObjectSeen o;
-      o.stamp = r.time();
-      o.object = r.limited(kMaxNumber);
-      o.kind = r.byte();
-      o.position = r.place();
-      o.deviation_m = 0.1 * r.byte();
-      return o;
-    }
-    case Kind::receipt:
-      break;
-  }
-  Receipt receipt;
+void read(PartReader& r, GoalClaim& goal) {
+  goal.stamp = r.time();
+  goal.position = r.place();
+  goal.given_up = r.yes_or_no();
+}
+
+void read(PartReader& r, LandingClaim& landing) {
+  landing.stamp = r.time();
+  landing.ground = r.place();
+  landing.hover = r.place();
+  landing.state = r.one_of<LandingClaim::State>(3);
+}
+
+void read(PartReader& r, ObjectSeen& seen) {
+  seen.stamp = r.time();
+  seen.object = r.limited(kMaxNumber);
+  seen.kind = r.byte();
+  seen.position = r.place();
+  seen.deviation_m = 0.1 * r.byte();
+}
+
+void read(PartReader& r, Receipt& receipt) {
   const std::size_t rows = r.count(2);
   if (rows > kMaxRobots) r.refuse(Refusal::range);
   for (std::size_t i = 0; i < rows && r.fine(); ++i) {
     const RobotId robot = r.robot();
     receipt.rows.push_back({robot, r.limited(kMaxNumber)});
   }
-  return receipt;
+}
+
+/// A record's kind is its type's index in the variant.
+template <std::size_t kind = 0>
+Record read_body(std::size_t wanted, PartReader& r) {
+  if constexpr (kind + 1 < std::variant_size_v<Record>)
+    if (wanted != kind) return read_body<kind + 1>(wanted, r);
+  std::variant_alternative_t<kind, Record> record;
+  read(r, record);
+  return record;
 }
 
 }  // namespace
@@ -153,7 +148,8 @@ std::optional<Bytes> write_record(const Record& record) {
 std::optional<Record> read_record(std::span<const std::uint8_t> bytes, Refusal& why) {
   PartReader r(bytes);
   if (bytes.size() > max_record_bytes()) r.refuse(Refusal::range);
-  const auto kind = r.one_of<Kind>(5);
+  const std::uint8_t kind = r.byte();
+  if (kind >= std::variant_size_v<Record>) r.refuse(Refusal::kind);
   if (r.fine()) {
     Record record = read_body(kind, r);
     if (r.finished()) return record;

@@ -6,12 +6,13 @@
 
 namespace karst::core {
 
-/// A vehicle in the air; another one as last heard and brought up to now.
+/// A vehicle in the air; another one as last heard, or seen, and brought up to now.
 struct Neighbour {
   RobotId robot = 0;
   Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
   TeamPhase phase = TeamPhase::explore;
-  double age_s = 0;  // since it was told
+  double age_s = 0;   // since it was told
+  bool heard = true;  // or else seen only
 };
 
 struct SeparationRule {

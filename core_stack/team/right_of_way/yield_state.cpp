@@ -5,18 +5,22 @@
 namespace karst::core {
 namespace {
 
-constexpr double kGoOn = 1.3;                // times the distance at which it stopped: then it goes on
-constexpr double kPast_m = 2.0;              // so much farther away than it was: the other is past
-constexpr double kNearer_m = 0.3;            // so much nearer: it comes
-constexpr double kMoves_mps = 0.15;          // so fast: it comes, or goes
-constexpr TimeNs kLook = 3 * kSecond;        // another that stands near may want to get by
-constexpr TimeNs kStands = 8 * kSecond;      // it does not get by, so the place is no good
-constexpr TimeNs kStaysAway = 10 * kSecond;  // it does not come
-constexpr TimeNs kSeen = kSecond;            // one that stands aside is in the map by then
-constexpr TimeNs kFirst = 15 * kSecond;      // who goes before waits no longer for room
+constexpr double kGoOn = 1.3;                 // times the distance at which it stopped: then it goes on
+constexpr double kPast_m = 2.0;               // so much farther away than it was: the other is past
+constexpr double kNearer_m = 0.3;             // so much nearer: it comes
+constexpr double kMoves_mps = 0.15;           // so fast: it comes, or goes
+constexpr TimeNs kLook = 2 * kSecond;         // another that stands near may want to get by
+constexpr TimeNs kStays = 5 * kSecond;        // in one place; then the place is no good,
+constexpr TimeNs kPasses = 2 * kSecond;       // unless the other came nearer that lately, or goes,
+constexpr TimeNs kStaysAtMost = 7 * kSecond;  // and even then
+constexpr TimeNs kStaysAway = 10 * kSecond;   // it does not come
+constexpr TimeNs kSeen = kSecond;             // one that stands aside is in the map by then
+// One that is seen, but not heard, and stands: each waits so much longer than who has the number before.
+constexpr TimeNs kTurn = 3 * kSecond;
+constexpr TimeNs kFirst = 8 * kSecond;  // who goes before waits no longer for room
 constexpr TimeNs kAskAgain = 2 * kSecond;
-constexpr int kMaxAttempts = 2, kMaxAttemptsInCrowd = 8;
-constexpr TimeNs kBoxed = 30 * kSecond;
+constexpr int kMaxAttempts = 1, kMaxAttemptsInCrowd = 8;
+constexpr TimeNs kBoxed = 15 * kSecond;
 
 double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
 
@@ -40,27 +44,33 @@ void YieldState::begin(const Neighbour& self, const Neighbour& other, TimeNs now
   since_ = nearest_at_ = now;
   nearest_m_ = distance_m(self, other);
   aside_since_.reset();
+  came_nearer_at_.reset();
 }
 
 bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const Neighbour& other, TimeNs now) {
+  // One that is not heard may be leaving, too, and stand but to turn: each goes to where it set out for.
+  if (on_the_way_ && !other.heard) return false;
   const double d = distance_m(self, other);
   if (goes_before(self, other)) {
     if (other.phase == TeamPhase::aside) {
       if (!aside_since_) aside_since_ = now;
-      return now - *aside_since_ > kSeen;
+      return now - *aside_since_ > kSeen + (other.heard ? 0 : (self.robot - 1) * kTurn);
     }
+    aside_since_.reset();
     return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
   }
-  if (d < nearest_m_ - kNearer_m) {
+  if (!nearest_m_ || d < *nearest_m_ - kNearer_m) {
+    if (nearest_m_) came_nearer_at_ = now;
     nearest_m_ = d;
     nearest_at_ = now;
   }
   if (on_the_way_ || d < kGoOn * rule.distance_m) return false;
-  return d > nearest_m_ + kPast_m || now - nearest_at_ > kStaysAway;
+  return d > *nearest_m_ + kPast_m || now - nearest_at_ > kStaysAway;
 }
 
 YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self,
-                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest) {
+                                      const std::vector<Neighbour>& others, TimeNs now, bool at_rest,
+                                      TimeNs still_for) {
   if (now < boxed_until_) self.phase = TeamPhase::boxed;
   const std::vector<Neighbour> near = give_way_to(rule, self, others);
   const auto other = std::find_if(others.begin(), others.end(),
@@ -82,13 +92,19 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     arrived(Place::in_the_way, now);
     return Action::stop;
   }
-  const double d = distance_m(self, *other);
-  if (!at_rest || on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain)
-    return Action::hold;
-  const bool in_its_way = aside_ ? d < 2 * rule.distance_m && now - std::max(nearest_at_, since_) > kStands &&
-                                       std::abs(coming_mps(self, *other)) < kMoves_mps
-                                 : coming_mps(self, *other) > kMoves_mps || now - since_ > kLook;
-  if (!in_its_way) return Action::hold;
+  if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
+  const double coming = coming_mps(self, *other);
+  const bool comes = coming > kMoves_mps;
+  // Who is not heard may not know of this one, and come straight at it.
+  const bool leaves = !other->heard && comes;
+  if (!leaves && !at_rest) return Action::hold;
+  const bool came_nearer = came_nearer_at_ && now - *came_nearer_at_ < kPasses;
+  const bool passes = came_nearer || coming < -kMoves_mps || (aside_ && comes);
+  if (leaves || still_for > (passes ? kStaysAtMost : kStays)) {
+    asked_at_ = now;
+    return Action::leave;
+  }
+  if (aside_ || !(comes || now - since_ > kLook)) return Action::hold;
   asked_at_ = now;
   return Action::make_room;
 }
@@ -98,7 +114,7 @@ void YieldState::arrived(Place place, TimeNs now) {
   aside_ = place == Place::aside;
   if (aside_) attempts_ = 0;
   since_ = nearest_at_ = now;
-  nearest_m_ = 1e9;  // restart the record of the closest approach
+  nearest_m_.reset();
 }
 
 void YieldState::no_room(TimeNs now, bool crowd) {

@@ -14,11 +14,13 @@ class YieldState {
     hold,       // stop, or stay where it is
     stop,       // on its way to make room it comes too near to somebody: brake, and look for another place
     make_room,  // it stands in another's way: to be answered by set_out() or no_room()
+    leave,      // the same, and where it is it must not stay
   };
 
-  /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others.
+  /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others,
+  /// and has kept to one place for `still_for`, whomever it waited for.
   Action update(const SeparationRule& rule, Neighbour self, const std::vector<Neighbour>& others, TimeNs now,
-                bool at_rest);
+                bool at_rest, TimeNs still_for);
 
   /// The vehicle has left for its waiting place.
   void set_out() { on_the_way_ = true, aside_ = false; }
@@ -44,7 +46,8 @@ class YieldState {
 
   std::optional<RobotId> with_;
   TimeNs since_ = 0, nearest_at_ = 0, asked_at_ = 0;
-  double nearest_m_ = 0;
+  std::optional<double> nearest_m_;  // since it stands here
+  std::optional<TimeNs> came_nearer_at_;
   std::optional<TimeNs> aside_since_;  // the other vehicle
   bool on_the_way_ = false, aside_ = false;
   int attempts_ = 0;  // waiting places asked for

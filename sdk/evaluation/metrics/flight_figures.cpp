@@ -18,11 +18,9 @@ constexpr double kStandingSpeed_mps = 0.2;
 constexpr double kProgress_m = 0.5;
 constexpr double kAtStart_m = 1;  // the mission's own bound for a landing at the start
 
-bool within(const RunRecord& run, double t_s, std::initializer_list<core::Phase> phases) {
-  for (const Phase& p : run.phases)
-    for (const core::Phase phase : phases)
-      if (p.is(phase) && t_s >= p.begin_s && t_s <= p.end_s) return true;
-  return false;
+bool within(const RunRecord& run, double t_s, bool core::PhaseTraits::*trait) {
+  return std::any_of(run.phases.begin(), run.phases.end(),
+                     [&](const Phase& p) { return p.traits().*trait && t_s >= p.begin_s && t_s <= p.end_s; });
 }
 
 double flight_end_s(const RunRecord& run) {
@@ -66,7 +64,8 @@ Exploring exploring(const RunRecord& run) {
   }
   double exploring = 0, standing = 0, length_m = 0;
   for (std::size_t i = 1; i < t_s.size(); ++i) {
-    if (!within(run, t_s[i - 1], {core::Phase::explore}) || !within(run, t_s[i], {core::Phase::explore}))
+    if (!within(run, t_s[i - 1], &core::PhaseTraits::explores) ||
+        !within(run, t_s[i], &core::PhaseTraits::explores))
       continue;
     exploring += t_s[i] - t_s[i - 1];
     length_m += speed[i] * (t_s[i] - t_s[i - 1]);
@@ -80,7 +79,7 @@ std::optional<double> longest_stall_s(const RunRecord& run, const std::vector<St
   std::optional<double> longest_s;
   const StampedPose* landmark = nullptr;
   for (const StampedPose& p : poses) {
-    if (!within(run, p.t_s, {core::Phase::explore, core::Phase::home})) continue;
+    if (!within(run, p.t_s, &core::PhaseTraits::flies_by_map)) continue;
     if (!landmark || (p.T_world_body.position - landmark->T_world_body.position).norm() > kProgress_m)
       landmark = &p;
     longest_s = std::max(longest_s.value_or(0), p.t_s - landmark->t_s);
@@ -95,8 +94,7 @@ std::optional<double> min_clearance_m(const RunRecord& run) {
   std::optional<double> least;
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const double c = (*clearance)[i];
-    if (std::isfinite(c) &&
-        within(run, (*t_s)[i], {core::Phase::look, core::Phase::explore, core::Phase::home}))
+    if (std::isfinite(c) && within(run, (*t_s)[i], &core::PhaseTraits::above_ground))
       least = std::min(least.value_or(c), c);
   }
   return least;
@@ -125,10 +123,7 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
   RootMeanSquare rms;
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const Vec3 off((*c[0])[i] - (*c[3])[i], (*c[1])[i] - (*c[4])[i], (*c[2])[i] - (*c[5])[i]);
-    if (off.allFinite() && within(run, (*t_s)[i],
-                                  {core::Phase::takeoff, core::Phase::look, core::Phase::explore,
-                                   core::Phase::home, core::Phase::land}))
-      rms.add(off.norm());
+    if (off.allFinite() && within(run, (*t_s)[i], &core::PhaseTraits::airborne)) rms.add(off.norm());
   }
   return rms.value();
 }
@@ -181,7 +176,7 @@ bool completed(const RunRecord& run, std::optional<double> landing_error_m) {
   if (landing_error_m.value_or(0) > kAtStart_m) return false;
   double explored_until_s = -1;
   for (const Phase& p : run.phases)
-    if (p.is(core::Phase::explore)) explored_until_s = p.end_s;
+    if (p.traits().explores) explored_until_s = p.end_s;
   if (explored_until_s < 0) return false;
   return std::none_of(run.events.begin(), run.events.end(), [&](const nlohmann::json& e) {
     const auto safety = event::as<event::Safety>(e);
@@ -204,8 +199,7 @@ FlightFigures flight_figures(const RunRecord& run) {
   f.contacts = contacts(run);
   if (end_s > begin_s) f.flight_time_s = end_s - begin_s;
   for (const Phase& p : run.phases)
-    if (p.is(core::Phase::explore))
-      f.exploration_time_s = f.exploration_time_s.value_or(0) + p.end_s - p.begin_s;
+    if (p.traits().explores) f.exploration_time_s = f.exploration_time_s.value_or(0) + p.end_s - p.begin_s;
   const auto& poses = run.truth.empty() ? run.estimate : run.truth;
   if (!poses.empty()) f.path_length_m = path_length_m(poses, begin_s, end_s);
   if (f.path_length_m && f.flight_time_s) f.mean_speed_mps = *f.path_length_m / *f.flight_time_s;

@@ -27,6 +27,10 @@ struct Phase {
   std::string name;  // a core::Phase's, or of a team flying
   double begin_s = 0, end_s = 0;
   bool is(core::Phase phase) const { return name == core::name_of(phase); }
+  core::PhaseTraits traits() const {
+    const auto phase = core::parse<core::Phase>(name);
+    return phase ? core::traits_of(*phase) : core::PhaseTraits{};
+  }
 };
 
 struct RunRecord {

@@ -83,7 +83,7 @@ ordered_json goal_spans(const RunRecord& run) {
   for (const json& e : run.events) {
     const double t_s = e["t"];
     const auto phase = event::as<event::Phase>(e);
-    if (phase && phase->phase != core::Phase::explore) goals.end_all(t_s);
+    if (phase && !core::traits_of(phase->phase).explores) goals.end_all(t_s);
     const auto goal = event::as<event::Goal>(e);
     if (!goal || goal->state == event::GoalState::rejected) continue;
     if (goal->state == event::GoalState::accepted)

@@ -68,5 +68,66 @@ TEST(MovingBodies, ThatAreNotThereChangeNothing) {
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(rays[i].hit, before[i].hit);
 }
 
+/// What a scan shows of a ball, in a map of the wall alone.
+std::vector<Vec3> found(const Vec3f& ball) {
+  VoxelMap map{MapOptions{}};
+  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
+  return bodies_in_the_air(map, seen(ball));
+}
+
+TEST(BodiesInTheAir, AreWhereAScanHitsWhatWasFree) {
+  const std::vector<Vec3> bodies = found({5, 0.4f, 0.2f});
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_LT((bodies[0] - Vec3(5, 0.4, 0.2)).norm(), 0.35) << "of a ball of 0.3 m the near side is seen";
+}
+
+TEST(BodiesInTheAir, AreFoundNearRock) {
+  EXPECT_EQ(found({kWall_m - 1.2f, 0, 0}).size(), 1u);
+  EXPECT_EQ(found({kWall_m - 0.6f, 0, 0}).size(), 1u);
+}
+
+TEST(BodiesInTheAir, AWallThatAWrongPoseMovesIntoTheOpenIsNone) {
+  VoxelMap map{MapOptions{}};
+  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
+  for (const float nearer_m : {0.2f, 0.5f, 1.0f}) {
+    std::vector<Ray> moved = seen({50, 50, 50});
+    for (Ray& r : moved) r.end.x() -= nearer_m;
+    EXPECT_TRUE(bodies_in_the_air(map, moved).empty()) << nearer_m;
+  }
+}
+
+TEST(BodiesInTheAir, AreFoundInWhatTheyWereTakenForBefore) {
+  VoxelMap map{MapOptions{}};
+  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
+  for (int i = 0; i < 4; ++i) map.insert(seen({5, 0, 0}));
+  ASSERT_EQ(map.at(Vec3(4.7, 0, 0)), Cell::occupied);
+  EXPECT_TRUE(bodies_in_the_air(map, seen({5, 0, 0})).empty()) << "it stands, and is an obstacle";
+  EXPECT_EQ(bodies_in_the_air(map, seen({4.6f, 0.3f, 0})).size(), 1u);
+}
+
+// As it was: one that came straight at the sensor hid what it left occupied behind it, and counted as rock.
+TEST(BodiesInTheAir, AreFoundBeforeTheLongTrailThatTheyHide) {
+  VoxelMap map{MapOptions{}};
+  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
+  float x = 9.0f;
+  for (; x > 5; x -= 0.1f) map.insert(seen({x, 0, 0}));
+  int times_found = 0;
+  for (; x > 4; x -= 0.1f) {
+    times_found += static_cast<int>(bodies_in_the_air(map, seen({x, 0, 0})).size());
+    map.insert(seen({x, 0, 0}));
+  }
+  EXPECT_GE(times_found, 5) << "of ten scans";
+}
+
+TEST(BodiesInTheAir, NoiseAtTheWallIsNone) {
+  VoxelMap map{MapOptions{}};
+  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
+  std::vector<Ray> noisy = seen({50, 50, 50});
+  for (std::size_t i = 0; i < noisy.size(); ++i)
+    noisy[i].end *= 1 + 0.01f * static_cast<float>(static_cast<int>(i * 7 % 5) - 2);
+  EXPECT_TRUE(bodies_in_the_air(map, noisy).empty());
+  EXPECT_TRUE(bodies_in_the_air(VoxelMap{MapOptions{}}, seen({5, 0, 0})).empty()) << "nothing was free";
+}
+
 }  // namespace
 }  // namespace karst::core

@@ -91,6 +91,41 @@ TEST_F(TeamPartsTest, ItStaysOnTheGroundWhileAnotherIsWhereItWouldHover) {
   EXPECT_FALSE(sharing.airspace_clear());
 }
 
+TEST_F(TeamPartsTest, ItStaysOnTheGroundWhileAnotherComesHomeOrMayHaveComeUnheard) {
+  const auto hear_at = [this](const Vec3& place, TeamPhase phase) {
+    TeamState state;
+    state.position = place, state.phase = phase, state.stamp = now();
+    first.set_state(state);
+    for (const Bytes& frame : first.transmit(now())) node.receive(frame, now());
+  };
+  hear_at({6, 0, 1}, TeamPhase::explore);
+  EXPECT_TRUE(sharing.airspace_clear());
+  advance(5);
+  EXPECT_FALSE(sharing.airspace_clear()) << "it was near, and is silent";
+  advance(8);
+  EXPECT_TRUE(sharing.airspace_clear()) << "who knows where it is by now";
+  hear_at({8, 0, 1}, TeamPhase::home);
+  EXPECT_FALSE(sharing.airspace_clear());
+}
+
+// As it was: it flew at another that it saw, and did not hear, as if that were rock.
+TEST_F(TeamPartsTest, ItYieldsToAVehicleThatItSeesAndDoesNotHear) {
+  fly_ahead(20);
+  advance(2);
+  for (int i = 0; i < 10; ++i) {
+    advance(0.1);
+    work.note_seen(std::vector<Vec3>{Vec3(12 - 0.15 * i, 0, here().z())}, now());
+  }
+  right_of_way.step();
+  EXPECT_TRUE(path.yields());
+  EXPECT_TRUE(path.has_braked());
+  const auto bodies = sharing.others_at(now());
+  ASSERT_EQ(bodies.size(), 1u) << "it leaves no ghost in the map";
+  advance(4);
+  right_of_way.step();
+  EXPECT_FALSE(path.yields()) << "it is out of sight";
+}
+
 TEST_F(TeamPartsTest, AClaimedGoalIsToldToTheOthersUntilItIsGivenUp) {
   Goal goal;
   goal.position = {7, 1, 2};

@@ -30,7 +30,7 @@ inline TreeFacts random_facts(Random& r, std::uint32_t most) {
 }
 
 inline Record random_record(Random& r) {
-  switch (below(r, 5)) {
+  switch (below(r, std::variant_size_v<Record>)) {
     case 0:
       return random_facts(r, 2);
     case 1:

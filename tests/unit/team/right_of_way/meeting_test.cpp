@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core_stack/common/random.h"
+#include "core_stack/mission/phases/still_watch.h"
 #include "core_stack/team/right_of_way/waiting_place.h"
 #include "core_stack/team/right_of_way/yield_state.h"
 #include "core_stack/team/team_node.h"
@@ -89,10 +90,11 @@ class Pilot {
     }
     const std::vector<Neighbour> others = node_.neighbours(now);
     const bool held = yield_state_.holds();
-    const auto action =
-        yield_state_.update({}, {node_.self(), place(), {speed_mps_, 0, 0}, phase_}, others, now, at_rest());
+    const auto action = yield_state_.update({}, {node_.self(), place(), {speed_mps_, 0, 0}, phase_}, others,
+                                            now, at_rest(), still_.still_for(place(), now));
     if (held != yield_state_.holds() || action == YieldState::Action::stop) braking_ = speed_mps_ != 0;
-    if (action == YieldState::Action::make_room && !room_due_) room_due_ = now + kPlanning;
+    const bool due = action == YieldState::Action::make_room || action == YieldState::Action::leave;
+    if (due && !room_due_) room_due_ = now + kPlanning;
     if (room_due_ && now >= *room_due_) make_room(others, now);
   }
 
@@ -119,6 +121,7 @@ class Pilot {
   YieldState yield_state_;
   double x_m_, goal_m_, target_m_ = x_m_, speed_mps_ = 0;
   bool braking_ = false;
+  StillWatch still_;
   WaitingPlace waiting_place_;
   std::vector<Vec3> flown_;
   std::optional<TimeNs> room_due_;

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core_stack/mission/phases/still_watch.h"
 #include "core_stack/team/right_of_way/yield_state.h"
 
 namespace karst::core {
@@ -64,21 +65,23 @@ struct Meeting {
   Neighbour self{2, {0, 0, 0}}, other{1, {8, 0, 0}, {-1, 0, 0}};
   TimeNs now = 0;
   std::vector<Neighbour> others() const { return {other}; }
+  StillWatch still;
   Action step() {
     now += kSecond / 10;
     other.position += 0.1 * other.velocity_mps;
-    return yield_state.update({}, self, others(), now, true);
+    return yield_state.update({}, self, others(), now, true, still.still_for(self.position, now));
   }
   Action run(double for_s) {
     Action last = Action::go_on;
     for (int i = 0; i < static_cast<int>(10 * for_s); ++i)
-      if ((last = step()) == Action::make_room) return last;
+      if ((last = step()) == Action::make_room || last == Action::leave) return last;
     return last;
   }
 };
 
 TEST(YieldState, MakesRoomForOneThatComesAndWaitsUntilItIsPast) {
   Meeting m;
+  m.other.velocity_mps = {-1.5, 0, 0};
   EXPECT_EQ(m.run(4), Action::make_room);
   m.yield_state.set_out();
   EXPECT_EQ(m.run(1), Action::hold) << "on its way";
@@ -98,13 +101,16 @@ TEST(YieldState, GoesOnWhenTheOtherDoesNotComeOrIsNoMoreHeard) {
   m.yield_state.set_out();
   m.self.position.x() = -4;
   m.yield_state.arrived(YieldState::Place::aside, m.now);
-  EXPECT_EQ(m.run(9), Action::hold);
+  EXPECT_EQ(m.run(5), Action::hold);
+  m.self.position.x() = -6;  // it has left, as it must
+  EXPECT_EQ(m.run(5), Action::hold);
+  m.self.position.x() = -8;
   EXPECT_EQ(m.run(5), Action::go_on) << "it stays where it is";
 
   Meeting silent;
   silent.other.position.x() = 4;
   ASSERT_EQ(silent.run(1), Action::hold);
-  EXPECT_EQ(silent.yield_state.update({}, silent.self, {}, silent.now, true), Action::go_on);
+  EXPECT_EQ(silent.yield_state.update({}, silent.self, {}, silent.now, true, 0), Action::go_on);
 }
 
 TEST(YieldState, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
@@ -114,15 +120,69 @@ TEST(YieldState, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
   m.yield_state.arrived(YieldState::Place::aside, m.now);
   m.other.velocity_mps.setZero();
   m.other.position = {3.5, 0, 0};
-  EXPECT_EQ(m.run(12), Action::make_room);
+  EXPECT_EQ(m.run(12), Action::leave);
+}
+
+// As it was: one that explored around another kept it in one place for half a minute.
+TEST(YieldState, NobodyStaysInOnePlaceForLongWhileAnotherFliesAroundIt) {
+  Meeting m;
+  m.other.position = {2, 0, 0}, m.other.velocity_mps = {0, 0, 0};
+  ASSERT_EQ(m.run(4), Action::make_room);
+  m.yield_state.set_out();
+  m.yield_state.arrived(YieldState::Place::aside, m.now);
+  Action last = Action::hold;
+  for (int i = 0; i < 200 && last == Action::hold; ++i) {
+    const double a = 0.05 * i;  // round it, now nearer and now farther
+    m.other.velocity_mps =
+        10 * (Vec3((2 + 0.5 * std::sin(a)) * std::cos(a), 2 * std::sin(a), 0) - m.other.position);
+    last = m.step();
+  }
+  EXPECT_EQ(last, Action::leave);
+  EXPECT_LT(m.now, 10 * kSecond);
+}
+
+TEST(YieldState, OneThatComesAndIsNotHeardIsNotWaitedForButLeft) {
+  Meeting m;
+  m.other.heard = false, m.other.phase = TeamPhase::landing, m.other.robot = kMaxRobots;
+  Action last = m.step();
+  for (int i = 0; i < 50 && last != Action::leave; ++i) last = m.step();
+  EXPECT_EQ(last, Action::leave);
+  EXPECT_GT(m.other.position.x(), 4) << "at once, not when it is near";
+}
+
+// As it was: each turned to leave, saw the other stand, and stayed.
+TEST(YieldState, WhoLeavesOneThatIsNotHeardGoesToWhereItSetOutFor) {
+  Meeting m;
+  m.other.heard = false, m.other.phase = TeamPhase::landing, m.other.robot = kMaxRobots;
+  ASSERT_EQ(m.run(5), Action::leave);
+  m.yield_state.set_out();
+  m.other.velocity_mps.setZero(), m.other.phase = TeamPhase::aside;
+  EXPECT_EQ(m.run(10), Action::hold);
+  m.yield_state.arrived(YieldState::Place::aside, m.now);
+  EXPECT_EQ(m.run(10), Action::go_on);
+}
+
+TEST(YieldState, OfTwoThatSeeAndDoNotHearEachOtherStandTheLowerNumberGoesOnFirst) {
+  const auto waits_s = [](RobotId self) {
+    Meeting m;
+    m.self.robot = self;
+    m.other = {kMaxRobots, {2.5, 0, 0}, {-0.5, 0, 0}, TeamPhase::landing, 0, false};
+    m.step();
+    m.other.velocity_mps.setZero(), m.other.phase = TeamPhase::aside;
+    const TimeNs stands = m.now;
+    while (m.step() != Action::go_on && m.now < 60 * kSecond) {
+    }
+    return seconds(m.now - stands);
+  };
+  EXPECT_LT(waits_s(1), 2);
+  EXPECT_GT(waits_s(2), waits_s(1) + 2);
+  EXPECT_GT(waits_s(3), waits_s(2) + 2);
+  EXPECT_LT(waits_s(3), 9);
 }
 
 TEST(YieldState, WithNoRoomGoesBeforeTheOther) {
   Meeting m;
   ASSERT_EQ(m.run(4), Action::make_room);
-  m.yield_state.no_room(m.now, false);
-  m.other.velocity_mps.setZero();
-  ASSERT_EQ(m.run(10), Action::make_room);
   m.yield_state.no_room(m.now, false);
   EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::boxed);
   // The other hears it, and gives way to it.
@@ -140,7 +200,7 @@ TEST(YieldState, OnItsWayToMakeRoomStopsForAThirdThatItFliesAt) {
   const auto step = [&] {
     m.now += kSecond / 10;
     m.self.position += 0.1 * m.self.velocity_mps;
-    return m.yield_state.update({}, m.self, {m.other, third}, m.now, m.self.velocity_mps.isZero());
+    return m.yield_state.update({}, m.self, {m.other, third}, m.now, m.self.velocity_mps.isZero(), 0);
   };
   ASSERT_EQ(m.run(4), Action::make_room);
   m.yield_state.set_out();
@@ -160,11 +220,12 @@ TEST(YieldState, AmongACrowdWaitsLongerForRoomBeforeItGoesFirst) {
   Meeting m;
   m.other.position = {2.9, 0, 0}, m.other.velocity_mps.setZero();
   for (int asked = 1; asked < 8; ++asked) {
-    ASSERT_EQ(m.run(10), Action::make_room);
+    const Action asks = m.run(10);
+    ASSERT_TRUE(asks == Action::make_room || asks == Action::leave) << asked;
     m.yield_state.no_room(m.now, true);
     EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::explore) << asked;
   }
-  ASSERT_EQ(m.run(10), Action::make_room);
+  ASSERT_EQ(m.run(10), Action::leave);
   m.yield_state.no_room(m.now, true);
   EXPECT_EQ(m.yield_state.reported(TeamPhase::explore, m.now), TeamPhase::boxed);
 }
