@@ -155,7 +155,7 @@ void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
 }
 
 void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> make_rays) {
-  if (closed_ || onboard_.executive.under_way("mapping") >= kMaxWaiting) return;
+  if (closed_ || stamp > onboard_.now() || onboard_.executive.under_way("mapping") >= kMaxWaiting) return;
   struct Mapped {
     MapNews news;
     double explored_m3 = 0;

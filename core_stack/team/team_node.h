@@ -11,7 +11,7 @@
 
 namespace karst::core {
 
-/// For so long a position told is one to keep apart from.
+/// For so long after it was reported a position is kept apart from.
 constexpr TimeNs kNewsHold = 3 * kSecond;
 
 /// A communication node as a robot knows it.
@@ -55,7 +55,7 @@ class TeamNode {
   bool base_in_contact(TimeNs now, TimeNs since) const;
   /// Vehicles in the air that were heard of not longer ago than `oldest`, where they should be by now.
   std::vector<Neighbour> neighbours(TimeNs now, TimeNs oldest = kNewsHold) const;
-  /// A robot may fly that was not heard lately, and was not on the ground when it was heard the last time.
+  /// Whether a robot that was not heard lately may be in the air: it had not landed when it was last heard.
   bool may_meet_unheard(TimeNs now) const;
   /// All robots that have started and were ever heard of, by number.
   std::vector<TeammateState> teammates(TimeNs now) const;

@@ -139,6 +139,9 @@ class StarvedSink final : public VehicleSink {
   void on_rgb(const std::shared_ptr<const RgbFrame>& s) override {
     call([&] { sink_.on_rgb(s); });
   }
+  void on_objects(const ObjectDetections& s) override {
+    call([&] { sink_.on_objects(s); });
+  }
   void on_imu(const ImuSample& s) override {
     call([&] { sink_.on_imu(s); });
   }

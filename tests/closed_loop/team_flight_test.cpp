@@ -212,7 +212,7 @@ TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) 
       const double x[] = {e["positions"][1][0], e["positions"][2][0]};
       if (x[0] > 4 && x[1] > 4) nearest_m = std::min(nearest_m, std::abs(x[0] - x[1]));
     }
-  EXPECT_LT(nearest_m, 15) << "they did not meet in the passage: this shows nothing";
+  EXPECT_LT(nearest_m, 9) << "they did not meet in the passage: this shows nothing";
   for (const char* robot : {"robot_1", "robot_2"}) {
     const auto record = evaluation::read_run(folder / "run" / robot);
     const auto outcome = record.last<core::event::Outcome>();

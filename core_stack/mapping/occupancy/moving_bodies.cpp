@@ -11,7 +11,12 @@ constexpr double kMaxAcross_m = 1.0;  // of the returns from a vehicle
 // With the cells beside it that it has left occupied while it was not known to move.
 constexpr double kMaxTrail_m = 2.0;
 constexpr std::size_t kFewestReturns = 5;
-constexpr float kSurelyFree = -1.1f;  // log-odds: passed by six rays
+// Of the returns, those where space surely was free: what moves by less than a cell a scan has hit most
+// of its cells before.
+constexpr double kFewestInFree = 0.2;
+constexpr float kSurelyFree = -1.1f;  // log-odds: passed in six scans
+// More cells hit in free space, or more bodies, are dust or a wrong pose. This bounds the search, too.
+constexpr std::size_t kMaxCells = 2000, kMaxBodies = 16;
 
 /// A cell that the scan hits and that is not occupied.
 struct HitCell {
@@ -28,6 +33,7 @@ HitCell* find(std::vector<HitCell>& cells, const CellKey& key) {
   return at != cells.end() && at->key == key ? &*at : nullptr;
 }
 
+/// Sorted by key; none if too many are in free space.
 std::vector<HitCell> hit_cells(const VoxelMap& map, std::span<const Ray> rays) {
   std::vector<std::pair<CellKey, Vec3f>> ends;
   for (const Ray& ray : rays) {
@@ -46,7 +52,23 @@ std::vector<HitCell> hit_cells(const VoxelMap& map, std::span<const Ray> rays) {
     cells.back().sum += end.cast<double>();
     ++cells.back().returns;
   }
+  const auto in_free =
+      std::count_if(cells.begin(), cells.end(), [](const HitCell& c) { return c.was_surely_free; });
+  if (static_cast<std::size_t>(in_free) > kMaxCells) cells.clear();
   return cells;
+}
+
+/// The mean of the hits near the cell: of a body that it is part of, about its middle.
+Vec3 mean_near(const std::vector<HitCell>& cells, const HitCell& cell) {
+  const Vec3 at = cell.sum / static_cast<double>(cell.returns);
+  Vec3 sum = Vec3::Zero();
+  double returns = 0;
+  for (const HitCell& c : cells) {
+    if (!c.was_surely_free || (c.sum / static_cast<double>(c.returns) - at).norm() > kMaxAcross_m) continue;
+    sum += c.sum;
+    returns += static_cast<double>(c.returns);
+  }
+  return sum / returns;
 }
 
 /// The smallest box around cells.
@@ -72,12 +94,12 @@ struct Shadow {
 };
 
 /// What touches `first`, hit or occupied, and of that the hits. No body if it is large, reaches into what was
-/// not known, or has most hits where space was not surely free: then it is rock, or may be. Behind a body
+/// not known, or has few hits where space was surely free: then it is rock, or may be. Behind a body
 /// that comes straight at the sensor the cells that it has left stay occupied, as no ray passes them: what
 /// lies in its shadow is not counted.
 std::optional<Vec3> hanging(const VoxelMap& map, std::vector<HitCell>& cells, HitCell& first, int group,
                             const Vec3& sensor) {
-  const Shadow shadow{sensor, first.sum / static_cast<double>(first.returns)};
+  const Shadow shadow{sensor, mean_near(cells, first)};
   std::vector<CellKey> members{first.key}, occupied;
   Box all{first.key, first.key}, hit = all;
   Vec3 sum = Vec3::Zero();
@@ -111,7 +133,8 @@ std::optional<Vec3> hanging(const VoxelMap& map, std::vector<HitCell>& cells, Hi
     for (int n = 0; n < 27; ++n) visit(members[i] + CellKey{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
     large = large || all.across_m(resolution_m) > kMaxTrail_m;
   }
-  if (large || hit.across_m(resolution_m) > kMaxAcross_m || in_free < kFewestReturns || 2 * in_free < returns)
+  if (large || hit.across_m(resolution_m) > kMaxAcross_m || in_free < kFewestReturns ||
+      kFewestInFree * static_cast<double>(returns) > static_cast<double>(in_free))
     return std::nullopt;
   return sum / static_cast<double>(returns);
 }
@@ -137,6 +160,7 @@ std::vector<Vec3> bodies_in_the_air(const VoxelMap& before, std::span<const Ray>
     if (!cell.was_surely_free || cell.group != 0) continue;
     if (const auto body = hanging(before, cells, cell, ++groups, sensor)) bodies.push_back(*body);
   }
+  if (bodies.size() > kMaxBodies) bodies.clear();
   return bodies;
 }
 

@@ -19,7 +19,7 @@ struct MovingBody {
 void leave_out(std::vector<Ray>& rays, std::span<const MovingBody> bodies);
 
 /// Bodies that one scan shows where the map had free space: the mean of each group of returns that is no
-/// larger than a vehicle, touches nothing larger beside it, and lies mostly in cells that were surely free
+/// larger than a vehicle, touches nothing larger beside it, and lies in part in cells that were surely free
 /// before. A small piece of rock that a wrong pose moves into the open counts as well: a body must be seen to
 /// move (seen_vehicles.h).
 std::vector<Vec3> bodies_in_the_air(const VoxelMap& before, std::span<const Ray> rays);

@@ -21,7 +21,8 @@ constexpr auto names_of(Phase) {
                                       {replay, "replay"}});
 }
 
-/// What holds of the vehicle in a phase: all that depends on the phase but is not done by it asks here.
+/// What holds of the vehicle in a phase. Code that depends on the phase asks for these, not for phases by
+/// name.
 struct PhaseTraits {
   bool airborne = false;      // from lift-off to touch-down
   bool above_ground = false;  // airborne, and not on its way up from the ground or down to it

@@ -42,17 +42,16 @@ TeamPhase RightOfWay::phase_to_report() const {
   return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
-/// Where it does not look it flies slowly: one that is not heard does not see where this one comes from
-/// either.
+/// Without a LiDAR, and while another may be near that is not heard, the vehicle flies slowly where its
+/// cameras do not look. Only level motion counts: in a shaft no heading looks ahead.
 void RightOfWay::look_out() {
-  if (onboard_.vehicle.lidar) return;
-  const State& s = onboard_.flight.state();
-  const Vec3 ahead = s.velocity_mps.norm() > kFlies_mps ? s.velocity_mps.normalized() : Vec3::Zero();
-  const double heading_rad = onboard_.flight.reference().heading_rad;
-  const bool looks =
-      ahead.isZero() || ahead.dot(Vec3(std::cos(heading_rad), std::sin(heading_rad), 0)) > kLooks;
   max_speed_mps_.reset();
-  if (!looks && team_.may_meet_unheard(onboard_.now())) max_speed_mps_ = kUnseen_mps;
+  if (onboard_.vehicle.lidar) return;
+  const Vec3& v = onboard_.flight.state().velocity_mps;
+  const double level_mps = v.head<2>().norm(), heading_rad = onboard_.flight.reference().heading_rad;
+  if (level_mps < kFlies_mps || level_mps < std::abs(v.z())) return;
+  const double ahead_mps = v.x() * std::cos(heading_rad) + v.y() * std::sin(heading_rad);
+  if (ahead_mps < kLooks * level_mps && team_.may_meet_unheard(onboard_.now())) max_speed_mps_ = kUnseen_mps;
 }
 
 void RightOfWay::step() {

@@ -14,6 +14,7 @@ constexpr double kMayCome_mps = 1.0;           // on average, through a cave
 // Returns from another vehicle are left out of the map this near to where it should be: the two estimates of
 // where they are differ by so much, and it may have changed its speed since it told it.
 constexpr double kAboutThere_m = 0.4, kMaxStrayed_m = 1.5;
+constexpr double kInSight_s = 0.4;  // since it was seen
 
 /// The facts to publish, and where a node dropped now would land.
 struct Shared {
@@ -119,6 +120,7 @@ std::vector<MovingBody> TeamSharing::others_at(TimeNs stamp) const {
   std::vector<MovingBody> out;
   for (const Neighbour& o : team_.neighbours(now)) {
     if (o.phase == TeamPhase::aside) continue;
+    if (!o.heard && o.age_s > kInSight_s) continue;  // where it is by now is a guess: rock may be there
     const double strayed_m =
         std::min(0.5 * onboard_.options.motion.max_acceleration_mps2 * o.age_s * o.age_s, kMaxStrayed_m);
     out.push_back({o.position - seconds(now - stamp) * o.velocity_mps,

@@ -11,19 +11,24 @@ constexpr TimeNs kLostMoving = 2 * kSecond;     // then it may be anywhere
 constexpr TimeNs kLostStanding = 10 * kSecond;  // once it is in the map it is not seen anew
 constexpr double kSame_m = 0.6;                 // from where it should be
 constexpr double kFastest_mps = 4.0;
-constexpr double kFlies_m = 0.3, kStands_m = 0.25;
+constexpr double kFlies_m = 0.3;
+constexpr double kStands_m = 0.25, kStands_mps = 0.25;
 // What flies keeps to a line for half a second; what noise and dust show jumps about.
 constexpr std::size_t kFewestSightings = 5;
+constexpr TimeNs kSeenFor = 4 * kSecond / 10;  // from the first of five to the last, at 10 Hz
+constexpr std::size_t kMaxTracks = 32;
 constexpr double kOffLine_m = 0.12;  // root mean square
 constexpr double kHeard_m = 1.5;     // from where one that is heard should be
 constexpr int kFirstNumber = kMaxRobots, kNumbers = 256 - kMaxRobots;
 
 }  // namespace
 
-Vec3 SeenVehicles::Track::velocity_mps(TimeNs over) const {
+/// Over the last half second, or longer if it was hidden; zero if it was seen only once.
+Vec3 SeenVehicles::Track::velocity_mps() const {
   const Sighting& last = sightings.back();
-  const auto from = std::find_if(sightings.begin(), sightings.end(),
-                                 [&](const Sighting& s) { return s.stamp >= last.stamp - over; });
+  const Sighting* from = &sightings.front();
+  for (const Sighting& s : sightings)
+    if (s.stamp <= last.stamp - kVelocityOver) from = &s;
   const double passed_s = seconds(last.stamp - from->stamp);
   if (passed_s < 0.15) return Vec3::Zero();
   return (last.position - from->position) / passed_s;
@@ -31,7 +36,7 @@ Vec3 SeenVehicles::Track::velocity_mps(TimeNs over) const {
 
 bool SeenVehicles::Track::stands(TimeNs now) const {
   const Sighting &last = sightings.back(), &first = sightings.front();
-  if (now - last.stamp > kHistory) return velocity_mps(kVelocityOver).norm() < kStands_m;
+  if (now - last.stamp > kHistory) return sightings.size() > 1 && velocity_mps().norm() < kStands_mps;
   return last.stamp - first.stamp > kHistory * 3 / 4 &&
          std::all_of(sightings.begin(), sightings.end(),
                      [&](const Sighting& s) { return (s.position - last.position).norm() < kStands_m; });
@@ -43,7 +48,8 @@ bool SeenVehicles::Track::forgotten(TimeNs now) const {
 
 /// By a least-squares line through place over time.
 bool SeenVehicles::Track::moves_steadily() const {
-  if (sightings.size() < kFewestSightings) return false;
+  if (sightings.size() < kFewestSightings || sightings.back().stamp - sightings.front().stamp < kSeenFor)
+    return false;
   const auto n = static_cast<double>(sightings.size());
   double mean_t = 0, var_t = 0;
   Vec3 mean = Vec3::Zero(), cov = Vec3::Zero();
@@ -72,29 +78,36 @@ SeenVehicles::Track* SeenVehicles::same_as(const Vec3& position, TimeNs stamp) {
   for (Track& t : tracks_) {
     const Sighting& last = t.sightings.back();
     const double passed_s = seconds(stamp - last.stamp);
-    const Vec3 v = t.velocity_mps(kVelocityOver);
+    if (passed_s <= 0) continue;  // another body of the same scan, or a scan that comes late
+    const Vec3 v = t.velocity_mps();
     const double off_m = (last.position + passed_s * v - position).norm();
-    if (off_m < best_m) best = &t, best_m = off_m;
+    if (off_m >= best_m) continue;
+    best = &t;
+    best_m = off_m;
   }
   return best;
 }
 
 void SeenVehicles::note(std::span<const Vec3> bodies, TimeNs stamp, std::span<const Neighbour> heard) {
-  std::erase_if(tracks_, [&](const Track& t) { return t.forgotten(stamp); });
+  const auto is_heard = [&](const Vec3& body) {
+    return std::any_of(heard.begin(), heard.end(),
+                       [&](const Neighbour& h) { return (h.position - body).norm() < kHeard_m; });
+  };
+  std::erase_if(tracks_,
+                [&](const Track& t) { return t.forgotten(stamp) || is_heard(t.sightings.back().position); });
   for (const Vec3& body : bodies) {
-    if (std::any_of(heard.begin(), heard.end(),
-                    [&](const Neighbour& h) { return (h.position - body).norm() < kHeard_m; }))
-      continue;
+    if (is_heard(body)) continue;
     Track* track = same_as(body, stamp);
     if (!track) {
-      const auto number = static_cast<RobotId>(kFirstNumber + begun_++ % kNumbers);
-      track = &tracks_.emplace_back(Track{.number = number, .sightings = {}});
+      if (tracks_.size() == kMaxTracks) continue;
+      track = &tracks_.emplace_back();
     }
     std::deque<Sighting>& sightings = track->sightings;
-    if (!sightings.empty() && stamp < sightings.back().stamp) continue;
     sightings.push_back({stamp, body});
-    while (sightings.front().stamp < stamp - kHistory) sightings.pop_front();
-    track->flies = track->flies || track->moves_steadily();
+    while (sightings.size() > 2 && sightings.front().stamp < stamp - kHistory) sightings.pop_front();
+    if (track->flies || !track->moves_steadily()) continue;
+    track->flies = true;
+    track->number = static_cast<RobotId>(kFirstNumber + begun_++ % kNumbers);
   }
 }
 
@@ -107,7 +120,7 @@ std::vector<Neighbour> SeenVehicles::neighbours(TimeNs now) const {
     if (t.stands(now)) {
       out.push_back({t.number, last.position, Vec3::Zero(), TeamPhase::aside, age_s, false});
     } else {
-      const Vec3 v = t.velocity_mps(kVelocityOver);
+      const Vec3 v = t.velocity_mps();
       out.push_back({t.number, last.position + age_s * v, v, TeamPhase::landing, age_s, false});
     }
   }

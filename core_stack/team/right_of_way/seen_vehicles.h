@@ -10,8 +10,8 @@ namespace karst::core {
 
 class SeenVehicles {
  public:
-  /// What one sensor saw in the air at `stamp`, sorted out: what is one of the `heard` vehicles, or the same
-  /// as before.
+  /// Takes in the bodies that one sensor saw in the air at `stamp`. Those near a `heard` vehicle are that
+  /// vehicle. At most 32 others are followed.
   void note(std::span<const Vec3> bodies, TimeNs stamp, std::span<const Neighbour> heard);
   /// Where those that were seen to fly should be by now. One that flies is taken to stop for nobody
   /// (TeamPhase::landing); one that stands waits (TeamPhase::aside). Their numbers are beyond all robots'.
@@ -24,9 +24,9 @@ class SeenVehicles {
   };
   struct Track {
     RobotId number = 0;
-    std::deque<Sighting> sightings;  // of the last seconds
-    bool flies = false;              // it was seen to move as only a vehicle does
-    Vec3 velocity_mps(TimeNs over) const;
+    std::deque<Sighting> sightings;  // of the last second
+    bool flies = false;              // it was seen to move as only a vehicle does; it has a number then
+    Vec3 velocity_mps() const;
     bool stands(TimeNs now) const;
     bool moves_steadily() const;
     bool forgotten(TimeNs now) const;

@@ -19,7 +19,7 @@ struct RoomQuery {
   Vec3 other = Vec3::Zero();   // the vehicle to make room for
   std::vector<Vec3> moving;    // all further vehicles that may move
   std::vector<Vec3> standing;  // those that wait: obstacles in the map
-  std::vector<Vec3> failed;    // where the other could not pass; two suffice
+  std::vector<Vec3> failed;    // where it waited long enough, or the other could not pass; two suffice
   double separation_m = 1.5;   // from all others, or the present distance if that is less
   double vehicle_radius_m = 0;
 };

@@ -31,6 +31,14 @@ double coming_mps(const Neighbour& self, const Neighbour& other) {
   return closing_mps(still, other);
 }
 
+/// Whether `other`, if it keeps its velocity, passes `self` at half the separation or more.
+bool gets_by(const SeparationRule& rule, const Neighbour& self, const Neighbour& other) {
+  const Vec3 to_self = self.position - other.position;
+  const double speed2 = other.velocity_mps.squaredNorm();
+  const double until_s = speed2 > 0 ? std::max(0.0, to_self.dot(other.velocity_mps) / speed2) : 0;
+  return (to_self - until_s * other.velocity_mps).norm() >= rule.distance_m / 2;
+}
+
 }  // namespace
 
 TeamPhase YieldState::reported(TeamPhase phase, TimeNs now) const {
@@ -51,12 +59,12 @@ bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const N
   // One that is not heard may be leaving, too, and stand but to turn: each goes to where it set out for.
   if (on_the_way_ && !other.heard) return false;
   const double d = distance_m(self, other);
+  if (other.phase != TeamPhase::aside) aside_since_.reset();
   if (goes_before(self, other)) {
     if (other.phase == TeamPhase::aside) {
       if (!aside_since_) aside_since_ = now;
       return now - *aside_since_ > kSeen + (other.heard ? 0 : (self.robot - 1) * kTurn);
     }
-    aside_since_.reset();
     return d > kGoOn * rule.distance_m / 2 || coming_mps(self, other) < -kMoves_mps || now - since_ > kFirst;
   }
   if (!nearest_m_ || d < *nearest_m_ - kNearer_m) {
@@ -87,7 +95,7 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   }
   // A vehicle that makes room for one must not fly into another: check all others, too.
   if (on_the_way_ && std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
-        return stops_on_the_way(rule, self, o, o.robot == *with_);
+        return stops_on_the_way(rule, self, o, o.robot == *with_ && o.heard);
       })) {
     arrived(Place::in_the_way, now);
     return Action::stop;
@@ -95,8 +103,8 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
   const double coming = coming_mps(self, *other);
   const bool comes = coming > kMoves_mps;
-  // Who is not heard may not know of this one, and come straight at it.
-  const bool leaves = !other->heard && comes;
+  // One that is not heard may not know of this one, and come straight at it.
+  const bool leaves = !other->heard && comes && !(aside_ && gets_by(rule, self, *other));
   if (!leaves && !at_rest) return Action::hold;
   const bool came_nearer = came_nearer_at_ && now - *came_nearer_at_ < kPasses;
   const bool passes = came_nearer || coming < -kMoves_mps || (aside_ && comes);

@@ -14,7 +14,7 @@ class YieldState {
     hold,       // stop, or stay where it is
     stop,       // on its way to make room it comes too near to somebody: brake, and look for another place
     make_room,  // it stands in another's way: to be answered by set_out() or no_room()
-    leave,      // the same, and where it is it must not stay
+    leave,      // as make_room, but its present place is not a candidate
   };
 
   /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others,

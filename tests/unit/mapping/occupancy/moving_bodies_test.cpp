@@ -119,6 +119,45 @@ TEST(BodiesInTheAir, AreFoundBeforeTheLongTrailThatTheyHide) {
   EXPECT_GE(times_found, 5) << "of ten scans";
 }
 
+/// Rays of a scan in another direction.
+std::vector<Ray> turned(std::vector<Ray> rays, float by_rad) {
+  const Eigen::Matrix3f turn = Eigen::AngleAxisf(by_rad, Vec3f::UnitZ()).toRotationMatrix();
+  for (Ray& r : rays) {
+    r.origin = turn * r.origin;
+    r.end = turn * r.end;
+  }
+  return rays;
+}
+
+// As it was: what hides behind a body was looked for behind its cell of the lowest key, which may be its rim.
+TEST(BodiesInTheAir, AreFoundWhicheverWayTheyComeFrom) {
+  for (const float heading_rad : {0.0f, 0.7f, 1.57f, 2.5f, 3.14f, -0.8f, -1.57f}) {
+    VoxelMap map{MapOptions{}};
+    const auto scan = [&](float x) { return turned(seen({x, 0, 0}), heading_rad); };
+    for (int i = 0; i < 20; ++i) map.insert(scan(-50));
+    float x = 9.5f;
+    for (; x > 5; x -= 0.1f) map.insert(scan(x));
+    int times_found = 0;
+    for (; x > 4; x -= 0.1f) {
+      times_found += static_cast<int>(bodies_in_the_air(map, scan(x)).size());
+      map.insert(scan(x));
+    }
+    EXPECT_GE(times_found, 4) << "of ten scans, heading " << heading_rad;
+  }
+}
+
+TEST(BodiesInTheAir, AScanFullOfDustIsNotSearched) {
+  VoxelMap map{MapOptions{}};
+  for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));
+  std::vector<Ray> dust;
+  for (int i = 0; i < 20; ++i)
+    for (const Ray& r : seen({50, 50, 50})) {
+      const auto somewhere = static_cast<float>(dust.size() * 7919 % 1000) / 1000;
+      dust.push_back({r.origin, r.end * (0.05f + 0.9f * somewhere), true});
+    }
+  EXPECT_TRUE(bodies_in_the_air(map, dust).empty());
+}
+
 TEST(BodiesInTheAir, NoiseAtTheWallIsNone) {
   VoxelMap map{MapOptions{}};
   for (int i = 0; i < 20; ++i) map.insert(seen({50, 50, 50}));

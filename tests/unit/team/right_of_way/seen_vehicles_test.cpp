@@ -57,6 +57,53 @@ TEST(SeenVehicles, OneThatFliesOutOfSightIsForgotten) {
   EXPECT_TRUE(sky.seen.neighbours(sky.now + 3 * kSecond).empty());
 }
 
+TEST(SeenVehicles, NoiseThatJumpsAboutAndWhatIsTooFastAreNone) {
+  Sky sky;
+  for (int i = 0; i < 30; ++i) {
+    sky.now += kSecond / 10;
+    sky.seen.note(std::vector<Vec3>{{5 - 0.05 * i + (i % 2 ? 0.2 : -0.2), 0, 1}}, sky.now, {});
+  }
+  EXPECT_TRUE(sky.seen.neighbours(sky.now).empty()) << "it drifts, but not along a line";
+  sky.fly({20, 0, 1}, {-5, 0, 0}, 2);
+  EXPECT_TRUE(sky.seen.neighbours(sky.now).empty());
+}
+
+TEST(SeenVehicles, SeveralBodiesOfOneScanAreNotOneVehicle) {
+  Sky sky;
+  for (int i = 0; i < 4; ++i) {
+    sky.now += kSecond / 10;
+    sky.seen.note(std::vector<Vec3>{{5 - 0.1 * i, 0, 1}, {5.1 - 0.1 * i, 0.3, 1}}, sky.now, {});
+  }
+  EXPECT_TRUE(sky.seen.neighbours(sky.now).empty()) << "eight bodies, but four scans";
+}
+
+TEST(SeenVehicles, OneThatWasHiddenFliesOn) {
+  Sky sky;
+  const Vec3 place = sky.fly({9, 0, 1}, {-1, 0, 0}, 1);
+  sky.now += 9 * kSecond / 10;
+  sky.seen.note(std::vector<Vec3>{place - Vec3(1, 0, 0)}, sky.now, {});
+  const auto all = sky.seen.neighbours(sky.now);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].phase, TeamPhase::landing);
+  EXPECT_NEAR(all[0].velocity_mps.x(), -1, 0.2);
+}
+
+TEST(SeenVehicles, OneThatIsHeardAgainIsForgottenAsAStranger) {
+  Sky sky;
+  const Vec3 place = sky.fly({5, 0, 1}, {-1, 0, 0}, 1);
+  ASSERT_EQ(sky.seen.neighbours(sky.now).size(), 1u);
+  sky.seen.note({}, sky.now, std::vector<Neighbour>{{2, place, {-1, 0, 0}, TeamPhase::explore}});
+  EXPECT_TRUE(sky.seen.neighbours(sky.now).empty());
+}
+
+TEST(SeenVehicles, ThousandsOfBodiesAreNotFollowed) {
+  Sky sky;
+  std::vector<Vec3> dust;
+  for (int i = 0; i < 5000; ++i) dust.emplace_back(i % 50, i / 50 % 50, i / 2500);
+  for (int i = 0; i < 100; ++i) sky.seen.note(dust, sky.now += kSecond / 10, {});
+  EXPECT_TRUE(sky.seen.neighbours(sky.now).empty());
+}
+
 TEST(SeenVehicles, OneThatIsHeardIsNoOther) {
   Sky sky;
   sky.heard = {{3, {4.5, 0.5, 1}, Vec3::Zero(), TeamPhase::explore}};

@@ -150,6 +150,22 @@ TEST(YieldState, OneThatComesAndIsNotHeardIsNotWaitedForButLeft) {
   EXPECT_GT(m.other.position.x(), 4) << "at once, not when it is near";
 }
 
+// As it was: one in a niche left it when the other flew by, and crossed its path.
+TEST(YieldState, WhoStandsAsideStaysWhileOneThatIsNotHeardFliesBy) {
+  Meeting m;
+  m.other.heard = false, m.other.phase = TeamPhase::landing, m.other.robot = kMaxRobots;
+  ASSERT_EQ(m.run(5), Action::leave);
+  m.yield_state.set_out();
+  m.self.position = {0, 2, 0};
+  m.yield_state.arrived(YieldState::Place::aside, m.now);
+  m.other.position = {5, 0, 0};
+  while (m.other.position.x() > 0) ASSERT_EQ(m.step(), Action::hold) << m.other.position.x();
+  m.other.position = {5, 2, 0};
+  Action last = m.step();
+  for (int i = 0; i < 30 && last == Action::hold; ++i) last = m.step();
+  EXPECT_EQ(last, Action::leave) << "this time it comes straight at it";
+}
+
 // As it was: each turned to leave, saw the other stand, and stayed.
 TEST(YieldState, WhoLeavesOneThatIsNotHeardGoesToWhereItSetOutFor) {
   Meeting m;
