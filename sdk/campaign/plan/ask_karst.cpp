@@ -60,7 +60,7 @@ std::string without(std::string text, const std::string& part) {
   return text;
 }
 
-/// What karst says of a setting, which it was given as an option, said of the entry that the setting is of.
+/// Turns karst's message about a setting, passed as an option, into one about the entry that sets it.
 InputError complaint(const Campaign& c, const ContestantSpec& who, const CaveSpec& cave,
                      const std::string& said) {
   const std::string contestant = "contestant " + who.name, parameter = "policy.parameters.",

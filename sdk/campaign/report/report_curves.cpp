@@ -28,8 +28,8 @@ Values time_grid(const CampaignResults& results) {
   return times;
 }
 
-/// Linear between a trial's samples, the first before and the last after them: what was explored stays
-/// explored. A failed trial without a curve explored nothing; another's that has none is not known.
+/// Linear between a trial's samples, constant before and after them: explored space stays explored. A failed
+/// trial without a curve explored nothing; for other trials without a curve it is unknown.
 Values on_grid(const TrialResult& trial, Quantity quantity, const Values& times) {
   if (trial.curve.empty()) return trial.failed ? Values(times.size(), 0.0) : Values();
   Values values;

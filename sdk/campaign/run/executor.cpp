@@ -26,7 +26,7 @@ using host::end_process;
 using host::start_process;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uintmax_t kMinSpace = 64u << 20;  // bytes free to begin a trial; one writes tens of megabytes
+constexpr std::uintmax_t kMinSpace = 64u << 20;  // free to begin a trial; a trial writes tens of megabytes
 constexpr const char* kNoteFile = "trial.json";
 
 std::string machine_name() {

@@ -186,7 +186,7 @@ bool run_on_slurm(const std::vector<TrialJob>& jobs, const SlurmOptions& o, cons
   for (int attempt = 0; attempt < kAttempts && !waiting.all(); ++attempt) {
     const std::vector<TrialJob> missing = waiting.missing();
     const std::size_t first = o.batch > 0 ? o.batch : batch_size(o.expected_trial_s);
-    const std::size_t batch = attempt == 0 ? first : 1;  // a lost one takes none with it
+    const std::size_t batch = attempt == 0 ? first : 1;  // a lost trial must not take others with it
     for (std::size_t at = 0; at < missing.size(); at += batch * kTasksOfArray) {
       const auto begin = missing.begin() + static_cast<std::ptrdiff_t>(at);
       const auto end =
