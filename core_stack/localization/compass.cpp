@@ -6,13 +6,13 @@
 namespace karst::core {
 namespace {
 
-/// Samples until the field counts as known, and over how many it is averaged in the long run.
+/// Samples until the field counts as known, and the length in samples of its running average.
 constexpr int kKnown = 20, kAverage = 3000;
-/// The earth's field differs by less within a cave; noise and tilt errors included.
+/// Within a cave the earth's field varies by less than this, sensor noise and tilt error included.
 constexpr double kStrengthFraction = 0.08, kDip_rad = 0.07;
-/// Towards the poles the horizontal part is too weak to steer by.
+/// Towards the poles the horizontal component is too weak to give a heading.
 constexpr double kMinHorizontal_ut = 5;
-/// Without a sample for so long it is not trusted.
+/// The compass is not trusted after this time without a sample.
 constexpr TimeNs kSilent = kSecond / 5;
 
 double dip(const Vec3& field) { return std::atan2(-field.z(), field.head<2>().norm()); }

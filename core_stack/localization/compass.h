@@ -1,8 +1,8 @@
-// Heading from the magnetometer, and whether to believe it: near ore the field bends.
+// Heading from the magnetometer, and a test whether the heading can be trusted: ore distorts the field.
 //
-// The field of the world is learnt where the heading is known. A reading is disturbed if its strength or its
-// dip differ from that field's; a field that is only turned about the vertical looks undisturbed, and it is
-// for the LiDAR to contradict it.
+// The field in the world frame is learnt while the heading is known. A reading counts as disturbed if its
+// strength or its dip differs from the learnt field. A disturbance that only turns the field about the
+// vertical passes this test; only the LiDAR can contradict it.
 #pragma once
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/time.h"
@@ -13,16 +13,16 @@ namespace karst::core {
 class Compass {
  public:
   struct Reading {
-    bool valid = false;      // the field of the world is known, and this is it
-    double heading_rad = 0;  // of the body
+    bool valid = false;      // the field of the world is known, and the reading agrees with it
+    double heading_rad = 0;  // heading of the body in the world frame
   };
-  /// Heading by a sample; of `orientation` only roll and pitch count.
+  /// Computes the heading from a sample; only the roll and pitch of `orientation` (body to world) are used.
   Reading read(const MagnetometerSample& sample, const Quat& orientation);
-  /// Takes in a sample made at an orientation whose heading is known.
+  /// Adds a sample to the average field; the heading of `orientation` (body to world) must be known.
   void learn(const MagnetometerSample& sample, const Quat& orientation);
-  /// Readings have been valid for as long as that.
+  /// Time in seconds for which all readings have been valid.
   double trusted_s(TimeNs now) const;
-  /// Contradicted: the field is learnt anew.
+  /// Discards the learnt field after the LiDAR has contradicted it.
   void forget();
 
  private:

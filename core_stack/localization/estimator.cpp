@@ -9,25 +9,25 @@ namespace {
 
 using Scalar = InertialFilter::Scalar;
 
-/// So many poses refused in a row raise a doubt; so many that agree with the newcomer settle it: 1 s at 10
-/// Hz.
+/// Consecutive refused poses that start the newcomer filter; consecutive poses it must accept to replace the
+/// other filters: 1 s at 10 Hz.
 constexpr int kDoubt = 3, kSettled = 10;
-/// So many that the magnetic filter alone refuses show that the compass misleads it.
+/// Consecutive poses refused by the magnetic filter alone, after which the compass counts as misleading.
 constexpr int kMisled = 3;
-/// Heading spread of the LiDAR's filter beyond which the compass is believed, and below which no more.
+/// Heading spread of the LiDAR filter above which the compass is believed, and below which it no longer is.
 constexpr double kHeadingOpen_rad = 0.02, kHeadingKnown_rad = 0.01;
 constexpr double kCompassTrusted_s = 2;
-/// Spread of the height below which the barometer is set by it.
+/// The barometer is calibrated while the standard deviation of the height is below this.
 constexpr double kHeightKnown_m = 0.03;
-/// Headings and heights count as of now: older ones than this say nothing.
+/// Headings and heights are applied at the current time: samples older than this are not used.
 constexpr TimeNs kStale = 200 * kMillisecond;
-/// A made-up sample is that much noisier. It knows neither the wind (0.75 m/s^2 in a gust of 5 m/s, by drag)
-/// nor how far the rates lag behind the command (0.25 rad/s while a turn begins), and both last from one pose
-/// to the next: 0.07 m/s and 0.025 rad in 0.1 s, which by this noise are 0.2 m/s and 0.01 rad. With less,
-/// what was made up would overrule the LiDAR.
+/// Factor on the noise of samples predicted from the commands. They include neither the wind (0.75 m/s^2 by
+/// drag in a gust of 5 m/s) nor the lag of the rates behind the command (0.25 rad/s while a turn begins), and
+/// both persist from one pose to the next: 0.07 m/s and 0.025 rad in 0.1 s, which this noise covers with 0.2
+/// m/s and 0.01 rad. With a smaller factor the predicted samples would overrule the LiDAR.
 constexpr double kBridgeNoise = 60;
 
-// Spreads at which health degrades, and at which it is lost.
+// Standard deviations above which health is degraded, and above which it is lost.
 constexpr double kPositionDegraded_m = 0.4, kPositionLost_m = 1.5, kHeadingDegraded_rad = 0.25;
 
 bool is_finite(const ImuSample& s) {
@@ -37,7 +37,7 @@ bool is_finite(const Pose& p) {
   return p.position.allFinite() && p.orientation.coeffs().allFinite() && p.orientation.norm() > 0.5;
 }
 
-/// As the sensor would say it, biases and all; that of the force along z is in the mass as learned.
+/// Adds the sensor's biases to a predicted sample; the learnt mass already contains the bias along z.
 void stand_in(InertialFilter& filter, ImuSample sample) {
   sample.specific_force_mps2.head<2>() += filter.accel_bias_mps2().head<2>();
   sample.body_rate_radps += filter.gyro_bias_radps();
@@ -61,7 +61,7 @@ void describe(OptionTable& t, EstimatorOptions& o) {
         "standard deviation of a pose's attitude, each axis; of the LiDAR's on top of its own covariance");
   t.add("compass_noise", o.compass_noise_rad, "rad", 0.01, 3.0,
         "standard deviation of the heading by one magnetometer sample");
-  // With much less the barometer alone would make the height look known, and be set by itself.
+  // With much less noise the barometer alone would make the height look known, and calibrate itself.
   t.add("height_noise", o.height_noise_m, "m", 0.3, 100,
         "standard deviation of the height by one barometer sample");
   t.add("gate", o.gate, "", 3, 100, "poses off by so many standard deviations are refused");
@@ -77,7 +77,7 @@ void Estimator::on_imu(const ImuSample& imu) {
     last_bad_input_ = imu.stamp;
     return;
   }
-  last_imu_ = std::max(last_imu_, imu.stamp);  // it speaks, even if a made-up sample is ahead of it
+  last_imu_ = std::max(last_imu_, imu.stamp);  // the IMU delivers data, even if a predicted sample is newer
   if (!lidar_.started()) {
     last_pose_ = imu.stamp;
   } else if (imu.stamp <= state().stamp) {
@@ -139,7 +139,7 @@ bool Estimator::take_in(const PoseMeasurement& pose) {
   return verdict == Verdict::accepted;
 }
 
-/// A pose was refused by the filter that is believed: either it is wrong, or the filter.
+/// The believed filter refused a pose: either the pose or the filter is wrong.
 void Estimator::doubt(const PoseMeasurement& pose) {
   if (++refused_ < kDoubt) return;
   if (newcomer_ && newcomer_->on_pose(pose, options_.gate) == InertialFilter::Verdict::accepted) {
@@ -162,7 +162,7 @@ void Estimator::choose() {
   if (!magnetic_believed_ && spread_rad > kHeadingOpen_rad && compass) {
     magnetic_believed_ = true;
   } else if (magnetic_believed_ && (spread_rad < kHeadingKnown_rad || !compass)) {
-    lidar_ = magnetic_;  // no jump: the LiDAR's poses have followed the filter believed
+    lidar_ = magnetic_;  // no jump: the LiDAR poses have corrected the magnetic filter as well
     magnetic_believed_ = false;
   }
 }

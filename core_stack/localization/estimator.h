@@ -1,16 +1,16 @@
 // State estimation: a small bank of filters on the IMU, corrected by poses from the LiDAR, which arrive late.
 //
-//   lidar      IMU and poses. The one to believe, as a rule: ore does not bend it.
-//   magnetic   the same and the compass. Believed while the poses leave the heading open, as in a round
-//   shaft, and
-//              the compass is not disturbed.
-//   newcomer   begun at a pose that the others refuse. If further poses agree with it for a second while the
-//              others still refuse them, the bank starts over from it.
+//   lidar      IMU and LiDAR poses. Normally believed, because ore does not disturb it.
+//   magnetic   the same with the compass. Believed while the poses do not determine the heading, as in a
+//              round shaft,
+//              and the compass is not disturbed.
+//   newcomer   started at a pose that the others refuse. If it accepts further poses for a second while the
+//              others still refuse them, all filters restart from it.
 //
-// The barometer holds the height of all where the LiDAR leaves it open, as in a smooth shaft.
+// The barometer corrects the height of all filters where the LiDAR does not observe it, as in a smooth shaft.
 //
-// A pose that is far from what a filter expects does not enter it; until one is accepted again, the IMU alone
-// carries it, and its covariance grows. Health is judged by that. Switching has hysteresis.
+// A pose that is far from a filter's prediction is refused; until the filter accepts one again, it integrates
+// the IMU alone and its covariance grows. Health is judged by that covariance. Switching has hysteresis.
 #pragma once
 #include <limits>
 #include <optional>
@@ -24,12 +24,12 @@ namespace karst::core {
 
 struct EstimatorOptions {
   InertialNoise imu;
-  double pose_position_noise_m = 0.01;  // of the pose sensor; of LiDAR poses, what comes on top of theirs
+  double pose_position_noise_m = 0.01;  // of the pose sensor; added to the covariance of LiDAR poses
   double pose_attitude_noise_rad = 0.0035;
-  double compass_noise_rad = 0.2;  // of one sample; their errors last
-  double height_noise_m = 0.6;     // of one barometer sample, likewise
-  double gate = 6;                 // poses off by so many standard deviations are refused
-  double pose_timeout_s = 0.5;     // health degrades without a pose for so long; lost at four times that
+  double compass_noise_rad = 0.2;  // of one sample; the errors are correlated in time
+  double height_noise_m = 0.6;     // of one barometer sample; also correlated in time
+  double gate = 6;                 // poses off by this many standard deviations or more are refused
+  double pose_timeout_s = 0.5;     // health degrades after this time without a pose; lost: four times that
 };
 void describe(OptionTable& t, EstimatorOptions& o);
 
@@ -41,22 +41,22 @@ struct Diagnosis {
 class Estimator {
  public:
   Estimator(const EstimatorOptions& options, const Pose& T_world_start);
-  /// Samples that are not finite or not newer than the last are ignored.
+  /// Ignores samples that are not finite or not newer than the last one.
   void on_imu(const ImuSample& imu);
-  /// What the IMU would have measured, where it is silent: by the last command and the mass.
+  /// While the IMU delivers no data: takes the measurement expected from the last command and the mass.
   void bridge(const ImuSample& expected);
-  /// Poses that are not finite, not newer than the last, or older than a second are ignored.
+  /// Ignores poses that are not finite, not newer than the last one, or older than a second.
   void on_pose(const PoseSample& pose);
-  /// The same of a LiDAR pose, with its covariance. True if it was accepted.
+  /// The same for a LiDAR pose with its covariance. Returns true if the pose was accepted.
   bool on_lidar_pose(const PoseMeasurement& pose);
   void on_magnetometer(const MagnetometerSample& mag);
   void on_barometer(const BarometerSample& barometer);
 
   const State& state() const { return active().state(); }  // at the last IMU sample
-  /// The states as corrected: 2 s, every IMU sample.
+  /// The corrected states of the last 2 s, one for every IMU sample.
   const StateHistory& history() const { return active().history(); }
-  /// Degraded: no pose accepted or no IMU sample for the timeout, an input within it that was not finite, or
-  /// a position or heading known too badly to fly fast.
+  /// Degraded: within the timeout no pose was accepted, no IMU sample arrived or an input was not finite; or
+  /// the position or heading is too uncertain to fly fast.
   Diagnosis diagnose(TimeNs now) const;
   Health health(TimeNs now) const { return diagnose(now).health; }
   Hypothesis believed() const { return magnetic_believed_ ? Hypothesis::magnetic : Hypothesis::lidar; }

@@ -15,7 +15,7 @@ constexpr float kMaxGap = 2.5f;                         // beam steps between po
 constexpr float kMaxSlope = 0.05f;                      // of the range, between points of one segment
 constexpr float kNone = -1;                             // no sharpness
 
-/// The usual angle between neighbouring beams, from a sample of the sweep.
+/// The median angle between neighbouring beams, from a sample of the sweep.
 float beam_step(const std::vector<SweepPoint>& points) {
   std::vector<float> steps;
   for (std::size_t i = 0; i + 1 < points.size(); i += 17)
@@ -29,12 +29,12 @@ float beam_step(const std::vector<SweepPoint>& points) {
   return *middle;
 }
 
-/// One ring with what its windows ask for.
+/// One ring and the prefix sums that its windows need.
 struct Ring {
   std::span<const SweepPoint> points;
   std::vector<float> range;
-  std::vector<Vec3> sum;                        // sum[i]: of all positions before i
-  std::vector<int> segment_begin, segment_end;  // of the segment that point i is in
+  std::vector<Vec3> sum;                        // sum[i]: sum of all positions before point i
+  std::vector<int> segment_begin, segment_end;  // bounds of the segment of point i
 
   Ring(std::span<const SweepPoint> p, float step, float jump_m) : points(p) {
     const std::size_t n = p.size();
@@ -61,7 +61,7 @@ struct Ring {
   }
 
  private:
-  /// A new segment begins at point i: the range jumps, or beams between were without a return.
+  /// Whether a new segment begins at point i: the range jumps, or beams in between had no return.
   bool breaks_at(std::size_t i, float max_gap_rad, float jump_m) const {
     const float a = range[i - 1], b = range[i];
     if (std::abs(a - b) > std::max(jump_m, kMaxSlope * std::min(a, b))) return true;
@@ -70,7 +70,7 @@ struct Ring {
   }
 };
 
-/// Of each point; kNone where the window leaves the segment, or where the beams graze the rock.
+/// Sharpness of each point; kNone where the window leaves the segment or the beams graze the rock.
 std::vector<float> sharpness_of(const Ring& ring, float step, const FeatureOptions& o) {
   const int n = static_cast<int>(ring.points.size());
   const float cos_grazing = std::cos(static_cast<float>(o.min_incidence_rad));
@@ -85,13 +85,13 @@ std::vector<float> sharpness_of(const Ring& ring, float step, const FeatureOptio
                          ring.points[static_cast<std::size_t>(i - half)].position;
     const float length = across.norm();
     if (length == 0 || std::abs(across.dot(p)) > cos_grazing * length * ring.range[at]) continue;
-    // The point itself as the mean of three, with 1 / sqrt(3) of the noise.
+    // The point itself is replaced by the mean of three, which has 1 / sqrt(3) of the noise.
     sharpness[at] = 2 * (ring.mean(i - half, i + half) - ring.mean(i - 1, i + 1)).norm() / length;
   }
   return sharpness;
 }
 
-/// The point of each sector with the largest value, if it has one of at least `least`.
+/// For each sector, the point with the largest value, if that is at least `least`.
 std::vector<Feature> best_of_sectors(const Ring& ring, const std::vector<float>& values, std::int64_t sectors,
                                      float least) {
   std::vector<Feature> best;
@@ -137,7 +137,7 @@ void describe(OptionTable& t, FeatureOptions& o) {
 }
 
 Features find_features(const std::vector<SweepPoint>& points, const FeatureOptions& options, int threads) {
-  std::vector<std::size_t> begins;  // of rings
+  std::vector<std::size_t> begins;  // index of the first point of each ring
   for (std::size_t i = 0; i < points.size(); ++i)
     if (i == 0 || points[i].ring != points[i - 1].ring) begins.push_back(i);
   const std::size_t rings = begins.size();

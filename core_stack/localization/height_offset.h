@@ -1,4 +1,4 @@
-// How far the barometer is off: learnt while the height is known, so that it holds the height when it is not.
+// Offset of the barometer: learnt while the height is known, so that it can provide the height later.
 #pragma once
 #include "core_stack/vehicle/messages.h"
 
@@ -6,14 +6,14 @@ namespace karst::core {
 
 class HeightOffset {
  public:
-  /// Takes in a sample made at a height that is known.
+  /// Adds a sample made at a known height in the world frame.
   void learn(const BarometerSample& sample, double height_m);
   bool known() const { return learnt_ >= kKnown; }
-  /// Height in the world by a sample.
+  /// Height in the world frame from a sample.
   double height_m(const BarometerSample& sample) const { return sample.height_m - offset_m_; }
 
  private:
-  /// Samples until it is known, and over how many it is averaged: ten seconds at 25 Hz follow the drift.
+  /// Samples until the offset is known; length of the average: 10 s at 25 Hz follow the drift.
   static constexpr int kKnown = 10, kAverage = 250;
   double offset_m_ = 0;
   int learnt_ = 0;

@@ -10,19 +10,19 @@ namespace karst::core {
 namespace {
 
 constexpr double kGravity = 9.81;          // m/s^2
-constexpr double kImuReferenceRate = 200;  // Hz, at which the noise of one sample is meant
+constexpr double kImuReferenceRate = 200;  // Hz, the rate for which the sample noise is specified
 constexpr TimeNs kBuffer = kSecond;
-constexpr TimeNs kAhead = 50 * kMillisecond;  // of the IMU: a pose from later is ignored
-// Uncertainty at the start: the vehicle stands at a declared pose, its biases are unknown.
+constexpr TimeNs kAhead = 50 * kMillisecond;  // poses newer than the IMU by more than this are ignored
+// Uncertainty at the start: the vehicle stands at a declared pose, and its biases are unknown.
 constexpr double kStartPosition = 0.05, kStartVelocity = 0.05, kStartAngle = 0.02, kStartAccelBias = 0.2,
                  kStartGyroBias = 0.02;
 
-// Places in the error state.
+// Indices of the blocks of the error state.
 constexpr int kP = 0, kV = 3, kA = 6, kBa = 9, kBg = 12;
 
 double squared(double v) { return v * v; }
 
-/// Pose a little after `s`, on its velocity and rate.
+/// Extrapolates the pose of `s` for a short time with its velocity and body rate.
 Pose extrapolated(const State& s, double dt_s) {
   return {s.position + s.velocity_mps * dt_s,
           (s.orientation * exp_so3(s.body_rate_radps * dt_s)).normalized()};
@@ -40,7 +40,7 @@ InertialFilter::InertialFilter(const InertialNoise& noise, const Pose& T_world_s
   covariance_ = sigma.array().square().matrix().asDiagonal();
 }
 
-/// Nominal state: the trapezoid rule over one interval; rates and forces are taken as linear between samples.
+/// Nominal state: trapezoidal rule over one interval; rates and forces are assumed linear between samples.
 /// Error state, to first order, with R the rotation, f the force, w the rate in the body:
 ///   dp' = dp + dv dt,  dv' = dv - R [f]x da dt - R dba dt,  da' = exp(-w dt) da - dbg dt.
 void InertialFilter::propagate(const ImuSample& before, const ImuSample& after, double noise_scale) {
@@ -100,7 +100,7 @@ void InertialFilter::on_imu(const ImuSample& imu, double noise_scale) {
   while (steps_.front().imu.stamp < imu.stamp - kBuffer) steps_.pop_front();
 }
 
-/// The last step not after `stamp`.
+/// Index of the last step that is not newer than `stamp`.
 std::optional<std::size_t> InertialFilter::step_at(TimeNs stamp) const {
   if (steps_.empty() || stamp < steps_.front().imu.stamp) return std::nullopt;
   const auto after = std::upper_bound(steps_.begin(), steps_.end(), stamp,
@@ -157,14 +157,14 @@ InertialFilter::Verdict InertialFilter::on_pose(const PoseMeasurement& pose, dou
   go_back_to(from);
   const Eigen::Matrix<double, 15, 6> K = inverse.solve(H * covariance_).transpose();
   inject(K * innovation);
-  // Joseph's form keeps it symmetric and positive.
+  // Joseph's form keeps the covariance symmetric and positive definite.
   const Matrix15 rest = Matrix15::Identity() - K * H;
   covariance_ = (rest * covariance_ * rest.transpose() + K * pose.covariance * K.transpose()).eval();
   replay_after(from);
   return Verdict::accepted;
 }
 
-/// Of the heading only the rotation about the world's z axis is corrected: dh = z . R da.
+/// For the heading only the rotation about the world's z axis is corrected: dh = z . R da.
 void InertialFilter::correct(const Scalar& m) {
   const bool heading = m.kind == Scalar::Kind::heading_rad;
   const double innovation =
@@ -184,7 +184,7 @@ void InertialFilter::correct(const Scalar& m) {
 void InertialFilter::on_scalar(const Scalar& measured) {
   if (steps_.empty()) return;
   correct(measured);
-  steps_.back().scalars.push_back(measured);  // its state stays as it was before: there a replay begins
+  steps_.back().scalars.push_back(measured);  // the stored state stays uncorrected: a replay starts from it
   history_.push(state_);
 }
 

@@ -1,10 +1,10 @@
 // One hypothesis about the vehicle's state: an error-state Kalman filter on the IMU (Sola, arXiv:1711.02508),
-// corrected by poses that arrive late.
+// corrected by delayed poses.
 //
-// The nominal state is propagated with every IMU sample (strap-down, trapezoid rule). The error state is
+// The nominal state is propagated with every IMU sample (strap-down, trapezoidal rule). The error state is
 // (position, velocity: world; attitude: rotation vector in the body; accelerometer and gyroscope bias). A
-// pose is taken in at its stamp, in a buffer of the past second; what came since, samples and headings, is
-// replayed.
+// pose is applied at its stamp, in a buffer of the past second; the samples, headings and heights that
+// arrived after that stamp are then replayed.
 #pragma once
 #include <boost/circular_buffer.hpp>
 #include <boost/container/small_vector.hpp>
@@ -23,15 +23,15 @@ using Vector15 = Eigen::Matrix<double, 15, 1>;
 using Matrix15 = Eigen::Matrix<double, 15, 15>;
 
 struct InertialNoise {
-  // Standard deviations. That of IMU samples is for one sample at 200 Hz; the accelerometer's includes what
-  // a small error of tilt and the vehicle's vibration add.
+  // Standard deviations. The IMU noise is that of one sample at 200 Hz; the accelerometer noise includes the
+  // effects of a small tilt error and of the vehicle's vibration.
   double accel_noise_mps2 = 0.15;
   double gyro_noise_radps = 0.008;
-  double accel_bias_drift_mps2 = 0.01;  // how far the bias wanders in one second
+  double accel_bias_drift_mps2 = 0.01;  // random walk of the bias in one second
   double gyro_bias_drift_radps = 0.0005;
 };
 
-/// A pose as measured, with the covariance of (translation in the world, rotation in the body).
+/// A measured pose with the covariance of (translation in the world, rotation in the body).
 struct PoseMeasurement {
   TimeNs stamp = 0;
   Pose T_world_body;
@@ -42,29 +42,29 @@ class InertialFilter {
  public:
   InertialFilter(const InertialNoise& noise, const Pose& T_world_start);
 
-  /// Not newer than the last: ignored. `noise_scale`: of a sample that was made up.
+  /// Ignores samples not newer than the last one. `noise_scale` is above 1 for predicted samples.
   void on_imu(const ImuSample& imu, double noise_scale = 1);
 
   enum class Verdict { accepted, gated, ignored };
-  /// Gated: `gate` standard deviations or more from what is expected. Ignored: not newer than the last pose
-  /// taken in, or not within the buffer.
+  /// Gated: the pose is `gate` standard deviations or more from the prediction. Ignored: it is not newer than
+  /// the last accepted pose, or not within the buffer.
   Verdict on_pose(const PoseMeasurement& pose, double gate);
-  /// The heading, or the height above the world's origin, is `value` now, give or take `sigma`.
+  /// A measurement of the current heading, or of the height above the world's origin, with deviation `sigma`.
   struct Scalar {
     enum class Kind { heading_rad, height_m } kind;
     double value, sigma;
   };
   void on_scalar(const Scalar& measured);
 
-  /// Starts anew at a pose in the buffer's time, with the velocity and biases known.
+  /// Restarts at a pose within the buffer, with the velocity and biases known at that time.
   void restart_at(const PoseMeasurement& pose);
 
   bool started() const { return !steps_.empty(); }
   const State& state() const { return state_; }  // at the last IMU sample
-  /// The states as corrected: 2 s, every IMU sample.
+  /// The corrected states of the last 2 s, one for every IMU sample.
   const StateHistory& history() const { return history_; }
   const Matrix15& covariance() const { return covariance_; }
-  /// Greatest standard deviation of the position in any direction, and that of the heading.
+  /// Greatest standard deviation of the position over all directions, and that of the heading.
   double position_sigma_m() const;
   double heading_sigma_rad() const;
   double height_sigma_m() const { return std::sqrt(covariance_(2, 2)); }
@@ -73,12 +73,12 @@ class InertialFilter {
 
  private:
   struct Step {
-    ImuSample imu;  // led to what follows
+    ImuSample imu;  // the sample that led to the state below
     double noise_scale;
     State state;
     Vec3 accel_bias_mps2, gyro_bias_radps;
     Matrix15 covariance;
-    boost::container::small_vector<Scalar, 4> scalars;  // taken in since
+    boost::container::small_vector<Scalar, 4> scalars;  // scalars applied after this step
   };
   void propagate(const ImuSample& before, const ImuSample& after, double noise_scale);
   void correct(const Scalar& measured);
@@ -92,10 +92,10 @@ class InertialFilter {
   State state_;
   Vec3 accel_bias_mps2_ = Vec3::Zero(), gyro_bias_radps_ = Vec3::Zero();  // body frame
   Matrix15 covariance_;
-  // They take memory only where samples come faster than ever before.
-  static constexpr std::size_t kUsual = 256;  // 1 s at 200 Hz, and some
+  // The buffers allocate memory only if samples arrive faster than ever before.
+  static constexpr std::size_t kUsual = 256;  // 1 s at 200 Hz, with a margin
   boost::circular_buffer<Step> steps_{kUsual};
-  std::vector<Step> later_;  // while they are replayed
+  std::vector<Step> later_;  // the later steps, during a replay
   StateHistory history_;
   TimeNs last_pose_ = std::numeric_limits<TimeNs>::min();
 };

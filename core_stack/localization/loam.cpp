@@ -8,16 +8,16 @@
 namespace karst::core {
 namespace {
 
-constexpr float kNearest = 0.01f, kFarthest = 1000;  // m: points outside are no measurements
-constexpr float kLongest = 1;                        // s: no sweep takes longer
-constexpr double kHeld = 1;                          // s: a velocity is not held for longer
-constexpr int kRefinements = 2;                      // of a sweep's motion, where there is no prediction
-constexpr double kSameMotion = 0.01;                 // m: a sweep bent by so little is left
-constexpr double kRockDistance = 5;                  // m: where what a rotation bends is measured
+constexpr float kNearest = 0.01f, kFarthest = 1000;  // m: points nearer or farther are not valid measurements
+constexpr float kLongest = 1;                        // s: the longest possible sweep
+constexpr double kHeld = 1;                          // s: the longest time for which a velocity is held
+constexpr int kRefinements = 2;                      // of a sweep's motion if there is no prediction
+constexpr double kSameMotion = 0.01;                 // m: if the motion changes less, the sweep is kept
+constexpr double kRockDistance = 5;                  // m: range at which the effect of a rotation is measured
 constexpr double kLongGap = 0.5;                     // s without a pose, after which a prediction is weak
 
 bool is_measurement(const SweepPoint& p) {
-  const float range2 = p.position.squaredNorm();  // false comparisons: NaN
+  const float range2 = p.position.squaredNorm();  // comparisons with NaN are false
   return range2 > kNearest * kNearest && range2 < kFarthest * kFarthest && p.time_s <= 0 &&
          p.time_s > -kLongest;
 }
@@ -39,7 +39,7 @@ Cloud compensated(const Features& features, const SweepMotion& motion) {
   return {moved(features.edges), moved(features.planes), moved(features.surface)};
 }
 
-/// How far apart two motions leave the first points of a sweep.
+/// Distance between the first points of a sweep under two assumed motions.
 double moved_within(double length_s, const Twist& a, const Twist& b) {
   return length_s *
          ((a.velocity_mps - b.velocity_mps).norm() + kRockDistance * (a.rate_radps - b.rate_radps).norm());
@@ -140,7 +140,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
     if (with_last.good) guess = with_last.T_world_body;
   }
   Fit found = fit(map_, guess, weak ? coarsest : 0);
-  // Without a prediction the last velocity compensated the sweep. Now its own is known, better each time.
+  // Without a prediction the last velocity compensated the sweep. The fit gives a better one: refine.
   const int refinements = prediction.covered || since_s <= 0 ? 0 : first_is_bent_ ? 1 : kRefinements;
   Twist assumed = prediction.twist;
   for (int i = 0; i < refinements && found.good; ++i) {
@@ -174,7 +174,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
   if (!out.valid && since_s > options_.restart_s) {
     anew.anew = true;
     anew.problem = "the local map began anew where the vehicle was predicted to be";
-    anew.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: it says nothing of where that is
+    anew.covariance = 1e4 * Matrix6::Identity();  // (100 m)^2: the position is unknown
     return begin_map(cloud_with(prediction), anew, bent);
   }
   return out;
@@ -187,7 +187,7 @@ void Loam::accept(const LoamPose& pose, const Cloud& cloud) {
   T_world_last_ = pose.T_world_body;
 
   const Vec3& place = pose.T_world_body.position;
-  if (first_is_bent_) map_.clear();  // now the velocity is known: the map begins with this sweep
+  if (first_is_bent_) map_.clear();  // now the velocity is known: this sweep becomes the first of the map
   first_is_bent_ = false;
   if (map_.is_new_place(place)) map_.insert(transformed(pose.T_world_body, cloud), place);
   last_sweep_.clear();

@@ -6,7 +6,7 @@
 namespace karst::core {
 
 namespace {
-constexpr std::size_t kTurns = 16;  // keyframes in which every voxel is looked at once for being too far
+constexpr std::size_t kTurns = 16;  // keyframes over which the distance check visits every voxel once
 }
 
 void describe(OptionTable& t, LocalMapOptions& o) {
@@ -61,7 +61,7 @@ void LocalMap::insert(const Cloud& cloud_world, const Vec3& position) {
   const auto most = static_cast<std::size_t>(options_.max_voxels);
   const auto forget = [&](VoxelGrid& g) {
     g.forget_some(position, options_.radius_m, g.voxels().size() / kTurns + 1);
-    if (g.voxels().size() > most) g.keep_nearest(position, most - most / 10);  // room for some keyframes
+    if (g.voxels().size() > most) g.keep_nearest(position, most - most / 10);  // leaves room for keyframes
   };
   forget(edges_);
   for (VoxelGrid& g : surfaces_) forget(g);

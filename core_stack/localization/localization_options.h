@@ -1,11 +1,11 @@
-// Every setting of localization: where poses come from, the filters on the IMU, LOAM.
+// All options of localization: source of poses, IMU filters, LOAM.
 #pragma once
 #include "core_stack/localization/estimator.h"
 #include "core_stack/localization/loam.h"
 
 namespace karst::core {
 
-/// LOAM, on vehicles that have a LiDAR; or the vehicle's own pose sensor, if fitted.
+/// LOAM on vehicles with a LiDAR; or the vehicle's own pose sensor, if it has one.
 enum class PoseSource { lidar, pose_sensor };
 constexpr auto names_of(PoseSource) {
   using enum PoseSource;

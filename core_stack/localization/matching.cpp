@@ -13,11 +13,11 @@ constexpr double kPlanePoints = 12, kPlaneSpread = 0.3 /* voxels */,
                  kPlaneThickness = 0.35 /* of the spread */;
 // A line: enough points, spread in one direction only.
 constexpr double kLinePoints = 8, kLineSpread = 0.5 /* voxels */, kLineThickness = 0.3 /* of the spread */;
-// What a distance's deviation is, next to the noise of the means: a share of the rock's roughness in the
-// window, and what no model knows.
+// Standard deviation of a distance beside the noise of the means: a fraction of the rock's roughness in the
+// window, and a constant for unmodelled effects.
 constexpr double kRoughFraction = 0.2, kMinDeviation = 0.003;
 
-/// A plane match and the sweep's voxel it was made in.
+/// A plane match and the sweep voxel in which it was made.
 struct PlaneMatch {
   Match match;
   std::size_t level = 0, voxel = 0;
@@ -59,7 +59,7 @@ bool match_line(const VoxelGrid& map, const Vec3f& place, Match& m) {
   return true;
 }
 
-/// Of features in one voxel of the sweep only the first stays.
+/// Keeps only the first feature in each voxel of the sweep.
 std::vector<Vec3f> one_a_voxel(const std::vector<Vec3f>& places, const VoxelGrid& sweep) {
   std::vector<char> taken(sweep.voxels().size());
   std::vector<Vec3f> out;
@@ -105,7 +105,7 @@ Matches find_matches(const Cloud& cloud_body, const LocalMap& map, const Pose& T
       ++out.edges;
       add(m);
     }
-  std::vector<std::vector<char>> taken;  // a coarse voxel may have been asked for by several fine ones
+  std::vector<std::vector<char>> taken;  // several fine voxels may request the same coarse voxel
   for (const VoxelGrid& g : grids) taken.emplace_back(g.voxels().size());
   for (const PlaneMatch& m : planes) {
     if (!m.match.normals) continue;

@@ -1,4 +1,4 @@
-// Work split into chunks of a fixed size. Which thread does a chunk is chance; what is in it is not, so that
+// Work split into chunks of a fixed size. The thread that runs a chunk varies, the chunk's contents do not:
 // results joined in the order of the chunks have the same bytes for any number of threads.
 #pragma once
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace karst::core {
 
-/// Calls work(chunk, first, end) for each `chunk_size` of `count` items, on up to `threads` threads; returns
-/// when all is done. `work` must not throw.
+/// Calls work(chunk, first, end) for each chunk of `chunk_size` of the `count` items, on up to `threads`
+/// threads; returns when all chunks are done. `work` must not throw.
 template <class Work>
 void for_each_chunk(std::size_t count, std::size_t chunk_size, int threads, const Work& work) {
   const std::size_t chunks = (count + chunk_size - 1) / chunk_size;

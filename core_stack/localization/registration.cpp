@@ -10,11 +10,11 @@ namespace karst::core {
 namespace {
 
 constexpr std::size_t kMatchesPerChunk = 256;
-constexpr double kFreeDeviation = 100;  // m, along directions that nothing measures
-constexpr double kSmallStep = 1e-4;     // m: Gauss-Newton has arrived
-constexpr double kSettled = 0.2;        // voxels: matches found before so small a move still hold
+constexpr double kFreeDeviation = 100;  // m, along directions that no match constrains
+constexpr double kSmallStep = 1e-4;     // m: below this Gauss-Newton has converged
+constexpr double kSettled = 0.2;        // voxels: after a smaller move the matches are reused
 
-/// How far a change moves a point at distance L.
+/// Distance by which a change of the pose moves a point at distance L.
 double moved_m(const Vector6& change, double distance_m) {
   return std::sqrt(change.head<3>().squaredNorm() + distance_m * distance_m * change.tail<3>().squaredNorm());
 }

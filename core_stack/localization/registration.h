@@ -1,18 +1,18 @@
-// Where a sweep lies in the local map: Gauss-Newton on the distances of its matches.
+// Registers a sweep in the local map: Gauss-Newton on the distances of its matches.
 //
 // With T = (R, t) the body in the world, and p a point of the sweep in the body frame that belongs on the
-// plane through q with unit normal n, the residual and its change with t + dt, R exp(dw) are
+// plane through q with unit normal n, the residual and its derivatives by t + dt, R exp(dw) are
 //
 //   r = n' (R p + t - q),    dr/ddt = n',    dr/ddw = (p x R' n)'
 //
-// A line is the two planes that meet in it. A match of variance s^2 weighs 1 / s^2, times the robust weight
-// (1 + (r/k)^2)^-2 of Geman and McClure, whose width k narrows as the fit gets better.
+// A line is represented by the two planes that intersect in it. A match of variance s^2 has weight 1 / s^2,
+// times the robust weight (1 + (r/k)^2)^-2 of Geman and McClure, whose width k shrinks as the fit improves.
 //
-// Degeneracy, after Zhang, Kaess and Singh (ICRA 2016): with rotations measured by how far they move a point
-// at the matches' mean distance L, all six numbers are metres, and the information matrix over the sum of the
-// weights holds mean squared cosines between directions of motion and normals. Along an eigenvector with
-// less than a threshold the sweep says nothing: there the pose stays as it was guessed, and the covariance is
-// huge.
+// Degeneracy, after Zhang, Kaess and Singh (ICRA 2016): rotations are scaled to the displacement of a point
+// at the matches' mean distance L, so that all six unknowns are in metres. The information matrix divided by
+// the sum of the weights then holds mean squared cosines between directions of motion and normals. An
+// eigenvector with an eigenvalue below a threshold is a direction the sweep does not observe: there the pose
+// keeps its initial guess, and the covariance is huge.
 #pragma once
 #include "core_stack/localization/matching.h"
 #include "core_stack/localization/state.h"
@@ -36,11 +36,11 @@ struct Fit {
   int free_directions = 0;
   bool good = false;
   int edges = 0, planes = 0;
-  double matched_fraction = 0;  // of the places that were looked for
+  double matched_fraction = 0;  // of the candidate places
   double rms_residual_m = 0;    // with robust weights
 };
 
-/// Starts from `guess` with surfaces of `first_level` and goes on to the finest.
+/// Starts from `guess` with surface grid `first_level` and proceeds to the finest one.
 Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, std::size_t first_level,
                const RegistrationOptions& options, Workspace& workspace);
 
@@ -55,7 +55,7 @@ struct NormalEquations {
 NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world_body, double width_m,
                           int threads);
 
-/// The step that solves them where they say something, and the covariance.
+/// The step that solves the equations along the observed directions, and the covariance.
 struct Step {
   Vector6 change = Vector6::Zero();  // dt, dw
   Matrix6 covariance = Matrix6::Zero();

@@ -1,4 +1,4 @@
-// The state estimate, and its recent past: scans and poses arrive late and are matched at their stamp.
+// The state estimate and its recent history: scans and poses arrive late and are matched at their stamp.
 #pragma once
 #include <boost/circular_buffer.hpp>
 
@@ -21,21 +21,21 @@ struct State {
 
 enum class Health { good, degraded, lost };
 
-/// The last seconds of states, oldest first, stamps strictly increasing. Takes memory only for more states
-/// than it ever held.
+/// The last seconds of states, oldest first, stamps strictly increasing. Allocates memory only if it holds
+/// more states than ever before.
 class StateHistory {
  public:
   explicit StateHistory(TimeNs length = 2 * kSecond) : states_(kUsual), length_(length) {}
-  /// Appends `s`. States at its stamp or later are forgotten first: a correction in the past pushes the
-  /// replayed states over the ones they replace.
+  /// Appends `s`. Drops states at its stamp or later first: a correction in the past pushes the replayed
+  /// states over the ones they replace.
   void push(const State& s);
-  /// Pose at `t`: linear in position, spherical in rotation; the nearest end outside the range. The identity
-  /// while the history is empty.
+  /// Interpolated pose T_world_body at `t`: linear in position, spherical in rotation; outside the range the
+  /// nearest end. The identity while the history is empty.
   Pose pose_at(TimeNs t) const;
   const boost::circular_buffer<State>& states() const { return states_; }
 
  private:
-  static constexpr std::size_t kUsual = 512;  // 2 s at 200 Hz, and some
+  static constexpr std::size_t kUsual = 512;  // 2 s at 200 Hz, with a margin
   boost::circular_buffer<State> states_;
   TimeNs length_;
 };

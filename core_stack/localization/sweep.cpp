@@ -5,7 +5,7 @@
 namespace karst::core {
 namespace {
 
-/// Sines and cosines of a model's angles: a beam is then three products.
+/// Sines and cosines of the model's angles: a beam's direction then takes three products.
 struct Beams {
   std::vector<float> cos_azimuth, sin_azimuth, time_s;
 

@@ -1,4 +1,4 @@
-// One revolution of a LiDAR as points, whatever recorded it: the simulator, a vehicle, or a file.
+// One revolution of a LiDAR as points, independent of the source: simulator, vehicle, or file.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,14 +18,14 @@ struct SweepPoint {
 
 struct Sweep {
   TimeNs stamp = 0;                // of the last point
-  std::vector<SweepPoint> points;  // by ring, in the order of firing within a ring
+  std::vector<SweepPoint> points;  // sorted by ring; within a ring in firing order
   Pose T_body_lidar;
-  bool compensated = false;  // all points are already as seen at `stamp`
+  bool compensated = false;  // all points are already motion-compensated to `stamp`
 };
 
-/// The returns of a scan. NaN, inf, and returns nearer than `self_radius_m` to the body's origin, which come
-/// from the vehicle itself, are dropped. A scan without a model or whose arrays do not fit it gives no
-/// points.
+/// The returns of a scan as points. Drops NaN, inf, and returns nearer than `self_radius_m` to the body's
+/// origin, which come from the vehicle itself. A scan gives no points if it has no model or its arrays do not
+/// fit the model.
 Sweep to_sweep(const LidarScan& scan, double self_radius_m);
 
 }  // namespace karst::core

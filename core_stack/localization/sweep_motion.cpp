@@ -6,8 +6,8 @@ namespace karst::core {
 
 namespace {
 constexpr TimeNs kMaxExtrapolation = 30 * kMillisecond;
-constexpr int kSteps = 512;  // of a sweep: at 5 m/s and 10 Hz 1 mm, at 2 rad/s 0.4 mrad
-constexpr int kKnots = 32;   // poses that are asked for; between these the steps are interpolated
+constexpr int kSteps = 512;  // steps per sweep: 1 mm at 5 m/s and 10 Hz, 0.4 mrad at 2 rad/s
+constexpr int kKnots = 32;   // number of poses requested; the steps between them are interpolated
 }  // namespace
 
 Twist twist_between(const Pose& T_world_from, const Pose& T_world_to, double dt_s) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBits = 21;
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
-constexpr std::int32_t kZero = 1 << (kBits - 1);  // what coordinate 0 is stored as
+constexpr std::int32_t kZero = 1 << (kBits - 1);  // stored value of coordinate 0
 constexpr std::size_t kFirstSlots = 1 << 12;
 
 std::uint64_t pack(int x, int y, int z) {
@@ -18,7 +18,7 @@ std::uint64_t pack(int x, int y, int z) {
          static_cast<std::uint64_t>(y + kZero) << kBits | static_cast<std::uint64_t>(z + kZero);
 }
 
-/// What is added to a voxel's key to get its i-th neighbour's; also their offset in voxels.
+/// Difference between the key of the i-th neighbour and a voxel's key; also the offset in voxels.
 struct Neighbour {
   std::uint64_t key_step;
   Vec3 offset;
@@ -90,7 +90,7 @@ void VoxelGrid::insert(std::span<const Vec3f> points) {
   Vec3f centre = Vec3f::Zero();
   for (const Vec3f& p : points) {
     const Key key = key_of(p);
-    if (key != last_key) {  // neighbours in a ring mostly share a voxel
+    if (key != last_key) {  // consecutive points of a ring mostly share a voxel
       v = &made(key);
       last_key = key;
       centre = centre_of(key).cast<float>();
@@ -114,7 +114,7 @@ void VoxelGrid::merge(const VoxelGrid& other) {
     const Key key = key_of(centre.cast<float>());
     VoxelSums& to = made(key);
     if (to.points >= max_points_) continue;
-    // Points d about their voxel's centre lie at d + o about this one's; see surface_of.
+    // Points d about their voxel's centre are d + o about the centre of this voxel; see surface_of.
     const Vec3f o = (centre - centre_of(key)).cast<float>();
     const VoxelSums& v = from.sums;
     const Vec3f shifted = v.sum + v.points * o;
@@ -131,8 +131,8 @@ void VoxelGrid::clear() {
   std::fill(table_.begin(), table_.end(), Slot{0, 0});
 }
 
-/// The last voxel takes the place of the one erased. In the table, those behind the hole that may move up to
-/// it do, so that every search still ends at the first free slot.
+/// Moves the last voxel into the erased voxel's index. In the table, moves later entries into the hole where
+/// allowed, so that every search still ends at the first free slot.
 void VoxelGrid::erase(std::size_t voxel) {
   const std::size_t mask = table_.size() - 1;
   std::size_t hole = slot_of(voxels_[voxel].key);
@@ -143,7 +143,7 @@ void VoxelGrid::erase(std::size_t voxel) {
   voxels_.pop_back();
   for (std::size_t slot = (hole + 1) & mask; table_[slot].voxel != 0; slot = (slot + 1) & mask) {
     const std::size_t from_home = (slot - home_of(table_[slot].key)) & mask;
-    if (from_home < ((slot - hole) & mask)) continue;  // it would come to lie before its home
+    if (from_home < ((slot - hole) & mask)) continue;  // it would move to before its home slot
     table_[hole] = table_[slot];
     hole = slot;
   }
@@ -177,7 +177,7 @@ const VoxelGrid::Voxel* VoxelGrid::find(Key key) const {
 }
 
 VoxelGrid::Window VoxelGrid::window_around(Key key) const {
-  // A large table does not fit the cache: what will be read is called for first, so that the waits overlap.
+  // A large table does not fit the cache: prefetching the slots overlaps their latencies.
   for (std::size_t i = 0; i < 9; ++i) __builtin_prefetch(&table_[home_of(key + kNeighbours[i].key_step)]);
   Window window;
   for (std::size_t i = 0; i < 27; ++i) {
@@ -198,7 +198,7 @@ Surface surface_of(const VoxelGrid& grid, VoxelGrid::Key centre, const VoxelGrid
   for (const VoxelSums* v : window)
     if (v) s.points += v->points;
   if (s.points < least) return s;
-  // Sums about the window's middle: those of a voxel, shifted by its offset o:
+  // Sums about the centre of the window, from those of a voxel with offset o:
   //   sum (d + o) = sum d + n o,   sum (d + o)(d + o)' = sum dd' + (sum d) o' + o (sum d)' + n o o'
   Vec3 sum = Vec3::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();

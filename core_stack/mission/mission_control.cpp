@@ -18,7 +18,7 @@ constexpr TimeNs kControlMissed = 100 * kMillisecond, kSupervisionMissed = 500 *
 
 constexpr TimeNs kSettling = kSecond;             // on the ground, until the estimate has converged
 constexpr double kOverdue_s = 600;                // beyond the time limit: then the flight is aborted
-constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the look around to arrive
+constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the turn to arrive
 
 /// How far back along the flown path a vehicle that must land may search for ground: at 0.6 m/s on average
 /// (EmergencyLanding), with time left to descend.
@@ -184,7 +184,7 @@ void MissionControl::end_flight(const char* reason, double max_path_m) noexcept 
   onboard_.flight.land_now(now(), max_path_m);
   sensors_.close();
   phases_.enter(Phase::land, now());
-  try {  // recording it may fail, too
+  try {  // recording the failure may fail, too
     *emergency_ = reason;
     enter(Phase::land, reason);
     onboard_.recorder.write(now(), event::Safety{SafetyAction::land, reason});
@@ -192,7 +192,7 @@ void MissionControl::end_flight(const char* reason, double max_path_m) noexcept 
   }
 }
 
-/// It is over, even if that cannot be told any more.
+/// The mission is over, even if this can no longer be recorded.
 void MissionControl::finish(MissionOutcome outcome, const std::string& reason) {
   if (result_) return;
   result_ = MissionResult{
@@ -309,17 +309,17 @@ void MissionControl::land_here(const std::string& reason) {
   enter(Phase::land, reason);
 }
 
-/// It lands for want of a pose and has one again, in the map that it would fly home by.
+/// Whether it lands because the pose was lost, and now has a pose again in the map for the flight home.
 bool MissionControl::found_again() const {
   return lands_lost_ && flown_path_.begun() && sensors_.located_in_first_map() &&
          onboard_.flight.estimator().health(now()) == Health::good;
 }
 
 void MissionControl::land() {
-  if (standing_) return touch_down(now());  // it had not left the ground yet
+  if (standing_) return touch_down(now());  // it had not left the ground
   if (found_again()) {
     lands_lost_ = false;
-    // What it landed for is over: an action that outlives its cause would have it land again.
+    // The cause of the landing is over: an action that outlives its cause would make it land again.
     safety_ = SafetySupervisor(onboard_.options.safety);
     verdict_ = {};
     path_.obey(SafetyAction::none);
@@ -375,7 +375,7 @@ void MissionControl::keep_safe() {
   react(before);
 }
 
-/// Every change is an event, and only one where the same cause slows the vehicle and sends it home.
+/// Records every change as an event, but only one if the same cause slows the vehicle and sends it home.
 void MissionControl::note_verdict(const SafetyVerdict& before) {
   const auto note = [this](SafetyAction action, const std::string& reason) {
     onboard_.recorder.write(now(), event::Safety{action, reason});
@@ -386,8 +386,8 @@ void MissionControl::note_verdict(const SafetyVerdict& before) {
   if (turns_back) note(SafetyAction::home, *verdict_.go_home);
 }
 
-/// It brakes when a cause comes up. How fast it may fly and whether it may explore depend on the causes there
-/// are now: one may have come up, or gone, in a phase in which it made no difference.
+/// Brakes when a cause appears. The speed limit and permission to explore follow from the present causes: one
+/// may have appeared or gone in a phase in which it had no effect.
 void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
   if (under_way) {
@@ -404,7 +404,7 @@ void MissionControl::react(const SafetyVerdict& before) {
   if (brakes && under_way && !onboard_.flight.at_rest(now())) {
     goals_.drop_next(GoalFate::superseded, verdict_.reason, now());
     path_.brake(now());
-    path_.block();  // and plan a new path from there
+    path_.block();  // then plans a new path from there
   }
 }
 
@@ -431,7 +431,7 @@ void MissionControl::record() {
 
 void MissionControl::on_ground(TimeNs stamp) {
   standing_ = true;
-  const bool takes_off = !flown_path_.begun() && !phases_.in(Phase::land);  // it may touch once more
+  const bool takes_off = !flown_path_.begun() && !phases_.in(Phase::land);  // it may touch the ground again
   if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
@@ -441,7 +441,7 @@ void MissionControl::touch_down(TimeNs stamp) {
   vehicle_.command(onboard_.flight.control(stamp));
   try {
     finish_on_ground();
-  } catch (...) {  // it stands, even if that cannot be told
+  } catch (...) {  // it has landed, even if this cannot be recorded
     if (!result_) result_ = MissionResult{MissionOutcome::aborted, "", true, ""};
     throw;
   }

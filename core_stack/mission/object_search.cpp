@@ -9,7 +9,7 @@
 namespace karst::core {
 namespace {
 
-constexpr std::uint32_t kReported = 0;  // instead of a record's number, which is at least 1
+constexpr std::uint32_t kReported = 0;  // takes the place of a record's number, which is at least 1
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void ObjectSearch::report(Report which) {
   }
 }
 
-/// Records each object, once, that the base is known to know.
+/// Records, once per object, that the base is known to have it.
 void ObjectSearch::note_at_base() {
   const std::uint32_t known = team_->known_at_base();
   for (auto& [number, record] : records_) {

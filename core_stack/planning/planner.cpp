@@ -12,18 +12,18 @@
 namespace karst::core {
 namespace {
 
-/// Straight distance up to which the grid search comes first, and how far it may go: a goal behind a wall is
-/// near only as the crow flies.
+/// Straight-line distance up to which the grid search comes first, and its limit of expansions: a goal behind
+/// a wall may be near only in a straight line.
 constexpr double kNear_m = 12.0;
 constexpr std::int64_t kNearExpansions = 30000;
 
-/// A start that lies in the slack below the clearance must have left it after this much of the path.
+/// A start with less than the full clearance must reach full clearance within this length of path.
 constexpr double kSlackLeft_m = 1.0;
-/// A place where refining failed is planned anew from this far before it to this far behind, so many times.
+/// A place where refining failed is replanned from this far before it to this far behind, so many times.
 constexpr double kDetourRadius_m = 2.0;
 constexpr int kMaxDetours = 6;
 
-/// Refines `raw` on the roadmap's free cells, which are the map's: nothing needs to be read anew.
+/// Refines `raw` with the roadmap's free cells, which equal the map's: nothing is read again.
 Path refined(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options) {
   Path path = raw;
   const RoadmapGraph& graph = roadmap.graph();
@@ -33,8 +33,8 @@ Path refined(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const
   return path;
 }
 
-/// Looks at every segment: index of the first that is not clear, or -1. The escape is let pass, and so is the
-/// slack around the start; both count as escape points then.
+/// Index of the first segment that is not clear, or -1. Accepts the escape and the reduced clearance around
+/// the start; both then count as escape points.
 int first_flaw(const VoxelMap& map, Path& path, const PlanningOptions& options) {
   const double search_m = search_clearance_m(options, map.resolution_m());
   double slack_left_m = kSlackLeft_m;
@@ -51,7 +51,7 @@ int first_flaw(const VoxelMap& map, Path& path, const PlanningOptions& options) 
   return -1;
 }
 
-/// Replaces the stretch around segment `flaw` by a path of full clearance; false if there is none nearby.
+/// Replaces the part around segment `flaw` by a path of full clearance; false if there is none nearby.
 bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOptions& options) {
   std::size_t from = flaw, to = flaw + 1;
   const Vec3 place = path.points[flaw];
@@ -72,7 +72,7 @@ bool detour(const VoxelMap& map, Path& path, std::size_t flaw, const PlanningOpt
   return true;
 }
 
-/// Refines `raw` until every segment is clear, planning anew where the passage turns out too narrow.
+/// Refines `raw` until every segment is clear; replans where the passage turns out too narrow.
 Path finished(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, const PlanningOptions& options) {
   Path path = refined(map, roadmap, raw, options);
   for (int round = 0;; ++round) {
@@ -97,7 +97,7 @@ Path finished(const VoxelMap& map, const Roadmap& roadmap, const Path& raw, cons
   }
 }
 
-/// The search that may squeeze: cells are used where a point beside their centre is clear.
+/// The search with reduced clearance: a cell is usable if some point beside its centre is clear.
 Path searched(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
               const PlanningOptions& options) {
   if (options.planner != Planner::grid)
@@ -111,7 +111,7 @@ Path searched(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, co
   return raw.status == PlanStatus::gave_up ? roadmap.find(map, start, goal) : raw;
 }
 
-/// The search that keeps the whole clearance.
+/// The search with full clearance.
 Path searched_wide(const VoxelMap& map, const Roadmap& roadmap, const Vec3& start, const Vec3& goal,
                    const PlanningOptions& options) {
   if (options.planner == Planner::grid) return plan_on_grid(map, start, goal, options);

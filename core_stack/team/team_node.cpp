@@ -13,7 +13,7 @@ constexpr double kGoodQuality = 0.2;  // minimal quality of a link for landing: 
 constexpr double kNodeQuality = 0.45;
 constexpr double kAntenna_m = 0.3;  // above the ground, of a landed robot
 constexpr TimeNs kReceiptPeriod = 2 * kSecond;
-constexpr double kHeardNow = 1.0 / 3;  // of link_age: heard so recently, a node is alive
+constexpr double kHeardNow = 1.0 / 3;  // of link_age: a node received this recently is alive
 constexpr double kNear_m = 20.0;       // to an airborne vehicle: states are sent more often
 
 /// In a chain of many radios, states from the far end are older than link_age (gossip.h).

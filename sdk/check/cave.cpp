@@ -27,7 +27,7 @@ Cave::Cave(std::uint64_t seed, const CaveShape& shape)
   dig(seed, shape);
 }
 
-/// Each passage is a walk whose direction drifts, with balls of free space a third of its radius apart.
+/// Each passage is a random walk with drifting direction; its balls of free space are radius / 3 apart.
 void Cave::dig(std::uint64_t seed, const CaveShape& shape) {
   core::Random random = core::Random::stream(seed, "cave of a check");
   const double area_m2 = std::numbers::pi * shape.radius_m * shape.radius_m;

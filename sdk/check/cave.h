@@ -1,4 +1,4 @@
-// A cave to ask policies about: winding passages that branch, known as far as they have been seen.
+// A synthetic cave for testing policies: winding passages that branch, known as far as they have been seen.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,19 +10,19 @@
 namespace karst::check {
 
 struct CaveShape {
-  double volume_m3 = 300;  // about
+  double volume_m3 = 300;  // approximate
   double radius_m = 1.6;   // of a passage; it varies by a third
-  int branches = 3;        // passages that begin somewhere in an earlier one
+  int branches = 3;        // passages that begin at a point of an earlier one
   double resolution_m = 0.2;
 };
 
-/// The map, the frontiers and the roadmap agree at all times, as in flight.
+/// The map, the frontiers and the roadmap are always consistent, as in flight.
 class Cave {
  public:
   Cave(std::uint64_t seed, const CaveShape& shape);
 
-  /// Makes known what lies up to `way_m` along the passages. Walls of what is free are occupied, the rest is
-  /// unknown. Never less than before.
+  /// Reveals the cave up to `path_m` along the passages. Walls beside free space are occupied, the rest is
+  /// unknown. Never reveals less than before.
   void reveal(double path_m);
   double length_m() const { return length_m_; }
 
@@ -30,27 +30,27 @@ class Cave {
   const core::Roadmap& roadmap() const { return roadmap_; }
   double clearance_m() const { return planning_.clearance_m; }
   const core::Vec3& start() const { return balls_.front().center; }
-  /// The middle of the passage furthest along it that is known.
+  /// The centre of the passage at its farthest known point. World frame.
   core::Vec3 front() const;
 
-  /// As mission control offers them to a vehicle at `from`; they point into this object.
+  /// Frontier offers as mission control makes them at `from` (world frame); they point into this object.
   std::vector<core::FrontierOffer> offers(const core::VehicleDescription& vehicle, const core::Vec3& from);
 
  private:
   struct Ball {
     core::Vec3 center;
-    double radius_m, path_m;  // from the start, along the passages
+    double radius_m, path_m;  // path_m: from the start, along the passages
   };
   void dig(std::uint64_t seed, const CaveShape& shape);
   template <class Visit>
   void for_each_cell(const Ball& ball, Visit&& visit) const;
 
   core::PlanningOptions planning_;
-  core::VoxelMap rock_;  // free: dug
+  core::VoxelMap rock_;  // free where a passage was dug
   core::VoxelMap map_;
   core::Frontiers frontiers_;
   core::Roadmap roadmap_;
-  std::vector<Ball> balls_;  // by way_m
+  std::vector<Ball> balls_;  // by path_m
   std::size_t revealed_ = 0;
   double length_m_ = 0;
   std::map<std::uint32_t, std::optional<core::Viewpoint>> viewpoints_;  // since the last reveal

@@ -12,7 +12,7 @@
 namespace karst::check {
 namespace {
 
-/// Copies a struct out of the file; the file's own offsets are not trusted.
+/// Copies a struct from the file with bounds checks: the file's own offsets are not trusted.
 template <class T>
 T at(const std::string& bytes, std::uint64_t offset, const std::string& file) {
   if (offset > bytes.size() || bytes.size() - offset < sizeof(T))

@@ -37,7 +37,7 @@ struct Happening {
   GoalFate fate;
   const char* reason;
 };
-/// Twice in a row means twice as often.
+/// An entry that occurs n times is n times as likely.
 constexpr Happening kHappenings[] = {
     {KARST_EVENT_GOAL_REACHED, GoalFate::reached, "reached"},
     {KARST_EVENT_GOAL_REACHED, GoalFate::reached, "reached"},
@@ -84,7 +84,7 @@ void Flight::fly_to(const Vec3& place) {
   if (offset.norm() > 1e-6) request_.direction_of_flight = offset.normalized();
   request_.state.position = place;
   if (!map_grows) return;
-  known_m_ += random_.uniform(0, 0.04) * cave_.length_m();  // never all of it within a test
+  known_m_ += random_.uniform(0, 0.04) * cave_.length_m();  // the cave is never fully known within a test
   cave_.reveal(known_m_);
 }
 
@@ -100,7 +100,7 @@ karst_event_t Flight::event_of(const core::Goal& g) {
 
 std::vector<karst_event_t> Flight::react(const Answer& answer) {
   texts_.clear();
-  texts_.reserve(host::kMaxGoals + 1);  // events view them
+  texts_.reserve(host::kMaxGoals + 1);  // events hold views of them
   std::vector<karst_event_t> events;
   const core::TimeNs pause = core::from_seconds(random_.uniform(0.5, 5));
   request_.stamp += pause;

@@ -1,5 +1,5 @@
-// A make-believe flight: requests as mission control would make them, each depending on the last answer. The
-// vehicle is at a goal as soon as it is proposed, or the goal fails, as chance has it; the map grows.
+// A simulated flight: requests as mission control would make them, each depending on the last answer. At
+// random, the vehicle reaches a goal as soon as it is proposed, or the goal fails; the map grows.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,22 +10,22 @@
 
 namespace karst::check {
 
-/// A cave for a flight of some dozens of decisions.
+/// A cave for a flight of a few dozen decisions.
 inline const CaveShape kShape{.volume_m3 = 200, .radius_m = 1.6, .branches = 4, .resolution_m = 0.2};
 
 class Flight {
  public:
-  /// The cave is known up to `known_fraction` of its length at first. Everything follows from the seed.
+  /// Initially the cave is known up to `known_fraction` of its length. The flight is determined by the seed.
   Flight(std::uint64_t seed, const CaveShape& shape, double known_fraction = 0.3);
   bool map_grows = true;
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;
 
-  /// The request to be asked next; valid until react().
+  /// The next request; valid until react().
   const core::DecisionRequest& request();
-  /// To change the request that request() has made.
+  /// The request made by request(), for modification.
   core::DecisionRequest& edit() { return request_; }
-  /// What happens then, and what the policy is told of it.
+  /// Simulates what follows the answer; returns the events that the policy is told.
   std::vector<karst_event_t> react(const Answer& answer);
 
   Cave& cave() { return cave_; }
@@ -43,12 +43,12 @@ class Flight {
   std::vector<std::string> texts_;  // of the last events
 };
 
-/// Shapes of all kinds for a seed: narrow and wide, short and long, coarse and fine.
+/// A random cave shape: narrow or wide, short or long, coarse or fine.
 CaveShape any_shape(core::Random& random);
 
-/// Asks `count` times and tells what happens in between. Throws Failed if a call fails.
+/// Asks `count` times and reports the events in between. Throws Failed if a call fails.
 std::vector<Answer> fly(Object& object, Flight& flight, int count);
-/// The answers' texts, one after the other.
+/// The answers' texts, concatenated.
 std::string text_of(const std::vector<Answer>& answers);
 
 }  // namespace karst::check

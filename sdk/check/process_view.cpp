@@ -82,7 +82,7 @@ std::string ProcessView::output_since() const {
 }
 
 std::string ProcessView::threads_since() const {
-  for (int i = 0; i < 100 && thread_count() > threads_; ++i)  // a thread joined may still be listed
+  for (int i = 0; i < 100 && thread_count() > threads_; ++i)  // a joined thread may still be listed
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   const std::size_t now = thread_count();
   return now > threads_ ? std::to_string(now - threads_) + " more threads are running" : "";

@@ -1,4 +1,4 @@
-// What a plugin may leave behind in the process: output, threads, handlers of signals, open files.
+// Side effects of a plugin on the process: output, threads, signal handlers, open files.
 #pragma once
 #include <signal.h>
 
@@ -13,9 +13,9 @@ namespace karst::check {
 class ProcessView {
  public:
   ProcessView();
-  // Each: "" or what is different now.
+  // Each returns "" or a description of the difference.
   std::string output_since() const;   // of standard output and standard error, which are files
-  std::string threads_since() const;  // waits a little for those that are just ending
+  std::string threads_since() const;  // waits briefly for threads that are just ending
   std::string signals_since() const;
   std::string leftovers_since() const;  // files, working folder, file mode mask, environment
 
@@ -30,11 +30,11 @@ class ProcessView {
   mode_t umask_;
 };
 
-/// Threads of this process.
+/// Number of threads of this process.
 std::size_t thread_count();
-/// Bytes the heap has given out.
+/// Bytes allocated on the heap.
 std::size_t heap_bytes();
-/// Memory held, and the most it has been since `reset_peak`.
+/// Resident memory, and its maximum since `reset_peak`.
 std::size_t resident_bytes();
 std::size_t peak_bytes();
 void reset_peak();

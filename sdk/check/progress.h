@@ -1,4 +1,4 @@
-// What a child that runs a test is doing right now, in a file that its parent reads after a crash or a hang.
+// The current activity of a test's child process, in a file that its parent reads after a crash or a hang.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -9,19 +9,19 @@ namespace karst::check {
 
 class Progress {
  public:
-  /// Maps the file, made if it is not there. Throws core::InputError.
+  /// Maps the file; creates it if missing. Throws core::InputError.
   explicit Progress(const std::filesystem::path& file);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// In the child: around every call into the plugin.
+  /// In the child: called around every call into the plugin.
   void enter(const std::string& what);
   void leave();
 
-  /// In the parent: grows with every enter and leave; odd while the child is inside the plugin.
+  /// In the parent: increases with every enter and leave; odd while the child is inside the plugin.
   std::uint64_t count() const;
-  /// What it entered last; "" if nothing.
+  /// The last text passed to enter; "" if none.
   std::string what() const;
 
  private:

@@ -22,14 +22,14 @@ using core::InputError;
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kTestLimit_s = 600;  // of a whole test, on a busy machine
+constexpr double kTestLimit_s = 600;  // for a whole test, on a busy machine
 
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 bool of_file(const Test& t) { return t.of == Test::Of::file || t.of == Test::Of::file_gate; }
 bool is_gate(const Test& t) { return t.of == Test::Of::file_gate || t.of == Test::Of::policy_gate; }
 
-/// A folder of our own that is gone at the end.
+/// A temporary folder, removed on destruction.
 struct ScratchFolder {
   ScratchFolder() {
     if (mkdtemp(path.data()) == nullptr) throw InputError(path, "", "cannot be made");
@@ -43,7 +43,7 @@ struct ScratchFolder {
   std::string path = (fs::temp_directory_path() / "karst-check-XXXXXX").string();
 };
 
-/// A word for the shell.
+/// Quotes a word for the shell.
 std::string quoted(const std::string& word) {
   const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
@@ -59,7 +59,7 @@ std::string repeat_command(const CheckOptions& o, const std::string& policy, con
 
 bool stopped(const CheckOptions& o) { return o.stop != nullptr && *o.stop; }
 
-/// Waits for the child. "" or why it had to be ended.
+/// Waits for the child. Returns "", or why it was terminated.
 std::string wait_for(pid_t child, const Progress& progress, const CheckOptions& o, host::ProcessEnd& end) {
   const auto begin = Clock::now();
   std::uint64_t count = progress.count();
@@ -145,8 +145,8 @@ void check_names(const CheckOptions& o) {
   }
 }
 
-/// Ids of the policies to be tested. Of a broken file the tests of the file say what is wrong with it, if
-/// they are wanted.
+/// Ids of the policies to be tested. If the file is broken, the tests of the file report the error, if they
+/// are selected.
 std::vector<std::string> policies_of(const CheckOptions& o) {
   std::vector<std::string> ids;
   std::string broken;

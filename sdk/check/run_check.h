@@ -1,4 +1,4 @@
-// Runs the tests of a plugin, one child process each: what it breaks is its own process only.
+// Runs the tests of a plugin, each in its own child process: a test can only damage its own process.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -16,8 +16,8 @@ struct CheckOptions {
   std::string policy;  // "": every policy of the file
   std::uint64_t seed = 1;
   Level level = Level::strict;
-  std::vector<std::string> tests;  // names or groups; empty: all of the level
-  double hang_limit_s = 10;        // of one call into the plugin
+  std::vector<std::string> tests;  // names or groups; empty: all tests of the level
+  double hang_limit_s = 10;        // for one call into the plugin
   std::filesystem::path karst;     // the executable, for the children
   const std::atomic<bool>* stop = nullptr;
 };
@@ -33,22 +33,22 @@ struct TestResult {
   const Test* test = nullptr;
   std::string policy;  // "" for a test of the file
   Verdict verdict = Verdict::passed;
-  std::string reason;  // unless passed
+  std::string reason;  // empty if passed
   nlohmann::ordered_json figures;
   double wall_s = 0;
-  std::string repeat;  // the command that runs this test alone, the same way
+  std::string repeat;  // the command that repeats this test alone, in the same way
 };
 
-/// Calls `done` after each test; what was under way when it is stopped is ended and left out. Throws
-/// core::InputError: a file that cannot be read, a policy or a test that is not there, tests of policies
-/// where the file offers none.
+/// Calls `done` after each test. If stopped, terminates the running test and leaves it out. Throws
+/// core::InputError if the file cannot be read, if a policy or a test does not exist, or if tests of policies
+/// are selected and the file offers none.
 std::vector<TestResult> run_check(const CheckOptions& options,
                                   const std::function<void(const TestResult&)>& done);
 
-/// In a child: runs one test and writes its result into `work`.
+/// In a child: runs one test and writes its result to the folder `work`.
 void run_test(Context& context, const Test& test, const std::filesystem::path& work);
 
-/// In a child: opens the file and chooses the policy. Throws core::InputError.
+/// In a child: opens the file and selects the policy. Throws core::InputError.
 void choose_policy(Context& context);
 
 }  // namespace karst::check

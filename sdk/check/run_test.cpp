@@ -1,4 +1,4 @@
-// The child's side: one test, and what became of it in a file.
+// The child's side: runs one test and writes its result to a file.
 #include <sys/resource.h>
 
 #include <fstream>
@@ -10,7 +10,7 @@
 namespace karst::check {
 namespace {
 
-/// A hog must not take the machine with it, and a crash needs no core file.
+/// A runaway test must not exhaust the machine, and a crash needs no core file.
 void limit_resources() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);

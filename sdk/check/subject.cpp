@@ -144,7 +144,7 @@ Answer Object::decide(const core::DecisionRequest& request) {
   session_.end_deciding();
   session_.take_drawings();
   session_.take_log();
-  // An error because the sink refused something is the answer's fault, which other tests look at.
+  // An error caused by the sink's refusal is a fault of the answer, which other tests check.
   if (answer.box.misused() && answer.failure.find("exception") == std::string::npos) answer.failure.clear();
   return answer;
 }

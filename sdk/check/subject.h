@@ -1,4 +1,4 @@
-// The policy under test: one object of it, driven slot by slot on this thread.
+// The policy under test: one object, called function by function on this thread.
 #pragma once
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,23 +13,23 @@
 
 namespace karst::check {
 
-/// basic: what a flight needs. strict: what a policy given to others should hold. pedantic: hygiene.
+/// basic: required for flight. strict: expected of a policy given to others. pedantic: hygiene.
 enum class Level { basic, strict, pedantic };
 constexpr auto names_of(Level) {
   using enum Level;
   return std::to_array<core::Named<Level>>({{basic, "basic"}, {strict, "strict"}, {pedantic, "pedantic"}});
 }
 
-/// A test throws it with the reason, one line.
+/// Thrown by a test with a one-line reason.
 struct Failed {
   std::string reason;
 };
-/// The policy does not offer what the test looks at.
+/// Thrown if the policy does not offer the feature under test.
 struct NotApplicable {
   std::string reason;
 };
 
-/// What a test is given.
+/// The inputs of a test.
 struct Context {
   std::string file;
   std::string karst;                       // the executable, for a second process
@@ -38,26 +38,26 @@ struct Context {
   std::uint64_t seed = 1;
   Level level = Level::strict;
   Progress* progress = nullptr;
-  nlohmann::ordered_json figures = nlohmann::ordered_json::object();  // what was measured
+  nlohmann::ordered_json figures = nlohmann::ordered_json::object();  // measured values
 };
 
-/// One decide().
+/// The result of one decide().
 struct Answer {
-  std::string failure;  // the call's own: an error, an exception; not what the sink refused
+  std::string failure;  // of the call itself: an error or exception; not a refusal by the sink
   host::DecisionBox box;
-  double cpu_s = 0, wall_s = 0;  // of this thread
+  double cpu_s = 0, wall_s = 0;  // time of this thread
 
   bool good() const { return failure.empty() && box.fault().empty(); }
   std::string fault() const { return failure.empty() ? box.fault() : failure; }
-  /// Everything it says, every digit, for comparing.
+  /// The complete answer with all digits, for comparison.
   std::string text() const;
 };
 
 class Object {
  public:
-  /// create(). `host` is what the policy sees of `session`; by default the session's own.
+  /// Calls create(). `host` is the policy's view of `session`; by default the session's own.
   Object(Context& context, host::Session& session, const karst_host_t* host = nullptr);
-  /// destroy(), unless that has been done.
+  /// Calls destroy(), unless already called.
   ~Object();
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
@@ -73,10 +73,10 @@ class Object {
   std::string restore(const std::vector<std::byte>& bytes);
 
   Answer decide(const core::DecisionRequest& request);
-  /// Null if it offers no "karst.state/1".
+  /// Null if the policy does not offer "karst.state/1".
   const karst_state_extension_t* state();
   void* self() const { return self_; }
-  /// What calls changed in the process, and was put back.
+  /// Changes of the process made by calls, which were reverted.
   const std::vector<std::string>& changes() const { return changes_; }
 
  private:
@@ -91,14 +91,14 @@ class Object {
   std::vector<std::string> changes_;
 };
 
-/// The declared defaults; views of the descriptor.
+/// The declared defaults, as views of the descriptor.
 std::vector<karst_parameter_value_t> defaults(const karst_policy_t& policy);
 
-/// created -> initialized -> active. Throws Failed.
+/// Brings a new object from created through initialized to active. Throws Failed.
 std::unique_ptr<Object> started(Context& context, host::Session& session, const karst_host_t* host = nullptr);
-/// A session of this test's seed, of which this thread is the decision thread.
+/// A session with this test's seed; this thread is its decision thread.
 std::unique_ptr<host::Session> new_session(const Context& context);
-/// Throws Failed with `where` before it, unless `fault` is "".
+/// Throws Failed, prefixed with `where`, unless `fault` is "".
 void require(const std::string& fault, const std::string& where = "");
 
 }  // namespace karst::check

@@ -1,4 +1,4 @@
-// The tests of `karst policy check`. Each runs in a process of its own.
+// The tests of `karst policy check`. Each runs in its own process.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,11 +8,11 @@
 namespace karst::check {
 
 struct Test {
-  const char* name;  // group.what
-  Level level;       // the lowest at which it is run
+  const char* name;  // group.name
+  Level level;       // the lowest level at which it is run
   enum class Of {
-    file,         // looks at the file as a whole, before a policy of it is chosen
-    file_gate,    // the same; if it fails, no later test is run
+    file,         // tests the file as a whole, before one of its policies is chosen
+    file_gate,    // likewise; if it fails, no later test is run
     policy_gate,  // if it fails, no later test of that policy is run
     policy
   } of;
@@ -20,9 +20,9 @@ struct Test {
   void (*run)(Context&);    // throws Failed or NotApplicable
 };
 
-/// In the order in which they are run: gates first.
+/// In order of execution: gates first.
 const std::vector<Test>& all_tests();
-/// Null if there is none.
+/// Null if there is no such test.
 const Test* find_test(const std::string& name);
 
 std::vector<Test> entry_tests();
@@ -36,7 +36,7 @@ std::vector<Test> service_tests();
 std::vector<Test> memory_tests();
 std::vector<Test> process_tests();
 
-/// The answers that determinism.fresh_process compares.
+/// The answers compared by determinism.fresh_process.
 std::string answers_to_compare(Context& context);
 
 }  // namespace karst::check

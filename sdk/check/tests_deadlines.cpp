@@ -1,5 +1,5 @@
-// deadlines: how long it takes. Processor time of the deciding thread is judged, which does not depend on the
-// machine's load; a call that never returns is noticed by the parent.
+// deadlines: the duration of calls. Judged by processor time of the deciding thread, which does not depend on
+// the machine's load; the parent detects a call that never returns.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using Of = Test::Of;
 
-constexpr double kBudget_s = 0.3;  // simulated time a mission gives a decision and its plan, by default
+constexpr double kBudget_s = 0.3;  // default simulated time for a decision and its plan
 constexpr double kLargeLimit_s =
     2.0;  // far below the hang limit, and a vehicle that flies on can wait for it
 
@@ -55,7 +55,7 @@ void should_stop(Context& c) {
   require(object->decide(flight.request()).failure);
   host.stopping = true;
   host.before = [](const char*) { return std::int32_t{KARST_ERROR_ABANDONED}; };
-  const Answer given_up = object->decide(flight.request());  // whatever it says
+  const Answer given_up = object->decide(flight.request());  // any answer is accepted
   c.figures["returned_after_ms"] = round_ms(given_up.wall_s);
   if (given_up.failure.find("exception across the border") != std::string::npos)
     throw Failed{given_up.failure};

@@ -1,4 +1,4 @@
-// determinism: the same requests, the same answers.
+// determinism: equal requests give equal answers.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -41,7 +41,7 @@ void repeat(Context& c) {
 
 void fresh_process(Context& c) {
   const fs::path file = fs::temp_directory_path() / ("karst-answers-" + std::to_string(getpid()));
-  // Its addresses differ by themselves; the time zone, the environment's size and the folder are made to.
+  // Addresses differ anyway; the time zone, the size of the environment and the folder are changed here.
   const std::vector<std::string> argv = {"/usr/bin/env",
                                          "-C",
                                          "/",
@@ -74,7 +74,7 @@ void slow_host(Context& c) {
   const auto slow_session = new_session(c);
   WatchedHost slow(*slow_session->host());
   std::atomic<int> paused = 0;
-  slow.before = [&](const char*) {  // the first few calls take long; a thousand would take minutes
+  slow.before = [&](const char*) {  // only the first few calls take long; a thousand would take minutes
     if (++paused <= 20) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     return std::int32_t{KARST_OK};
   };

@@ -1,4 +1,4 @@
-// entry: the file, the handshake, the tables, before any policy is made.
+// entry: the file, the handshake, and the tables, before a policy object is created.
 #include <algorithm>
 #include <filesystem>
 
@@ -28,7 +28,7 @@ const karst_plugin_t& opened(Context& c) {
   return *plugin;
 }
 
-/// `fault_of(policy)` of each policy in the file.
+/// Collects `fault_of(policy)` for each policy in the file.
 template <class Fault>
 void require_of_all(Context& c, Fault&& fault_of) {
   const karst_plugin_t& plugin = opened(c);

@@ -1,4 +1,4 @@
-// goals: what it answers.
+// goals: the policy's answers.
 #include <set>
 
 #include "sdk/check/flight.h"
@@ -9,7 +9,7 @@ namespace {
 
 using Of = Test::Of;
 
-/// Looks at each answer of several flights with `look(request, answer)`, which returns "" or what is wrong.
+/// Checks each answer of several flights with `look(request, answer)`, which returns "" or the fault.
 template <class Look>
 void look_at_answers(Context& c, Look&& look) {
   core::Random random = core::Random::stream(c.seed, "goals");

@@ -1,4 +1,4 @@
-// lifecycle and parameters: the order of calls, and every value a mission file may set.
+// lifecycle and parameters: the order of calls, and every value that a mission file may set.
 #include <cmath>
 #include <limits>
 
@@ -71,8 +71,8 @@ void events(Context& c) {
     e.kind = kind;
     e.stamp_ns = flight.request().stamp;
     e.goal.tolerance_m = 0.5;
-    e.goal.heading_rad = std::numeric_limits<double>::quiet_NaN();  // any
-    e.goal.position = {1e4, -1e4, 50};                              // nobody proposed that
+    e.goal.heading_rad = std::numeric_limits<double>::quiet_NaN();  // any heading
+    e.goal.position = {1e4, -1e4, 50};                              // no policy proposed this goal
     e.goal.frontier_id = 0xfffffff0u;
     e.reason = host::view_of(reason);
     require(object->event(e));
@@ -101,7 +101,7 @@ void two_objects(Context& c) {
     throw Failed{"it answers differently while another object of it is asked as well"};
 }
 
-/// Runs a short flight with these values; refusing them in init() with a reason is fine.
+/// Runs a short flight with these values; init() may refuse them with a reason.
 void fly_with(Context& c, const std::vector<karst_parameter_value_t>& values, const std::string& what) {
   const auto session = new_session(c);
   Flight flight(c.seed, kSmall);

@@ -1,4 +1,4 @@
-// memory: what it takes, what it keeps, what it gives back.
+// memory: peak use, growth, and release.
 #include "sdk/check/flight.h"
 #include "sdk/check/process_view.h"
 #include "sdk/check/tests.h"
@@ -8,8 +8,8 @@ namespace {
 
 using Of = Test::Of;
 
-constexpr double kGrowthLimit_bytes = 4096;  // a decision: a mission of an hour then takes 15 MB
-constexpr double kLifeLimit_bytes = 1024;    // an object
+constexpr double kGrowthLimit_bytes = 4096;  // per decision: a mission of an hour then takes 15 MB
+constexpr double kLifeLimit_bytes = 1024;    // per object
 constexpr std::size_t kPeakLimit_bytes = 512u << 20;
 
 double difference(std::size_t now, std::size_t before) {

@@ -1,4 +1,4 @@
-// process: what all share with it, and it must leave alone.
+// process: shared state of the process that the policy must not change.
 #include "sdk/check/flight.h"
 #include "sdk/check/process_view.h"
 #include "sdk/check/tests.h"
@@ -10,7 +10,7 @@ using Of = Test::Of;
 
 const CaveShape kSmallShape{.volume_m3 = 150, .radius_m = 1.6, .branches = 3, .resolution_m = 0.2};
 
-/// A whole life, between two looks at the process. Returns what its calls changed.
+/// Runs a policy's whole life cycle. Returns the changes that its calls made to the process.
 std::vector<std::string> live(Context& c) {
   const auto session = new_session(c);
   Flight flight(c.seed, kSmallShape);

@@ -1,4 +1,4 @@
-// requests: everything the host may ask, and much that it hardly will.
+// requests: everything the host may ask, including requests that are unlikely in flight.
 #include <limits>
 
 #include "sdk/check/flight.h"
@@ -11,7 +11,7 @@ using Of = Test::Of;
 
 const CaveShape kSmall{.volume_m3 = 120, .radius_m = 1.6, .branches = 2, .resolution_m = 0.2};
 
-/// Asks several times with `change(request, i)` made to each.
+/// Asks several times, each time after applying `change(request, i)`.
 template <class Change>
 void ask_changed(Context& c, Flight& flight, int count, Change&& change) {
   const auto session = new_session(c);
@@ -74,8 +74,8 @@ void empty_map(Context& c) {
   });
 }
 
-/// Sound, but at the ends of what the ABI allows: finite where it says finite, infinite or NaN where it says
-/// so.
+/// Valid, but at the limits of the ABI: finite where the ABI requires finite values, infinite or NaN where it
+/// allows them.
 void extremes(Context& c) {
   constexpr double inf = std::numeric_limits<double>::infinity(),
                    nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// services: how it uses the host, and what it makes of a host that fails.
+// services: use of the host's services, and behaviour if the host fails.
 #include <set>
 
 #include "sdk/check/flight.h"
@@ -41,12 +41,12 @@ void fail(Context& c) {
         failed |= this_one;
         return this_one ? code : KARST_OK;
       };
-      const Answer answer = object->decide(flight.request());  // an error is fine, and so is an answer
+      const Answer answer = object->decide(flight.request());  // an error is accepted, and so is an answer
       if (answer.failure.find("exception across the border") != std::string::npos)
         throw Failed{std::string(service) + " failed: " + answer.failure};
       host.before = nullptr;
       require(object->decide(flight.request()).failure, std::string("once ") + service + " worked again");
-      if (!failed) break;  // it does not use this one
+      if (!failed) break;  // the policy does not use this service
     }
 }
 
@@ -60,7 +60,7 @@ void absent(Context& c) {
     Object object(c, *session, host.host());
     if (!object.create_fault().empty() || !object.init(defaults(*c.policy)).empty() ||
         !object.activate().empty())
-      continue;  // refusing such a host with a reason is fine
+      continue;  // the policy may refuse such a host with a reason
     for (int i = 0; i < 2; ++i) {
       const Answer answer = object.decide(flight.request());
       if (answer.failure.find("exception across the border") != std::string::npos)

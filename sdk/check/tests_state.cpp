@@ -1,4 +1,4 @@
-// state: what it remembers, through the extension "karst.state/1".
+// state: saved and restored state, through the extension "karst.state/1".
 #include "sdk/check/flight.h"
 #include "sdk/check/tests.h"
 #include "sdk/host/boundary/call_plugin.h"
@@ -9,7 +9,7 @@ namespace {
 
 using Of = Test::Of;
 
-constexpr int kBefore = 10, kAfter = 10;  // decisions
+constexpr int kBefore = 10, kAfter = 10;  // number of decisions
 
 std::unique_ptr<Object> restorable(Context& c, host::Session& session) {
   auto object = started(c, session);
@@ -48,7 +48,7 @@ void same_answers(Context& c) {
   const std::string first = text_of(before);
   if (!expected.starts_with(first)) throw Failed{"being asked for its state changes its answers"};
   require(object->destroy());
-  object = std::make_unique<Object>(c, *session);  // the same session: the host's random stream goes on
+  object = std::make_unique<Object>(c, *session);  // the same session: the host's random stream continues
   require(object->create_fault());
   require(object->init(defaults(*c.policy)));
   require(object->restore(bytes));
@@ -82,7 +82,7 @@ void damage(Context& c) {
       ++refused;
       return;
     }
-    require(object.activate(), what);  // it took them: then it must fly with them
+    require(object.activate(), what);  // it accepted the values, so it must fly with them
     Flight flight(c.seed, kShape);
     try {
       fly(object, flight, 2);
@@ -108,7 +108,7 @@ void damage(Context& c) {
 }
 
 void size(Context& c) {
-  constexpr std::size_t limit = 1u << 20;  // what every host keeps
+  constexpr std::size_t limit = 1u << 20;  // every host stores at least this much
   const auto session = new_session(c);
   Flight flight(c.seed, kShape);
   const auto object = restorable(c, *session);

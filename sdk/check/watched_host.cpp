@@ -15,7 +15,7 @@ struct Wrapped {
     if (w.closed_) ++w.late_calls_;
   }
 
-  /// `Slot` of the service `Table`, called on the inner host.
+  /// Calls `Slot` of the service `Table` on the inner host.
   template <auto Table, auto Slot, class... Args>
   static std::int32_t pass(const char* name, const karst_host_t* h, karst_error_t* e, Args... args) noexcept {
     WatchedHost& w = watched(h);

@@ -1,5 +1,5 @@
-// The host as a policy sees it, with somebody in between: counts calls, notes what was refused, and lets
-// calls fail or take time on purpose.
+// A wrapper around the host as seen by a policy: counts calls, records refusals, and can make calls fail or
+// take time.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -13,7 +13,7 @@ namespace karst::check {
 
 class WatchedHost {
  public:
-  /// Which services there are; the others are NULL.
+  /// The available services; the others are NULL.
   struct Offer {
     bool path = true, gain = true, draw = true;
   };
@@ -24,16 +24,16 @@ class WatchedHost {
 
   const karst_host_t* host() const { return &host_; }
 
-  /// Called before a service that can fail, with its name, on whatever thread: a code that is not KARST_OK is
-  /// what the policy gets instead. Set it while the policy rests.
+  /// Called before a service that can fail, with its name, on any thread. If it returns a code other than
+  /// KARST_OK, the policy gets that code. Set it only while the policy is idle.
   std::function<std::int32_t(const char* service)> before;
-  bool stopping = false;  // what should_stop says
+  bool stopping = false;  // returned by should_stop
 
   std::uint64_t calls() const { return calls_; }
-  /// After it was destroyed, the policy may not call any more.
+  /// After its destruction the policy must not call the host any more.
   void close() { closed_ = true; }
   std::uint64_t late_calls() const { return late_calls_; }
-  /// What the host itself refused, as "map.cast_rays: a ray is not finite", once each.
+  /// Refusals by the host itself, such as "map.cast_rays: a ray is not finite", each once.
   std::vector<std::string> refusals() const;
 
  private:

@@ -14,20 +14,20 @@ using core::Quat;
 using core::Vec3;
 using core::Vec3f;
 
-constexpr double kThin_m = 0.4;        // of what descriptors are made of
-constexpr double kRough_m = 0.4;       // cells of the quick look: rock counts as thickened to 1.2 m
-constexpr std::size_t kScored = 1500;  // source points of the quick look
-constexpr int kMinPoints = 60;         // a place with less rock around looks like nothing in particular
+constexpr double kThin_m = 0.4;        // spacing of the points for descriptors
+constexpr double kRough_m = 0.4;       // cells of the quick score: rock counts as thickened to 1.2 m
+constexpr std::size_t kScored = 1500;  // number of source points for the quick score
+constexpr int kMinPoints = 60;         // a place with less rock around it is not distinctive
 
 struct Places {
   std::vector<PlaceFrame> frames;
   std::vector<PlaceDescriptor> descriptors;
 };
 
-/// Any turn that brings the z axis to `axis`.
+/// Any rotation that turns the z axis to `axis`.
 Quat axis_frame(const Vec3& axis) { return Quat::FromTwoVectors(Vec3::UnitZ(), axis).normalized(); }
 
-/// The axes of places: up, or a place's normal, or that both ways.
+/// The axes of the places: up, or the place's normal, or the normal in both directions.
 enum class Axes { up, normal, both_normals };
 
 /// Rock points about `spacing_m` apart with their axes.
@@ -71,7 +71,7 @@ Invariants stacked(const Places& places) {
   return all;
 }
 
-/// The `count` largest entries' indices, larger first, then lower index.
+/// Indices of the `count` largest entries, largest first; of equal ones the lower index first.
 std::vector<std::size_t> largest(const Eigen::VectorXf& values, std::size_t count) {
   std::vector<std::size_t> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -85,10 +85,10 @@ std::vector<std::size_t> largest(const Eigen::VectorXf& values, std::size_t coun
   return order;
 }
 
-/// The pose of the whole map that each match of two places means.
+/// For each match of two places, the pose of the whole map that it implies.
 std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, double cell_m,
                                 const CoarseOptions& options) {
-  // Where free space is not known a normal's sign is not, either; one side of the pair tries both.
+  // Where free space is unknown the sign of a normal is unknown, too; one side of the pair tries both.
   const bool sign_known = target.knows_free_space() && source.knows_free_space();
   const Axes to_axes = options.gravity_known ? Axes::up : Axes::normal;
   const Axes from_axes = options.gravity_known ? Axes::up : sign_known ? Axes::normal : Axes::both_normals;
@@ -134,8 +134,8 @@ std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& sou
 
   const Vec3 middle =
       std::accumulate(sample.begin(), sample.end(), Vec3(Vec3::Zero())) / static_cast<double>(sample.size());
-  // Poses that say the same are one, with as many votes as there are. Rock of a small overlap scores less
-  // than walls laid on any walls, but its places agree with each other.
+  // Merges equal poses and counts their votes. The rock of a small overlap scores less than walls laid on
+  // unrelated walls, but its matches agree with each other.
   std::vector<CoarsePose> distinct;
   for (const CoarsePose& p : poses) {
     const auto known = std::find_if(distinct.begin(), distinct.end(), [&](const CoarsePose& k) {

@@ -1,4 +1,4 @@
-// Where one map may lie in another, with nothing known but, perhaps, which way is up: places that look alike.
+// Candidate poses of one map in another, without prior knowledge except, perhaps, gravity: similar places.
 #pragma once
 #include "sdk/map_merge/place_descriptor.h"
 
@@ -10,24 +10,24 @@ struct CoarseOptions {
   std::size_t max_target_places = 12000, max_source_places = 500;
   std::vector<double> cells_m = {
       1.0, 0.6};               // of descriptors: wide ones say more, small ones fit into less overlap
-  std::size_t candidates = 8;  // places of the target looked at for each of the source
-  std::size_t kept = 12;       // poses handed on
+  std::size_t candidates = 8;  // number of target places tried for each source place
+  std::size_t kept = 12;       // number of poses returned
   double distinct_m = 2.0, distinct_rad = 0.25;  // poses nearer to each other count as one
 };
 
 struct CoarsePose {
   core::Pose T_target_source;
-  double score;   // of RoughTarget
-  int votes = 1;  // matches that say the same
+  double score;   // by RoughTarget
+  int votes = 1;  // number of matches that imply this pose
 };
 
-/// No two alike; the same every time. Every match of a place with a candidate is a pose of the whole map; all
-/// are scored on the maps as a whole. Half of those kept score best, half have the most votes of the rest: a
-/// few right matches among thousands do.
+/// Distinct poses; deterministic. Every match of a place with a candidate implies a pose of the whole map;
+/// each is scored on the maps as a whole. Half of the returned poses have the best scores, the other half the
+/// most votes among the rest: a few correct matches among thousands suffice.
 std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& source,
                                      const CoarseOptions& options);
 
-/// How far two poses of a map move its middle, and turn it, against each other.
+/// Whether two poses differ by less than the limits in the displacement of the map's middle and in rotation.
 bool alike(const core::Pose& a, const core::Pose& b, const core::Vec3& middle, double metres, double radians);
 
 }  // namespace karst::map_merge

@@ -14,8 +14,8 @@ using core::Vec3;
 
 using PclCloud = pcl::PointCloud<pcl::PointNormal>;
 
-/// Every n-th point so that there are at most `most`. In floats near the map's middle: far from the origin
-/// PCL's single precision would lose centimetres.
+/// Every n-th point, at most `most`. Relative to the map's middle, because PCL's single precision would lose
+/// centimetres far from the origin.
 PclCloud::Ptr pcl_cloud(const MapPiece& piece, const Vec3& middle, std::size_t most) {
   auto cloud = std::make_shared<PclCloud>();
   const std::size_t stride = (piece.surface.size() + most - 1) / most;
@@ -45,7 +45,7 @@ Icp::Icp(const MapPiece& target) : storage_(std::make_unique<Storage>()) {
   storage_->middle = target.surface[target.surface.size() / 2].cast<double>();
   storage_->target = pcl_cloud(target, storage_->middle, target.surface.size());
   storage_->tree->setInputCloud(storage_->target);
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // its complaints are our verdict's to make
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // its warnings are covered by our own verdict
 }
 Icp::~Icp() = default;
 

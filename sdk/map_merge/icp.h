@@ -6,7 +6,7 @@
 
 namespace karst::map_merge {
 
-/// One round: pairs of points up to `reach_m` apart, of the source's points an even pick.
+/// One stage: pairs points up to `reach_m` apart, with an even sample of the source's points.
 struct IcpRound {
   double correspondence_m;
   int iterations;
@@ -18,7 +18,7 @@ class Icp {
  public:
   explicit Icp(const MapPiece& target);
   ~Icp();
-  /// Where ICP ends. Nothing is said of whether that is right: PCL calls failures converged, too.
+  /// The pose at which ICP ends. It may be wrong: PCL reports failures as converged, too.
   core::Pose refine(const MapPiece& source, const core::Pose& T_target_source,
                     const std::vector<IcpRound>& rounds) const;
 

@@ -28,7 +28,7 @@ std::string ply_bytes(const std::vector<core::Vec3f>& points) {
   return bytes;
 }
 
-/// An own copy of a map: what is merged grows, what was read stays.
+/// A copy of a map: the merged map grows, the input stays unchanged.
 std::shared_ptr<core::VoxelMap> copy_of(const core::VoxelMap& map) {
   core::MapOptions options;
   options.resolution_m = map.resolution_m();

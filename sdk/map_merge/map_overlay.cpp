@@ -17,8 +17,8 @@ using core::Vec3f;
 using core::VoxelMap;
 using core::VoxelReader;
 
-// Rock in space that is known to be free weighs more than rock that fits: walls fit walls of any passage,
-// while two maps of one place contradict each other hardly anywhere.
+// Rock in known free space has a larger weight than rock that fits: the walls of any two passages can fit,
+// while two maps of one place hardly ever contradict each other.
 constexpr double kContradiction = 3, kRoughContradiction = 2;
 
 OverlayCounts count(const MapPiece& into, const MapPiece& from, const Pose& T_into_from,

@@ -33,7 +33,7 @@ Vec3f normal_at(const PointTree& tree, const Vec3f& p, double radius_m) {
   return solver.eigenvectors().col(0).cast<float>();
 }
 
-/// The side on which more of the cells two and three steps away are free.
+/// Whether more of the cells two and three steps away are free in this direction than in the opposite one.
 bool points_to_free(const VoxelMap& map, const Vec3f& p, const Vec3f& normal) {
   int free = 0;
   for (const float steps : {-3.0f, -2.0f, 2.0f, 3.0f}) {

@@ -1,4 +1,4 @@
-// One flight's map, as registration looks at it.
+// One flight's map in the form used for registration.
 #pragma once
 #include <memory>
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace karst::map_merge {
 
-/// Rock surface as points, z up; of an occupancy map also the space known to be free, which no other map's
-/// rock may stand in.
+/// Rock surface as points, z up; for an occupancy map also its known free space, in which the other map must
+/// have no rock.
 struct MapPiece {
-  std::shared_ptr<const core::VoxelMap> cells;  // null: a bare cloud
-  double resolution_m = 0.2;                    // of the cells, or to which a cloud was thinned out
+  std::shared_ptr<const core::VoxelMap> cells;  // null for a point cloud
+  double resolution_m = 0.2;                    // of the cells, or to which a cloud was thinned
   std::vector<core::Vec3f> surface;             // centres of occupied cells, or points; sorted
-  std::vector<core::Vec3f> normals;  // unit; towards free space where that is known, else up to sign
+  std::vector<core::Vec3f> normals;             // unit; towards free space if known, else with unknown sign
   std::shared_ptr<const core::PointTree> tree;  // over `surface`
 
   bool knows_free_space() const { return cells != nullptr; }
@@ -22,11 +22,11 @@ struct MapPiece {
 
 /// Throws std::invalid_argument if the map has no occupied cell.
 MapPiece piece_of(std::shared_ptr<const core::VoxelMap> map);
-/// Points that are not finite are left out; the others are thinned out to one a cell of `resolution_m`, their
-/// mean. Throws std::invalid_argument if none is left.
+/// Leaves out points that are not finite and thins the others to one per cell of `resolution_m`, their mean.
+/// Throws std::invalid_argument if none is left.
 MapPiece piece_of(const std::vector<core::Vec3f>& cloud, double resolution_m);
 
-/// One point, the mean, for each cell that holds any; in the order of the cells.
+/// One point, the mean, for each cell that contains points; in the order of the cells.
 std::vector<core::Vec3f> thinned_out(const std::vector<core::Vec3f>& points, double cell_m);
 
 }  // namespace karst::map_merge

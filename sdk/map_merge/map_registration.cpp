@@ -32,7 +32,7 @@ bool same_pose(const Candidate& a, const Candidate& b, const Vec3& middle, doubl
   return alike(a.T_target_source, b.T_target_source, middle, 5 * cell_m, 0.1);
 }
 
-/// The best by score, best first, of each pose one.
+/// The best candidates by score, best first, one for each distinct pose.
 std::vector<Candidate> distinct_best(std::vector<Candidate> all, std::size_t most, const Vec3& middle,
                                      double cell_m) {
   std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
@@ -54,11 +54,11 @@ std::string text(const char* format, auto... values) {
   return buffer;
 }
 
-/// Empty if nothing speaks against it.
+/// The reason to reject the registration; empty if there is none.
 std::string objection(const MapRegistration& r, double cell_m, bool free_known,
                       const MapRegistrationOptions& options) {
   const RegistrationLimits& limits = options.limits;
-  // Two more degrees of freedom fit more by chance.
+  // Two more degrees of freedom make accidental fits more likely.
   const double needed = options.coarse.gravity_known ? 1.0 : 1.5;
   const double min_overlap = needed * (free_known ? limits.min_overlap : limits.min_overlap_blind);
   if (r.overlay.overlap() < min_overlap)

@@ -1,11 +1,11 @@
-// Where one flight's map lies in another's, or a reason why that cannot be trusted. docs/map_merge.md
+// Registers one flight's map in another's, or gives a reason why no pose can be trusted. docs/map_merge.md
 //
-//   places that look alike --> 150 poses --few steps of ICP--> 8 --ICP--> the best and its rivals --> a
+//   similar places --> 150 poses --a few steps of ICP--> 8 --ICP--> the best and its rivals --> a
 //   verdict
 //
-// ICP ends somewhere from everywhere. What makes an end believable is asked of the maps: enough rock lies on
-// rock, little stands in space the other flight flew through or saw through, the rock that coincides holds
-// the pose in every direction, and no other pose is nearly as good.
+// ICP converges from every start. The maps decide whether a result is credible: enough rock coincides, little
+// rock lies in space that the other flight observed as free, the coinciding rock constrains the pose in every
+// direction, and no other pose is nearly as good.
 #pragma once
 #include <string>
 
@@ -17,14 +17,14 @@
 namespace karst::map_merge {
 
 struct RegistrationLimits {
-  double min_overlap = 0.17;  // of the rock of the map that shares more; half as much again without gravity
-  double min_overlap_blind = 0.35;   // where no free space is known
-  double min_shared_m2 = 25;         // rock that coincides
-  double min_agreement = 0.985;      // of the rock the other map can judge
+  double min_overlap = 0.17;         // of the map that shares more rock; times 1.5 without gravity
+  double min_overlap_blind = 0.35;   // if no free space is known
+  double min_shared_m2 = 25;         // area of the rock that coincides
+  double min_agreement = 0.985;      // of the rock in space known to the other map
   double max_residual_cells = 0.75;  // in cells of the coarser map
-  double min_hold = 0.015;           // of the least held direction
-  double max_rival = 0.75;           // score of the next best pose over the best's
-  double max_tilt_rad = 0.026;       // with gravity known
+  double min_hold = 0.015;           // of the least constrained direction
+  double max_rival = 0.75;           // score of the next best pose divided by the best one
+  double max_tilt_rad = 0.026;       // if gravity is known
 };
 void describe(core::OptionTable& t, RegistrationLimits& o);
 
@@ -40,19 +40,19 @@ struct MapRegistrationOptions {
 struct MapRegistration {
   core::Pose T_target_source;
   Overlay overlay;
-  double hold = 0;   // mean squared cosine of the least held direction to the coinciding rock's normals
-  double rival = 0;  // score of the best pose that is another, over this one's
+  double hold = 0;   // mean squared cosine of the least constrained direction to the common rock's normals
+  double rival = 0;  // score of the best different pose divided by this one's
   double shared_m2 = 0;
   bool trusted = false;
-  std::string reason;  // why not
+  std::string reason;  // reason for the rejection
 };
 
 MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
                               const MapRegistrationOptions& options);
 
-/// How well the rock that coincides holds the pose: over the near points with normal n and arm p from their
-/// middle, the least eigenvalue of the mean of j j', j = (n, p x n / L), L the arms' root mean square; with
-/// gravity known only the turn about z counts. 0: free in some direction, as along a smooth tube.
+/// How well the common rock constrains the pose: over near points with normal n and arm p from their middle,
+/// the least eigenvalue of the mean of j j', j = (n, p x n / L), L the arms' root mean square; with known
+/// gravity only the turn about z counts. 0: free in some direction, as in a smooth tube.
 double hold_of(const MapPiece& target, const MapPiece& source, const core::Pose& T_target_source,
                double near_m, bool gravity_known);
 

@@ -23,8 +23,8 @@ void add_map(VoxelMap& target, const VoxelMap& source, const Pose& T_target_sour
   const float low = logit(options.min_probability), high = logit(options.max_probability);
   const Pose T_source_target = T_target_source.inverse();
   source.for_each_known([&](const CellKey& k, Cell, float log_odds) {
-    // The cells whose centres may lie in this one are at most one away from where its centre comes to lie;
-    // each centre lies in one source cell only, so nothing is added twice.
+    // The source cells whose centres may lie in this cell are at most one away from its transformed centre;
+    // each centre lies in one cell only, so nothing is added twice.
     const CellKey near = target.key_of(T_target_source * source.center_of(k));
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)

@@ -11,7 +11,7 @@ using core::Quat;
 using core::Vec3;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
-constexpr float kFull = 3;  // points that fill a cell: more say no more
+constexpr float kFull = 3;  // points that fill a cell: further ones add no information
 
 }  // namespace
 
@@ -31,7 +31,7 @@ PlaceDescriptor::PlaceDescriptor(const PointTree& points, const PlaceFrame& fram
     ++count_;
   }
   cells_ = (cells_ / kFull).cwiseMin(1.0f);
-  // Two sectors' mean, so that a point near a border does not jump.
+  // The mean of two sectors, so that a point near a sector's border causes no jump.
   const auto once = cells_.eval();
   for (int s = 0; s < kSectors; ++s)
     cells_.col(s) =
@@ -59,7 +59,7 @@ PlaceDescriptor::Turn PlaceDescriptor::turn_of(const PlaceDescriptor& other) con
   const auto at = [&](int i) {
     return static_cast<double>(agreement[static_cast<std::size_t>((i + kSectors) % kSectors)]);
   };
-  // The top of the parabola through the best and its neighbours.
+  // The vertex of the parabola through the best shift and its neighbours.
   const double bend = at(best - 1) - 2 * at(best) + at(best + 1);
   const double off = bend < 0 ? 0.5 * (at(best - 1) - at(best + 1)) / bend : 0;
   return {core::wrap_angle((best + std::clamp(off, -0.5, 0.5)) * kTwoPi / kSectors), at(best)};

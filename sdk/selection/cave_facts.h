@@ -1,4 +1,4 @@
-// What can be said of a cave without flying through it.
+// Facts about a cave that need no flight.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,13 +12,13 @@ struct MeshFacts {
   std::size_t triangles = 0;
   core::Vec3 low = core::Vec3::Zero(), high = core::Vec3::Zero();
   /// Edges that do not belong to exactly two triangles which run along them in opposite directions; corners
-  /// at the same place count as one. None: the mesh is closed and consistent.
+  /// at the same position count as one. 0: the mesh is closed and consistently oriented.
   std::size_t edges = 0, odd_edges = 0;
 };
 MeshFacts mesh_facts(const cave::TriangleMesh& mesh);
 
-/// Of places the vehicle can fly through: the shorter of ten level lines through them from rock to rock, and
-/// the plumb line. Tenth, fiftieth and ninetieth percentile.
+/// Width and height at places the vehicle can fly through: the shortest of ten horizontal lines from rock to
+/// rock, and the vertical one. Tenth, fiftieth and ninetieth percentile.
 struct PassageFacts {
   std::array<double, 3> width_m{}, height_m{};
 };

@@ -14,8 +14,8 @@ namespace {
 
 using C = CaveFigures;
 
-// Least scales: what two readings of one cave, at another resolution or from a flown map, differ by
-// (docs/select.md).
+// Least scales: the difference between two descriptions of one cave, at another resolution or from a flown
+// map (docs/select.md).
 constexpr std::array kFigures{
     FigureDefinition{"volume", "m^3", &C::volume_m3, 1, 1e9, true, 0, 0.2, 1,
                      "room a vehicle can reach or see"},

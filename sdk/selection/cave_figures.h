@@ -1,5 +1,5 @@
-// What a cave is like, in ten figures: what caves are compared by. One table says each figure's name, unit,
-// range and how two values of it are compared; files, JSON, text and distances all follow it
+// Description of a cave by ten figures, which are used to compare caves. One table defines each figure's
+// name, unit, range and scale of comparison; files, JSON, text and distances all follow it
 // (docs/select.md).
 #pragma once
 #include <limits>
@@ -11,7 +11,7 @@ namespace karst::selection {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// NaN: not known.
+/// NaN: unknown.
 struct CaveFigures {
   double volume_m3 = kUnknown;
   double length_m = kUnknown;
@@ -28,12 +28,12 @@ struct CaveFigures {
 struct FigureDefinition {
   std::string_view name, unit;
   double CaveFigures::*value;
-  double low, high;  // what is taken from a file
-  // Two caves differ in a figure by the difference of scaled(value): log(value + offset), or the value
-  // itself.
+  double low, high;  // range accepted from files
+  // Two caves differ in a figure by the difference of scaled(value): log(value + offset) if logarithmic, or
+  // the value itself.
   bool logarithmic;
   double offset;
-  double min_scale;  // differences are never magnified beyond this unit, however alike the known caves are
+  double min_scale;  // least unit of differences, however similar the known caves are
   double weight;
   std::string_view meaning;
 };
@@ -43,17 +43,17 @@ std::span<const FigureDefinition> figure_definitions();
 /// The value on the scale on which it is compared; NaN stays NaN.
 double scaled(const FigureDefinition& figure, double value);
 
-/// A JSON object of the figures that are known, rounded to six digits: what a campaign's store keeps of a
+/// A JSON object of the known figures, rounded to six digits: the form in which a campaign's store keeps a
 /// cave.
 std::string to_json(const CaveFigures& figures);
-/// Keys that are no figure are passed over; "" has none known. Throws InputError naming `source`.
+/// Ignores keys that are not figures; for "" all are unknown. Throws InputError naming `source`.
 CaveFigures figures_from_json(const std::string& text, const std::string& source);
 
-/// What a caver knows, as an INFO file says it: any of the figures, values with units. Throws InputError
-/// naming file, key and range, also if the file gives none at all.
+/// Reads a caver's knowledge from an INFO file: any of the figures, values with units. Throws InputError with
+/// file, key and range, also if the file has no figure at all.
 CaveFigures read_figures(const std::string& file);
 
-/// A line a known figure, for people.
+/// One line of text per known figure.
 std::string to_text(const CaveFigures& figures);
 
 }  // namespace karst::selection

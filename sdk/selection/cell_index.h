@@ -1,5 +1,5 @@
-// Numbers for the cells of a set, in the set's order, so that what is known of a cell can stand in a plain
-// vector.
+// Consecutive numbers for the cells of a set, in the set's order, so that data per cell can be kept in a
+// plain vector.
 #pragma once
 #include <bit>
 
@@ -22,7 +22,7 @@ class CellIndex {
   std::size_t size() const { return keys_.size(); }
   const core::CellKey& key(std::size_t i) const { return keys_[i]; }
 
-  /// -1 if the set does not hold the cell.
+  /// -1 if the set does not contain the cell.
   std::int32_t at(const core::CellKey& k) const {
     const core::CellKey place = cells_.block_of(k);
     const auto* block = cells_.find(place);

@@ -17,7 +17,7 @@ namespace {
 
 using core::Vec3;
 
-/// A slice of passage as measured: its middle is where the widest ball fits.
+/// A measured slice of passage: its middle is the centre of the widest ball.
 struct Slice {
   Vec3 middle = Vec3::Zero(), centroid = Vec3::Zero();
   std::int32_t cell = 0;  // of the middle
@@ -33,9 +33,9 @@ Vec3 centre(const CellIndex& cells, std::int32_t i, double edge) {
   return edge * Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5);
 }
 
-/// Uphill in the distance to rock, in steps to 26 sides (along the axes alone, a ridge between two walls
-/// would hold it up) that are halved when none leads up; no farther than `reach`. A step shorter than the
-/// distance to rock leads through none.
+/// Ascends the distance to rock in steps to 26 neighbours (with steps along the axes alone, a ridge between
+/// two walls would stop it); halves the step when none ascends; at most `reach` from the start. A step
+/// shorter than the distance to rock cannot pass through rock.
 Vec3 climbed(const FreeSpace& space, const Vec3& from, double reach) {
   Vec3 best = from;
   double height = space.distance_to_rock(best);
@@ -78,7 +78,7 @@ std::vector<Slice> measured(const FreeSpace& space, const CellIndex& cells, cons
   return slices;
 }
 
-/// The least value with at least `share` of all weight at or below it.
+/// The least value with at least `fraction` of the total weight at or below it.
 double quantile(std::vector<std::pair<double, double>> value_weight, double fraction) {
   if (value_weight.empty()) return kUnknown;
   std::sort(value_weight.begin(), value_weight.end());
@@ -89,8 +89,8 @@ double quantile(std::vector<std::pair<double, double>> value_weight, double frac
   return value_weight.back().first;
 }
 
-/// A first idea of the width, before slivers behind bumps of the rock are taken off: a slice weighs as much
-/// as passage of its width would be long.
+/// Initial estimate of the width, before slivers behind bumps of the rock are removed: a slice has the weight
+/// of a passage length equal to its width.
 double rough_width(const std::vector<Slice>& slices, const std::vector<PassageNode>& nodes) {
   std::vector<std::pair<double, double>> values;
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -99,7 +99,7 @@ double rough_width(const std::vector<Slice>& slices, const std::vector<PassageNo
   return quantile(std::move(values), 0.5);
 }
 
-/// Of ways as long as passages are wide: shorter ones show the rock's roughness, not the passage's slope.
+/// Of path segments as long as passages are wide: shorter ones show the rock's roughness, not the slope.
 double verticality(const std::vector<PassageNode>& nodes, const std::vector<Slice>& slices, int steps) {
   double up = 0, all = 0;
   const int bands = nodes.empty() ? 0 : nodes.back().band;
@@ -122,7 +122,7 @@ double verticality(const std::vector<PassageNode>& nodes, const std::vector<Slic
 CaveFigures describe(const FreeSpace& space) {
   const CellIndex cells(space.flyable);
   const double edge = space.resolution_m;
-  // Distances count from one end of the cave, wherever the start is: the place farthest from it.
+  // Distances count from one end of the cave, independent of the start: the place farthest from it.
   const std::size_t end = farthest(distances_from(cells, 0));
   const std::vector<float> distance = distances_from(cells, end);
   const float band =
@@ -159,7 +159,7 @@ CaveFigures describe(const FreeSpace& space) {
   f.branching = junctions(nodes) * 100.0 / f.length_m;
   f.loops = loops(nodes) * 100.0 / f.length_m;
 
-  // Ways from three places far from each other to everywhere that is not near.
+  // Paths from three places far from each other to all cells that are not near them.
   std::vector<float> nearest_source = distance;
   std::vector<float> from = distance;
   std::size_t source = end;

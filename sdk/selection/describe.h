@@ -1,4 +1,4 @@
-// From a file to what a cave is like.
+// Computes the figures of a cave from a file.
 #pragma once
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace karst::selection {
 
-/// The passages' figures, of their centre lines (passage_graph.h).
+/// The figures of the passages, from their centre lines (passage_graph.h).
 CaveFigures describe(const FreeSpace& space);
 
 enum class Source { mesh, map, numbers };
@@ -16,8 +16,8 @@ struct Description {
   Source source;
 };
 
-/// What `file` is: a mesh or a cave's .info file (its start, unless `start` says another), the map of a
-/// flight (.bt, .ot), or an INFO file of figures. Throws InputError.
+/// The kind of `file`: a mesh or a cave's .info file (with its start, unless `start` gives another), the map
+/// of a flight (.bt, .ot), or an INFO file of figures. Throws InputError.
 Source source_of(const std::string& file);
 Description describe_file(const std::string& file, const std::string& start,
                           const FreeSpaceOptions& options = {});

@@ -16,7 +16,7 @@ using core::InputError;
 
 constexpr std::size_t kSettingsNamed = 4;
 
-/// A mission file says a policy's parameters as text.
+/// Converts a policy's parameters to a mission file's form, which has them as text.
 boost::property_tree::ptree parameters_of(const std::string& json, const std::string& source,
                                           const std::string& name) {
   boost::property_tree::ptree tree;
@@ -52,7 +52,7 @@ Experience empty_like(const std::vector<KnownCave>& caves, const std::vector<Pre
   return e;
 }
 
-/// A key that is there several times (a list of blocks) has all its values.
+/// All values by key: a key may occur several times (a list of blocks).
 std::map<std::string, std::string> by_key(const std::vector<std::pair<std::string, std::string>>& settings) {
   std::map<std::string, std::string> values;
   for (const auto& [key, value] : settings) values[key] += (values.count(key) ? ", " : "") + value;
@@ -65,7 +65,7 @@ std::string text_of(const boost::property_tree::ptree& parameters) {
   return text;
 }
 
-/// Why the same name stands for two contestants; "" if it does not.
+/// The reason why one name denotes two different contestants; "" if it does not.
 std::string difference(const Preset& a, const Preset& b) {
   if (a.policy != b.policy) return "policy " + b.policy + " here, " + a.policy + " there";
   if (a.version != b.version) return "version " + b.version + " here, " + a.version + " there";

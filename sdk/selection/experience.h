@@ -1,5 +1,5 @@
-// What is known of policies from campaigns, distilled to what a selection needs: caves by their figures,
-// contestants with their parameters, and how each fared in each cave. A small INFO file holds it
+// Results of campaigns, reduced to the data that a selection needs: caves by their figures, contestants with
+// their parameters, and each contestant's results in each cave. Stored in a small INFO file
 // (docs/select.md).
 #pragma once
 #include <boost/property_tree/ptree.hpp>
@@ -15,30 +15,30 @@ namespace karst::selection {
 struct KnownCave {
   std::string name;
   CaveFigures figures;
-  std::string hash = {};  // SHA-256 of the mesh's bytes; "" if it is not known
+  std::string hash = {};  // SHA-256 of the mesh's bytes; "" if unknown
 };
 
 struct Preset {
   std::string name, policy, version;
-  boost::property_tree::ptree parameters;  // as a mission file says them
+  boost::property_tree::ptree parameters;  // in the form of a mission file
 };
 
 /// One figure of a contestant in a cave, over the flights there.
 struct Fared {
-  int flights = 0;                               // whose figure is known
-  double mean = kUnknown, deviation = kUnknown;  // deviation over seeds; NaN of fewer than two
+  int flights = 0;                               // number of flights with a known figure
+  double mean = kUnknown, deviation = kUnknown;  // deviation over seeds; NaN for fewer than two
 };
 
-/// How all of an experience was flown. Figures of flights that differ in any of it do not compare: a longer
-/// flight covers more.
+/// The conditions of all flights of an experience. Figures of flights under different conditions are not
+/// comparable: a longer flight covers more.
 struct Conditions {
-  double horizon_s = 0;  // the longest an exploration could take
+  double horizon_s = 0;  // the longest possible exploration
   std::string profile;
   std::vector<std::pair<std::string, std::string>> mission;  // campaign::CampaignResults::shared
 };
 
-/// What differs, in words; "" if nothing does. A setting that only one of them has is none: it may be of
-/// another version of karst.
+/// The differences in words; "" if there are none. A setting that only one of them has does not count: it may
+/// come from another version of karst.
 std::string difference(const Conditions& a, const Conditions& b);
 
 struct Experience {
@@ -47,7 +47,7 @@ struct Experience {
   std::vector<std::string> metrics;  // names of evaluation::metric_definitions()
   std::vector<Fared> fared;          // by contestant, cave, metric
   Conditions flown = {};
-  std::string source = {};  // the files it is of, for messages
+  std::string source = {};  // the source files, for messages
 
   const Fared& at(std::size_t contestant, std::size_t cave, std::size_t metric) const {
     return fared[(contestant * caves.size() + cave) * metrics.size() + metric];
@@ -57,24 +57,24 @@ struct Experience {
   }
 };
 
-/// The metrics an experience keeps: what flights are compared by, and what else one wants to know beforehand.
+/// The metrics kept in an experience: those by which flights are compared, and others of interest beforehand.
 const std::vector<std::string>& learned_metrics();
 
-/// Caves that were not described, and those in which nothing flew, are left out. Contestants with settings of
-/// their own beside the parameters are left out as well: a selection names a policy, not another vehicle.
-/// Failed trials count as campaign::figure_of says. Throws InputError naming `source` if nothing is left, or
-/// if the campaign does not tell how it flew.
+/// Leaves out caves without a description or without flights, and contestants with settings of their own
+/// beside the parameters: a selection names a policy, not another vehicle. Failed trials count as in
+/// campaign::figure_of. Throws InputError naming `source` if nothing is left, or if the campaign does not
+/// contain its flight conditions.
 Experience learn(const campaign::CampaignResults& results, const std::string& source);
 
-/// Both together; caves and contestants of one name are one. Throws InputError if they were flown under other
-/// conditions, if one name stands for two caves or for two contestants (another policy, version or
-/// parameters), or if both hold flights of the same pair.
+/// Both experiences together; caves and contestants with equal names are identified. Throws InputError if the
+/// flight conditions differ, if one name denotes two caves or two contestants (another policy, version or
+/// parameters), or if both contain flights of the same pair.
 Experience merged(const Experience& a, const Experience& b, const std::string& source);
 
-/// Without one cave: for leave-one-out.
+/// The experience without one cave: for leave-one-out.
 Experience without_cave(const Experience& experience, std::size_t cave);
 
-/// Throws InputError naming file, place and reason.
+/// Throws InputError with file, place and reason.
 Experience read_experience(const std::string& file);
 std::string to_info(const Experience& experience);
 

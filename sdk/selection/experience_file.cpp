@@ -6,7 +6,7 @@
 //   contestant { name near  policy nearest_frontier  version 1.0.0  parameters { horizon "60 m" } }
 //   result { contestant near  cave maze1  coverage_auc "0.41 10 0.03" }
 //
-// What a result holds of a figure: mean, flights, deviation over the seeds.
+// The values of a figure in a result: mean, flights, deviation over the seeds.
 #include <algorithm>
 #include <boost/property_tree/info_parser.hpp>
 #include <charconv>
@@ -105,7 +105,7 @@ KnownCave cave_of(const pt::ptree& tree, const std::string& file) {
   return cave;
 }
 
-/// What a figure of flights can be at most; of those learned none is negative.
+/// Upper bound of a figure; none of the learned figures can be negative.
 double max_of(const std::string& metric, double horizon_s) {
   const evaluation::MetricDefinition& m =
       evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(metric))];

@@ -19,7 +19,7 @@ using evaluation::CellSet;
 constexpr double kFarM = 500;      // no passage is wider
 constexpr double kMaxCells = 4e5;  // so that a description takes seconds
 
-/// How many cells of `resolution_m` a coarse cell is long: as asked for, or longer if that would be too many
+/// Number of cells of `resolution_m` along a coarse cell: as requested, or more if there would be too many
 /// cells.
 int coarse_edge(const FreeSpaceOptions& options, double resolution_m, std::size_t fine_cells) {
   int n = std::max(1, static_cast<int>(std::lround(options.coarse_m / resolution_m)));
@@ -32,7 +32,7 @@ CellKey divided(const CellKey& k, int n) {
   return {down(k.x), down(k.y), down(k.z)};
 }
 
-/// Cells of `n` edges that hold a cell of the set.
+/// Coarse cells of `n` fine cells' edge that contain a cell of the set.
 CellSet coarsened(const CellSet& fine, int n) {
   const CellKey b = fine.blocks_along();
   CellSet out(divided(fine.first_cell({0, 0, 0}), n), divided(fine.first_cell(b), n));
@@ -40,7 +40,7 @@ CellSet coarsened(const CellSet& fine, int n) {
   return out;
 }
 
-/// The largest 6-connected part; of equal ones the first.
+/// The largest 6-connected component; the first one of equal size.
 CellSet largest_part(const CellSet& cells) {
   const CellIndex index(cells);
   std::vector<int> part(index.size(), -1);
@@ -70,13 +70,13 @@ CellSet largest_part(const CellSet& cells) {
   return out;
 }
 
-/// A surface that runs through a layer of cells leaves half of them free on average, whatever way it faces:
-/// half a cell is added for each face that a free cell shares with rock.
+/// A surface that passes through a layer of cells leaves half of them free on average, whatever its
+/// direction: half a cell is added for each face shared by a free cell and rock.
 double volume_with_halves(std::size_t cells, std::size_t faces_to_rock, double resolution_m) {
   return (static_cast<double>(cells) + 0.5 * static_cast<double>(faces_to_rock)) * std::pow(resolution_m, 3);
 }
 
-/// A cell that rays never met although they met nearly all around it is a gap between rays, not rock.
+/// A cell that no ray met, although rays met nearly all cells around it, is a gap between rays, not rock.
 core::VoxelMap without_gaps(const core::VoxelMap& map) {
   core::MapOptions options;
   options.resolution_m = map.resolution_m();
@@ -157,8 +157,8 @@ FreeSpace free_space_of(const core::VoxelMap& map, const FreeSpaceOptions& optio
   space.distance_to_rock = [rock](const Vec3& p) { return std::min(kFarM, rock->distance(p)); };
   space.range_to_rock = [filled](const Vec3& from, const Vec3& d) {
     const auto end = filled->first_not_free(from, from + kFarM * d);
-    // From the centre of the last free cell to that of the first of rock lies half a cell too much on
-    // average.
+    // The distance from the centre of the last free cell to that of the first rock cell is half a cell too
+    // long on average.
     return end ? std::abs((filled->center_of(*end) - from).dot(d)) : kFarM;
   };
   return space;

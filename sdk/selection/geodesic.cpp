@@ -15,7 +15,7 @@ using Queue = std::priority_queue<Entry, std::vector<Entry>, std::greater<>>;
 struct Move {
   CellKey step;
   float length;
-  // A long move passes between these two, which both must be there; (0, 0, 0) of a short one.
+  // A long move passes between these two cells, both of which must exist; (0, 0, 0) for a short move.
   CellKey before, after;
 };
 
@@ -37,7 +37,7 @@ std::vector<Move> moves(int radius) {
   return all;
 }
 
-/// Dijkstra, 1959; equal distances in the order of the cells' numbers.
+/// Dijkstra, 1959; equal distances are processed in the order of the cells' numbers.
 void spread(const CellIndex& cells, const std::vector<Move>& all, Queue& queue,
             std::vector<float>& distance) {
   while (!queue.empty()) {

@@ -19,12 +19,12 @@ bool better(const std::string& metric, double a, double b) {
 
 bool as_good(double value, double best) { return std::abs(value - best) <= kAsGood * std::abs(best) + 1e-12; }
 
-/// Share of the best value that was lost.
+/// The lost fraction of the best value.
 double lost(double value, double best) {
   return best == 0 ? std::abs(value) : std::abs(value - best) / std::abs(best);
 }
 
-/// The same contestant for any cave: the best if all caves count alike.
+/// The same contestant for any cave: the best one if all caves have equal weight.
 Selected regardless_of_cave(const Experience& rest, const SelectOptions& options, const std::string& source) {
   Experience alike = rest;
   for (KnownCave& c : alike.caves) c.figures = {.volume_m3 = 1000};

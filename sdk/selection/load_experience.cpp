@@ -30,7 +30,7 @@ void describe_caves(campaign::CampaignResults& results, const std::string& store
     }
     try {
       campaign::Store::open(campaign::store_file(store)).describe_cave(c, cave.description);
-    } catch (const InputError& e) {  // read-only, or another writes: then it is described again next time
+    } catch (const InputError& e) {  // read-only, or another process writes: described again next time
       tell("not kept: " + std::string(e.what()));
     }
   }

@@ -14,7 +14,7 @@ void sort_unique(std::vector<int>& v) {
   v.erase(std::unique(v.begin(), v.end()), v.end());
 }
 
-/// The first 13 of the 26 neighbours: every pair of neighbours is met once.
+/// The first 13 of the 26 neighbours: visits every pair of neighbours once.
 template <class Visit>
 void for_each_neighbour(const CellIndex& cells, std::size_t i, int count, const Visit& visit) {
   int n = 0;
@@ -28,7 +28,7 @@ void for_each_neighbour(const CellIndex& cells, std::size_t i, int count, const 
       }
 }
 
-/// Disjoint sets; the smallest member stands for a set.
+/// Disjoint sets; each is represented by its smallest member.
 class Sets {
  public:
   explicit Sets(std::size_t n) : parent_(n) {
@@ -50,17 +50,17 @@ class Sets {
   std::vector<int> parent_;
 };
 
-/// The graph while nodes are being united.
+/// The graph while nodes are being merged.
 class Uniting {
  public:
   explicit Uniting(const std::vector<PassageNode>& nodes) : sets_(nodes.size()), nodes_(nodes) {}
 
   std::vector<int> below(int node) { return own(nodes_[static_cast<std::size_t>(node)].below); }
 
-  /// Of all ways from `from` to `to` below band `top`, the one whose lowest band is highest.
+  /// Of all paths from `from` to `to` below band `top`, the one whose lowest band is highest.
   std::vector<int> highest_path(int from, int to, int top) {
     std::vector<int> came(nodes_.size(), -1);
-    std::priority_queue<std::array<int, 3>> open;  // lowest band so far, node, where it came from
+    std::priority_queue<std::array<int, 3>> open;  // lowest band so far, node, predecessor
     open.push({band(from), from, from});
     while (!open.empty()) {
       const auto [lowest, node, before] = open.top();
@@ -84,7 +84,7 @@ class Uniting {
     return lowest;
   }
 
-  /// Unites the nodes of a way that are of one band.
+  /// Merges the nodes of a path that are of one band.
   void fold(const std::vector<int>& path) {
     for (std::size_t i = 0; i < path.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
@@ -133,7 +133,7 @@ class Uniting {
 
 std::size_t degree(const PassageNode& n) { return n.below.size() + n.above.size(); }
 
-/// The nodes from a dead end up to, not including, the first junction; empty if it leads to another dead end.
+/// The nodes from a dead end up to the first junction, exclusive; empty if it leads to another dead end.
 std::vector<int> dead_end(const std::vector<PassageNode>& nodes, int end) {
   std::vector<int> path;
   for (int node = end, before = -1; degree(nodes[static_cast<std::size_t>(node)]) < 3;) {
@@ -195,7 +195,7 @@ std::vector<PassageNode> without_short_loops(const std::vector<PassageNode>& nod
   for (int u = 0; u < static_cast<int>(nodes.size()); ++u) {
     std::vector<int> kept;
     for (const int b : graph.below(u)) {
-      // The shortest loop through this node, b and one of those kept.
+      // The shortest loop through this node, b and one of the kept nodes.
       std::vector<int> shortest;
       int lowest = -1;
       for (const int a : kept) {

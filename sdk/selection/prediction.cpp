@@ -10,7 +10,7 @@
 namespace karst::selection {
 namespace {
 
-constexpr double kMinFraction = 0.25;  // of the weight that a contestant must have flown in
+constexpr double kMinFraction = 0.25;  // least fraction of the weight in which a contestant must have flown
 const std::array kBandwidths{0.5, 0.7, 1.0, 1.4, 2.0, 3.0, std::numeric_limits<double>::infinity()};
 
 double total_weight() {
@@ -83,7 +83,7 @@ std::vector<double> kernel_weights(const std::vector<KnownCave>& caves, const Ca
                           ? std::numeric_limits<double>::infinity()
                           : d.value * d.value * shared_weight(cave, known.figures) / total_weight());
   }
-  // Relative to the nearest: far from everything, the weights would all vanish.
+  // Relative to the nearest cave: far from everything, all weights would otherwise vanish.
   const double least = *std::min_element(squared.begin(), squared.end());
   const double h = kernel.bandwidth;
   for (const double s : squared)

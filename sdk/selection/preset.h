@@ -1,5 +1,5 @@
-// A policy with its parameters as a file of its own: what `karst tune` and `karst select` write, `karst fly
-// --preset` takes, and a mission file without a policy section of its own can include.
+// A policy with its parameters in a file of its own: written by `karst tune` and `karst select`, read by
+// `karst fly --preset`, and suitable for inclusion in a mission file without a policy section.
 //
 //   policy { name unknown_ratio  parameters { ratio_worth "7.2 m" } }
 #pragma once
@@ -13,9 +13,9 @@ struct PolicyPreset {
   boost::property_tree::ptree parameters;
 };
 
-/// Throws InputError naming file and key: also if it sets anything but a policy.
+/// Throws InputError with file and key; also if the file sets anything but a policy.
 PolicyPreset read_preset(const std::string& file);
-/// `remark`: where it comes from, one line or several.
+/// `remark`: the origin of the preset, one or more lines.
 std::string to_info(const PolicyPreset& preset, const std::string& remark);
 
 }  // namespace karst::selection

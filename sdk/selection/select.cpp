@@ -19,7 +19,7 @@ namespace {
 using core::InputError;
 
 constexpr int kResamples = 1000;
-constexpr int kTellingFigures = 6;  // caves that agree in so many, to the sixth digit, are one
+constexpr int kTellingFigures = 6;  // least number of known figures to identify a cave by equal figures
 
 std::size_t metric_of(const Experience& e, const std::string& name, const std::string& source) {
   const auto found = std::find(e.metrics.begin(), e.metrics.end(), name);
@@ -32,7 +32,7 @@ std::size_t metric_of(const Experience& e, const std::string& name, const std::s
   return static_cast<std::size_t>(found - e.metrics.begin());
 }
 
-/// Caves that are this one, and tell contestants apart: several if one was flown from several starts.
+/// Known caves identical to this one, with two contestants or more: several if flown from several starts.
 std::vector<std::size_t> this_very_cave(const Experience& e, const Values& v, const CaveFigures& cave,
                                         const std::string& mesh_hash) {
   const std::string figures = to_json(cave);
@@ -48,7 +48,7 @@ std::vector<std::size_t> this_very_cave(const Experience& e, const Values& v, co
   return same;
 }
 
-/// The best first; those that cannot be predicted are left out.
+/// Best first; leaves out contestants that cannot be predicted.
 std::vector<Expected> ranking_of(const Values& v, const std::vector<double>& level,
                                  const std::vector<double>& weight, double sign) {
   std::vector<Expected> ranking;
@@ -66,7 +66,7 @@ std::vector<Expected> ranking_of(const Values& v, const std::vector<double>& lev
   return ranking;
 }
 
-/// Student's interval of the errors made in caves left out: of the mean in a new cave.
+/// Student's interval from the errors in left-out caves: for the mean in a new cave.
 void give_intervals(const Experience& e, const Values& v, const std::vector<double>& level,
                     const Kernel& kernel, double probability, std::vector<Expected>& ranking) {
   const std::vector<double> residuals = left_out_residuals(e, v, level, kernel, Predicted::value);
@@ -94,7 +94,7 @@ void give_intervals(const Experience& e, const Values& v, const std::vector<doub
   }
 }
 
-/// Of the mean over other seeds in caves that were flown; not known if a cave has fewer than two.
+/// Intervals of the mean over other seeds in flown caves; unknown if a cave has fewer than two seeds.
 void give_intervals_there(const Experience& e, std::size_t metric, const std::vector<std::size_t>& there,
                           double probability, std::vector<Expected>& ranking) {
   const evaluation::MetricDefinition& figure =
@@ -116,8 +116,8 @@ void give_intervals_there(const Experience& e, std::size_t metric, const std::ve
   }
 }
 
-/// How often the first one would have been first with other seeds, means drawn within their errors, and, if
-/// `other_caves`, with other caves, drawn with replacement.
+/// How often the first contestant would be first with other seeds (means drawn within their errors) and, if
+/// `other_caves`, with other caves (drawn with replacement).
 double confidence_of(const Values& v, const std::vector<double>& weight, double sign, std::size_t first,
                      bool other_caves) {
   core::Random random = core::Random::stream(1, "confidence");

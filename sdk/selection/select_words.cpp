@@ -67,7 +67,7 @@ std::string why_first(const Experience& e, const Selected& s, const SelectOption
                          e.contestants[first.contestant].name.c_str(), options.metric.c_str(), first.value);
   if (!std::isnan(first.low))
     out += text(", %.0f %% interval %.3g to %.3g", 100 * options.level, first.low, first.high);
-  // A wide bandwidth weighs all nearly alike: that the nearest are like this cave then decides nothing.
+  // With a wide bandwidth all caves have nearly equal weight: similarity of the nearest ones decides nothing.
   const bool alike = s.near.front().weight < kMaxAlike / static_cast<double>(e.caves.size());
   out += std::isinf(s.bandwidth) || alike
              ? ") by all caves flown alike, for what these are like did not foretell which policy is best; "

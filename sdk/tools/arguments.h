@@ -1,4 +1,4 @@
-// What several commands ask of their arguments.
+// Validators of arguments that several commands use.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -9,12 +9,12 @@
 
 namespace karst::tools {
 
-/// `--policy ""` is a slip, such as a shell variable that is not set, and not the default.
+/// An empty value such as `--policy ""` is a mistake, for example an unset shell variable, not the default.
 inline CLI::Validator not_empty() {
   return {[](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); }, ""};
 }
 
-/// A folder that is there, or can be made.
+/// A folder that exists or can be created.
 inline CLI::Validator no_file() {
   return {[](std::string& path) {
             const bool other = std::filesystem::exists(path) && !std::filesystem::is_directory(path);
@@ -23,7 +23,7 @@ inline CLI::Validator no_file() {
           ""};
 }
 
-/// A whole number that fits into 64 bits without a sign (strtoull would wrap -1 around).
+/// An unsigned whole number that fits into 64 bits (strtoull would wrap -1 around).
 inline CLI::Validator whole_64_bits() {
   return {[](std::string& text) {
             std::uint64_t value = 0;
@@ -34,7 +34,7 @@ inline CLI::Validator whole_64_bits() {
           ""};
 }
 
-/// A number of a range. CLI::Range lets "nan" pass.
+/// A number in a range. CLI::Range accepts "nan".
 inline CLI::Validator number_in(double low, double high) {
   std::ostringstream range;
   range << low << " to " << high;

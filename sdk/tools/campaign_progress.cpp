@@ -33,7 +33,7 @@ std::string duration(double s) {
   return text("%ld h %02ld min", all / 3600, all % 3600 / 60);
 }
 
-/// From the pace since the start.
+/// Estimated from the pace since the start.
 std::string time_left(const Progress& p) {
   if (p.here == 0) return "time left unknown";
   return duration(p.wall_s / static_cast<double>(p.here) * static_cast<double>(p.trials - p.finished)) +
@@ -75,7 +75,7 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
   begun_ = true;
   if (p.last) {
     Tally& tally = tallies_[p.last->result.contestant];
-    const double coverage = coverage_of(*p.last);  // a trial that failed and says nothing found nothing
+    const double coverage = coverage_of(*p.last);  // a failed trial without a value counts as nothing found
     tally.coverage += std::isfinite(coverage) ? coverage : 0;
     ++tally.trials;
   }

@@ -1,5 +1,5 @@
-// What a person sees while a campaign flies, on standard error: on a terminal two lines that renew
-// themselves, elsewhere a line for each trial that has ended.
+// Progress of a campaign on standard error: on a terminal two lines that are rewritten, otherwise one line
+// for each finished trial.
 #pragma once
 #include <vector>
 

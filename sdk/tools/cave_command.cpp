@@ -45,7 +45,7 @@ std::string text(const char* format, auto... values) {
   return buffer;
 }
 
-/// One line that renews itself on a terminal, a line for each new step elsewhere.
+/// One line that is rewritten on a terminal, otherwise one line for each new step.
 class Progress {
  public:
   void operator()(const char* step, double fraction) {

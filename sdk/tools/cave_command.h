@@ -7,7 +7,7 @@ class App;
 
 namespace karst::tools {
 
-/// Adds both to the application. Errors leave `parse` as exceptions that name file, place and reason.
+/// Adds both to the application. `parse` throws errors as exceptions with file, place and reason.
 void add_cave_command(CLI::App& app);
 
 }  // namespace karst::tools

@@ -197,7 +197,7 @@ void add_check_command(CLI::App& policy) {
     if (const int code = check_file(*args); code != 0) throw CLI::RuntimeError(code);
   });
 
-  // What the children of `check` are; the empty group hides them from --help.
+  // The command of `check`'s child processes; the empty group hides it from --help.
   CLI::App* one = policy.add_subcommand("check-one", "Run one test of karst policy check")->group("");
   add_common(*one, *args);
   one->add_option("--work", args->work, "folder for the result")->required();

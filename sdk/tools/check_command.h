@@ -1,4 +1,4 @@
-// `karst policy check`: does a policy hold what a flight, and its users, need of it?
+// `karst policy check`: tests whether a policy meets the requirements of flights and users.
 #pragma once
 
 namespace CLI {
@@ -7,7 +7,7 @@ class App;
 
 namespace karst::tools {
 
-/// Adds `check`, and the hidden commands that its children run, to `karst policy`.
+/// Adds `check`, and the hidden commands of its child processes, to `karst policy`.
 void add_check_command(CLI::App& policy);
 
 }  // namespace karst::tools

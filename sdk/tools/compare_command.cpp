@@ -52,7 +52,7 @@ double seconds_of(const std::string& option, const std::string& text, double low
   return s;
 }
 
-/// A campaign's folder says itself what flies: what is given beside it would be lost.
+/// A campaign's folder determines what is flown: refuses further arguments, which would have no effect.
 void refuse_beside_folder(const CompareArguments& args) {
   const std::pair<const char*, bool> given[] = {{"--seeds", args.seeds > 0},
                                                 {"--time", !args.flight_time.empty()},
@@ -69,7 +69,7 @@ void refuse_beside_folder(const CompareArguments& args) {
                        "campaign file or the policies again");
 }
 
-/// What the command line says against, or in place of, a campaign file.
+/// Applies options of the command line that override, or replace, a campaign file.
 void apply(const CompareArguments& args, Campaign& c) {
   if (!args.profile.empty()) c.profile = args.profile;
   if (!args.mission.empty()) c.mission = args.mission;
@@ -115,7 +115,7 @@ Campaign from_file(const CompareArguments& args) {
   return c;
 }
 
-/// Says so before it flies what no flight could show.
+/// Warns, before the first flight, about results that no flight could show.
 void print_too_few(const campaign::Plan& plan) {
   const std::size_t caves = plan.caves.size(), pairs = caves * plan.seeds.size(),
                     least = campaign::min_pairs(plan.contestants.size(), campaign::VerdictOptions{}.alpha);
@@ -138,7 +138,7 @@ int compare(const CompareArguments& args) {
                      "policies to compare need --caves FILE...; see karst compare --help");
   } else if (fs::is_directory(args.who.front())) {
     refuse_beside_folder(args);
-    options.folder = args.who.front();  // goes on with the campaign there
+    options.folder = args.who.front();  // resumes the campaign there
   } else if (!fs::exists(args.who.front())) {
     throw InputError(args.who.front(), "",
                      "no such campaign file or folder; policies to compare need --caves FILE...");
@@ -250,7 +250,7 @@ void add_trials_command(CLI::App& app) {
   auto batch = std::make_shared<std::string>();
   CLI::App* trials_app =
       app.add_subcommand("trials", "Fly a batch of a campaign's trials: what a Slurm task does.");
-  trials_app->group("");  // nobody types it
+  trials_app->group("");  // for internal use only
   trials_app->add_option("batch", *batch, "batch file")->required();
   trials_app->callback([batch] {
     if (!campaign::fly_batch(*batch, &watch_for_interrupt())) throw CLI::RuntimeError(kInterrupted);

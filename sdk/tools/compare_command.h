@@ -1,5 +1,5 @@
-// `karst compare`: fly contestants through caves and say which is better; `karst results`: what a campaign
-// found.
+// `karst compare`: flies contestants through caves and reports which is better; `karst results`: shows a
+// campaign's results.
 #pragma once
 
 namespace CLI {

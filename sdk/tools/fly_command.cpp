@@ -35,7 +35,7 @@ struct FlyArguments {
        record_requests = false;
 };
 
-/// runs/POLICY-CAVE-SEED, with a number behind it if that is taken.
+/// runs/POLICY-CAVE-SEED, with a number appended if that exists.
 fs::path default_run_dir(const flight::Mission& m) {
   const std::string name = m.policy + "-" + fs::path(m.cave).stem().string() + "-" + std::to_string(m.seed);
   fs::path dir = fs::path("runs") / name;
@@ -43,7 +43,7 @@ fs::path default_run_dir(const flight::Mission& m) {
   return dir;
 }
 
-/// A line of the summary, if there were objects of interest to find.
+/// Prints a line of the summary if there were objects of interest.
 void print_objects(const nlohmann::ordered_json& m) {
   if (!m["objects_placed"].is_number()) return;
   const auto count = [&](const char* key) { return m[key].get<int>(); };
@@ -106,7 +106,7 @@ void print_team(const flight::TeamResult& team, const nlohmann::ordered_json& me
       (request.run_dir / "team.jsonl").c_str(), (request.run_dir / "robot_1").c_str());
 }
 
-/// Said now: nothing is lost without it but time, and nobody would notice that.
+/// Reports errors early: without the cache only time would be lost, which nobody would notice.
 void make_cave_cache(const fs::path& folder) {
   if (folder.empty()) return;
   std::error_code error;
@@ -152,13 +152,13 @@ int fly(const FlyArguments& args) {
   make_cave_cache(args.cave_cache);
   const flight::FlightRequest request = request_of(args, mission);
 
-  // Everything that can be wrong is looked at before anything is written.
+  // All inputs are checked before anything is written.
   flight::MissionFlight mission_flight(mission, request);
   if (!args.check.empty()) {
     mission_flight.check(args.check);
     return 0;
   }
-  // From here on there is something to tidy up when somebody interrupts.
+  // From here on an interrupt needs an orderly shutdown.
   const flight::FlightOutcome outcome = mission_flight.fly(watch_for_interrupt());
   if (outcome.metrics.is_object()) {
     if (args.json)
@@ -173,7 +173,7 @@ int fly(const FlyArguments& args) {
                 flight::is_team(mission) ? "flights'" : "flight's", request.run_dir.c_str());
   int code = flight::kNotLanded;
   if (outcome.landed) code = std::fflush(stdout) == 0 ? 0 : 1;
-  if (mission_flight.hangs()) {  // nothing may be torn down
+  if (mission_flight.hangs()) {  // nothing may be destroyed
     std::fflush(stdout);
     std::_Exit(code);
   }

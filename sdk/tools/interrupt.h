@@ -1,5 +1,5 @@
-// Ctrl-C and its like are asked about, not obeyed on the spot: what is under way is ended in good order.
-// Whoever has no time for that asks twice.
+// Ctrl-C and similar signals request an orderly shutdown instead of ending the process at once.
+// A user who cannot wait sends the signal twice.
 #pragma once
 #include <atomic>
 #include <csignal>
@@ -8,13 +8,13 @@
 
 namespace karst::tools {
 
-constexpr int kInterrupted = 130;  // exit code, as a shell has it for a program that Ctrl-C ended
+constexpr int kInterrupted = 130;  // exit code of a shell for a program that Ctrl-C ended
 
-/// From here on the first SIGINT, SIGTERM or, unless under nohup, SIGHUP sets the flag that is returned and
-/// does nothing else; a second SIGINT or SIGTERM, half a second later or more, ends the process at once. A
-/// reader that goes away stops nothing, nor does a file that may not grow (ulimit -f): writing it fails.
+/// From now on the first SIGINT, SIGTERM or, unless under nohup, SIGHUP only sets the returned flag; a second
+/// SIGINT or SIGTERM, half a second later or more, ends the process at once. A closed pipe does not stop the
+/// process, nor does a file size limit (ulimit -f): writing fails instead.
 inline const std::atomic<bool>& watch_for_interrupt() {
-  static std::atomic<bool> interrupted{false};  // a handler reaches nothing but statics
+  static std::atomic<bool> interrupted{false};  // a signal handler can only access statics
   static std::atomic<std::int64_t> first_ns{0};
   static const auto note = [](int signal) {
     constexpr std::int64_t kOneSignal_ns = 500'000'000;  // timeout(1) sends its signal twice at once

@@ -18,7 +18,7 @@
 
 namespace {
 
-/// The first word that names no command, where one was expected; "" if the words are fine so far.
+/// The first word that names no command where one was expected; "" if all words so far are valid.
 std::string wrong_command(const CLI::App& app) {
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
@@ -31,7 +31,7 @@ std::string wrong_command(const CLI::App& app) {
   return "\"" + rest.front() + "\" is no command" + (near.empty() ? "" : "; did you mean " + near + "?");
 }
 
-/// CLI11's own codes above 100 are of no use to a script: a usage error is an error like any other.
+/// CLI11's own codes above 100 are useless to scripts: a usage error gets the code of any other error.
 int exit_code(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_name() == "RuntimeError") return e.get_exit_code();
   const std::string wrong = e.get_exit_code() == 0 ? "" : wrong_command(app);

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using core::to_millionths;
 using nlohmann::ordered_json;
 
-constexpr int kNotMerged = 2;  // exit code: read well, but not to be put together
+constexpr int kNotMerged = 2;  // exit code: inputs were read, but cannot be merged
 
 struct MergeArguments {
   std::vector<std::string> maps, settings;
@@ -94,8 +94,8 @@ std::vector<map_merge::MapInput> read_all(const MergeArguments& args) {
   return maps;
 }
 
-/// Each map is laid on all that were put together before it; one that does not fit waits until more are
-/// there.
+/// Registers each map in the merged map so far; one that does not fit is tried again after others have been
+/// added.
 std::vector<Placed> place_all(const std::vector<map_merge::MapInput>& maps,
                               const map_merge::MapRegistrationOptions& options,
                               map_merge::MergedMap& merged) {
@@ -138,7 +138,7 @@ void print(const Placed& p) {
             r.hold, 100 * r.rival);
 }
 
-/// Before minutes of registration, not after them.
+/// Checks before minutes of registration that the output can be written.
 void check_can_write(const std::string& stem) {
   const fs::path parent = fs::absolute(stem).parent_path();
   std::error_code error;

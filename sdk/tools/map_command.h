@@ -1,4 +1,4 @@
-// `karst map merge`: maps of several flights in one.
+// `karst map merge`: merges the maps of several flights.
 #pragma once
 
 namespace CLI {

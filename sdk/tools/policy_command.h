@@ -1,4 +1,4 @@
-// `karst policy`: the policies this installation can fly, and what can be done with one.
+// `karst policy`: lists the policies of this installation and works with single ones.
 #pragma once
 
 namespace CLI {

@@ -8,7 +8,7 @@
 namespace karst::tools {
 namespace {
 
-/// Words that no class, file or target can be called by: those of C++20, and the targets that CMake makes
+/// Words that cannot name a class, file or target: the keywords of C++20, and the targets that CMake creates
 /// itself.
 constexpr std::string_view kReserved =
     " alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t "

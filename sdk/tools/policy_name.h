@@ -1,14 +1,14 @@
-// Names of policies: what one can be called, and what its class is called then.
+// Names of policies: which are valid, and the resulting name of the class.
 #pragma once
 #include <string>
 
 namespace karst::tools {
 
-/// "" if a new policy can have that name, otherwise why not: its form, a word of C++ or CMake, or a policy
-/// that has it.
+/// "" if a new policy can have that name, otherwise the reason: its form, a keyword of C++ or CMake, or an
+/// existing policy with that name.
 std::string name_fault(const std::string& name);
 
-/// deep_first: DeepFirst.
+/// For example DeepFirst for deep_first.
 std::string class_name(const std::string& name);
 
 }  // namespace karst::tools

@@ -43,7 +43,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// The template's text, about the policy `name`.
+/// The template's text with the policy's name replaced by `name`.
 std::string renamed(std::string_view text, std::string_view kind, const std::string& name) {
   const std::string id = "my_" + std::string(kind);
   return replaced(replaced(std::string(text), id, name), class_name(id), class_name(name));
@@ -51,7 +51,7 @@ std::string renamed(std::string_view text, std::string_view kind, const std::str
 
 fs::path this_karst() { return fs::read_symlink("/proc/self/exe"); }
 
-/// As it is typed: its name if the shell finds this very program by it, otherwise its path.
+/// The command as typed: its name if the shell finds this very program by it, otherwise its path.
 std::string karst_command() {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -68,7 +68,7 @@ std::string karst_command() {
              : "'" + replaced(all, "'", "'\\''") + "'";
 }
 
-/// Where this karst was installed or built with its SDK, or "" if that is not beside it.
+/// The prefix where this karst was installed or built with its SDK, or "" if there is no SDK.
 std::string sdk_prefix() {
   const fs::path prefix = this_karst().parent_path().parent_path();
   return fs::exists(prefix / "lib/cmake/karst/karstConfig.cmake") ? prefix.string() : "";

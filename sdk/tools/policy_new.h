@@ -1,4 +1,4 @@
-// `karst policy new NAME`: a folder with a policy to start from.
+// `karst policy new NAME`: creates a folder with a policy to start from.
 #pragma once
 
 namespace CLI {

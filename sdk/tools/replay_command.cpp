@@ -29,7 +29,7 @@ struct ReplayArguments {
   bool json = false, quiet = false, no_report = false, keys = false;
 };
 
-/// One line that renews itself on a terminal, a line every hundred scans elsewhere.
+/// One line that is rewritten on a terminal, otherwise one line every hundred scans.
 class ReplayLine {
  public:
   ReplayLine(bool quiet, std::size_t scans) : quiet_(quiet), scans_(scans) {}
@@ -68,7 +68,7 @@ replay::ReplayOptions options_of(const ReplayArguments& args) {
   return options;
 }
 
-/// All settings as resolved, and what the recording said of itself.
+/// All resolved settings, and the recording's own description.
 void write_settings(const fs::path& run_dir, const replay::Recording& recording,
                     replay::ReplayOptions options) {
   pt::ptree tree = table_of(options).resolved();
@@ -127,7 +127,7 @@ int replay_scans(const ReplayArguments& args) {
     throw core::InputError("karst replay", "", "needs SCANS and --out DIR; see karst replay --help");
   const replay::ReplayOptions options = options_of(args);
   const replay::Recording recording = replay::open_recording(args.scans, args.info);
-  replay::read_sweep(recording, 0);  // what is wrong with all of them shows before anything is written
+  replay::read_sweep(recording, 0);  // an error common to all sweeps appears before anything is written
   replay::open_imu(recording);
 
   const std::atomic<bool>& interrupted = watch_for_interrupt();

@@ -23,7 +23,7 @@ const char* file_of(flight::Report report) {
   return report == flight::Report::written ? "report.html" : "metrics.json";
 }
 
-/// Of a flight that was killed: it wrote no metrics.json.
+/// For a flight that was killed: it wrote no metrics.json.
 nlohmann::ordered_json metrics_of_cut_team(const fs::path& run, const std::string& cave,
                                            const std::vector<nlohmann::json>& robots) {
   const auto info = core::read_info((run / "mission.info").string());
@@ -32,7 +32,7 @@ nlohmann::ordered_json metrics_of_cut_team(const fs::path& run, const std::strin
                                     robots);
 }
 
-/// Evaluates each robot again, and the team. What only the mission itself knew stays as its end wrote it.
+/// Evaluates each robot and the team again. Values known only to the mission itself are kept as written.
 void report_team(const fs::path& run, const flight::Finishing& how) {
   const char* written = file_of(how.report);
   std::vector<nlohmann::json> own;

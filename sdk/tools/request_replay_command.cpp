@@ -22,7 +22,7 @@ using host::RequestLogReader;
 using nlohmann::ordered_json;
 
 constexpr int kDiffers = 2;
-constexpr double kNoLimit_s = 1e7;  // a debugger may stop the policy for as long as it takes
+constexpr double kNoLimit_s = 1e7;  // a debugger may stop the policy for any time
 
 struct ReplayArguments {
   std::string run, policy;

@@ -1,4 +1,4 @@
-// `karst policy replay`: recorded requests put to a policy once more, without a vehicle.
+// `karst policy replay`: sends recorded requests to a policy again, without a vehicle.
 #pragma once
 
 namespace CLI {

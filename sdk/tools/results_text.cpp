@@ -27,7 +27,7 @@ std::string number(double v) {
   return text.data();
 }
 
-/// `means`: of each figure, each contestant's.
+/// `means`: for each figure, each contestant's mean.
 void print_row(const CampaignResults& results, const campaign::RankedContestant& place,
                const std::vector<std::vector<double>>& means) {
   int trials = 0, failed = 0;

@@ -6,10 +6,10 @@
 
 namespace karst::tools {
 
-/// Throws core::InputError naming the nearest one if there is no such figure.
+/// Throws core::InputError with the most similar name if there is no such figure.
 void check_metric(const std::string& metric);
 
-/// Throws core::InputError if `metric` is no figure.
+/// Throws core::InputError if `metric` is not a figure.
 void print_results(const campaign::CampaignResults& results, const std::string& metric);
 
 }  // namespace karst::tools

@@ -23,7 +23,7 @@ using nlohmann::ordered_json;
 using selection::Experience;
 using selection::Selected;
 
-constexpr std::size_t kManyCaves = 30;  // a share of fewer caves may be off by 18 points and more
+constexpr std::size_t kManyCaves = 30;  // with fewer caves a fraction may be off by 18 points and more
 constexpr int kNothingSimilar = 3;      // exit code: nothing similar was flown
 
 struct SelectArguments {

@@ -1,4 +1,4 @@
-// `karst select`: the policy for a cave.
+// `karst select`: selects the policy for a cave.
 #pragma once
 
 namespace CLI {

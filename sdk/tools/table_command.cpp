@@ -42,7 +42,7 @@ constexpr std::array kColumns = {
     Column{"heading_error_rad", "heading deg", "%.2f", 180 / std::numbers::pi},
 };
 
-/// A run that is under way has no figures yet; of one whose figures are damaged `problem` says so.
+/// A run in progress has no figures yet; for damaged figures `problem` gives the reason.
 nlohmann::json metrics_of(const std::string& run, std::string& problem) {
   namespace fs = std::filesystem;
   const auto row = [&run](const char* outcome) {
@@ -82,14 +82,14 @@ std::string text_of(const std::optional<double>& number, const Column& column) {
   return text.data();
 }
 
-/// The value that a share of the sorted values does not exceed (nearest rank); the least for 0.
+/// The value that this fraction of the sorted values does not exceed (nearest rank); the least for 0.
 std::optional<double> quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::nullopt;
   const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
-/// Of a folder beside the runs, such as a campaign's, what it is; "" for a run.
+/// The kind of a folder that is not a run, such as a campaign's; "" for a run.
 std::string no_run(const std::string& folder) {
   namespace fs = std::filesystem;
   const fs::path path = folder;
@@ -99,7 +99,7 @@ std::string no_run(const std::string& folder) {
                                                         : ": no run directory");
 }
 
-/// How the figures of all runs that have some spread, in five lines of the same table.
+/// Prints the spread of the figures over all runs that have some, in five lines of the same table.
 void print_spread(const std::vector<nlohmann::json>& runs) {
   std::map<std::string, int> outcomes;
   for (const nlohmann::json& m : runs) ++outcomes[text_of(m, "outcome")];

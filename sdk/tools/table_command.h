@@ -1,4 +1,4 @@
-// `karst table RUN...`: the figures of many runs, a line each.
+// `karst table RUN...`: the figures of many runs, one line each.
 #pragma once
 
 namespace CLI {

@@ -64,7 +64,7 @@ tuning::TuneOptions options_of(const TuneArguments& args) {
   o.policy = campaign::parse_contestant(args.policy);
   o.policy.plugin = args.plugin;
   o.axes = tuning::axes_of(listing_of(o.policy.policy, args.plugin), args.parameters);
-  for (const auto& [key, value] : o.policy.parameters)  // what is given stays as it is
+  for (const auto& [key, value] : o.policy.parameters)  // parameters given by the user stay fixed
     std::erase_if(o.axes, [&key = key](const tuning::Axis& a) { return a.id == key; });
   if (o.axes.empty())
     throw InputError("karst tune", args.policy, "gives every parameter a value: none is left to tune");
@@ -105,7 +105,7 @@ void write_table(const fs::path& file, const TuneResult& r, const std::string& m
   evaluation::write_whole_file(file, text);
 }
 
-/// The remark of the preset: what it is worth, and what that rests on.
+/// The remark of the preset: its measured benefit, and the basis of that.
 std::string worth_text(const TuneResult& r) {
   std::string out;
   if (r.tuned_on) out += "On the caves it was tuned on (which flatters it): " + r.tuned_on->sentence + "\n";

@@ -1,4 +1,4 @@
-// `karst tune`: better parameters for a policy.
+// `karst tune`: searches for better parameters of a policy.
 #pragma once
 
 namespace CLI {

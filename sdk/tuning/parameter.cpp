@@ -38,7 +38,7 @@ std::string Axis::text(double u) const {
                 : as_declared ? "%.9g"
                               : "%.3g",
                 as_declared ? start : value(u));
-  // Three digits may round past a bound.
+  // Rounding to three digits may exceed a bound.
   if (!whole && (std::atof(number.data()) > high || std::atof(number.data()) < low))
     std::snprintf(number.data(), number.size(), "%.17g", value(u));
   return number.data() + (unit.empty() ? "" : " " + unit);

@@ -11,7 +11,7 @@
 namespace karst::tuning {
 namespace {
 
-constexpr double kTolerance = 0.005;  // of the cube's edge: finer than what flights can tell apart
+constexpr double kTolerance = 0.005;  // fraction of the cube's edge: finer than flights can resolve
 
 nlopt::algorithm algorithm_of(SearchMethod method, std::size_t dimensions) {
   switch (method) {
@@ -70,7 +70,7 @@ void search(const Point& start, const SearchOptions& options, const std::functio
   try {
     nlopt.optimize(at, value);
   } catch (const nlopt::forced_stop&) {
-  } catch (const nlopt::roundoff_limited&) {  // nothing is left to gain
+  } catch (const nlopt::roundoff_limited&) {  // no further improvement is possible
   }
   if (state.failure) std::rethrow_exception(state.failure);
 }

@@ -1,4 +1,4 @@
-// Finds a minimum of a function that is costly, noisy and has no derivative, in the unit cube (NLopt).
+// Minimizes a function that is expensive, noisy and has no derivative, in the unit cube (NLopt).
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -11,15 +11,15 @@ namespace karst::tuning {
 
 using Point = std::vector<double>;  // each from 0 to 1
 
-/// bobyqa: quadratic models about the best so far (Powell, 2009); direct: cuts the cube where it is promising
-/// or large (DIRECT-L: Gablonsky, Kelley, 2001); crs: a population (CRS2: Kaelo, Ali, 2006).
+/// bobyqa: quadratic models around the best point (Powell, 2009); direct: divides the most promising or
+/// largest boxes (DIRECT-L: Gablonsky, Kelley, 2001); crs: a population (CRS2: Kaelo, Ali, 2006).
 enum class SearchMethod { bobyqa, direct, crs };
 constexpr auto names_of(SearchMethod) {
   using enum SearchMethod;
   return std::to_array<core::Named<SearchMethod>>({{bobyqa, "bobyqa"}, {direct, "direct"}, {crs, "crs"}});
 }
 
-/// Throws core::InputError naming the nearest one if there is none of this name.
+/// Throws core::InputError with the most similar name if there is none of this name.
 SearchMethod search_method(const std::string& name);
 
 struct SearchOptions {
@@ -28,8 +28,8 @@ struct SearchOptions {
   std::uint64_t seed = 1;    // of crs
 };
 
-/// Calls `f` on one point after another, `start` first, until it says that it wants no more, or nothing is
-/// left to gain. Deterministic. An exception of `f` ends the search and is thrown on.
+/// Calls `f` on one point after another, `start` first, until `enough` returns true or no improvement is
+/// left. Deterministic. An exception from `f` ends the search and is rethrown.
 void search(const Point& start, const SearchOptions& options, const std::function<double(const Point&)>& f,
             const std::function<bool()>& enough);
 

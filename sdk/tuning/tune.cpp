@@ -21,7 +21,7 @@ std::string folder_name(std::size_t candidate) {
   return name.data();
 }
 
-/// Over caves of the mean over seeds, as verdicts weigh them.
+/// Mean over caves of the mean over seeds, as in verdicts.
 double mean_of(const CampaignResults& r, std::size_t contestant, int metric) {
   std::map<std::size_t, std::pair<double, int>> caves;
   for (const campaign::TrialResult& t : r.trials) {
@@ -56,7 +56,7 @@ campaign::Settings parameters_at(const std::vector<Axis>& axes, const Point& p) 
   return s;
 }
 
-/// The better parameters next to the default in one set of results.
+/// The tuned parameters against the default in one set of results.
 std::optional<campaign::Comparison> comparison(const CampaignResults& r, const std::string& metric) {
   campaign::VerdictOptions options;
   options.metric = metric;
@@ -65,7 +65,7 @@ std::optional<campaign::Comparison> comparison(const CampaignResults& r, const s
   return c ? std::optional(*c) : std::nullopt;
 }
 
-/// Two campaigns of a contestant each through the same caves as one of two.
+/// Joins two campaigns, of one contestant each, through the same caves.
 CampaignResults joined(const CampaignResults& a, const CampaignResults& b) {
   CampaignResults all = a;
   all.contestants.push_back(b.contestants.front());
@@ -110,7 +110,7 @@ TuneResult tune(const TuneOptions& o, const Fly& fly, const TuneEvents& events) 
   TuneResult result;
   std::vector<CampaignResults> flown;
   std::map<campaign::Settings, double> known;
-  double worst = 0;  // what a candidate counts as of which nothing is known
+  double worst = 0;  // value of a candidate with unknown results
   const auto cost = [&](const Point& p) {
     const campaign::Settings parameters = parameters_at(o.axes, p);
     if (const auto found = known.find(parameters); found != known.end()) return found->second;
@@ -128,7 +128,7 @@ TuneResult tune(const TuneOptions& o, const Fly& fly, const TuneEvents& events) 
   };
   Point start;
   for (const Axis& a : o.axes) start.push_back(a.place(a.start));
-  // Points that round to known parameters cost no flight, but must not go on for ever.
+  // Points that round to known parameters cost no flight, but their number must be bounded.
   std::size_t asked = 0;
   const auto enough = [&] { return result.tried.size() >= most || ++asked > 50 * most; };
   try {

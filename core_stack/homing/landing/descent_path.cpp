@@ -11,11 +11,11 @@ namespace karst::core {
 namespace {
 
 constexpr double kFarthest_m = 4, kRing_m = 0.5;
-constexpr double kNearlyThere_m = 2;  // of its landing site: preferred over any other ground
+constexpr double kNearlyThere_m = 2;  // from its landing site: then preferred over any other ground
 constexpr int kDirections = 16;
-constexpr double kBesideHull_m = 0.15;  // kept free along the line, and in the column below
+constexpr double kBesideHull_m = 0.15;  // kept free on both sides of the line, and in the column below it
 
-/// Limits of the ground, from those of a landing site to what a vehicle just stands on: 50 deg topples it.
+/// Limits of the ground, from those of a landing site to ground that just holds a vehicle: 50 deg topples it.
 constexpr std::array kGround{
     GroundOptions{.margin_m = kBesideHull_m, .max_slope_deg = 15, .max_step_m = 0.25, .max_drop_m = 20},
     GroundOptions{.margin_m = kBesideHull_m, .max_slope_deg = 30, .max_step_m = 0.4, .max_drop_m = 20}};

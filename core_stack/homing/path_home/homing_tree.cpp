@@ -8,7 +8,7 @@ namespace {
 
 /// The minimal edge length: with zero-length edges, paths could contain cycles.
 constexpr double kMinLength_m = 0.01;
-constexpr std::size_t kMaxRays = 1024;  // of a node; in flight there are tens
+constexpr std::size_t kMaxRays = 1024;  // maximal number of rays of a node; in flight there are tens
 
 std::tuple<NodeKind, double, double, double> rank(const TreeNode& n) {
   return {n.kind, n.position.x(), n.position.y(), n.position.z()};

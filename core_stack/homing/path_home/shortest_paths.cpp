@@ -65,7 +65,7 @@ void ShortestPaths::relax() {
   touched_ = lost_.size();
   // Collect the offers for all lost nodes first. An offer based on another lost node would be correct, but
   // push entries that become stale.
-  std::vector<Entry> offers(lost_.size(), {unreachable, none});  // node: by whom
+  std::vector<Entry> offers(lost_.size(), {unreachable, none});  // with the node that offers each
   for (std::size_t i = 0; i < lost_.size(); ++i)
     for (const Edge& e : nodes_[lost_[i]].edges) {
       const double cost = nodes_[e.to].cost + e.cost;

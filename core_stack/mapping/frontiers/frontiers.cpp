@@ -18,7 +18,7 @@ void sort_unique(std::vector<Key>& keys) {
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-/// The cells around a cell, each direction with a reader of its own: from cell to cell it stays in its block.
+/// The cells around a cell, with one reader per direction: between neighbouring cells it stays in its block.
 class FaceReaders {
  public:
   explicit FaceReaders(const VoxelMap& map) : readers_(kFaces.size(), VoxelReader(map)) {}
@@ -35,7 +35,7 @@ class FaceReaders {
   std::vector<VoxelReader> readers_;
 };
 
-/// Cells in both of two sorted lists.
+/// Number of cells in both of two sorted lists.
 std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b) {
   std::size_t n = 0;
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
@@ -99,7 +99,7 @@ void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes)
   if (changes.empty()) return;
   if (edge_ == 0)
     edge_ = std::clamp(static_cast<std::int32_t>(std::lround(options_.tile_m / map.resolution_m())), 1, 64);
-  std::set<std::uint32_t> stale;  // clusters to count around again
+  std::set<std::uint32_t> stale;  // clusters whose counts must be updated
   for (const CellKey& t : update_cells(map, changes)) {
     Tile& tile = tiles_.at(t);
     std::vector<Part> parts = components(t);
@@ -118,10 +118,10 @@ void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes)
       count_around(map, options_.neighbourhood_m, c->second);
 }
 
-/// Brings the frontier bits up to date; returns the tiles to cluster again, sorted. Those are also the tiles
-/// of cells that were and are frontier but see less of the unknown than before.
+/// Updates the frontier bits; returns the tiles that must be clustered again, sorted. These include the tiles
+/// of cells that remain frontier but see less of the unknown than before.
 std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<const CellChange> changes) {
-  // Only a cell that leaves the unknown matters to its neighbours.
+  // Only a cell that is no longer unknown affects its neighbours.
   std::vector<PackedCell> candidates;
   candidates.reserve(7 * changes.size());
   for (const CellChange& c : changes) {
@@ -151,7 +151,7 @@ std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<cons
   return dirty;
 }
 
-/// The tile's frontier cells as 26-connected components, in the order of their lowest cells.
+/// The tile's frontier cells as 26-connected components, ordered by their lowest cells.
 std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
   const std::vector<std::uint64_t>& rows = tiles_.at(t).rows;
   std::vector<std::uint64_t> left = rows;
@@ -159,7 +159,7 @@ std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
     return row * static_cast<std::size_t>(edge_) + static_cast<std::size_t>(z);
   };
   std::vector<std::uint32_t> part_of(rows.size() * static_cast<std::size_t>(edge_));
-  struct Run {  // cells of one row
+  struct Run {  // consecutive cells of one row
     std::int32_t x, y;
     std::uint64_t cells;
   };
@@ -184,7 +184,7 @@ std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
           take(x, y, around);
     }
   };
-  // In the order of keys, so that each part's cells come out sorted.
+  // In key order, so that the cells of each part are sorted.
   for (std::int32_t x = 0; x < edge_; ++x)
     for (std::int32_t y = 0; y < edge_; ++y) {
       const auto row = static_cast<std::size_t>(x * edge_ + y);
@@ -201,8 +201,8 @@ std::vector<Frontiers::Part> Frontiers::components(const CellKey& t) const {
   return parts;
 }
 
-/// Each part inherits the id of the former part with which it shares most cells, each id going to one heir;
-/// larger shares choose first. The others get new ids.
+/// Each part inherits the id of the former part with which it has most cells in common; each id goes to one
+/// part, and larger overlaps choose first. The other parts get new ids.
 void Frontiers::name(std::vector<Part>& parts, const std::vector<Part>& former) {
   struct Claim {
     std::size_t cells, part, former;
@@ -223,7 +223,7 @@ void Frontiers::name(std::vector<Part>& parts, const std::vector<Part>& former) 
     if (p.id == 0) p.id = ++last_id_;
 }
 
-/// Everything of a cluster but the counts.
+/// Fills everything of a cluster except the counts.
 void Frontiers::publish(const VoxelMap& map, const Part& part) {
   if (static_cast<std::int64_t>(part.cells.size()) < options_.min_cells) return;
   FrontierCluster c;
@@ -248,14 +248,14 @@ void Frontiers::publish(const VoxelMap& map, const Part& part) {
   clusters_[c.id] = std::move(c);
 }
 
-/// Clusters in whose box a cell may have changed.
+/// Adds the clusters in whose box a cell may have changed.
 void Frontiers::add_clusters_near(const VoxelMap& map, std::span<const CellChange> changes,
                                   std::set<std::uint32_t>& ids) const {
   std::vector<CellKey> changed;
   for (const CellChange& c : changes)
     if (const CellKey t = tile_of(c.key); changed.empty() || changed.back() != t) changed.push_back(t);
   sort_unique(changed);
-  // A cluster's box reaches from its centroid, which lies in its tile, over so many tiles.
+  // A cluster's box extends this many tiles from its centroid, which lies in its tile.
   const auto radius =
       static_cast<std::int32_t>(std::ceil(options_.neighbourhood_m / (edge_ * map.resolution_m())));
   std::vector<PackedCell> near;

@@ -1,9 +1,9 @@
 // Frontiers: free cells with an unknown face neighbour, kept up to date from the map's changes and grouped
 // into clusters of bounded size.
 //
-// Space is cut into tiles of a few metres; a cluster is a 26-connected component of frontier cells inside
-// one tile. Only tiles touched by a change are clustered again, so an update costs what changed and not
-// what is mapped, and clusters come out small enough to be a goal each.
+// Space is cut into tiles of a few metres; a cluster is a 26-connected component of frontier cells within one
+// tile. Only tiles touched by a change are clustered again. An update's cost therefore depends on the
+// changes, not on the map's size, and each cluster is small enough to be one goal.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -23,21 +23,21 @@ struct FrontierOptions {
 void describe(OptionTable& t, FrontierOptions& o);
 
 struct FrontierCluster {
-  std::uint32_t id = 0;  // never used twice; kept while the cluster still shares cells with its former self
+  std::uint32_t id = 0;  // never reused; kept while the cluster has cells in common with its former self
   std::vector<CellKey> cells;  // sorted
   Vec3 centroid = Vec3::Zero();
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // bounds of the cells, metres
-  Vec3 normal = Vec3::Zero();  // unit mean direction from free into unknown; zero if it has none
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // bounds of the cells, metres, world frame
+  Vec3 normal = Vec3::Zero();  // unit mean direction from free into unknown; zero if undefined
   std::uint32_t unknown_cells = 0, free_cells = 0;  // in the box around the centroid
 };
 
 class Frontiers {
  public:
   explicit Frontiers(const FrontierOptions& options);
-  /// Brings the clusters up to date after one or more insertions, given all their changes. Everything in the
-  /// clusters, the counts around them included, then holds for the map as it is.
+  /// Updates the clusters after one or more insertions, given all their changes. The clusters and their
+  /// counts are then consistent with the current map.
   void update(const VoxelMap& map, std::span<const CellChange> changes);
-  /// Clusters of at least min_cells, by id.
+  /// Clusters of at least min_cells cells, by id.
   const std::map<std::uint32_t, FrontierCluster>& clusters() const { return clusters_; }
   bool is_frontier(const CellKey& k) const;
   std::size_t cell_count() const { return cell_count_; }
@@ -48,7 +48,7 @@ class Frontiers {
     std::vector<CellKey> cells;  // sorted
   };
   struct Tile {
-    std::vector<std::uint64_t> rows;  // a word a row of cells along z, a bit a cell; rows by x, then y
+    std::vector<std::uint64_t> rows;  // a word per row of cells along z, a bit per cell; rows by x, then y
     std::vector<Part> parts;
   };
 
@@ -63,7 +63,7 @@ class Frontiers {
                          std::set<std::uint32_t>& ids) const;
 
   FrontierOptions options_;
-  std::int32_t edge_ = 0;                                 // of a tile, in cells; known with the first map
+  std::int32_t edge_ = 0;                                 // of a tile, in cells; set with the first map
   std::unordered_map<CellKey, Tile, CellKeyHash> tiles_;  // looked up, never iterated
   std::map<std::uint32_t, FrontierCluster> clusters_;
   std::size_t cell_count_ = 0;

@@ -30,7 +30,7 @@ Vec3 normal_at(VoxelReader& cells, const CellKey& k) {
   return length < 1e-9 ? Vec3(0, 0, 0) : Vec3(sum / length);
 }
 
-/// A camera where it took a picture, and what it sees of single cells. Lengths in cells.
+/// A camera at the pose of a picture, and a test of what it sees of single cells. Lengths in cells.
 class View {
  public:
   View(const VoxelMap& map, const Pose& T_world_camera, const RgbCameraModel& model)
@@ -46,7 +46,7 @@ class View {
 
   VoxelReader& cells() { return cells_; }
 
-  /// A quick look before a cell's normal is worked out: may any of its faces be in the picture?
+  /// A quick test before a cell's normal is computed: can any of its faces be in the picture?
   bool may_see(const CellKey& k) const {
     const Vec3 p = to_camera_ * (center(k) - eye_);
     const double radius = furthest_ + 1, margin = 1 + half_width_ + half_height_;
@@ -90,12 +90,12 @@ class View {
 };
 
 bool usable(const VoxelMap& map, const Pose& T_world_camera) {
-  constexpr double kWorld_cells = 40000;  // the map ends before
+  constexpr double kWorld_cells = 40000;  // the map ends nearer than this
   return T_world_camera.position.allFinite() && T_world_camera.orientation.coeffs().allFinite() &&
          (T_world_camera.position / map.resolution_m()).cwiseAbs().maxCoeff() < kWorld_cells;
 }
 
-/// The cells of the box around all that a camera there could see.
+/// Corners of the box around all cells that a camera at this pose could see.
 std::array<CellKey, 2> box_around(const VoxelMap& map, const Pose& T_world_camera,
                                   const RgbCameraModel& model) {
   const Vec3 radius = Vec3::Constant(static_cast<double>(model.camera.max_range_m) + map.resolution_m());

@@ -2,8 +2,8 @@
 //
 // A surface cell is an occupied cell with a free face neighbour. A camera images it if
 // - the face's centre (just outside the cell) is within the camera's range and field of view,
-// - the way from the camera to there leads through free cells only, and comes from the face's front,
-// - the surface is not seen more at a slant than the camera's greatest incidence. The surface's normal is the
+// - the line from the camera to there passes free cells only, and arrives from the face's front,
+// - the angle of incidence is at most the camera's greatest. The surface's normal is the
 //   mean direction to the free cells among the 5x5x5 around the cell.
 // One such face is enough.
 #pragma once
@@ -21,42 +21,42 @@ namespace karst::core {
 
 struct SurfaceCell {
   CellKey key;
-  Vec3 normal = Vec3::Zero();  // unit, into free space; zero where it has no direction: free on all sides
+  Vec3 normal = Vec3::Zero();  // unit, into free space; zero if undefined (free on all sides)
 };
 
-/// The cell as part of the surface; nothing if it is not.
+/// The surface cell of this key; none if the cell is not part of the surface.
 std::optional<SurfaceCell> surface_cell(const VoxelMap& map, const CellKey& key);
 
-/// By the rules above. `T_world_camera`: x along the optical axis, y left, z up.
+/// Applies the rules above. `T_world_camera`: x along the optical axis, y left, z up.
 bool images(const VoxelMap& map, const Pose& T_world_camera, const RgbCameraModel& camera,
             const SurfaceCell& cell);
 
-/// The core's account: the cells imaged so far, whatever the map has made of them since.
+/// The cells imaged so far by the core, regardless of later changes of the map.
 class ImagedSurface {
  public:
   ImagedSurface() = default;
   explicit ImagedSurface(std::span<const CellKey> cells) : cells_(cells.begin(), cells.end()) {}
 
-  /// Takes in one picture; returns how many cells it added.
+  /// Adds the cells imaged by one picture; returns how many are new.
   std::size_t take(const VoxelMap& map, const Pose& T_world_camera, const RgbCameraModel& camera);
-  /// It, or a cell that shares a face with it, was imaged: the map's surface shifts by a cell now and then.
+  /// Whether the cell or one of its face neighbours was imaged: the map's surface can shift by a cell.
   bool contains(const CellKey& key) const;
-  /// All cells, sorted: the flat form in which a snapshot carries them.
+  /// All cells, sorted, as a snapshot stores them.
   std::vector<CellKey> cells() const;
   std::size_t size() const { return cells_.size(); }
 
  private:
-  std::unordered_set<CellKey, CellKeyHash> cells_;  // membership only: its order decides nothing
+  std::unordered_set<CellKey, CellKeyHash> cells_;  // membership only: its order never matters
 };
 
-/// The surface cells of a map that are not imaged yet, for many questions about one state of both.
+/// The surface cells of a map that are not imaged yet, for many queries on one state of both.
 class UnimagedSurface {
  public:
   UnimagedSurface(const VoxelMap& map, const ImagedSurface& imaged);
 
   const std::vector<SurfaceCell>& cells() const { return cells_; }  // ascending (z, y, x)
   std::size_t surface_cells() const { return surface_cells_; }      // imaged or not
-  /// Indices, ascending, of the cells that a picture from there would image.
+  /// Indices, ascending, of the cells that a picture from this pose would image.
   std::vector<std::uint32_t> seen_from(const Pose& T_world_camera, const RgbCameraModel& camera) const;
 
  private:

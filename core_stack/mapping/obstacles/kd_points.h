@@ -1,4 +1,4 @@
-// Points as nanoflann asks for them.
+// Points in the form that nanoflann expects.
 #pragma once
 #include <cstdint>
 #include <nanoflann.hpp>

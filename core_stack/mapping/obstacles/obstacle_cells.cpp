@@ -1,5 +1,5 @@
-// Works on whole blocks as sets of bits: what touches a free cell is the free cells moved by one in each of
-// the six directions, into the neighbour blocks where they leave their own.
+// Works on whole blocks as bit sets: the cells that touch a free cell are the free cells shifted by one in
+// each of the six directions, across block borders where needed.
 #include "core_stack/mapping/obstacles/obstacle_cells.h"
 
 #include <bit>
@@ -10,7 +10,7 @@
 namespace karst::core {
 namespace {
 
-using Bits = std::array<std::uint64_t, 8>;  // a word for each z; in it bit x + 8 y
+using Bits = std::array<std::uint64_t, 8>;  // one word per z; in it bit x + 8 y
 
 template <class Predicate>
 Bits bits_where(const Block& b, Predicate&& holds) {
@@ -63,7 +63,7 @@ class NearFree {
 std::vector<CellKey> obstacle_cells(const VoxelMap& map, const CellKey& low, const CellKey& high) {
   const BlockTable& table = VoxelReader(map).blocks();
   NearFree near_free;
-  std::vector<std::pair<BlockId, Bits>> blocks;  // cells to be listed, but for the box
+  std::vector<std::pair<BlockId, Bits>> blocks;  // cells to be listed, before the box is applied
   for (const Block* b : blocks_in_box(table, low + CellKey{-1, -1, -1}, high + CellKey{1, 1, 1})) {
     near_free.add(*b);
     blocks.emplace_back(b->id, bits_where(*b, [](std::int16_t v) { return class_of(v) == Cell::occupied; }));

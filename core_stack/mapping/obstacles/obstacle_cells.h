@@ -6,8 +6,8 @@
 
 namespace karst::core {
 
-/// Occupied cells in the closed box, and its unknown cells that share a face with a free one (in the box or
-/// beside it). Sorted by block.
+/// Occupied cells in the closed box, and unknown cells in it that share a face with a free cell (inside or
+/// beside the box). Sorted by block.
 std::vector<CellKey> obstacle_cells(const VoxelMap& map, const CellKey& low, const CellKey& high);
 
 }  // namespace karst::core

@@ -8,7 +8,7 @@
 namespace karst::core {
 namespace {
 
-/// nanoflann result set: the nearest point within a bound; `first_will_do` stops at any point within it.
+/// nanoflann result set: the nearest point within a bound; `first_will_do` stops at the first one found.
 struct NearestWithin {
   using DistanceType = float;
   float bound;  // squared metres

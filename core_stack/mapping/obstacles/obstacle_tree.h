@@ -1,4 +1,4 @@
-// KD-tree of what the vehicle must keep away from: occupied cells, and unknown cells that touch free ones.
+// KD-tree of obstacles: occupied cells, and unknown cells that touch free ones.
 #pragma once
 #include <memory>
 
@@ -6,7 +6,7 @@
 
 namespace karst::core {
 
-/// Built from the map inside a box; immutable after that. Distances are to cell centres, metres.
+/// Built from the map inside a box (world frame), then immutable. Distances in metres to cell centres.
 class ObstacleTree {
  public:
   ObstacleTree(const VoxelMap& map, const Vec3& low, const Vec3& high);
@@ -17,7 +17,7 @@ class ObstacleTree {
   std::size_t size() const;
   /// Distance from p to the nearest obstacle cell's centre; +inf if there is none.
   double distance(const Vec3& p) const;
-  /// As distance, with the nearest centre. False if there is none.
+  /// Like distance, and returns the nearest centre. False if there is none.
   bool nearest(const Vec3& p, Vec3& center, double& distance_m) const;
   /// True if some obstacle centre is nearer than radius_m (cheaper than the distance).
   bool any_within(const Vec3& p, double radius_m) const;

@@ -25,7 +25,7 @@ std::optional<PointTree::Nearest> PointTree::nearest(const Vec3& p) const {
   Nearest found{0, 0};
   float squared = 0;
   storage_->index.knnSearch(query.data(), 1, &found.index, &squared);
-  found.distance_m = (points()[found.index].cast<double>() - p).norm();  // floats lose millimetres
+  found.distance_m = (points()[found.index].cast<double>() - p).norm();  // the tree's floats lose millimetres
   return found;
 }
 

@@ -1,4 +1,4 @@
-// A KD-tree over points, for who asks for the nearest of many.
+// A KD-tree over points for nearest-neighbour and radius queries.
 #pragma once
 #include <cstdint>
 #include <memory>

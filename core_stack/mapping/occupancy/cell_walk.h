@@ -1,9 +1,9 @@
-// The cells a segment passes, face to face (Amanatides and Woo, A Fast Voxel Traversal Algorithm, 1987).
+// Traverses the cells of a segment face by face (Amanatides and Woo, A Fast Voxel Traversal Algorithm, 1987).
 //
 // Which axis is crossed next cannot be predicted, so the step has no branch: times are integers, and masks
-// select what is added. One unit of time is 2^-60 of the segment. An axis crosses its last border at kEnd or
-// before and would cross the one after it later than kEnd; this holds exactly, so the walk always takes the
-// steps that lead into the end's cell, whatever was lost to rounding.
+// select the increments. One unit of time is 2^-60 of the segment. An axis crosses its last border no later
+// than kEnd and would cross the next one after kEnd. This holds exactly, so the walk always ends in the end's
+// cell despite rounding.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,16 +15,16 @@ namespace karst::core {
 
 class CellWalk {
  public:
-  /// The segment in cells (metres divided by the resolution), within +-kPackedLimit.
+  /// The segment in units of cells (metres divided by the resolution), within +-kPackedLimit.
   CellWalk(const Vec3& from, const Vec3& to)
       : x_(from.x(), to.x(), kShiftX), y_(from.y(), to.y(), kShiftY), z_(from.z(), to.z(), 0) {
     cell_ = pack({x_.first, y_.first, z_.first});
   }
 
   PackedCell cell() const { return cell_; }
-  /// Steps from the first cell to the last.
+  /// Number of steps from the first cell to the last.
   std::int32_t steps() const { return x_.crossings + y_.crossings + z_.crossings; }
-  /// To be called no more than steps() times.
+  /// Must be called at most steps() times.
   void advance() {
     const std::int64_t x_first = mask_less(x_.time, y_.time) & mask_less(x_.time, z_.time);
     const std::int64_t y_first = mask_less(y_.time, z_.time) & ~x_first;
@@ -37,7 +37,7 @@ class CellWalk {
 
   struct Axis {
     static constexpr std::int64_t kEnd = std::int64_t{1} << 60;
-    std::int64_t time = 2 * kEnd, period = 0;  // of the next crossing; between crossings
+    std::int64_t time = 2 * kEnd, period = 0;  // of the next crossing; time between crossings
     PackedCell step = 0;
     std::int32_t first, crossings = 0;
 
@@ -53,7 +53,7 @@ class CellWalk {
       time = static_cast<std::int64_t>(std::min(to_border * (end / length), end));
       time = std::clamp(time, kEnd + 1 - crossings * period, kEnd - (crossings - 1) * period);
     }
-    /// What to add to the cell. `mask` is all ones to cross, zero to stay.
+    /// Increment of the cell. `mask` is all ones to cross the border, zero to stay.
     PackedCell cross(std::int64_t mask) {
       time += period & mask;
       return step & static_cast<PackedCell>(mask);
@@ -64,7 +64,7 @@ class CellWalk {
   PackedCell cell_;
 };
 
-/// Calls visit(PackedCell) for each cell from from's to to's, both included, until it returns false.
+/// Calls visit(PackedCell) for each cell from that of `from` to that of `to`, until it returns false.
 template <class Visit>
 void walk_cells(const Vec3& from, const Vec3& to, Visit&& visit) {
   CellWalk walk(from, to);

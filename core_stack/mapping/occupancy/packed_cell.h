@@ -1,7 +1,7 @@
-// A cell's three coordinates in one word, 21 bits each, for tables and for walking.
+// A cell's three coordinates in one word, 21 bits each, for hash tables and ray traversal.
 //
-// x stands highest, so that numeric order is the order of CellKey. Clearing the lowest three bits of each
-// part gives the cell's block of 8x8x8.
+// x is in the highest bits, so that numeric order equals the order of CellKey. Clearing the lowest three bits
+// of each part gives the cell's block of 8x8x8.
 #pragma once
 #include <cstdint>
 
@@ -26,14 +26,14 @@ constexpr CellKey unpack(PackedCell p) {
   return {part(kShiftX), part(kShiftY), part(0)};
 }
 
-/// A cell's place in its block: a word for each z, in it a bit for each x and y, x fastest.
+/// Position of a cell in its block: one word per z, in it one bit per x and y, x fastest.
 constexpr std::uint32_t word_in_block(PackedCell p) { return static_cast<std::uint32_t>(p & 7); }
 constexpr std::uint32_t bit_in_block(PackedCell p) {
   return static_cast<std::uint32_t>((p >> kShiftX & 7) | (p >> (kShiftY - 3) & 0x38));
 }
 
-/// Spreads a word over a table's slots (a power of two): neighbours in space must not become neighbours
-/// there, or linear probing walks through them all.
+/// Hashes a word to one of a table's slots (a power of two). Neighbouring cells must not get neighbouring
+/// slots, or linear probing would walk through all of them.
 constexpr std::size_t slot_of(std::uint64_t word, std::size_t slots) {
   word *= 0x9e3779b97f4a7c15ull;
   word = (word ^ word >> 32) * 0xbf58476d1ce4e5b9ull;

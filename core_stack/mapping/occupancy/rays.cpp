@@ -6,7 +6,7 @@
 namespace karst::core {
 namespace {
 
-/// A sensor where it was when it fired.
+/// A sensor at the pose at which it fired.
 struct Sensor {
   Vec3f origin;
   Eigen::Matrix3f R_world_sensor;
@@ -15,7 +15,7 @@ struct Sensor {
         R_world_sensor(T_world_sensor.orientation.toRotationMatrix().cast<float>()) {}
 };
 
-/// What of a return becomes a ray: not what hit the vehicle itself, nothing that is no range.
+/// Accepts the returns that become rays: rejects hits on the vehicle itself and invalid ranges.
 struct Gate {
   Vec3f sensor_in_body;
   Eigen::Matrix3f R_body_sensor;
@@ -38,10 +38,10 @@ struct Gate {
   }
 };
 
-/// Directions of all beams from one row and one column of them: cos and sin once a row, not once a beam.
+/// Directions of all beams from one row and one column: cos and sin once per row, not once per beam.
 struct BeamTable {
-  std::vector<Eigen::Vector2f> azimuth;    // unit, one a column
-  std::vector<Eigen::Vector2f> elevation;  // (cos, sin), one a channel
+  std::vector<Eigen::Vector2f> azimuth;    // unit, one per column
+  std::vector<Eigen::Vector2f> elevation;  // (cos, sin), one per channel
   explicit BeamTable(const LidarModel& model) {
     const auto& e = model.elevation_rad;
     const auto flattest =

@@ -1,7 +1,7 @@
 // Blocks of 8x8x8 log-odds and the table that finds them; private to mapping.
 //
-// The table is open-addressed with linear probing over one plain vector: one multiplication and, nearly
-// always, one cache line a look-up. Blocks have stable addresses.
+// The table is open-addressed with linear probing over one plain vector: a look-up takes one multiplication
+// and, nearly always, one cache line. Blocks have stable addresses.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,14 +17,14 @@ namespace karst::core {
 constexpr std::int32_t kBlockEdge = 8;
 constexpr std::int32_t kWorldCells = 32768;  // OctoMap's keys reach from -32768 to 32767 in each axis
 constexpr std::int16_t kUnknown = std::numeric_limits<std::int16_t>::min();
-constexpr float kLogOddsScale = 4096.0f;  // units in 1.0 of log-odds: +-8, which is p = 0.0003 to 0.9997
+constexpr float kLogOddsScale = 4096.0f;  // units per 1.0 of log-odds: +-8 means p = 0.0003 to 0.9997
 
 inline bool in_world(const CellKey& k) {
   const auto offset = [](std::int32_t v) { return static_cast<std::uint32_t>(v) + kWorldCells; };
   return ((offset(k.x) | offset(k.y) | offset(k.z)) & ~0xffffu) == 0;
 }
 
-/// A block's name: its lowest cell.
+/// A block's id: its lowest cell.
 using BlockId = PackedCell;
 
 inline BlockId block_of(const CellKey& k) { return pack(k) & ~kInBlock; }
@@ -47,7 +47,7 @@ inline Cell class_of(std::int16_t v) {
 struct Block {
   explicit Block(BlockId name) : id(name) { log_odds.fill(kUnknown); }
   std::array<std::int16_t, 512> log_odds;
-  std::array<std::uint64_t, 8> hit{}, miss{};  // marks of the scan being inserted, zero otherwise
+  std::array<std::uint64_t, 8> hit{}, miss{};  // marks of the scan being inserted, otherwise zero
   BlockId id;
   std::uint64_t revision = 0;
   bool touched = false;
@@ -97,7 +97,7 @@ class BlockTable {
   std::vector<std::unique_ptr<Block>> blocks_;
 };
 
-/// Blocks that touch the closed box of cells, sorted. Goes over whichever is fewer: the box's blocks or all.
+/// Blocks that touch the closed box of cells, sorted. Iterates over the box or all blocks, whichever is less.
 std::vector<const Block*> blocks_in_box(const BlockTable& table, const CellKey& low, const CellKey& high);
 
 }  // namespace karst::core

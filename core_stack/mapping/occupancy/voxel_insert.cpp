@@ -8,12 +8,12 @@ namespace karst::core {
 namespace {
 
 /// Rays seen so far, by the cell of their origin and the half cell (an eighth of the volume) of their end.
-/// Rays alike in both pass the same cells but for a few in ten thousand. The table grows with what it holds,
-/// a fraction of the rays, so that it stays in the cache.
+/// Rays that agree in both pass the same cells except a few in ten thousand. The table grows with its
+/// contents, a fraction of all rays, so that it stays in the cache.
 class RaySet {
  public:
-  /// True if no such ray was there before. A sweep starts from few cells; the rays of one that starts from
-  /// more than kOrigins count as new beyond that.
+  /// True if the ray is new. A sweep starts from few cells; beyond kOrigins origin cells, rays always count
+  /// as new.
   bool add(const CellKey& origin, const CellKey& end_in_half_cells, bool hit) {
     const std::optional<std::uint64_t> from = number_of(pack(origin));
     if (!from) return true;
@@ -54,19 +54,19 @@ class RaySet {
       if (ray != 0) place(ray);
   }
 
-  std::vector<PackedCell> origins_;  // those numbered so far
+  std::vector<PackedCell> origins_;  // the origins numbered so far
   std::size_t current_ = 0, count_ = 0;
   std::uint64_t last_ = 0;
   std::vector<std::uint64_t> slots_ = std::vector<std::uint64_t>(4096);
 };
 
-/// Marks cells in the blocks' bitsets and remembers which blocks it touched.
+/// Marks cells in the blocks' bit sets and records the touched blocks.
 class Marker {
  public:
   explicit Marker(BlockTable& blocks) : blocks_(blocks) {}
 
   void hit(PackedCell p) { block(p).hit[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p); }
-  /// All cells of the walk but the last.
+  /// Marks all cells of the walk except the last.
   void miss(CellWalk walk) {
     for (std::int32_t left = walk.steps(); left > 0; --left, walk.advance()) {
       const PackedCell p = walk.cell();
@@ -96,7 +96,7 @@ class Marker {
   std::vector<Block*> touched_;
 };
 
-/// `p` in cells; false for NaN.
+/// Converts `p` to cells; false for NaN.
 bool inside(const Vec3& p) {
   const auto in = [](double v) { return v >= -kWorldCells && v < kWorldCells; };
   return in(p.x()) && in(p.y()) && in(p.z());
@@ -133,7 +133,7 @@ std::vector<CellChange> VoxelMap::insert(std::span<const Ray> rays) {
     const CellKey corner = corner_of(b->id);
     const auto add = [&](std::uint32_t i, std::int16_t step, std::int16_t bound) {
       const std::int16_t v = b->log_odds[i];
-      if (v == bound) return;  // as sure as it may become: most cells of a place seen before
+      if (v == bound) return;  // already saturated, like most cells of a place seen before
       const int sum = (v == kUnknown ? 0 : v) + step;
       s.set(*b, corner, i, static_cast<std::int16_t>(std::clamp<int>(sum, s.low, s.high)), changes);
     };

@@ -11,7 +11,7 @@ std::int16_t scaled_logit(double p) {
   return static_cast<std::int16_t>(std::lround(std::log(p / (1.0 - p)) * kLogOddsScale));
 }
 
-/// Cells of a point, clamped well inside int32 and outside the world; NaN counts as far outside.
+/// Cell index of a coordinate, clamped well inside int32 and outside the world; NaN counts as far outside.
 std::int32_t cell_of(double cells) {
   constexpr double limit = 1e9;
   if (!(cells > -limit)) return static_cast<std::int32_t>(-limit);
@@ -101,7 +101,7 @@ std::optional<CellKey> VoxelMap::first_not_free(const Vec3& from, const Vec3& to
     if (reader.at(k) != Cell::free) found = k;
     return !found;
   });
-  // An end that is no place (not finite, far outside the world) cannot be walked to, and is not free.
+  // An invalid end (not finite, far outside the world) cannot be reached by a walk, and is not free.
   if (!found && !in_world(key_of(to))) found = key_of(to);
   if (!found && !in_world(key_of(from))) found = key_of(from);
   return found;

@@ -1,9 +1,9 @@
-// The occupancy map: cubic cells, free, occupied or unknown, with OctoMap's Bayesian model.
+// The occupancy map: cubic cells, free, occupied or unknown, with OctoMap's Bayesian model. World frame.
 //
-// The working copy is a hash of 8x8x8 blocks of log-odds, an order of magnitude faster to update and to
-// query than a tree; octomap::OcTree is made from it for storage and for others (octomap_io.h). Cell
-// boundaries are OctoMap's: cell k covers [k, k+1) * resolution in each axis, and so is the world's size:
-// keys from -32768 to 32767 (6.5 km at 0.2 m). What lies beyond is unknown and stays so.
+// The working copy is a hash table of 8x8x8 blocks of log-odds, an order of magnitude faster to update and
+// query than a tree; octomap::OcTree is created from it for storage and for other tools (octomap_io.h). Cell
+// boundaries are OctoMap's: cell k covers [k, k+1) * resolution in each axis. So is the world's size: keys
+// from -32768 to 32767 (6.5 km at 0.2 m). Cells beyond are unknown and stay so.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -31,8 +31,8 @@ struct CellKeyHash {
 
 struct MapOptions {
   double resolution_m = 0.2;
-  // OctoMap's defaults are 0.7 and 0.4: two misses outweigh a hit. Rays that graze a spike then clear it, and
-  // a vehicle flies where it pleases close to what was seen; here a hit weighs five misses.
+  // OctoMap's defaults are 0.7 and 0.4: two misses outweigh a hit. Grazing rays then clear a spike of rock,
+  // and this vehicle flies close to rock; here a hit weighs as much as five misses.
   double hit_probability = 0.75;
   double miss_probability = 0.45;
   double min_probability = 0.12;
@@ -40,7 +40,7 @@ struct MapOptions {
 };
 void describe(OptionTable& t, MapOptions& o);
 
-/// A cell whose class changed, with its class before.
+/// A cell whose class changed, with its previous class.
 struct CellChange {
   CellKey key;
   Cell before, after;
@@ -57,22 +57,22 @@ class VoxelMap {
   CellKey key_of(const Vec3& p) const;
   Vec3 center_of(const CellKey& k) const;
 
-  Cell at(const CellKey& k) const;  // a few nanoseconds when queries are coherent; safe from several readers
+  Cell at(const CellKey& k) const;  // a few nanoseconds if queries are coherent; allows concurrent readers
   Cell at(const Vec3& p) const { return at(key_of(p)); }
   std::optional<float> log_odds(const CellKey& k) const;
 
-  /// Updates the map with one scan: a cell hit by any ray is hit once, a cell only passed is missed once
-  /// (the semantics of OctoMap's insertPointCloud). Of the rays that start in one cell and end in one half
-  /// cell (half a cell's edge in each axis) only the first is cast. The end's cell of a ray without a hit is
-  /// not passed. Rays that are not finite or leave the world are ignored. Returns the cells whose class
-  /// changed, sorted by key.
+  /// Updates the map with one scan (world frame): a cell hit by any ray is hit once, a cell only passed is
+  /// missed once (the semantics of OctoMap's insertPointCloud). Of the rays that start in one cell and end in
+  /// one half cell (half a cell's edge in each axis) only the first is cast. The end cell of a ray without a
+  /// hit is not updated. Rays that are not finite or leave the world are ignored. Returns the cells whose
+  /// class changed, sorted by key.
   std::vector<CellChange> insert(std::span<const Ray> rays);
-  /// Declares a ball free (the launch site, which the operator vouches for); cells known already keep
-  /// their value.
+  /// Declares a ball free (the launch site, which the operator guarantees to be free); known cells keep their
+  /// value.
   std::vector<CellChange> declare_free(const Vec3& center, double radius_m);
 
-  /// Gives every cell of a cube the same log-odds, clamped to what the map stores (+-7.9); for maps that are
-  /// read from storage or drawn by hand. What of the cube lies outside the world is ignored.
+  /// Gives every cell of a cube the same log-odds, clamped to the storable range (+-7.9); for maps read from
+  /// storage or drawn by hand. Cells of the cube outside the world are ignored.
   void assign(const CellKey& low, std::int32_t edge_cells, float log_odds);
 
   std::size_t free_cells() const;
@@ -80,11 +80,11 @@ class VoxelMap {
   double free_volume_m3() const;
 
   /// Number of the last write (insert or declare_free) that changed the class of a cell within the blocks
-  /// that touch the ball. A place is "as before" while this number stands.
+  /// that touch the ball. While this number stays the same, the surroundings are unchanged.
   std::uint64_t revision_near(const Vec3& center, double radius_m) const;
-  std::uint64_t revision() const;  // writes so far
+  std::uint64_t revision() const;  // number of writes so far
 
-  /// First cell on the segment that is not free, if any (every cell the segment passes is visited).
+  /// First cell on the segment that is not free, if any (visits every cell the segment passes).
   std::optional<CellKey> first_not_free(const Vec3& from, const Vec3& to) const;
   /// First occupied cell on the segment, if any; free and unknown cells are transparent.
   std::optional<CellKey> first_occupied(const Vec3& from, const Vec3& to) const;
@@ -101,8 +101,8 @@ class VoxelMap {
   std::unique_ptr<Storage> storage_;
 };
 
-/// Visits the cells a segment passes, in order, including both ends' cells; stops when `visit` returns
-/// false. Amanatides and Woo, 1987. Visits nothing if an end is not finite or 2^20 cells or more from the
+/// Visits the cells of a segment in order, both ends' cells included; stops when `visit` returns false.
+/// Amanatides and Woo, 1987. Visits nothing if an end is not finite, or 2^20 cells or more from the
 /// origin.
 void traverse(const Vec3& from, const Vec3& to, double resolution_m,
               const std::function<bool(const CellKey&)>& visit);

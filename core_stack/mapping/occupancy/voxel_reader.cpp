@@ -15,7 +15,7 @@ CellCounts VoxelReader::count(const CellKey& low, const CellKey& high) const {
         const std::int32_t x0 = std::max(low.x - bx, 0), x1 = std::min(high.x - bx, 7);
         const std::int32_t y0 = std::max(low.y - by, 0), y1 = std::min(high.y - by, 7);
         const std::int32_t z0 = std::max(low.z - bz, 0), z1 = std::min(high.z - bz, 7);
-        // Whole rows, summed up by x, so that the compiler makes one vector operation of a row.
+        // Whole rows, summed per x, so that the compiler vectorizes each row.
         std::array<std::int16_t, kBlockEdge> free_at{}, occupied_at{};
         for (std::int32_t z = z0; z <= z1; ++z)
           for (std::int32_t y = y0; y <= y1; ++y) {

@@ -1,4 +1,4 @@
-// Reads neighbouring cells faster than VoxelMap::at: it remembers the block it read last.
+// Reads neighbouring cells faster than VoxelMap::at, by caching the block it read last.
 #pragma once
 #include "core_stack/mapping/occupancy/voxel_storage.h"
 
@@ -8,8 +8,8 @@ struct CellCounts {
   std::uint32_t unknown = 0, free = 0, occupied = 0;
 };
 
-/// Each reader keeps its own memory, so several may read one map at once. Not to be used after the map has
-/// been written to.
+/// Each reader has its own cache, so that several may read one map concurrently. A reader must not be used
+/// after a write to the map.
 class VoxelReader {
  public:
   explicit VoxelReader(const VoxelMap& map) : blocks_(map.storage_->blocks) {}
@@ -23,10 +23,10 @@ class VoxelReader {
     }
     return block_ == nullptr ? Cell::unknown : class_of(block_->log_odds[local_of(k)]);
   }
-  /// Counts the cells of a closed box by class, about a nanosecond a cell.
+  /// Counts the cells of a closed box by class, in about a nanosecond per cell.
   CellCounts count(const CellKey& low, const CellKey& high) const;
   const BlockTable& blocks() const { return blocks_; }
-  /// What a map holds, for those in mapping who write whole blocks.
+  /// The map's storage, for functions of mapping that write whole blocks.
   static VoxelMap::Storage& storage_of(VoxelMap& map) { return *map.storage_; }
 
  private:

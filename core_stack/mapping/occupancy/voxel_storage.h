@@ -1,4 +1,4 @@
-// What VoxelMap holds; private to mapping.
+// Storage of VoxelMap; private to mapping.
 #pragma once
 #include "core_stack/mapping/occupancy/voxel_blocks.h"
 
@@ -13,7 +13,7 @@ struct VoxelMap::Storage {
   std::size_t free_cells = 0, occupied_cells = 0;
   std::uint64_t revision = 0;
 
-  /// Gives a cell a new value; keeps the counts, the block's revision and the list of changes.
+  /// Sets a cell's value; updates the counts, the block's revision and the list of changes.
   void set(Block& b, const CellKey& corner, std::uint32_t local, std::int16_t value,
            std::vector<CellChange>& changes) {
     std::int16_t& cell = b.log_odds[local];

@@ -1,5 +1,5 @@
-// Reads OctoMap's two file formats straight into blocks. OctoMap's own reader does not notice that a file is
-// cut short, and recurses as deep as a damaged file tells it to.
+// Reads OctoMap's two file formats directly into blocks. OctoMap's own reader does not detect truncated
+// files, and a damaged file can make it recurse without limit.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace karst::core {
 namespace {
 
 constexpr std::int32_t kWorldEdge = 65536;  // cells; OctoMap's trees have 16 levels
-constexpr double kMaxCells = 3e8;           // 600 MB; more is a damaged file
+constexpr double kMaxCells = 3e8;           // 600 MB; a file with more is damaged
 
 struct Header {
   bool binary = false;  // a .bt file: classes only
@@ -37,7 +37,7 @@ class Reader {
     if (header.nodes > 0) {
       const CellKey low{-kWorldEdge / 2, -kWorldEdge / 2, -kWorldEdge / 2};
       header.binary ? read_classes(low, kWorldEdge) : read_values(low, kWorldEdge);
-      nodes_ += header.binary ? 1 : 0;  // the root has no entry of its own there
+      nodes_ += header.binary ? 1 : 0;  // the root has no entry of its own in .bt
     }
     if (nodes_ != header.nodes)
       fail(place(), "holds " + std::to_string(nodes_) + " nodes where its header says " +
@@ -104,7 +104,7 @@ class Reader {
     return {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0), low.z + (i & 4 ? half : 0)};
   }
 
-  /// .bt: two bits a child (1 free, 2 occupied, 3 with children of its own), then the children's entries.
+  /// .bt: two bits per child (1 free, 2 occupied, 3 with children), then the children's entries.
   void read_classes(const CellKey& low, std::int32_t edge) {
     if (edge == 1) fail(place(), "has a tree deeper than 16 levels");
     const auto kinds = take<std::uint16_t>();
@@ -118,7 +118,7 @@ class Reader {
       if ((kinds >> (2 * i) & 3) == 3) read_classes(child(low, half, i), half);
   }
 
-  /// .ot: a node's log-odds and one bit for each child it has, then the children.
+  /// .ot: a node's log-odds and a bit mask of its children, then the children.
   void read_values(const CellKey& low, std::int32_t edge) {
     const auto log_odds = take<float>();
     const auto children = take<std::uint8_t>();

@@ -1,5 +1,5 @@
 // The map as octomap::OcTree: the blocks in Morton order are the tree's leaves from left to right, so that
-// every node is made, summed up and pruned once.
+// every node is created, updated and pruned once.
 #include <octomap/octomap.h>
 
 #include <span>
@@ -13,9 +13,9 @@ namespace {
 using octomap::OcTree;
 using octomap::OcTreeNode;
 
-constexpr int kBlockDepthBits = 13;  // of OctoMap's 16 levels, those above the blocks
+constexpr int kBlockDepthBits = 13;  // of OctoMap's 16 levels, the number above the blocks
 
-/// The block's place in the tree: three bits a level, OctoMap's child index in each (x lowest).
+/// The block's position in the tree: three bits per level, OctoMap's child index (x lowest).
 std::uint64_t morton_of(BlockId id) {
   const CellKey corner = corner_of(id);
   const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v + kWorldCells) >> 3; };
@@ -70,7 +70,7 @@ void build_in_block(OcTree& tree, OcTreeNode* node, const Block& b, const Cube& 
   finish(tree, node);
 }
 
-/// `leaves` are all blocks below `node`, which stands `levels` above them.
+/// `leaves` are all blocks below `node`, which is `levels` levels above them.
 void build(OcTree& tree, OcTreeNode* node, std::span<const Leaf> leaves, int levels) {
   if (levels == 0) {
     build_in_block(tree, node, *leaves.front().block, Cube{});
@@ -97,7 +97,7 @@ std::unique_ptr<OcTree> to_octree(const VoxelMap& map) {
   if (leaves.empty()) return tree;
   std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) { return a.morton < b.morton; });
 
-  // The public way to a root is to set some cell; the cell gets its own value below.
+  // OctoMap's public interface creates a root only by setting a cell; that cell gets its own value below.
   const Block& first = *leaves.front().block;
   std::uint32_t i = 0;
   while (first.log_odds[i] == kUnknown) ++i;

@@ -13,7 +13,7 @@
 namespace karst::core {
 namespace {
 
-/// Opens a temporary file, lets `write` fill it, and renames it to `path` once all is on the disk.
+/// Opens a temporary file, lets `write` fill it, and renames it to `path` once all is written.
 template <class Write>
 void write_whole(const std::string& path, Write&& write) {
   const std::string temporary = path + ".part";
@@ -22,17 +22,17 @@ void write_whole(const std::string& path, Write&& write) {
     std::remove(temporary.c_str());
     throw InputError(path, "", what + ": " + reason);
   };
-  std::remove(temporary.c_str());  // what a killed flight left, or a FIFO that would block
+  std::remove(temporary.c_str());  // left by a killed flight, or a FIFO that would block
   errno = 0;
   std::ofstream out(temporary, std::ios::binary);
   if (!out) fail("cannot be created");
   write(out);
-  out.close();  // flushes; a full disk may show only here
+  out.close();  // flushes; a full disk may become apparent only here
   if (!out) fail("cannot be written");
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be put in place");
 }
 
-/// OctoMap's own functions that write a header also write to the terminal.
+/// OctoMap's own functions that write a header also print to the terminal.
 void write_header(std::ostream& out, const char* kind, const octomap::OcTree& tree) {
   char resolution[32];
   const auto end = std::to_chars(resolution, resolution + sizeof resolution, tree.getResolution()).ptr;
@@ -48,7 +48,7 @@ void write_octomap(const VoxelMap& map, const std::string& stem) {
     write_header(out, "# Octomap OcTree file", *tree);
     if (tree->size() > 0) tree->writeData(out);
   });
-  tree->toMaxLikelihood();  // to classes, of which more can be pruned
+  tree->toMaxLikelihood();  // converts to classes, of which more can be pruned
   tree->prune();
   write_whole(stem + ".bt", [&](std::ostream& out) {
     write_header(out, "# Octomap OcTree binary file", *tree);

@@ -11,10 +11,10 @@ namespace {
 /// The search range for viewpoints of a cluster; a viewpoint stays valid until the map changes there.
 constexpr double kViewpointRange_m = 4.6;
 
-/// When nothing else is left, the pauses of places that failed up to three times are waived.
+/// If nothing else is left, the retry pauses of places that failed up to three times are waived.
 constexpr TimeNs kPauseWaived = 40 * kSecond;
-/// In a narrow passage the next viewpoint is always near the last ones: the pauses of two more attempts are
-/// waived, even if the map has not changed there.
+/// In a narrow passage the next viewpoint is always near the last ones. The retry pauses of two more attempts
+/// are waived there, even if the map has not changed.
 constexpr TimeNs kNarrowPauseWaived = 160 * kSecond;
 
 ClosureRules last_resort_rules(Passages passages, TimeNs now) {

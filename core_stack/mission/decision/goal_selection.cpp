@@ -10,7 +10,7 @@
 namespace karst::core {
 namespace {
 
-/// The number of plans that a cycle tries for one list; the rest waits for the next cycle.
+/// Number of plans that a cycle tries for one list; the other goals wait for the next cycle.
 constexpr int kMaxPlans = 5;
 
 /// A path flown at nearly zero speed would hold the vehicle until the battery forces it home.

@@ -58,7 +58,7 @@ std::size_t before_the_window(const std::vector<Vec3>& flight_path) {
 }  // namespace
 
 SteepestView steepest_view(const VehicleDescription& vehicle) {
-  constexpr double kNear_m = 1.5, kFar_m = 30;  // for cameras of any range; for a LiDAR that sits on a mast
+  constexpr double kNear_m = 1.5, kFar_m = 30;  // for cameras of any range; for a LiDAR on a mast
   SteepestView view;
   for (int degree = 0; degree <= 90; ++degree) {
     const double e = degree * kDegree_rad;

@@ -9,12 +9,12 @@ namespace {
 constexpr TimeNs kPeriod = 50 * kMillisecond;
 /// No later motion depends on its timing, so the brake may use nearly the full acceleration.
 constexpr double kFraction = 0.95;
-/// The pause between brake and descent: the vehicle lags a little behind its reference.
+/// Pause between braking and descent: the vehicle lags a little behind its reference.
 constexpr TimeNs kStandStill = 500 * kMillisecond;
 constexpr double kDeepest_m = 1000;
 /// A path that begins farther from the stop is out of date.
 constexpr double kStale_m = 2;
-constexpr double kMove_mps = 1.0;  // at most, from rest to rest
+constexpr double kMove_mps = 1.0;  // maximal speed, from rest to rest
 constexpr std::size_t kMoveSamples = 256;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// The last resort, when something of the core has failed or the operator ends the flight: brake on what is
-// left of the trajectory, fly the last known way to where the ground is fit to land on, and come straight
-// down until the ground is felt. It needs no map and no policy, and once made, no memory.
+// The last resort when a part of the core has failed or the operator ends the flight: brakes along the
+// remaining trajectory, flies the last known path to ground suitable for landing, and descends vertically
+// until ground contact. It needs no map and no policy and, once constructed, allocates no memory.
 #pragma once
 #include <array>
 #include <limits>
@@ -12,19 +12,19 @@ namespace karst::core {
 
 class EmergencyLanding {
  public:
-  /// `limits` of the trajectories it will have to brake.
+  /// `limits`: of the trajectories that it may have to brake.
   EmergencyLanding(const MotionLimits& limits, double descent_mps);
 
-  /// The way to above such ground from where the vehicle would stop, as long as no other is known: no more of
-  /// it than kMaxPlaces is kept, and nothing of an empty one. Without a way it comes down where it stops.
+  /// Sets the path from the expected stop to above such ground (world frame), until the next call. At most
+  /// kMaxPlaces points are kept; an empty path clears it. Without a path the vehicle descends where it stops.
   void prepare(std::span<const Vec3> path) noexcept;
-  /// From `now` on; later calls change nothing. A way longer than `max_path_m` is not flown.
+  /// Starts at `now`; later calls have no effect. A path longer than `max_path_m` is not flown.
   void begin(const Trajectory& under_way, TimeNs now,
              double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
   bool begun() const { return begun_; }
-  /// What it was for is over: as if it had not begun, and no way were known.
+  /// Cancels the landing: afterwards it has not begun, and no path is known.
   void break_off();
-  /// What to follow at `now`, once it has begun.
+  /// The trajectory to follow at `now`; only after begin().
   const Trajectory& trajectory(TimeNs now) const;
 
  private:

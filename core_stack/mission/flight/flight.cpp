@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kControlPeriod_s = 0.01;
 constexpr double kOffGround_m = 0.15;
-constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: commands replace the IMU until the next
+constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: then predicted samples replace the IMU
 
 /// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
 constexpr double kBrakingFraction = 0.8;
@@ -152,7 +152,7 @@ void Flight::land_now(TimeNs now, double max_path_m) noexcept {
   emergency_landing_.begin(trajectory_, now, max_path_m);
 }
 
-/// Where the reference is by the pose found again, it may have drifted to beside the way down.
+/// The newly found pose may place the reference beside the descent line: hover at the current state.
 void Flight::break_off_landing(TimeNs now) {
   emergency_landing_.break_off();
   const TrajectorySample here{state().position, heading_of(state().orientation)};

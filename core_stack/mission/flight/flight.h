@@ -1,4 +1,4 @@
-// The inner loop: state estimate, trajectory, MPC reference, SE(3) command. Mission control hands it paths.
+// The inner loop: state estimate, trajectory, MPC reference, SE(3) command. Positions are in the world frame.
 #pragma once
 #include <limits>
 #include <optional>
@@ -15,13 +15,13 @@
 
 namespace karst::core {
 
-/// A path as it is to be flown.
+/// A path and how it is to be flown.
 struct Course {
-  std::vector<Vec3> points;  // the first is where the reference will be at `start`
+  std::vector<Vec3> points;  // the first is the reference position at `start`
   double start_speed_mps = 0;
   TimeNs start = 0;  // not before now
   HeadingPlan heading = {};
-  std::optional<double> max_speed_mps = {};  // a limit of its own, within the mission's
+  std::optional<double> max_speed_mps = {};  // its own speed limit, within the mission's
   SlowPlaces slow = {};
 };
 
@@ -37,7 +37,7 @@ class Flight {
     mass_.on_specific_force(s.specific_force_mps2.z());
   }
   void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
-  /// False if the estimate refuses it.
+  /// Returns false if the estimator refuses the pose.
   bool on_lidar_pose(const PoseMeasurement& p) { return estimator_.on_lidar_pose(p); }
   void on_barometer(const BarometerSample& s) { estimator_.on_barometer(s); }
   void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
@@ -46,45 +46,45 @@ class Flight {
   AttitudeRateCommand control(TimeNs now);
 
   void follow(const Course& course);
-  /// By the trajectory along it that was made beforehand, where the map is.
+  /// Follows a trajectory along the path that was prepared beforehand on the map lane.
   void follow(const Course& course, const Trajectory& ready);
-  /// The limits `follow` keeps.
+  /// The limits that `follow` observes.
   MotionLimits limits(std::optional<double> max_speed_mps = std::nullopt) const;
-  /// Flies no faster than this, from now on and along what is left of the present path.
+  /// Limits the speed from now on, also along the rest of the current path.
   void cap_speed(TimeNs now, double max_speed_mps);
-  /// Straight up or down at `speed_mps` by `height_m` from the present reference.
+  /// Climbs (or descends, if negative) vertically by `height_m` at `speed_mps` from the current reference.
   void climb(TimeNs now, double height_m, double speed_mps);
-  /// Turns by `turn_rad` on the spot: a camera's first look.
+  /// Turns on the spot by `turn_rad`, so that a camera sees its surroundings.
   void look_around(TimeNs now, double turn_rad);
-  /// Stops, as hard as the limits allow, on the present trajectory, which is known to be free.
+  /// Stops, as hard as the limits allow, along the current trajectory, which is known to be free.
   void brake(TimeNs now);
-  /// The way to where it can come down, from where it would stop if it had to land now; for land_now().
+  /// Sets the path from the expected stop to a landing site, for land_now().
   void prepare_landing(std::span<const Vec3> path) noexcept { emergency_landing_.prepare(path); }
-  /// Brakes, flies that way unless it is longer than `max_path_m`, and comes straight down, whatever else
-  /// it is told from now on. Needs no memory.
+  /// Brakes, flies that path unless it is longer than `max_path_m`, and descends vertically. Ignores all
+  /// later commands. Allocates no memory.
   void land_now(TimeNs now, double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
-  /// Lands no more: hovers where it is, and does as it is told again.
+  /// Cancels the landing: hovers in place and accepts commands again.
   void break_off_landing(TimeNs now);
-  /// Motors off, for good: on the ground.
+  /// Switches the motors off for good; only on the ground.
   void disarm() noexcept;
 
-  /// The trajectory from `t` on that the vehicle is committed to, for planning ahead.
+  /// The part of the trajectory from `t` on to which the vehicle is committed, for planning ahead.
   struct CommittedSegment {
-    std::vector<Vec3> points;  // from the position at t to where a new path may begin; at least one
+    std::vector<Vec3> points;  // from the position at t to the start of a possible new path; at least one
     double speed_mps = 0;      // at t
     double heading_rad = 0;    // at t
     Departure departure;       // at t: the velocity and acceleration, for polynomials
   };
-  /// Up to where the vehicle could stop.
+  /// Up to the point at which the vehicle could stop.
   CommittedSegment until_stop(TimeNs t) const;
   /// Up to the trajectory's end.
   CommittedSegment until_end(TimeNs t) const;
 
   bool airborne() const { return motors_ == Motors::armed; }
   bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
-  /// The state in which the trajectory will be at `t`, level.
+  /// The state on the trajectory at `t`, with level attitude.
   State expected(TimeNs t) const;
-  /// When the trajectory comes nearest to `p`.
+  /// Time at which the trajectory is nearest to `p`.
   TimeNs time_nearest(const Vec3& p) const;
   double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }
   const State& state() const { return estimator_.state(); }
@@ -98,7 +98,7 @@ class Flight {
   ImuSample expected_imu(TimeNs now) const;
   Departure departure_at(TimeNs t) const;
 
-  MotionLimits limits_, emergency_;  // of paths, and of the brake
+  MotionLimits limits_, emergency_;  // for paths, and for braking
   Estimator estimator_;
   MpcTracker tracker_;
   Se3Controller controller_;
@@ -106,13 +106,13 @@ class Flight {
   AttitudeRateCommand command_;
   double ground_m_ = 0;  // height of the vehicle's centre before take-off
   Trajectory trajectory_;
-  HeadingPlan heading_;  // of the path under way, as are its own speed limit and its slow places
+  HeadingPlan heading_;  // of the current path, like its own speed limit and its slow places
   SlowPlaces slow_;
   std::optional<double> path_speed_mps_;
   double speed_cap_mps_ = std::numeric_limits<double>::infinity();
   EmergencyLanding emergency_landing_;
-  enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: they never run again
-  bool braking_ = false;                                          // a brake is not slowed down any further
+  enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: the motors never run again
+  bool braking_ = false;                                          // a braking trajectory is never slowed down
 };
 
 }  // namespace karst::core

@@ -11,27 +11,27 @@ namespace karst::core {
 
 /// Where and how a new path joins the current trajectory. Created on the loop's thread, used on the map lane.
 struct RouteStart {
-  TimeNs at = 0;                       // when it will be followed
+  TimeNs at = 0;                       // time from which it will be followed
   Flight::CommittedSegment committed;  // the path begins at its end
   MotionLimits limits;                 // as they are now
-  std::vector<Vec3> narrow_places;     // that the committed segment may pass
+  std::vector<Vec3> narrow_places;     // that the committed segment may pass through
   double max_cut_m = 0.3;              // maximum corner deviation of the join
   std::optional<Goal> passed = {};     // the goal at the committed segment's end, if any
 };
 
-/// A path as it is flown.
+/// A path that is ready to be flown.
 struct Route {
   Path path;
-  std::vector<Vec3> points;  // the committed segment and the path
+  std::vector<Vec3> points;  // the committed segment, then the path
   HeadingPlan heading;
   double start_speed_mps = 0, max_speed_mps = 0;
   SlowPlaces slow;
-  std::optional<PolynomialTrajectory> polynomial;  // along the points, if the mission flies those
+  std::optional<PolynomialTrajectory> polynomial;  // along the points, if the mission flies polynomials
   Trajectory sampled;                              // along the points, within `limits`; its start is not set
   MotionLimits limits;
 };
 
-/// Joins `path` to the start. `goal` is the policy's goal that it leads to, if any.
+/// Joins `path` to the start. `goal` is the policy's goal at the end of the path, if any.
 Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleDescription& vehicle,
                  const RouteStart& start, const Path& path, const std::optional<Goal>& goal);
 

@@ -38,7 +38,7 @@ const SafetyVerdict& SafetySupervisor::judge(const SafetyObservation& o) {
   if (o.estimate.health != Health::good && !degraded_since_) degraded_since_ = o.now;
   SafetyVerdict now = on_motion(o);
   now.go_home = why_home(o);
-  const bool turns_back = now.go_home && !verdict_.go_home;  // it waits for nothing that is over
+  const bool turns_back = now.go_home && !verdict_.go_home;  // takes effect at once, with no hold time
   if (now.action >= verdict_.action || turns_back || o.now - cause_seen_ >= kKept) {
     verdict_ = std::move(now);
     cause_seen_ = o.now;

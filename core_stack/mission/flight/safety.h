@@ -1,8 +1,8 @@
-// The safety supervisor: from what is wrong to what is done about it, ten times a second.
+// The safety supervisor: maps observations to actions, ten times a second.
 //
-// Each rule reads one observation. Two questions are answered apart, so that neither answer hides the other:
-// what is done about the motion, where the most severe action of all rules counts, and whether exploring has
-// to end. An action is kept for a second after its cause is gone, so that it does not flicker.
+// Each rule reads one observation. Two questions are answered separately, so that neither answer hides the
+// other: the action on the motion (the most severe action of all rules applies), and whether exploration must
+// end. An action is kept for a second after its cause is gone, so that it does not flicker.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,15 +18,15 @@ struct SafetyObservation {
   TimeNs now = 0;
   Diagnosis estimate;
   double tracking_error_m = 0;
-  std::optional<double> hull_clearance_m;  // to the surface of the nearest obstacle in the map, if it is near
-  double blind_s = 0;                      // since the last scan or image was taken into the map
-  double battery_s = 0;                    // left
+  std::optional<double> hull_clearance_m;  // to the nearest obstacle's surface in the map, if one is near
+  double blind_s = 0;                      // since the last scan or image was inserted into the map
+  double battery_s = 0;                    // remaining
 };
 
 struct SafetyVerdict {
   SafetyAction action = SafetyAction::none;
-  std::string reason;                       // of the action
-  std::optional<std::string> go_home = {};  // why exploring has to end, if it has
+  std::string reason;                       // for the action
+  std::optional<std::string> go_home = {};  // why exploration must end, if it must
   bool same_motion(const SafetyVerdict& o) const { return action == o.action && reason == o.reason; }
 };
 

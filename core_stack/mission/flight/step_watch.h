@@ -1,4 +1,4 @@
-// Sees a periodic step that does not come any more, by what still comes.
+// Detects a periodic step that has stopped; queried by steps that still run.
 #pragma once
 #include "core_stack/common/time.h"
 
@@ -6,7 +6,7 @@ namespace karst::core {
 
 class StepWatch {
  public:
-  /// `patience`: some periods of the step.
+  /// `patience`: a few periods of the step.
   explicit StepWatch(TimeNs patience) : patience_(patience) {}
   void came(TimeNs now) { last_ = now; }
   TimeNs since(TimeNs now) const { return now - last_; }

@@ -98,12 +98,12 @@ void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now
       seconds(decided - now) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
   const bool takes_off = phases.in(Phase::takeoff);
   if (after_m > needed_m && !takes_off) {
-    if (as_come_) return;  // nothing else leads home; from near, what is there may look otherwise
+    if (as_come_) return;  // no other path leads home; the map may change when the vehicle is nearer
     if (!detour_due_) recorder_.write(now, event::Safety{SafetyAction::replan, reason, after_m});
     detour_due_ = true;
     return;
   }
-  blocked_ = !takes_off;  // below a roof, exploration goes on from there
+  blocked_ = !takes_off;  // below a roof, exploration starts from there
   detour_due_ = false;
   recorder_.write(now, event::Safety{SafetyAction::brake, reason, after_m});
   brake(now);

@@ -7,13 +7,13 @@ namespace {
 
 constexpr TimeNs kChoiceBudget = 200 * kMillisecond;
 constexpr TimeNs kHeardHere = kSecond;    // states come once a second: earlier ones were received elsewhere
-constexpr TimeNs kUnheard = 3 * kSecond;  // hovering above the site without radio contact
+constexpr TimeNs kUnheard = 3 * kSecond;  // maximal time without radio contact while hovering above the site
 constexpr TimeNs kLandingAgain = 2 * kSecond;
 
 }  // namespace
 
-/// It flies on to a site that it reaches too late, and looks again: the robot that took it becomes a relay as
-/// soon as its landing is known.
+/// If the vehicle would reach the site too late, it flies on to it and chooses again there: the robot that
+/// took the site becomes a relay as soon as its landing is known.
 void RelayLanding::choose(double flown_length_m, std::function<void()> over, std::function<void()> changed) {
   const std::optional<LandingSpot> before = std::exchange(spot_, std::nullopt);
   unheard_since_.reset();

@@ -6,7 +6,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kAboveHome_m = 0.4;
-// Of plans in a row: what is in the way may be another vehicle, or where one was seen that has left since.
+// Failed plans in a row. The obstacle may be another vehicle, or the last known place of one that has left.
 constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 6;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
@@ -149,14 +149,14 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
     return path.follow(route, now);
   }
   ++failures_;
-  if (wiring_.in_company()) retry_ = now + kAgain;  // it makes room
+  if (wiring_.in_company()) retry_ = now + kAgain;  // the other vehicle makes room
   path.block();
   path.take_no_detour();
   onboard_.recorder.write(now, event::Log{"no path home: " + route.path.reason});
   path.stop(now);
 }
 
-/// The flown path was passed without contact.
+/// Flies back along the flown path, which was passed without contact.
 void ReturnHome::fly_back_as_come() {
   planning_ = true;
   const TimeNs begun = onboard_.now();

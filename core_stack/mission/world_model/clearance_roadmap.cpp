@@ -29,7 +29,7 @@ std::optional<double> narrow_clearance_m(const PlanningOptions& options, double 
 ClearanceRoadmap narrow_roadmap(const VoxelMap& map, const PlanningOptions& options, double clearance_m) {
   PlanningOptions narrow = options;
   narrow.clearance_m = clearance_m;
-  narrow.search_slack_cells = 0.5;  // the middle of a passage askew to the grid lies off the cells' centres
+  narrow.search_slack_cells = 0.5;  // the centre line of a passage oblique to the grid misses cell centres
   ClearanceRoadmap roadmap(narrow, Passages::narrow);
   std::vector<CellChange> known;
   map.for_each_known([&](const CellKey& k, Cell cell, float) { known.push_back({k, Cell::unknown, cell}); });

@@ -1,4 +1,4 @@
-// Which cells are clear, for whole tiles at once: a ball of free cells around each, by shifts of rows of
+// Computes the clear cells of whole tiles at once: erodes free space by a ball, with shifts of rows of
 // bits.
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 namespace karst::core {
 namespace {
 
-constexpr int kMaxExtent = 16;  // a row of 32 cells is widened by that much on both sides
+constexpr int kMaxExtent = 16;  // a row of 32 cells is extended by this much on both sides
 
-/// True if the ball of radius r around one end or the other of the move from 0 to d holds o, or no point of
-/// the move is nearer to o than r.
+/// True if a ball of radius r around either end of the move from 0 to d contains o, or if no point of the
+/// move is nearer to o than r.
 bool ends_cover(const Eigen::Vector3i& o, const Eigen::Vector3i& d, double r2) {
   const double o2 = o.squaredNorm(), along = o.dot(d), d2 = d.squaredNorm();
   if (along <= 0 || along >= d2) return true;
@@ -26,7 +26,7 @@ bool near_moves(const Eigen::Vector3i& o, double r2) {
   return false;
 }
 
-/// An obstacle at the radius, up to rounding, is not nearer than it.
+/// An obstacle exactly at the radius, up to rounding, does not count as nearer.
 double squared_radius(double radius_cells) { return radius_cells * radius_cells - 1e-6; }
 
 double checked(double clearance_cells) {
@@ -36,7 +36,7 @@ double checked(double clearance_cells) {
   return clearance_cells;
 }
 
-/// Rows of a tile and of `margin` more around it in y and z, as 64 bits with the tile's first cell at bit 16.
+/// Rows of a tile and of a `margin` around it in y and z, as 64 bits with the tile's first cell at bit 16.
 struct WideRows {
   int margin, n;
   std::vector<std::uint64_t> rows;
@@ -62,7 +62,7 @@ std::vector<WideRows> eroded_along_x(WideRows free, int most) {
   return out;
 }
 
-/// Of the `wanted` cells of the row (y, z), those around which the ball is free.
+/// Those `wanted` cells of the row (y, z) around which the ball is free.
 std::uint64_t fitting(const std::vector<WideRows>& eroded, const Ball& ball, int y, int z,
                       std::uint64_t wanted) {
   for (const Ball::Row& r : ball.rows()) {
@@ -73,7 +73,7 @@ std::uint64_t fitting(const std::vector<WideRows>& eroded, const Ball& ball, int
   return wanted;
 }
 
-/// A tile's row as bits of a wide one, and back.
+/// Converts a tile's row to bits of a wide row, and back.
 std::uint64_t widened(std::uint32_t row) { return std::uint64_t{row} << 16; }
 std::uint32_t narrowed(std::uint64_t row) { return static_cast<std::uint32_t>(row >> 16); }
 
@@ -144,12 +144,12 @@ TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) con
   });
   if (rule.points().empty()) return out;
 
-  TileBits with_point{};  // cells with a clear point in them
+  TileBits with_point{};  // cells that contain a clear point
   for_each_row([&](int y, int z) {
     with_point[row_of(y, z)] = narrowed(fitting(eroded, rule.points()[0], y, z, widened(out[row_of(y, z)])));
   });
-  // The point half a cell up from k is half a cell down from the next cell: each counts for both, in each
-  // axis. Only those that lack a point are looked at.
+  // The point half a cell up from k is half a cell down from the next cell: in each axis it counts for both.
+  // Only cells that still lack a point are tested.
   for (std::size_t shift = 1; shift < rule.points().size(); ++shift) {
     const Ball& ball = rule.points()[shift];
     for (int z = ball.shift() & 4 ? -1 : 0; z < 8; ++z)

@@ -9,7 +9,7 @@ namespace karst::core {
 std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& free, const Vec3& start,
                                              double clearance_m) {
   struct Visit {
-    double length_m, distance_m;  // of the way so far; to the nearest obstacle
+    double length_m, distance_m;  // of the path so far; to the nearest obstacle
     CellKey parent;
   };
   const double res = free.resolution_m(), radius_m = 2 * clearance_m + 2 * res;
@@ -38,7 +38,7 @@ std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& fre
       const double distance = free.nearest(q, clearance_m).distance_m;
       const double length = at.length_m + (q - p).norm();
       const auto known = visits.find(n);
-      // Between two cells the distance may dip by a fraction of a cell below that of both.
+      // Between two cells the distance may fall by a fraction of a cell below the distance at either.
       if (distance < at.distance_m || (known != visits.end() && known->second.length_m <= length) ||
           !free.segment_clear(p, q, std::max(0.0, at.distance_m - 0.25 * res)))
         continue;

@@ -17,7 +17,7 @@ struct Offset {
   double distance;
 };
 
-/// Rows around a cell by distance, nearest first.
+/// Offsets of the rows around a cell, nearest first.
 std::vector<Offset> rows_by_distance() {
   std::vector<Offset> out;
   for (int dz = -kNearestRadius; dz <= kNearestRadius; ++dz)
@@ -88,7 +88,7 @@ std::uint32_t FreeTiles::row(std::int32_t x, std::int32_t y, std::int32_t z) con
   return first >> shift | bits({t.x + 1, t.y, t.z})[r] << (32 - shift);
 }
 
-/// Tiles found before: neighbouring rows mostly lie in the same.
+/// Cache of the last tiles: neighbouring rows mostly lie in the same tile.
 struct FreeTiles::LastTile {
   TileKey key;
   const TileBits* tile = nullptr;
@@ -116,7 +116,7 @@ bool FreeTiles::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) 
     return row_free(x_low, x_high, y, z, last);
   };
   if (!all_rows_near_segment(from, to, clearance_m / resolution_m_, free)) return false;
-  // Within half a cell's diagonal of any point lies its own cell's centre.
+  // The centre of a point's own cell is never farther than half a cell's diagonal.
   if (clearance_m > 0.87 * resolution_m_) return true;
   bool passed_free = true;
   traverse(a, b, resolution_m_, [&](const CellKey& k) { return passed_free = at(k); });
@@ -129,7 +129,7 @@ NearestObstacle FreeTiles::nearest(const Vec3& p, double limit_m) const {
   const Vec3 q = p / resolution_m_ - Vec3::Constant(0.5);
   double best = std::min(limit_m / resolution_m_, static_cast<double>(kNearestRadius)), best2 = best * best;
   NearestObstacle out{std::min(limit_m, kNearestRadius * resolution_m_), p};
-  // The window's rows lie in at most five by five pairs of tiles along x, each looked up when first needed.
+  // The window's rows lie in at most five by five pairs of tiles along x, each looked up when first used.
   struct Pair {
     const TileBits *low = nullptr, *high = nullptr;
   };

@@ -7,19 +7,19 @@ namespace karst::core {
 namespace {
 
 constexpr int kSweeps = 60;
-constexpr double kSettled_m = 0.002;  // a sweep that moves no point farther than this is the last
+constexpr double kSettled_m = 0.002;  // the iteration ends when no point moves farther than this
 constexpr double kBending = 0.35, kTension = 0.08, kPush = 0.3;
 constexpr double kMaxStep_m = 0.15;
 
-/// True if every point between a and b is clear, given the distances at both: nothing on the way can be
-/// nearer than (da + db - length) / 2. Asks the cells only where that does not decide.
+/// True if every point between a and b is clear, given the distances at both: no obstacle on the segment can
+/// be nearer than (da + db - length) / 2. Reads the cells only if this bound does not decide.
 bool surely_clear(const FreeTiles& free, const Vec3& a, double da, const Vec3& b, double db,
                   double clearance_m) {
   return da + db - (b - a).norm() >= 2 * clearance_m || free.segment_clear(a, b, clearance_m);
 }
 
-/// Nearest obstacles of points that move in small steps. A look a little farther than is asked for shows how
-/// far a point may move before it must look again; answers are the same as of FreeTiles::nearest.
+/// Nearest obstacles of points that move in small steps. Each query searches a little farther than requested,
+/// which bounds how far a point may move before the next query. The results equal FreeTiles::nearest.
 class NearestAlong {
  public:
   NearestAlong(const FreeTiles& free, double limit_m, std::size_t points)
@@ -37,9 +37,9 @@ class NearestAlong {
  private:
   static constexpr double kAhead_m = 0.6, kMinAhead_m = 0.1;
   struct Seen {
-    double distance_m = 0;  // to the nearest obstacle, or as far as was looked
+    double distance_m = 0;  // to the nearest obstacle, or the search radius
     Vec3 from = Vec3::Zero();
-    bool near = false;  // too near to an obstacle for looking ahead to pay
+    bool near = false;  // too near to an obstacle for a larger search radius to pay off
   };
   const FreeTiles& free_;
   double limit_m_;
@@ -65,7 +65,7 @@ std::vector<Vec3> smooth_band(const FreeTiles& free, double clearance_m, double 
     for (std::size_t i = 1; i < last; ++i) {
       const Vec3 &p = points[i], &before = points[i - 1], &after = points[i + 1];
       const Vec3 middle = 0.5 * (before + after);
-      // Where the sum of squared second differences is least; at the ends tension alone.
+      // Position that minimizes the sum of squared second differences; at the ends tension alone.
       const Vec3 bent =
           i > 1 && i + 1 < last ? Vec3((4 * (before + after) - points[i - 2] - points[i + 2]) / 6) : middle;
       Vec3 step = kBending * (bent - p) + kTension * (middle - p);

@@ -8,14 +8,14 @@
 namespace karst::core {
 namespace {
 
-/// Points of the given path are lifted off obstacles in steps from the first to the second of these.
+/// Step lengths, from the first to the last, for moving path points away from obstacles.
 constexpr double kLiftStep_m = 0.04, kMinLiftStep_m = 0.004;
-/// Lifted that much more, so that the lines between lifted points are clear too.
+/// Extra clearance of the moved points, so that the lines between them are clear, too.
 constexpr double kLiftSlack_m = 0.02;
-/// The band's points stand this far apart; the finished path's points at most `kFineSpacing_m`.
+/// Spacing of the band's points; the spacing of the finished path is at most `kFineSpacing_m`.
 constexpr double kBandSpacing_m = 0.4;
 constexpr double kFineSpacing_m = 0.1;
-/// For more clearance a path may become that much longer than the one given (which zigzags: it rarely does).
+/// A path with more clearance may be longer than the given one by this factor (the given one zigzags).
 constexpr double kMaxLonger = 1.05;
 
 /// Points at most `spacing_m` apart along the same polyline, its vertices included.
@@ -30,9 +30,9 @@ std::vector<Vec3> densified(const std::vector<Vec3>& points, double spacing_m) {
   return out;
 }
 
-/// Inner points nearer to obstacles than the clearance climb to more distance, by the best of 26 directions
-/// with steps that shrink: the gradient of the distance to the nearest obstacle alone would swing between
-/// the two sides of a narrow passage.
+/// Moves inner points nearer to obstacles than the clearance to a larger distance, along the best of 26
+/// directions with decreasing steps: following the gradient of the distance to the nearest obstacle would
+/// oscillate between the two sides of a narrow passage.
 void lift(const FreeTiles& free, double clearance_m, std::vector<Vec3>& points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     double distance = free.nearest(points[i], clearance_m).distance_m;
@@ -52,13 +52,13 @@ void lift(const FreeTiles& free, double clearance_m, std::vector<Vec3>& points) 
   }
 }
 
-/// Pulls the string: from each point straight to the farthest later one that a clear line reaches.
+/// Shortens the path: connects each point to the farthest later point on a clear line.
 std::vector<Vec3> pulled(const FreeTiles& free, double clearance_m, const std::vector<Vec3>& points) {
   std::vector<Vec3> out{points.front()};
   const std::size_t last = points.size() - 1;
   for (std::size_t i = 0; i < last;) {
     std::size_t reached = i + 1, step = 1;
-    while (step > 0) {  // gallop out, then halve the stride
+    while (step > 0) {  // doubles the stride, then halves it
       const std::size_t next = std::min(last, reached + step);
       const bool clear = next > reached && free.segment_clear(points[i], points[next], clearance_m);
       if (clear) reached = next;
@@ -71,7 +71,7 @@ std::vector<Vec3> pulled(const FreeTiles& free, double clearance_m, const std::v
 }
 
 std::vector<Vec3> shortened(const FreeTiles& free, double clearance_m, std::vector<Vec3> points) {
-  // Forwards, then backwards over finer points: a corner found late in one direction is found early in the
+  // Forwards, then backwards with finer spacing: a corner found late in one direction is found early in the
   // other.
   for (int pass = 0; pass < 2; ++pass) {
     points = pulled(free, clearance_m, densified(points, 0.5 * kBandSpacing_m));
@@ -87,7 +87,7 @@ std::vector<Vec3> refine_path(const VoxelMap& map, const std::vector<Vec3>& poin
   if (points.size() < 2) return points;
   const double preferred = std::max(options.clearance_m, options.preferred_clearance_m);
   FreeTiles free(map.resolution_m());
-  // The band never moves farther from the string than it was pushed, so this covers all it looks at.
+  // The band stays within its maximal push of the shortened path, so this covers all its queries.
   for (const Vec3& p : densified(points, map.resolution_m()))
     free.load_near(map, p, 2 * preferred + 2 * map.resolution_m());
   return refine_path(free, points, options);
@@ -99,7 +99,7 @@ std::vector<Vec3> refine_path(const FreeTiles& free, const std::vector<Vec3>& po
   const double clearance = options.clearance_m,
                preferred = std::max(clearance, options.preferred_clearance_m);
 
-  // A way out of a tight place at the beginning stays as it is.
+  // The escape from a tight place at the beginning stays unchanged.
   std::size_t kept = 0;
   const double escape_m = search_clearance_m(options, free.resolution_m()) - 1e-6;
   while (kept + 1 < points.size() && !free.is_clear(points[kept], escape_m)) ++kept;

@@ -9,11 +9,11 @@ namespace karst::core {
 namespace {
 
 constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
-/// Names of what comes next on the way that are no node's place.
+/// Special values of the next cell that are not the cell of any node.
 constexpr CellKey kNothing{std::numeric_limits<std::int32_t>::max(), 0, 0};
 constexpr CellKey kRoot{std::numeric_limits<std::int32_t>::min(), 0, 0};
 
-/// A tile of the roadmap as the tree last saw it. A node's name is its place: no two hold the same cell.
+/// A tile of the roadmap as last seen by the tree. A node is identified by its cell: no two share one.
 struct TreeTile {
   std::uint64_t seen = 0;
   std::vector<RoadmapNode> nodes;
@@ -40,7 +40,7 @@ struct Entry {
 struct DistanceTree::Tree {
   std::optional<Vec3> root;
   std::vector<Join> joins;      // of the root
-  std::vector<CellKey> joined;  // places of their nodes
+  std::vector<CellKey> joined;  // cells of their nodes
   std::vector<TreeTile> tiles;
   std::size_t touched = 0;
 
@@ -119,11 +119,11 @@ void DistanceTree::Tree::forget_paths_through(const RoadmapGraph& g, std::vector
   }
 }
 
-/// Dijkstra's algorithm, from what the neighbours of the lost nodes and the root's joins offer.
+/// Dijkstra's algorithm, starting from the offers of the lost nodes' neighbours and of the root's joins.
 void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>& lost) {
   std::vector<Entry> heap;
   const auto offer = [&](const NodeRef& n, double length_m, const CellKey& by) {
-    // Among equally long paths the one with the smallest cell wins, so the result does not depend on history.
+    // Of equally long paths the one with the smallest cell wins, so the result does not depend on history.
     if (length_m == length(n) && by < next(n)) next(n) = by;
     if (length_m >= length(n)) return;
     length(n) = length_m;
@@ -132,8 +132,8 @@ void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>
     std::push_heap(heap.begin(), heap.end());
   };
   for (std::size_t i = 0; i < joins.size(); ++i) offer(joins[i].node, joins[i].length_m, kRoot);
-  // Neighbours' offers are gathered first: one that stands on another lost node's offer would do no harm, but
-  // push entries that go stale.
+  // Collect the neighbours' offers first. An offer based on another lost node would be correct, but push
+  // entries that become stale.
   std::vector<std::pair<double, CellKey>> offers(lost.size(), {kUnreached_m, kNothing});
   for (std::size_t i = 0; i < lost.size(); ++i) {
     const Vec3 p = g.position_of(lost[i]);
@@ -161,7 +161,7 @@ void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>
 void DistanceTree::Tree::update(const RoadmapGraph& g) {
   tiles.resize(g.tiles.size());
   std::vector<PastNode> gone;
-  std::vector<NodeRef> lost;  // nodes without a path at present
+  std::vector<NodeRef> lost;  // nodes that currently have no path
   for (std::uint32_t i = 0; i < tiles.size(); ++i)
     if (g.tiles[i].changed > tiles[i].seen) take_over(g, i, gone, lost);
   check_joins(g, gone, lost);

@@ -14,18 +14,18 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// Goals as near as this are looked at directly: the graph's zigzag would matter there.
+/// Goals nearer than this are also checked directly: the zigzag of the graph would matter there.
 constexpr double kDirect_m = 5.0;
 
-/// A place to stand near a goal that is not clear is looked for this far first.
+/// First radius of the search for a clear place near a goal that is not clear.
 constexpr double kFirstShell_m = 1.6;
 
-/// Of 4 x 4 x 4 cells, in the cube around a ball.
+/// Number of blocks of 4 x 4 x 4 cells in the cube around a ball.
 double blocks_within(double radius_m, double resolution_m) {
   return std::pow(2 * radius_m / (4 * resolution_m) + 2, 3);
 }
 
-/// One run over the graph from several joins, by least length plus least possible rest.
+/// One A* search over the graph from several joins; heuristic: straight-line distance to the target.
 class GraphSearch {
  public:
   explicit GraphSearch(const RoadmapGraph& graph) : graph_(graph) {
@@ -39,7 +39,7 @@ class GraphSearch {
     done_.assign(count, false);
   }
 
-  /// Runs until `settled(index, length)` returns true. With a target the search is drawn towards it.
+  /// Runs until `settled(index, length)` returns true. Without a target it is Dijkstra's search.
   template <class Settled>
   void run(const std::vector<Join>& from, const std::optional<Vec3>& target, Settled&& settled) {
     const auto rest = [&](const Vec3& p) { return target ? (*target - p).norm() : 0.0; };
@@ -72,8 +72,8 @@ class GraphSearch {
 
   std::uint32_t index_of(const NodeRef& n) const { return base_[n.tile] + n.local; }
   NodeRef node_at(std::uint32_t index) const {
-    // The last tile that begins at or before the index holds it: tiles without nodes begin where the next
-    // does.
+    // The last tile that begins at or before the index contains it: a tile without nodes begins where the
+    // next one does.
     const auto tile = std::upper_bound(base_.begin(), base_.end(), index) - base_.begin() - 1;
     return {static_cast<std::uint32_t>(tile), index - base_[static_cast<std::size_t>(tile)]};
   }
@@ -140,7 +140,7 @@ std::vector<Vec3> Roadmap::places_near(const Vec3& p, double radius_m) const {
           });
     return out;
   }
-  // Wider than all that is known: the tiles that there are, in the order of the loops above.
+  // The range exceeds all known tiles: visit the existing tiles, in the order of the loops above.
   std::vector<NodeRef> found;
   const TileKey first = tile_of(low), last = tile_of(high);
   for (std::uint32_t i = 0; i < g.tiles.size(); ++i) {
@@ -165,12 +165,12 @@ std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, dou
   const RoadmapGraph& g = *graph_;
   if (!g.rule) return std::nullopt;
   if (g.free.is_clear(goal, g.clearance_m)) return goal;
-  if (map.at(goal) != Cell::free) return std::nullopt;  // nothing sees it through free cells
+  if (map.at(goal) != Cell::free) return std::nullopt;  // no place sees it through free cells
   struct Candidate {
     Vec3 position;
     double away_m;
   };
-  // Shell by shell, the nearest first: where there is one, it is mostly near.
+  // Shell by shell, nearest first: a suitable place is mostly near.
   double beyond_m = -1;
   for (double radius_m = std::min(kFirstShell_m, tolerance_m);;
        radius_m = std::min(2 * radius_m, tolerance_m)) {
@@ -183,7 +183,7 @@ std::optional<Vec3> Roadmap::approach(const VoxelMap& map, const Vec3& goal, dou
                                       static_cast<double>(g.tiles.size() + node_count()));
     if (work && !work->spend(static_cast<std::uint64_t>(looked_at))) return std::nullopt;
     for (const Candidate& place : shell) {
-      const double cells = 1 + 2 * place.away_m / g.free.resolution_m();  // of the line, about
+      const double cells = 1 + 2 * place.away_m / g.free.resolution_m();  // approximate length of the line
       if (work && !work->spend(static_cast<std::uint64_t>(cells))) return std::nullopt;
       if (!map.first_not_free(place.position, goal)) return place.position;
     }
@@ -260,7 +260,7 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
         best = length + j.length_m;
         in = &j;
       }
-    // No later node can lead to a shorter way than the least estimate settled so far.
+    // No later node can lead to a path shorter than the smallest estimate settled so far.
     return length + (g.position_of(search.node_at(node)) - goal).norm() >= best;
   });
   if (in == nullptr) return fail(PlanStatus::no_path, "no way through known free space leads to the goal");

@@ -7,7 +7,7 @@
 namespace karst::core {
 namespace {
 
-/// Cells of block b out of the rows of its tile.
+/// Extracts the cells of block b from the rows of its tile.
 BlockBits block_bits(const TileBits& rows, std::uint32_t b) {
   const std::uint32_t bx = b & 7, by = b >> 3 & 1, bz = b >> 4;
   BlockBits out = 0;
@@ -19,7 +19,7 @@ BlockBits block_bits(const TileBits& rows, std::uint32_t b) {
   return out;
 }
 
-/// Twice the squared distance of each cell from the block's middle, in cells.
+/// Twice the squared distance, in cells, of each cell from the block's centre.
 int eccentricity(int bit) {
   const int x = 2 * (bit & 3) - 3, y = 2 * (bit >> 2 & 3) - 3, z = 2 * (bit >> 4) - 3;
   return x * x + y * y + z * z;
@@ -131,7 +131,7 @@ std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {
 std::vector<CellKey> RoadmapGraph::cells_between(const CellKey& a, const CellKey& b) const {
   const CellKey low{std::min(a.x, b.x) & ~3, std::min(a.y, b.y) & ~3, std::min(a.z, b.z) & ~3};
   const CellKey high{std::max(a.x, b.x) | 3, std::max(a.y, b.y) | 3, std::max(a.z, b.z) | 3};
-  constexpr int kEdge = 8, kCells = kEdge * kEdge * kEdge;  // neighbouring blocks: two in each axis at most
+  constexpr int kEdge = 8, kCells = kEdge * kEdge * kEdge;  // neighbouring blocks: at most two per axis
   const auto index = [&](const CellKey& k) {
     return ((k.z - low.z) * kEdge + k.y - low.y) * kEdge + k.x - low.x;
   };

@@ -12,7 +12,7 @@ namespace {
 /// False for NaN as well.
 bool within_world(const Vec3& p) { return p.cwiseAbs().maxCoeff() < 1e6 && p.allFinite(); }
 
-/// "occupied cell 0.31 m from the start", for people.
+/// A description such as "occupied cell 0.31 m from the start".
 std::string what_blocks(const VoxelMap& map, const FreeTiles& free, const Vec3& p, double clearance_m,
                         const char* place) {
   if (!within_world(p)) return std::string("the ") + place + " lies nowhere near the map";
@@ -26,7 +26,7 @@ std::string what_blocks(const VoxelMap& map, const FreeTiles& free, const Vec3& 
   return text;
 }
 
-/// Clear cells next to p that see it along a clear line.
+/// Clear cells next to p that a clear segment connects to p.
 std::vector<CellKey> cells_that_see(const FreeTiles& free, const Vec3& p, double clearance_m) {
   std::vector<CellKey> out;
   const CellKey k = free.key_of(p);
@@ -37,7 +37,7 @@ std::vector<CellKey> cells_that_see(const FreeTiles& free, const Vec3& p, double
   return out;
 }
 
-/// `clearance` is what points and segments of the path are asked for.
+/// `clearance` is required of the points and segments of the path.
 Path search_path(const VoxelMap& map, const Vec3& start, const Vec3& goal, const PlanningOptions& options,
                  const ClearanceRule& rule, double clearance) {
   const double res = map.resolution_m();
@@ -82,7 +82,7 @@ Path search_path(const VoxelMap& map, const Vec3& start, const Vec3& goal, const
     if (const Vec3 p = map.center_of(k); (p - path.points.back()).norm() > 1e-9) path.points.push_back(p);
   if (path.points.size() < 2 || (goal - path.points.back()).norm() > 1e-9) path.points.push_back(goal);
   path.status = PlanStatus::found;
-  // The promise does not cover the way out of a tight place.
+  // The suboptimality bound does not cover the escape from a tight place.
   measure(path, path.escape_points == 0 ? options.heuristic_weight : std::numeric_limits<double>::infinity());
   return path;
 }

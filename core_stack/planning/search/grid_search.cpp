@@ -10,7 +10,7 @@
 namespace karst::core {
 namespace {
 
-constexpr std::uint8_t kRoot = 26;  // a start: it has no parent
+constexpr std::uint8_t kRoot = 26;  // a start cell, which has no parent
 constexpr std::uint8_t kClosed = 128;
 constexpr std::uint32_t kGoal = ~std::uint32_t{0};
 
@@ -36,7 +36,7 @@ struct SearchTile {
   TileBits clear;
   CellKey corner;
   std::array<float, kTileCells> cost;
-  std::array<std::uint32_t, kTileCells> place;  // in the heap
+  std::array<std::uint32_t, kTileCells> place;  // index in the heap
   std::array<std::uint8_t, kTileCells>
       parent;  // index of the move that led here, or kRoot; kClosed when final
 };

@@ -33,7 +33,7 @@ class ClearMotion : public ob::MotionValidator {
   bool checkMotion(const ob::State* a, const ob::State* b,
                    std::pair<ob::State*, double>& last_valid) const override {
     if (checkMotion(a, b)) return true;
-    // If one beginning of a segment is clear, so is every shorter one: halving finds how far it goes.
+    // If one initial part of a segment is clear, so is every shorter one: bisection finds the longest.
     const Vec3 from = point_of(a), offset = point_of(b) - from;
     double clear = 0, blocked = 1;
     while ((blocked - clear) * offset.norm() > 0.25 * free_.resolution_m()) {
@@ -50,7 +50,7 @@ class ClearMotion : public ob::MotionValidator {
   double clearance_m_;
 };
 
-/// Evenly over the cells, and evenly within a cell.
+/// Uniform over the cells, and uniform within a cell.
 class CellSampler : public ob::StateSampler {
  public:
   CellSampler(const ob::StateSpace* space, std::shared_ptr<const SampledCells> cells, double resolution_m)
@@ -91,8 +91,8 @@ class CellSampler : public ob::StateSampler {
   double resolution_m_;
 };
 
-/// Drawn from the cells until the straight ways from the start and to the goal are shorter than the best
-/// path.
+/// Samples from the cells until the straight-line distances from the start and to the goal sum to less than
+/// the best path.
 class InformedCellSampler : public ob::InformedSampler {
  public:
   InformedCellSampler(const ob::ProblemDefinitionPtr& definition, unsigned int max_calls)

@@ -53,12 +53,12 @@ ob::PlannerStatus OmplGridPlanner::solve(const ob::PlannerTerminationCondition& 
 namespace {
 
 constexpr double kAround_m = 10.0;
-/// Longest edge of the trees: about as far as one sees in a cave.
+/// Maximal edge length of the trees: about the range of sight in a cave.
 constexpr double kRange_m = 5.0;
-/// An iteration of BIT* is one edge and takes about a tenth of the time that one of RRT* does.
+/// An iteration of BIT* processes one edge and takes about a tenth of the time of one of RRT*.
 constexpr std::int64_t kEdgesPerIteration = 10;
 
-/// OMPL keeps one generator of seeds and one way of logging for the whole process.
+/// OMPL has one seed generator and one log handler per process.
 std::mutex& ompl_lock() {
   static std::mutex lock;
   return lock;
@@ -92,7 +92,7 @@ ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& si, const VoxelMap& m
   return std::make_shared<OmplGridPlanner>(si, map, options);
 }
 
-/// The roadmap's cells whose node lies between `low` and `high`.
+/// The roadmap's cells whose nodes lie between `low` and `high`.
 std::shared_ptr<SampledCells> cells_between(const RoadmapGraph& graph, const Vec3& low, const Vec3& high) {
   auto out = std::make_shared<SampledCells>();
   std::uint64_t count = 0;
@@ -159,7 +159,7 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
   std::vector<Vec3> found;
   {
     const std::lock_guard<std::mutex> alone(ompl_lock());
-    ompl::msg::noOutputHandler();  // our stdout belongs to the user; what matters is in the result
+    ompl::msg::noOutputHandler();  // stdout belongs to the user; the result contains what matters
     ompl::RNG::setSeed(seed_of(from, goal));
     const OmplProblem problem =
         make_problem(graph.free, cells_between(graph, low, high), {low, high, from, goal, clearance_m});
@@ -170,7 +170,7 @@ Path search_with_ompl(const VoxelMap& map, const Roadmap& roadmap, const Vec3& s
   if (found.size() < 2)
     return fail(PlanStatus::gave_up, std::string(name_of(options.planner)) + " found no way in " +
                                          std::to_string(options.planner_iterations) + " iterations");
-  found.back() = goal;  // planners meet it to within rounding
+  found.back() = goal;  // planners reach it only up to rounding
   path.points.insert(path.points.end(), found.begin() + 1, found.end());
   path.status = PlanStatus::found;
   measure(path, std::numeric_limits<double>::infinity());

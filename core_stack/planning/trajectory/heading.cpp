@@ -8,13 +8,13 @@ namespace karst::core {
 namespace {
 
 constexpr double kLookahead_m = 0.8;
-/// A bend is turned through over this length before and behind it: a right angle at 2 m/s and 1 rad/s.
+/// The heading turns over this length before and after a bend: a right angle at 2 m/s and 1 rad/s.
 constexpr double kBend_m = 1.5;
-/// But what is flown into stays in a camera's view.
+/// Maximal deviation from the direction of flight, so that the space ahead stays in a camera's view.
 constexpr double kAside_rad = 0.6;
-/// When passing a place to look from, this near to the heading will do, and this much a metre is turned.
+/// Tolerance of the heading when passing a viewpoint, and the heading change per metre near it.
 constexpr double kPassing_rad = 0.3, kPassing_radpm = 0.8;
-/// A vehicle that (nearly) stands turns on the spot first when it would start this far off its heading.
+/// A vehicle that (nearly) stands first turns on the spot if its heading is off by more than this.
 constexpr double kTurnFirst_rad = 0.7, kStanding_mps = 0.2;
 constexpr double kHeadingReached_rad = 1e-3;
 
@@ -42,14 +42,14 @@ bool HeadingCourse::settled_at(double wanted_rad) const {
 
 std::vector<double> headings_along(const std::vector<Vec3>& points, double lookahead_m,
                                    double start_heading_rad) {
-  constexpr double steepest = 0.25;  // horizontal share of a direction that still has a heading
+  constexpr double steepest = 0.25;  // horizontal part below which a direction has no heading
   std::vector<double> out;
   double heading = start_heading_rad;
   std::size_t ahead = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     while (ahead + 1 < points.size() && (points[ahead] - points[i]).norm() < lookahead_m) ++ahead;
     const Vec3 d = points[ahead] - points[i];
-    // Near the end what lies ahead is too short to give a direction: keep the last.
+    // Near the end the remaining path is too short to give a direction: keep the last one.
     const double horizontal = std::hypot(d.x(), d.y());
     if (horizontal > steepest * d.norm() && (d.norm() > 0.5 * lookahead_m || i == 0) && horizontal > 1e-6)
       heading = std::atan2(d.y(), d.x());
@@ -112,7 +112,7 @@ bool turns_first(const HeadingPlan& plan, double wanted_rad, double speed_mps) {
 
 void turn_on_the_spot(HeadingCourse& course, double wanted_rad, std::vector<TrajectorySample>& samples) {
   const Vec3 here = samples.back().position;
-  // A half turn at the least rate takes far fewer steps than this; the bound guards against absurd limits.
+  // A half turn at the lowest rate takes far fewer steps than this; the bound guards against absurd limits.
   for (int i = 0; i < 100000 && !course.settled_at(wanted_rad); ++i)
     samples.push_back({here, course.step(wanted_rad)});
 }

@@ -8,7 +8,7 @@
 namespace karst::core {
 namespace {
 
-/// How far from the corner the parabola begins and ends.
+/// Distances from the corner at which the parabola may begin and end; the longest suitable one is used.
 constexpr std::array kJoinLengths_m = {2.4, 1.6, 1.0, 0.6, 0.3};
 constexpr double kSpacing_m = 0.1;
 constexpr double kStraight_rad = 0.03;
@@ -52,8 +52,8 @@ std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vect
       const double t = static_cast<double>(i) / n, u = 1 - t;
       curve.push_back(u * u * begin->point + 2 * u * t * corner + t * t * end->point);
     }
-    // Where the committed segment or the path bends near the corner, the parabola leaves it with corners of
-    // its own.
+    // If the committed segment or the path bends near the corner, the parabola has corners of its own at its
+    // ends.
     const double own =
         std::max(turn_rad(backwards[begin->next - 1] - backwards[begin->next], corner - begin->point),
                  turn_rad(end->point - corner, path[end->next] - path[end->next - 1]));

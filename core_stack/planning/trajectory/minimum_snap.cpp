@@ -8,7 +8,7 @@ namespace karst::core {
 namespace {
 
 constexpr int kEnd = 4;        // derivatives at an end: position, velocity, acceleration, jerk
-constexpr int kBandwidth = 5;  // unknowns of neighbouring waypoints are at most this far apart
+constexpr int kBandwidth = 5;  // maximal index difference of coupled unknowns
 using Matrix8 = Eigen::Matrix<double, 8, 8>;
 
 /// k (k - 1) ... (k - order + 1)
@@ -18,7 +18,7 @@ double falling(int k, int order) {
   return out;
 }
 
-/// A of the article, for a piece of 1 s: derivatives at both ends from coefficients.
+/// The matrix A of the article for a piece of 1 s: derivatives at both ends from coefficients.
 Matrix8 ends_from_coefficients() {
   Matrix8 a = Matrix8::Zero();
   for (int r = 0; r < kEnd; ++r) {
@@ -44,14 +44,14 @@ const UnitPiece& unit_piece() {
   return piece;
 }
 
-/// Powers of the duration by which derivatives become those of normalized time.
+/// Powers of the duration that scale derivatives to normalized time.
 Eigen::Matrix<double, 8, 1> time_scale(double duration_s) {
   Eigen::Matrix<double, 8, 1> s;
   for (int r = 0; r < kEnd; ++r) s[r] = s[kEnd + r] = std::pow(duration_s, r);
   return s;
 }
 
-/// Symmetric positive definite, only the diagonal and kBandwidth below it.
+/// Symmetric positive definite; stores only the diagonal and kBandwidth subdiagonals.
 class BandedSystem {
  public:
   explicit BandedSystem(std::size_t n) : rows_(n), right_(n, Vec3::Zero()) {}
@@ -59,7 +59,7 @@ class BandedSystem {
     if (i >= j) rows_[i][i - j] += v;
   }
   void add_right(std::size_t i, const Vec3& v) { right_[i] += v; }
-  /// By Cholesky's decomposition, in place.
+  /// Solves by Cholesky decomposition, in place.
   std::vector<Vec3> solve() {
     const std::size_t n = rows_.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -86,7 +86,7 @@ class BandedSystem {
   std::vector<Vec3> right_;
 };
 
-/// Index of a derivative among the unknowns: jerk at the ends, all but the position between. -1: given.
+/// Index of a derivative among the unknowns: jerk at the ends, all except position in between. -1: given.
 int unknown(std::size_t waypoint, int derivative, std::size_t last) {
   if (waypoint == 0 || waypoint == last)
     return derivative < 3 ? -1 : (waypoint == 0 ? 0 : static_cast<int>(3 * last) - 2);
@@ -122,8 +122,8 @@ Polynomial minimum_snap(const std::vector<Vec3>& waypoints, const std::vector<do
   ends[0][1] = departure.velocity_mps;
   ends[0][2] = departure.acceleration_mps2;
 
-  // The cost of a piece is d' H d of its ends' derivatives d; summed up, what multiplies two unknowns is the
-  // system's matrix, and what multiplies an unknown and a given value its right side.
+  // The cost of a piece is d' H d, with d the derivatives at its ends. In the sum, factors of two unknowns
+  // form the system's matrix; factors of an unknown and a given value form its right-hand side.
   BandedSystem system(3 * last - 1);
   std::vector<Matrix8> costs;
   for (std::size_t p = 0; p < last; ++p) {

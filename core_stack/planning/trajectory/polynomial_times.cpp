@@ -9,17 +9,17 @@
 namespace karst::core {
 namespace {
 
-/// Weight of a second of flight against snap (m^2/s^7): high, so that it is the limits that decide.
+/// Weight of a second of flight relative to snap (m^2/s^7): high, so that the limits are decisive.
 constexpr double kTimeWeight = 300.0;
-/// A limit reached costs this, and e times as much for every kSoftness of it beyond.
+/// Cost of a limit that is just reached; it grows by a factor e with each kSoftness of the limit beyond.
 constexpr double kLimitWeight = 10.0, kSoftness = 0.05;
 /// Each duration may change by this factor up or down.
 constexpr double kMaxChange = 3.0;
 constexpr int kMaxStretches = 60;
-/// Places in a piece where limits are looked at, its ends among them: by the optimizer, and in the end.
+/// Points in a piece at which limits are evaluated, ends included: by the optimizer, and in the final check.
 constexpr int kLooks = 9, kCloseLooks = 33;
 
-/// Rows of derivatives of the powers of normalized time.
+/// Derivatives of the powers of normalized time, one row per point.
 Eigen::MatrixXd looks_at(int order, int looks) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(looks, 8);
   for (int i = 0; i < looks; ++i)
@@ -31,7 +31,7 @@ Eigen::MatrixXd looks_at(int order, int looks) {
   return out;
 }
 
-/// Greatest speed, acceleration and jerk in a piece, each as a share of its limit.
+/// Greatest speed, acceleration and jerk in a piece, each as a fraction of its limit.
 template <int kCount>
 Vec3 fractions_of_limits(const PolynomialPiece& piece, const MotionLimits& limits) {
   using Looks = Eigen::Matrix<double, kCount, 8>;
@@ -54,7 +54,7 @@ struct Problem {
   const MotionLimits& limits;
   std::vector<double> durations_s;
 
-  /// Unknowns are the logarithms of how much longer than guessed each piece lasts.
+  /// The unknowns are the logarithms of the ratio of each piece's duration to its initial guess.
   double cost(const double* x, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) durations_s[i] = first_guess_s[i] * std::exp(x[i]);
     const Polynomial polynomial = minimum_snap(waypoints, durations_s, departure);
@@ -88,7 +88,7 @@ std::vector<double> optimized_times(const std::vector<Vec3>& waypoints, std::vec
   nlopt_set_maxeval(opt.get(), evaluations);
   std::vector<double> x(n, 0.0);
   double least = 0;
-  // A failure for rounding leaves the best so far in x, and the guess is no worse than what it was.
+  // On a roundoff failure x holds the best values so far, which are no worse than the guess.
   nlopt_optimize(opt.get(), x.data(), &least);
   for (std::size_t i = 0; i < n; ++i) durations_s[i] *= std::exp(x[i]);
   return durations_s;
@@ -109,7 +109,7 @@ std::optional<Polynomial> within_limits(const std::vector<Vec3>& waypoints, std:
     }
     if (worst <= 1 + kLimitTolerance) return polynomial;
     for (std::size_t i = 0; i < ratios.size(); ++i) {
-      // What is too fast in one piece is often due to its neighbours.
+      // A piece that is too fast is often due to its neighbours.
       double stretch = ratios[i];
       if (i > 0) stretch = std::max(stretch, std::sqrt(ratios[i - 1]));
       if (i + 1 < ratios.size()) stretch = std::max(stretch, std::sqrt(ratios[i + 1]));

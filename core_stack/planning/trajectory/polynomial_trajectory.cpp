@@ -10,11 +10,11 @@ namespace karst::core {
 namespace {
 
 constexpr double kCornerTolerance_m = 0.15;
-/// A straight of one piece could use the greatest speed at one point only.
+/// Maximal distance of waypoints: a long straight piece would reach the greatest speed at one point only.
 constexpr double kMaxApart_m = 3.0;
 constexpr double kMinApart_m = 0.02;
 constexpr int kMaxRounds = 6, kFirstEvaluations = 500, kMoreEvaluations = 150;
-/// Chords of the curve that are checked for rock.
+/// Chord length for checking the curve against rock.
 constexpr double kCheck_m = 0.1;
 
 double deviation_m(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -58,7 +58,7 @@ void split(const Splitting& s, std::size_t from, std::size_t to, std::vector<std
   split(s, farthest, to, out);
 }
 
-/// Points no two of which coincide, close enough for waypoints to be chosen among them.
+/// Points without duplicates, close enough together to choose waypoints from.
 std::vector<Vec3> dense(const std::vector<Vec3>& points) {
   std::vector<Vec3> out;
   for (const Vec3& p : points) {
@@ -76,7 +76,7 @@ std::vector<Vec3> dense(const std::vector<Vec3>& points) {
   return out;
 }
 
-/// How long the sampled trajectory takes from each waypoint to the next: the first guess.
+/// Time of the sampled trajectory between consecutive waypoints: the initial guess.
 std::vector<double> sampled_times(const std::vector<Vec3>& points, const std::vector<double>& at,
                                   const std::vector<std::size_t>& chosen, double speed_mps,
                                   const MotionLimits& limits) {
@@ -114,7 +114,7 @@ bool is_clear(const PolynomialPiece& piece, double length_m, const SegmentClear&
   return true;
 }
 
-/// Positions at the period of `out`, with headings; a turn on the spot before and after if need be.
+/// Samples positions and headings at the period of `out`; turns on the spot before and after if needed.
 void sample(const Polynomial& polynomial, double start_speed_mps, const MotionLimits& limits,
             const HeadingPlan& heading, Trajectory& out) {
   const double dt = seconds(out.period), duration = polynomial.duration_s();

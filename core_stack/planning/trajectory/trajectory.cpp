@@ -9,12 +9,12 @@ namespace karst::core {
 namespace {
 
 constexpr TimeNs kPeriod = 100 * kMillisecond;
-/// Spacing of the path's nodes; with the period it bounds how much a bend is rounded (by a quarter of it).
+/// Spacing of the path's nodes; with the period it bounds the rounding of a bend (to a quarter of it).
 constexpr double kMaxSpacing_m = 0.1;
-/// Of a trajectory: longer than any battery lasts, and 72,000 samples.
+/// Maximal duration: longer than any battery lasts, and 72,000 samples.
 constexpr double kLongest_s = 7200;
 
-/// Points at equal distances along the polyline; the ends stay.
+/// Points at equal distances along the polyline; both ends are kept.
 std::vector<Vec3> evenly_spaced(const std::vector<Vec3>& points, double max_spacing_m) {
   std::vector<double> at{0};
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -42,8 +42,8 @@ std::vector<double> turns(const std::vector<Vec3>& nodes) {
   return out;
 }
 
-/// Speed at each node: limited in bends, and by what can be gained or lost between nodes. `headings` limit it
-/// further where they turn with the path.
+/// Speed at each node: limited in bends, and by the acceleration between nodes. `headings` limit it further
+/// where they turn with the path.
 std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, double start_speed_mps,
                            const MotionLimits& limits, const std::vector<double>& headings,
                            const SlowPlaces& slow) {
@@ -51,7 +51,7 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
   const std::vector<double> turn = turns(nodes);
   std::vector<double> v(nodes.size(), limits.max_speed_mps);
   for (std::size_t i = 0; i < v.size(); ++i) {
-    // At v_max the turn costs a_n = v_max^2 turn / spacing, which falls with the square of the speed.
+    // At v_max the turn requires a_n = v_max^2 turn / spacing, which falls with the square of the speed.
     const double a_n = v[i] * v[i] * turn[i] / spacing_m;
     if (a_n > a_max) v[i] *= std::sqrt(a_max / a_n);
     if (i + 1 < v.size()) {
@@ -66,7 +66,7 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
       v[i] = slow.speed_mps;
     v[i] = std::max(v[i], std::min(limits.min_speed_mps, limits.max_speed_mps));
   }
-  // A vehicle that arrives too fast for a bend brakes all it can rather than being told to jump to less.
+  // A vehicle that arrives too fast for a bend brakes at the limit; the speed never jumps.
   const double v0 = std::clamp(start_speed_mps, 0.0, limits.max_speed_mps);
   for (std::size_t i = 0; i < v.size(); ++i)
     v[i] = std::max(v[i], std::sqrt(std::max(0.0, v0 * v0 - 2 * a_max * spacing_m * static_cast<double>(i))));
@@ -79,8 +79,8 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
   return v;
 }
 
-/// Point at `u` nodes along: the quadratic B-spline of the nodes, which begins and ends in the end nodes and
-/// spreads the turn at a node over the stretch around it.
+/// Point at node coordinate `u`: the quadratic B-spline of the nodes, which begins and ends at the end nodes
+/// and spreads the turn at a node over the stretch around it.
 Vec3 point_at(const std::vector<Vec3>& nodes, double u) {
   const auto last = static_cast<double>(nodes.size() - 1);
   u = std::clamp(u, 0.0, last);
@@ -102,7 +102,7 @@ std::vector<double> times(const std::vector<double>& v, double spacing_m) {
   return t;
 }
 
-/// The nodes that are passed within the longest time, in order; at least the first.
+/// The nodes passed within the longest time, in order; at least the first.
 std::vector<Vec3> passed_in_time(const std::vector<Vec3>& nodes, const std::vector<double>& t) {
   std::size_t n = 1;
   while (n < nodes.size() && t[n] <= kLongest_s) ++n;
@@ -160,11 +160,11 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
     }
     const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted, slow);
     const std::vector<double> t = times(v, spacing);
-    // Too slow to arrive: flown as far as it gets, to rest there. Fewer nodes each time, so this ends.
+    // Too slow to arrive: fly as far as possible, to rest there. Each pass has fewer nodes, so this ends.
     if (!(t.back() <= kLongest_s))
       return sample_trajectory(passed_in_time(nodes, t), start_speed_mps, start, limits, heading, slow);
     const double turn_from = turn_from_s(heading, wanted.back(), t.back(), limits);
-    // A turn begins that much before it is wanted: it takes time to get up to the rate.
+    // A turn begins earlier by this time, because the heading rate must build up.
     const double delay_s = 0.5 * limits.max_heading_rate_radps / limits.max_heading_acceleration_radps2;
     std::size_t i = 0, ahead = 0;
     const auto steps = static_cast<std::size_t>(std::ceil(t.back() / dt - 1e-9));

@@ -28,7 +28,7 @@ using nlohmann::json;
 constexpr double kCheckLimit_s = 600;  // for loading a policy and a cave, on a busy machine
 constexpr std::size_t kShortHash = 12;
 
-/// A file of our own that is gone at the end.
+/// A temporary file, removed on destruction.
 struct ScratchFile {
   ScratchFile() {
     const int descriptor = mkstemp(path.data());
@@ -41,7 +41,7 @@ struct ScratchFile {
   std::string path = (fs::temp_directory_path() / "karst-mission-XXXXXX").string();
 };
 
-/// What a program said last, without the "karst: " in front.
+/// The last line that a program printed, without its "karst: " prefix.
 std::string last_line(const std::string& text) {
   std::istringstream lines(text);
   std::string last;
@@ -60,7 +60,7 @@ std::string without(std::string text, const std::string& part) {
   return text;
 }
 
-/// What karst says of a setting, which it was given as an option, said of the entry that the setting is of.
+/// Turns karst's message about a setting, passed as an option, into one about the entry that sets it.
 InputError complaint(const Campaign& c, const ContestantSpec& who, const CaveSpec& cave,
                      const std::string& said) {
   const std::string contestant = "contestant " + who.name, parameter = "policy.parameters.",

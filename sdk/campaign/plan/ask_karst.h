@@ -1,5 +1,5 @@
-// What a campaign asks the `karst` program before anything flies: in processes of their own, for a policy's
-// plugin may crash when it is loaded.
+// Queries that a campaign makes to the `karst` program before any flight: in separate processes, because a
+// policy's plugin may crash when it is loaded.
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <filesystem>
@@ -9,19 +9,19 @@
 
 namespace karst::campaign {
 
-/// The mission of a contestant in a cave as `karst fly` would fly it. Throws core::InputError with what karst
-/// says.
+/// The mission of a contestant in a cave as `karst fly` would fly it. Throws core::InputError with karst's
+/// message.
 boost::property_tree::ptree resolve(const Campaign& campaign, const ContestantSpec& who, const CaveSpec& cave,
                                     const std::filesystem::path& karst);
 
-/// The file that offers a policy, or "".
+/// The file that provides a policy, or "".
 std::string plugin_file(const std::string& policy, const std::string& plugin,
                         const std::filesystem::path& karst);
 
 std::filesystem::path vehicle_file(const std::filesystem::path& karst, const std::string& vehicle);
 
-/// "0.1.0+" and hashes of the program with its vehicle, and of the policy's plugin; what a karst was linked
-/// with, such as Embree, is not in it.
+/// "0.1.0+" and hashes of the program with its vehicle, and of the policy's plugin. Libraries linked into
+/// karst, such as Embree, are not included.
 std::string binary_version(const std::filesystem::path& karst, const std::string& vehicle,
                            const std::string& version, const std::string& plugin);
 

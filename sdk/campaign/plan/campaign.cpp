@@ -23,7 +23,7 @@ using core::OptionTable;
 
 constexpr std::int64_t kMaxSeeds = 100'000;
 
-/// Takes the blocks of a name out of a tree.
+/// Removes the blocks of this name from the tree and returns them.
 std::vector<pt::ptree> take_blocks(pt::ptree& tree, const std::string& name) {
   std::vector<pt::ptree> blocks;
   for (const auto& [key, child] : tree)
@@ -38,7 +38,7 @@ std::vector<std::string> metric_names() {
   return names;
 }
 
-/// The leaves of a block that is there at most once.
+/// The leaves of a block that may occur at most once.
 Settings take_settings(pt::ptree& tree, const std::string& name, const std::string& source,
                        const std::string& place) {
   const std::vector<pt::ptree> blocks = take_blocks(tree, name);
@@ -55,7 +55,7 @@ Settings take_settings(pt::ptree& tree, const std::string& name, const std::stri
   return settings;
 }
 
-/// Keys that a campaign decides by other means than settings.
+/// Refuses keys that a campaign determines by other means than settings.
 void refuse_reserved(const Campaign& c, const std::string& place, const Settings& settings) {
   const std::vector<std::pair<std::string, std::string>> reserved = {
       {"seed", "seeds or seed_list"},
@@ -134,7 +134,7 @@ bool good_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), good);
 }
 
-/// A name that folders can have: nearest_frontier+horizon=60m.
+/// A name suitable for folders: nearest_frontier+horizon=60m.
 std::string made_name(const ContestantSpec& c) {
   std::string name = c.policy;
   for (const Settings* some : {&c.parameters, &c.settings})

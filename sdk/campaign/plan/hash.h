@@ -1,4 +1,4 @@
-// SHA-256, as `sha256sum` prints it: what was flown is told apart by its bytes.
+// SHA-256, as `sha256sum` prints it: identifies what was flown by its bytes.
 #pragma once
 #include <filesystem>
 #include <string>

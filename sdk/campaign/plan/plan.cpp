@@ -41,7 +41,7 @@ pt::ptree take(pt::ptree& tree, const std::string& section, const std::string& n
 }
 
 PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs::path& karst) {
-  const std::string policy = mission.get("policy.name", who.policy);  // what `auto` chose
+  const std::string policy = mission.get("policy.name", who.policy);  // the policy chosen by `auto`
   PlannedContestant out{who.name, policy, who.plugin, {}, {}, {}, json_object(who.settings), {}};
   out.version = take(mission, "policy", "version").data();
   const std::string karst_version = take(mission, "karst", "version").data();
@@ -77,7 +77,7 @@ double seconds_of(const pt::ptree& mission, const std::string& key, double other
   return s;
 }
 
-/// Of a team until the last robot's would end, which starts last.
+/// For a team, until the end of the last robot's flight, which starts last.
 double horizon_of(const PlannedContestant& c) {
   const int robots = std::max(1, c.mission.get("team.robots", 1));
   const double stagger_s = robots > 1 ? seconds_of(c.mission, "team.stagger", 0) : 0;
@@ -86,7 +86,7 @@ double horizon_of(const PlannedContestant& c) {
                   seconds_of(c.mission, "simulator.battery_minutes", kEndless_s));
 }
 
-/// The cave with what is wrong said of the campaign's entry.
+/// Plans the cave; errors name the campaign's entry.
 PlannedCave planned(const CaveSpec& cave, const std::string& source) {
   try {
     return planned(cave);
@@ -95,7 +95,7 @@ PlannedCave planned(const CaveSpec& cave, const std::string& source) {
   }
 }
 
-/// A contestant is one policy: `auto` may not choose another one in another cave.
+/// A contestant is one policy: `auto` must choose the same one in every cave.
 void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const PlannedContestant& first,
                          const fs::path& karst) {
   const auto chosen = [](const pt::ptree& mission) {
@@ -108,14 +108,14 @@ void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const Pla
                            "; make a campaign of each, or name what is chosen as contestants");
 }
 
-/// What is told of each robot of a team (robot_N/metrics.json), and not of the team.
+/// Figures of each robot of a team (robot_N/metrics.json) that the team as a whole does not have.
 constexpr std::array kOfOneVehicle = {
     "completed",     "mean_speed_mps",    "exploring_speed_mps", "standing_share",  "longest_stall_s",
     "depth_m",       "vertical_reach_m",  "min_clearance_m",     "landing_error_m", "battery_left",
     "drift_percent", "heading_error_rad", "tracking_rms_m",      "goals_accepted",  "goals_rejected",
     "overruns",      "surface_imaged"};
 
-/// Of how many robots a team must have for its flights to have this figure; 1: any flight may have it.
+/// Least number of robots for which flights have this figure; 1: any flight may have it.
 int robots_for(const std::string& metric) {
   if (metric == "robots_landed" || metric == "robots_connected" || metric == "data_at_base_share") return 2;
   int robot = 1;

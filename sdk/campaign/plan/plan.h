@@ -1,5 +1,5 @@
-// A campaign as resolved: nothing in it depends on files that may change, so that a campaign that is resumed
-// flies what it flew before. Kept in the store as its definition.
+// A resolved campaign: it does not depend on files that may change, so that a resumed campaign flies the same
+// missions as before. Stored as the store's definition.
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <cstdint>
@@ -15,64 +15,64 @@ namespace karst::campaign {
 struct PlannedContestant {
   std::string name, policy, plugin, version;
   std::string binary_version;           // of karst and of the policy's plugin
-  std::string parameters, settings;     // JSON objects, as the store has them
-  boost::property_tree::ptree mission;  // every setting as resolved, but cave and seed
+  std::string parameters, settings;     // JSON objects, in the store's form
+  boost::property_tree::ptree mission;  // all resolved settings except cave and seed
 };
 
 struct PlannedCave {
   std::string name, file, start;
   std::string mesh_hash;  // SHA-256 of the mesh's bytes
-  std::string hash;       // of the mesh and of all that the .info file says
+  std::string hash;       // of the mesh and of the whole content of the .info file
 };
 
 struct Plan {
   std::string name, profile;
-  double horizon_s = 0;        // the longest an exploration can take
+  double horizon_s = 0;        // the longest possible exploration
   double trial_timeout_s = 0;  // wall clock
   std::vector<PlannedContestant> contestants;
   std::vector<PlannedCave> caves;
   std::vector<std::int64_t> seeds;
-  std::string metric = "coverage_auc";  // what the verdict is about
+  std::string metric = "coverage_auc";  // decides the verdict
 };
 
-/// Asks the `karst` program for every contestant in the first cave, and in every other cave for the first
-/// one, whether it can fly, and with which settings. Throws core::InputError naming the contestant or cave
-/// and what is wrong with it.
+/// Asks the `karst` program whether each contestant can fly in the first cave, and the first contestant in
+/// every other cave, and with which settings. Throws core::InputError with the contestant or cave and the
+/// reason.
 Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
 
-/// Until when all of them may explore: the flight time, or what the battery lasts. Throws core::InputError
-/// naming `source` if one may longer than another: their figures would not compare.
+/// The longest time all of them may explore: the flight time or the battery's endurance. Throws
+/// core::InputError naming `source` if the times differ, because figures would not be comparable.
 double horizon_of(const std::vector<PlannedContestant>& contestants, const std::string& source);
 
-/// Throws core::InputError naming `source` if the figure is one that a contestant's flights never have: of
-/// larger teams than it is, or of a vehicle alone where it is a team. Better now than after hours of flight.
+/// Throws core::InputError naming `source` if the flights of a contestant can never have this figure: it
+/// needs a larger team, or a single vehicle instead of a team. Called before hours of flight are spent.
 void refuse_figure_of_others(const std::string& metric, const std::vector<PlannedContestant>& contestants,
                              const std::string& source);
 
-/// The same with the hashes of the caves and binaries as they are now. Throws core::InputError if one is
+/// The plan with the current hashes of the caves and binaries. Throws core::InputError if a file is
 /// gone.
 Plan with_present_files(Plan plan, const std::filesystem::path& karst);
 
-/// The files whose content binary versions tell, as far as they are there.
+/// The existing files among those whose content determines the binary versions.
 std::vector<std::filesystem::path> binaries_of(const Plan& plan, const std::filesystem::path& karst);
 
-/// As the store keeps it: INFO, and back.
+/// The plan as INFO text in the store's form, and its inverse.
 std::string definition_of(const Plan& plan);
 Plan plan_of(const std::string& definition, const std::string& source);
 StoreHead head_of(const Plan& plan);
 
-/// Whether a campaign goes on only with the karst and the plugins that it began with.
+/// Whether a campaign may continue only with the karst and the plugins it began with.
 enum class AcceptedBinaries { same, any };
 
-/// What `now` changes of what `then` was, a sentence each; more contestants, caves and seeds behind those
-/// there were are no change, nor are name, timeout and, with any binaries, what flies.
+/// The differences between `then` and `now`, one sentence each. Appended contestants, caves and seeds do not
+/// count; neither do name, timeout and, if any binaries are accepted, binary versions.
 std::vector<std::string> changes(const Plan& then, const Plan& now, AcceptedBinaries binaries);
 
-/// All trials: by contestant, cave, seed.
+/// All trials, sorted by contestant, cave, seed.
 std::vector<TrialKey> trials_of(const Plan& plan);
-/// The mission file of a contestant in a cave, INFO.
+/// The mission file (INFO) of a contestant in a cave.
 std::string mission_text(const Plan& plan, std::size_t contestant, std::size_t cave);
-/// Tells apart what was flown: two trials of one binary with the same hash are the same flight.
+/// Identifies what was flown: two trials of one binary with the same hash are the same flight.
 std::string mission_hash(const Plan& plan, const TrialKey& trial);
 
 }  // namespace karst::campaign

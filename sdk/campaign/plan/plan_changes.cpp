@@ -1,4 +1,4 @@
-// What would make a campaign that is resumed another one.
+// Changes that would turn a resumed campaign into a different one.
 #include <algorithm>
 #include <map>
 

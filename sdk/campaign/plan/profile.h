@@ -1,6 +1,6 @@
-// Named sets of mission settings a campaign is flown with. A profile sets what costs time and, as measured,
-// does not change which policy is better (docs/compare.md); what the campaign or a contestant says itself
-// wins.
+// Named sets of mission settings with which a campaign is flown. A profile sets options that cost time but,
+// as measured, do not change which policy is better (docs/compare.md); settings of the campaign or of a
+// contestant take precedence.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ struct Profile {
 
 const std::vector<Profile>& profiles();
 
-/// Throws core::InputError naming the nearest one if there is none of this name.
+/// Throws core::InputError with the most similar name if there is no such profile.
 const Profile& profile(const std::string& name);
 
 }  // namespace karst::campaign

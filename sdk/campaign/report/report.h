@@ -1,4 +1,4 @@
-// The page of a campaign in one file: verdicts, curves, pairs, tables, and flights side by side.
+// The page of a campaign in one file: verdicts, curves, pairs, tables, and replays side by side.
 // docs/report.md
 #pragma once
 #include <filesystem>
@@ -15,19 +15,19 @@ struct CampaignReportOptions {
   std::size_t replay_points =
       2000000;                   // map cells of all flights replayed together, about 6 bytes each; 0: none
   std::size_t worst = 12;        // trials listed as the worst
-  bool mission_reports = false;  // write the report of each of these that has none
+  bool mission_reports = false;  // write the missing reports of these trials
 };
 
-/// All the page shows, as one JSON object. Links are relative to `folder`, where the page will stand.
+/// All data shown on the page, as one JSON object. Links are relative to `folder`, the folder of the page.
 nlohmann::ordered_json campaign_report_data(const CampaignResults& results,
                                             const std::filesystem::path& folder,
                                             const CampaignReportOptions& options = {});
 
-/// The page with scripts, styles and data inside; it loads nothing from anywhere.
+/// The complete page with scripts, styles and data; it loads no other files.
 std::string campaign_report_page(const nlohmann::ordered_json& data);
 
-/// Writes the campaign's page to `file`, also of a campaign that is under way or found next to nothing; run
-/// directories that are gone or damaged cost their replay only. Throws InputError if the file cannot be
+/// Writes the campaign's page to `file`, also for a running campaign or one with hardly any results. A run
+/// directory that is missing or damaged only loses its replay. Throws InputError if the file cannot be
 /// written.
 void write_campaign_report(const std::filesystem::path& file, const CampaignResults& results,
                            const CampaignReportOptions& options = {});

@@ -1,4 +1,4 @@
-// Coverage and explored volume over time, of trials that end at different moments, on one grid.
+// Coverage and explored volume over time of trials with different end times, resampled to one time grid.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,9 +15,9 @@ using Values = std::vector<double>;
 using Quantity = double CurvePoint::*;
 
 constexpr int kTimes = 101;
-constexpr int kResamples = 1000;  // drawn bands need fewer than tables
+constexpr int kResamples = 1000;  // bands in plots need fewer than tables
 
-/// 0 to the horizon, or to the end of the last flight if that is sooner.
+/// From 0 to the horizon, or to the end of the last flight if that is earlier.
 Values time_grid(const CampaignResults& results) {
   double end_s = 0;
   for (const TrialResult& t : results.trials)
@@ -28,8 +28,8 @@ Values time_grid(const CampaignResults& results) {
   return times;
 }
 
-/// Linear between a trial's samples, the first before and the last after them: what was explored stays
-/// explored. A failed trial without a curve explored nothing; another's that has none is not known.
+/// Linear between a trial's samples, constant before and after them: explored space stays explored. A failed
+/// trial without a curve explored nothing; for other trials without a curve it is unknown.
 Values on_grid(const TrialResult& trial, Quantity quantity, const Values& times) {
   if (trial.curve.empty()) return trial.failed ? Values(times.size(), 0.0) : Values();
   Values values;
@@ -47,14 +47,14 @@ Values on_grid(const TrialResult& trial, Quantity quantity, const Values& times)
   return known ? values : Values();
 }
 
-/// Four significant digits draw the same line.
+/// Rounds to four significant digits, which draw the same line.
 ordered_json short_number(double v) {
   if (!std::isfinite(v)) return nullptr;
   const double unit = v == 0 ? 1 : std::pow(10.0, 3 - std::floor(std::log10(std::abs(v))));
   return number_or_null(core::rounded(v, unit));
 }
 
-/// Mean and interval at every time; `curves[cave]` are its trials'.
+/// Mean and interval at every time; `curves[cave]` are the curves of that cave's trials.
 ordered_json band(const std::vector<std::vector<const Values*>>& curves, std::size_t times,
                   const VerdictOptions& options, const evaluation::Interval& possible) {
   ordered_json mean = ordered_json::array(), low = ordered_json::array(), high = ordered_json::array();

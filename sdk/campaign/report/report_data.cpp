@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-/// Without . and .. in it, nor a slash at its end.
+/// The path without . and .. and without a slash at its end.
 fs::path plain_path(const fs::path& path) {
   const fs::path normal = path.lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
@@ -32,7 +32,7 @@ ordered_json definitions() {
   return list;
 }
 
-/// JSON text of the store as JSON; text that is none as it stands.
+/// Parses JSON text from the store; text that is not JSON becomes a string.
 ordered_json parsed(const std::string& text) {
   if (text.empty()) return ordered_json::object();
   ordered_json value = ordered_json::parse(text, nullptr, false);
@@ -57,7 +57,7 @@ ordered_json caves(const CampaignResults& results) {
   return list;
 }
 
-/// With the figures as measured; `counted` where statistics count others, as for a failed trial.
+/// The figures as measured; in `counted` the values that statistics use instead, as for a failed trial.
 ordered_json trial_row(const CampaignResults& results, const TrialResult& t, const fs::path& folder) {
   ordered_json figures = ordered_json::array(), counted = ordered_json::array();
   for (std::size_t m = 0; m < t.figures.size(); ++m) {
@@ -91,7 +91,7 @@ ordered_json worst(const CampaignResults& results, int metric, const CampaignRep
         evaluation::write_team_report(run);
       else
         evaluation::write_report(run);
-    } catch (const std::exception& e) {  // one damaged trial must not cost the others
+    } catch (const std::exception& e) {  // one damaged trial must not affect the others
       notes.push_back(std::string("no mission report: ") + e.what());
     }
   }
@@ -111,7 +111,7 @@ ordered_json number_or_null(double v) {
 
 std::string relative_url(const fs::path& target, const fs::path& folder) {
   constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
-  std::string url = "./";  // no name can then be taken for a scheme
+  std::string url = "./";  // then no name can be mistaken for a scheme
   for (const char c : plain_path(target).lexically_relative(plain_path(folder)).generic_string()) {
     char coded[4];
     std::snprintf(coded, sizeof coded, "%%%02X", static_cast<unsigned char>(c));

@@ -10,11 +10,11 @@
 
 namespace karst::campaign {
 
-/// A number of six significant digits, or null if it is not known.
+/// A number with six significant digits, or null if it is unknown.
 nlohmann::ordered_json number_or_null(double v);
 
-/// Of the mean of `values` by cave: over seeds, or over caves where a cave has too few. It is cut at what the
-/// figure can be, where the widening for few seeds leads beyond: the truth cannot lie there.
+/// Interval of the mean of `values` by cave: over seeds, or over caves if a cave has too few seeds. Clamped
+/// to the possible range of the figure, which the widening for few seeds may exceed.
 struct MeanInterval {
   evaluation::Interval interval;
   bool over_caves = false;
@@ -22,31 +22,31 @@ struct MeanInterval {
 MeanInterval mean_interval(const evaluation::Differences& values, const VerdictOptions& options,
                            int resamples, const evaluation::Interval& possible);
 
-/// Verdicts, ranking, and every pair of contestants in every figure.
+/// Verdicts, ranking, and comparisons of every pair of contestants in every figure.
 nlohmann::ordered_json report_verdicts(const Verdicts& verdicts);
 
-/// What each contestant's trials show alone: [figure][contestant] -> {all, caves}, each with n, mean and
-/// interval or null. Caves weigh the same.
+/// Summary of each contestant's trials: [figure][contestant] -> {all, caves}, each with n, mean and interval
+/// or null. Caves have equal weight.
 nlohmann::ordered_json report_summaries(const CampaignResults& results, const VerdictOptions& options);
 
-/// Coverage and explored volume over time on one grid of times: every trial's, and means with intervals by
-/// contestant, of each cave and over all.
+/// Coverage and explored volume over time on one time grid: of every trial, and means with intervals by
+/// contestant, for each cave and over all.
 nlohmann::ordered_json report_curves(const CampaignResults& results, const VerdictOptions& options);
 
 struct WorstTrial {
   std::size_t trial = 0;  // index in the results
   std::string why;
 };
-/// At most `count`, one reason each: failed, then contact, then ends short of landing, then the least of the
-/// primary figure against the mean of the trials in its cave.
+/// At most `count` trials with one reason each: first failures, then contacts, then flights that did not
+/// land, then the lowest primary figures relative to the mean of the trials in the same cave.
 std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric, std::size_t count);
 
-/// Flights to be shown side by side: of each cave all contestants' with the seed that went worst in the mean
-/// of the primary figure, and with the middle one. Their maps hold at most `max_points` cells together.
+/// Flights to be shown side by side: for each cave all contestants' flights with the seed that has the worst
+/// mean of the primary figure, and with the median seed. Their maps hold at most `max_points` cells in total.
 nlohmann::ordered_json report_replays(const CampaignResults& results, int metric, std::size_t max_points,
                                       std::vector<std::string>& notes);
 
-/// Where a page in `folder` finds `target`, as a URL: relative, and percent-encoded where it must be.
+/// The URL of `target` from a page in `folder`: relative, and percent-encoded where needed.
 std::string relative_url(const std::filesystem::path& target, const std::filesystem::path& folder);
 
 }  // namespace karst::campaign

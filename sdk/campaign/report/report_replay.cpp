@@ -1,4 +1,4 @@
-// Flights to be shown side by side: which, and small enough to hold many of them in one page.
+// Flights to be shown side by side: their selection, compact enough for many of them in one page.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +20,7 @@ using evaluation::CloudArrays;
 using evaluation::RunRecord;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMaxPoints = 150000;  // of one flight: more is not seen in half a window
+constexpr std::size_t kMaxPoints = 150000;  // of one flight: more would not be visible in half a window
 constexpr std::size_t kTrackPoses = 1000;
 constexpr double kTick_ms = 200;
 
@@ -29,7 +29,7 @@ bool has_recording(const TrialResult& t) {
   return !t.run_dir.empty() && fs::is_regular_file(fs::path(t.run_dir) / "map_growth.bin", no_matter);
 }
 
-/// The seed whose flights went worst in the mean over contestants, and the middle one.
+/// The seed with the worst mean over contestants, and the median seed.
 std::vector<std::int64_t> chosen_seeds(const CampaignResults& results, std::size_t cave, int metric) {
   std::map<std::int64_t, std::pair<double, int>> by_seed;  // sum and number
   for (const TrialResult& t : results.trials) {
@@ -40,7 +40,7 @@ std::vector<std::int64_t> chosen_seeds(const CampaignResults& results, std::size
   }
   const auto& definition = evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
   const double sign = definition.better == evaluation::Better::less ? -1 : 1;
-  // Seeds that all contestants flew come first: a flight without its partner cannot be compared.
+  // Prefer seeds that all contestants flew: a flight without its partner cannot be compared.
   int most = 0;
   for (const auto& [seed, sum] : by_seed) most = std::max(most, sum.second);
   std::vector<std::pair<double, std::int64_t>> order;
@@ -53,7 +53,7 @@ std::vector<std::int64_t> chosen_seeds(const CampaignResults& results, std::size
   return seeds;
 }
 
-/// What is drawn of a run, its times counted from take-off.
+/// The parts of a run that are drawn, with times from take-off.
 RunRecord recording_of(const TrialResult& trial) {
   RunRecord run = evaluation::read_run(trial.run_dir);
   const double begin_s = evaluation::flight_begin_s(run);
@@ -73,8 +73,8 @@ RunRecord recording_of(const TrialResult& trial) {
   return run;
 }
 
-/// Each axis as differences to the cell before, then times, then normals in steps of 1/16: what deflate
-/// makes little of.
+/// Each axis as differences to the previous cell, then times, then normals in steps of 1/16: this form
+/// compresses well with deflate.
 ordered_json packed(const CloudArrays& cloud) {
   const std::size_t n = cloud.from.size();
   std::vector<std::byte> bytes;
@@ -117,7 +117,7 @@ ordered_json scene(std::size_t trial, const RunRecord& run, const CloudArrays& c
           {"track", evaluation::scene_track(run.estimate.empty() ? run.truth : run.estimate, kTrackPoses)}};
 }
 
-/// All flights of one cave, their maps in cells of one size: nobody looks finer than another.
+/// All flights of one cave, with maps of one cell size, so that no flight is shown in finer detail.
 void add_scenes(ordered_json& scenes, const CampaignResults& results, const std::vector<std::size_t>& trials,
                 std::size_t max_points, std::vector<std::string>& notes) {
   std::map<std::size_t, std::pair<RunRecord, CloudArrays>> flights;
@@ -152,7 +152,7 @@ ordered_json report_replays(const CampaignResults& results, int metric, std::siz
   for (std::size_t cave = 0; cave < results.caves.size(); ++cave) {
     const std::vector<std::int64_t> chosen =
         max_points > 0 ? chosen_seeds(results, cave, metric) : std::vector<std::int64_t>();
-    seeds.push_back(chosen);  // the middle one, then the worst
+    seeds.push_back(chosen);  // the median seed, then the worst
     by_cave.emplace_back();
     for (std::size_t i = 0; i < results.trials.size(); ++i) {
       const TrialResult& t = results.trials[i];

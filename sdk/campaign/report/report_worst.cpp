@@ -1,4 +1,4 @@
-// The trials to look at first.
+// The trials that deserve attention first.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -13,7 +13,7 @@ enum Kind { kFailed, kContact, kNotLanded, kSlow };
 
 struct Judged {
   Kind kind = kSlow;
-  double against_cave = 0;  // the figure over the mean of its cave; turned so that less is worse
+  double against_cave = 0;  // the figure relative to the mean of its cave; signed so that less is worse
   WorstTrial worst;
 };
 
@@ -50,7 +50,7 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
     } else if (t.outcome != core::name_of(core::MissionOutcome::landed)) {
       j = {kNotLanded, j.against_cave, {i, "did not land: " + t.outcome}};
     } else if (less ? fraction <= 1 : fraction >= 1) {
-      continue;  // not below its cave's mean: nothing bad about it
+      continue;  // not below its cave's mean: not a bad trial
     }
     judged.push_back(std::move(j));
   }

@@ -35,7 +35,7 @@ double number_of(const json& object, std::string_view key) {
   return found != object.end() && found->is_number() ? found->get<double>() : kUnknown;
 }
 
-/// The last thing a trial said, which for one that could not fly is why.
+/// The last line a trial printed; for one that could not fly, this is the reason.
 std::string last_words(const fs::path& run_dir) {
   if (!fs::is_regular_file(run_dir / kLogFile)) return "";
   std::ifstream in = core::open_input(run_dir / kLogFile, core::kMaxDataFileBytes);
@@ -46,14 +46,14 @@ std::string last_words(const fs::path& run_dir) {
 }
 
 std::string failure(const Plan& plan, const fs::path& run_dir, ProcessEnd end) {
-  end.wall_s = plan.trial_timeout_s;  // not the moment it was found out: reasons do not tell the time
+  end.wall_s = plan.trial_timeout_s;  // the limit, not the measured time: reasons must be reproducible
   std::string words = last_words(run_dir);
   if (words.starts_with("karst: ")) words = words.substr(7);
   if (end.exit_code == 1 && !words.empty()) return words;
   return describe(end) + (words.empty() ? "" : "; it said last: " + words);
 }
 
-/// What was known at every step: the last point until then.
+/// Resamples the curve: each step holds the last point until then.
 std::vector<CurvePoint> curve_of(const evaluation::RunRecord& run, double coverage) {
   const auto fine =
       evaluation::coverage_curve(run, std::isfinite(coverage) ? std::optional(coverage) : std::nullopt);
@@ -92,7 +92,7 @@ StoredTrial collect(const Plan& plan, const TrialKey& key, const fs::path& folde
   r.curve = curve_of(run, metrics.is_object() ? number_of(metrics, "coverage") : kUnknown);
   trial.binary_version = plan.contestants.at(r.contestant).binary_version;
   trial.mission_hash = mission_hash(plan, key);
-  std::vector<std::string> problems;  // a record cut short lacks timing: its figures are not known
+  std::vector<std::string> problems;  // a truncated record has no timing: its figures are unknown
   trial.timing = {note.machine, note.end.wall_s, evaluation::read_wall_clock(run_dir, problems)};
   return trial;
 }

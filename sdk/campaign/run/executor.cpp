@@ -26,7 +26,7 @@ using host::end_process;
 using host::start_process;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uintmax_t kMinSpace = 64u << 20;  // bytes free to begin a trial; one writes tens of megabytes
+constexpr std::uintmax_t kMinSpace = 64u << 20;  // free to begin a trial; a trial writes tens of megabytes
 constexpr const char* kNoteFile = "trial.json";
 
 std::string machine_name() {
@@ -53,7 +53,7 @@ void refuse_full_disk(const fs::path& folder) {
         "where it was");
 }
 
-/// A trial that failed for want of space says nothing about its policy.
+/// A trial that failed for lack of disk space says nothing about its policy.
 void refuse_starved(const fs::path& folder) {
   std::string said;
   if (fs::exists(folder / kLogFile)) said = core::read_input(folder / kLogFile, core::kMaxRecordFileBytes);
@@ -82,7 +82,7 @@ Flying start(const TrialJob& job, std::size_t index, const ExecutorOptions& opti
   return {index, start_process(argv, folder / kLogFile), folder, begin};
 }
 
-/// Gives a trial that has ended its name.
+/// Renames the folder of a finished trial to its final name.
 void finish_trial(const Flying& f, const TrialJob& job, const ProcessEnd& end,
                   const ExecutorOptions& options) {
   if (end.exit_code != 0 || end.signal != 0) refuse_starved(f.folder);
@@ -95,7 +95,7 @@ void finish_trial(const Flying& f, const TrialJob& job, const ProcessEnd& end,
   if (error) throw InputError(job.run_dir.string(), "", "cannot be made: " + error.message());
 }
 
-/// How a trial ended, if it has.
+/// How a trial ended, or none if it still runs.
 std::optional<ProcessEnd> end_of(const Flying& f, double timeout_s) {
   ProcessEnd end;
   if (!has_ended(f.pid, end)) {
@@ -107,7 +107,7 @@ std::optional<ProcessEnd> end_of(const Flying& f, double timeout_s) {
   return end;
 }
 
-/// Whatever happens, no trial is left behind.
+/// Ends all running trials on destruction, so that none is left behind.
 class InTheAir {
  public:
   std::vector<Flying> trials;

@@ -1,11 +1,11 @@
-// A campaign's folder: the store, the mission files, the trials' run directories; and a lock, so that two
-// campaigns never write into one.
+// A campaign's folder: the store, the mission files, the trials' run directories; and a lock that prevents
+// two campaigns from writing to one folder.
 //
 //   campaign.sqlite                       store.h
 //   missions/CONTESTANT/CAVE.info         flown with `karst fly FILE --seed N`
 //   trials/CONTESTANT/CAVE/SEED/          a run directory, with output.txt and trial.json
-//   caves/                                what evaluations share: sdk/evaluation/reachable/reachable_file.h
-//   flying/                               trials under way
+//   caves/                                shared by evaluations: sdk/evaluation/reachable/reachable_file.h
+//   flying/                               running trials
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace karst::campaign {
 
-/// Held while it lives, however the process ends. Throws core::InputError if another holds it.
+/// Holds the lock for its lifetime, however the process ends. Throws core::InputError if it is taken.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -26,14 +26,14 @@ class FolderLock {
   int descriptor_;
 };
 
-/// Opens the folder's store for a plan, or makes it; the metric that was declared first stays. Throws
-/// core::InputError, naming what differs in `source` (the campaign's file), if the campaign there is another
-/// one.
+/// Opens or creates the folder's store for a plan; the metric declared first is kept. Throws
+/// core::InputError, naming the difference in `source` (the campaign's file), if the folder contains a
+/// different campaign.
 Store open_for(const Plan& plan, const std::filesystem::path& folder, AcceptedBinaries binaries,
                const std::string& source = "what is there now");
 
-std::filesystem::path mission_file(const Plan& plan, const TrialKey& trial);  // in the folder
-/// Writes all of them.
+std::filesystem::path mission_file(const Plan& plan, const TrialKey& trial);  // relative to the folder
+/// Writes all mission files.
 void write_missions(const Plan& plan, const std::filesystem::path& folder);
 
 }  // namespace karst::campaign

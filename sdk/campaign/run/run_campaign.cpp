@@ -26,7 +26,7 @@ std::vector<std::string> dropped(Keep keep) {
   return files;
 }
 
-/// A run directory, and those of a team's robots in it.
+/// A run directory, and the run directories of a team's robots in it.
 std::vector<fs::path> run_dirs_in(const fs::path& run_dir) {
   std::vector<fs::path> all{run_dir};
   std::error_code ignored;
@@ -42,7 +42,7 @@ Plan plan_for(const std::optional<Campaign>& campaign, const RunOptions& options
   return with_present_files(plan_of(Store::open(file).head().definition, file.string()), options.karst);
 }
 
-/// Seed by seed, so that comparisons are whole early and what is left takes as long as what was.
+/// Ordered by seed, so that comparisons are complete early and the remaining time is predictable.
 std::vector<TrialKey> in_flying_order(const Plan& plan) {
   std::vector<TrialKey> order;
   for (const std::int64_t seed : plan.seeds)
@@ -67,11 +67,11 @@ TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& optio
   return job;
 }
 
-/// Of the wall clock, at thirty seconds of flight a second: the fastest that was seen.
+/// Expected wall-clock time, at 30 s of flight per second: the fastest rate seen.
 double expected_trial_s(const Plan& plan) { return plan.horizon_s / 30; }
 
-/// What flies, and when it was written: a build under a campaign's feet would fly the rest with another
-/// binary than its rows say.
+/// The binaries and their modification times: a rebuild during a campaign would fly the remaining trials with
+/// another binary than their rows say.
 class Binaries {
  public:
   Binaries(const Plan& plan, const RunOptions& options) : folder_(options.folder) {
@@ -102,7 +102,7 @@ bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& 
                          expected_trial_s(plan), options.batch, options.sbatch, options.stop},
                         events);
   std::error_code ignored;
-  fs::remove_all(options.folder / "flying", ignored);  // what a killed campaign left
+  fs::remove_all(options.folder / "flying", ignored);  // left by a killed campaign
   ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
   how.finish = [&](const fs::path& run_dir) {
     binaries.refuse_changed();
@@ -152,7 +152,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     const TrialJob job = job_of(plan, key, options);
     if (stored.contains(key)) {
       ++progress.finished;
-    } else if (is_flown(job)) {  // its campaign died before it could be stored
+    } else if (is_flown(job)) {  // the campaign died before storing it
       take(key);
     } else {
       missing.push_back(key);

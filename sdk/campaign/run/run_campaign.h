@@ -1,4 +1,4 @@
-// Flies a campaign to its end, or goes on with one that was stopped, killed or appended to.
+// Flies a campaign to its end, or resumes one that was stopped, killed or extended.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -13,10 +13,10 @@
 
 namespace karst::campaign {
 
-/// What stays of each trial.
+/// Which files of each trial are kept.
 enum class Keep {
-  figures,  // metrics, mission, timing, what it printed
-  replay,   // and all that reports and replays show; no map.ot, map.ply
+  figures,  // metrics, mission, timing, output
+  replay,   // and all files for reports and replays; no map.ot, map.ply
   all
 };
 constexpr auto names_of(Keep) {
@@ -24,31 +24,31 @@ constexpr auto names_of(Keep) {
   return std::to_array<core::Named<Keep>>({{figures, "figures"}, {replay, "replay"}, {all, "all"}});
 }
 
-/// Where trials fly.
+/// Where trials are run.
 enum class Where { local, slurm };
 constexpr auto names_of(Where) {
   using enum Where;
   return std::to_array<core::Named<Where>>({{local, "local"}, {slurm, "slurm"}});
 }
 
-/// What is known while it runs.
+/// The state of a running campaign.
 struct Progress {
   std::size_t trials = 0;    // of the campaign
   std::size_t finished = 0;  // of these, now and before
-  std::size_t here = 0;      // finished since this start
+  std::size_t here = 0;      // of these, finished since this start
   std::size_t failed = 0;
   std::size_t flying = 0;
   double wall_s = 0;                  // since this start
   double simulated_s = 0;             // flown since this start
-  const StoredTrial* last = nullptr;  // that has just ended; null at a tick
+  const StoredTrial* last = nullptr;  // the trial that has just ended; null at a tick
 };
 
 struct RunOptions {
   std::filesystem::path folder;
   std::filesystem::path karst;  // the program that flies
   Where executor = Where::local;
-  std::vector<std::string> sbatch;  // further options of sbatch
-  std::size_t batch = 0;            // trials a Slurm task flies; 0: as many as are ten seconds of work
+  std::vector<std::string> sbatch;  // additional options of sbatch
+  std::size_t batch = 0;            // trials per Slurm task; 0: as many as take ten seconds
   std::size_t jobs = 1;
   Keep keep = Keep::replay;
   AcceptedBinaries binaries = AcceptedBinaries::same;
@@ -56,8 +56,8 @@ struct RunOptions {
   std::function<void(const Plan&, const Progress&)> progress;
 };
 
-/// Without `campaign` it goes on with the one in the folder. Returns false if it was stopped. Everything that
-/// can be wrong is said, as core::InputError, before anything flies.
+/// Without `campaign` it resumes the one in the folder. Returns false if it was stopped. All errors of the
+/// input are reported, as core::InputError, before the first flight.
 bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& options);
 
 }  // namespace karst::campaign

@@ -25,13 +25,13 @@ using host::ProcessOutput;
 using host::run_process;
 using nlohmann::json;
 
-constexpr double kTask_s = 10;               // least work of a task
-constexpr std::size_t kTasksOfArray = 1000;  // Slurm's MaxArraySize is 1001 unless set otherwise
+constexpr double kTask_s = 10;               // least duration of a task
+constexpr std::size_t kTasksOfArray = 1000;  // Slurm's default MaxArraySize is 1001
 constexpr int kAttempts = 2;
-constexpr double kCommand_s = 120;  // for a command of Slurm
+constexpr double kCommand_s = 120;  // time limit of a Slurm command
 constexpr double kEvaluationLimit_s = 1800;
 constexpr auto kPoll = std::chrono::milliseconds(500);
-constexpr int kPollsOfQueue = 6;  // the queue is asked this much less often than the folder is looked at
+constexpr int kPollsOfQueue = 6;  // the queue is polled less often than the folder by this factor
 
 std::string find_program(const std::string& name) {
   std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
@@ -40,7 +40,7 @@ std::string find_program(const std::string& name) {
   throw InputError("slurm", name, "is not installed here, or not in PATH");
 }
 
-/// What a command of Slurm prints; throws with what it says if it fails.
+/// The output of a Slurm command; throws with its message if the command fails.
 std::string ask(std::vector<std::string> argv) {
   const std::string name = argv[0];
   argv[0] = find_program(name);
@@ -52,12 +52,12 @@ std::string ask(std::vector<std::string> argv) {
   return said;
 }
 
-/// Whether any task of an array waits or runs. An array that Slurm has forgotten is over.
+/// Whether any task of an array waits or runs. An array unknown to Slurm has ended.
 bool is_active(const std::string& array) {
   const ProcessOutput queue =
       run_process({find_program("squeue"), "--noheader", "--jobs", array, "--format", "%T"}, kCommand_s);
   if (queue.end.exit_code != 0 && queue.out.find("Invalid job id") == std::string::npos)
-    return true;  // the controller does not answer: not known to be over
+    return true;  // the controller does not answer: it may still run
   return queue.end.exit_code == 0 && !queue.out.empty();
 }
 
@@ -68,7 +68,7 @@ void cancel(const std::string& array) {
   while (is_active(array)) std::this_thread::sleep_for(kPoll);
 }
 
-/// An array that a campaign which was killed left behind.
+/// Cancels an array that was left by a killed campaign.
 void cancel_left_behind(const SlurmOptions& o) {
   std::string array;
   if (fs::exists(array_file(o))) core::open_input(array_file(o), core::kMaxTextFileBytes) >> array;
@@ -89,7 +89,7 @@ json batch_json(const std::vector<TrialJob>& jobs, const SlurmOptions& o) {
   return batch;
 }
 
-/// Writes the batches into a folder of their own and submits one array of them; returns its number.
+/// Writes the batches into a folder of their own and submits one array for them; returns its number.
 std::string submit(const std::vector<TrialJob>& jobs, std::size_t batch, const SlurmOptions& o) {
   const fs::path dir = o.folder / "slurm" / "batches";
   std::error_code error;
@@ -123,7 +123,7 @@ std::string submit(const std::vector<TrialJob>& jobs, std::size_t batch, const S
   return array;
 }
 
-/// A task that ended without a trial: out of memory, out of time, a node that failed.
+/// Records a task that ended without a trial: out of memory, out of time, or a failed node.
 void record_lost(const TrialJob& job) {
   fs::create_directories(job.run_dir);
   std::ofstream(job.run_dir / kLogFile) << "its Slurm task ended without it, " << kAttempts << " times\n";
@@ -134,7 +134,7 @@ class Waiting {
  public:
   Waiting(const std::vector<TrialJob>& jobs, const ExecutorEvents& events)
       : jobs_(jobs), events_(events), ended_(jobs.size()) {}
-  /// Takes in what has appeared.
+  /// Collects the run directories that have appeared.
   void look() {
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       if (ended_[i] || !is_flown(jobs_[i])) continue;
@@ -158,7 +158,7 @@ class Waiting {
   std::vector<bool> ended_;
 };
 
-/// False if stopped.
+/// Returns false if stopped.
 bool wait_for(const std::string& array, Waiting& waiting, const SlurmOptions& o,
               const ExecutorEvents& events) {
   for (int poll = 1;; ++poll) {
@@ -182,11 +182,11 @@ bool run_on_slurm(const std::vector<TrialJob>& jobs, const SlurmOptions& o, cons
   std::error_code ignored;
   fs::remove_all(o.folder / "flying", ignored);
   Waiting waiting(jobs, events);
-  waiting.look();  // what it had flown by then
+  waiting.look();  // trials flown before the cancellation
   for (int attempt = 0; attempt < kAttempts && !waiting.all(); ++attempt) {
     const std::vector<TrialJob> missing = waiting.missing();
     const std::size_t first = o.batch > 0 ? o.batch : batch_size(o.expected_trial_s);
-    const std::size_t batch = attempt == 0 ? first : 1;  // a lost one takes none with it
+    const std::size_t batch = attempt == 0 ? first : 1;  // a lost trial must not take others with it
     for (std::size_t at = 0; at < missing.size(); at += batch * kTasksOfArray) {
       const auto begin = missing.begin() + static_cast<std::ptrdiff_t>(at);
       const auto end =

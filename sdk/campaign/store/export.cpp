@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Names and values of what depends on the wall clock.
+/// Names and values of the wall-clock quantities.
 std::array<std::pair<const char*, double>, 9> timing_of(const TrialTiming& t) {
   const evaluation::WallClock& f = t.flight;
   return {{{"trial_s", t.trial_s},
@@ -38,7 +38,7 @@ std::string cell(std::string text) {
   return text;
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that parses to the same number.
 std::string cell(double v) {
   if (!std::isfinite(v)) return "";
   std::array<char, 32> text;

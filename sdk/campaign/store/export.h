@@ -1,4 +1,4 @@
-// Results for other tools: one line a trial as CSV, everything as JSON.
+// Results for other tools: CSV with one line per trial, or everything as JSON.
 #pragma once
 #include <iosfwd>
 
@@ -7,14 +7,14 @@
 
 namespace karst::campaign {
 
-/// A header, then a line a trial: contestant, policy, cave, seed, status, outcome, reason, every figure,
-/// binary_version, mission_hash, machine, the times of the wall clock, run_dir. No cell holds a comma, a
-/// quote or a line end (a comma in a reason becomes a semicolon), so that `awk -F,` reads it; what is not
-/// known is empty.
+/// A header, then one line per trial: contestant, policy, cave, seed, status, outcome, reason, every figure,
+/// binary_version, mission_hash, machine, wall-clock times, run_dir. No cell contains a comma, a quote or a
+/// line end (a comma in a reason becomes a semicolon), so that `awk -F,` can read it; unknown values are
+/// empty.
 void write_csv(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras);
 
 /// One object: `schema` "karst.results/1", the campaign, its contestants and caves, and `trials` with
-/// `figures` by name and `curve` as [time_s, explored_m3, coverage]; what is not known is null.
+/// `figures` by name and `curve` as [time_s, explored_m3, coverage]; unknown values are null.
 void write_json(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras);
 
 }  // namespace karst::campaign

@@ -1,4 +1,4 @@
-// Reading a store: CampaignResults and what exports want beside them.
+// Reading a store: CampaignResults, and the additional data for exports.
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using sqlite::Statement;
 
-/// The store's columns of the figures, in the order of the definitions; NULL for one that it does not have.
+/// The store's columns of the figures, in the order of the definitions; NULL for missing ones.
 std::string figures_or_null(const fs::path& file, sqlite3* db) {
   const std::set<std::string> there = trial_columns(file, db);
   std::string text;
@@ -36,7 +36,7 @@ void read_curves(const fs::path& file, sqlite3* db, const std::map<std::int64_t,
       trials[trial->second].curve.push_back({s.real(1), s.real(2), s.real(3)});
 }
 
-/// A relation to a contestant or cave that the store does not have would index out of bounds.
+/// A reference to a contestant or cave that is not in the store would index out of bounds.
 std::size_t index_of(const fs::path& file, std::int64_t id, std::size_t count) {
   if (id < 1 || static_cast<std::size_t>(id) > count)
     throw core::InputError(file.string(), "trial", "names a contestant or cave that is not there");
@@ -54,7 +54,7 @@ void read_conditions(const std::string& definition, const std::string& source, C
     for (const auto& [name, value] : core::leaves_of(contestant.get_child("mission", {})))
       if (!name.starts_with("policy.") && name != "mission.max_flight_time")
         results.shared.emplace_back(name, value);
-    return;  // what the others have in common with it
+    return;  // contains only what the contestants have in common
   }
 }
 

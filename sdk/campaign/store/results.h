@@ -1,5 +1,5 @@
-// What a campaign has found so far, as the store gives it and as statistics, reports, tuning and selection
-// take it. Only the store knows SQL.
+// Results of a campaign so far, as read from the store and used by statistics, reports, tuning and selection.
+// Only the store uses SQL.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,12 +11,12 @@ namespace karst::campaign {
 struct ContestantEntry {
   std::string name, policy, version;
   std::string parameters;  // JSON object: resolved values of the policy's parameters
-  std::string settings;    // JSON object: other mission settings of this contestant alone
+  std::string settings;    // JSON object: mission settings of this contestant alone
 };
 
 struct CaveEntry {
   std::string name, file, start;
-  std::string description;  // JSON object of sdk/selection's figures; empty if it was not described
+  std::string description;  // JSON object of sdk/selection's figures; empty if not described yet
   std::string hash;         // SHA-256 of the mesh's bytes
 };
 
@@ -26,10 +26,10 @@ struct CurvePoint {
 };
 
 struct TrialResult {
-  std::size_t contestant = 0, cave = 0;  // indices below
+  std::size_t contestant = 0, cave = 0;  // indices into the vectors below
   std::int64_t seed = 0;
   bool failed = false;          // it crashed, hung or could not start
-  std::string outcome, reason;  // as in metrics.json; of a failed trial why it failed
+  std::string outcome, reason;  // as in metrics.json; for a failed trial the cause
   std::string run_dir;          // absolute
   std::vector<double> figures;  // in the order of evaluation::metric_definitions(); NaN: not known
   std::vector<CurvePoint> curve;
@@ -37,19 +37,19 @@ struct TrialResult {
 
 struct CampaignResults {
   std::string name;
-  double horizon_s = 0;  // the longest a trial's exploration could take; what restricted times are cut at
+  double horizon_s = 0;  // the longest possible exploration; the limit of restricted times
   std::vector<ContestantEntry> contestants;
   std::vector<CaveEntry> caves;
   std::vector<TrialResult> trials;      // by contestant, cave, seed
-  std::string metric = "coverage_auc";  // what the verdict is about, as declared before the first flight
-  std::string profile = {};             // sdk/campaign/plan/profile.h; "" if the store does not tell
-  // Keys and values of the mission as resolved that the contestants without settings of their own share:
-  // all but what is theirs (policy), the flight time and the cave.
+  std::string metric = "coverage_auc";  // decides the verdict, as declared before the first flight
+  std::string profile = {};             // sdk/campaign/plan/profile.h; "" if unknown
+  // Keys and values of the resolved mission shared by the contestants without settings of their own: all
+  // except policy, flight time and cave.
   std::vector<std::pair<std::string, std::string>> shared = {};
 };
 
-/// What a campaign's definition tells of how all flew: fills what it knows of profile, metric and shared
-/// settings. `source` names the store in errors. Throws core::InputError for text that is no definition.
+/// Reads profile, metric and shared settings from a campaign's definition. `source` names the store in
+/// errors. Throws core::InputError if the text is not a definition.
 void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results);
 
 }  // namespace karst::campaign

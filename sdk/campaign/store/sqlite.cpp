@@ -45,7 +45,7 @@ Statement& Statement::bind(int at, std::int64_t number) {
   check(sqlite3_bind_int64(statement_.get(), at, number));
   return *this;
 }
-Statement& Statement::bind(int at, double number) {  // SQLite makes NULL of NaN, but keeps infinity
+Statement& Statement::bind(int at, double number) {  // SQLite turns NaN into NULL, but keeps infinity
   check(std::isfinite(number) ? sqlite3_bind_double(statement_.get(), at, number)
                               : sqlite3_bind_null(statement_.get(), at));
   return *this;

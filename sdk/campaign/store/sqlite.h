@@ -1,4 +1,4 @@
-// A thin face on SQLite: every error becomes a core::InputError that says what to do about it.
+// A thin wrapper of SQLite: every error becomes a core::InputError with advice.
 #pragma once
 #include <sqlite3.h>
 
@@ -10,7 +10,7 @@
 
 namespace karst::campaign::sqlite {
 
-/// What went wrong with `db`, as a sentence about `file`.
+/// Throws the last error of `db` as a sentence about `file`.
 [[noreturn]] void fail(const std::filesystem::path& file, sqlite3* db);
 
 /// One SQL statement with its parameters, ?1 first.
@@ -19,15 +19,15 @@ class Statement {
   Statement(const std::filesystem::path& file, sqlite3* db, const std::string& sql);
   Statement& bind(int at, const std::string& text);
   Statement& bind(int at, std::int64_t number);
-  Statement& bind(int at, double number);  // NaN: NULL
-  /// True while there is a row.
+  Statement& bind(int at, double number);  // NaN becomes NULL
+  /// Returns true while there is a row.
   bool step();
-  /// Steps to the end and makes ready for other parameters.
+  /// Steps to the end and resets the statement for other parameters.
   void run();
 
   std::string text(int column) const;
   std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
-  double real(int column) const;  // NULL: NaN
+  double real(int column) const;  // NULL becomes NaN
 
  private:
   struct Finalize {
@@ -41,7 +41,7 @@ class Statement {
 
 void run(const std::filesystem::path& file, sqlite3* db, const std::string& sql);
 
-/// Rolled back unless committed. One that reads sees one moment throughout.
+/// Rolled back unless committed. A reading transaction sees a consistent snapshot.
 class Transaction {
  public:
   enum class Kind { write, read };

@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 using core::InputError;
 using sqlite::Statement;
 
-// A trial's id in decimal: contestant, three digits of the cave, six of the seed's place, each from 1.
+// A trial's id in decimal: contestant, three digits for the cave, six for the seed's index, each from 1.
 constexpr std::int64_t kSeedDigits = 1'000'000, kCaveDigits = 1'000;
 
-/// Ids of trials would run into each other.
+/// With more caves or seeds, the ids of trials would collide.
 void refuse_too_many(const fs::path& file, const StoreHead& head) {
   if (head.caves.size() >= kCaveDigits || head.seeds.size() >= kSeedDigits)
     throw InputError(file.string(), "", "at most 999 caves and 999999 seeds fit in a store");
@@ -48,7 +48,7 @@ Store::~Store() = default;
 Store Store::create(const fs::path& file, const StoreHead& head) {
   if (fs::exists(file)) throw InputError(file.string(), "", "is there already");
   refuse_too_many(file, head);
-  const fs::path part = file.string() + ".part";  // so that nobody finds half a store
+  const fs::path part = file.string() + ".part";  // so that nobody opens an incomplete store
   std::error_code ignored;
   fs::remove(part, ignored);
   try {

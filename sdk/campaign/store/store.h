@@ -1,8 +1,8 @@
-// A campaign's results in one SQLite file (docs/compare.md). Only this module knows SQL.
+// A campaign's results in one SQLite file (docs/compare.md). Only this module uses SQL.
 //
-// What is in the file does not depend on the order in which trials ended: a trial's id follows from its
-// contestant, cave and seed, and what the wall clock decides stands in the table `timing` alone. Every write
-// is one transaction, so that a campaign killed at any moment leaves whole trials only.
+// The file's content does not depend on the order in which trials ended: a trial's id follows from its
+// contestant, cave and seed, and all wall-clock values are in the table `timing`. Every write is one
+// transaction, so that a campaign killed at any moment leaves complete trials only.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -19,17 +19,17 @@ struct sqlite3;
 
 namespace karst::campaign {
 
-/// What is known of a campaign before anything flew.
+/// The data of a campaign known before its first flight.
 struct StoreHead {
   std::string name;
-  std::string definition;  // the campaign as resolved, INFO
+  std::string definition;  // the resolved campaign, INFO
   double horizon_s = 0;
   std::vector<ContestantEntry> contestants;
   std::vector<CaveEntry> caves;
   std::vector<std::int64_t> seeds;
 };
 
-/// What no two flights of a trial share.
+/// Values that differ between two flights of the same trial.
 struct TrialTiming {
   std::string machine;
   double trial_s = 0;  // of the whole process: loading, flight, evaluation
@@ -45,25 +45,25 @@ struct StoredTrial {
 /// Contestant and cave by index, and the seed.
 using TrialKey = std::tuple<std::size_t, std::size_t, std::int64_t>;
 
-/// An open store. All throw core::InputError naming the file and the reason: it is no store, another
-/// version's, damaged, locked, on a full disk.
+/// An open store. All functions throw core::InputError with the file and the reason: not a store, another
+/// version, damaged, locked, or disk full.
 class Store {
  public:
-  /// A new file, refused if there is one.
+  /// Creates a new file; refuses an existing one.
   static Store create(const std::filesystem::path& file, const StoreHead& head);
-  /// An existing one, to add to. Another program's lock is waited for so long.
+  /// Opens an existing store for writing. Waits up to this long for another program's lock.
   static Store open(const std::filesystem::path& file, double lock_wait_s = 60);
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
   ~Store();
 
   StoreHead head() const;
-  /// Appends contestants, caves and seeds and takes over the definition; what is there must stand in `head`
-  /// unchanged and in the same places.
+  /// Appends contestants, caves and seeds and replaces the definition; existing entries must be in `head`,
+  /// unchanged and at the same indices.
   void extend(const StoreHead& head);
-  /// Replaces the figures that `karst select` compares caves by: a JSON object.
+  /// Replaces the figures by which `karst select` compares caves: a JSON object.
   void describe_cave(std::size_t cave, const std::string& description);
-  /// With its curve and timing. Replaces what there was of this trial.
+  /// Adds a trial with its curve and timing. Replaces a previous entry of the same trial.
   void add(const StoredTrial& trial);
   std::set<TrialKey> finished() const;
 
@@ -76,13 +76,13 @@ class Store {
   std::unique_ptr<sqlite3, Close> db_;
 };
 
-/// The store's file in a campaign's folder; a path that is no folder is taken as it is.
+/// The store's file in a campaign's folder; a path that is not a folder is returned unchanged.
 std::filesystem::path store_file(const std::filesystem::path& folder_or_file);
 
-/// Everything but timing, while a campaign runs as well as after. Takes a campaign's folder or its file.
+/// Reads everything except timing, also while the campaign runs. Takes the campaign's folder or its file.
 CampaignResults read_results(const std::filesystem::path& folder_or_file);
 
-/// What exports want beside the results.
+/// Additional data of a trial for exports.
 struct TrialExtras {
   std::string binary_version, mission_hash;
   TrialTiming timing;
@@ -91,7 +91,7 @@ struct ResultsWithExtras {
   CampaignResults results;
   std::vector<TrialExtras> extras;  // in the order of the trials
 };
-/// Both of the same moment: a campaign that flies may add a trial between any two.
+/// Reads both from the same snapshot: a running campaign may add trials at any time.
 ResultsWithExtras read_with_extras(const std::filesystem::path& folder_or_file);
 
 }  // namespace karst::campaign

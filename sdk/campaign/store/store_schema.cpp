@@ -100,7 +100,7 @@ OpenStore open_to_read(const fs::path& file) {
   if (!fs::exists(file) && fs::is_directory(file.parent_path()) && file.filename() == "campaign.sqlite")
     throw InputError(file.parent_path().string(), "", "holds no campaign: there is no campaign.sqlite in it");
   if (!fs::exists(file)) throw InputError(file.string(), "", "no such store");
-  // Not read-only: what a killed writer left half done has to be rolled back first.
+  // Not read-only: an incomplete write of a killed process must be rolled back first.
   OpenStore store = open_file(file, SQLITE_OPEN_READWRITE);
   check_store(file, store.get());
   return store;
@@ -122,7 +122,7 @@ void check_store(const fs::path& file, sqlite3* db) {
                          std::to_string(kSchemaVersion));
   Statement check(file, db, "PRAGMA quick_check(1)");
   const std::string found = check.step() ? check.text(0) : "";
-  if (found != "ok")  // a headline, and what is wrong in the last line
+  if (found != "ok")  // a headline; the last line names the problem
     throw InputError(file.string(), "", "is damaged (" + found.substr(found.rfind('\n') + 1) + ")");
   if (const std::string schema = value_of(file, db, "schema"); schema != kSchema)
     throw InputError(file.string(), "campaign.schema",

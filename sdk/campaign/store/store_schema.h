@@ -1,4 +1,4 @@
-// What writing and reading a store share: its schema, and opening a file that may be anything.
+// Common parts of writing and reading a store: its schema, and opening arbitrary files.
 #pragma once
 #include <sqlite3.h>
 
@@ -11,7 +11,7 @@
 
 namespace karst::campaign {
 
-constexpr int kApplicationId = 0x4b525354;  // "KRST": what `file` and we know a store by
+constexpr int kApplicationId = 0x4b525354;  // "KRST": identifies a store to `file` and to karst
 constexpr int kSchemaVersion = 1;
 constexpr const char* kSchema = "karst.campaign/1";
 
@@ -20,13 +20,13 @@ struct CloseDatabase {
 };
 using OpenStore = std::unique_ptr<sqlite3, CloseDatabase>;
 
-/// SQL that makes an empty store of an empty file.
+/// SQL that creates an empty store in an empty file.
 std::string schema_sql();
-/// Any SQLite file; `flags` as of sqlite3_open_v2.
+/// Opens any SQLite file; `flags` as for sqlite3_open_v2.
 OpenStore open_file(const std::filesystem::path& file, int flags);
-/// That it is a store, whole, and of this version.
+/// Throws unless the file is a complete store of this version.
 void check_store(const std::filesystem::path& file, sqlite3* db);
-/// A store that may be written to by somebody else meanwhile.
+/// Opens a store for reading while others may write to it.
 OpenStore open_to_read(const std::filesystem::path& file);
 
 std::set<std::string> trial_columns(const std::filesystem::path& file, sqlite3* db);

@@ -51,7 +51,7 @@ void measure(Comparison& c, const VerdictOptions& options) {
     c.per_cave[i].interval = bootstrap_interval({differences[i]}, Resampled::seeds, bootstrap);
 }
 
-/// Shown: the interval leaves out zero, and the corrected test is below alpha (docs/statistics.md).
+/// Shown: the interval excludes zero, and the corrected p-value is below alpha (docs/statistics.md).
 Shown judge(const Comparison& c, double alpha) {
   if (!(c.p_corrected < alpha) || !c.interval.excludes(0)) return Shown::no_difference;
   const Better better = metric_definitions()[static_cast<std::size_t>(c.metric)].better;
@@ -77,7 +77,7 @@ void forecast(Comparison& c, const VerdictOptions& options, std::size_t tests) {
 std::size_t min_pairs(std::size_t contestants, double alpha) {
   if (contestants < 2) return 0;
   const double comparisons = static_cast<double>(contestants) * static_cast<double>(contestants - 1) / 2;
-  // n pairs that all fall to one side have p = 2 / 2^n; Holm multiplies the least p by all comparisons.
+  // n pairs that all favour one side have p = 2 / 2^n; Holm multiplies the least p by all comparisons.
   int pairs = 1;
   while (std::ldexp(comparisons, 1 - pairs) >= alpha) ++pairs;
   return static_cast<std::size_t>(pairs);

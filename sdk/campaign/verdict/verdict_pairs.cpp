@@ -7,7 +7,7 @@
 namespace karst::campaign {
 namespace {
 
-/// Figures have six decimals; so have their differences, or equal ones would not be ties in the last bits.
+/// Figures have six decimals. Differences are rounded likewise, or equal ones would not be exact ties.
 void add_pair(const TrialResult& a, double figure_a, double figure_b, Comparison& c) {
   c.pair_a.push_back(figure_a);
   c.pair_b.push_back(figure_b);

@@ -1,5 +1,5 @@
-// Places, and letters for what is not told apart: each letter is a largest set of contestants of which no two
-// are shown to differ (the compact letter display of multiple comparisons).
+// Ranks, and letters for contestants that do not differ: each letter is a maximal set of contestants of which
+// no two are shown to differ (the compact letter display of multiple comparisons).
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,11 +10,11 @@
 namespace karst::campaign {
 namespace {
 
-using Group = std::vector<std::size_t>;  // places, ascending
+using Group = std::vector<std::size_t>;  // ranks, ascending
 
 using Flown = std::map<std::pair<std::size_t, std::int64_t>, double>;  // by cave and seed
 
-/// 1: a is shown better than b, -1: worse, 0: not shown to differ.
+/// 1: a is shown to be better than b, -1: worse, 0: not shown to differ.
 int shown_better(const Verdicts& verdicts, std::size_t a, std::size_t b) {
   const Comparison* c = verdicts.find(a, b, verdicts.metric);
   if (!c || c->shown == Shown::no_difference) return 0;
@@ -22,7 +22,7 @@ int shown_better(const Verdicts& verdicts, std::size_t a, std::size_t b) {
   return (c->a == a) == first ? 1 : -1;
 }
 
-/// Bron and Kerbosch, 1973: all sets that cannot be made larger of places that are not told apart.
+/// Bron and Kerbosch, 1973: all maximal sets of contestants that are pairwise not shown to differ.
 void largest_groups(const std::vector<std::vector<bool>>& alike, const Group& group, Group candidates,
                     Group excluded, std::vector<Group>& found) {
   if (candidates.empty() && excluded.empty()) found.push_back(group);

@@ -1,4 +1,4 @@
-// The verdict in words.
+// Wording of the verdict.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@ using core::counted;
 using evaluation::Forecast;
 using evaluation::MetricDefinition;
 
-/// How one sentence says it of one figure; figures without a phrase are named.
+/// The phrase for one figure; figures without a phrase are named.
 struct Phrase {
   std::string_view metric;
   std::string_view more, less;  // "A ... than B" if A has more of it, and if it has less
@@ -64,7 +64,7 @@ std::string subject(const MetricDefinition& d) {
   return std::string(p ? p->subject : d.name);
 }
 
-/// Shares are told in percentage points.
+/// Fractions are given in percentage points.
 bool is_fraction(std::string_view name) {
   constexpr std::array kFractions = {"completed",      "standing_share", "coverage",          "coverage_auc",
                                      "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
@@ -76,7 +76,7 @@ std::string unit_of(const MetricDefinition& d) {
   return is_fraction(d.name) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
 }
 
-/// With as many decimals as two significant digits of `scale` need.
+/// Uses as many decimals as two significant digits of `scale` need.
 std::string number(double v, double scale) {
   const double magnitude = scale > 0 ? std::floor(std::log10(scale)) : 0;
   const int decimals = std::clamp(1 - static_cast<int>(magnitude), 0, 6);
@@ -93,7 +93,7 @@ std::string p_text(double p) {
   return text.data();
 }
 
-/// "6 caves x 10 seeds", or "57 pairs in 6 caves" where caves differ in their number.
+/// "6 caves x 10 seeds", or "57 pairs in 6 caves" if caves differ in their number of pairs.
 std::string sample(const Comparison& c) {
   const bool even = std::all_of(c.per_cave.begin(), c.per_cave.end(),
                                 [&](auto& cave) { return cave.pairs == c.per_cave.front().pairs; });
@@ -110,7 +110,7 @@ std::string failures(const Comparison& c, const CampaignResults& results) {
   return text.empty() ? "" : "; " + text;
 }
 
-/// What the difference is, with its interval, turned so that the mean is positive.
+/// The size of the difference with its interval, signed so that the mean is positive.
 std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
   const MetricDefinition& d = definition(c.metric);
   const double factor = is_fraction(d.name) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
@@ -126,9 +126,9 @@ std::string size_of(const Comparison& c, const CampaignResults& results, const V
          failures(c, results) + ")";
 }
 
-/// Why none is shown, where the interval alone would not tell.
+/// The reason for no shown difference, if the interval alone does not tell.
 std::string why_none(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
-  // All pairs falling one way have p = 2 / 2^pairs, times the pairs of contestants after correction.
+  // Pairs that all favour one side have p = 2 / 2^pairs, times the pairs of contestants after correction.
   const auto contestants = static_cast<double>(results.contestants.size());
   const double min_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
   if (min_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
@@ -182,7 +182,7 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
     return between + ": " + a + " " + (a_has_more ? "more" : "less") + " by " + size_of(c, results, options) +
            why_none(c, results, options) + (primary ? seeds_text(c, options) : "");
   }
-  // The better one speaks first; of figures without a better, the one with more.
+  // The better contestant is named first; for figures without a better direction, the one with more.
   const bool a_first = c.shown == Shown::a_better || c.shown == Shown::a_more;
   return (a_first ? a : b) + " " + verb(d, a_first == a_has_more) + " " + (a_first ? b : a) + ": " +
          size_of(c, results, options);
@@ -193,12 +193,12 @@ std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results
   if (ranking.size() < 2) return "nothing to compare: a verdict needs two contestants";
   if (ranking.size() == 2) return verdicts.find(0, 1, verdicts.metric)->sentence;
   const std::string by = " in " + subject(definition(verdicts.metric));
-  std::vector<RankedContestant> first;  // those that nobody is shown to be better than
+  std::vector<RankedContestant> first;  // those to which no contestant is shown to be better
   std::copy_if(ranking.begin(), ranking.end(), std::back_inserter(first),
                [](const RankedContestant& p) { return p.best == 1; });
   if (first.size() == ranking.size() && ranking.front().worst == static_cast<int>(ranking.size()))
     return "no difference shown" + by + " between any two of " + names_of(ranking, results);
-  if (first.empty())  // a better than b, b than c, c than a: where they did not all fly the same
+  if (first.empty())  // cyclic: a better than b, b than c, c than a, on different trials
     return "each of " + names_of(ranking, results) + " is shown worse than another" + by;
   if (first.size() > 1) return "nobody is shown to be better" + by + " than " + names_of(first, results);
   const std::size_t best = first.front().contestant;

@@ -43,7 +43,7 @@ ordered_json json_of(const std::optional<double>& v) {
   return v ? ordered_json(to_millionths(*v)) : ordered_json(nullptr);
 }
 
-/// Brings the estimates to the truth's frame as the options ask; says how.
+/// Aligns the estimates with the true trajectory as the options say; returns a description.
 ordered_json align(std::vector<PosePair>& pairs, const EvaluateOptions& options) {
   if (!options.align) return {{"kind", "none"}};
   std::vector<Vec3> from, to;
@@ -63,7 +63,7 @@ ordered_json align(std::vector<PosePair>& pairs, const EvaluateOptions& options)
           {"translation_m", {to_millionths(t.x()), to_millionths(t.y()), to_millionths(t.z())}}};
 }
 
-/// The truth at every estimate, and the first poses on each other if the frames differ.
+/// The true pose at every estimate; aligns the first poses if the frames differ.
 std::vector<PosePair> pairs_for_drift(const std::vector<StampedPose>& truth,
                                       const std::vector<StampedPose>& estimate,
                                       const EvaluateOptions& options) {
@@ -75,7 +75,7 @@ std::vector<PosePair> pairs_for_drift(const std::vector<StampedPose>& truth,
   return pairs;
 }
 
-/// Every n-th pair, to draw: [t, true x y z, estimated x y z, error].
+/// Every n-th pair, for plots: [t, true x y z, estimated x y z, error].
 ordered_json drawn(const std::vector<PosePair>& pairs, double begin_s) {
   ordered_json rows = ordered_json::array();
   const std::size_t stride = pairs.size() / kMaxPlotted + 1;
@@ -100,7 +100,7 @@ ordered_json curve(const std::vector<PosePair>& pairs, const std::vector<double>
 }
 
 std::vector<StampedPose> read_kitti(const std::string& file, const std::vector<StampedPose>& stamps) {
-  // Columns: the camera's axes in the body's, x forward y left z up.
+  // Columns: the camera's axes in the body frame, x forward, y left, z up.
   Eigen::Matrix3d body_camera;
   body_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   std::ifstream in = core::open_input(file, core::kMaxRecordFileBytes);
@@ -185,7 +185,7 @@ ordered_json map_evaluation(const std::vector<Vec3>& points, const MapReference&
   e["density_per_m2"] = json_of(reference.density_per_m2);
   e["points"] = points.size();
   e["error_m"] = json_of(s);
-  // Equal bins up to what 99.5 % of the points stay below; the last holds the rest as well.
+  // Equal bins up to the 99.5 % quantile of the errors; the last bin includes the rest.
   std::vector<double> sorted = errors;
   std::sort(sorted.begin(), sorted.end());
   const double top = sorted.empty() ? 1 : std::max(0.01, sorted[sorted.size() * 995 / 1000]);

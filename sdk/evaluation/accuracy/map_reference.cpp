@@ -21,7 +21,7 @@ using core::Vec3f;
 constexpr double kMargin_m = 5;
 constexpr double kMaxPoints = 6e7;
 
-/// Two numbers in [0, 1), the i-th of a sequence that fills the square evenly (the generalized golden ratio).
+/// The i-th pair of a low-discrepancy sequence in [0, 1)^2 (generalized golden ratio).
 std::pair<double, double> even(std::uint64_t i) {
   const auto part = [](double v) { return v - std::floor(v); };
   const double n = static_cast<double>(i) + 1;
@@ -42,7 +42,7 @@ std::vector<Vec3f> sample_surface(const cave::TriangleMesh& mesh, double points_
                                   const Eigen::AlignedBox3d& box, double margin_m, const std::string& name) {
   Eigen::AlignedBox3d grown(box.min() - Vec3::Constant(margin_m), box.max() + Vec3::Constant(margin_m));
   std::vector<Vec3f> points;
-  double owed = 0.5;  // points for the area so far, less those made
+  double owed = 0.5;  // points due for the area so far, less those created
   std::uint64_t count = 0;
   for (const auto& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t[0]].cast<double>(), b = mesh.vertices[t[1]].cast<double>(),

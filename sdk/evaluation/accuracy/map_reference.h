@@ -1,4 +1,4 @@
-// The reference a map is compared with: the points of a scanned cloud, or points spread over a cave's mesh.
+// The reference for a map: the points of a scanned cloud, or points sampled on a cave's mesh.
 #pragma once
 #include "core_stack/common/geometry.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
@@ -6,18 +6,18 @@
 
 namespace karst::evaluation {
 
-/// Points spread evenly over the triangles that touch the box grown by `margin_m`, the same every time.
-/// Throws InputError naming `name` if there would be more than 60 million.
+/// Points spread evenly over the triangles that touch the box, enlarged by `margin_m`; deterministic. Throws
+/// InputError naming `name` if there would be more than 60 million.
 std::vector<core::Vec3f> sample_surface(const cave::TriangleMesh& mesh, double points_per_m2,
                                         const Eigen::AlignedBox3d& box, double margin_m,
                                         const std::string& name);
 
 /// Reads a cave .info, a mesh (.stl, .obj, .dae, .ply with faces), or a cloud (.pcd, .ply, .bin). A mesh is
-/// sampled around `points` only, 5 m beyond: farther away an error counts as at least that.
+/// sampled only within 5 m around `points`: an error beyond counts as at least that.
 MapReference open_reference(const std::string& file, double points_per_m2,
                             const std::vector<core::Vec3>& points);
 
-/// A run's or a file's map: occupied cells of .bt and .ot, points of .pcd and .ply.
+/// The map of a run or a file: occupied cells of .bt and .ot, points of .pcd and .ply.
 std::vector<core::Vec3> read_map_points(const std::string& file);
 
 }  // namespace karst::evaluation

@@ -11,7 +11,7 @@ using core::Pose;
 constexpr std::size_t kSegmentStep = 10;  // KITTI: one second of its frames
 constexpr int kSegmentLengths = 8;
 
-/// The pose stamped nearest to `t_s`; of two as near, the earlier. Null if none is within the difference.
+/// The pose with the stamp nearest to `t_s`, the earlier of two. Null if the difference exceeds the maximum.
 const StampedPose* nearest(const std::vector<StampedPose>& poses, double t_s, double max_difference_s) {
   const auto after = std::lower_bound(poses.begin(), poses.end(), t_s,
                                       [](const StampedPose& p, double t) { return p.t_s < t; });

@@ -8,56 +8,56 @@
 
 namespace karst::evaluation {
 
-/// Two poses of the same moment.
+/// Two simultaneous poses, each in the frame of its trajectory.
 struct PosePair {
   double t_s = 0;  // the estimate's stamp
   core::Pose truth, estimate;
 };
 
-/// For each pose of the shorter trajectory (the estimate, if both are as long) the one of the other whose
-/// stamp is nearest, if it is within `max_difference_s`; in the order of time.
+/// Associates each pose of the shorter trajectory (the estimate, if both are equally long) with the pose of
+/// the other that has the nearest stamp, if that is within `max_difference_s`; in order of time.
 std::vector<PosePair> associate(const std::vector<StampedPose>& truth,
                                 const std::vector<StampedPose>& estimate, double max_difference_s);
 
-/// For each estimate stamped in [from, to] and within the truth's time, the truth interpolated at its stamp.
+/// For each estimate stamped in [from, to] and within the true trajectory, the true pose interpolated at it.
 std::vector<PosePair> paired_with_truth(const std::vector<StampedPose>& truth,
                                         const std::vector<StampedPose>& estimate, double from_s, double to_s);
 
-/// One error for each pair: of translation in metres, of rotation (the angle) in radians.
+/// One error per pair: of translation in metres, of rotation (the angle) in radians.
 struct PoseErrors {
   std::vector<double> translation_m, rotation_rad;
 };
 
-/// Absolute: of truth^-1 estimate.
+/// Absolute pose errors: of truth^-1 estimate.
 PoseErrors absolute_errors(const std::vector<PosePair>& pairs);
 
 struct IndexPair {
   std::size_t from, to;
 };
-/// Consecutive stretches of so many poses: (0, n), (n, 2n), ...
+/// Consecutive segments of so many poses: (0, n), (n, 2n), ...
 std::vector<IndexPair> pairs_by_frames(std::size_t poses, std::size_t frames);
-/// Consecutive stretches of the estimate's path that are at least so long; the first begins where the path
-/// has reached the length once, as evo has it.
+/// Consecutive segments of the estimated path of at least this length; the first begins where the path has
+/// reached the length once, as in evo.
 std::vector<IndexPair> pairs_by_path(const std::vector<PosePair>& pairs, double metres);
 
-/// Relative: of (truth_i^-1 truth_j)^-1 (estimate_i^-1 estimate_j).
+/// Relative pose errors: of (truth_i^-1 truth_j)^-1 (estimate_i^-1 estimate_j).
 PoseErrors relative_errors(const std::vector<PosePair>& pairs, const std::vector<IndexPair>& stretches);
 
-/// Drift over stretches of the true path, averaged over all of them (Geiger et al., CVPR 2012): from every
-/// tenth pose on, stretches of 1 to 8 times `unit_m`.
+/// Drift over segments of the true path, averaged over all of them (Geiger et al., CVPR 2012): segments of 1
+/// to 8 times `unit_m`, starting at every tenth pose.
 struct SegmentDrift {
-  double unit_m = 0;         // 100, as KITTI has it, where the path is 800 m long; else 10 or 1
-  std::size_t segments = 0;  // none: the path is shorter than 1 m, or holds too few poses
+  double unit_m = 0;         // 100, as in KITTI, if the path is at least 800 m long; else 10 or 1
+  std::size_t segments = 0;  // 0: the path is shorter than 1 m, or has too few poses
   double translation_percent = 0;
-  double rotation_radpm = 0;  // radians a metre
+  double rotation_radpm = 0;  // radians per metre
 };
 SegmentDrift segment_drift(const std::vector<PosePair>& pairs);
 
-/// Length of the polyline through the true positions.
+/// Length of the polyline through the true positions, metres.
 double true_path_m(const std::vector<PosePair>& pairs);
-/// Distance of the two positions of the last pair.
+/// Distance between the two positions of the last pair, metres.
 std::optional<double> end_error_m(const std::vector<PosePair>& pairs);
-/// Root mean square of the wrapped difference of the headings.
+/// Root mean square of the wrapped heading differences.
 std::optional<double> heading_rms_rad(const std::vector<PosePair>& pairs);
 
 }  // namespace karst::evaluation

@@ -21,14 +21,14 @@ std::vector<CoveragePoint> coverage_curve(const RunRecord& run, std::optional<do
   for (std::size_t i = 0; i < t_s->size(); ++i) {
     const double m3 = (*explored)[i];
     if (!std::isfinite((*t_s)[i]) || !std::isfinite(m3)) continue;
-    // Free cells may turn out to be rock: then less is known free at the end than before.
+    // Free cells may later turn into rock: the known-free volume can then be smaller at the end than before.
     const double fraction =
         std::isnan(fraction_per_m3) ? fraction_per_m3 : std::min(1.0, m3 * fraction_per_m3);
     const CoveragePoint p{std::max(0.0, (*t_s)[i] - begin_s), m3, fraction};
     if (p.time_s > 0) {
       curve.push_back(p);
     } else {
-      curve.front() = p;  // the ground was looked at from the ground
+      curve.front() = p;  // before take-off the vehicle observes from the ground
     }
   }
   return curve;

@@ -44,7 +44,7 @@ class RootMeanSquare {
   std::size_t count_ = 0;
 };
 
-/// How the exploring time was spent.
+/// Statistics of the exploration phase.
 struct Exploring {
   std::optional<double> standing_share, mean_speed_mps;
 };
@@ -100,7 +100,7 @@ std::optional<double> min_clearance_m(const RunRecord& run) {
   return least;
 }
 
-/// Touches the simulator saw, or, without its record, the one that ended the flight, if one did.
+/// Contacts recorded by the simulator; without its record, the one that ended the flight, if any.
 std::optional<std::int64_t> contacts(const RunRecord& run) {
   const auto end = run.last<event::Outcome>();
   const bool nobody_watched = !end || end->outcome == MissionOutcome::replayed;
@@ -112,8 +112,8 @@ std::optional<std::int64_t> contacts(const RunRecord& run) {
   return std::max<std::int64_t>(count, ended_so ? 1 : 0);
 }
 
-/// Where the vehicle believed to be against where the controller wanted it, over the flight: what the
-/// estimate is wrong by is drift, and no controller can do anything about it.
+/// Tracking error: the estimated position against the reference, over the flight. The error of the estimate
+/// itself is drift, which no controller can reduce.
 std::optional<double> tracking_rms_m(const RunRecord& run) {
   const auto* t_s = run.telemetry.times();
   std::array<const std::vector<double>*, 6> c{};
@@ -128,7 +128,7 @@ std::optional<double> tracking_rms_m(const RunRecord& run) {
   return rms.value();
 }
 
-/// What the battery's fraction lost during the flight, of the capacity the settings give.
+/// The energy used during the flight: the drop of the battery's fraction times the capacity in the settings.
 std::optional<double> energy_wh(const RunRecord& run, double begin_s, double end_s) {
   const auto* t_s = run.telemetry.times();
   const auto* fraction = run.telemetry.column("battery_fraction");

@@ -6,7 +6,7 @@
 
 namespace karst::evaluation {
 
-/// Empty where the record does not tell. Definitions: docs/metrics.md.
+/// Empty where the record lacks the data. Definitions: docs/metrics.md.
 struct FlightFigures {
   std::optional<std::int64_t> contacts;
   std::optional<double> flight_time_s, exploration_time_s, path_length_m, mean_speed_mps;
@@ -18,12 +18,12 @@ struct FlightFigures {
 
 FlightFigures flight_figures(const RunRecord& run);
 
-/// Whether the flight went as a mission is meant to go: the outcome is landed, truly at the start (within 1
-/// m; without truth the vehicle's word counts), and exploring ended because nothing was left, because of time
-/// or battery, or by the policy's wish, not because the supervisor sent the vehicle home or down.
+/// Whether the mission succeeded: the outcome is landed, truly at the start (within 1 m; without ground truth
+/// by the vehicle's own estimate), and exploration ended because nothing was left, because of time or
+/// battery, or by the policy's decision, not because the supervisor sent the vehicle home or made it land.
 bool completed(const RunRecord& run, std::optional<double> landing_error_m);
 
-/// When the vehicle took off: the begin of the first phase after standby, or the first telemetry row.
+/// Time of take-off: the begin of the first phase after standby, or the first telemetry row.
 double flight_begin_s(const RunRecord& run);
 
 /// The last finite value of a column; none if there is no such column or value.

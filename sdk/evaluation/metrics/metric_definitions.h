@@ -1,5 +1,5 @@
-// Every figure of a flight that campaigns compare: its name, unit, which way is better, and what it is.
-// metrics.json, the store's columns, CSV, reports and the docs follow this one table (docs/metrics.md).
+// Every figure of a flight that campaigns compare: name, unit, better direction, and meaning. metrics.json,
+// the store's columns, CSV, reports and the docs follow this one table (docs/metrics.md).
 #pragma once
 #include <limits>
 #include <span>
@@ -16,16 +16,16 @@ constexpr auto names_of(Better) {
   return std::to_array<core::Named<Better>>({{more, "more"}, {less, "less"}, {neither, "neither"}});
 }
 
-/// What a failed trial counts as where its record does not tell.
+/// The value of a failed trial if its record does not give one.
 enum class IfFailed { unknown, nothing, horizon };  // left out of comparisons; 0; the campaign's horizon
 
 struct MetricDefinition {
   std::string_view name;  // also the key in metrics.json and the column of the store
-  std::string_view unit;  // "" for shares and counts
+  std::string_view unit;  // "" for fractions and counts
   Better better;
   IfFailed if_failed;
   std::string_view meaning;                                          // one sentence
-  double least = 0, most = std::numeric_limits<double>::infinity();  // what it can be
+  double least = 0, most = std::numeric_limits<double>::infinity();  // possible range
 };
 
 std::span<const MetricDefinition> metric_definitions();
@@ -33,8 +33,8 @@ std::span<const MetricDefinition> metric_definitions();
 /// Its index in the table, or -1.
 int metric_index(std::string_view name);
 
-/// 1 if more of it is better, -1 if less is. Throws core::InputError naming `source` if there is no such
-/// figure, or neither is better.
+/// 1 if more is better, -1 if less is. Throws core::InputError naming `source` if there is no such figure, or
+/// if it has no better direction.
 double better_sign(const std::string& name, const std::string& source);
 
 }  // namespace karst::evaluation

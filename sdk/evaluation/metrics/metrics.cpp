@@ -25,7 +25,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 namespace event = core::event;
 
-/// Null for what is not known; otherwise rounded, so that a number's text is short and the same everywhere.
+/// Null for unknown values; otherwise rounded, so that the number's text is short and reproducible.
 ordered_json value(std::optional<double> v) {
   if (!v || !std::isfinite(*v)) return nullptr;
   return core::to_millionths(*v);
@@ -57,8 +57,8 @@ struct Volume {
   std::optional<double> explored_m3, coverage;
 };
 
-/// Of the final map. A run cut short has none: then the telemetry's last volume, which counts the same cells,
-/// and as if all of it lay in R, which is more than there was by the part that lies outside.
+/// Volume of the final map. A truncated run has no map: then the last volume in the telemetry is used, as if
+/// all of it lay in R, which overestimates by the part outside R.
 Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
   Volume volume;
   if (!map) {
@@ -78,7 +78,7 @@ Volume volume_of(const RunRecord& run, const core::VoxelMap* map, const Truth& t
   return volume;
 }
 
-/// Share of cells that hold, or share a face with one that holds.
+/// Fraction of the cells that satisfy `holds` themselves or share a face with a cell that does.
 template <class Holds>
 double fraction_near(const std::vector<CellKey>& cells, const Holds& holds) {
   constexpr std::array<CellKey, 7> kNear{
@@ -89,8 +89,8 @@ double fraction_near(const std::vector<CellKey>& cells, const Holds& holds) {
   return static_cast<double>(count) / static_cast<double>(cells.size());
 }
 
-/// Share of the surface whose cell, or one that shares a face with it, is occupied in the map: scans are off
-/// by centimetres, and a cell that rock only just enters is seldom hit.
+/// Fraction of the surface cells that are occupied in the map, or share a face with an occupied cell: scans
+/// are off by centimetres, and cells that the rock only just enters are seldom hit.
 std::optional<double> surface_seen(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
   if (truth.surface.empty()) return std::nullopt;
   std::set<CellKey> grown;
@@ -103,7 +103,7 @@ std::optional<double> surface_seen(const RunRecord& run, const core::VoxelMap* m
   return fraction_near(truth.surface, occupied);
 }
 
-/// The same of what the colour camera's pictures truly show. Null without such a camera.
+/// The same for the surface that the colour camera truly imaged. Null without such a camera.
 std::optional<double> surface_imaged(const Truth& truth) {
   if (truth.surface.empty() || !truth.imaged_rock) return std::nullopt;
   const std::vector<CellKey>& imaged = *truth.imaged_rock;

@@ -12,29 +12,29 @@
 
 namespace karst::evaluation {
 
-/// What is known of the cave itself; leave empty what is not, and the figures that need it are null.
+/// Ground truth of the cave; unknown parts stay empty, and the figures that need them are null.
 struct Truth {
   std::optional<double> reachable_volume_m3;                  // |R|
-  std::function<bool(const core::Vec3&)> is_reachable;        // whether a point of the world lies in R
+  std::function<bool(const core::Vec3&)> is_reachable;        // whether a point in the world frame lies in R
   std::function<double(const core::Vec3&)> distance_to_rock;  // metres to the nearest rock surface
-  std::vector<core::CellKey> surface;                         // cells of rock that bound R, on the map's grid
-  /// Of a run with a colour camera: cells of rock that some picture shows well enough, sorted.
+  std::vector<core::CellKey> surface;                         // rock cells that bound R, on the map's grid
+  /// For a run with a colour camera: rock cells that some picture shows well enough, sorted.
   std::optional<std::vector<core::CellKey>> imaged_rock;
 };
 
-/// Every name is there, null where the value is not known. Depends on the record and the truth only, and
-/// numbers are rounded to six decimals: replays of a run give the same bytes.
+/// All names are present, null where the value is unknown. Depends only on the record and the ground truth;
+/// numbers are rounded to six decimals, so that replays of a run give the same bytes.
 nlohmann::ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Truth& truth);
 
-/// Reads the run and its map and evaluates them. Throws InputError only if `run_dir` is no directory;
-/// what else is missing or damaged stands in `problems`, if given.
+/// Reads the run and its map and evaluates them. Throws InputError only if `run_dir` is not a directory;
+/// other missing or damaged inputs are listed in `problems`, if given.
 nlohmann::ordered_json evaluate_run(const std::filesystem::path& run_dir, const Truth& truth,
                                     std::vector<std::string>* problems = nullptr);
 
-/// Writes `metrics` as run_dir/metrics.json, whole or not at all; throws InputError when the disk refuses.
+/// Writes `metrics` to run_dir/metrics.json, completely or not at all; throws InputError if writing fails.
 void write_metrics(const std::filesystem::path& run_dir, const nlohmann::ordered_json& metrics);
 
-/// Figures of a map that only the cave itself tells: null without it.
+/// Figures of a map that require ground truth of the cave: null without it.
 inline constexpr std::array kCaveFigures = {"reachable_volume_m3",
                                             "coverage",
                                             "coverage_auc",

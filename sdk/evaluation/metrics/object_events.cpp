@@ -8,7 +8,7 @@ namespace {
 using core::Vec3;
 using nlohmann::json;
 
-constexpr double kFarthest_m = 1e6;  // what lies farther is damaged
+constexpr double kFarthest_m = 1e6;  // farther positions are damaged
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Objects of interest as the events of a record have them.
+// Objects of interest in the events of a record.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -13,29 +13,29 @@
 
 namespace karst::evaluation {
 
-/// An object as it truly lies.
+/// The ground truth of an object.
 struct TrueObject {
   std::string what;
   core::Vec3 position = core::Vec3::Zero();
-  bool seen = false;  // in view often enough to be found
+  bool seen = false;  // in view often enough to count as found
 };
 
-/// An object as somebody knows it.
+/// An object as known to a robot or the base.
 struct KnownObject {
   std::string what;
   core::Vec3 position = core::Vec3::Zero();
-  std::optional<double> reported_s;  // when the base first knew of it
+  std::optional<double> reported_s;  // when it first became known to the base
 };
 
 /// By number.
 using TrueObjects = std::map<std::int64_t, TrueObject>;
-/// By robot, and its own number for the object.
+/// By robot, and the robot's own number for the object.
 using KnownObjects = std::map<std::pair<std::int64_t, std::int64_t>, KnownObject>;
 
 std::vector<TrueObject> listed(const TrueObjects& truth);
 std::vector<KnownObject> listed(const KnownObjects& known);
 
-/// What a line says of an object; what and where are not always said again.
+/// The content of a report line; kind and position are not always repeated.
 struct ObjectReport {
   core::ObjectState state;
   std::string what;
@@ -43,17 +43,17 @@ struct ObjectReport {
   double t_s = 0;
 };
 
-/// None if it lies where no object can be: then it is damaged.
+/// None if no object can be at this position: then it is damaged.
 std::optional<core::Vec3> near_enough(const std::optional<core::Vec3>& position);
 /// None if it is missing or damaged.
 std::optional<core::Vec3> position_of(const nlohmann::json& event);
-/// -1 if it is none.
+/// -1 if the field is not a whole number.
 std::int64_t whole_number(const nlohmann::json& event, const char* key);
 
-/// Of truth_objects.jsonl.
+/// Reads truth_objects.jsonl.
 TrueObjects true_objects(const std::vector<nlohmann::json>& events);
 
-/// Takes in a report; with the state `counts_as_reported` the base knows of the object.
+/// Applies a report; with the state `counts_as_reported` the object is known to the base.
 void note(KnownObjects& known, const KnownObjects::key_type& key, const ObjectReport& report,
           std::optional<core::ObjectState> counts_as_reported);
 

@@ -1,4 +1,4 @@
-// Fewer samples of a curve that still draw the same curve.
+// Reduces the samples of a curve without changing its drawn shape.
 #pragma once
 #include <vector>
 
@@ -8,8 +8,8 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-/// At most about `max_points` samples: the x range is cut into equal runs of samples, and of each run the
-/// first, least, greatest and last are kept, so no peak is lost. Samples that are not finite are left out.
+/// At most about `max_points` samples: the x range is cut into equal bins, and the first, least, greatest and
+/// last sample of each bin are kept, so that no peak is lost. Samples that are not finite are left out.
 Curve decimate(const std::vector<double>& x, const std::vector<double>& y, std::size_t max_points);
 
 }  // namespace karst::evaluation

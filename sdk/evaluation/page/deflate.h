@@ -1,4 +1,4 @@
-// Deflate in zlib's format (RFC 1950), which browsers inflate by themselves.
+// Deflate in zlib's format (RFC 1950), which browsers can decompress natively.
 #pragma once
 #include <cstddef>
 #include <span>

@@ -26,8 +26,8 @@ std::string joined_scripts(const std::vector<std::string_view>& scripts) {
 }  // namespace
 
 std::string assemble_page(const PageParts& parts, const ordered_json& data) {
-  // Invalid UTF-8 in a plugin's text is shown as U+FFFD. As < is not needed outside strings, escaping all of
-  // them keeps any text in the data from ending the element.
+  // Invalid UTF-8 in a plugin's text is shown as U+FFFD. Outside strings < is not needed, so escaping all of
+  // them prevents any text in the data from ending the element.
   std::string json = core::json_text(data);
   replace(json, "<", "\\u003c");
   std::string styles;

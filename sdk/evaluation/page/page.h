@@ -1,4 +1,4 @@
-// A page in one file that loads nothing: markup, styles, scripts and data inside. docs/report.md
+// A self-contained page: markup, styles, scripts and data in one file. docs/report.md
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,7 +12,7 @@ struct PageParts {
   std::vector<std::string_view> styles, libraries, scripts;
 };
 
-/// No text in the data, whatever it holds, can end the element it stands in.
+/// Text in the data cannot end the element that contains it.
 std::string assemble_page(const PageParts& parts, const nlohmann::ordered_json& data);
 
 }  // namespace karst::evaluation

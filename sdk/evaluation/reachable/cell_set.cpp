@@ -26,7 +26,7 @@ void fill_block(CellSet::Block& cells, const CellSet::Block& allowed) {
   }
 }
 
-/// What a full block's cells reach in the neighbouring block on side `side` (-x +x -y +y -z +z).
+/// Cells of the neighbouring block on side `side` (-x +x -y +y -z +z) that one step from `cells` reaches.
 CellSet::Block stepped_over(const CellSet::Block& cells, int side) {
   CellSet::Block out{};
   for (std::size_t z = 0; z < 8; ++z) {
@@ -90,7 +90,7 @@ namespace {
 
 enum class Filled { set, complement };
 
-/// Nothing if a complement leads out.
+/// None if the complement extends to the outermost blocks.
 std::optional<CellSet> flooded(const CellSet& set, Filled what, const CellKey& seed) {
   const bool complement = what == Filled::complement;
   const CellKey n = set.blocks_along();

@@ -1,4 +1,4 @@
-// A set of map cells inside fixed bounds: blocks of 8x8x8 bits, found through a dense table.
+// A set of map cells inside fixed bounds: bit blocks of 8x8x8 cells, found through a dense table.
 #pragma once
 #include <array>
 #include <bit>
@@ -20,11 +20,11 @@ inline core::Vec3 center_of(const CellKey& k, double resolution_m) {
 class CellSet {
  public:
   static constexpr int kEdge = 8;  // cells along a block's edge
-  /// Slice z holds the cells of one height, bit y * 8 + x.
+  /// Slice z holds the cells of one height; bit y * 8 + x.
   using Block = std::array<std::uint64_t, kEdge>;
 
   CellSet() = default;
-  /// Room for all blocks that hold a cell from `low` to `high`, both included.
+  /// Reserves all blocks that contain a cell from `low` to `high`, both included.
   CellSet(const CellKey& low, const CellKey& high);
 
   bool contains(const CellKey& k) const {
@@ -51,7 +51,7 @@ class CellSet {
     }
   }
 
-  // By block, for work on 64 cells at a time. A block's place counts blocks from the bounds' low corner.
+  // Access by block, for work on 64 cells at a time. Block coordinates count from the bounds' low corner.
   CellKey blocks_along() const { return count_; }
   CellKey block_of(const CellKey& k) const {
     return {(k.x >> 3) - first_.x, (k.y >> 3) - first_.y, (k.z >> 3) - first_.z};
@@ -69,7 +69,7 @@ class CellSet {
     return i < 0 ? nullptr : &blocks_[static_cast<std::size_t>(i)];
   }
   Block* find(const CellKey& place) { return const_cast<Block*>(std::as_const(*this).find(place)); }
-  /// The block at a place within the bounds, empty if it is new. Invalidates other references to blocks.
+  /// The block at these block coordinates, created if missing. Invalidates other references to blocks.
   Block& at(const CellKey& place);
   std::size_t index_of(const CellKey& p) const {
     return (static_cast<std::size_t>(p.z) * count_.y + p.y) * count_.x + p.x;
@@ -80,14 +80,14 @@ class CellSet {
   CellKey corner_of(std::size_t index) const;
 
   CellKey first_, count_;            // in blocks
-  std::vector<std::int32_t> index_;  // of each block of the bounds, -1 where there is none
+  std::vector<std::int32_t> index_;  // for each block of the bounds; -1 if there is none
   std::vector<Block> blocks_;
 };
 
-/// The 6-connected part of `set` that holds `seed`; empty if the seed does not belong.
+/// The 6-connected component of `set` that contains `seed`; empty if `set` does not contain it.
 CellSet flood(const CellSet& set, const CellKey& seed);
-/// The same of the bounds' cells that are not in `set`. Nothing if it leads out: into the outermost blocks of
-/// the bounds.
+/// The same for the cells within the bounds that are not in `set`. None if the component reaches the
+/// outermost blocks of the bounds.
 std::optional<CellSet> flood_between(const CellSet& set, const CellKey& seed);
 
 }  // namespace karst::evaluation

@@ -12,7 +12,7 @@ using core::Vec3f;
 
 /// Unit vectors in the camera's frame, row by row.
 std::vector<Vec3f> rays_of(const PicturePose& p, double resolution_m) {
-  const double step = 0.5 * resolution_m / p.max_range_m;  // in the plane at distance 1
+  const double step = 0.5 * resolution_m / p.max_range_m;  // on the image plane at distance 1
   const auto columns = static_cast<int>(std::ceil(2 * p.tan_half_width / step));
   const auto rows = static_cast<int>(std::ceil(2 * p.tan_half_height / step));
   std::vector<Vec3f> rays;

@@ -1,4 +1,4 @@
-// Which rock of the cave itself is in the pictures: by rays into the mesh.
+// The parts of the true rock surface that the pictures show, found by casting rays into the mesh.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace karst::evaluation {
 
-/// Cells, sorted, that hold the point where a ray of some picture first meets rock, within the camera's range
-/// and met at no more than its greatest incidence. A picture's rays are spread evenly over its plane,
-/// half a cell apart at the camera's range. A picture from within 1 cm and 0.1 degrees of the last one looked
-/// at is passed over: it shows the same.
+/// Cells, sorted, that contain the first hit of some picture's ray on rock, if the hit is within the camera's
+/// range and at most at its greatest incidence. The rays of a picture are evenly spaced on its image plane,
+/// half a cell apart at the camera's range. A picture within 1 cm and 0.1 degrees of the last one used is
+/// skipped, because it shows the same.
 std::vector<CellKey> imaged_rock(const cave::RayScene& scene, std::span<const PicturePose> pictures,
                                  double resolution_m);
 

@@ -9,7 +9,7 @@ namespace {
 constexpr std::array<CellKey, 6> kSteps{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-/// For each cell passed, which step led there (1..6), 0 where none did yet.
+/// For each visited cell the step (1..6) that led to it, 0 if unvisited.
 class Trail {
  public:
   explicit Trail(const CellSet& shape) : shape_(shape) {
@@ -32,7 +32,7 @@ bool outermost(const CellSet& shape, const CellKey& k) {
   return p.x <= 0 || p.y <= 0 || p.z <= 0 || p.x >= n.x - 1 || p.y >= n.y - 1 || p.z >= n.z - 1;
 }
 
-/// Of the 26 straight ways out of a cell, how many end at rock.
+/// Number of the 26 straight lines out of a cell that end at rock.
 int sides_with_rock(const CellSet& rock, const CellKey& k) {
   int n = 0;
   for (int i = 0; i < 27; ++i) {

@@ -1,12 +1,12 @@
-// Where an open cave is open.
+// Finds the opening of a cave that is not closed.
 #pragma once
 #include "sdk/evaluation/reachable/cell_set.h"
 
 namespace karst::evaluation {
 
-/// On the shortest way from the start to the outermost blocks of the bounds, the first cell that rock
-/// surrounds on few sides: the hole through which the way leads out. Cells of `rock` bar the way; there must
-/// be one.
+/// On the shortest path from the start to the outermost blocks of the bounds, the first cell that has rock on
+/// few sides: the hole through which the path leaves the cave. Cells of `rock` block the path; there must be
+/// a path.
 CellKey find_opening(const CellSet& rock, const CellKey& start);
 
 }  // namespace karst::evaluation

@@ -74,7 +74,7 @@ std::optional<CellKey> flyable_near(const Vec3& start, const CellSet& clear, con
         const Vec3 center = center_of(k, edge);
         const double distance = (center - start).norm();
         if (distance >= best_distance) continue;
-        // Points half a cell apart do: a wall in between is at least one cell of rock thick.
+        // Sampling every half cell suffices: a wall in between is at least one cell of rock thick.
         const int points = 1 + static_cast<int>(2 * distance / edge);
         bool open = true;
         for (int i = 0; i <= points && open; ++i)
@@ -86,7 +86,7 @@ std::optional<CellKey> flyable_near(const Vec3& start, const CellSet& clear, con
   return best;
 }
 
-/// All but what can only be seen.
+/// All sets except `reachable`, which includes cells that are only seen.
 Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
                        const std::string& name) {
   const double edge = options.resolution_m;

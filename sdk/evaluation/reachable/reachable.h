@@ -1,5 +1,5 @@
-// The ground truth of coverage: what of a cave a vehicle can fly through, and what it can see from there.
-// For evaluation only; nothing that flies may ask.
+// The ground truth of coverage: the space of a cave that a vehicle can fly through, and the space visible
+// from there. For evaluation only; not available to anything that flies.
 #pragma once
 #include "plugins/simulator/cave/triangle_mesh.h"
 #include "sdk/evaluation/reachable/cell_set.h"
@@ -7,11 +7,11 @@
 namespace karst::evaluation {
 
 struct ReachableOptions {
-  double resolution_m = 0.2;  // the map's: cell k covers [k, k+1) * resolution, as in core::VoxelMap
-  // Least distance from a flyable cell's centre to rock. The same for all missions, so that their coverage
-  // can be compared: the default vehicle's radius and as much again.
+  double resolution_m = 0.2;  // of the map: cell k covers [k, k+1) * resolution, as in core::VoxelMap
+  // Least distance from a flyable cell's centre to rock. The same for all missions, so that their coverage is
+  // comparable: twice the default vehicle's radius.
   double clearance_m = 0.6;
-  double sight_m = 20;  // how far free space is seen from a flyable cell
+  double sight_m = 20;  // greatest distance at which free space is seen from a flyable cell
 };
 
 /// Exact on the grid:
@@ -34,14 +34,14 @@ struct Reachable {
   double volume_m3() const { return static_cast<double>(reachable_cells) * cell_m3(); }
 };
 
-/// `name` is the mesh's, for messages. A start that is nearer to rock than the clearance, such as a vehicle
-/// standing on the ground, counts as the nearest flyable cell within 3 m in a straight free line.
+/// `name`: the mesh's name, for messages. A start nearer to rock than the clearance, such as that of a
+/// vehicle on the ground, is replaced by the nearest flyable cell within 3 m along a straight free line.
 /// Throws InputError if the start is in rock, if nothing flyable is near it, if free space leads outside the
-/// mesh (with the place), or if the mesh is too large for the resolution.
+/// mesh (with the position), or if the mesh is too large for the resolution.
 Reachable find_reachable(const cave::TriangleMesh& mesh, const core::Vec3& start,
                          const ReachableOptions& options, const std::string& name);
 
-/// Throws the same of a start and mesh, in a fraction of the time.
+/// Throws the same errors for a start and mesh, in a fraction of the time.
 void check_reachable(const cave::TriangleMesh& mesh, const core::Vec3& start, const ReachableOptions& options,
                      const std::string& name);
 

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file: key, bounds of the cells, then blocks that are not empty: their place and a block of each set. At
-// the end the sum over all of it.
-constexpr std::uint64_t kVersion = 1;  // of the file, and of what find_reachable makes of a mesh
+// File format: key, bounds of the cells, then the blocks that are not empty: block coordinates and a block of
+// each set; at the end a checksum of the whole file.
+constexpr std::uint64_t kVersion = 1;  // of the file format and of find_reachable's result
 using Bytes = std::string;
 
 struct BlockEntry {
@@ -32,7 +32,7 @@ struct Head {
   std::array<std::int32_t, 6> bounds;  // lowest and highest cell
 };
 
-/// FNV-1a over words of eight bytes: a mesh has many.
+/// FNV-1a over words of eight bytes, because meshes are large.
 std::uint64_t sum_of(std::span<const std::byte> bytes, std::uint64_t hash = 14695981039346656037ull) {
   for (std::size_t i = 0; i < bytes.size(); i += 8) {
     std::uint64_t word = 0;
@@ -85,7 +85,7 @@ std::optional<Reachable> read(const fs::path& file, std::uint64_t key, const Rea
   Bytes bytes;
   try {
     bytes = core::read_input(file, core::kMaxRecordFileBytes);
-  } catch (const core::InputError&) {  // it is a cache: what cannot be read is worked out anew
+  } catch (const core::InputError&) {  // it is a cache: an unreadable file is computed again
     return std::nullopt;
   }
   constexpr std::size_t around = sizeof(Head) + sizeof(std::uint64_t);
@@ -131,12 +131,12 @@ Reachable find_reachable_once(const cave::TriangleMesh& mesh, const core::Vec3& 
   Reachable found = find_reachable(mesh, start, options, name);
   std::error_code ignored;
   fs::create_directories(folder, ignored);
-  const fs::path own = file.string() + "." + std::to_string(getpid());  // others may be at it, too
+  const fs::path own = file.string() + "." + std::to_string(getpid());  // other processes may write it, too
   try {
     write_whole_file(own, bytes_of(found, key));
     fs::rename(own, file, ignored);
-    fs::remove(own, ignored);          // it is still there if it could not be renamed
-  } catch (const core::InputError&) {  // a full disk: the next flight does the work again
+    fs::remove(own, ignored);          // it still exists if renaming failed
+  } catch (const core::InputError&) {  // a full disk: the next flight computes it again
   }
   return found;
 }

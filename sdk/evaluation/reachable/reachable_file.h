@@ -1,5 +1,5 @@
-// What can be reached in a cave, kept in a file: the same for all flights of a cave, and seconds of work in
-// a large one.
+// Cache of the reachable space of a cave in a file: it is the same for all flights in a cave, and takes
+// seconds to compute for a large one.
 #pragma once
 #include <filesystem>
 
@@ -7,9 +7,9 @@
 
 namespace karst::evaluation {
 
-/// find_reachable(), or what an earlier call for the same mesh, start and options left in `folder`. A file
-/// that is damaged or of something else is not used; one that cannot be written is done without. Several
-/// processes may do the same at once. With an empty `folder` nothing is kept.
+/// find_reachable(), or the result that an earlier call for the same mesh, start and options stored in
+/// `folder`. A file that is damaged or belongs to other inputs is ignored; a file that cannot be written is
+/// not an error. Safe for concurrent processes. With an empty `folder` nothing is stored.
 Reachable find_reachable_once(const cave::TriangleMesh& mesh, const core::Vec3& start,
                               const ReachableOptions& options, const std::string& name,
                               const std::filesystem::path& folder);

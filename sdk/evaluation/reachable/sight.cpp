@@ -9,7 +9,7 @@ namespace {
 
 using core::Vec3;
 
-/// 64 cells of one height, at any place: the 8x8 cells from `low` on. Up to four blocks hold them.
+/// 64 cells of one height at any position: the 8x8 cells from `low` on, from up to four blocks.
 std::uint64_t window(const CellSet& set, const CellKey& low) {
   const CellKey place = set.block_of(low);
   const int x = low.x & 7, y = low.y & 7;
@@ -25,7 +25,7 @@ std::uint64_t window(const CellSet& set, const CellKey& low) {
   return y == 0 ? rows(0) : rows(0) >> (8 * y) | rows(1) << (64 - 8 * y);
 }
 
-/// Blocks of `free` from which a ray of so many blocks' length can come to `flyable` at all.
+/// Blocks of `free` from which a ray of `steps` blocks' length can reach `flyable` at all.
 std::vector<CellKey> blocks_in_range(const CellSet& flyable, const CellSet& free, int steps) {
   const CellKey n = free.blocks_along();
   std::vector<bool> met(static_cast<std::size_t>(n.x) * n.y * n.z);
@@ -55,7 +55,7 @@ std::vector<CellKey> blocks_in_range(const CellSet& flyable, const CellSet& free
 const std::vector<Vec3>& sight_directions() {
   static const std::vector<Vec3> directions = [] {
     std::vector<Vec3> d;
-    for (const int norm : {1, 2, 3})  // faces first: most free cells near a wall are seen straight from it
+    for (const int norm : {1, 2, 3})  // faces first: most free cells near a wall are visible along them
       for (int i = 0; i < 27; ++i) {
         const Vec3 step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
         if (static_cast<int>(step.squaredNorm()) == norm) d.push_back(step.normalized());
@@ -93,7 +93,7 @@ CellSet seen_from(const CellSet& flyable, const CellSet& free, double cells) {
   for (const Vec3& d : sight_directions()) sights.push_back(cells_along(d, cells));
   CellSet seen = flyable;
   const int steps = static_cast<int>(std::ceil(cells / CellSet::kEdge)) + 1;
-  // All rays of one direction pass the same cells, counted from their start: 64 rays are cast at a time.
+  // All rays of one direction pass the same cells relative to their start, so 64 rays are cast at a time.
   for (const CellKey& place : blocks_in_range(flyable, free, steps)) {
     const CellKey corner = free.first_cell(place);
     CellSet::Block block{};

@@ -1,4 +1,4 @@
-// The rock surface around what of a cave can be explored, and how much of it a map holds.
+// The rock surface around the explorable part of a cave, and the fraction of it in a map.
 #pragma once
 #include <functional>
 
@@ -6,7 +6,7 @@
 
 namespace karst::evaluation {
 
-/// Cells of rock that share a face with a reachable cell, each once, in a fixed order.
+/// Rock cells that share a face with a reachable cell, each once, in a fixed order.
 std::vector<CellKey> surface_cells(const Reachable& reachable);
 
 }  // namespace karst::evaluation

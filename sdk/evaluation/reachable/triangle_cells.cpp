@@ -10,7 +10,7 @@ namespace {
 
 using core::Vec3;
 
-/// Rounding must not lose a face that lies on the border of cells: what is nearer than this touches.
+/// Tolerance for faces on a cell border despite rounding: anything nearer than this touches.
 constexpr double kRounding_m = 1e-9;
 
 struct KeyBox {
@@ -36,7 +36,7 @@ void for_each_key(const KeyBox& box, const Visit& visit) {
       for (std::int32_t x = box.low.x; x <= box.high.x; ++x) visit(CellKey{x, y, z});
 }
 
-/// The part of a box of cells that lies in one block, in cells of the world.
+/// The part of a box of cells that lies in one block, in world cell coordinates.
 KeyBox within_block(const KeyBox& box, const CellKey& corner) {
   return {{std::max(box.low.x, corner.x), std::max(box.low.y, corner.y), std::max(box.low.z, corner.z)},
           {std::min(box.high.x, corner.x + 7), std::min(box.high.y, corner.y + 7),
@@ -87,8 +87,8 @@ void insert_touched(CellSet& cells, const Triangle& t, double resolution_m) {
 }
 
 void remove_near(CellSet& cells, const Triangle& t, double resolution_m, double distance_m) {
-  // Cells not removed yet are few near a surface already visited, and most that are left are settled by the
-  // centroid, which lies on the triangle, or by the ball that holds it: the exact distance is seldom needed.
+  // Near a surface already visited few cells remain, and most of those are decided by the centroid, which
+  // lies on the triangle, or by the bounding ball: the exact distance is seldom needed.
   const Vec3 centroid = (t.a + t.b + t.c) / 3;
   const double reach =
       distance_m + std::sqrt(std::max({(t.a - centroid).squaredNorm(), (t.b - centroid).squaredNorm(),

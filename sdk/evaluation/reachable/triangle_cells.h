@@ -1,4 +1,4 @@
-// Which cells a triangle touches, and which cell centres it is near to.
+// The cells a triangle touches, and the cell centres near it.
 #pragma once
 #include "plugins/simulator/cave/triangle_mesh.h"
 #include "sdk/evaluation/reachable/cell_set.h"
@@ -9,8 +9,8 @@ struct Triangle {
   core::Vec3 a, b, c;
 };
 
-/// Does the triangle share a point with the closed box? Separating axes: three box normals, the triangle's
-/// normal, nine products of edges (Akenine-Moller, 2001). Touching counts.
+/// Whether the triangle shares a point with the closed box. Separating axes: three box normals, the
+/// triangle's normal, nine cross products of edges (Akenine-Moller, 2001). Touching counts.
 bool overlaps_box(const Triangle& t, const core::Vec3& center, const core::Vec3& half);
 
 /// Adds every cell, as a closed cube, that the triangle touches. The set's bounds must hold the triangle.

@@ -1,4 +1,4 @@
-// The complete lines of a text file that may have been cut off in mid-line, and complaints about bad ones.
+// The complete lines of a text file that may end in mid-line, and reports about malformed ones.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace karst::evaluation {
 
-/// Without the line ends. A last line without one was cut off: it is left out and reported.
-/// An absent file has no lines; an unreadable one is reported.
+/// Lines without their line ends. A last line without one was truncated: it is left out and reported.
+/// A missing file has no lines; an unreadable one is reported.
 std::vector<std::string> read_lines(const std::filesystem::path& file, std::vector<std::string>& problems);
 
-/// Gathers the bad lines of one file and reports them in one sentence.
+/// Collects the malformed lines of one file and reports them in one sentence.
 class BadLines {
  public:
   explicit BadLines(const std::filesystem::path& file) : file_(file.filename().string()) {}
@@ -22,7 +22,7 @@ class BadLines {
   std::size_t count_ = 0;
 };
 
-/// A number as in a CSV cell: "" and "nan" are NaN. False if the text is something else.
+/// Parses a CSV cell: "" and "nan" are NaN. Returns false for text that is not a number.
 bool parse_number(const std::string& text, double& value);
 
 }  // namespace karst::evaluation

@@ -11,7 +11,7 @@ namespace karst::evaluation {
 namespace {
 
 constexpr std::size_t kRecordBytes = 16;
-constexpr std::int32_t kFarthestCell = 1 << 24;  // thousands of kilometres: no cave, but a damaged file
+constexpr std::int32_t kFarthestCell = 1 << 24;  // thousands of kilometres: a damaged file
 
 bool plausible(const core::CellKey& k) {
   const auto near = [](std::int32_t v) { return v > -kFarthestCell && v < kFarthestCell; };

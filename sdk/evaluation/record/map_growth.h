@@ -1,4 +1,4 @@
-// How the map grew: for each cell, when it became occupied and when it ceased to be (map_growth.bin).
+// Growth of the map: for each cell, when it became occupied and when it ceased to be (map_growth.bin).
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace karst::evaluation {
 
-/// One stretch of time over which a cell was occupied.
+/// An interval of time during which a cell was occupied.
 struct OccupiedSpan {
   static constexpr std::int32_t kNever = INT32_MAX;
   core::CellKey key;
@@ -17,7 +17,7 @@ struct OccupiedSpan {
   std::int32_t until_ms = kNever;
 };
 
-/// Sorted by key, then by time. A file cut in mid-record is used up to there and reported.
+/// Sorted by key, then by time. A file that ends in mid-record is used up to there and reported.
 std::vector<OccupiedSpan> read_map_growth(const std::filesystem::path& file,
                                           std::vector<std::string>& problems);
 

@@ -11,7 +11,7 @@ namespace karst::evaluation {
 
 namespace {
 
-/// The eight finite numbers of a line; false if it holds anything else.
+/// Parses the eight finite numbers of a line; false if it contains anything else.
 bool parse_line(const std::string& line, std::array<double, 8>& v) {
   const char* at = line.data();
   const char* const end = at + line.size();

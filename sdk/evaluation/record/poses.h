@@ -1,4 +1,4 @@
-// Time-stamped poses in the TUM format: a line "t x y z qx qy qz qw", seconds and metres.
+// Time-stamped poses in the TUM format: lines "t x y z qx qy qz qw", in seconds and metres.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -13,7 +13,7 @@ struct StampedPose {
   core::Pose T_world_body;
 };
 
-/// In the order of time. Lines starting with # are comments; bad lines are left out and reported.
+/// In order of time. Lines that start with # are comments; malformed lines are left out and reported.
 std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector<std::string>& problems);
 
 /// See core::pose_on_track; `poses` must not be empty.

@@ -157,7 +157,7 @@ RunRecord read_run(const fs::path& run_dir) {
   run.truth_objects = read_events(run_dir / "truth_objects.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);
   run.truth = read_tum(run_dir / "ground_truth.tum", problems);
-  // A replay keeps its recording's own time there; all else counts from the recording's begin.
+  // A replay keeps its recording's own time base there; all other files count from the recording's begin.
   const double origin_s = run.number("replay.time_origin").value_or(0);
   for (auto* poses : {&run.estimate, &run.truth})
     for (StampedPose& p : *poses) p.t_s -= origin_s;

@@ -1,5 +1,5 @@
-// A run directory read back (docs/run_directory.md). A run that was cut short, or whose files are damaged,
-// still gives a record of what is there; `problems` says what is not.
+// A run directory read back (docs/run_directory.md). A run that was truncated, or whose files are damaged,
+// still gives a record of the readable part; `problems` describes the rest.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace karst::evaluation {
 
-/// No mission lasts longer: a day's flight, and a day to start late and to come home. Later times are
+/// Upper bound of a mission: a day's flight, and a day for a late start and the return. Later times are
 /// damaged.
 constexpr double kLongestRun_s = 2 * 86400.0;
 
@@ -24,7 +24,7 @@ struct Setting {
 };
 
 struct Phase {
-  std::string name;  // a core::Phase's, or of a team flying
+  std::string name;  // a core::Phase's name; for a team "flying"
   double begin_s = 0, end_s = 0;
   bool is(core::Phase phase) const { return name == core::name_of(phase); }
   core::PhaseTraits traits() const {
@@ -47,11 +47,11 @@ struct RunRecord {
   std::vector<Phase> phases;  // consecutive; "done" is where the last one ends
   std::vector<std::string> problems;
 
-  /// The text of a setting, "" if there is none of this key.
+  /// The text of a setting, "" if there is no such key.
   std::string setting(const std::string& key) const;
-  /// The number a setting begins with.
+  /// The leading number of a setting.
   std::optional<double> number(const std::string& key) const;
-  double map_resolution_m() const;  // 0.2 if the settings do not say
+  double map_resolution_m() const;  // 0.2 if the settings do not contain it
   /// The last event of a kind, such as core::event::Outcome.
   template <class E>
   std::optional<E> last() const {
@@ -59,26 +59,26 @@ struct RunRecord {
       if (auto event = core::event::as<E>(*e)) return event;
     return std::nullopt;
   }
-  /// The latest time found anywhere in the record, seconds.
+  /// The latest time in the whole record, seconds.
   double last_time_s() const;
 };
 
-/// A text field of a line that has no type, "" if there is none.
+/// A text field of an untyped line, "" if missing.
 std::string event_text(const nlohmann::json& event, const char* key);
-/// A number field, likewise; none if there is none.
+/// A number field of an untyped line; none if missing.
 std::optional<double> event_number(const nlohmann::json& event, const char* key);
 
-/// The leaves of an INFO file, and a JSON file; nothing, and a problem if it is damaged, where it is not to
-/// be had.
+/// The leaves of an INFO file, and the content of a JSON file; empty if the file is missing, and with a
+/// problem if it is damaged.
 std::vector<Setting> read_settings(const std::filesystem::path& file, std::vector<std::string>& problems);
 nlohmann::json read_json(const std::filesystem::path& file, std::vector<std::string>& problems);
-/// One JSON object a line, each with a number and a text of the given names; other lines, and those at which
-/// `check` throws, are left out and reported.
+/// One JSON object per line, each with a number and a text of the given names; other lines, and those for
+/// which `check` throws, are left out and reported.
 std::vector<nlohmann::json> read_events(
     const std::filesystem::path& file, const char* time, const char* kind, std::vector<std::string>& problems,
     const std::function<void(const nlohmann::json&)>& check = [](const auto&) {});
 
-/// Throws InputError only if `run_dir` is no directory.
+/// Throws InputError only if `run_dir` is not a directory.
 RunRecord read_run(const std::filesystem::path& run_dir);
 
 }  // namespace karst::evaluation

@@ -16,7 +16,7 @@ void write_whole_file(const fs::path& file, std::string_view bytes) {
   const bool device =
       fs::exists(file, ignored) && fs::is_other(file, ignored);  // /dev/stdout: nothing to rename onto
   const fs::path part = device ? file : fs::path(file.string() + ".part");
-  // What a killed run left goes first, and a FIFO, which would block, or a link, which would lead elsewhere.
+  // First remove leftovers of a killed run, a FIFO, which would block, or a link, which would lead elsewhere.
   if (!device && !fs::is_directory(part, ignored)) fs::remove(part, ignored);
   errno = 0;
   std::ofstream out =

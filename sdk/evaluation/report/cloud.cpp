@@ -11,7 +11,7 @@ namespace {
 using core::CellKey;
 using core::Vec3;
 
-/// Merges the spans of each key, and drops flickers.
+/// Merges the spans of each key, and drops short flickers.
 std::vector<OccupiedSpan> merge(std::vector<OccupiedSpan> spans, std::int32_t flicker_ms) {
   std::erase_if(spans, [&](const OccupiedSpan& s) {
     return s.until_ms != OccupiedSpan::kNever && s.until_ms - s.from_ms < flicker_ms;

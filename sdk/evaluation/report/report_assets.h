@@ -5,15 +5,15 @@
 
 namespace karst::evaluation {
 
-// What every page uses.
+// Used by every page.
 std::string_view page_style();
 std::vector<std::string_view> three_library();  // three.js, as Debian packages it
-std::vector<std::string_view> page_scripts();   // in the order they must run
+std::vector<std::string_view> page_scripts();   // in order of execution
 
 // The page of a run.
 std::string_view report_template();
 std::vector<std::string_view> chart_library();  // Chart.js, likewise
 std::vector<std::string_view> report_scripts();
-std::vector<std::string_view> team_report_scripts();  // the same page, of a team
+std::vector<std::string_view> team_report_scripts();  // for the same page, of a team
 
 }  // namespace karst::evaluation

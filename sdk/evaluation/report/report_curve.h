@@ -1,11 +1,11 @@
-// A curve as the report's plots take it.
+// A curve in the form of the report's plots.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <vector>
 
 namespace karst::evaluation {
 
-/// [[x, y], ...], thinned to what a plot shows, or null if the record has no such curve.
+/// [[x, y], ...], reduced to a plot's resolution, or null if the record has no such curve.
 nlohmann::ordered_json report_curve(const std::vector<double>* t_s, const std::vector<double>* y,
                                     double scale = 1);
 

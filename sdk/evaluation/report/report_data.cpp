@@ -40,7 +40,7 @@ ordered_json curves(const RunRecord& run) {
           {"plan", report_curve(decision_s, run.decisions.column("plan_ms"))}};
 }
 
-/// Events for the table: without the bulk that is drawn instead.
+/// Events for the table, without the bulk data that is drawn instead.
 ordered_json event_rows(const RunRecord& run) {
   ordered_json rows = ordered_json::array();
   for (const json& e : run.events) {

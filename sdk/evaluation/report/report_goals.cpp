@@ -37,11 +37,11 @@ class GoalSpans {
       if (same) close(i, goal.t_s, "planned anew", "");
       return same;
     });
-    while (open_.size() > 1) close_last(goal.t_s);  // the one appended before is replaced
+    while (open_.size() > 1) close_last(goal.t_s);  // replaces the goal appended before
     open_.push_back(spans_.size());
     spans_.push_back(goal);
   }
-  /// Ends the open goal at `position`, and those accepted before it; without a position, the oldest.
+  /// Ends the open goal at `position` and those accepted before it; without a position, the oldest one.
   void end(double t_s, const std::optional<Vec3>& position, const std::string& fate,
            const std::string& reason) {
     if (open_.empty()) return;

@@ -1,4 +1,4 @@
-// Which goal the vehicle was after, from when to when, and what became of it.
+// The goals pursued by the vehicle, each with its time span and its fate.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -6,9 +6,9 @@
 
 namespace karst::evaluation {
 
-/// Accepted goals in the order of acceptance: t, until (null if the record ends before), position, heading,
-/// score, why, fate, fate_reason. Two may be open at once: the one flown to and the one appended to it; the
-/// vehicle is after the earlier. Leaving the exploration ends all.
+/// Accepted goals in order of acceptance: t, until (null if the record ends before), position, heading,
+/// score, why, fate, fate_reason. Two may be open at once: the current goal and the one appended to it; the
+/// vehicle flies to the earlier one. Leaving the exploration phase ends all.
 nlohmann::ordered_json goal_spans(const RunRecord& run);
 
 }  // namespace karst::evaluation

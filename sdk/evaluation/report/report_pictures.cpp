@@ -43,7 +43,7 @@ std::vector<std::uint8_t> thumbnail(const std::vector<std::uint8_t>& jpeg, int w
   require(tjDecompressHeader3(reader.get(), jpeg.data(), jpeg.size(), &full_width, &full_height, &sampling,
                               &colours) == 0,
           reader);
-  // The decoder scales by eighths as it goes.
+  // The decoder can scale by eighths.
   int eighths = 8;
   while (eighths > 1 && TJSCALED(full_width, (tjscalingfactor{eighths, 8})) > width) --eighths;
   const tjscalingfactor scale{eighths, 8};
@@ -82,7 +82,7 @@ nlohmann::ordered_json report_pictures(const std::filesystem::path& run_dir,
     const std::size_t row = kept[n * kept.size() / shown];
     const std::string& file = files->second[row];
     const std::filesystem::path relative(file);
-    // Nothing outside the run directory, whatever the file says.
+    // Reads no file outside the run directory, whatever frames.csv contains.
     const bool inside = relative.is_relative() && relative.lexically_normal().string().rfind("..", 0) != 0;
     try {
       if (!inside) throw std::runtime_error("leads out of the run directory");

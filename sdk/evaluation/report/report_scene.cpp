@@ -17,13 +17,13 @@ using nlohmann::ordered_json;
 namespace event = core::event;
 
 constexpr std::size_t kMaxCloudPoints = 300000;
-constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, all moments together
+constexpr std::size_t kMaxMarks = 60000;  // points of one kind of mark, over all times
 
 ordered_json rounded(const Vec3& p) {
   return {core::to_hundredths(p.x()), core::to_hundredths(p.y()), core::to_hundredths(p.z())};
 }
 
-/// Points that are not known are left out.
+/// Unknown points are left out.
 ordered_json rounded(const std::vector<Vec3>& points) {
   ordered_json all = ordered_json::array();
   for (const Vec3& p : points)
@@ -37,7 +37,7 @@ struct Moment {
   std::size_t marks;
 };
 
-/// [[t, content], ...]; if there are too many marks, only every second, third ... moment.
+/// [[t, content], ...]; if there are too many marks, only every second, third ... time.
 ordered_json thinned(std::vector<Moment> moments, const char* what, std::vector<std::string>& problems) {
   std::size_t total = 0;
   for (const Moment& m : moments) total += m.marks;

@@ -8,7 +8,7 @@
 
 namespace karst::evaluation {
 
-/// A map's cells in arrays as the page draws them, three numbers a cell where it says so (docs/report.md).
+/// A map's cells as arrays for the page, three numbers per cell where noted (docs/report.md).
 struct CloudArrays {
   double cell_m = 0, tick_s = 0;
   std::array<double, 3> origin{};
@@ -16,23 +16,23 @@ struct CloudArrays {
   std::vector<std::uint16_t> from, until;
   std::vector<std::int8_t> normals;  // x, y, z
 };
-/// At most `max_points` cells, none smaller than `min_cell_m`, in the order of their keys; what is left out
-/// is added to `problems`.
+/// At most `max_points` cells, none smaller than `min_cell_m`, in the order of their keys; cells left out are
+/// reported in `problems`.
 CloudArrays cloud_arrays(const RunRecord& run, std::size_t max_points, double min_cell_m, double tick_ms,
                          std::vector<std::string>& problems);
 
-/// Points of the map as base64 arrays; null without any. What is left out is added to `problems`.
+/// Points of the map as base64 arrays; null if there are none. Points left out are reported in `problems`.
 nlohmann::ordered_json scene_cloud(const RunRecord& run, double duration_s,
                                    std::vector<std::string>& problems);
-/// Poses as base64 float32: times, positions and headings; null without any.
+/// Poses as base64 float32: times, positions and headings; null if there are none.
 nlohmann::ordered_json scene_track(const std::vector<StampedPose>& poses, std::size_t max_poses = 12000);
 /// Frontier clusters as [[t, [[x, y, z, cells], ...]], ...].
 nlohmann::ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& problems);
 /// Paths planned as [[t, [[x, y, z], ...]], ...].
 nlohmann::ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problems);
-/// Objects of interest as found by then: [[t, [[x, y, z, what], ...]], ...], a moment for each change.
+/// Objects of interest found by each time: [[t, [[x, y, z, what], ...]], ...], one entry per change.
 nlohmann::ordered_json scene_objects(const RunRecord& run);
-/// What the policy drew, by decision: [[t, [{shape, points, rgb, text}, ...]], ...].
+/// The policy's drawings by decision: [[t, [{shape, points, rgb, text}, ...]], ...].
 nlohmann::ordered_json scene_drawings(const RunRecord& run, std::vector<std::string>& problems);
 
 }  // namespace karst::evaluation

@@ -18,14 +18,14 @@ using nlohmann::ordered_json;
 namespace event = core::event;
 using event::is_kind;
 
-constexpr std::size_t kTrackPoses = 3000;  // of one robot
+constexpr std::size_t kTrackPoses = 3000;  // per robot
 
 bool is_numbers(const json& list, std::size_t least) {
   return list.is_array() && list.size() >= least &&
          std::all_of(list.begin(), list.end(), [](const json& v) { return v.is_number(); });
 }
 
-/// The lists of numbers in a field, each at least `least` long. What is none is left out and counted.
+/// The lists of numbers in a field, each at least `least` long. Invalid ones are left out and counted.
 ordered_json number_lists(const json& event, const char* key, std::size_t least, std::size_t& damaged) {
   ordered_json out = ordered_json::array();
   const auto field = event.find(key);
@@ -63,7 +63,7 @@ ordered_json plain_numbers(const json& event, const char* key, std::size_t& dama
   return ordered_json::array();
 }
 
-/// What the base knew, and the homing tree as it was told, moment by moment.
+/// The base's knowledge and the homing tree as reported to it, over time.
 void add_base(ordered_json& d, const TeamRecord& team, std::vector<std::string>& problems) {
   std::size_t damaged = 0;
   ordered_json moments = ordered_json::array(), tree = ordered_json::array();
@@ -102,7 +102,7 @@ ordered_json robot_data(const RunRecord& r) {
   return d;
 }
 
-/// Everything that happened, but what is drawn instead.
+/// All events except those that are drawn instead.
 ordered_json event_rows(const TeamRecord& team) {
   ordered_json rows = ordered_json::array();
   for (const json& e : team.events)

@@ -1,5 +1,5 @@
-// Percentile bootstrap, widened: a resample of n pairs varies by (n - 1) / n too little, and its quantiles
-// know nothing of the few degrees of freedom behind them. Both are made good by stretching the quantiles'
+// Percentile bootstrap, widened: the variance of a resample of n pairs is too small by the factor (n - 1) /
+// n, and its quantiles ignore the few degrees of freedom. Both are corrected by scaling the quantiles'
 // distance from the mean by t / z * sqrt(variance / plug-in variance), which keeps the bootstrap's skewness.
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ Interval bootstrap_interval(const Differences& differences, Resampled unit, cons
   std::copy_if(differences.begin(), differences.end(), std::back_inserter(flown),
                [](const auto& cave) { return !cave.empty(); });
   if (unit == Resampled::seeds) return flown.empty() ? kUnknown : stretched(flown, options);
-  std::vector<double> means;  // what they scatter by holds what the seeds scatter by
+  std::vector<double> means;  // their scatter includes the scatter due to seeds
   for (const auto& cave : flown) means.push_back(mean_of(cave));
   return means.size() < 2 ? kUnknown : stretched({means}, options);
 }

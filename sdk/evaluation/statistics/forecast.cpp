@@ -1,6 +1,6 @@
-// How many seeds a verdict needs: campaigns are drawn from the differences observed, judged as a real one is,
-// and counted. The mean is moved to the effect asked about; caves keep the part of their own effects that is
-// more than chance.
+// Number of seeds that a verdict needs: campaigns are simulated by drawing from the observed differences and
+// judged like a real one. The mean is shifted to the effect in question; caves keep the part of their own
+// effects that exceeds chance.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,14 +14,14 @@
 namespace karst::evaluation {
 namespace {
 
-constexpr double kMaxSimulated = 25;  // seeds a cave, about; more follow by scaling
+constexpr double kMaxSimulated = 25;  // approximate seeds per cave; larger numbers are scaled
 
-/// What campaigns are drawn from: with the mean at `effect`, and the variances within and between caves
-/// unbiased. Nothing if a cave has a single pair.
+/// The pool for simulated campaigns: with the mean at `effect`, and unbiased variances within and between
+/// caves. None if a cave has a single pair.
 std::optional<Differences> moved_to(const Differences& differences, double effect) {
   Differences pool;
   std::vector<double> means;
-  double chance = 0;  // what the seeds alone make the caves' means scatter by
+  double chance = 0;  // variance of the caves' means due to the seeds alone
   for (const auto& cave : differences) {
     if (cave.empty()) continue;
     if (cave.size() < 2) return std::nullopt;
@@ -41,9 +41,9 @@ std::optional<Differences> moved_to(const Differences& differences, double effec
   return pool;
 }
 
-/// The verdict's rule (docs/statistics.md), with Student's interval in the place of the bootstrap's.
+/// The verdict's rule (docs/statistics.md), with Student's interval instead of the bootstrap's.
 bool is_shown(const Differences& campaign, double sign, const ForecastOptions& options) {
-  constexpr std::size_t kMaxExact = 12;  // beyond, the normal approximation is as good, and fast
+  constexpr std::size_t kMaxExact = 12;  // for more, the normal approximation is as good, and fast
   const Spread s = spread_within_caves(campaign);
   if (!(s.mean * sign > 0)) return false;
   const bool excludes_zero =
@@ -65,7 +65,7 @@ double power_of(int seeds, const Differences& pool, double sign, const ForecastO
   return static_cast<double>(shown) / options.simulations;
 }
 
-/// The seeds a test of the mean alone would need, by the normal distribution: where to begin to look.
+/// Seeds that a test of the mean alone would need, by the normal distribution: start of the search.
 double first_guess(const Differences& pool, double effect, const ForecastOptions& options) {
   double variance = 0;
   for (const auto& cave : pool) variance += variance_of(cave);
@@ -76,7 +76,7 @@ double first_guess(const Differences& pool, double effect, const ForecastOptions
 
 int seeds_needed(const Differences& pool, double effect, double guess, const ForecastOptions& options) {
   const auto enough = [&](int n) { return power_of(n, pool, effect, options) >= options.power; };
-  int low = 1, high = std::clamp(static_cast<int>(guess), 2, Forecast::kNever);  // a single seed never is
+  int low = 1, high = std::clamp(static_cast<int>(guess), 2, Forecast::kNever);  // one seed is never enough
   while (!enough(high)) {
     if (high == Forecast::kNever) return high;
     low = high;
@@ -102,13 +102,13 @@ Forecast forecast_seeds(const Differences& differences, double effect, const For
   Forecast f;
   const double guess = first_guess(*pool, effect, options);
   if (!(guess < 2.0 * Forecast::kNever)) return f;
-  // Many pairs of a small effect are as good as fewer of one larger by the root of their number.
+  // Many pairs with a small effect equal fewer pairs with an effect larger by the square root of the ratio.
   const double fewer = std::max(1.0, guess / kMaxSimulated);
   const double larger_effect = effect * std::sqrt(fewer);
   pool = moved_to(differences, larger_effect);
   f.seeds = scaled(seeds_needed(*pool, larger_effect, guess / fewer, options), fewer);
   const double degrees = spread_within_caves(differences).degrees;
-  if (degrees > 0 && f.seeds < Forecast::kNever) {  // the need goes with the variance, which is uncertain
+  if (degrees > 0 && f.seeds < Forecast::kNever) {  // the need scales with the variance, which is uncertain
     f.low = scaled(f.seeds, degrees / chi_squared_quantile(0.9, degrees));
     f.high = scaled(f.seeds, degrees / chi_squared_quantile(0.1, degrees));
   } else {
@@ -123,7 +123,7 @@ Forecast forecast_seeds_as_observed(const Differences& differences, const Foreca
   const Interval likely =
       bootstrap_interval(differences, Resampled::seeds, {.level = 0.8, .seed = options.seed});
   if (std::isnan(likely.low) || !(std::abs(effect) > 0)) return {};
-  // The need goes with 1 / effect^2; an effect that may be none can never be foreseen to be shown.
+  // The need is proportional to 1 / effect^2; if the effect may be zero, no number of seeds is foreseeable.
   const double most = std::max(std::abs(likely.low), std::abs(likely.high)),
                least = std::min(std::abs(likely.low), std::abs(likely.high));
   f.low = scaled(f.seeds, effect * effect / (most * most));

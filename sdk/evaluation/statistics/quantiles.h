@@ -1,9 +1,9 @@
-// Quantiles that intervals and forecasts need.
+// Quantiles for intervals and forecasts.
 #pragma once
 
 namespace karst::evaluation {
 
-/// The value that Student's t with `degrees` of freedom (any positive number) stays below with probability p.
+/// The p-quantile of Student's t distribution with `degrees` of freedom (any positive number).
 double student_t_quantile(double p, double degrees);
 double normal_quantile(double p);
 double chi_squared_quantile(double p, double degrees);

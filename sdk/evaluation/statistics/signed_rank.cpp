@@ -1,4 +1,4 @@
-// Wilcoxon's signed-rank test (Wilcoxon, 1945). Ranks are kept doubled: mean ranks of ties are then whole.
+// Wilcoxon's signed-rank test (Wilcoxon, 1945). Ranks are doubled, so that mean ranks of ties are integers.
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kMaxExact = 50;  // counts of 2^50 sign patterns are exact in a double
 
-/// Probability that the positive ranks sum to no more than `doubled_sum` if every sign is a coin's: by
-/// counting sign patterns, a rank at a time.
+/// Probability that the positive ranks sum to at most `doubled_sum` if every sign is equally likely: counts
+/// sign patterns, one rank at a time.
 double lower_tail(const std::vector<std::size_t>& doubled_ranks, std::size_t doubled_sum) {
   std::size_t total = 0;
   for (const std::size_t r : doubled_ranks) total += r;
@@ -26,7 +26,7 @@ double lower_tail(const std::vector<std::size_t>& doubled_ranks, std::size_t dou
   return std::ldexp(count, -static_cast<int>(doubled_ranks.size()));
 }
 
-/// Two-sided, of the lesser rank sum. `ties`: the sum of t^3 - t over groups of t equal differences.
+/// Two-sided p-value of the lesser rank sum. `ties`: sum of t^3 - t over groups of t equal differences.
 double normal_p(double n, double lesser_sum, double ties) {
   const double mean = n * (n + 1) / 4, variance = n * (n + 1) * (2 * n + 1) / 24 - ties / 48;
   const double z = std::min(0.0, lesser_sum + 0.5 - mean) / std::sqrt(variance);

@@ -1,5 +1,5 @@
-// What paired differences show: how large, how sure, and how many more would be needed. Equations, choices
-// and sources: docs/statistics.md. All of it is deterministic: equal input and seed, equal result.
+// Statistics of paired differences: size, certainty, number of further pairs needed. Equations, choices and
+// sources: docs/statistics.md. All of it is deterministic: equal input and seed, equal result.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace karst::evaluation {
 
-/// Differences a - b of one figure between two contestants that flew the same cave with the same seed: a
-/// vector a cave, a value a seed, all finite. Caves without a pair do not count.
+/// Differences a - b of one figure between two contestants that flew the same cave with the same seed: one
+/// vector per cave, one value per seed, all finite. Caves without a pair do not count.
 using Differences = std::vector<std::vector<double>>;
 
 struct Interval {
-  double low, high;                                              // NaN where there are too few pairs to tell
-  bool excludes(double v) const { return low > v || high < v; }  // false of an unknown one
+  double low, high;                                              // NaN if there are too few pairs
+  bool excludes(double v) const { return low > v || high < v; }  // false if unknown
 };
 
-/// Mean over the caves of the mean over a cave's seeds: caves weigh the same, however many seeds they have.
-/// NaN without pairs.
+/// Mean over the caves of the mean over a cave's seeds: caves have equal weight, however many seeds they
+/// have. NaN without pairs.
 double mean_difference(const Differences& differences);
 
-/// What is drawn anew, and with it what an interval speaks for.
+/// The unit that is resampled, which determines what an interval covers.
 enum class Resampled {
   seeds,  // within each cave: other seeds in these caves; needs two pairs in every cave
   caves,  // whole caves: other caves like these; needs two caves
@@ -31,11 +31,11 @@ struct BootstrapOptions {
   int resamples = 4000;
   std::uint64_t seed = 1;
 };
-/// Of the mean difference: a percentile bootstrap with its quantiles widened for small samples.
+/// Interval of the mean difference: a percentile bootstrap, its quantiles widened for small samples.
 Interval bootstrap_interval(const Differences& differences, Resampled unit,
                             const BootstrapOptions& options = {});
 
-/// Wilcoxon's signed-rank test, two-sided; differences of zero are left out, equal ones share their mean
+/// Wilcoxon's signed-rank test, two-sided; differences of zero are left out, equal ones get their mean
 /// rank.
 struct SignedRank {
   std::size_t zeros = 0, positive = 0, negative = 0;
@@ -43,40 +43,40 @@ struct SignedRank {
   double p = 1;        // 1 if all differences are zero
   bool exact = false;  // else normal approximation, corrected for ties and continuity
 };
-/// Exact for up to `max_exact` differences that are not zero, at most 50.
+/// Exact for up to `max_exact` non-zero differences, at most 50.
 SignedRank signed_rank(std::span<const double> differences, std::size_t max_exact = 50);
-/// Of all caves' pairs together.
+/// Over the pairs of all caves together.
 SignedRank signed_rank(const Differences& differences, std::size_t max_exact = 50);
 
-/// Matched-pairs rank-biserial correlation (W+ - W-) / (W+ + W-), from -1 (b always more) to 1; 0 without any
-/// difference.
+/// Matched-pairs rank-biserial correlation (W+ - W-) / (W+ + W-), from -1 (b always more) to 1; 0 if all
+/// differences are zero.
 double rank_biserial(const SignedRank& test);
 
-/// The mean difference in units of the standard deviation within caves (Cohen's d_z); NaN if that is not
-/// known.
+/// The mean difference in units of the standard deviation within caves (Cohen's d_z); NaN if that is
+/// unknown.
 double standardized_difference(const Differences& differences);
 
-/// Holm's corrected p-values in the order given: with them below a, at most a share a of all families of
-/// tests without any difference calls one. NaN stays NaN and does not count as a test.
+/// Holm's corrected p-values in the given order: testing them against a limits the family-wise error rate to
+/// a. NaN stays NaN and does not count as a test.
 std::vector<double> holm(const std::vector<double>& p);
 
-/// How many seeds a cave it takes, in all, until a difference is shown.
+/// Total number of seeds per cave needed until a difference is shown.
 struct Forecast {
   static constexpr int kNever = 1000;  // this many or more, or not foreseeable
-  int seeds = kNever;                  // power 0.8 at the spread observed
-  int low = kNever, high = kNever;  // 80 % interval, for what is not known of the spread (and of the effect)
+  int seeds = kNever;                  // for power 0.8 at the observed spread
+  int low = kNever, high = kNever;  // 80 % interval, from the uncertainty of the spread (and of the effect)
 };
 struct ForecastOptions {
   double alpha = 0.05;
-  int tests = 1;  // that share alpha: the pairs of contestants
+  int tests = 1;  // number of tests that share alpha: the pairs of contestants
   double power = 0.8;
   int simulations = 1000;  // of a campaign, for every number of seeds tried
   std::uint64_t seed = 1;
 };
-/// If the true mean difference were `effect` and pairs spread as those observed: they are moved there, and
-/// campaigns drawn from them. Needs two pairs in every cave.
+/// Forecast if the true mean difference were `effect` and pairs had the observed spread: the pairs are
+/// shifted to that mean, and campaigns drawn from them. Needs two pairs in every cave.
 Forecast forecast_seeds(const Differences& differences, double effect, const ForecastOptions& options = {});
-/// If the true mean difference were the observed one, which is itself uncertain.
+/// Forecast if the true mean difference were the observed one, which is itself uncertain.
 Forecast forecast_seeds_as_observed(const Differences& differences, const ForecastOptions& options = {});
 
 }  // namespace karst::evaluation

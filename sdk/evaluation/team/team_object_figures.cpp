@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A line of a team's log, if it says whose object it is, which, and, unless it is withdrawn, what and where.
+/// A line of a team's log, if it names robot and object and, unless it is withdrawn, kind and position.
 std::optional<ObjectReport> report_of(const json& e) {
   const auto state = core::parse<core::ObjectState>(event_text(e, "state"));
   if (whole_number(e, "robot") < 0 || whole_number(e, "number") < 0 || !state) return std::nullopt;
@@ -17,7 +17,7 @@ std::optional<ObjectReport> report_of(const json& e) {
   return report;
 }
 
-/// What the base makes of all reports; `at_base` says when each report came. Counts what is damaged.
+/// The base's merged objects from all reports; `at_base` gives their arrival times. Counts damaged ones.
 std::vector<KnownObject> together(const json& e, const KnownObjects& at_base, std::size_t& damaged) {
   std::vector<KnownObject> all;
   const auto known = e.find("known");

@@ -8,7 +8,7 @@
 
 namespace karst::evaluation {
 
-/// From the team's log and its robots' truth. What is damaged is added to `problems`.
+/// From the team's log and its robots' ground truth. Damaged lines are added to `problems`.
 ObjectFigures team_object_figures(const TeamRecord& team, std::vector<std::string>& problems);
 
 }  // namespace karst::evaluation

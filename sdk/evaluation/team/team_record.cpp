@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// All times of a record later by `s`.
+/// Shifts all times of a record by `s`.
 void delay(RunRecord& run, double s) {
   const auto ms = std::llround(1000 * s);
-  const auto later = [ms](std::int32_t& t_ms) {  // where a damaged time would not fit: as late as can be
+  const auto later = [ms](std::int32_t& t_ms) {  // saturates if a damaged time would overflow
     t_ms = static_cast<std::int32_t>(std::clamp<long long>(t_ms + ms, INT32_MIN, OccupiedSpan::kNever - 1));
   };
   for (json& e : run.events) e["t"] = e["t"].get<double>() + s;
@@ -47,7 +47,7 @@ double start_of(const std::vector<json>& events, std::size_t robot, std::vector<
   return 0;
 }
 
-/// A cell is occupied while any robot's map has it so.
+/// A cell is occupied while it is so in any robot's map.
 std::vector<OccupiedSpan> united(const std::vector<RunRecord>& robots) {
   std::vector<OccupiedSpan> all, out;
   for (const RunRecord& r : robots) all.insert(all.end(), r.growth.begin(), r.growth.end());
@@ -73,7 +73,7 @@ std::vector<StampedPose> in_order(const std::vector<RunRecord>& robots,
   return all;
 }
 
-/// The longest the team could take: until the last robot's start, and what a robot has from there.
+/// The longest possible flight of the team: until the last robot's start, plus one robot's limit.
 void set_horizon(RunRecord& merged, double last_start_s) {
   const auto own = horizon_s(merged);
   if (!own) return;
@@ -83,7 +83,7 @@ void set_horizon(RunRecord& merged, double last_start_s) {
   merged.settings.push_back({"mission.max_flight_time", std::to_string(*own + last_start_s) + " s"});
 }
 
-/// Nothing if any robot has none: half a team's map would pass for the whole.
+/// None if any robot has none: half a team's map would be mistaken for the whole.
 std::optional<core::VoxelMap> merged_map(TeamRecord& team) {
   std::optional<core::VoxelMap> all;
   for (const RunRecord& robot : team.robots) {

@@ -1,5 +1,5 @@
-// A team's run directory read back: every robot's record in the team's time, what the base knew, and all
-// robots as if they had been one. What is missing or damaged stands in `problems`, each robot's in its own.
+// A team's run directory read back: every robot's record in the team's time, the base's knowledge, and all
+// robots merged into one record. Each robot's record lists its own missing or damaged parts in `problems`.
 #pragma once
 #include "sdk/evaluation/record/run_record.h"
 
@@ -11,9 +11,9 @@ struct TeamRecord {
   std::vector<RunRecord> robots;       // robot 1 first; all their times are the team's
   std::vector<double> starts_s;        // when each was switched on
   /// Settings, all poses, the union of the maps' growth, and a telemetry of t_s and explored_m3
-  /// (team_volume_curve). Flies from the first take-off on, for as long as the last robot could.
+  /// (team_volume_curve). Flies from the first take-off until the last robot's limit.
   RunRecord merged;
-  std::optional<core::VoxelMap> map;  // the final maps in one, log-odds added; none if any robot has none
+  std::optional<core::VoxelMap> map;  // the merged final maps (log-odds added); none if any robot has none
   double duration_s = 0;
   std::vector<Setting> settings;  // the team's mission.info
   nlohmann::json timing;          // the team's; null if absent

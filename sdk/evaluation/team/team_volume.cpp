@@ -7,7 +7,7 @@
 namespace karst::evaluation {
 namespace {
 
-/// How many cells of a growth were occupied at a time; to be asked for with times that grow.
+/// Number of cells of a growth that are occupied at a time; query times must increase.
 class CellCount {
  public:
   explicit CellCount(const std::vector<OccupiedSpan>& growth) {
@@ -29,7 +29,7 @@ class CellCount {
   long cells_ = 0;
 };
 
-/// The last finite value no later; 0 before the first.
+/// The last finite value no later than a time; 0 before the first.
 class Latest {
  public:
   explicit Latest(const Table& table) : t_s_(table.times()), values_(table.column("explored_m3")) {}
@@ -64,7 +64,7 @@ VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::v
   VolumeCurve curve;
   std::vector<double> overlap_m3, greatest_m3;
   CellCount all(united);
-  end_s = std::min(end_s, begin_s + kLongestRun_s);  // a damaged time must not make it endless
+  end_s = std::min(end_s, begin_s + kLongestRun_s);  // a damaged time must not make the curve endless
   for (double t = std::ceil(begin_s); t < end_s + 1 && std::isfinite(t); ++t) {
     double own_cells = 0, sum_m3 = 0, max_m3 = 0;
     for (CellCount& c : cells) own_cells += c.at(t);
@@ -83,8 +83,8 @@ VolumeCurve team_volume_curve(const std::vector<RunRecord>& robots, const std::v
   const double scale = final_m3 && found_m3 > 0 ? (curve.explored_m3.back() - *final_m3) / found_m3 : 1;
   for (std::size_t i = 0; i < overlap_m3.size(); ++i)
     curve.explored_m3[i] = std::max(greatest_m3[i], curve.explored_m3[i] - scale * overlap_m3[i]);
-  // What is known stays known: where the overlap is found too small, as when a robot has just started and few
-  // of its rock cells stand, what the team knew later is more than it can have known.
+  // The curve must not decrease: if the overlap is underestimated, as when a robot has just started and has
+  // few rock cells, the later value is an upper bound of the earlier one.
   for (std::size_t i = curve.explored_m3.size() - 1; i > 0; --i)
     curve.explored_m3[i - 1] = std::min(curve.explored_m3[i - 1], curve.explored_m3[i]);
   return curve;

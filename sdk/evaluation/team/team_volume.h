@@ -1,4 +1,4 @@
-// How much of the cave a team knew when.
+// The volume of the cave known to a team over time.
 #pragma once
 #include "sdk/evaluation/record/run_record.h"
 
