@@ -20,10 +20,12 @@ class SensorPipelineTest : public OnboardTest {
   MapQuestion question;
   std::vector<MapNews> news;
   std::vector<MovingBody> others;
+  bool look_for_others = false;
   SensorPipeline sensors{onboard,
                          {.ask = [this] { return question; },
                           .tell = [this](const MapNews& n) { news.push_back(n); },
-                          .others = [this](TimeNs) { return others; }}};
+                          .others = [this](TimeNs) { return others; },
+                          .look_for_others = [this] { return look_for_others; }}};
 };
 
 TEST_F(SensorPipelineTest, AScanIsInTheMapWhenItsBudgetIsOver) {
@@ -97,6 +99,37 @@ TEST_F(SensorPipelineTest, WhatIsAskedIsLookedUpInTheMapThatHoldsTheScan) {
   EXPECT_EQ(*news[0].blocked_after_m, 0) << "from the beginning of the only segment on";
   EXPECT_EQ(news[0].frontier, 9u);
   EXPECT_FALSE(news[0].frontier_open);
+}
+
+TEST_F(SensorPipelineTest, BodiesInTheAirAreReportedOnlyWhileTheyAreLookedFor) {
+  auto dense = std::make_shared<LidarModel>(*onboard.vehicle.lidar);
+  dense->columns = 360;
+  dense->elevation_rad.clear();
+  for (int i = 0; i < 20; ++i) dense->elevation_rad.push_back(0.3f - 0.03f * static_cast<float>(i));
+  const auto scan_of = [&](bool body) {  // of 0.5 m, 1.5 m away from the vehicle
+    auto s = std::make_shared<LidarScan>();
+    s->stamp = now();
+    s->model = dense;
+    s->intensity.assign(20 * 360, 0.5f);
+    for (int ring = 0; ring < 20; ++ring)
+      for (int column = 0; column < 360; ++column)
+        s->range_m.push_back(body && ring > 5 && ring < 15 && column < 20 ? 1.5f : 3.0f);
+    return s;
+  };
+  const auto bodies_seen = [&] {
+    for (int i = 0; i < 20; ++i) {
+      advance(0.1);
+      sensors.on_lidar(scan_of(false));
+    }
+    advance(0.1);
+    news.clear();
+    sensors.on_lidar(scan_of(true));
+    advance(0.1);
+    return news.size() == 1 ? static_cast<int>(news.back().bodies.size()) : -1;
+  };
+  EXPECT_EQ(bodies_seen(), 0);
+  look_for_others = true;
+  EXPECT_EQ(bodies_seen(), 1);
 }
 
 TEST_F(SensorPipelineTest, WhatIsSeenOfAnotherVehicleIsNoRock) {
