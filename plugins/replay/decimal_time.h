@@ -1,4 +1,4 @@
-// Times as text, read without rounding: seconds since 1970 have more digits than a double.
+// Times as text, parsed without rounding: seconds since 1970 have more digits than a double.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace karst::replay {
 
-/// Nanoseconds a unit has: "s", "ms", "us" or "ns".
+/// Nanoseconds in a unit: "s", "ms", "us" or "ns".
 constexpr core::TimeNs nanoseconds_of(std::string_view unit) {
   return unit == "s" ? 1'000'000'000 : unit == "ms" ? 1'000'000 : unit == "us" ? 1000 : 1;
 }
 
-/// "1647090478.710633039" in `unit` to nanoseconds, further digits cut off; also "1.6e9", which may round.
-/// None if the text is no number, or one that 64 bits of nanoseconds do not hold.
+/// Converts "1647090478.710633039" in `unit` to nanoseconds and truncates further digits; also "1.6e9", which
+/// may round. nullopt if the text is no number, or does not fit 64 bits of nanoseconds.
 std::optional<core::TimeNs> parse_time(std::string_view text, core::TimeNs unit_ns);
 
 /// "1647090478.710633039": seconds with nine decimals.

@@ -1,4 +1,4 @@
-// Which numbers of a record are a point's coordinates, intensity, time and ring, and how they are stored.
+// Which fields of a record are a point's coordinates, intensity, time and ring, and how they are stored.
 #pragma once
 #include <bit>
 #include <cstddef>
@@ -15,7 +15,7 @@ enum class ValueType { int8, uint8, int16, uint16, int32, uint32, int64, uint64,
 
 std::size_t size_of(ValueType type);
 inline bool is_whole(ValueType type) { return type < ValueType::float32; }
-/// "float32", "uint16" ...; also PLY's "float", "ushort" ...; none if unknown.
+/// The type named "float32", "uint16" ...; also PLY's "float", "ushort" ...; nullopt if unknown.
 std::optional<ValueType> type_named(const std::string& name);
 
 enum class Role { none, x, y, z, intensity, time, ring };
@@ -28,18 +28,18 @@ struct FieldNames {
 /// also with CloudCompare's "scalar_" before them).
 Role role_of(const std::string& name, const FieldNames& names);
 
-/// Where a field of record i lies: at `offset + i * stride`.
+/// The location of a field: in record i it starts at byte `offset + i * stride`.
 struct Field {
   Role role = Role::none;
   ValueType type = ValueType::float32;
   std::size_t offset = 0, stride = 0;
 };
 
-/// The role each field has, each role but `none` once: the first field of that role.
+/// Keeps each role but `none` for the first field that has it; later ones become `none`.
 /// Throws InputError if x, y or z is missing.
 void check_roles(std::vector<Role>& roles, const std::string& file, const std::string& place);
 
-/// Collects points one by one; leaves out those that are not finite.
+/// Collects points one by one; drops those that are not finite.
 class ScanBuilder {
  public:
   /// `fields` in any order, roles as checked.

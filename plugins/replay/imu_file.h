@@ -1,4 +1,4 @@
-// IMU samples read one by one: a recording of hours is not held in memory.
+// Reads IMU samples one by one, so that a recording of hours need not fit into memory.
 #pragma once
 #include <fstream>
 #include <optional>
@@ -15,9 +15,9 @@ class ImuFile {
   ImuFile(const std::string& path, const std::string& columns, core::TimeNs unit_ns,
           const core::Quat& R_body_imu);
 
-  /// The next sample, body frame, with the recording's own stamp; none at the end. Lines that begin with # or
-  /// with a letter (a heading) are passed over. Throws InputError with the line on anything else that is no
-  /// sample, or goes back in time.
+  /// The next sample, body frame, with the recording's own stamp; nullopt at the end. Skips lines that begin
+  /// with # or with a letter (a heading). Throws InputError with the line on anything else that is no sample
+  /// or goes back in time.
   std::optional<core::ImuSample> next();
 
  private:

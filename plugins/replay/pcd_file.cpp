@@ -13,8 +13,8 @@ namespace {
 using core::InputError;
 
 struct PcdHeader {
-  std::vector<Role> roles;       // a field
-  std::vector<ValueType> types;  // a field
+  std::vector<Role> roles;       // one for each field
+  std::vector<ValueType> types;  // one for each field
   std::vector<std::size_t> counts;
   std::size_t points = 0, data_at = 0, line = 0;
   std::string data;
@@ -126,7 +126,7 @@ Scan read_binary(const std::string& path, const PcdHeader& h, std::string_view d
   return decode(data, h.points, fields, std::endian::little);
 }
 
-/// Two sizes, then LZF of all values of the first field, all of the second, and so on.
+/// Two sizes, then LZF-compressed data: all values of the first field, all of the second, and so on.
 Scan read_compressed(const std::string& path, const PcdHeader& h, std::string_view data) {
   const std::string place = "byte " + std::to_string(h.data_at);
   std::uint32_t packed = 0, unpacked = 0;
@@ -143,7 +143,7 @@ Scan read_compressed(const std::string& path, const PcdHeader& h, std::string_vi
     throw InputError(path, place,
                      "its header declares " + std::to_string(h.points) + " points of " +
                          std::to_string(record) + " bytes, its data " + std::to_string(unpacked) + " bytes");
-  // LZF repeats at most 264 bytes for 3: a larger claim is damage, and need not be given the memory.
+  // LZF expands 3 bytes to at most 264: a larger claim means damage, so no memory is allocated for it.
   std::optional<std::string> bytes;
   if (unpacked / 88 <= packed) bytes = lzf_decompress(data.substr(8, packed), unpacked);
   if (!bytes) throw InputError(path, place, "its compressed data is damaged");

@@ -16,7 +16,7 @@ using core::InputError;
 using core::TimeNs;
 namespace fs = std::filesystem;
 
-/// What `*` stands for if `name` fits a pattern with one `*` at most.
+/// The text that `*` matches, if `name` matches a pattern with at most one `*`.
 std::optional<std::string> match(const std::string& pattern, const std::string& name) {
   const auto star = pattern.find('*');
   if (star == std::string::npos) return name == pattern ? std::optional(name) : std::nullopt;
@@ -26,7 +26,7 @@ std::optional<std::string> match(const std::string& pattern, const std::string& 
   return name.substr(head.size(), name.size() - head.size() - tail.size());
 }
 
-/// Names in the order people expect: 2 before 10.
+/// Natural order of names: 2 before 10.
 bool before(const std::string& a, const std::string& b) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;
@@ -130,7 +130,7 @@ void stamp(Recording& r) {
   }
 }
 
-/// Each point's time from a file of its own.
+/// Reads each point's time from a separate file.
 void take_point_times(const Recording& r, const RecordedFile& f, std::size_t declared, Scan& scan) {
   const std::string bytes = file_bytes(f.point_times.string());
   const ValueType type = r.layout.point_times_type;
@@ -145,7 +145,7 @@ void take_point_times(const Recording& r, const RecordedFile& f, std::size_t dec
   scan.time_is_whole = is_whole(type);
 }
 
-/// Seconds since the sweep's own zero, from the angle turned since the first point.
+/// Sets times in seconds since the start of the sweep, from the angle turned since the first point.
 void times_by_azimuth(const Recording& r, Scan& scan) {
   const double sign = r.info.time_direction == TurnDirection::clockwise ? -1 : 1;
   const auto azimuth = [](const ScanPoint& p) { return std::atan2(p.position.y(), p.position.x()); };
@@ -157,7 +157,7 @@ void times_by_azimuth(const Recording& r, Scan& scan) {
   scan.has_time = true;
 }
 
-/// Times become seconds before the end of the sweep; returns the end's stamp.
+/// Converts times to seconds relative to the end of the sweep (<= 0); returns the stamp of the end.
 TimeNs assign_times(const Recording& r, const RecordedFile& f, bool by_azimuth, Scan& scan) {
   const bool known = scan.has_time && !r.info.compensated && !scan.points.empty();
   if (!known) {
@@ -238,7 +238,7 @@ core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
   if (r.info.rings_by == RingSource::field && !scan.has_ring)
     throw InputError(f.path.string(), "", "has no field with rings, which rings.by asks for");
   if (r.info.rings_by == RingSource::order) {
-    rings_by_order(scan);  // while all points are there
+    rings_by_order(scan);  // before any points are dropped
   }
   std::erase_if(scan.points, [&](const ScanPoint& p) {
     const double range = p.position.norm();

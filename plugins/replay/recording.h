@@ -1,4 +1,4 @@
-// A folder of recorded scans: which files, stamped when, and each as a sweep.
+// A folder of recorded scans: its files, their stamps, and each as a sweep.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,13 +11,13 @@
 namespace karst::replay {
 
 struct RecordedFile {
-  std::filesystem::path path, point_times;  // the latter "" if there are none
+  std::filesystem::path path, point_times;  // point_times is "" if there is no such file
   core::TimeNs stamp = 0;                   // the recording's own time
 };
 
 struct Recording {
   std::filesystem::path folder;
-  std::string info_file;  // "" without one: all is as RecordingInfo's defaults
+  std::string info_file;  // "" without one: RecordingInfo's defaults apply
   RecordingInfo info;
   RecordingLayout layout;
   std::vector<RecordedFile> files;  // stamps strictly increasing
@@ -27,10 +27,10 @@ struct Recording {
 /// InputError: no scan there, stamps that are missing or go back, a key that is wrong.
 Recording open_recording(const std::filesystem::path& folder, const std::string& info_file);
 
-/// What a file gave besides the sweep.
+/// Remarks on the file that was read.
 struct ReadNotes {
   std::size_t dropped = 0;     // points that are not finite or out of range
-  bool without_times = false;  // not compensated, yet nothing tells when each point was measured
+  bool without_times = false;  // not motion-compensated, and the points have no measurement times
 };
 
 /// Reads one scan: rings assigned, times relative to the end of the sweep, which becomes the stamp; points by

@@ -116,7 +116,7 @@ RecordingInfo read_recording_info(const std::string& file) {
   core::OptionTable table;
   describe(table, info);
   table.read(file, core::read_info(file));
-  layout_of(info, file);  // whatever is wrong shows now
+  layout_of(info, file);  // throws now if a key is wrong
   if (info.rings > 1 && info.lowest_rad >= info.highest_rad)
     throw InputError(file, "rings.lowest", "must lie below rings.highest");
   if (info.rings_by == RingSource::elevation && info.rings == 0)

@@ -1,4 +1,4 @@
-// What a folder of recorded scans does not say of itself: the file recording.info in it. docs/replay.md
+// The file recording.info in a folder of scans: settings that the scans do not contain. docs/replay.md
 #pragma once
 #include <string>
 
@@ -8,28 +8,28 @@
 
 namespace karst::replay {
 
-/// Where each scan's stamp comes from.
+/// The source of each scan's stamp.
 enum class StampSource { rate, names, file };
 constexpr auto names_of(StampSource) {
   using enum StampSource;
   return std::to_array<core::Named<StampSource>>({{rate, "rate"}, {names, "names"}, {file, "file"}});
 }
 
-/// The moment of the sweep that is stamped.
+/// The moment of the sweep that the stamp refers to.
 enum class StampMoment { start, end };
 constexpr auto names_of(StampMoment) {
   using enum StampMoment;
   return std::to_array<core::Named<StampMoment>>({{start, "start"}, {end, "end"}});
 }
 
-/// What each point's time counts from: the start or end of its sweep, or as the stamps do.
+/// The zero of each point's time: the start or end of its sweep, or the zero of the stamps.
 enum class TimeOrigin { start, end, absolute };
 constexpr auto names_of(TimeOrigin) {
   using enum TimeOrigin;
   return std::to_array<core::Named<TimeOrigin>>({{start, "start"}, {end, "end"}, {absolute, "absolute"}});
 }
 
-/// The sensor's turn seen from above.
+/// The sensor's direction of rotation seen from above.
 enum class TurnDirection { none, clockwise, counterclockwise };
 constexpr auto names_of(TurnDirection) {
   using enum TurnDirection;
@@ -37,7 +37,7 @@ constexpr auto names_of(TurnDirection) {
       {{none, "none"}, {clockwise, "clockwise"}, {counterclockwise, "counterclockwise"}});
 }
 
-/// How a point's ring is known; automatic: by the field if there is one, else by elevation.
+/// How a point's ring is determined; automatic: by the field if there is one, else by elevation.
 enum class RingSource { automatic, field, elevation, order };
 constexpr auto names_of(RingSource) {
   using enum RingSource;
@@ -65,14 +65,14 @@ struct RecordingInfo {
   std::string lidar_position = "0 0 0", lidar_rotation = "0 0 0";
   double min_range_m = 0.5, max_range_m = 120;
   RingSource rings_by = RingSource::automatic;
-  std::int64_t rings = 0;  // not said
+  std::int64_t rings = 0;  // 0: not given
   double lowest_rad = 0, highest_rad = 0;
 
   std::string imu_file, imu_columns = "t ax ay az wx wy wz", imu_unit = "s", imu_rotation = "0 0 0";
 };
 void describe(core::OptionTable& t, RecordingInfo& o);
 
-/// What the texts above mean.
+/// The texts above, parsed.
 struct RecordingLayout {
   BinLayout bin;
   ValueType point_times_type = ValueType::float32;
@@ -80,7 +80,7 @@ struct RecordingLayout {
   core::Quat R_body_imu = core::Quat::Identity();
 };
 
-/// Reads and checks. Throws InputError naming file, key, what was expected and the nearest key.
+/// Reads and checks the file. Throws InputError naming file, key, the expected value and the nearest key.
 RecordingInfo read_recording_info(const std::string& file);
 RecordingLayout layout_of(const RecordingInfo& info, const std::string& file);
 

@@ -1,4 +1,4 @@
-// A recorded scan as its file holds it, before anything is known of the sensor.
+// A recorded scan as stored in its file, before the sensor is known.
 #pragma once
 #include <cstdint>
 #include <limits>

@@ -8,7 +8,7 @@
 
 namespace karst::replay {
 
-/// What a bare .bin file does not say of itself.
+/// The layout of a bare .bin file, which has no header.
 struct BinLayout {
   std::vector<std::string> names = {"x", "y", "z", "intensity"};  // KITTI's
   std::vector<ValueType> types = {ValueType::float32, ValueType::float32, ValueType::float32,
@@ -21,14 +21,14 @@ bool is_scan_file(const std::string& path);
 Scan read_scan(const std::string& path, const FieldNames& names = {}, const BinLayout& layout = {});
 
 Scan read_pcd(const std::string& path, const FieldNames& names);
-/// The element "vertex"; what comes after it, such as faces, is not looked at.
+/// Reads the element "vertex"; ignores later elements such as faces.
 Scan read_ply(const std::string& path, const FieldNames& names);
 Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout);
 
-/// Faces a .ply file's header declares: none, and it is a cloud.
+/// Number of faces that a .ply file's header declares; 0 for a point cloud.
 std::size_t ply_faces(const std::string& path);
 
-/// The file's bytes; throws InputError if it is absent, a folder, or cannot be read.
+/// The file's bytes; throws InputError if it is missing, a directory, or unreadable.
 std::string file_bytes(const std::string& path);
 
 }  // namespace karst::replay

@@ -5,7 +5,7 @@
 
 namespace karst::replay {
 
-/// Takes text apart without copying it.
+/// Splits text into lines without copying it.
 class TextReader {
  public:
   explicit TextReader(std::string_view text, std::size_t line = 1) : text_(text), line_(line) {}
@@ -22,7 +22,7 @@ class TextReader {
   }
   /// The number, from 1, of the line read last.
   std::size_t number() const { return line_ - 1; }
-  /// Where the next line begins.
+  /// Byte offset of the next line.
   std::size_t position() const { return std::min(at_, text_.size()); }
 
  private:

@@ -5,7 +5,7 @@ namespace {
 class SimulatorPlugin final : public karst::sim::SimulatedWorldPlugin {
  public:
   void describe_options(karst::core::OptionTable& table) override {
-    options_ = {};  // nothing of a mission read before
+    options_ = {};  // drops the options of a mission read before
     describe(table, options_);
   }
   std::unique_ptr<karst::core::Vehicle> create(const karst::core::VehicleSetup& setup) override {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr TimeNs kLogPeriod = 5 * core::kSecond;
 
-/// It can stand on the floor there, without a pad, and rise.
+/// Whether a vehicle can stand on the floor there, without a pad, and climb.
 bool fits(const cave::Cave& cave, const cave::StartPose& start, double radius_m, double climb_m) {
   constexpr double kAround_m = 0.3;
   if (cave.scene.distance_to_rock(start.position, 5.0) < radius_m + kAround_m) return false;
@@ -78,7 +78,7 @@ std::vector<cave::StartPose> start_places(const cave::Cave& cave, std::size_t n,
 }
 
 bool touched(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double distance_m) {
-  const Vec3 from = a0 - b0, offset = (a1 - b1) - from;  // of a as seen from b
+  const Vec3 from = a0 - b0, offset = (a1 - b1) - from;  // of a relative to b
   const double length2 = offset.squaredNorm();
   const double t = length2 > 0 ? std::clamp(-from.dot(offset) / length2, 0.0, 1.0) : 0.0;
   return (from + t * offset).norm() < distance_m;
@@ -161,7 +161,7 @@ void SimulatedTeam::count_contacts(TimeNs now) {
     }
 }
 
-/// One that falls for ever, through a hole in the mesh, is never heard.
+/// A node that falls through a hole in the mesh has its radio switched off.
 void SimulatedTeam::drop_node(std::size_t robot, std::size_t radio) {
   const SimulatedVehicle& from = *robots_.at(robot);
   const std::optional<Vec3> place = fallen(cave_.scene, from.position(), from.velocity_mps());
@@ -170,7 +170,7 @@ void SimulatedTeam::drop_node(std::size_t robot, std::size_t radio) {
   nodes_.push_back({static_cast<int>(radio), *place});
 }
 
-/// Positions, and the pairs that could hear each other but for chance.
+/// Logs positions and the pairs of radios in range of each other, without fading or random loss.
 void SimulatedTeam::log(TimeNs now) {
   if (!truth_.is_open()) return;
   char text[120];

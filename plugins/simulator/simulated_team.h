@@ -1,4 +1,4 @@
-// Several simulated vehicles in one cave: each a sphere in the others' sight, and a radio on each.
+// Several simulated vehicles in one cave: the others' sensors see each as a sphere, and each carries a radio.
 #pragma once
 #include <fstream>
 #include <map>
@@ -11,23 +11,23 @@
 
 namespace karst::sim {
 
-/// Places around `cave`'s start, itself first, where vehicles can stand side by side and rise by `climb_m`
-/// each: in sight of the start, at least `apart_m` from each other. Throws InputError if there are not `n`.
+/// Start poses around `cave`'s start (which comes first) where vehicles can stand side by side and climb by
+/// `climb_m`: in sight of the start, at least `apart_m` from each other. Throws InputError if fewer than `n`.
 std::vector<cave::StartPose> start_places(const cave::Cave& cave, std::size_t n, double radius_m,
                                           double climb_m, double apart_m = 1.5);
 
-/// Whether two spheres touched while their centres went along straight lines in the same time.
+/// Whether two spheres touched while their centres moved at constant velocity, a0 to a1 and b0 to b1.
 bool touched(const core::Vec3& a0, const core::Vec3& a1, const core::Vec3& b0, const core::Vec3& b1,
              double distance_m);
 
-/// Where the antenna of a node that leaves `from` with `velocity_mps` comes to be: 0.3 m above the rock that
-/// it falls onto. There it stays, though the rock be steep. Nothing if it meets none within 20 s.
+/// Position of the antenna of a node dropped at `from` with `velocity_mps` (world): 0.3 m above the rock that
+/// it falls onto, where it stays even on steep rock. nullopt if it meets no rock within 20 s.
 std::optional<core::Vec3> fallen(const cave::RayScene& scene, const core::Vec3& from,
                                  const core::Vec3& velocity_mps);
 
 class SimulatedTeam final : public SimulatedWorld {
  public:
-  /// Throws InputError on a bad cave or start, or one without room for all.
+  /// Throws InputError on a bad cave or start, or if there is no room for all vehicles.
   SimulatedTeam(const SimulatorOptions& options, const RadioOptions& radio, const WorldSetup& setup);
 
   core::Vehicle& robot(std::size_t i) override { return *robots_.at(i); }
@@ -42,12 +42,12 @@ class SimulatedTeam final : public SimulatedWorld {
   void finish() override;
 
  private:
-  struct Node {  // that was dropped
+  struct Node {  // a dropped radio node
     int radio;
     core::Vec3 position;
   };
 
-  /// One radio of the team, the base's and the nodes' among them.
+  /// One radio of the team: a robot's, the base's or a node's.
   class Port final : public core::TeamPort {
    public:
     Port(SimulatedTeam& team, std::size_t radio) : team_(team), radio_(radio) {}
@@ -71,9 +71,9 @@ class SimulatedTeam final : public SimulatedWorld {
   std::vector<std::unique_ptr<SimulatedVehicle>> robots_;
   std::vector<core::Vec3> last_;  // positions at the last meeting
   Radio radio_;
-  std::map<std::size_t, Port> ports_;  // made when first asked for
+  std::map<std::size_t, Port> ports_;  // made on first use
   std::vector<Node> nodes_;
-  std::ofstream truth_;  // team_truth.jsonl: contacts, and who could hear whom
+  std::ofstream truth_;  // team_truth.jsonl: contacts, and pairs in radio range
   std::string truth_file_;
 };
 

@@ -130,7 +130,7 @@ void SimulatedVehicle::start(core::Executive& executive, core::VehicleSink& sink
   });
 }
 
-/// Sensors are read from the vehicle's own tick, right after its motion: each sees the state of this instant.
+/// Sensors are read in the vehicle's own tick, after its motion, so each sees the state of that instant.
 void SimulatedVehicle::schedule_sensors() {
   const auto every = [this](TimeNs period, TimeNs phase, std::function<void()> read) {
     schedule_.push_back({period, phase, std::move(read)});
@@ -150,7 +150,7 @@ void SimulatedVehicle::schedule_sensors() {
   every(kSecond / 2, 0, [this] { sink_->on_battery(quadrotor_.battery().status(now())); });
   if (lidar_) every(lidar_->model()->period, 0, [this] { fire_lidar(); });
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    // Between two sweeps and apart from each other, so that the sensing lane is loaded evenly.
+    // Fires between two sweeps, each camera at another phase, so that the sensing lane is loaded evenly.
     const TimeNs period = cameras_[i]->model()->period;
     every(period, static_cast<TimeNs>(i + 1) * 30 * kMillisecond % period, [this, i] { fire_camera(i); });
   }
@@ -166,7 +166,7 @@ void SimulatedVehicle::command(const core::AttitudeRateCommand& c) {
   taken_over_ = false;
 }
 
-/// On its legs it switches the motors off.
+/// The autopilot takes over; a vehicle that stands switches its motors off.
 void SimulatedVehicle::take_over() {
   if (!std::exchange(taken_over_, true))
     log_.event(now(), "autopilot", quadrotor_.state(), "no command: level, and down");
@@ -278,7 +278,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
       });
 }
 
-/// On a lane of its own: a picture takes longer than a sweep, and nothing in flight waits for it.
+/// Runs on a separate lane: a picture takes longer than a sweep, and nothing in flight waits for it.
 void SimulatedVehicle::take_picture() {
   if (faults_of(Sensor::camera).lost()) return;
   const core::Pose& T_world_body = quadrotor_.state().T_world_body;
@@ -297,7 +297,7 @@ void SimulatedVehicle::take_picture() {
       });
 }
 
-/// In the image that `camera` takes now. What is in view goes into the truth, what is recognized to the core.
+/// Searches the image that `camera` takes now: logs objects in view as truth, sends detections to the core.
 void SimulatedVehicle::look_for_objects(std::shared_ptr<const core::CameraModel> camera, Light light) {
   if (!description_.detects_objects) return;
   const core::Pose T_world_camera = quadrotor_.state().T_world_body * camera->T_body_camera;
@@ -330,7 +330,7 @@ void SimulatedVehicle::stir_air() {
   air_.stir(cave_time_s(), quadrotor_.state().T_world_body, cave_->scene);
 }
 
-/// Scans and images still being made keep the cave as it was at their stamp.
+/// Scans and images still being computed keep the cave as it was at their stamp.
 void SimulatedVehicle::move_rocks() {
   const std::size_t before = cave_->scene.boulders().size();
   if (!rocks_.advance(cave_time_s(), quadrotor_.state().T_world_body.position)) return;

@@ -21,8 +21,8 @@ class SimulatedVehicle final : public core::Vehicle {
  public:
   /// Throws InputError on a bad cave or start pose.
   SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup);
-  /// The same in a cave that is read already, with all its objects in it, whose time is ahead of the
-  /// vehicle's own.
+  /// The same in a cave that is loaded already, with all its objects, whose clock is `cave_ahead_s` ahead of
+  /// the vehicle's own.
   SimulatedVehicle(const SimulatorOptions& options, const core::VehicleSetup& setup, const cave::Cave& cave,
                    double cave_ahead_s = 0);
 
@@ -31,17 +31,17 @@ class SimulatedVehicle final : public core::Vehicle {
   void command(const core::AttitudeRateCommand& c) override;
   void finish() override;
 
-  // Among other vehicles; to be called between two steps of the executive.
+  // For flights of several vehicles; to be called between two steps of the executive.
   const core::Vec3& position() const { return quadrotor_.state().T_world_body.position; }
   const core::Vec3& velocity_mps() const { return quadrotor_.state().velocity_mps; }
   bool airborne() const { return quadrotor_.footing() != Footing::standing && !lost_; }
-  /// Where the others are from now on, as its sensors see them. Touching them is not looked for.
+  /// Sets the other vehicles that its sensors see from now on. Contact with them is not checked here.
   void see(std::vector<cave::Sphere> others);
-  /// The end of its flight: `outcome` is contact, if it touched another, or lost.
+  /// Ends its flight: `outcome` is contact if it touched another vehicle, otherwise lost.
   void end_flight(core::MissionOutcome outcome, const std::string& reason) { lose(outcome, reason); }
 
  private:
-  /// Something read once a period; both times are whole ticks.
+  /// A periodic reading; both times are whole ticks.
   struct Reading {
     core::TimeNs period, phase;
     std::function<void()> read;
@@ -61,20 +61,20 @@ class SimulatedVehicle final : public core::Vehicle {
   void stir_air();
   void renew_sight();
   double cave_time_s() const { return core::seconds(now() - start_time_) + cave_ahead_s_; }
-  /// What the sensor's air is like now; `beams` names the random stream of its echoes.
+  /// The clouds around the sensor now; `beams` names the random stream of their echoes.
   Air air_for(const std::string& beams);
   SensorFaults::InjectedFaults faults_of(cave::Fault::Sensor sensor);
   void log_truth();
   core::TimeNs now() const { return executive_->now(); }
-  /// A random stream of its own for each measurement, so that it matters not which thread makes it when.
+  /// A separate random stream for each measurement, so that results do not depend on thread or order.
   core::Random measurement_random(const std::string& sensor);
 
   SimulatorOptions options_;
   std::uint64_t seed_;
   double cave_ahead_s_;
   std::shared_ptr<cave::Cave> cave_;        // replaced as a whole when boulders come or move
-  std::vector<cave::Sphere> others_;        // vehicles
-  std::shared_ptr<const cave::Cave> seen_;  // the cave with them in it
+  std::vector<cave::Sphere> others_;        // other vehicles
+  std::shared_ptr<const cave::Cave> seen_;  // the cave with `others_` in it
   LooseRocks rocks_;
   CaveAir air_;
   SensorFaults faults_;
@@ -84,7 +84,7 @@ class SimulatedVehicle final : public core::Vehicle {
   std::vector<std::shared_ptr<const DepthCamera>> cameras_;
   std::shared_ptr<const RgbCamera> rgb_;
   ObjectDetector detector_;
-  std::vector<int> looks_;  // for each object of the cave: images it was in view in
+  std::vector<int> looks_;  // for each object of the cave, the number of images with it in view
   Imu imu_;
   core::Random magnetometer_random_;
   Barometer barometer_;
@@ -98,7 +98,7 @@ class SimulatedVehicle final : public core::Vehicle {
   std::vector<Reading> schedule_;
   bool lost_ = false;
   core::TimeNs commanded_at_ = 0;
-  bool taken_over_ = false;  // by its autopilot, since then
+  bool taken_over_ = false;  // by its autopilot, as no more commands came
   PoseTrack track_;          // of the last sweep
   core::Vec3 last_velocity_mps_ = core::Vec3::Zero();
   core::Quat last_orientation_ = core::Quat::Identity();

@@ -1,4 +1,4 @@
-// Everything that can be set in the mission file's section `simulator`.
+// All options of the mission file's section `simulator`.
 #pragma once
 #include "plugins/simulator/cameras/depth_camera.h"
 #include "plugins/simulator/cameras/rgb_camera.h"
@@ -16,7 +16,7 @@
 
 namespace karst::sim {
 
-/// What sensors it carries.
+/// The set of sensors that the vehicle carries.
 enum class VehiclePreset { lidar_uav, lidar_only_uav, camera_uav };
 constexpr auto names_of(VehiclePreset) {
   using enum VehiclePreset;

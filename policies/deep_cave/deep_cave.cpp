@@ -1,4 +1,4 @@
-// As far into the cave as the battery's half lets the vehicle come.
+// Flies as deep into the cave as half of the battery allows.
 #include <karst/expected_gain.h>
 #include <karst/ranking.h>
 
@@ -13,7 +13,7 @@ namespace {
 class DeepCave : public karst::Policy {
  public:
   DeepCave() {
-    ranking_.path_weight = 0.0;  // what the way costs is in the depth that can still be reached
+    ranking_.path_weight = 0.0;  // the path's cost is contained in the depth that can still be reached
     ranking_.horizon_m = 1000.0;
     ranking_.turn_cost_m = 4.0;
     ranking_.keep_bonus_m = 6.0;
@@ -44,12 +44,12 @@ class DeepCave : public karst::Policy {
 
  private:
   struct Prospect {
-    double depth_m = 0;   // length of the way from the start to the viewpoint
-    double deeper_m = 0;  // that the time left would allow from there
-    double chance = 0;    // that the cave goes on there
+    double depth_m = 0;   // length of the path from the start to the viewpoint
+    double deeper_m = 0;  // further depth that the time left would allow from there
+    double chance = 0;    // probability that the cave continues there
   };
 
-  /// Of every reachable frontier. Each second flown beyond a place costs another one on the way home.
+  /// The prospect of every reachable frontier. Each second flown deeper costs another one on the flight home.
   std::map<std::uint32_t, Prospect> prospects_of(const karst::Request& request) {
     std::vector<const karst::Frontier*> reachable;
     std::vector<karst::Vec3> places;
@@ -74,7 +74,7 @@ class DeepCave : public karst::Policy {
     return out;
   }
 
-  std::optional<karst::Vec3> home_;  // where the first decision was made
+  std::optional<karst::Vec3> home_;  // position of the first decision
   double reach_m_ = 80.0;
   double even_volume_m3_ = 10.0;
   double cruise_ = 0.75;

@@ -1,4 +1,4 @@
-// The highest frontier first (trial C of the paper): for shafts, chimneys and high chambers.
+// Chooses the highest frontier first (trial C of the paper): for shafts, chimneys and high chambers.
 #include <karst/ranking.h>
 
 #include <cstdio>

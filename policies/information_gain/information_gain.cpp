@@ -1,4 +1,4 @@
-// The frontier that shows the most unknown space for the time the flight to it takes.
+// Chooses the frontier with the most expected information gain per second of flight to it.
 #include <karst/expected_gain.h>
 #include <karst/ranking.h>
 #include <karst/straight_path.h>
@@ -40,10 +40,10 @@ class InformationGain : public karst::Policy {
   struct Candidate {
     const karst::Frontier* frontier;
     double time_s, passed_m3;
-    double most;  // its score cannot be higher
+    double most;  // upper bound of its score
   };
 
-  /// Those that could be best first.
+  /// Sorted by the upper bound of the score, highest first.
   std::vector<Candidate> candidates_of(const karst::Request& request,
                                        const std::vector<karst::OpenFrontiers::Candidate>& open) const {
     const bool sees_what_it_passes = karst::sees_all_around(request);
@@ -61,7 +61,7 @@ class InformationGain : public karst::Policy {
     return out;
   }
 
-  /// Behind openings that a flight to the viewpoint passes before those that are seen from there.
+  /// Volume behind the openings that the flight to the viewpoint passes before those in view from there.
   double passed_m3(const karst::Request& request, const karst::Frontier& f) const {
     const karst::StraightPath path(request.position(), f.viewpoint, f.path_length_m);
     double sum_m3 = 0;
@@ -71,7 +71,7 @@ class InformationGain : public karst::Policy {
     return sum_m3;
   }
 
-  /// Looks are dear: none is taken from where nothing could be better than what was found.
+  /// Gain queries are expensive: stops once no candidate's upper bound exceeds the best score so far.
   std::vector<karst::Goal> ranked(const karst::Request& request, const std::vector<Candidate>& candidates) {
     std::vector<karst::Goal> goals;
     double best = 0;

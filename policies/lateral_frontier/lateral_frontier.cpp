@@ -1,8 +1,8 @@
 // The frontier closest to the lateral direction of flight (trials A and B of the paper).
 //
-// "Lateral" is read as horizontal: the frontier whose bearing deviates least from where the vehicle is
-// already going, seen from above. That drives it deep into the cave without turning round, as in
-// those trials. `side` chooses the other reading: the direction across the flight.
+// "Lateral" is read as horizontal: the frontier whose bearing deviates least from the direction of flight,
+// seen from above. That drives the vehicle deep into the cave without turning back, as in those trials.
+// `side` chooses the other reading: the direction perpendicular to the flight.
 #include <karst/ranking.h>
 
 #include <cmath>
@@ -41,8 +41,8 @@ class LateralFrontier : public karst::Policy, public karst::Restorable {
   void memory(karst::Memory& m) override { ranking_.memory(m); }
 
  private:
-  /// 0: just in the preferred direction, pi: against it. A frontier straight above or below has no bearing
-  /// and counts as at right angles.
+  /// 0: exactly in the preferred direction, pi: opposite to it. A frontier straight above or below has no
+  /// bearing and counts as perpendicular.
   double deviation_rad(const karst::Request& request, const karst::Frontier& f) const {
     const karst::Vec3 flight = request.direction_of_flight;
     const karst::Vec3 there = f.centroid - request.position();

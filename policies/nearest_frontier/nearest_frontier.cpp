@@ -1,4 +1,4 @@
-// The frontier with the shortest flight to it, with a preference for open space and against turning back.
+// Chooses the frontier with the shortest path, with a preference for open space and against turning back.
 #include <karst/ranking.h>
 
 #include <cstdio>

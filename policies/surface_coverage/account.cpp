@@ -86,7 +86,7 @@ class OwnAccount final : public Account {
     return out;
   }
 
-  /// Of what is not imaged yet, what a picture from this pose of the body shows.
+  /// The cells not imaged yet that a picture from this body pose would show.
   std::vector<Vec3> seen(const Vec3& position, const karst_quaternion_t& q_world_body) const {
     const karst::Sensor& s = camera_.sensor;
     const Vec3 eye = position + rotated(q_world_body, s.T_body_sensor.position);

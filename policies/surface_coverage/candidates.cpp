@@ -7,9 +7,9 @@
 namespace surface_coverage {
 namespace {
 
-constexpr double kApart_m = 1.0;  // places for one patch
+constexpr double kApart_m = 1.0;  // between viewpoints for one patch
 constexpr double kMargin_rad =
-    4 * kDegree;  // from the edges of what counts: the estimate and the map are off
+    4 * kDegree;  // to the limits of view and incidence, for errors of estimate and map
 
 /// 1..6 for +-x, +-y, +-z; 0 for no direction.
 int facing(const Vec3& n) {
@@ -25,7 +25,7 @@ double heading_for(const ImagingCamera& camera, double azimuth_rad) {
   return std::remainder(azimuth_rad - yaw, 2 * kPi);
 }
 
-/// Of the optical axis above the horizon.
+/// Elevation of the optical axis above the horizon.
 double pitch_of(const ImagingCamera& camera) {
   const karst_quaternion_t& q = camera.sensor.T_body_sensor.orientation;
   return std::asin(std::clamp(2 * (q.x * q.z - q.w * q.y), -1.0, 1.0));
@@ -44,8 +44,8 @@ std::vector<Patch> patches_of(const std::vector<SurfaceCell>& cells, double edge
       normal = normal + c->normal;
     }
     center = (1.0 / static_cast<double>(group.size())) * center;
-    // A mean of cells around a corner may lie in the rock, or in the air: the cell nearest to it stands for
-    // them.
+    // The mean of cells around a corner may lie in the rock, or in the air: the cell nearest to it represents
+    // the group.
     const auto nearest =
         std::min_element(group.begin(), group.end(), [&](const SurfaceCell* a, const SurfaceCell* b) {
           return distance(a->center, center) < distance(b->center, center);
@@ -57,7 +57,7 @@ std::vector<Patch> patches_of(const std::vector<SurfaceCell>& cells, double edge
 }
 
 std::vector<bool> clear_places(const karst::Request& request, const std::vector<Vec3>& places) {
-  // Three flat boxes together hold the ball and little more.
+  // Three flat boxes together cover the ball and little more.
   const double c = request.clearance_m, flat = 0.71 * c;
   const Vec3 halves[3] = {{c, flat, flat}, {flat, c, flat}, {flat, flat, c}};
   std::vector<Box> boxes;
@@ -107,7 +107,7 @@ std::vector<Viewpoint> places_for(const karst::Request& request, const ImagingCa
   std::stable_sort(places.begin(), places.end(),
                    [](const RankedView& x, const RankedView& y) { return x.merit > y.merit; });
 
-  // What is cheap to know goes first: whether a place is free, then whether the patch is in sight, then
+  // The cheap checks come first: whether a viewpoint is free, then whether the patch is visible, then
   // clearance.
   std::vector<Vec3> centers;
   for (const RankedView& p : places) centers.push_back(p.at.position);

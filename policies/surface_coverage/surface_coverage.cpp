@@ -1,5 +1,5 @@
-// Every wall in a picture: full coverage, the paper's mission without blind spots for a camera with a limited
-// field of view. docs/policies/surface_coverage.md
+// Takes pictures of every wall: full coverage, the paper's mission without blind spots for a camera with a
+// limited field of view. docs/policies/surface_coverage.md
 #include <karst/goal_history.h>
 #include <karst/policy.h>
 
@@ -16,13 +16,13 @@
 namespace surface_coverage {
 namespace {
 
-/// A place worth flying to: for pictures of `cells`, or to see what lies behind a frontier.
+/// A viewpoint worth flying to: for a picture of `cells`, or to look behind a frontier.
 struct Stop {
   Viewpoint at;
   std::vector<Vec3> cells;
   std::uint32_t frontier_id = 0;
-  double gain = 0;    // cells, seen or hoped for
-  double time_s = 0;  // from here
+  double gain = 0;    // number of cells, seen or hoped for
+  double time_s = 0;  // flight time from the vehicle
 };
 
 class SurfaceCoverage : public karst::Policy {
@@ -61,7 +61,7 @@ class SurfaceCoverage : public karst::Policy {
     memory_.on_event(event);
     if (event.goal.frontier_id != 0) return;
     if (event.kind == KARST_EVENT_GOAL_REACHED) {
-      const bool stood_there = event.reason.empty();  // else it was passed, in whatever heading
+      const bool stood_there = event.reason.empty();  // else the goal was passed, at any heading
       for (const Stop& s : proposed_)
         if (stood_there && distance(s.at.position, event.goal.position) < 1e-3)
           tried_.insert(tried_.end(), s.cells.begin(), s.cells.end());
@@ -72,7 +72,7 @@ class SurfaceCoverage : public karst::Policy {
   }
 
  private:
-  /// What the last picture was for and does not show in the account was looked at in vain.
+  /// Counts a miss for each cell that the last picture was taken for and that is still not imaged.
   void count_tries(const karst::Request& request, const Account& account) {
     if (tried_.empty()) return;
     const double resolution_m = request.map.resolution_m();
@@ -93,7 +93,7 @@ class SurfaceCoverage : public karst::Policy {
   }
 
   double seconds_for(const karst::Request& request, double length_m, double turn_rad) const {
-    // Speeding up and slowing down on the way, and turning to the picture's heading at its end.
+    // Includes acceleration and braking, and the turn to the picture's heading at the end.
     constexpr double kStop_s = 1.5, kTurn_radps = 1.0;
     return length_m / (0.6 * request.max_speed_mps) + kStop_s +
            std::abs(std::remainder(turn_rad, 2 * kPi)) * 0.5 / kTurn_radps;
@@ -156,9 +156,9 @@ class SurfaceCoverage : public karst::Policy {
     return stops;
   }
 
-  /// Where it is, all around: a turn costs little. And the stop under way, against dithering.
+  /// Adds eight headings at the vehicle's position (a turn is cheap) and, against dithering, the last stop.
   void add_turns(const karst::Request& request, std::vector<Viewpoint>& places) const {
-    constexpr double kStanding_mps = 0.3;  // from a flight it would have to come back
+    constexpr double kStanding_mps = 0.3;  // at a higher speed it would have to fly back
     if (karst::norm(request.state.velocity) < kStanding_mps &&
         clear_places(request, {request.position()}).front())
       for (int i = 0; i < 8; ++i)
@@ -194,7 +194,7 @@ class SurfaceCoverage : public karst::Policy {
     return stops;
   }
 
-  /// A greedy cover: again and again the stop that adds most, what is far off counting less.
+  /// A greedy cover: repeatedly takes the stop that adds most cells, discounted by its flight time.
   std::vector<Stop> cover(const karst::Request& request, std::vector<Stop> all) const {
     const double resolution_m = request.map.resolution_m();
     const Stop* const now = under_way(request);
@@ -291,7 +291,7 @@ class SurfaceCoverage : public karst::Policy {
   }
 
   karst::Decision nothing_left(const karst::Request& request) {
-    constexpr double kWait_s = 3;  // for the map to settle
+    constexpr double kWait_s = 3;  // until the map no longer changes
     if (idle_since_ns_ < 0) idle_since_ns_ = request.stamp_ns;
     if (static_cast<double>(request.stamp_ns - idle_since_ns_) * 1e-9 < kWait_s)
       return karst::Decision::hold("no picture is left to take: waiting for the map to settle");
@@ -307,14 +307,14 @@ class SurfaceCoverage : public karst::Policy {
   OwnMemory own_;
   karst::GoalHistory memory_;
   static constexpr std::size_t kRemembered = 32;
-  std::vector<Stop> proposed_;  // of the last decisions, newest first
-  std::vector<Vec3> tried_;     // cells that a picture just taken was for
+  std::vector<Stop> proposed_;  // by the last decisions, newest first
+  std::vector<Vec3> tried_;     // cells that the picture just taken was meant to show
   struct Refusal {
     Vec3 place;
     std::int64_t stamp_ns;
   };
   std::vector<Refusal> refused_;
-  std::map<CellId, int> misses_;  // pictures that did not show a cell they were taken for
+  std::map<CellId, int> misses_;  // for each cell, the pictures meant to show it that did not
   std::int64_t idle_since_ns_ = -1;
 };
 

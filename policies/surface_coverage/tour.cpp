@@ -28,7 +28,7 @@ class Search {
       }
       return;
     }
-    // All that is left, had at once, would not be enough.
+    // Bound: even all the gain left, collected now, would not beat the best order.
     if (!best_.empty() && sum + left_ * std::exp(-arrival_s / patience_s_) <= best_sum_) return;
     for (std::size_t i = 0; i < gain_.size(); ++i) {
       if (used_[i]) continue;

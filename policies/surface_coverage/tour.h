@@ -1,13 +1,13 @@
-// The order in which to visit a few places.
+// The order in which to visit a few stops.
 #pragma once
 #include <vector>
 
 namespace surface_coverage {
 
-/// `gain[i]` is had on arriving at place i; `first_s[i]` is the time to it from here, `between_s[i][j]` from
-/// i to j. Returns all places in the order that makes the sum of gain * exp(-arrival / patience_s) greatest:
-/// an open tour, in which what is near and rich comes first. Every order is tried, by depth-first search with
-/// a bound: for eight places at most, or so. Equal orders: the one lowest in places.
+/// `gain[i]` is collected on arrival at stop i; `first_s[i]` is the time from the vehicle to stop i,
+/// `between_s[i][j]` from i to j. Returns all stops in the order with the largest sum of
+/// gain * exp(-arrival / patience_s): an open tour in which near and rich stops come first. Branch and bound
+/// over all orders, for about eight stops at most. Of equal orders, returns the lexicographically smallest.
 std::vector<std::size_t> best_order(const std::vector<double>& gain, const std::vector<double>& first_s,
                                     const std::vector<std::vector<double>>& between_s, double patience_s);
 

@@ -1,4 +1,4 @@
-// The frontier with the largest ratio of unknown to free cells in a bounded area (trial D of the paper).
+// The frontier with the largest ratio of unknown to free cells in a bounded region (trial D of the paper).
 #include <karst/ranking.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class UnknownRatio : public karst::Policy, public karst::Restorable {
   void memory(karst::Memory& m) override { ranking_.memory(m); }
 
  private:
-  /// Of every reachable frontier, from one batch.
+  /// The ratio of every reachable frontier, by id, from one batched query.
   std::map<std::uint32_t, double> ratios_of(const karst::Request& request) const {
     std::vector<std::uint32_t> ids;
     std::vector<karst::Box> boxes;

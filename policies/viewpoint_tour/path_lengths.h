@@ -50,7 +50,7 @@ class PathLengths {
   struct Site {
     karst::Vec3 position;
     std::int64_t used_ns = 0, asked_ns = never_ns;
-    std::vector<double> path_m;  // to the sites before this one
+    std::vector<double> path_m;  // lengths to the sites before this one
   };
 
   std::size_t site_at(const karst::Vec3& p, std::int64_t now_ns) {

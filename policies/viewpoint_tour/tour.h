@@ -1,9 +1,9 @@
-// An open tour that brings in much soon: the order of stops in which the sum of weight times arrival is
-// least.
+// An open tour that collects much weight early: the order of stops with the smallest sum of weight times
+// arrival time.
 //
-// That is the minimum latency problem (travelling repairman) with weights. A tour of least length makes all
-// of a cave wait for the last corner of the place where it begins; here a small stop is worth a detour only
-// while what the detour delays, all the weight still ahead, costs less than coming back for it.
+// That is the minimum latency problem (travelling repairman) with weights. A shortest tour delays the whole
+// cave for the last corner of the chamber where it begins; here a small stop is worth a detour only while the
+// delay of all the weight still ahead costs less than coming back for it.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace tour {
 
 struct Problem {
   std::vector<double> weight;              // of each stop
-  std::vector<double> first_s;             // time from where the vehicle is to each stop, its own included
+  std::vector<double> first_s;             // time from the vehicle to each stop, the stop itself included
   std::vector<std::vector<double>> leg_s;  // [from][to] between stops; need not be symmetric
   std::size_t size() const { return weight.size(); }
 };
@@ -33,7 +33,7 @@ inline double latency(const Problem& p, const Order& order) {
   return sum;
 }
 
-/// Always on to the stop with the most weight for the time, beginning with `first`.
+/// Starts with `first` and always continues to the stop with the most weight per time.
 inline Order greedy(const Problem& p, std::size_t first) {
   Order order{first}, left;
   for (std::size_t i = 0; i < p.size(); ++i)
@@ -48,8 +48,8 @@ inline Order greedy(const Problem& p, std::size_t first) {
   return order;
 }
 
-/// Tries all 2-opt moves (a stretch flown backwards) and Or-opt moves (up to three stops elsewhere, either
-/// way round) that leave the first `fixed` stops in place, and makes each that helps. False if none did.
+/// Tries all 2-opt moves (reverse a segment) and Or-opt moves (move up to three stops, in either direction)
+/// that leave the first `fixed` stops in place, and applies each that helps. False if none did.
 inline bool sweep(const Problem& p, std::size_t fixed, Order& order, double& cost) {
   const std::size_t n = order.size();
   bool better = false;
@@ -97,7 +97,7 @@ inline Order improved(const Problem& p, std::size_t fixed, Order order) {
 /// A good tour that begins with `first`.
 inline Order beginning_with(const Problem& p, std::size_t first) { return improved(p, 1, greedy(p, first)); }
 
-/// A good tour: the best that grew from the few best first stops.
+/// A good tour: the best of the tours that begin with the few best first stops.
 inline Order min_latency(const Problem& p) {
   constexpr std::size_t starts = 3;
   Order firsts(p.size());

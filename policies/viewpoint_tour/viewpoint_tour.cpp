@@ -1,4 +1,4 @@
-// A tour over viewpoints of all frontiers, planned anew with each decision: what shows much comes soon.
+// A tour over viewpoints of all frontiers, replanned with each decision: large information gains come early.
 #include <karst/expected_gain.h>
 #include <karst/open_frontiers.h>
 #include <karst/straight_path.h>
@@ -48,7 +48,7 @@ class ViewpointTour : public karst::Policy {
     double weight_m3, first_s, path_m;
   };
 
-  /// Stops that a straight flight to the one after them passes are seen on the way.
+  /// Drops first stops that a straight flight to the next stop passes: they are seen in passing.
   tour::Order without_passed(const karst::Request& request, const std::vector<Stop>& stops,
                              tour::Order order) const {
     const auto passed = [&](const Stop& stop, const Stop& next) {
@@ -64,7 +64,7 @@ class ViewpointTour : public karst::Policy {
     return stop_s_ + length_m / (cruise_ * request.max_speed_mps);
   }
 
-  /// One stop for frontiers that are seen from one viewpoint, the best for the time first.
+  /// One stop for all frontiers that are seen from one viewpoint, the most gain per time first.
   std::vector<Stop> stops_of(const karst::Request& request,
                              const std::vector<karst::OpenFrontiers::Candidate>& open) {
     std::vector<const karst::Frontier*> all;
@@ -77,7 +77,7 @@ class ViewpointTour : public karst::Policy {
       stops.push_back({all[i], std::clamp(volumes_m3[i], min_volume_m3_, max_volume_m3_),
                        flight_s(request, path_m) + turn_s, path_m});
     }
-    // The goal under way stands for what it sees: a stop that changes its name must not change the plan.
+    // The goal under way represents its site: the plan must not change when a stop's frontier id does.
     std::sort(stops.begin(), stops.end(), [&](const Stop& a, const Stop& b) {
       const bool kept_a = karst::under_way(request, *a.frontier),
                  kept_b = karst::under_way(request, *b.frontier);

@@ -5,8 +5,8 @@
  * RTLD_NOW | RTLD_LOCAL, checks that the symbol belongs to that file, and never closes it.
  *
  * Handshake: `abi_major` must equal the host's KARST_ABI_MAJOR; `abi_minor` must not exceed the host's. An
- * older minor is welcome: every later addition is an optional slot or an extension. The first
- * three fields of karst_plugin_t hold in every major version, so that any host can say what it met.
+ * older minor version is accepted, since every later addition is an optional slot or an extension. The first
+ * three fields of karst_plugin_t are the same in every major version, so that a mismatch can be reported.
  */
 #ifndef KARST_ABI_H
 #define KARST_ABI_H
@@ -36,7 +36,7 @@ typedef struct karst_plugin {
   const karst_policy_t* (*policy)(uint32_t index)KARST_NOEXCEPT;
 } karst_plugin_t;
 
-/* [any thread] No other work than naming itself: it is called to list plugins, too. */
+/* [any thread] Returns the table and does no other work: the host also calls it to list plugins. */
 typedef const karst_plugin_t* (*karst_plugin_entry_fn)(void)KARST_NOEXCEPT;
 
 #define KARST_PLUGIN_ENTRY_NAME "karst_plugin_entry"

@@ -1,15 +1,15 @@
 /*
- * karst policy ABI: the extension "karst.imaged/1", what the vehicle's colour camera has seen of the surface.
+ * karst policy ABI: the extension "karst.imaged/1", which surface cells the colour camera has imaged so far.
  *
- * Ask the host for it: `host->extension(host, "karst.imaged/1")` is a karst_imaged_service_t, or NULL of a
- * host that does not know it. A mission without a colour camera answers KARST_ERROR_UNAVAILABLE.
+ * Ask the host for it: `host->extension(host, "karst.imaged/1")` is a karst_imaged_service_t, or NULL if the
+ * host does not know it. A mission without a colour camera answers KARST_ERROR_UNAVAILABLE.
  *
  * A surface cell is an occupied cell of the map with a free face neighbour. It counts as imaged once it, or a
- * cell that shares a face with it, was in a picture: a face of it in the camera's range and field of view,
- * nothing but free cells on the way there, and the surface not more at a slant than the camera's greatest
- * incidence. The core keeps the account along its estimated trajectory, for all pictures taken so far.
+ * cell that shares a face with it, was in a picture: one of its faces was in the camera's range and field of
+ * view, only free cells lay on the ray to it, and the angle of incidence was at most max_incidence_rad.
+ * The core keeps this record along its estimated trajectory, for all pictures taken so far.
  *
- * All answers are about the map of the request and the account at that moment.
+ * All answers refer to the request's map and to the record at that moment. Positions: world frame, metres.
  */
 #ifndef KARST_ABI_IMAGED_H
 #define KARST_ABI_IMAGED_H
@@ -24,14 +24,14 @@ extern "C" {
 typedef uint8_t karst_imaged_t;
 enum {
   KARST_IMAGED_NO_SURFACE = 0, /* free, unknown, or inside the rock */
-  KARST_IMAGED_NOT = 1,        /* surface no picture shows yet */
+  KARST_IMAGED_NOT = 1,        /* surface that no picture shows yet */
   KARST_IMAGED_YES = 2
 };
 
 /* [frozen] The colour camera. */
 typedef struct karst_imaged_camera {
-  karst_sensor_t sensor;    /* kind KARST_SENSOR_RGB; its range is that in which surface counts as seen */
-  double max_incidence_rad; /* greatest angle between the surface's normal and the way to the camera */
+  karst_sensor_t sensor;    /* kind KARST_SENSOR_RGB; surface within its range counts as seen */
+  double max_incidence_rad; /* largest angle between the surface normal and the line to the camera */
   double period_s;          /* between two pictures */
   uint64_t reserved[2];
 } karst_imaged_camera_t;
@@ -39,7 +39,7 @@ typedef struct karst_imaged_camera {
 /* [frozen] A surface cell. */
 typedef struct karst_surface_cell {
   karst_vec3_t center;
-  karst_vec3_t normal; /* unit, into free space; zero where the rock is free on all sides */
+  karst_vec3_t normal; /* unit, into free space; zero where free cells lie on all sides */
 } karst_surface_cell_t;
 
 /* [appendable] */
@@ -48,20 +48,20 @@ typedef struct karst_imaged_service {
   uint32_t reserved;
   /* [decision thread] {deciding} */
   int32_t (*camera)(const karst_host_t*, karst_imaged_camera_t* out, karst_error_t*) KARST_NOEXCEPT;
-  /* [decision thread] {deciding} State of the cell that holds each point. */
+  /* [decision thread] {deciding} State of the cell that contains each point; points and out hold `count`. */
   int32_t (*states)(const karst_host_t*, const karst_vec3_t* points, uint64_t count, karst_imaged_t* out,
                     karst_error_t*) KARST_NOEXCEPT;
   /* [decision thread] {deciding} Surface cells not imaged yet whose centres lie in the box, in ascending
-     (z, y, x). Writes at most `capacity` of them; `*total` is how many there are. */
+     (z, y, x). Writes at most `capacity` of them; `*total` is the number found. */
   int32_t (*unimaged)(const karst_host_t*, karst_box_t box, karst_surface_cell_t* out, uint64_t capacity,
                       uint64_t* total, karst_error_t*) KARST_NOEXCEPT;
-  /* [decision thread] {deciding} How many of the cells not imaged yet a picture from each viewpoint would
-     show; the vehicle level. At most KARST_MAX_GAIN_VIEWPOINTS. */
+  /* [decision thread] {deciding} Number of cells not imaged yet that a picture from each viewpoint would
+     show, with the vehicle level. At most KARST_MAX_GAIN_VIEWPOINTS. */
   int32_t (*newly_imaged)(const karst_host_t*, const karst_viewpoint_t* viewpoints, uint64_t count,
                           uint64_t* out, karst_error_t*) KARST_NOEXCEPT;
-  /* [decision thread] {deciding} Which those are: their centres, for each viewpoint in ascending (z, y, x),
-     one viewpoint after the other; `ends[i]` is how many there are up to viewpoint i's last. Writes at most
-     `capacity` of them. */
+  /* [decision thread] {deciding} The centres of those cells: viewpoint after viewpoint, each viewpoint's in
+     ascending (z, y, x). Viewpoint i's cells are out[ends[i - 1]] to out[ends[i] - 1], from out[0] for i = 0.
+     Writes at most `capacity` of them; `ends` counts all. */
   int32_t (*newly_imaged_cells)(const karst_host_t*, const karst_viewpoint_t* viewpoints, uint64_t count,
                                 uint64_t* ends, karst_vec3_t* out, uint64_t capacity,
                                 karst_error_t*) KARST_NOEXCEPT;

@@ -2,11 +2,11 @@
  * karst policy ABI 1.0: what a policy is, its requests, and its answers.
  *
  * Lifecycle: create -> init(parameters) -> activate -> decide ... on_event ... -> deactivate -> destroy.
- * All of it on one thread, the decision thread. An object may be destroyed from any state.
+ * The host makes all these calls on one thread, the decision thread. It may destroy an object in any state.
  *
- * Ownership: memory is freed by the side that allocated it. What the host passes lives until the call
- * returns, except a map snapshot the policy retained. What the policy passes is copied before the call
- * returns. Descriptors and tables live as long as the process.
+ * Ownership: memory is freed by the side that allocated it. Data passed by the host lives until the call
+ * returns, except a map snapshot that the policy retained. Data passed by the policy is copied before the
+ * call returns. Descriptors and tables live as long as the process.
  */
 #ifndef KARST_ABI_POLICY_H
 #define KARST_ABI_POLICY_H
@@ -19,29 +19,29 @@ extern "C" {
 typedef uint32_t karst_parameter_type_t;
 enum {
   KARST_PARAMETER_REAL = 1,
-  KARST_PARAMETER_INTEGER = 2, /* travels as a double: exact up to 2^53 */
+  KARST_PARAMETER_INTEGER = 2, /* passed as a double: exact up to 2^53 */
   KARST_PARAMETER_BOOLEAN = 3, /* 0 or 1 */
   KARST_PARAMETER_TEXT = 4
 };
 
-/* [frozen] One parameter a policy declares. The host reads, converts and checks values against it. */
+/* [frozen] One parameter that a policy declares. The host reads, converts and checks values against it. */
 typedef struct karst_parameter {
   karst_text_t id;      /* [a-z][a-z0-9_]*, unique in the policy */
-  karst_text_t unit;    /* of REAL: "m", "m/s", "s", "rad", ...; empty for a plain number */
+  karst_text_t unit;    /* for REAL: "m", "m/s", "s", "rad", ...; empty for a plain number */
   karst_text_t help;    /* one line */
-  karst_text_t choices; /* of TEXT: the values allowed, separated by '|'; empty for any */
+  karst_text_t choices; /* for TEXT: the allowed values, separated by '|'; empty if any is allowed */
   karst_text_t default_text;
   double default_number;
-  double low, high; /* of REAL and INTEGER: the range allowed, ends included */
+  double low, high; /* for REAL and INTEGER: the allowed range, ends included */
   karst_parameter_type_t type;
   uint32_t reserved;
 } karst_parameter_t;
 
-/* [frozen] A parameter's value as resolved, in SI units. */
+/* [frozen] The resolved value of a parameter, in SI units. */
 typedef struct karst_parameter_value {
   karst_text_t id;
-  karst_text_t text; /* of TEXT */
-  double number;     /* of the others */
+  karst_text_t text; /* for TEXT */
+  double number;     /* for the other types */
   karst_parameter_type_t type;
   uint32_t reserved;
 } karst_parameter_value_t;
@@ -50,10 +50,10 @@ typedef struct karst_parameter_value {
 typedef struct karst_policy_descriptor {
   uint32_t size;
   uint32_t reserved;
-  karst_text_t id;      /* what a mission file calls it: [a-z][a-z0-9_]* */
+  karst_text_t id;      /* its name in a mission file: [a-z][a-z0-9_]* */
   karst_text_t name;    /* for people */
   karst_text_t version; /* the policy's own semantic version */
-  uint32_t min_host[3]; /* least karst release it works with: major, minor, patch */
+  uint32_t min_host[3]; /* oldest karst release it works with: major, minor, patch */
   uint32_t parameter_count;
   const karst_parameter_t* parameters;
   karst_text_t one_line; /* what it does, in one line */
@@ -63,12 +63,12 @@ typedef struct karst_policy_descriptor {
 typedef struct karst_request {
   uint32_t size;
   uint32_t sequence;                /* 1, 2, ... */
-  int64_t stamp_ns;                 /* now */
-  int64_t deadline_ns;              /* the answer takes effect then */
-  karst_state_t state;              /* predicted at the deadline when flying */
-  karst_vec3_t direction_of_flight; /* unit, world; the heading when the vehicle stands */
-  karst_pose_t T_world_start;
-  double seconds_before_homing; /* time left until the return home must begin */
+  int64_t stamp_ns;                 /* time of this request */
+  int64_t deadline_ns;              /* time at which the answer takes effect */
+  karst_state_t state;              /* in flight: predicted for deadline_ns */
+  karst_vec3_t direction_of_flight; /* unit, world frame; along the heading while the vehicle is at rest */
+  karst_pose_t T_world_start;       /* pose of the start in the world frame */
+  double seconds_before_homing;     /* time left until the return home must begin */
   double max_speed_mps, clearance_m, vehicle_radius_m;
   karst_vec3_t last_goal; /* meaningless if last_fate is NONE */
   karst_goal_fate_t last_fate;
@@ -81,19 +81,19 @@ typedef struct karst_request {
   uint64_t teammate_count;
 } karst_request_t;
 
-/* Bits of set_outcome's flags. A tour is a wish: the core flies to the first goal that passes its checks and
-   may ask again before the tour's end, because what it sees on the way changes what is worth visiting. */
-enum { KARST_DECISION_TOUR = 1u }; /* the goals are to be flown in this order, not ranked choices for one */
+/* Bits of set_outcome's flags. A tour is a preference: the core flies to the first goal that passes its
+   checks and may ask again before the tour ends, because new measurements change what is worth visiting. */
+enum { KARST_DECISION_TOUR = 1u }; /* the goals are visited in this order; they are not ranked alternatives */
 
 /* [appendable] Receives the answer. [decision thread] {deciding} */
 typedef struct karst_decision_sink {
   uint32_t size;
-  uint32_t max_goals; /* what this host takes in one decision */
-  void* context;      /* the host's own */
+  uint32_t max_goals; /* the most goals that this host accepts in one decision */
+  void* context;      /* for the host's use only */
   /* Adds goals, best first. More than max_goals in total makes the whole decision an error. */
   int32_t (*add_goals)(const struct karst_decision_sink*, const karst_goal_t* goals, uint64_t count,
                        karst_error_t*) KARST_NOEXCEPT;
-  /* Mandatory, once. `reason` is one line, at most 240 bytes; may be empty for GOALS. */
+  /* Must be called exactly once. `reason` is one line, at most 240 bytes; may be empty for GOALS. */
   int32_t (*set_outcome)(const struct karst_decision_sink*, karst_outcome_t outcome, uint32_t flags,
                          karst_text_t reason, karst_error_t*) KARST_NOEXCEPT;
 } karst_decision_sink_t;
@@ -106,8 +106,8 @@ enum {
   KARST_EVENT_GOAL_ABANDONED = 4,
   KARST_EVENT_GOAL_SUPERSEDED = 5,
   KARST_EVENT_HOMING = 6,          /* the return home has begun: no more requests */
-  KARST_EVENT_FRAME_CORRECTED = 7, /* the estimate jumped: positions remembered are off by it */
-  KARST_EVENT_MAP_MERGED = 8       /* another vehicle's map came in */
+  KARST_EVENT_FRAME_CORRECTED = 7, /* the pose estimate jumped: remembered positions are off by that jump */
+  KARST_EVENT_MAP_MERGED = 8       /* another vehicle's map was merged into the map */
   /* Minor versions add kinds: ignore those you do not know. */
 };
 
@@ -116,27 +116,27 @@ typedef struct karst_event {
   uint32_t size;
   karst_event_kind_t kind;
   int64_t stamp_ns;
-  karst_goal_t goal;   /* of the GOAL kinds: the goal as it was proposed */
+  karst_goal_t goal;   /* for the GOAL kinds: the goal as it was proposed */
   karst_text_t reason; /* one line */
 } karst_event_t;
 
 /*
- * [appendable] A policy. All slots up to destroy are mandatory. `self` is what create() returned.
- * Every slot [decision thread]. A nonzero return with a filled error is a failure.
+ * [appendable] A policy. All slots up to destroy are mandatory. `self` is the object that create() returned.
+ * All slots are [decision thread] unless tagged. A nonzero return with a filled error is a failure.
  */
 typedef struct karst_policy {
   uint32_t size;
   uint32_t reserved;
   const karst_policy_descriptor_t* descriptor;
-  /* Makes an object in state created, or NULL with the error filled. */
+  /* Returns a new object in the state {created}, or NULL with the error filled. */
   void* (*create)(const karst_host_t* host, karst_error_t*)KARST_NOEXCEPT;
-  /* {created} Once, with a value for every parameter declared, in the order of declaration. */
+  /* {created} Called once, with a value for every declared parameter, in the order of declaration. */
   int32_t (*init)(void* self, const karst_parameter_value_t* values, uint64_t count,
                   karst_error_t*) KARST_NOEXCEPT;
-  /* {initialized} Requests will come. */
+  /* {initialized} Requests follow. */
   int32_t (*activate)(void* self, karst_error_t*) KARST_NOEXCEPT;
-  /* {active} Fills the sink. Three failures in a row, or no return within the host's hang limit, end the
-     policy: the fallback takes over. */
+  /* {active} Fills the sink. Three consecutive failures, or a call that exceeds the host's hang limit, end
+     the policy; the fallback takes over. */
   int32_t (*decide)(void* self, const karst_request_t*, const karst_decision_sink_t*,
                     karst_error_t*) KARST_NOEXCEPT;
   /* {active} Between two requests. */

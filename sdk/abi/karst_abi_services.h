@@ -1,12 +1,12 @@
 /*
- * karst policy ABI 1.0: what the host does for a policy.
+ * karst policy ABI 1.0: the services that the host offers to a policy.
  *
- * Work goes in batches: one call for a thousand points costs little more than one for a single point.
- * Results go into arrays the caller owns. A call that fails leaves its outputs unspecified.
+ * Services work on batches: a thousand points cost little more than one. Positions: world frame, metres.
+ * Results go into arrays that the caller owns. A call that fails leaves its outputs unspecified.
  *
  * Tags of each slot:
- *   [decision thread]  the thread on which the host calls the policy, only
- *   [any thread]       threads of the policy's own are welcome
+ *   [decision thread]  only on the thread on which the host calls the policy
+ *   [any thread]       also on the policy's own threads
  *   {deciding}         only while decide() runs;   {any state} from create() to destroy()
  */
 #ifndef KARST_ABI_SERVICES_H
@@ -20,38 +20,38 @@ extern "C" {
 typedef struct karst_host karst_host_t;
 typedef struct karst_map karst_map_t; /* opaque: a snapshot of the occupancy map */
 
-/* Most items one call takes; more is KARST_ERROR_LIMIT. */
+/* Limits of one call. More items than these are KARST_ERROR_LIMIT. */
 #define KARST_MAX_BATCH 1000000u
 #define KARST_MAX_GAIN_VIEWPOINTS 4096u
 #define KARST_MAX_PATH_GOALS 4096u
 #define KARST_MAX_RAY_LENGTH_M 1000.0
 #define KARST_MAX_GAIN_RANGE_M 60.0
 #define KARST_MAX_GAIN_RANGE_CELLS 300u /* max_range_m in cells of the map: 60 m at 0.2 m */
-#define KARST_MAX_GAIN_RAYS 2000000u    /* of one sensor, neighbours at most a cell apart at its range */
+#define KARST_MAX_GAIN_RAYS 2000000u    /* of one sensor; neighbours are at most a cell apart at its range */
 #define KARST_MAX_SENSOR_OFFSET_M 10.0  /* from the body's origin */
 
 typedef uint8_t karst_cell_t;
 enum { KARST_CELL_UNKNOWN = 0, KARST_CELL_FREE = 1, KARST_CELL_OCCUPIED = 2 };
 
-/* [frozen] Cell k covers [k, k + 1) * resolution_m in each axis. */
+/* [frozen] The cell with integer index k covers [k, k + 1) * resolution_m of each world axis. */
 typedef struct karst_map_info {
   double resolution_m;
-  uint64_t revision; /* grows when any cell's class changes */
+  uint64_t revision; /* grows when the class of any cell changes */
   uint64_t free_cells, occupied_cells;
 } karst_map_info_t;
 
 /* [frozen] Where a ray ended. */
 typedef struct karst_ray_end {
-  karst_vec3_t center; /* of the cell that stopped it, or of the last cell passed */
+  karst_vec3_t center; /* centre of the cell that stopped it, or of the last cell it passed */
   double length_m;     /* from the ray's start to that centre */
-  karst_cell_t state;  /* FREE: nothing stopped it. UNKNOWN, OCCUPIED: what did */
+  karst_cell_t state;  /* FREE: nothing stopped it. UNKNOWN, OCCUPIED: the class of the cell that did */
   uint8_t reserved[7];
 } karst_ray_end_t;
 
 /* Bits of cast_rays' flags. */
 enum { KARST_RAY_THROUGH_UNKNOWN = 1u }; /* unknown cells do not stop the ray */
 
-/* [frozen] Cells by class whose centres lie in a box. */
+/* [frozen] Number of cells of each class whose centres lie in a box. */
 typedef struct karst_cell_counts {
   uint64_t unknown, free, occupied;
 } karst_cell_counts_t;
@@ -60,8 +60,8 @@ typedef struct karst_cell_counts {
  * [appendable] The occupancy map.
  *
  * The request's snapshot is a view of the core's map: it lives until decide() returns, unless the policy
- * retains it. Retaining copies the map (tens of milliseconds for a large one), so a retained
- * snapshot never changes. The caller of retain() must release the snapshot.
+ * retains it. Retaining copies the map (tens of milliseconds for a large one), so a retained snapshot
+ * never changes. The caller of retain() must release the snapshot.
  */
 typedef struct karst_map_service {
   uint32_t size;
@@ -69,22 +69,22 @@ typedef struct karst_map_service {
   /* [any thread] {any state} */
   int32_t (*info)(const karst_host_t*, const karst_map_t*, karst_map_info_t* out,
                   karst_error_t*) KARST_NOEXCEPT;
-  /* [any thread] {any state} Class of the cell that holds each point. */
+  /* [any thread] {any state} Class of the cell that contains each point; points and out hold `count`. */
   int32_t (*cell_states)(const karst_host_t*, const karst_map_t*, const karst_vec3_t* points, uint64_t count,
                          karst_cell_t* out, karst_error_t*) KARST_NOEXCEPT;
-  /* [any thread] {any state} Each ray visits every cell it passes, both ends' included. */
+  /* [any thread] {any state} Each ray visits every cell it passes, the cells of both its ends included. */
   int32_t (*cast_rays)(const karst_host_t*, const karst_map_t*, const karst_segment_t* rays, uint64_t count,
                        uint32_t flags, karst_ray_end_t* out, karst_error_t*) KARST_NOEXCEPT;
   /* [any thread] {any state} A box of 2^63 cells or more is KARST_ERROR_LIMIT. */
   int32_t (*count_in_boxes)(const karst_host_t*, const karst_map_t*, const karst_box_t* boxes, uint64_t count,
                             karst_cell_counts_t* out, karst_error_t*) KARST_NOEXCEPT;
   /* [any thread] {any state} Centres of the occupied cells in the box that have a free face neighbour, in
-     ascending (z, y, x). Writes at most `capacity` of them; `*total` is how many there are. */
+     ascending (z, y, x). Writes at most `capacity` of them; `*total` is the number found. */
   int32_t (*surface_cells)(const karst_host_t*, const karst_map_t*, karst_box_t box, karst_vec3_t* out,
                            uint64_t capacity, uint64_t* total, karst_error_t*) KARST_NOEXCEPT;
-  /* [decision thread] {deciding} Returns a snapshot to keep, or NULL with the error filled. */
+  /* [decision thread] {deciding} Returns a copy of the snapshot, or NULL with the error filled. */
   const karst_map_t* (*retain)(const karst_host_t*, const karst_map_t*, karst_error_t*)KARST_NOEXCEPT;
-  /* [any thread] {any state} Releases what retain() returned; call it once. */
+  /* [any thread] {any state} Releases a snapshot that retain() returned; call it once. */
   void (*release)(const karst_host_t*, const karst_map_t*) KARST_NOEXCEPT;
 } karst_map_service_t;
 
@@ -105,14 +105,14 @@ typedef struct karst_gain_service {
   /* [any thread] {any state} Number of unknown cells that each sensor would see from each viewpoint: rays
      end at occupied cells and at max_range_m, and pass unknown ones. out[v * sensor_count + s] is for
      viewpoint v, sensor s; a cell is counted once for each pair. The cost grows with the cube of max_range_m:
-     pass a shortened sensor to ask only what lies near. Neighbouring rays are at most one cell apart where
-     they end. A range of more cells, or a view of more rays, than the limits above is KARST_ERROR_LIMIT. */
+     pass a sensor with a shorter range to count near cells only. Neighbouring rays are at most one cell apart
+     where they end. A range of more cells, or a view of more rays, than the limits is KARST_ERROR_LIMIT. */
   int32_t (*newly_seen)(const karst_host_t*, const karst_map_t*, const karst_sensor_t* sensors,
                         uint64_t sensor_count, const karst_viewpoint_t* viewpoints, uint64_t count,
                         uint64_t* out, karst_error_t*) KARST_NOEXCEPT;
 } karst_gain_service_t;
 
-/* [appendable] Drawings go into the report, next to the decision that made them. Colours are 0xRRGGBB. */
+/* [appendable] Drawings appear in the report, next to the decision that made them. Colours are 0xRRGGBB. */
 typedef struct karst_draw_service {
   uint32_t size;
   uint32_t reserved;
@@ -131,26 +131,26 @@ enum { KARST_LOG_DEBUG = 0, KARST_LOG_INFO = 1, KARST_LOG_WARNING = 2 };
 
 /*
  * [appendable] Given to create(); lives until destroy() has returned. Every call takes it back as its first
- * argument. A service this host does not offer is NULL or beyond `size`: ask with KARST_HAS.
+ * argument. A service that this host does not offer is NULL or beyond `size`: test with KARST_HAS.
  */
 struct karst_host {
   uint32_t size;
-  uint32_t abi_minor; /* the host's; its major is the plugin's, or it would not have been loaded */
-  void* context;      /* the host's own */
+  uint32_t abi_minor; /* of the host; its major equals the plugin's, or the plugin would not be loaded */
+  void* context;      /* for the host's use only */
   const karst_map_service_t* map;
   const karst_path_service_t* path;
   const karst_gain_service_t* gain;
   const karst_draw_service_t* draw;
-  /* [any thread] {any state} One line; longer than 1000 bytes is cut. */
+  /* [any thread] {any state} One line; text beyond 1000 bytes is cut. */
   void (*log)(const karst_host_t*, uint32_t level, karst_text_t text) KARST_NOEXCEPT;
-  /* [decision thread] {any state} The only chance a policy may use: independent numbers, uniform in [0, 1),
-     the same in every replay of the mission's seed. */
+  /* [decision thread] {any state} The only random source a policy may use: independent numbers, uniform in
+     [0, 1), the same in every replay with the mission's seed. */
   void (*random)(const karst_host_t*, double* out, uint64_t count) KARST_NOEXCEPT;
-  /* [any thread] {any state} The only clock a policy may use: mission time of the request (of the latest
-     event or request between two). It stands still while decide() runs. */
+  /* [any thread] {any state} The only clock a policy may use: mission time of the request (between requests,
+     of the latest request or event). It stands still while decide() runs. */
   int64_t (*now_ns)(const karst_host_t*) KARST_NOEXCEPT;
-  /* [any thread] {any state} Nonzero once the host waits no longer: return at once. Long loops ask now and
-   * then. */
+  /* [any thread] {any state} Nonzero once the host no longer waits: return at once. Long loops should call it
+   * regularly. */
   uint32_t (*should_stop)(const karst_host_t*) KARST_NOEXCEPT;
   /* [any thread] {any state} An optional feature such as "karst.example/1", or NULL. */
   const void* (*extension)(const karst_host_t*, karst_text_t id)KARST_NOEXCEPT;

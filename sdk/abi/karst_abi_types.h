@@ -1,29 +1,29 @@
 /*
- * karst policy ABI 1.0: the values that cross the border.
+ * karst policy ABI 1.0: the values that cross between host and plugin.
  *
  * Everything is C11: fixed-width integers, doubles, text as pointer and length. World frame: x east,
  * y north, z up; body frame: x forward, y left, z up. Metres, seconds, radians; time is integer
  * nanoseconds since the mission's start. Angles of heading run counter-clockwise from east.
  *
  * Every struct is marked
- *   [frozen]      its layout never changes within a major version: it may stand in arrays. `reserved`
+ *   [frozen]      its layout never changes within a major version, so it may be used in arrays. `reserved`
  *                 fields are written as zero and not read;
- *   [appendable]  it begins with `uint32_t size`, which its maker sets to the sizeof it was compiled with.
- *                 It grows at its end only. Read fields that a later minor version added through KARST_HAS.
+ *   [appendable]  it begins with `uint32_t size`: the sizeof with which the side that fills it was compiled.
+ *                 It grows only at its end. Test fields added by a later minor version with KARST_HAS.
  */
 #ifndef KARST_ABI_TYPES_H
 #define KARST_ABI_TYPES_H
 #include <stddef.h>
 #include <stdint.h>
 
-/* Function-pointer types are noexcept where the language can say so: no exception crosses, either way. */
+/* Function-pointer types are noexcept where the language allows: no exception crosses in either direction. */
 #if defined(__cplusplus) && __cplusplus >= 201703L
 #define KARST_NOEXCEPT noexcept
 #else
 #define KARST_NOEXCEPT
 #endif
 
-/* True if the maker of `table` (of struct type `type`) knew `slot` and filled it. */
+/* True if `table` (of struct type `type`) is large enough to hold `slot` and the slot is not NULL. */
 #define KARST_HAS(type, table, slot) \
   ((table)->size >= offsetof(type, slot) + sizeof((table)->slot) && (table)->slot)
 
@@ -40,19 +40,19 @@ typedef struct karst_text {
 /* Result of every call that can fail. Zero is success; the karst_error_t says what failed. */
 enum {
   KARST_OK = 0,
-  KARST_ERROR_FAILED = 1,      /* the callee's own reason, see the text */
+  KARST_ERROR_FAILED = 1,      /* failed for the reason given in the text */
   KARST_ERROR_ARGUMENT = 2,    /* an argument breaks the rules of the call */
-  KARST_ERROR_LIMIT = 3,       /* more items than the host takes in one call */
+  KARST_ERROR_LIMIT = 3,       /* more items than the host accepts in one call */
   KARST_ERROR_STATE = 4,       /* not allowed in this state of the lifecycle */
-  KARST_ERROR_THREAD = 5,      /* called on a thread the slot does not allow */
+  KARST_ERROR_THREAD = 5,      /* called on a thread that the slot does not allow */
   KARST_ERROR_ABANDONED = 6,   /* the host has abandoned this policy: return at once */
   KARST_ERROR_UNAVAILABLE = 7, /* not available in this mission */
-  KARST_ERROR_EXCEPTION = 8    /* the C++ face caught an exception; its what() is the text */
+  KARST_ERROR_EXCEPTION = 8    /* the C++ wrapper caught an exception; its what() is the text */
 };
 
 #define KARST_ERROR_TEXT_SIZE 256
 
-/* [frozen] The caller provides it, zeroed; the callee fills it when it returns anything but KARST_OK. */
+/* [frozen] The caller provides it, zeroed; the callee fills it when it returns a code other than KARST_OK. */
 typedef struct karst_error {
   int32_t code;
   char text[KARST_ERROR_TEXT_SIZE]; /* UTF-8, terminated by zero, one line */
@@ -63,23 +63,23 @@ typedef struct karst_vec3 {
   double x, y, z;
 } karst_vec3_t;
 
-/* [frozen] Unit quaternion, Hamilton convention; rotates from the second named frame into the first. */
+/* [frozen] Unit quaternion, Hamilton convention; in T_a_b it rotates vectors from frame b into frame a. */
 typedef struct karst_quaternion {
   double w, x, y, z;
 } karst_quaternion_t;
 
-/* [frozen] T_a_b: a point in b becomes position + orientation * p in a. */
+/* [frozen] T_a_b: a point p in frame b is position + orientation * p in frame a. */
 typedef struct karst_pose {
   karst_vec3_t position;
   karst_quaternion_t orientation;
 } karst_pose_t;
 
-/* [frozen] Closed box, low <= high in each axis. */
+/* [frozen] Closed axis-aligned box, low <= high in each axis. World frame, m. */
 typedef struct karst_box {
   karst_vec3_t low, high;
 } karst_box_t;
 
-/* [frozen] */
+/* [frozen] World frame, m. */
 typedef struct karst_segment {
   karst_vec3_t from, to;
 } karst_segment_t;
@@ -93,7 +93,7 @@ typedef struct karst_state {
   karst_vec3_t body_rate;         /* body, rad/s */
 } karst_state_t;
 
-/* [frozen] A place and the heading of the vehicle's body there. */
+/* [frozen] A position (world, m) and the heading of the vehicle's body there. */
 typedef struct karst_viewpoint {
   karst_vec3_t position;
   double heading_rad;
@@ -101,55 +101,55 @@ typedef struct karst_viewpoint {
 
 /* [frozen] A group of neighbouring frontier cells: free cells with an unknown face neighbour. */
 typedef struct karst_frontier_cluster {
-  uint32_t id;    /* from 1; never used twice; kept while the cluster shares cells with its former self */
+  uint32_t id;    /* from 1; never reused; kept while the cluster shares cells with its last version */
   uint32_t cells; /* frontier cells in it */
   karst_vec3_t centroid;
   karst_box_t bounds;
   karst_vec3_t normal;         /* unit mean direction from free into unknown; zero if it has none */
   uint32_t unknown_cells;      /* in a box of a few metres around the centroid */
   uint32_t free_cells;         /* in the same box */
-  karst_viewpoint_t viewpoint; /* proposed by the core: clear, and sees the cluster; NaN if none was found */
+  karst_viewpoint_t viewpoint; /* proposed by the core: clear, sees the cluster; NaN if none was found */
   double path_length_m; /* from the start of a new path to the viewpoint; +infinity if no path is known */
   uint64_t reserved[2];
 } karst_frontier_cluster_t;
 
-/* [frozen] Another vehicle of the team, in its last received state. */
+/* [frozen] Another vehicle of the team: its state as last received. World frame, m and m/s. */
 typedef struct karst_teammate {
   uint32_t id;
   uint32_t reserved;
-  int64_t stamp_ns; /* time of this state */
+  int64_t stamp_ns; /* time of this state; negative before this vehicle's own start */
   karst_vec3_t position;
   karst_vec3_t velocity;
-  karst_vec3_t goal; /* NaN if none is known */
-  double seconds_before_homing;
+  karst_vec3_t goal;            /* NaN if none is known */
+  double seconds_before_homing; /* estimate; 0: it no longer explores; NaN: its path home is not known */
 } karst_teammate_t;
 
 typedef uint32_t karst_sensor_kind_t;
 enum {
   KARST_SENSOR_LIDAR = 1,  /* angles are azimuth and elevation: a sector of a sphere */
-  KARST_SENSOR_CAMERA = 2, /* angles bound a pinhole camera's image planes: a pyramid about the x axis */
-  KARST_SENSOR_RGB = 3     /* a colour camera, a pyramid as well: it takes pictures, and adds nothing to the
-                              map; its range is that in which rock is lit and sharp */
+  KARST_SENSOR_CAMERA = 2, /* angles bound a pinhole camera's field of view: a pyramid about the x axis */
+  KARST_SENSOR_RGB = 3     /* a colour camera, also a pyramid: its pictures do not change the map, and within
+                              its range rock is lit and in focus */
   /* Minor versions add kinds: ignore those you do not know. */
 };
 
-/* [frozen] What a sensor can see, in its own frame (x forward, y left, z up). */
+/* [frozen] The field of view of a sensor, in its own frame (x forward, y left, z up). */
 typedef struct karst_sensor {
   karst_text_t name;
   karst_sensor_kind_t kind;
   uint32_t reserved;
   karst_pose_t T_body_sensor;
   double min_range_m, max_range_m;
-  double horizontal_fov_rad;                    /* centred on x; 2 pi: all around */
+  double horizontal_fov_rad;                    /* full angle, centred on x; 2 pi: all around */
   double low_elevation_rad, high_elevation_rad; /* -pi/2 .. pi/2 */
 } karst_sensor_t;
 
-/* [frozen] A goal the policy proposes. */
+/* [frozen] A goal that the policy proposes. */
 typedef struct karst_goal {
   karst_vec3_t position; /* world, finite */
   double heading_rad;    /* NaN: any */
-  double tolerance_m;    /* > 0: reached when nearer than this */
-  double max_speed_mps;  /* 0: the mission's; more is cut to it; not below its min_speed */
+  double tolerance_m;    /* > 0; the goal is reached when the vehicle is nearer than this */
+  double max_speed_mps;  /* 0: the mission's limit, which also caps it; not below the mission's min_speed */
   uint32_t frontier_id;  /* 0: none */
   uint32_t reserved;
   double score;     /* in the policy's own unit, higher is better; finite */
@@ -159,7 +159,7 @@ typedef struct karst_goal {
 typedef uint32_t karst_outcome_t;
 enum {
   KARST_OUTCOME_GOALS = 1,    /* the goals in the sink */
-  KARST_OUTCOME_HOLD = 2,     /* continue the current goal, or stay; ask again soon */
+  KARST_OUTCOME_HOLD = 2,     /* continue to the current goal, or stay; the core asks again soon */
   KARST_OUTCOME_EXPLORED = 3, /* nothing is left to explore: fly home */
   KARST_OUTCOME_GO_HOME = 4   /* fly home for another reason */
 };

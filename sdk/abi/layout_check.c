@@ -1,4 +1,4 @@
-/* Compiles only while every struct of the ABI lies in memory as karst_abi_layout.inc says. */
+/* Compiles only if every struct of the ABI has the memory layout listed in karst_abi_layout.inc. */
 #include "karst_abi.h"
 #include "karst_abi_imaged.h"
 

@@ -35,12 +35,12 @@ void describe(core::OptionTable& t, AutoOptions& o) {
 
 void take(Mission& m, const std::string& policy, const ptree& parameters, const std::string& why) {
   m.policy = policy;
-  for (const auto& [key, value] : parameters)  // those given to the mission itself win
+  for (const auto& [key, value] : parameters)  // parameters of the mission itself take precedence
     if (m.policy_parameters.count(key) == 0) m.policy_parameters.push_back({key, value});
   m.policy_selection = why;
 }
 
-/// The mission's own table; true if it has this cave.
+/// Looks the cave up in the mission's own table; true if it is listed.
 bool found_in_table(Mission& m) {
   const std::string name = std::filesystem::path(m.cave).stem().string();
   bool found = false;

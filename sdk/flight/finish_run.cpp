@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Farther from rock than this, a map cell is simply wrong; the search for its nearest rock ends here.
+/// Radius of the search for the rock nearest to a map cell; a cell farther away counts as wrong.
 constexpr double kRockSearch_m = 20.0;
 
 double cell_size_m(const fs::path& run_dir) {
@@ -39,7 +39,7 @@ double cell_size_m(const fs::path& run_dir) {
   return map.resolution_m;
 }
 
-/// What the cave's mesh says. Holds the cave that its functions look into.
+/// Ground truth from the cave's mesh. Its functions own the cave that they query.
 evaluation::Truth truth_of(const Finishing& how, double resolution_m,
                            const std::vector<evaluation::PicturePose>& pictures) {
   const auto cave = std::make_shared<cave::Cave>(cave::load_cave(how.cave, how.start));
@@ -61,7 +61,7 @@ evaluation::Truth truth_of(const Finishing& how, double resolution_m,
   return truth;
 }
 
-/// What only the cave's mesh can say stays as it was last written, if the cave can no longer be read.
+/// Keeps the metrics that need the cave's mesh as last written, if the cave can no longer be read.
 void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   const auto before = core::json_of_file<nlohmann::ordered_json>(run_dir / "metrics.json");
   if (!before.is_object()) return;
@@ -75,7 +75,7 @@ void keep_known(nlohmann::ordered_json& metrics, const fs::path& run_dir) {
   if (!kept.empty()) print_error("karst: kept from the metrics.json there was: %s\n", kept.c_str());
 }
 
-/// Says why if the cave cannot be read.
+/// Adds the reason to `problems` if the cave cannot be read.
 evaluation::Truth truth_if_known(const fs::path& run_dir, const Finishing& how,
                                  std::vector<std::string>& problems, bool& lost_cave) {
   if (how.cave.empty()) return {};
@@ -89,7 +89,7 @@ evaluation::Truth truth_if_known(const fs::path& run_dir, const Finishing& how,
   }
 }
 
-/// In the columns of a run's, so that what reads how a run's volume grew reads a team's.
+/// Uses the columns of a run's telemetry, so that tools that read a run's volume over time can read a team's.
 void write_team_telemetry(const evaluation::TeamRecord& team) {
   std::string text = "t_s,phase,explored_m3\n";
   const auto* t_s = team.merged.telemetry.times();
@@ -126,7 +126,7 @@ void finish_team(const fs::path& run_dir, const Finishing& how, nlohmann::ordere
   const evaluation::Truth truth = truth_if_known(run_dir, how, problems, lost_cave);
   metrics.update(evaluation::team_map_figures(team, truth));
   evaluation::set_figures(metrics, evaluation::team_object_figures(team, team.problems));
-  problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are told already
+  problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are reported
   if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);

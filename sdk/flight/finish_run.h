@@ -1,4 +1,4 @@
-// What a run directory gets after the flight: the figures against ground truth, and the report.
+// Completes a run directory after the flight: the metrics against ground truth, and the report.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -9,16 +9,16 @@ namespace karst::flight {
 enum class Report { written, none };
 
 struct Finishing {
-  std::string cave, start;  // "" when the cave is not known: what needs it is null
+  std::string cave, start;  // "" if the cave is not known: metrics that need it are null
   Report report = Report::written;
-  std::filesystem::path cave_cache = {};  // keeps what is the same for all flights of a cave; "": nowhere
+  std::filesystem::path cave_cache = {};  // folder for data common to all flights of a cave; "": no cache
 };
 
 /// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics.
 nlohmann::json finish_run(const std::filesystem::path& run_dir, const Finishing& how);
 
-/// The same of a team whose robots' runs are finished: adds to `metrics` what the merged map says, and writes
-/// metrics.json, telemetry.csv (the team's volume over time) and, if asked, report.html.
+/// The same for a team whose robots' runs are finished: adds the metrics of the merged map to `metrics`, and
+/// writes metrics.json, telemetry.csv (the team's volume over time) and, if asked, report.html.
 void finish_team(const std::filesystem::path& run_dir, const Finishing& how, nlohmann::ordered_json& metrics);
 
 }  // namespace karst::flight

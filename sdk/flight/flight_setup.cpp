@@ -19,7 +19,7 @@ Mission mission_of_member(const Mission& team, std::size_t member) {
   const auto stream =
       core::Random::stream(static_cast<std::uint64_t>(team.seed), "robot " + std::to_string(member + 1))
           .bits();
-  m.seed = static_cast<std::int64_t>(stream >> 12);  // within what a mission file may say
+  m.seed = static_cast<std::int64_t>(stream >> 12);  // in the range that a mission file allows
   m.resolved.put("seed", m.seed);
   for (const char* section : {"team", "homing", "radio"}) m.resolved.erase(section);
   return m;
@@ -93,9 +93,9 @@ host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& re
                stderr);
   choice.memory_limit_mib = mission.policy_memory_limit_mib;
   choice.cpu_limit_s = mission.policy_cpu_limit_s;
-  // In lockstep the vehicle's clock stands still meanwhile: a loaded machine must not cost a policy its
-  // flight. On a vehicle nobody waits longer than until the next decision is due, for a policy that can be
-  // started once more.
+  // In lockstep the vehicle's clock stands still during a decision: a loaded machine must not end a policy.
+  // On a real vehicle a policy in its own process, which can be restarted, is waited for only until the next
+  // decision is due.
   choice.hang_limit_s = mission.policy_hang_limit_s;
   if (request.clock == core::Clock::real_time)
     choice.hang_limit_s = std::min(choice.hang_limit_s, own_process ? mission.core.mission.decision_period_s

@@ -1,4 +1,4 @@
-// From a mission to what flies it: the missions of a team's members, their policies, their vehicles.
+// From a mission to its vehicles: the missions of a team's members, their policies, their vehicles.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -13,10 +13,10 @@
 
 namespace karst::flight {
 
-/// How to fly, rather than what.
+/// Options of a flight that are not part of the mission.
 struct FlightRequest {
   std::filesystem::path run_dir, cave_cache;
-  std::vector<std::string> plugins;  // policies' files to look in first
+  std::vector<std::string> plugins;  // plugin files that are searched first
   int threads = 1;
   core::Clock clock = core::Clock::lockstep;
   Report report = Report::written;
@@ -26,29 +26,29 @@ struct FlightRequest {
 
 inline bool is_team(const Mission& mission) { return mission.core.team.robots > 1; }
 
-/// The mission of each vehicle: of one alone the mission itself; of a member of a team that of a vehicle that
-/// flies from its own place, with its own random streams.
+/// The mission of each vehicle. For a single vehicle, the mission itself; for a member of a team, the mission
+/// with its own random streams.
 std::vector<Mission> missions_of_members(const Mission& mission);
 
-/// The run directory of a member: of one vehicle alone the flight's, of a team's a folder in it.
+/// The run directory of a member: the flight's for a single vehicle, a folder in it for a team's member.
 std::filesystem::path member_run_dir(const std::filesystem::path& run_dir, const Mission& mission,
                                      std::size_t member);
 
-/// Which policy, and what it may do to this process.
+/// The policy to load, with its limits and isolation.
 host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& request);
 
-/// The key that a team's frames on the radio are authenticated with.
+/// The key that authenticates a team's radio frames.
 core::MissionKey radio_key(const Mission& mission);
 
-/// What carries the core stacks: one vehicle, or several in one world.
+/// The vehicles that the core stacks fly: one alone, or several in one world.
 struct Vehicles {
   std::unique_ptr<core::Vehicle> alone;
   std::unique_ptr<sim::SimulatedWorld> world;  // null: one vehicle alone
   core::Vehicle& operator[](std::size_t i) const { return world ? world->robot(i) : *alone; }
 };
 
-/// At the cave's start, recording into `run_dir` unless that is "". Throws core::InputError on a bad cave or
-/// start, and for a vehicle that the mission cannot be flown with.
+/// Creates the vehicles at the cave's start, recording into `run_dir` unless that is "". Throws
+/// core::InputError on a bad cave or start, and for a vehicle that cannot fly the mission.
 Vehicles make_vehicles(const Mission& mission, const std::vector<Mission>& members,
                        const std::filesystem::path& run_dir);
 

@@ -20,12 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How long a step or job may take before the flight is given up: longer than any decision or plan takes, on
-// any machine.
+// The time that a step or job may take before the flight is aborted: longer than any decision or plan takes
+// on any machine.
 constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};
 
-/// Ends the process, as the step or job `running` does not return: what hangs holds what would have to be
-/// torn down. The record is complete up to the last second.
+/// Ends the process because the step or job `running` does not return: objects in use by the hanging code
+/// cannot be destroyed. The record is complete up to the last second.
 [[noreturn]] void end_stalled(const std::string& running, const fs::path& run_dir) {
   std::fprintf(stderr,
                "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
@@ -41,7 +41,7 @@ void refuse_for_team(const FlightRequest& request) {
     throw core::InputError("karst fly", "--record-requests", "of a team no requests are recorded");
 }
 
-/// Whoever sets one of the two easily forgets the other, and lands out of reach, or nearer than need be.
+/// Warns if the radio's range differs from the range the robots assume when they choose landing sites.
 void compare_radio_with_belief(const Mission& mission) {
   const std::string believed = mission.resolved.get("homing.landing.link.range", "");
   const std::string real = mission.resolved.get("radio.range", believed);
@@ -54,7 +54,7 @@ void compare_radio_with_belief(const Mission& mission) {
 
 }  // namespace
 
-/// What a flight is made of, in the order in which it is made: it is taken apart in the opposite one.
+/// The objects of a flight, in order of construction; they are destroyed in reverse order.
 struct MissionFlight::Running {
   std::optional<RunClaim> claim;
   std::vector<std::unique_ptr<RunClaim>> own_claims;  // of a team's members, in folders below
@@ -80,11 +80,11 @@ boost::property_tree::ptree MissionFlight::as_flown(const Mission& mission) cons
 }
 
 void MissionFlight::check(const fs::path& mission_file) const {
-  make_vehicles(mission_, members_, "");  // looks at the cave and the starts
+  make_vehicles(mission_, members_, "");  // checks the cave and the starts
   write_mission(mission_file, as_flown(mission_));
 }
 
-/// Everything that can be wrong shows here: what was written by then is taken away again.
+/// All errors before take-off occur here; the files written so far are then removed.
 void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   const fs::path& run_dir = request_.run_dir;
   running_ = std::make_unique<Running>();
@@ -176,8 +176,8 @@ nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, doubl
 nlohmann::ordered_json MissionFlight::finish_members(FlightOutcome& outcome, double wall_s) const {
   const fs::path& run_dir = request_.run_dir;
   const Finishing how{mission_.cave, mission_.start, request_.report, request_.cave_cache};
-  // First what the flight itself knows: should the evaluation be killed, as for want of memory, it is not
-  // lost.
+  // First writes the metrics that the flight itself knows, so that they are kept if the evaluation is killed,
+  // for example for lack of memory.
   std::vector<nlohmann::json> own(members_.size());
   evaluation::write_metrics(run_dir, team_metrics(mission_, *outcome.team, own));
   for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -206,7 +206,7 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     outcome.metrics =
         outcome.team ? finish_members(outcome, wall.count()) : finish_alone(outcome, wall.count());
-  } catch (const std::exception& e) {  // a full disk: it flew all the same
+  } catch (const std::exception& e) {  // such as a full disk: the flight still took place
     outcome.record_problem = e.what();
   }
   outcome.landed &= outcome.record_problem.empty();

@@ -1,6 +1,6 @@
-// Flies a mission, of one vehicle or of a team, from its policies to the finished run directory
-// (docs/run_directory.md). A team's holds one sub-folder robot_N a robot, each a run directory of its own,
-// and what is the team's beside them.
+// Flies a mission of one vehicle or of a team, from loading the policies to the finished run directory
+// (docs/run_directory.md). A team's run directory has one sub-folder robot_N for each robot, which is a run
+// directory, and the team's own files.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -18,24 +18,24 @@ namespace karst::flight {
 constexpr int kNotLanded = 2;  // exit code of a flight that did not end with the vehicle where it should land
 
 struct FlightOutcome {
-  bool landed = false;             // all vehicles where they should
-  nlohmann::ordered_json metrics;  // null if they could not be worked out
-  std::optional<TeamResult> team;  // if it was one
+  bool landed = false;             // all vehicles landed where they should
+  nlohmann::ordered_json metrics;  // null if they could not be computed
+  std::optional<TeamResult> team;  // for a team's flight
   std::string record_problem;      // why the record is incomplete; "" if it is not
 };
 
 class MissionFlight {
  public:
-  /// Loads the policies. Throws core::InputError for what cannot be flown, before anything is written.
+  /// Loads the policies. Throws core::InputError if the mission cannot be flown, before anything is written.
   MissionFlight(const Mission& mission, const FlightRequest& request);
   ~MissionFlight();
 
-  /// Looks at everything that a flight looks at before its take-off, and writes the mission as resolved.
+  /// Makes all checks that precede a take-off, and writes the resolved mission.
   void check(const std::filesystem::path& mission_file) const;
-  /// Flies into the request's run directory; once `interrupted` is set, all land. Throws core::InputError if
-  /// nothing took off: then the run directory is as it was.
+  /// Flies and records into the request's run directory; once `interrupted` is set, all vehicles land. Throws
+  /// core::InputError if no vehicle took off: then the run directory is as it was.
   FlightOutcome fly(const std::atomic<bool>& interrupted);
-  /// A policy's thread hangs in its plugin: this object must not be destroyed any more.
+  /// True if a policy's thread hangs in its plugin: then this object must not be destroyed.
   bool hangs() const;
 
  private:

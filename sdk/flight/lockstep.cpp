@@ -69,13 +69,13 @@ void Lockstep::run_in_steps(const FlightWatch& watch) {
   bool go_on = true;
   const auto attempt = [&](const auto& what) {
     const auto end_in_order = [&](const char* reason) {
-      if (!hooks_) throw;  // one vehicle alone sees to itself: what fails here has not taken off
+      if (!hooks_) throw;  // a single vehicle lands by itself: a failure here precedes its take-off
       go_on = false;
       land_all(reason);
     };
     try {
       what();
-    } catch (const std::exception& e) {  // none of them may be left in the air
+    } catch (const std::exception& e) {  // no vehicle may be left in the air
       end_in_order(e.what());
     } catch (...) {
       end_in_order("an unknown exception");
@@ -89,7 +89,7 @@ void Lockstep::run_in_steps(const FlightWatch& watch) {
       fly_all_to(now_ + kStep);
       if (hooks_) hooks_->exchange(*this, now_ + kStep);
     });
-    attempt([&] { note_phases(); });  // whatever else fails: it finds out who has come down
+    attempt([&] { note_phases(); });  // even after a failure: it detects which vehicles have landed
     attempt([&] {
       if (hooks_) hooks_->inject_faults(*this, now_ + kStep);
     });
@@ -123,7 +123,7 @@ void Lockstep::land_all(const char* reason) {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) land(i, reason);
 }
 
-/// Each vehicle by itself, on as many threads as there are.
+/// Advances each vehicle independently, on up to `threads` threads.
 void Lockstep::fly_all_to(TimeNs time) {
   std::vector<Vehicle*> flying;
   for (const auto& v : vehicles_)
@@ -171,7 +171,7 @@ bool Lockstep::ask(const FlightWatch& watch, TimeNs now) {
   return go_on;
 }
 
-/// All have come down, and had the time to tell it.
+/// Whether all vehicles have landed, and the time for their last messages has passed.
 bool Lockstep::over() const {
   TimeNs last = 0;
   for (const auto& v : vehicles_) {

@@ -1,8 +1,8 @@
 // The loop that flies one vehicle, or several in one world, each with its own core stack.
 //
-// Every tenth of a second all vehicles have come to the same time; then the hooks let them meet and hear each
-// other. In between each runs by itself, so it does not matter which thread runs it when: the same mission
-// gives the same bytes with any number of threads. A single vehicle is the case of one, without hooks.
+// Every tenth of a second all vehicles have reached the same time; then the hooks exchange their positions
+// and radio messages. In between each vehicle runs independently, so it does not matter which thread runs it
+// when: the same mission gives the same bytes with any number of threads. A single vehicle needs no hooks.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,38 +14,38 @@
 
 namespace karst::flight {
 
-/// What one vehicle flies with. All of it outlives the flight.
+/// The objects that one vehicle flies with. They outlive the flight.
 struct Seat {
   core::Vehicle* vehicle = nullptr;
   core::PolicyPort* policy = nullptr;
   core::Recorder* recorder = nullptr;
-  core::Teamwork* teamwork = nullptr;  // null: it is no member of a team
-  core::TimeNs starts_at = 0;          // when it is switched on, by the flight's clock
+  core::Teamwork* teamwork = nullptr;  // null: not a member of a team
+  core::TimeNs starts_at = 0;          // time at which it is switched on, by the flight's clock
 };
 
-/// How far a vehicle has come.
+/// The progress of a vehicle.
 struct SeatState {
   core::MissionStatus status;
   core::Phase phase = core::Phase::standby;  // after the last step
   core::TimeNs explored_for = 0;
-  std::string homing_reason;  // why it explores no more
-  bool flying = false;        // it has started, and has not been put away yet
-  bool stopped = false;       // it was told to land, or not to start
+  std::string homing_reason;  // why it has stopped exploring
+  bool flying = false;        // it has started, and is not done yet
+  bool stopped = false;       // it was ordered to land, or not to start
   std::optional<core::MissionResult> ended;
   std::optional<core::TimeNs> ended_at;
 };
 
 class Lockstep;
 
-/// What happens between two steps. Vehicles are numbered from 0; times are the flight's. An exception makes
-/// all vehicles land.
+/// Callbacks between two steps. Vehicles are numbered from 0; times are by the flight's clock. An exception
+/// makes all vehicles land.
 class StepHooks {
  public:
   virtual ~StepHooks() = default;
   virtual void on_start(std::size_t vehicle, core::TimeNs now) = 0;
-  /// All vehicles have come to `now`.
+  /// Called when all vehicles have reached `now`.
   virtual void exchange(Lockstep& flight, core::TimeNs now) = 0;
-  /// A vehicle's phase has changed; its state tells to which.
+  /// Called when a vehicle's phase has changed; its state has the new phase.
   virtual void on_phase(const Lockstep& flight, std::size_t vehicle, core::TimeNs now) = 0;
   virtual void inject_faults(const Lockstep& flight, core::TimeNs now) = 0;
 };
@@ -54,10 +54,10 @@ class StepHooks {
 using FlightWatch = std::function<bool(core::TimeNs now, const std::vector<core::MissionStatus>&)>;
 
 struct LockstepOptions {
-  /// Of one vehicle: for its jobs. Of several: for the vehicles, each of which does its jobs itself.
+  /// Threads for the jobs of a single vehicle, or for the vehicles of a team, which run their own jobs.
   int threads = 1;
-  core::Clock clock = core::Clock::lockstep;  // in real time one vehicle flies only
-  core::TimeNs linger = 0;                    // the hooks go on for so long after the last landing
+  core::Clock clock = core::Clock::lockstep;  // in real time only one vehicle can fly
+  core::TimeNs linger = 0;                    // time for which the hooks run on after the last landing
 };
 
 class Lockstep {
@@ -72,9 +72,9 @@ class Lockstep {
   std::size_t size() const { return vehicles_.size(); }
   const SeatState& state(std::size_t vehicle) const;
   core::TimeNs starts_at(std::size_t vehicle) const;
-  /// Where a vehicle's steps and jobs run, for timing.json.
+  /// The executive of a vehicle's steps and jobs, for timing.json.
   const core::Executive& executive(std::size_t vehicle) const;
-  /// At once, or it does not start.
+  /// Lands a vehicle at once, or prevents its start.
   void land(std::size_t vehicle, const char* reason);
 
  private:

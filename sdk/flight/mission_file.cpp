@@ -60,24 +60,24 @@ void describe_radio(OptionTable& table, core::VehiclePlugin& plugin) {
     table.under("radio", [teams](OptionTable& t) { teams->describe_radio(t); });
 }
 
-/// The sections that matter to a team only.
+/// The sections that apply to teams only.
 constexpr const char* kTeamSections[] = {"team", "homing", "radio"};
 
-/// Puts the settings below `prefix` into `tree`, and says whether `key` was one of them.
+/// Puts a setting below `prefix` into `tree`; returns whether `key` was one.
 bool put_below(const std::string& prefix, const std::string& key, const std::string& value, pt::ptree& tree) {
   if (!key.starts_with(prefix + ".")) return false;
   tree.put(key.substr(prefix.size() + 1), value);
   return true;
 }
 
-/// A path given on the command line is relative to where that is run, not to the mission file.
+/// A path given on the command line is relative to the working directory, not to the mission file.
 std::string as_given(const std::string& key, const std::string& value) {
   const bool path =
       key == "policy.auto.description" || key == "policy.auto.survey" || key == "policy.auto.results";
   return path && !value.empty() ? std::filesystem::absolute(value).string() : value;
 }
 
-/// Takes the subtree "section.name" out of `tree`, and with it a section that holds nothing else.
+/// Removes the subtree "section.name" from `tree` and returns it; a section left empty is removed, too.
 pt::ptree take(pt::ptree& tree, const std::string& key) {
   const auto found = tree.get_child_optional(key);
   if (!found) return {};
@@ -102,7 +102,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   Mission m;
   m.file = file.empty() ? "command line" : file;
   pt::ptree tree = file.empty() ? pt::ptree() : core::read_including_info(file);
-  m.policy_parameters = take(tree, kParameters);  // the policy itself says which keys it knows
+  m.policy_parameters = take(tree, kParameters);  // only the policy itself knows the valid keys
   if (!m.policy_parameters.data().empty())
     throw InputError(m.file, kParameters,
                      "expected a block { ... }, got \"" + m.policy_parameters.data() + "\"");

@@ -1,4 +1,4 @@
-// A mission file: everything `karst fly` needs to know, in Boost.PropertyTree INFO.
+// A mission file: all settings of `karst fly`, in Boost.PropertyTree INFO format.
 //
 //   seed 7
 //   cave { file caves/demo.info }
@@ -17,9 +17,9 @@
 
 namespace karst::flight {
 
-/// What the command line adds to, or sets against, a mission file.
+/// Settings of the command line that add to a mission file or override it.
 struct MissionOverrides {
-  std::string cave, start, policy, preset;                  // "" leaves the file's
+  std::string cave, start, policy, preset;                  // "" keeps the file's value
   std::vector<std::string> settings;                        // "key=value"
   std::vector<std::pair<std::string, std::string>> values;  // further keys with values
 };
@@ -40,19 +40,19 @@ struct Mission {
   boost::property_tree::ptree resolved;     // every setting but the policy's parameters
 };
 
-/// The seed of the policy's own random stream: the mission's, or with another `policy.stream` another one,
-/// while noise, gusts and faults stay as they are.
+/// The seed of the policy's own random stream: the mission's, or a different one for another `policy.stream`,
+/// with which noise, gusts and faults stay the same.
 std::uint64_t policy_seed(const Mission& mission);
 
-/// A mission as its run directory keeps it, every setting resolved: `mission.info`. It can be flown again as
-/// it is.
+/// A mission as stored in its run directory, with every setting resolved: `mission.info`. It can be flown
+/// again unchanged.
 boost::property_tree::ptree recorded_mission(const Mission& mission,
                                              const boost::property_tree::ptree& policy_parameters,
                                              const std::string& policy_version);
 
-/// Reads, overrides, checks. `file` may be "" for a mission given on the command line alone. Facts recorded
-/// in the file are passed over. Throws core::InputError naming file, key, what was expected and the nearest
-/// key.
+/// Reads a mission file, applies the overrides and checks the result. `file` may be "" for a mission given on
+/// the command line only. Facts recorded in the file are ignored. Throws core::InputError naming file, key,
+/// the expected value and the nearest key.
 Mission read_mission(const std::string& file, const MissionOverrides& overrides);
 
 /// Every key with unit, range, default and a line of help, for a vehicle.

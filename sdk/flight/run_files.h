@@ -1,24 +1,24 @@
-// The files a flight writes into its run directory (docs/run_directory.md): none may be there before it, and
-// none stays if nothing flew.
+// The files that a flight writes into its run directory (docs/run_directory.md): none may exist before it,
+// and none remains if nothing flew.
 #pragma once
 #include <filesystem>
 #include <string>
 
 namespace karst::flight {
 
-/// As given, without `x/..`: a path is looked at before what it leads through is made.
+/// The path as given, without `x/..`, because it is checked before its parent directories are created.
 std::filesystem::path run_dir_of(const std::string& out);
 
-/// Throws core::InputError if a flight's run directory, alone or of a team, is there: no other results go in.
+/// Throws core::InputError if `folder` is the run directory of a flight or team: it takes no other results.
 void refuse_run(const std::filesystem::path& folder);
 
-/// Throws core::InputError naming a file of these that is there.
+/// Throws core::InputError naming one of these files that exists already.
 void refuse_taken(const std::filesystem::path& run_dir);
 
-/// A run directory's claim on its name: unless kept, everything written since is taken away again.
+/// Reserves a run directory: unless the claim is kept, everything written since is removed again.
 class RunClaim {
  public:
-  /// Makes the directory and locks it. Refuses one that is taken or locked, and leaves it as it is.
+  /// Creates the directory and locks it. Refuses one that is in use or locked, and leaves it unchanged.
   explicit RunClaim(std::filesystem::path run_dir);
   ~RunClaim();
   RunClaim(const RunClaim&) = delete;

@@ -1,5 +1,5 @@
-// What a person sees while a mission flies: of one vehicle a line that renews itself on a terminal, elsewhere
-// a line every half minute of flight; of a team a line every half minute.
+// Status output during a flight: for one vehicle a line that is updated on a terminal, elsewhere a new line
+// every half minute of flight; for a team a new line every half minute.
 #pragma once
 #include <vector>
 
@@ -16,7 +16,7 @@ class StatusLine {
  private:
   void show_alone(const core::MissionStatus& status) const;
 
-  bool renews_;  // itself, on a terminal
+  bool renews_;  // updates one line, on a terminal
 };
 
 }  // namespace karst::flight

@@ -19,14 +19,14 @@ namespace {
 constexpr TimeNs kBaseLogPeriod = 5 * core::kSecond;
 
 core::CoreOptions for_team(core::CoreOptions o) {
-  o.mission.home_margin = core::homing_margin(o.homing);  // one rule, whatever the strategy
+  o.mission.home_margin = core::homing_margin(o.homing);  // one rule for all strategies
   o.homing.landing.landing_speed_mps = o.mission.landing_speed_mps;
   return o;
 }
 
 RobotId id_of(std::size_t robot) { return static_cast<RobotId>(robot + 1); }
 
-/// A node is a teammate that stands where it lies, and says so as any that landed.
+/// A dropped node acts as a team node that stands at its position, which it reports like a landed robot.
 std::unique_ptr<core::TeamNode> node_of(const core::DroppedNode& dropped, const core::CoreOptions& options,
                                         const core::TeamSetup& setup, TimeNs now) {
   const auto& [id, drop] = dropped;
@@ -91,7 +91,7 @@ void TeamFlight::place_nodes(TimeNs now) {
   }
 }
 
-/// What all say is on the air before anybody listens. Whose radio fails, lands; the others go on.
+/// All radios transmit before any receives. A robot whose radio throws lands; the others continue.
 void TeamFlight::talk(Lockstep& flight, TimeNs now) {
   const auto attempt = [&](RobotId radio, const auto& exchange) {
     try {
@@ -129,7 +129,7 @@ void TeamFlight::on_phase(const Lockstep& flight, std::size_t robot, TimeNs now)
   const SeatState& state = flight.state(robot);
   const bool done = state.phase == core::Phase::done;
   if (done && !state.ended->stands)
-    world_.wreck(robot, state.ended->reason);  // what is left of it sends nothing
+    world_.wreck(robot, state.ended->reason);  // its radio is silent from now on
   log_.event(now, "phase", {{"robot", id_of(robot)}, {"phase", core::name_of(state.phase)}});
   if (!done) return;
   const auto& claim = members_[robot]->node().landing_of(id_of(robot));
@@ -178,7 +178,7 @@ RobotResult TeamFlight::result_of(const Lockstep& flight, std::size_t robot, Tim
   return r;
 }
 
-/// Returns the bytes over the air in all.
+/// Returns the total number of bytes on the air.
 std::uint64_t TeamFlight::log_traffic(TimeNs now) {
   std::uint64_t bytes = 0;
   const auto note = [&](const core::TeamNode& member) {
@@ -206,7 +206,7 @@ TeamResult TeamFlight::result(const Lockstep& flight, TimeNs now) {
   log_.flush();
   try {
     world_.finish();
-  } catch (const std::exception& e) {  // a full disk: they flew all the same
+  } catch (const std::exception& e) {  // such as a full disk: the flight still took place
     if (out.record_problem.empty()) out.record_problem = e.what();
   }
   return out;

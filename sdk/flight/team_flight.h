@@ -1,5 +1,5 @@
-// What makes one flight of several vehicles: the world they share, the base, the radio between all of them,
-// the nodes they drop, the faults that befall them, and the team's log.
+// Joins several vehicles into one flight: the world they share, the base, the radio between all of them,
+// the nodes they drop, the faults injected into them, and the team's log.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -15,31 +15,31 @@
 
 namespace karst::flight {
 
-/// What became of one robot.
+/// The result of one robot.
 struct RobotResult {
   core::MissionResult mission;
   double start_s = 0, end_s = 0;  // team's time
   double exploration_time_s = 0;  // before homing
-  std::string homing_reason;      // why that ended
-  double battery_left = 0;        // share
-  bool connected = false;         // to the base over the relay graph at the end, as the base knows
-  std::uint32_t records = 0, records_at_base = 0;  // that it told; that the base holds
+  std::string homing_reason;      // why exploration ended
+  double battery_left = 0;        // fraction
+  bool connected = false;         // to the base over the relay graph at the end, as known to the base
+  std::uint32_t records = 0, records_at_base = 0;  // published by it; held by the base
 };
 
 struct TeamResult {
   std::vector<RobotResult> robots;
   double duration_s = 0;
   std::uint64_t bytes_on_air = 0;
-  std::string record_problem;  // why a run directory is not complete; empty if all are
+  std::string record_problem;  // why a run directory is incomplete; empty if all are complete
 };
 
-/// What a team needs beside its vehicles and policies.
+/// The inputs of a team's flight besides its vehicles and policies.
 struct TeamFlightSetup {
   core::CoreOptions options;
   TeamFaults faults;
   std::uint64_t seed = 1;
   core::MissionKey key;
-  std::filesystem::path run_dir;  // for team.jsonl, which never holds the radio's key
+  std::filesystem::path run_dir;  // for team.jsonl, which never contains the radio key
 };
 
 class TeamFlight final : public StepHooks {
@@ -51,7 +51,7 @@ class TeamFlight final : public StepHooks {
   const core::CoreOptions& options() const { return options_; }
   std::size_t size() const { return members_.size(); }
   core::Teamwork& teamwork(std::size_t robot) { return members_.at(robot)->teamwork(); }
-  /// When a robot is switched on.
+  /// The time at which a robot is switched on.
   core::TimeNs starts_at(std::size_t robot) const;
 
   void on_start(std::size_t robot, core::TimeNs now) override;
@@ -59,7 +59,7 @@ class TeamFlight final : public StepHooks {
   void on_phase(const Lockstep& flight, std::size_t robot, core::TimeNs now) override;
   void inject_faults(const Lockstep& flight, core::TimeNs now) override;
 
-  /// Of a flight that is over at `now`. Ends the log and the world's files.
+  /// The result of a flight that is over at `now`. Closes the log and the world's files.
   TeamResult result(const Lockstep& flight, core::TimeNs now);
 
  private:
@@ -75,9 +75,9 @@ class TeamFlight final : public StepHooks {
   sim::SimulatedWorld& world_;
   core::TeamNode base_;
   std::vector<std::unique_ptr<core::TeamMember>> members_;
-  std::vector<bool> struck_;                            // members that a fault has befallen
-  std::vector<std::unique_ptr<core::TeamNode>> nodes_;  // dropped, in that order
-  core::HomingTree base_tree_;                          // as the base was told, for the log
+  std::vector<bool> struck_;                            // members into which a fault was injected
+  std::vector<std::unique_ptr<core::TeamNode>> nodes_;  // in the order of their drops
+  core::HomingTree base_tree_;                          // as reported to the base, for the log
   TeamLog log_;
   TeamObjectLog object_log_;
 };

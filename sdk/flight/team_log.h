@@ -1,4 +1,4 @@
-// team.jsonl in the team's run directory: what became of the robots, and what the base knew when.
+// team.jsonl in the team's run directory: the events of the robots, and the knowledge of the base over time.
 // docs/run_directory.md describes it.
 #pragma once
 #include <filesystem>
@@ -20,9 +20,9 @@ class TeamLog {
   explicit TeamLog(const std::filesystem::path& run_dir);
   /// A line {"t": ..., "kind": kind, ...fields}; t is the team's time.
   void event(core::TimeNs t, const std::string& kind, const nlohmann::json& fields);
-  /// Who reaches the base over which links as it knows, what it holds of whom, and where relays stand.
+  /// The base's knowledge: robots connected to it, links, records held of each robot, and relay positions.
   void base(core::TimeNs t, const core::TeamNode& base);
-  /// The homing tree as the base knows it: nodes that are new, or whose way goes on elsewhere, since the last
+  /// The homing tree as known to the base: nodes that are new, or whose next node has changed, since the last
   /// call. Writes nothing if there are none.
   void tree(core::TimeNs t, const core::HomingTree& tree);
   void traffic(core::TimeNs t, std::size_t radio, const sim::RadioTraffic& traffic,
@@ -32,7 +32,7 @@ class TeamLog {
 
  private:
   std::ofstream file_;
-  std::map<core::NodeId, std::optional<core::NodeId>> next_;  // of each node, as last written
+  std::map<core::NodeId, std::optional<core::NodeId>> next_;  // next node of each node, as last written
 };
 
 }  // namespace karst::flight

@@ -17,7 +17,7 @@ ordered_json text_or_null(const std::string& text) {
   return text.empty() ? ordered_json() : ordered_json(text);
 }
 
-/// Null if any robot's is not known.
+/// Null if the value of any robot is not known.
 ordered_json sum(const std::vector<json>& robots, const std::string& key) {
   double all = 0;
   for (const json& r : robots) {
@@ -80,7 +80,7 @@ ordered_json team_metrics(const Mission& mission, const TeamResult& result, cons
                  : ordered_json(nullptr);
   for (std::size_t i = 0; i < result.robots.size(); ++i)
     if (const std::string key = "exploration_time_" + std::to_string(i + 1) + "_s"; m.contains(key))
-      m[key] = to_millionths(result.robots[i].exploration_time_s);  // of as many as campaigns compare
+      m[key] = to_millionths(result.robots[i].exploration_time_s);  // as many robots as campaigns compare
 
   m["strategy"] = core::name_of(mission.core.team.strategy);
   m["duration_s"] = to_millionths(result.duration_s);

@@ -1,4 +1,4 @@
-// The figures of a team's run, as its metrics.json holds them. Definitions: docs/metrics.md.
+// The metrics of a team's run, as stored in its metrics.json. Definitions: docs/metrics.md.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -14,15 +14,15 @@ struct TeamFlightFacts {
   std::string reason;
 };
 
-/// Sets the sums over the robots that are null.
+/// Fills in those sums over the robots that are still null.
 void add_sums(nlohmann::ordered_json& metrics, const std::vector<nlohmann::json>& robots);
 
-/// What is known of any flight: sums over the `robots`, and null for all other figures.
+/// The metrics known for any flight: sums over the `robots`, and null for all others.
 nlohmann::ordered_json begin_team_metrics(const TeamFlightFacts& flight,
                                           const std::vector<nlohmann::json>& robots);
 
-/// `robots` are the metrics of each robot's own run. Figures of one flight are null but for sums over the
-/// robots; a robot's own are below `robots`.
+/// `robots` are the metrics of each robot's own run. Metrics of a single flight are null except for sums over
+/// the robots; each robot's own are in the key `robots`.
 nlohmann::ordered_json team_metrics(const Mission& mission, const TeamResult& result,
                                     const std::vector<nlohmann::json>& robots);
 

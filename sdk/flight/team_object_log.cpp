@@ -15,7 +15,7 @@ void TeamObjectLog::base(core::TimeNs now, const core::TeamNode& base, TeamLog& 
   news(now, "object_known", base.objects(), core::kBase, known_, log);
 }
 
-/// Of one robot, or, for the base, of all.
+/// Logs the changes in the objects of one robot, or, for the base, of all robots.
 void TeamObjectLog::news(core::TimeNs now, const char* kind, const core::ReportedObjects& objects,
                          core::RobotId of, core::ReportedObjects& noted, TeamLog& log) {
   for (const auto& [key, seen] : objects) {

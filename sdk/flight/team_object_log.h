@@ -1,4 +1,4 @@
-// team.jsonl's lines about objects of interest: when a robot told of one, and when the base knew.
+// team.jsonl's lines about objects of interest: when a robot reported one, and when the base received it.
 #pragma once
 #include "sdk/flight/team_log.h"
 
@@ -6,8 +6,8 @@ namespace karst::flight {
 
 class TeamObjectLog {
  public:
-  /// To be called after every exchange: a line `object` for what `robot` told since, and a line
-  /// `object_known` for what has come to the base.
+  /// To be called after every exchange: writes a line `object` for each object that `robot` has reported
+  /// since, and a line `object_known` for each that the base has received.
   void robot(core::TimeNs now, const core::TeamNode& robot, TeamLog& log);
   void base(core::TimeNs now, const core::TeamNode& base, TeamLog& log);
 
@@ -15,7 +15,7 @@ class TeamObjectLog {
   void news(core::TimeNs now, const char* kind, const core::ReportedObjects& objects, core::RobotId of,
             core::ReportedObjects& noted, TeamLog& log);
 
-  core::ReportedObjects reported_, known_;  // as last noted
+  core::ReportedObjects reported_, known_;  // as last logged
 };
 
 }  // namespace karst::flight

@@ -1,4 +1,4 @@
-// timing.json: what depends on the machine, kept apart from metrics.json.
+// timing.json: machine-dependent values, kept separate from metrics.json.
 #pragma once
 #include <filesystem>
 
@@ -12,7 +12,7 @@ struct TeamTiming {
   double simulated_s = 0, wall_s = 0;
   int threads = 1;
 };
-/// Of a team as a whole; its robots' jobs are in theirs.
+/// The timing of a team as a whole; its robots' jobs are in the robots' own files.
 void write_team_timing(const std::filesystem::path& run_dir, const TeamTiming& t);
 
 }  // namespace karst::flight

@@ -10,7 +10,7 @@ using core::Vec3;
 ImuPrediction::ImuPrediction(ImuFile file, const core::EstimatorOptions& options, TimeNs origin, bool level,
                              double still_s)
     : file_(std::move(file)), origin_(origin) {
-  // An IMU often runs before the first scan: what is older than the moment before it says nothing.
+  // An IMU often runs before the first scan: samples older than `still_s` before it are not used.
   const TimeNs still = core::from_seconds(still_s);
   Vec3 force = Vec3::Zero();
   for (TimeNs begin = 0; auto sample = file_.next();) {
@@ -24,7 +24,7 @@ ImuPrediction::ImuPrediction(ImuFile file, const core::EstimatorOptions& options
   std::reverse(waiting_.begin(), waiting_.end());
   if (level && force.norm() > 0)
     T_world_start_.orientation = core::Quat::FromTwoVectors(force, Vec3::UnitZ()).normalized();
-  // Turning a body upright about a level axis bends its heading where it leans much: heading 0 it is.
+  // Rotating a strongly tilted body upright about a level axis changes its heading, so this sets it to 0.
   T_world_start_.orientation =
       (core::from_heading(-core::heading_of(T_world_start_.orientation)) * T_world_start_.orientation)
           .normalized();

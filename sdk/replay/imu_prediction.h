@@ -1,4 +1,4 @@
-// The states between scans by the recording's IMU, for LOAM to start from.
+// Predicts the states between scans from the recording's IMU, as the initial guess of LOAM.
 #pragma once
 #include <optional>
 
@@ -10,12 +10,12 @@ namespace karst::replay {
 
 class ImuPrediction {
  public:
-  /// Reads the samples up to `still_s` after the first scan begins, or after the IMU does, whichever is
-  /// later. Times handed on are counted from `origin`.
+  /// Reads the samples up to `still_s` after the start of the first scan or of the IMU data, whichever is
+  /// later. Returned times are relative to `origin`.
   ImuPrediction(ImuFile file, const core::EstimatorOptions& options, core::TimeNs origin, bool level,
                 double still_s);
 
-  /// Where the body's z axis points at the start, if it is to be level: from the mean specific force.
+  /// The start pose; if it is to be levelled, its roll and pitch come from the mean specific force.
   core::Pose T_world_start() const { return T_world_start_; }
   /// Propagates to `stamp`; the states stay valid until the next call.
   const core::StateHistory& up_to(core::TimeNs stamp);

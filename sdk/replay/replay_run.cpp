@@ -17,8 +17,8 @@ using core::Pose;
 using core::TimeNs;
 using core::Vec3;
 
-/// The rays of a sweep, each from where the sensor was when it was measured; the track between two poses is
-/// taken as straight.
+/// The rays of a sweep, each from the sensor's position when it was measured; the track between two poses is
+/// assumed to be straight.
 std::vector<core::Ray> rays_of(const core::Sweep& sweep, const core::StateHistory& track,
                                double max_range_m) {
   std::vector<core::Ray> rays;
@@ -40,11 +40,11 @@ std::vector<core::Ray> rays_of(const core::Sweep& sweep, const core::StateHistor
   return rays;
 }
 
-/// The run directory of a replay: a flight's, but for what only a flight has.
+/// The run directory of a replay: like a flight's, without the files that only a flight has.
 class ReplayFiles {
  public:
   ReplayFiles(const std::filesystem::path& run_dir, TimeNs origin) : recorder_(run_dir), origin_(origin) {
-    // In the recording's own time, so that other tools find its truth: the recorder's stays unused.
+    // In the recording's own time, so that other tools find its ground truth; the recorder's file is unused.
     trajectory_.open(run_dir / "trajectory.tum", std::ios::trunc);
     if (!trajectory_) throw core::InputError((run_dir / "trajectory.tum").string(), "", "cannot be written");
   }

@@ -15,12 +15,12 @@ struct ReplayOptions {
   core::EstimatorOptions estimator;
   core::MapOptions map;
   double mapping_range_m = 30;
-  bool level = true;     // the start's attitude from the IMU's first moment, if it has one
-  double still_s = 0.3;  // length of that moment
+  bool level = true;     // start attitude from the first IMU samples, if the recording has any
+  double still_s = 0.3;  // duration of those samples
 };
 void describe(core::OptionTable& t, ReplayOptions& o);
 
-/// What became of a recording.
+/// The result of a replay.
 struct ReplaySummary {
   std::size_t scans = 0, lost = 0, imu_samples = 0, degenerate = 0;
   std::size_t points = 0, dropped_points = 0;
@@ -34,8 +34,8 @@ using ReplayProgress =
     std::function<bool(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map)>;
 
 /// Writes trajectory.tum in the recording's own time, map files and events into `run_dir`, which must be
-/// fresh. Memory does not grow with the recording, but for the map. Stops early when `progress` returns
-/// false. Throws InputError when a file is damaged; what was written up to there is complete.
+/// fresh. Except for the map, memory does not grow with the recording. Stops early when `progress` returns
+/// false. Throws InputError when a file is damaged; the output up to that scan is complete.
 ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& options,
                                const std::filesystem::path& run_dir, const ReplayProgress& progress);
 

@@ -21,7 +21,7 @@ void describe(core::OptionTable& t, CameraOptions& o) {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
-constexpr double kCameraStretch_m = 0.25;  // of the veil's light: short against the wave of 7.5 m
+constexpr double kCameraStretch_m = 0.25;  // integration step of the veil's light, << the 7.5 m wave
 
 }  // namespace
 
@@ -85,8 +85,8 @@ std::shared_ptr<const core::CameraModel> camera_model(const CameraOptions& o, Fa
 
 namespace {
 
-/// The light of what a pixel looks at, in clear air. With nothing in reach it is that of bare rock farther
-/// on.
+/// The light a pixel receives in clear air. With no rock in range it is that of bare rock at the maximum
+/// range.
 PixelLight light_of(const cave::Cave& cave, const cave::Ray& ray, const cave::Hit& hit, float max_range_m) {
   if (!hit.any()) return {max_range_m, cave.description.reflectivity / (max_range_m * max_range_m)};
   const Vec3 place = (ray.origin + hit.range_m * ray.direction).cast<double>();
@@ -107,13 +107,13 @@ float DepthCamera::through(const CloudyPath& path, const PixelLight& rock, float
                            core::Random& random) const {
   if (path.depth(rock.range_m) == 0) return range_m;
   const bool tof = options_.kind == DepthCameraKind::tof;
-  // The lamp of a time-of-flight camera sits beside its lens, the lamps that stereo sees by farther off: from
-  // there on they light what it looks at. Nearer droplets are dark, and out of focus.
+  // The lamp of a time-of-flight camera sits beside its lens, the lamps for stereo are farther away: only
+  // beyond this range do they light the field of view. Nearer droplets are dark, and out of focus.
   const double lit_from_m = tof ? 0.3 : 0.5;
   const PixelLight left{rock.range_m, rock.strength * path.two_way(rock.range_m)};
   std::vector<PixelLight> veil;
   path.for_each_stretch(lit_from_m, rock.range_m, kCameraStretch_m, [&](const CloudyPath::Stretch& s) {
-    // 1 / r^2 averaged over the stretch.
+    // 1 / r^2 averaged over the interval.
     veil.push_back({(s.from_m + s.to_m) / 2, s.echo(random) / (s.from_m * s.to_m)});
   });
   const float noise_m = std::isfinite(range_m) ? range_m - static_cast<float>(rock.range_m) : 0;

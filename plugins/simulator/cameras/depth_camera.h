@@ -1,4 +1,4 @@
-// Depth cameras: pinhole, stereo-like noise, and what droplets do to stereo and to time of flight.
+// Depth cameras: pinhole, stereo-like noise, and the effect of droplets on stereo and on time of flight.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
@@ -27,20 +27,20 @@ enum class Facing { forward, up, down };
 /// 79 x 64 degrees, 80 x 64 pixels, 4.5 m, where a pixel covers 8 cm.
 std::shared_ptr<const core::CameraModel> camera_model(const CameraOptions& o, Facing facing);
 
-/// Light that a pixel gathers from one place.
+/// Light that a pixel receives from one range.
 struct PixelLight {
   double range_m = 0, strength = 0;  // reflectivity / range^2
 };
 
-/// Two lenses match the rock's texture, which a veil of lit droplets makes faint: the range's noise grows as
-/// the contrast falls, and below the least contrast there is no match, and no measurement.
+/// Stereo matches the rock's texture, whose contrast a veil of lit droplets reduces: the range noise grows as
+/// the contrast falls, and below the minimum contrast there is no match and no measurement.
 float stereo_range(const PixelLight& rock, std::span<const PixelLight> veil, float range_m,
                    float pixel_noise_m);
 
 /// A continuous wave, modulated at 20 MHz, is measured by its phase, in which all light on one pixel adds up
 /// as phasors: droplets near the lens pull the range towards it (Muraji et al., Depth from phasor distortions
-/// in fog, Optics Express 27, 2019). Where the sum is less than the weakest return, nothing is seen:
-/// infinity; where its parts disagree, the unit flags it: NaN. Ranges wrap around at 7.5 m.
+/// in fog, Optics Express 27, 2019). Infinity where the sum is below the weakest detectable return; NaN where
+/// its parts disagree, which the unit flags. Ranges wrap around at 7.5 m.
 float tof_range(const PixelLight& rock, std::span<const PixelLight> veil, float range_m, double min_strength);
 
 class DepthCamera {
@@ -48,13 +48,13 @@ class DepthCamera {
   DepthCamera(const CameraOptions& o, std::shared_ptr<const core::CameraModel> model);
   const std::shared_ptr<const core::CameraModel>& model() const { return model_; }
 
-  /// One image; const, and so for any thread.
+  /// One image; const, so it may be called on any thread.
   core::DepthImage image(const cave::Cave& cave, const core::Pose& T_world_body, core::TimeNs stamp,
                          core::Random random, Air air = {}) const;
 
  private:
-  /// What becomes of a pixel's range where droplets are in the way. `rock` is the light that comes back from
-  /// what it looks at in clear air.
+  /// A pixel's range with droplets on its ray. `rock` is the light that the pixel would receive from the rock
+  /// in clear air.
   float through(const CloudyPath& path, const PixelLight& rock, float range_m, core::Random& random) const;
 
   CameraOptions options_;

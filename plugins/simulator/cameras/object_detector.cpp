@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMinLux = 2, kMinClear = 0.1;
 
-/// Two unit vectors across `d`.
+/// Two unit vectors perpendicular to `d` and to each other.
 std::pair<Vec3, Vec3> across(const Vec3& d) {
   const Vec3 a = d.cross(std::abs(d.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitX()).normalized();
   return {a, d.cross(a)};
@@ -58,7 +58,7 @@ std::vector<InView> ObjectDetector::in_view(const cave::Cave& cave, const core::
   return seen;
 }
 
-/// Off by noise, which is told along with it.
+/// The detection with noise added, and the standard deviation of that noise.
 ObjectDetection ObjectDetector::measured(ObjectKind kind, const Vec3& place, Light light,
                                          Random& random) const {
   ObjectDetection d;
@@ -67,7 +67,7 @@ ObjectDetection ObjectDetector::measured(ObjectKind kind, const Vec3& place, Lig
   d.bearing_sigma_rad = options_.bearing_noise_rad;
   const double fraction = light == Light::lamp ? options_.size_noise : options_.depth_noise;
   d.range_m = std::max(0.1, range_m * (1 + fraction * random.normal()));
-  d.range_sigma_m = fraction * d.range_m;  // as the detector itself can tell
+  d.range_sigma_m = fraction * d.range_m;  // from the measured range, as a detector would
   const Vec3 u = place / range_m;
   const auto [a, b] = across(u);
   const double off_a = d.bearing_sigma_rad * random.normal(), off_b = d.bearing_sigma_rad * random.normal();

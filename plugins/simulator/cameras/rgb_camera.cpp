@@ -16,12 +16,12 @@ using core::Vec3f;
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kSight_m = 60;           // beyond it nothing is bright enough to be drawn
-const Vec3f kLamp_m(0.0f, 0.08f, 0.1f);  // from the lens, in the camera's frame: left of it, above
-constexpr double kLitFrom_m = 0.3, kStretch_m = 0.25;  // nearer droplets are dark; pieces of the veil
+constexpr float kSight_m = 60;           // beyond it nothing is bright enough to be visible
+const Vec3f kLamp_m(0.0f, 0.08f, 0.1f);  // offset from the lens, camera frame: left of it and above
+constexpr double kLitFrom_m = 0.3, kStretch_m = 0.25;  // nearer droplets are dark; integration step
 constexpr float kTooFaint_cdpm2 = 1e-4f;
 
-/// Linear share of white to an sRGB byte (IEC 61966-2-1).
+/// Linear fraction of white to an sRGB byte (IEC 61966-2-1).
 std::uint8_t srgb(float linear) {
   constexpr int kSteps = 4096;
   static const auto table = [] {
@@ -36,8 +36,8 @@ std::uint8_t srgb(float linear) {
   return table[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * kSteps + 0.5f)];
 }
 
-/// The luminance that is stored as white. Automatic exposure puts the mean of what can be seen at all, taken
-/// over logarithms, at 18 % of white, as a light meter does.
+/// The luminance that is stored as white. Automatic exposure puts the geometric mean of the visible pixels at
+/// 18 % of white, as a light meter does.
 float white_of(const RgbOptions& o, const std::vector<Vec3f>& light) {
   const auto fixed = static_cast<float>(o.white_cdpm2);
   if (o.exposure == Exposure::fixed) return fixed;
@@ -102,7 +102,7 @@ float reflected_fraction(const Vec3f& normal, const Vec3f& to_lamp, const Vec3f&
   if (roughness_rad == 0) return cos_in;
   const float s2 = roughness_rad * roughness_rad;
   const float a = 1 - 0.5f * s2 / (s2 + 0.33f), b = 0.45f * s2 / (s2 + 0.09f);
-  // cos(phi) sin(alpha) tan(beta), alpha the greater of both angles, without any angle being worked out.
+  // cos(phi) sin(alpha) tan(beta), alpha the larger of both angles, without computing any angle.
   const float between = to_lamp.dot(to_eye) - cos_in * cos_out;  // cos(phi) sin(in) sin(out)
   const float facing = std::max(between, 0.0f) / std::max(cos_in, cos_out);
   return cos_in * (a + b * facing);
@@ -122,7 +122,7 @@ RgbCamera::RgbCamera(const RgbOptions& o) : options_(o), model_(rgb_camera_model
       beams_.push_back(model_->camera.direction(row, column));
 }
 
-/// Whether the lamp, beside the lens, sees what each pixel looks at.
+/// For each pixel, whether the lamp, which is beside the lens, lights the rock in its view.
 std::vector<bool> RgbCamera::lit(const cave::Cave& cave, const Vec3f& lamp,
                                  const std::vector<cave::Ray>& rays,
                                  const std::vector<cave::Hit>& hits) const {
@@ -176,7 +176,7 @@ std::vector<Vec3f> RgbCamera::light(const cave::Cave& cave, const core::Pose& T_
         const float rho = patched
                               ? static_cast<float>(reflectivity_at(cave.description, place.cast<double>()))
                               : reflectivity;
-        // Seen at a slant a pixel covers more rock one way, and no more the other.
+        // At a slant a pixel covers more rock in one direction, and no more in the other.
         const float cos_seen = std::sqrt(std::max(-hit.normal.dot(d), 0.05f));
         const RockLook look = rock_look(place.cast<double>(), pixel_rad * range_m / cos_seen);
         const Vec3f along = look.slope - look.slope.dot(hit.normal) * hit.normal;
@@ -209,7 +209,7 @@ std::vector<std::uint8_t> RgbCamera::picture(const cave::Cave& cave, const core:
   for (const Vec3f& l : seen)
     for (int c = 0; c < 3; ++c) {
       const float fraction = l[c] / white;
-      // Photons come at random: their noise grows with the root of the light.
+      // Photon noise: its standard deviation grows with the square root of the light.
       const float deviation = noise * std::sqrt(1 + 3 * std::min(fraction, 1.0f));
       rgb.push_back(srgb(fraction + deviation * range_noise(random)));
     }

@@ -1,10 +1,10 @@
-// A colour camera with the vehicle's own lamp: what it would take a picture of in a cave without other light.
+// A colour camera with the vehicle's own lamp: renders pictures of a cave without other light.
 //
-// Rays are cast through every pixel, and from the lamp to what they meet. A lamp of I candela lights rock at
-// the distance d, at the angle theta to its normal, with E = I cos(theta) / d^2 lux. Rock of reflectivity rho
-// is a Lambert surface, of luminance rho E / pi, or if it is rough that of Oren and Nayar (Generalization of
-// Lambert's reflectance model, SIGGRAPH 1994). Dust and droplets take light away on both ways and send some
-// back (clouds.h). The lens dims the picture's corners by cos^4 of the angle from its axis.
+// Rays are cast through every pixel, and from the lamp to the points they hit. A lamp of I candela lights
+// rock at the distance d, at the angle theta to its normal, with E = I cos(theta) / d^2 lux. Rock of
+// reflectivity rho is a Lambert surface of luminance rho E / pi, or if it is rough one of Oren and Nayar
+// (Generalization of Lambert's reflectance model, SIGGRAPH 1994). Dust and droplets attenuate and scatter
+// light on both paths (clouds.h). The lens dims the picture's corners by cos^4 of the angle from its axis.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
@@ -19,7 +19,7 @@ constexpr auto names_of(LampLight) {
   return std::to_array<core::Named<LampLight>>({{flood, "flood"}, {spot, "spot"}});
 }
 
-/// automatic: by each picture's own brightness.
+/// automatic: set by each picture's own brightness.
 enum class Exposure { automatic, fixed };
 constexpr auto names_of(Exposure) {
   using enum Exposure;
@@ -48,8 +48,8 @@ std::shared_ptr<const core::RgbCameraModel> rgb_camera_model(const RgbOptions& o
 float reflected_fraction(const core::Vec3f& normal, const core::Vec3f& to_lamp, const core::Vec3f& to_eye,
                          float roughness_rad);
 
-/// Share of the lamp's intensity at an angle off its axis: all of it within half the beam's width, then
-/// falling to nothing at 1.2 times that. A flood sends it everywhere to the front.
+/// Fraction of the lamp's intensity at an angle off its axis: 1 within half the beam's width, falling to 0 at
+/// 1.2 times that. A flood light covers the whole front hemisphere.
 float beam_fraction(const RgbOptions& o, float cos_off_axis);
 
 class RgbCamera {
@@ -58,10 +58,10 @@ class RgbCamera {
   const std::shared_ptr<const core::RgbCameraModel>& model() const { return model_; }
   bool takes_pictures() const { return options_.pictures; }
 
-  /// The picture as the sensor stores it: row-major, three bytes a pixel. Const, and so for any thread.
+  /// The picture as the sensor stores it: row-major, three bytes per pixel. May be called on any thread.
   std::vector<std::uint8_t> picture(const cave::Cave& cave, const core::Pose& T_world_body,
                                     core::Random random, const Air& air = {}) const;
-  /// What reaches the sensor: luminance in cd/m^2 for red, green and blue, vignetting included.
+  /// The light at the sensor: luminance in cd/m^2 for red, green and blue, vignetting included.
   std::vector<core::Vec3f> light(const cave::Cave& cave, const core::Pose& T_world_body,
                                  const Air& air = {}) const;
 

@@ -26,8 +26,8 @@ struct Noise {
   Vec3f gradient = Vec3f::Zero();  // per lattice cell
 };
 
-/// Values at the corners, blended with 6 t^5 - 15 t^4 + 10 t^3 (Perlin, Improving noise, 2002), which has no
-/// kinks in its slope.
+/// Values at the corners, blended with 6 t^5 - 15 t^4 + 10 t^3 (Perlin, Improving noise, 2002), whose slope
+/// is smooth.
 Noise noise(const Vec3& p, std::uint32_t octave) {
   std::array<std::uint32_t, 3> cell;
   Vec3f blend, rise;
@@ -67,7 +67,7 @@ RockLook rock_look(const Vec3& place, float finest_m) {
   RockLook look;
   float shade = 0, coarse = 0, wave_m = kCoarsest_m;
   for (std::uint32_t i = 0; i < kOctaves; ++i, wave_m *= 0.5f) {
-    // An octave fades out between four and two pixels a wave.
+    // An octave fades out between four and two pixels per wavelength.
     const float fraction = std::clamp(wave_m / (2 * finest_m) - 1, 0.0f, 1.0f);
     if (fraction == 0) break;
     const Noise n = noise(place / static_cast<double>(wave_m), i);
@@ -75,7 +75,7 @@ RockLook rock_look(const Vec3& place, float finest_m) {
     if (i < 2) coarse += 0.5f * n.value;
     look.slope += kBump * fraction * n.gradient;
   }
-  // Beds of a hand's breadth to half a metre, level but for the coarse noise.
+  // Rock beds of a hand's breadth to half a metre, level except for the coarse noise.
   const auto bed = static_cast<float>(std::sin(14 * place.z() + 2.5 * static_cast<double>(coarse)));
   const float light = std::clamp(1 + shade + 0.12f * bed, 0.15f, 1.9f);
   look.tint = light * Vec3f(1.08f + 0.06f * coarse, 1.0f, 0.88f - 0.08f * coarse);  // ochre

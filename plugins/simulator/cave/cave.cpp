@@ -19,7 +19,7 @@ namespace pt = boost::property_tree;
 CaveDescription read_cave_file(const std::string& path, const std::string& start) {
   CaveDescription cave;
   cave.file = path;
-  pt::ptree plain;  // without the blocks that may come any number of times
+  pt::ptree plain;  // without the blocks that may be repeated
   for (const auto& [name, child] : core::read_info(path)) {
     if (name == "patch" && !child.empty()) {
       cave.patches.push_back(read_patch(path, child));

@@ -1,4 +1,4 @@
-// A cave: rock to collide with and to measure, where to start, what the rock is made of.
+// A cave: the rock that sensors measure and vehicles collide with, its material, and the start pose.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace karst::cave {
 
-/// A place in the air. The vehicle is set down on the floor below it, and its first hover is the mission's
-/// take-off height above that.
+/// A pose in the air. The vehicle is set down on the floor below it, and its first hover is the mission's
+/// take-off height above that floor position.
 struct StartPose {
   core::Vec3 position = core::Vec3::Zero();
   double heading_rad = 0;
 };
 
-/// Rock of another reflectivity within a ball: wet walls, a chalk band, a sheet of metal.
+/// A ball in which rock has another reflectivity: wet walls, a chalk band, a sheet of metal.
 struct Patch {
   core::Vec3 position = core::Vec3::Zero();
   double radius_m = 1, reflectivity = 0.1;
@@ -27,22 +27,22 @@ struct OreBody {
   core::Vec3 position = core::Vec3::Zero(), moment_am2 = core::Vec3::Zero();
 };
 
-/// Rock that comes later or moves: a rockfall that closes a passage, a swinging gate. A ball; it is there
-/// from `after_s` on, and, if `within_m` is not 0, from when the vehicle first came so near to `position`.
-/// With a speed it goes to and fro between `position` and `to`.
+/// Rock that appears later or moves: a rockfall that closes a passage, a swinging gate. A ball that exists
+/// from `after_s` on, and, if `within_m` is not 0, once the vehicle has first come so near to `position`.
+/// With a speed it moves back and forth between `position` and `to`.
 struct LooseRock {
   core::Vec3 position = core::Vec3::Zero(), to = core::Vec3::Zero();
   double radius_m = 1, after_s = 0, within_m = 0, speed_mps = 0;
 };
 
-/// Dust or droplets that hang in the air, equally dense throughout a ball or a box along the axes.
+/// Dust or droplets suspended in the air, of uniform density in a ball or an axis-aligned box.
 struct Cloud {
   core::Vec3 position = core::Vec3::Zero();          // its centre
   core::Vec3 half_size_m = core::Vec3::Constant(1);  // of a ball: its radius, three times
   bool box = false;
-  double extinction_1pm = 0.3;  // share of light lost per metre: I = I0 exp(-extinction * way)
+  double extinction_1pm = 0.3;  // extinction coefficient: I = I0 exp(-extinction * path length)
   double lidar_ratio_sr = kDust_sr;
-  double after_s = 0;  // it is there from then on
+  double after_s = 0;  // exists from then on
 
   /// Extinction over backscatter. Dust of deserts 55 +- 5 sr (Mueller et al., J. Geophys. Res. 112, 2007, of
   /// Saharan dust), droplets 18.8 +- 0.8 sr at the 905 nm of a LiDAR (O'Connor, Illingworth, Hogan, J. Atmos.
@@ -50,13 +50,13 @@ struct Cloud {
   static constexpr double kDust_sr = 55, kDroplets_sr = 18.8;
 };
 
-/// Something goes wrong with a sensor. It strikes every message measured in [after, after + lasts), and at
-/// least the first from `after` on.
+/// A sensor fault. It affects every message measured in [after, after + lasts), and at least the first one
+/// from `after` on.
 struct Fault {
   enum class Sensor { lidar, imu, magnetometer, barometer, camera, pose };
   enum class Kind {
     lost,          // no message
-    nan,           // every second range and every third intensity is NaN; LiDAR only, as the rest
+    nan,           // every second range and every third intensity is NaN; LiDAR only, as are the next
     three_points,  // three returns are left
     stamp_back,    // stamped 250 ms early: before scans that came earlier
     stamp_ahead    // stamped 250 ms late: in the future
@@ -83,16 +83,16 @@ constexpr auto names_of(Fault::Kind) {
                                                   {stamp_ahead, "stamp_ahead"}});
 }
 
-/// An object of interest. It is seen, but neither hit by rays nor touched.
+/// An object of interest. Detectors see it, but it is neither hit by rays nor touched.
 struct CaveObject {
   core::ObjectKind kind = core::ObjectKind::backpack;
-  core::Vec3 position = core::Vec3::Zero();  // its middle
+  core::Vec3 position = core::Vec3::Zero();  // its centre
   core::Vec3 normal = core::Vec3::Zero();    // unit, of the rock it lies on; 0: seen from all sides
 };
 
 struct CaveDescription {
-  std::string file;       // what the user named
-  std::string mesh_path;  // the same, or what the .info file names
+  std::string file;       // as named by the user
+  std::string mesh_path;  // the same, or the mesh that the .info file names
   StartPose start;
   double reflectivity = 0.5;  // of bare rock, 0..1
   std::vector<Patch> patches;
@@ -103,14 +103,14 @@ struct CaveDescription {
   std::vector<CaveObject> objects;
 };
 
-/// Reads a cave `.info` file, or describes a bare mesh, which needs `start` ("x y z [heading_deg]"; a
-/// non-empty one replaces the file's own). Throws InputError. The file's keys, by example:
+/// Reads a cave `.info` file, or describes a bare mesh, which requires `start` ("x y z [heading_deg]"; if not
+/// empty it replaces the file's own). Throws InputError. The file's keys, by example:
 ///
 ///   mesh tunnel.ply              ; relative to this file
 ///   start "1 2 1.5 90"           ; x y z in metres, heading in degrees counter-clockwise from east
 ///   reflectivity 0.5
-///   patch { position "4 2 1" radius "3 m" reflectivity 0.1 }     ; any number of these
-///   ore { position "9 0 -2" moment "0 0 4000" }                  ; and of these
+///   patch { position "4 2 1" radius "3 m" reflectivity 0.1 }     ; any number of blocks, here and below
+///   ore { position "9 0 -2" moment "0 0 4000" }
 ///   boulder { position "20 3 1" radius "2.5 m" after "30 s" within "7 m" to "20 9 1" speed "0.5 m/s" }
 ///   cloud { position "12 2 1" radius "2 m" extinction "0.4 1/m" of droplets after "30 s" }
 ///   cloud { position "12 2 1" size "8 4 3" extinction "0.1 1/m" of dust }
@@ -123,10 +123,10 @@ struct Cave {
   RayScene scene;
 };
 
-/// describe_cave, then its mesh, on which objects are laid (lay_objects).
+/// describe_cave, then loads its mesh and places the objects on it (lay_objects).
 Cave load_cave(const std::string& path, const std::string& start);
 
-/// Reflectivity of the rock at a place: that of the last patch that holds it.
+/// Reflectivity of the rock at a position: that of the last patch that contains it.
 double reflectivity_at(const CaveDescription& cave, const core::Vec3& place);
 
 }  // namespace karst::cave

@@ -44,7 +44,7 @@ Vec3 read_vector(const std::string& source, const std::string& key, const std::s
   return {n[0], n[1], n[2]};
 }
 
-/// Reads a block whose keys `table` holds with the block's name before them.
+/// Reads a block; `table` holds its keys with the block's name as prefix.
 void read_block(const std::string& source, const std::string& name, const pt::ptree& tree,
                 OptionTable& table) {
   pt::ptree wrapped;
@@ -52,7 +52,7 @@ void read_block(const std::string& source, const std::string& name, const pt::pt
   table.read(source, wrapped);
 }
 
-/// What floats in a cloud.
+/// The substance of a cloud.
 enum class CloudOf { dust, droplets };
 constexpr auto names_of(CloudOf) {
   using enum CloudOf;

@@ -1,4 +1,4 @@
-// The blocks of a cave's .info file, and the numbers in them. All throw InputError naming the file and key.
+// The blocks of a cave's .info file, and their numbers. All functions throw InputError naming file and key.
 #pragma once
 #include <boost/property_tree/ptree_fwd.hpp>
 

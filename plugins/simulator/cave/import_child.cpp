@@ -27,16 +27,16 @@ using core::InputError;
 
 constexpr std::uint64_t kMinMemory = std::uint64_t{2} << 30, kMemoryPerByte = 100;
 constexpr std::uint64_t kMaxReason = 4000;
-constexpr int kLongestSilence_ms = 900'000;  // of the child, by the wall clock: then it hangs
+constexpr int kLongestSilence_ms = 900'000;  // of the child, wall clock; beyond it the child hangs
 constexpr int kOutOfMemory = 3;              // the child's exit code
 
 enum class Answer : std::uint64_t { mesh = 1, refused = 2 };
 struct AnswerHead {
   Answer kind;
-  std::uint64_t vertices = 0, triangles = 0;  // a reason's bytes stand in `vertices`
+  std::uint64_t vertices = 0, triangles = 0;  // for a failure, `vertices` is the length of the reason
 };
 
-/// A sanitizer's shadow of all memory does not fit any limit.
+/// The shadow memory of a sanitizer exceeds any limit.
 constexpr bool memory_can_be_limited() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return false;
@@ -59,13 +59,13 @@ void set_limit(int resource, std::uint64_t value, std::uint64_t beyond = 0) {
   setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
-/// Puts the limits on this process, the child.
+/// Applies the limits to this process, the child.
 void confine(const ImportLimits& limits, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it ended before
+  if (getppid() != parent) _exit(1);  // the parent has ended already
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGXCPU}) std::signal(signal, SIG_DFL);
   set_limit(RLIMIT_CORE, 0);
-  set_limit(RLIMIT_CPU, limits.cpu_s, 5);  // at the hard limit it would be killed without saying why
+  set_limit(RLIMIT_CPU, limits.cpu_s, 5);  // at the hard limit it would be killed without a reason
   if (memory_can_be_limited()) set_limit(RLIMIT_AS, address_space_in_use() + limits.memory_bytes);
   if (const int null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
 }
@@ -103,7 +103,7 @@ bool write_array(int to, const std::vector<T>& items) {
   return write_all(to, items.data(), items.size() * sizeof(T));
 }
 
-/// In pieces: a child that lies about the number costs no more memory than it sends.
+/// Reads in pieces, so that a child that announces too many items costs no more memory than it sends.
 template <class T>
 bool read_array(int from, std::uint64_t count, std::vector<T>& items) {
   constexpr std::uint64_t kPiece = 1 << 16;
@@ -115,7 +115,7 @@ bool read_array(int from, std::uint64_t count, std::vector<T>& items) {
   return true;
 }
 
-/// The child's whole life.
+/// The main function of the child.
 [[noreturn]] void serve(int to, const std::function<TriangleMesh()>& import, const ImportLimits& limits,
                         pid_t parent) {
   confine(limits, parent);
@@ -191,7 +191,7 @@ TriangleMesh import_in_child(const std::string& path, const std::function<Triang
   close(ends[1]);
   std::optional<Told> told;
   if (child > 0) told = read_answer(ends[0]);
-  if (child > 0 && !told) kill(child, SIGKILL);  // unless it has ended already, it would never
+  if (child > 0 && !told) kill(child, SIGKILL);  // if it has not ended by now, it never would
   close(ends[0]);
   if (child < 0) throw InputError(path, "", "no process can be started to read it");
   const std::string end = end_of(child);
@@ -201,7 +201,7 @@ TriangleMesh import_in_child(const std::string& path, const std::function<Triang
   if (!end.empty()) refuse(end);
   if (!told) refuse("the importer gave no answer");
   if (!told->refusal.empty()) {
-    const std::string own = path + ": ";  // it named the file already
+    const std::string own = path + ": ";  // the child named the file already
     throw InputError(path, "",
                      told->refusal.starts_with(own) ? told->refusal.substr(own.size()) : told->refusal);
   }

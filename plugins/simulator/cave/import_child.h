@@ -1,7 +1,7 @@
-// Importing a mesh in a process of its own.
+// Importing a mesh in a separate process.
 //
 // The importer recurses along a Collada scene graph, which may contain itself or multiply at each level, and
-// ends the program on some damaged files. In a child this costs a message.
+// ends the program on some damaged files. In a child process this results in an error message only.
 #pragma once
 #include <functional>
 #include <string>
@@ -15,8 +15,8 @@ struct ImportLimits {
   unsigned cpu_s = 600;
 };
 
-/// What `import` makes of the file, or its InputError. It runs in a child, whose limits or whose death become
-/// an InputError too. Indices and coordinates are checked here: a child that went wrong may say anything.
+/// Runs `import` in a child process and returns its mesh or throws its InputError; a child that crashes or
+/// exceeds a limit is an InputError, too. Indices and coordinates are checked here: the child is not trusted.
 TriangleMesh import_in_child(const std::string& path, const std::function<TriangleMesh()>& import,
                              ImportLimits limits = {});
 

@@ -27,7 +27,7 @@ std::string lower_extension(const std::string& path) {
   return e;
 }
 
-/// Numbers equal vertices once, in the order they first appear. The importer's own steps for this and for
+/// Numbers equal vertices once, in the order of first appearance. The importer's own steps for this and for
 /// polygons end the program on some damaged files.
 class JoinedVertices {
  public:
@@ -51,16 +51,16 @@ class JoinedVertices {
     }
   };
   std::vector<Vec3f>& vertices_;
-  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> index_;  // looked up, never walked
+  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> index_;  // never iterated
 };
 
-/// Polygons become fans about their first corner.
+/// Polygons become triangle fans around their first corner.
 void append_mesh(const std::string& path, const aiMesh& part, const aiMatrix4x4& T, JoinedVertices& joined,
                  TriangleMesh& out) {
   std::vector<std::uint32_t> index(part.mNumVertices);
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D v = T * part.mVertices[i];
-    // 1e5 m: floats still resolve 8 mm there; a cave further off is in other units or map coordinates.
+    // 1e5 m: floats still resolve 8 mm there; larger coordinates mean other units or map coordinates.
     if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) ||
         std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e5f)
       throw InputError(path, "vertex " + std::to_string(i),
@@ -129,7 +129,7 @@ TriangleMesh import_mesh(const std::string& path, const std::string& extension) 
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(path, "", std::string("is no mesh that can be read: ") + importer.GetErrorString());
 
-  // The Collada importer turns every file to y up: turn it back to z up.
+  // The Collada importer rotates every file to y up: rotate it back to z up.
   aiMatrix4x4 T_world_file;
   if (extension == ".dae") aiMatrix4x4::RotationX(AI_MATH_HALF_PI_F, T_world_file);
   TriangleMesh mesh;

@@ -18,7 +18,7 @@ using core::InputError;
                        " bytes, it has " + std::to_string(actual));
 }
 
-/// Binary STL: 80 bytes of title, the number of triangles, 50 bytes each. Text STL ends in "endsolid".
+/// Binary STL: 80 bytes of title, the number of triangles, 50 bytes for each. Text STL ends in "endsolid".
 void check_stl(const std::string& path, std::ifstream& in, std::uintmax_t size) {
   char head[84] = {};
   in.read(head, sizeof head);

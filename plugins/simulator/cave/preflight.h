@@ -1,14 +1,14 @@
-// Is the start pose a place to fly from? Answers before the flight, with a reason.
+// Checks before the flight whether the start pose is suitable, and gives a reason if it is not.
 #pragma once
 #include "plugins/simulator/cave/cave.h"
 
 namespace karst::cave {
 
-/// What rays in all directions from one place find.
+/// Results of rays cast in all directions from one position.
 struct Surroundings {
   double clearance_m = 0;                            // distance to rock, at most 100 m
   double escape_fraction = 0;                        // of rays that meet no rock at all
-  core::Vec3 escape_direction = core::Vec3::Zero();  // mean of those
+  core::Vec3 escape_direction = core::Vec3::Zero();  // mean direction of those rays
   double odd_fraction = 0;                           // of rays that pass an odd number of surfaces
 };
 Surroundings look_around(const RayScene& scene, const core::Vec3& place);
@@ -16,16 +16,16 @@ Surroundings look_around(const RayScene& scene, const core::Vec3& place);
 /// Throws InputError if the vehicle's sphere does not fit at the start pose, if the place is not inside the
 /// cave, or if the mesh has a hole there: a ray escapes without meeting rock.
 ///
-/// Meshes of caves are seldom watertight and wound as it happened, so normals say nothing. A place counts as
-/// inside if most of 4096 rays pass an odd number of surfaces: overlapping tiles spoil some directions (16 to
-/// 22 % at the start of the SubT caves), never most of them. A boulder inside the cave adds two surfaces and
-/// changes nothing, while a place inside the boulder is even. A rock surface that is modelled twice, as a
-/// shell with thickness, would be refused.
+/// Meshes of caves are seldom watertight and their winding is arbitrary, so normals are not used. A position
+/// counts as inside if most of 4096 rays cross an odd number of surfaces: overlapping tiles spoil some
+/// directions (16 to 22 % at the start of the SubT caves), never most of them. A boulder inside the cave adds
+/// two crossings and changes nothing, while from inside the boulder the number is even. A rock surface that
+/// is modelled twice, as a shell with thickness, would be refused.
 void check_start(const Cave& cave, double vehicle_radius_m);
 
-/// Finds the rock that each object of the cave lies on: the nearest, if it is within 1 m. Throws InputError
-/// if an object lies in rock or outside the cave, or touches rock: with its middle nearer than 2 cm it could
-/// not be seen.
+/// Finds the rock that each object of the cave lies on: the nearest rock, if it is within 1 m. Throws
+/// InputError if an object lies in rock or outside the cave, or touches rock: with its centre nearer than
+/// 2 cm it could not be seen.
 void lay_objects(Cave& cave);
 
 /// Throws InputError if the vehicle's sphere, `standing` with its centre there, cannot rise straight up by

@@ -25,7 +25,7 @@ Hit to_hit(float range, std::uint32_t triangle, Vec3f normal, const Vec3f& direc
   return {range, triangle, normal};
 }
 
-/// The nearer root of |o + t d - c| = r; from inside, the surface is met where the ray leaves.
+/// The nearer root of |o + t d - c| = r; from inside, the root where the ray leaves the ball.
 void meet(const Sphere& s, const Ray& ray, float max_range_m, Hit& hit) {
   const Vec3 o = ray.origin.cast<double>() - s.centre, d = ray.direction.cast<double>();
   const double b = o.dot(d), c = o.squaredNorm() - s.radius_m * s.radius_m, disc = b * b - c;
@@ -47,11 +47,11 @@ Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
   return {v[t[0]].cast<double>(), v[t[1]].cast<double>(), v[t[2]].cast<double>()};
 }
 
-// Embree decides which triangles are asked, never what the answer is. So that no processor's rounding leaves
-// out a triangle that another's asks, boxes, ranges and radii given to it have room to spare: far more than
-// its boxes and slabs, in floats, can be wrong by.
+// Embree selects candidate triangles, but never computes the answer. So that the rounding of one processor
+// does not omit a triangle that another one tests, the boxes, ranges and radii given to Embree are enlarged
+// by far more than the error of its single-precision boxes and slabs.
 
-/// Metres that Embree's arithmetic may be wrong by, at coordinates and distances up to `extent_m`.
+/// Bound in metres of the error of Embree's arithmetic, at coordinates and distances up to `extent_m`.
 float slack_m(float extent_m) { return 1e-3f + 4e-6f * extent_m; }
 
 void box_of_triangle(const RTCBoundsFunctionArguments* args) {
@@ -71,11 +71,11 @@ void box_of_triangle(const RTCBoundsFunctionArguments* args) {
 
 constexpr unsigned kPacket = 8;
 
-/// What a packet of rays has met so far; Embree hands its first member back to meet_triangle().
+/// The hits of a packet of rays so far; Embree passes its first member to meet_triangle().
 struct PacketSearch {
   RTCIntersectContext context;
   std::array<double, kPacket> range_m;
-  std::vector<double>* crossings;  // instead, if not null: every range of a packet of one
+  std::vector<double>* crossings;  // if not null: collects all ranges of a single ray instead
 };
 
 void meet_triangle(const RTCIntersectFunctionNArguments* args) {
@@ -113,7 +113,7 @@ struct NearestSearch {
   std::uint32_t triangle;
 };
 
-/// The query's place is rounded to floats: up to that much nearer or farther than `p`.
+/// The query position is rounded to floats, so the radius is enlarged by the distance it may be off `p`.
 float query_radius(const Vec3& p, double distance_m) {
   const auto distance = static_cast<float>(distance_m);
   return distance + slack_m(distance + static_cast<float>(p.cwiseAbs().maxCoeff()));
@@ -134,7 +134,7 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 
 }  // namespace
 
-/// Holds the mesh as well: Embree asks for its triangles as long as the scene lives.
+/// Also owns the mesh: Embree reads its triangles as long as the scene lives.
 struct RayScene::Handles {
   explicit Handles(std::shared_ptr<const TriangleMesh> m) : mesh(std::move(m)) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);

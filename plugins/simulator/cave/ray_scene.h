@@ -1,8 +1,8 @@
-// Ray casts and closest points on a triangle mesh, and on boulders that come and go.
+// Ray casts and closest points on a triangle mesh, and on boulders that may appear and move.
 //
-// Embree 3 finds the triangles that a ray may meet; ranges are computed here. Embree's own come from
-// approximate reciprocals (rcpps), which differ between makers of processors, and from fused multiply-adds
-// where there are any.
+// Embree 3 finds the triangles that a ray may hit; ranges are computed here. Embree's own ranges come from
+// approximate reciprocals (rcpps), which differ between processor vendors, and from fused multiply-adds where
+// the processor has them.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -19,21 +19,21 @@ struct Ray {
 };
 
 struct Hit {
-  float range_m = std::numeric_limits<float>::infinity();  // infinity: nothing within the range asked for
-  std::uint32_t triangle = 0;                              // kBoulder: none of the mesh
+  float range_m = std::numeric_limits<float>::infinity();  // infinity: no hit within the maximum range
+  std::uint32_t triangle = 0;                              // index in the mesh, or kBoulder
   core::Vec3f normal = core::Vec3f::Zero();                // unit, on the side the ray came from
   bool any() const { return range_m < std::numeric_limits<float>::infinity(); }
 };
 
 constexpr std::uint32_t kBoulder = ~std::uint32_t{0};
 
-/// A ball of rock. Few, so each is asked in turn, in closed form.
+/// A ball of rock. There are few, so each is tested in turn, in closed form.
 struct Sphere {
   core::Vec3 centre = core::Vec3::Zero();
   double radius_m = 1;
 };
 
-/// Rock nearest to a point. With nothing within the radius asked for, the distance is that radius.
+/// The rock nearest to a point. If none is within the search radius, the distance is that radius.
 struct Nearest {
   double distance_m = 0;
   core::Vec3 point = core::Vec3::Zero();
@@ -41,7 +41,7 @@ struct Nearest {
 };
 
 /// A value: copies share the mesh. All queries are const and may run on several threads at once. Results
-/// depend on the rock and the query only: they have the same bits on every processor and in any company.
+/// depend on the rock and the query only: they are bit-identical on every processor and in any packet.
 class RayScene {
  public:
   explicit RayScene(TriangleMesh mesh);
@@ -51,14 +51,14 @@ class RayScene {
   const TriangleMesh& mesh() const { return *mesh_; }
   const std::vector<Sphere>& boulders() const { return boulders_; }
 
-  /// `out[i]` is the first hit of `rays[i]`; of triangles met at the same range, the first of the mesh.
-  /// Neighbouring rays should point to neighbouring places: they are cast in packets of eight.
+  /// `out[i]` is the first hit of `rays[i]`; of triangles hit at the same range, the first of the mesh.
+  /// Consecutive rays should have similar directions: they are cast in packets of eight.
   void cast(std::span<const Ray> rays, float max_range_m, std::span<Hit> out) const;
   Hit cast(const Ray& ray, float max_range_m) const;
 
   /// Range to rock from `from` along `direction` (of any length), or infinity.
   double ray_cast(const core::Vec3& from, const core::Vec3& direction, double max_range_m) const;
-  /// How many surfaces of the mesh the ray passes, surfaces closer together than 0.1 mm counted once.
+  /// Number of mesh surfaces that the ray crosses; surfaces closer together than 0.1 mm count once.
   int crossings(const Ray& ray) const;
 
   Nearest nearest(const core::Vec3& p, double within_m) const;

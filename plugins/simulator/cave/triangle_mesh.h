@@ -15,16 +15,16 @@ struct TriangleMesh {
 };
 
 /// Reads .stl, .ply, .obj or .dae: all parts of the file joined into one mesh, its node transforms applied.
-/// STL, PLY and OBJ are taken as metres with z up; Collada files say their unit and axis and are turned to
-/// that. Throws InputError on a file that is missing, truncated, empty, no mesh, or has a vertex that is
+/// STL, PLY and OBJ are taken as metres with z up; Collada files state their unit and axis and are converted
+/// to that. Throws InputError on a file that is missing, truncated, empty, no mesh, or has a vertex that is
 /// not finite. Triangles without area are dropped.
 TriangleMesh load_mesh(const std::string& path);
 
-/// Writes a binary .ply, or a binary .stl if the path ends so. Throws InputError if it cannot.
+/// Writes a binary .ply, or a binary .stl if the path ends in .stl. Throws InputError if it cannot.
 void write_mesh(const std::string& path, const TriangleMesh& mesh);
 
-/// Throws InputError where a .stl or .ply file is shorter than its own header says, in places where an
-/// importer would fill the gap with silence.
+/// Throws InputError if a .stl or .ply file is shorter than its own header states, in cases where an importer
+/// would silently ignore the missing data.
 void check_declared_size(const std::string& path);
 
 }  // namespace karst::cave

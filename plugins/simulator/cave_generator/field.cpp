@@ -15,7 +15,7 @@ using core::Vec3;
 constexpr double kRockM = 1e3;        // value where nothing is hollow
 constexpr double kJoinM = 1.2;        // roundness where two passages meet
 constexpr double kSolidJoinM = 0.25;  // where a block lies on the floor
-constexpr double kPathJoinM = 0.4;    // where the vehicle's way was cut free
+constexpr double kPathJoinM = 0.4;    // where the vehicle's path was cut free
 
 struct Box {
   Vec3 low, high;
@@ -117,7 +117,7 @@ double CaveField::roughness(const Vec3& p) const {
   const std::uint32_t s = plan_.noise_seed;
   const double bends = gradient_noise(Vec3(p / 3.1), s) + 0.6 * gradient_noise(Vec3(p / 1.5), s + 1) +
                        0.35 * gradient_noise(Vec3(p / 0.8), s + 2);
-  // Beds of limestone weather to ledges: quick change with height, slow along the bed.
+  // Beds of limestone weather to ledges: fast variation with height, slow variation along the bed.
   const double beds = 0.3 - std::abs(gradient_noise(Vec3(p.x() / 9, p.y() / 9, p.z() / 1.1), s + 3));
   const double large = 1.8 * gradient_noise(Vec3(p / plan_.undulation_length_m), s + 4) +
                        0.8 * gradient_noise(Vec3(2.1 / plan_.undulation_length_m * p), s + 5);
@@ -144,7 +144,7 @@ double CaveField::value(const Vec3& p, const Cube& cube) const {
 double CaveField::value_around(const Vec3& p, double radius_m, const Cube& cube) const {
   if (!cube.any()) return kRockM;
   const Smooth s = smooth(p, cube);
-  // The shapes' distances grow at most about twice as fast as the way to them.
+  // The shapes' distance functions grow at most about twice as fast as the true distance.
   const double unsure = 2 * radius_m + max_roughness_m_ + kJoinM;
   if (s.hollow > unsure && s.path - path_radius_m_ > radius_m + kPathJoinM) return s.hollow;
   if (s.hollow < -unsure && !cube.solids()) return s.hollow;

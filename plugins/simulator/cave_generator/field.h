@@ -8,7 +8,7 @@
 
 namespace karst::cave {
 
-/// Cuts space into cubes and knows for each what of the plan matters there. The plan must outlive it.
+/// Divides space into cubes with the elements of the plan that matter in each. The plan must outlive it.
 class CaveField {
  public:
   CaveField(const CavePlan& plan, double cube_m, double path_radius_m);
@@ -18,16 +18,16 @@ class CaveField {
     bool any() const { return !segments.empty() || !chambers.empty(); }
     bool solids() const { return !boulders.empty() || !speleothems.empty(); }
   };
-  /// Cubes along each axis; those at the border are empty, as all that nothing matters in: solid rock.
+  /// Number of cubes along each axis. Cubes without elements, and those at the border, are solid rock.
   const std::array<std::int32_t, 3>& cubes_along() const { return count_; }
   const core::Vec3& low() const { return low_; }
   const Cube& cube(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
-  /// Metres, near the surface about the distance to it; `cube` is the one that holds p, or touches it.
+  /// In metres; near the surface approximately the distance to it. `cube` contains p, or touches it.
   double value(const core::Vec3& p, const Cube& cube) const;
   double value(const core::Vec3& p) const;
 
-  /// A value that has the right sign for all places within `radius_m` of p, or 0 if there is none.
+  /// A value whose sign is right for all points within `radius_m` of p, or 0 if there is none.
   double value_around(const core::Vec3& p, double radius_m, const Cube& cube) const;
 
  private:
@@ -41,7 +41,7 @@ class CaveField {
   std::vector<Segment> segments_;         // passage by passage
   std::vector<std::int32_t> passage_of_;  // of each segment
   double cube_m_, path_radius_m_;
-  double max_roughness_m_;  // the walls are never farther from where they would be without
+  double max_roughness_m_;  // largest displacement of a wall by roughness
   core::Vec3 low_ = core::Vec3::Zero();
   std::array<std::int32_t, 3> count_{};
   std::vector<Cube> cubes_;

@@ -33,7 +33,7 @@ std::optional<Vec3> rock_along(const CaveField& field, Vec3 p, double sign) {
   return std::nullopt;
 }
 
-/// A place in the cave and how far it is open to the sides there.
+/// A position in the cave and the free distance to its sides.
 struct Site {
   Vec3 center = Vec3::Zero();
   double half_width_m = 1;
@@ -79,7 +79,7 @@ void add_heap(CavePlan& plan, const CaveField& field, const Site& site, Random& 
                       Vec3(random.uniform(0.8, 1.4), random.uniform(0.7, 1.1), random.uniform(0.45, 0.9));
     const double lean = 0.35 * random.normal();
     const auto floor = rock_along(field, above, -1);
-    // Towards the middle of the heap blocks lie on others.
+    // Towards the middle of the heap blocks lie on top of others.
     const double piled =
         0.6 * std::max(0.0, 1 - (above - heap.center).head<2>().norm() / spread) * random.uniform();
     if (floor)

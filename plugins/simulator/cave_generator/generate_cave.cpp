@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStartClearanceM = 1.0;
 
-/// Values set in code are checked by the same table as those of a file.
+/// Checks values set in code by the same table as those of a file.
 void check(const CaveRecipe& recipe) {
   CaveRecipe copy = recipe;
   core::OptionTable table;
@@ -39,15 +39,15 @@ CavePlan plan_for(const CaveRecipe& recipe, std::uint64_t seed, const Fit& fit) 
   return plan;
 }
 
-/// The next scale when this one gave `ratio` of the volume wanted: an area goes with its square, but passages
-/// already at their least width do not shrink.
+/// The next scale when this one gave `ratio` of the target volume: an area grows with its square, but
+/// passages already at their minimum width do not shrink.
 double next_scale(double scale, double ratio) {
   return std::clamp(scale / std::pow(std::clamp(ratio, 0.5, 2.0), 0.55), 0.6, 1.6);
 }
 
-/// Finds the length of passages, then the scale of their cross-sections, that give the volume wanted: the
-/// length changes in steps of whole branches, the scale does the rest. Volumes are measured on a grid coarser
-/// than the mesh's.
+/// Finds the length of passages, then the scale of their cross-sections, that give the target volume: the
+/// length changes in steps of whole branches, the scale corrects the remainder. Volumes are measured on a
+/// coarser grid than the mesh's.
 Fit fitted(const CaveRecipe& recipe, std::uint64_t seed, double path_radius_m,
            const std::function<void(const char*, double)>& progress) {
   constexpr int kRounds = 4;
@@ -99,7 +99,7 @@ GeneratedCave generate_cave(const CaveRecipe& recipe, std::uint64_t seed,
   const auto tell = [&](const char* step, double fraction) {
     if (progress) progress(step, fraction);
   };
-  // Meshing rounds corners off by up to half a grid step: widen the way until it is as free as promised.
+  // Meshing rounds corners off by up to half a grid step: widens the path until its clearance is reached.
   double path_radius_m = kPathClearanceM + 0.2;
   Fit fit = fitted(recipe, seed, path_radius_m, tell);
   for (int attempt = 0; attempt < 5; ++attempt) {

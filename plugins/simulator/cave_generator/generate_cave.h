@@ -16,10 +16,10 @@ struct GeneratedCave {
 };
 
 constexpr double kPathClearanceM = 0.6;
-/// The volume comes within this share of the recipe's, unless its chambers and shafts alone hold more.
+/// Largest relative deviation from the recipe's volume, unless its chambers and shafts alone have more.
 constexpr double kVolumeBand = 0.15;
 
-/// `progress(step, share done)` is told what goes on. Throws InputError if a value of the recipe is out of
+/// Calls `progress(step, fraction done)` as it goes on. Throws InputError if a value of the recipe is out of
 /// its range.
 GeneratedCave generate_cave(const CaveRecipe& recipe, std::uint64_t seed,
                             const std::function<void(const char*, double)>& progress = {});

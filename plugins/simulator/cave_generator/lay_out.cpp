@@ -16,7 +16,7 @@ struct Spot {
   std::size_t passage = 0, station = 0;
 };
 
-/// A station away from the start and from the ends of its passage.
+/// Picks a station away from the start and from the ends of its passage.
 std::optional<Spot> pick(const CavePlan& plan, Random& random, double from_start_m) {
   for (int attempt = 0; attempt < 40; ++attempt) {
     const double at = random.uniform();
@@ -49,7 +49,7 @@ void add_entrance(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
 }
 
 void add_dome(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
-  std::optional<Spot> spot;  // of a few, that farthest from other chambers
+  std::optional<Spot> spot;  // the one of a few that is farthest from other chambers
   double apart = 0;
   for (int attempt = 0; attempt < 8; ++attempt) {
     const auto other = pick(plan, random, 14);
@@ -87,7 +87,7 @@ void add_dome(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
 
 enum class Vertical { shaft, chimney };
 
-/// A vertical way from a station: a shaft down, with a foot passage, or a chimney up.
+/// Adds a vertical passage at a station: a shaft down, with a foot passage, or a chimney up.
 void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, Vertical kind, std::uint64_t seed,
                   const std::string& name) {
   const bool down = kind == Vertical::shaft;
@@ -130,7 +130,7 @@ void add_vertical(CavePlan& plan, const CaveRecipe& recipe, Random& random, Vert
   }
 }
 
-/// A curved passage between two stations that are near in space and far apart along the passages, if any.
+/// Adds a curved passage between two stations near in space but far apart along the passages, if any.
 void add_loop(CavePlan& plan, const CaveRecipe& recipe, Random& random) {
   const double shortest = 2.5 * recipe.passage_width_m, longest = 6 * recipe.passage_width_m + 10;
   std::optional<std::pair<Spot, Spot>> best;

@@ -27,7 +27,7 @@ Station section(const CaveRecipe& recipe, double s, double width_factor, std::ui
   return out;
 }
 
-/// Where a passage has come to, and where it leads on.
+/// The present end of a passage and its direction there.
 struct Front {
   Vec3 at;
   double heading_rad, pitch_rad;
@@ -116,7 +116,7 @@ Passage walk_passage(const CavePlan& plan, const CaveRecipe& recipe, std::uint64
     const double best = freest_turn(plan, recipe, {p, heading + turn, pitch}, w.from, passage);
     heading += turn + best;
     p += kStationStepM * direction(heading, pitch);
-    // A walk that has come up against another passage ends there.
+    // A walk that meets another passage ends there.
     if (i > 6 && i + 1 < steps &&
         room(plan, recipe, p + 3 * direction(heading, pitch), w.from, passage) < -1.5)
       break;

@@ -1,4 +1,4 @@
-// Passages grow as random walks that keep out of each other's way.
+// Passages grow as random walks that avoid each other.
 #pragma once
 #include <string>
 
@@ -15,13 +15,13 @@ struct Walk {
   bool level_start = false;
 };
 
-/// `name` chooses the random stream: one passage more or less leaves the others as they are.
+/// `name` selects the random stream, so that adding or removing a passage does not change the others.
 Passage walk_passage(const CavePlan& plan, const CaveRecipe& recipe, std::uint64_t seed, const Walk& w,
                      const std::string& name);
 
-/// Metres from p to the nearest cross-section of the plan and of a passage under way, less half a passage and
-/// a wall; negative where there is no place for another. Cross-sections round `but`, and the latest of `own`,
-/// do not count.
+/// Metres from p to the nearest cross-section of the plan and of the unfinished passage `own`, less half a
+/// passage and a wall; negative where there is no room for another passage. Cross-sections around `but`, and
+/// the latest of `own`, do not count.
 double room(const CavePlan& plan, const CaveRecipe& recipe, const core::Vec3& p, const core::Vec3& but,
             const Passage& own = {});
 

@@ -1,4 +1,4 @@
-// A cave as a drawing: centre lines with cross-sections, chambers, and what stands or lies in them.
+// The plan of a cave: centre lines with cross-sections, chambers, and the blocks and speleothems in them.
 #pragma once
 #include <vector>
 
@@ -17,7 +17,7 @@ struct Station {
 };
 
 using Passage =
-    std::vector<Station>;  // about kStationStepM apart; a way for the vehicle leads along the centres
+    std::vector<Station>;  // about kStationStepM apart; a path for the vehicle runs along their centres
 constexpr double kStationStepM = 1.25;
 
 /// An ellipsoid, level, cut flat at its floor.
@@ -46,8 +46,8 @@ struct CavePlan {
   std::vector<Chamber> chambers;  // the first is the entrance
   std::vector<Boulder> boulders;
   std::vector<Speleothem> speleothems;
-  double roughness_m = 0.3;   // amplitude of what is smaller than a passage
-  double undulation_m = 0.6;  // and of what is as large
+  double roughness_m = 0.3;   // amplitude of features smaller than a passage
+  double undulation_m = 0.6;  // amplitude of features as large as a passage
   double undulation_length_m = 6;
   std::uint32_t noise_seed = 0;
 };
@@ -57,11 +57,11 @@ constexpr double kMinHalfM = 1.05;  // no passage is narrower or lower than twic
 /// Lays out passages of about `length_m` in total, without boulders and speleothems.
 CavePlan lay_out(const CaveRecipe& recipe, std::uint64_t seed, double length_m);
 
-/// Makes every cross-section, and every chamber but the entrance, wider and higher by a factor; the ways stay
-/// as they are.
+/// Makes every cross-section, and every chamber but the entrance, wider and higher by a factor; the centre
+/// lines stay as they are.
 void scale_sections(CavePlan& plan, double factor);
 
-/// Heaps of blocks on the floors, dripstone on floors and ceilings.
+/// Adds heaps of blocks on the floors, and dripstone on floors and ceilings.
 void furnish(CavePlan& plan, const CaveRecipe& recipe, std::uint64_t seed);
 
 }  // namespace karst::cave

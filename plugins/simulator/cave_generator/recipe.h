@@ -1,4 +1,4 @@
-// What kind of cave to make.
+// The parameters of a generated cave.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ struct CaveRecipe {
   std::int64_t loops = 1, domes = 2, shafts = 1, chimneys = 1;
   double breakdown = 0.5, speleothems = 0.5;  // density, 0..1
   double roughness_m = 0.3;
-  double grid_m = 0.3;  // of the surface's vertices
+  double grid_m = 0.3;  // grid step of the surface's vertices
 };
 void describe(core::OptionTable& t, CaveRecipe& r);
 

@@ -53,7 +53,7 @@ Samples::Samples(const CaveField& field, double grid_m)
       const CaveField::Cube& cube = field.cube(c.x >> 3, c.y >> 3, c.z >> 3);
       if (!cube.any()) continue;
       std::vector<float> values(kEdge * kEdge * kEdge);
-      constexpr int kPart = 4;  // eighths of a block that the surface does not come near are told at once
+      constexpr int kPart = 4;  // eighths of a block far from the surface are decided by one value
       for (int part = 0; part < 8; ++part) {
         const Node origin = c + Node{kPart * (part & 1), kPart * (part >> 1 & 1), kPart * (part >> 2 & 1)};
         const double half_m = 0.5 * (kPart - 1) * grid_m;
@@ -71,7 +71,7 @@ Samples::Samples(const CaveField& field, double grid_m)
     std::jthread other(fill, std::size_t{1}, std::size_t{2});
     fill(0, 2);
   }
-  // Where a block is missing there is rock: so the hollow never touches one.
+  // A missing block is rock, so the hollow must never touch one.
   std::vector<Node> border;
   for_each([&](const Node& n) {
     if (!hollow(n)) return;

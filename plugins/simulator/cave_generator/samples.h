@@ -14,7 +14,7 @@ struct Node {
 class Samples {
  public:
   static constexpr int kEdge = 8;
-  static constexpr float kRock = 1;  // value of all nodes of a block that is not there
+  static constexpr float kRock = 1;  // value of all nodes of a missing block
   using Block = std::array<float, kEdge * kEdge * kEdge>;
 
   /// The field's cubes must be kEdge * grid_m wide.
@@ -29,7 +29,7 @@ class Samples {
     return i == kNone || blocks_[i].empty() ? kRock : blocks_[i][inside(n)];
   }
   bool hollow(const Node& n) const { return at(n) < 0; }
-  /// The node must be in a block that is there.
+  /// The node must be in an existing block.
   void set(const Node& n, float value) { blocks_[block_of(n)][inside(n)] = value; }
   bool has_block(const Node& n) const {
     const std::size_t i = block_of(n);
@@ -49,7 +49,7 @@ class Samples {
     return static_cast<std::size_t>(((n.z & 7) * kEdge + (n.y & 7)) * kEdge + (n.x & 7));
   }
 
-  /// All nodes of the blocks that are there, in a fixed order.
+  /// Visits all nodes of the existing blocks, in a fixed order.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -68,14 +68,14 @@ class Samples {
   std::vector<std::vector<float>> blocks_;
 };
 
-/// Widens the hollow by single nodes until rock and hollow meet nowhere in an edge or a corner only, so that
-/// the surface between them has no two sheets touching (a well-composed set: Latecki, 1997).
+/// Widens the hollow by single nodes until rock and hollow never meet in an edge or a corner only, so that
+/// no two sheets of the surface between them touch (a well-composed set: Latecki, 1997).
 void separate_sheets(Samples& s);
 
-/// Fills hollows that are not connected with the start's, and removes rock that hangs in the air.
+/// Fills hollows that are not connected to the start's, and removes rock that hangs in the air.
 void keep_one_cave(Samples& s, const core::Vec3& start);
 
-/// Volume of the nodes that are hollow.
+/// Volume of the hollow nodes.
 double hollow_volume_m3(const Samples& s);
 
 }  // namespace karst::cave

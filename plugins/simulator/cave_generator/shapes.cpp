@@ -17,7 +17,7 @@ double ellipsoid_distance(const Vec3& p, const Vec3& radii) {
 
 double smooth_max(double a, double b, double k) { return -smooth_min(-a, -b, k); }
 
-/// Where along a-b the nearest point lies, 0..1.
+/// Parameter in 0..1 of the point of segment a-b nearest to p.
 double along(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double length_squared = ab.squaredNorm();

@@ -13,10 +13,10 @@ struct Segment {
   Station from, to;
   core::Vec3 axis, side, up;
   double length_m, flatness;  // flatness: cosine of the slope
-  double reach_m;             // no part of the surface is farther from the centre line
+  double reach_m;             // largest distance of the surface from the centre line
 };
 
-/// Where a point stands to a segment's centre line.
+/// The position of a point relative to a segment's centre line.
 struct Foot {
   double along = 0;  // 0 at the first station, 1 at the second
   core::Vec3 offset = core::Vec3::Zero();

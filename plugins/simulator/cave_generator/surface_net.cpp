@@ -56,7 +56,7 @@ TriangleMesh surface_net(const Samples& s) {
       const bool here = s.hollow(n);
       if (here == s.hollow(n + kAxes[axis])) continue;
       const Node &u = kAxes[(axis + 1) % 3], &v = kAxes[(axis + 2) % 3];
-      // Counter-clockwise seen from along the axis; turned round where the cave is on the near side.
+      // Counter-clockwise seen along the axis; reversed where the cave is on the near side.
       std::array<std::uint32_t, 4> q{id(minus(minus(n, u), v)), id(minus(n, v)), id(n), id(minus(n, u))};
       if (here) std::swap(q[1], q[3]);
       const auto length = [&](std::size_t a, std::size_t b) {

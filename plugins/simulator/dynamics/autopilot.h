@@ -1,4 +1,4 @@
-// The autopilot's attitude-rate controller: what sits between the core stack's command and the motors.
+// The autopilot's attitude-rate controller, between the core stack's command and the motors.
 #pragma once
 #include "core_stack/vehicle/messages.h"
 #include "plugins/simulator/dynamics/motors.h"
@@ -6,21 +6,21 @@
 namespace karst::sim {
 
 struct AutopilotOptions {
-  // With motors of lag tau the loop is second order with damping 1 / (2 sqrt(gain tau)): 0.71 for 20 1/s.
+  // With a motor lag tau the loop is second order with damping 1 / (2 sqrt(gain tau)): 0.71 for 20 1/s.
   double rate_gain_1ps = 20;
   double yaw_rate_gain_1ps = 8;
   double max_body_rate_radps = 6;
 };
 void describe(core::OptionTable& t, AutopilotOptions& o);
 
-/// Thrust and torque to ask of the motors: torque = J K (w_commanded - w) + w x J w. Commands that are not
-/// finite or not armed give none.
+/// Thrust and torque to command from the motors: torque = J K (w_commanded - w) + w x J w. Commands that are
+/// not finite or not armed give zero.
 Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
                     const core::AttitudeRateCommand& command, const core::Vec3& measured_rate_radps);
 
-/// What an autopilot does by itself when no more commands come: it levels the vehicle and sinks at 0.5 m/s.
-/// It does not know where it is, so it drifts on. Attitude and climb rate are its own to know, and the thrust
-/// of a hover, `weight_n`, it has learned.
+/// The autopilot's command when no more commands come: it levels the vehicle and descends at 0.5 m/s. It has
+/// no position, so the vehicle drifts. It uses its own attitude and climb rate, and the hover thrust
+/// `weight_n` that it has learned.
 core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n);
 
 }  // namespace karst::sim

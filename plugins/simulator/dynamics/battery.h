@@ -1,4 +1,4 @@
-// Energy: what flying draws and what is left.
+// Battery: the power drawn in flight and the energy left.
 #pragma once
 #include "core_stack/vehicle/messages.h"
 #include "plugins/simulator/dynamics/motors.h"
@@ -7,20 +7,20 @@ namespace karst::sim {
 
 struct BatteryOptions {
   double minutes = 10;         // of hovering on a full battery
-  double hover_power_w = 300;  // all in
+  double hover_power_w = 300;  // total, avionics included
   double avionics_w = 30;      // computer and sensors, drawn on the ground as well
 };
 void describe(core::OptionTable& t, BatteryOptions& o);
 
-/// Electric power. Momentum theory: induced power goes with thrust^1.5, scaled to meet `hover_power_w` when
-/// four motors carry the weight; what air drag takes is added at 60 % efficiency.
+/// Electric power. Momentum theory: induced power grows with thrust^1.5, scaled to give `hover_power_w` when
+/// four motors carry the weight; the power of air drag is added at 60 % efficiency.
 double power_w(const BatteryOptions& o, const BodyModel& body, const MotorThrusts& f, double airspeed_mps);
 
 class Battery {
  public:
   explicit Battery(const BatteryOptions& o);
-  /// The mean that predicts the time left follows airborne power only: standing must not promise a longer
-  /// flight.
+  /// The mean that predicts the time left follows airborne power only: time on the ground must not predict a
+  /// longer flight.
   void drain(double power_w, double dt_s, bool airborne);
   bool empty() const { return energy_left_wh_ <= 0; }
   core::BatteryStatus status(core::TimeNs stamp) const;

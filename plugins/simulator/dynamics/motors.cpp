@@ -7,7 +7,7 @@
 namespace karst::sim {
 namespace {
 
-// Signs of each motor's place (x forward, y left) and of its reaction torque.
+// Signs of each motor's position (x forward, y left) and of its reaction torque.
 const MotorThrusts kForward(1, 1, -1, -1), kLeft(1, -1, 1, -1), kSpin(1, -1, -1, 1);
 
 }  // namespace

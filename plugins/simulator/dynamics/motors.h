@@ -8,7 +8,7 @@ namespace karst::sim {
 using MotorThrusts = Eigen::Vector4d;
 
 struct MotorModel {
-  double thrust_to_weight = 2.2;  // all four together
+  double thrust_to_weight = 2.2;  // of all four motors together
   double arm_m = 0.2;             // from the centre to each motor
   double yaw_moment_m = 0.016;    // reaction torque over thrust
   double time_constant_s = 0.025;
@@ -22,11 +22,11 @@ double max_motor_thrust_n(const MotorModel& motors, const BodyModel& body);
 /// Thrust and torque that four motors exert together.
 Wrench wrench_of(const MotorModel& model, const MotorThrusts& f);
 
-/// Motor thrusts in [0, max_n] that exert `wanted` where that is possible. Where it is not, roll and pitch
-/// come first, for they keep the vehicle upright, then collective thrust, and yaw gets what is left.
+/// Motor thrusts in [0, max_n] that exert `wanted` where that is possible. Otherwise roll and pitch have
+/// priority, because they keep the vehicle upright, then collective thrust, then yaw.
 MotorThrusts mix(const MotorModel& model, double max_n, const Wrench& wanted);
 
-/// What the motors exert that turn for thrusts `f` at a time: a worn one gives a share of its own.
+/// Thrusts actually exerted at time `t_s` by motors that turn for thrusts `f`: a worn motor gives less.
 MotorThrusts exerted(const MotorModel& model, const MotorThrusts& f, double t_s);
 
 /// First-order lag, exact for a command that is constant over the step.

@@ -8,7 +8,7 @@ using core::Vec3;
 namespace {
 
 constexpr double kStep_s = 0.001;
-// A little more than its weight: ripple of the thrust while landing must not lift it again.
+// A little more than its weight: thrust ripple while landing must not lift the vehicle again.
 constexpr double kLiftOff = 1.03;
 
 }  // namespace
@@ -84,7 +84,7 @@ QuadrotorEvent Quadrotor::meet_rock(double lift_n) {
   return QuadrotorEvent::landed;
 }
 
-/// On its legs the vehicle comes level within about 0.1 s.
+/// A vehicle that stands becomes level within about 0.1 s.
 void Quadrotor::level_out() {
   constexpr double kSettling_s = 0.1;
   Quat& q = state_.T_world_body.orientation;

@@ -1,4 +1,4 @@
-// The flying machine: autopilot, motors, body, air, battery, and the ground it stands on or hits.
+// The quadrotor: autopilot, motors, body, air, battery, and contact with the ground.
 #pragma once
 #include "plugins/simulator/dynamics/autopilot.h"
 #include "plugins/simulator/dynamics/battery.h"
@@ -7,7 +7,7 @@
 
 namespace karst::sim {
 
-/// `standing`: carried by the ground. `leaving`: thrust carries it, the ground is still within touch.
+/// `standing`: carried by the ground. `leaving`: carried by thrust, but still in contact with the ground.
 enum class Footing { standing, leaving, airborne };
 
 enum class QuadrotorEvent { none, take_off, landed, crashed };
@@ -27,7 +27,7 @@ class Quadrotor {
   core::AttitudeRateCommand command;
   core::Vec3 gyroscope_bias_radps = core::Vec3::Zero();  // the autopilot flies by its biased gyroscope
 
-  /// The rock around it is another from now on; `scene` must outlive its use.
+  /// Replaces the rock around it from now on; `scene` must outlive its use.
   void put_into(const cave::RayScene& scene) { contact_.watch(scene); }
 
   /// Advances by `steps` of 1 ms; stops early at an event. Nothing moves after a crash.

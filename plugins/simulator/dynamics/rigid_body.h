@@ -9,8 +9,8 @@ constexpr double kGravity_mps2 = 9.81;
 
 struct BodyModel {
   double mass_kg = 2.0;
-  double payload_kg = 0;  // carried besides, and not told to the core stack
-  double radius_m = 0.3;  // of the sphere that holds the vehicle
+  double payload_kg = 0;  // carried in addition, unknown to the core stack
+  double radius_m = 0.3;  // of the vehicle's bounding sphere
   double roll_inertia_kgm2 = 0.02, pitch_inertia_kgm2 = 0.02, yaw_inertia_kgm2 = 0.036;
   double drag_kgps = 0.3;        // force = -drag * airspeed
   double spin_drag_nms = 0.004;  // torque = -spin_drag * body rate
@@ -28,14 +28,14 @@ struct BodyState {
   core::Vec3 body_rate_radps = core::Vec3::Zero();  // body frame
 };
 
-/// What the motors exert, in the body frame: thrust along z, and torque.
+/// Wrench of the motors in the body frame: thrust along z, and torque.
 struct Wrench {
   double thrust_n = 0;
   core::Vec3 torque_nm = core::Vec3::Zero();
 };
 
 /// One step of m v' = R f + m g - c (v - wind), J w' = torque - w x J w - d w, with the acceleration held
-/// over the step: exact for constant force, first order in the rest, which is ample at 1 kHz.
+/// over the step: exact for constant force, first order otherwise, which suffices at 1 kHz.
 BodyState advance(const BodyModel& model, const BodyState& s, const Wrench& wrench,
                   const core::Vec3& wind_mps, double dt_s);
 

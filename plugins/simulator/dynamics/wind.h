@@ -13,8 +13,8 @@ struct WindOptions {
 };
 void describe(core::OptionTable& t, WindOptions& o);
 
-/// Ornstein-Uhlenbeck process for each component; the vertical one is half as strong, walls and floor hold
-/// the air. Steps of any size have the same statistics.
+/// Ornstein-Uhlenbeck process for each component; the vertical one is half as strong, because floor and
+/// ceiling restrain the air. Steps of any size have the same statistics.
 class Wind {
  public:
   Wind(const WindOptions& o, core::Random random);

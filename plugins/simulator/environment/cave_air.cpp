@@ -10,7 +10,7 @@ using core::Vec3;
 namespace {
 
 constexpr double kFreshPuff_m = 0.8, kLargestPuff_m = 2.5, kSpread_mps = 0.4;
-constexpr double kFaintest_1pm = 0.002;  // what is thinner is forgotten
+constexpr double kFaintest_1pm = 0.002;  // thinner clouds are dropped
 
 cave::Cloud ball(const Vec3& position, double radius_m, double extinction_1pm, double lidar_ratio_sr) {
   cave::Cloud c;
@@ -56,7 +56,7 @@ void CaveAir::stir(double t_s, const core::Pose& T_world_body, const cave::RaySc
   };
   const double below_m = scene.ray_cast(p, wash, options_.stirred_reach_m);
   if (std::isfinite(below_m)) lift(p + below_m * wash, below_m);
-  constexpr double kSlower = 2;  // half the speed as if twice as far
+  constexpr double kSlower = 2;  // half the speed, as at twice the distance
   const cave::Nearest beside = scene.nearest(p, options_.stirred_reach_m / kSlower);
   const bool is_below = (beside.point - p).normalized().dot(wash) > 0.7;
   if (beside.found && !is_below) lift(beside.point, kSlower * beside.distance_m);

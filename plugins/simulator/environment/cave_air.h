@@ -1,12 +1,12 @@
-// What hangs in the cave's air at a time: the cave's own clouds, haze, mist around the vehicle, and the dust
-// its rotors stir up.
+// The clouds in the cave's air at a given time: the cave's own clouds, haze, mist around the vehicle, and the
+// dust that its rotors raise.
 //
-// The wash leaves the rotors as one turbulent jet: about 2.5 vehicle diameters long it keeps its speed, from
-// there on that falls as 1 / distance (Bauersfeld et al., Robotics meets fluid dynamics, arXiv:2403.13321,
-// 2024). Where it meets rock it lifts dust in proportion to u^2 - u_t^2, u_t the least speed that lifts any
-// (as in models of brownout, Phillips and Brown, 64th AHS Forum, 2008); here u_t is said by the distance at
-// which the jet has come down to it. Along walls beside the vehicle only air drawn in and turned round flows,
-// at half the speed. Every half a second a puff rises from the rock; it spreads, thins and settles.
+// The wash leaves the rotors as one turbulent jet: it keeps its speed for about 2.5 vehicle diameters, beyond
+// which the speed falls as 1 / distance (Bauersfeld et al., Robotics meets fluid dynamics, arXiv:2403.13321,
+// 2024). Where it meets rock it lifts dust in proportion to u^2 - u_t^2, u_t the threshold speed that lifts
+// dust (as in models of brownout, Phillips and Brown, 64th AHS Forum, 2008); here u_t is given by the
+// distance at which the jet has slowed to it. Along walls beside the vehicle flows only recirculated air, at
+// half the speed. Every half a second a puff rises from the rock; it spreads, thins and settles.
 #pragma once
 #include <deque>
 
@@ -23,7 +23,7 @@ struct AirOptions {
 };
 void describe(core::OptionTable& t, AirOptions& o);
 
-/// Share of the full wash's dust that is lifted from rock so far away, 0..1.
+/// Fraction of the full wash's dust that is lifted from rock at this distance, 0..1.
 double lifted_fraction(double distance_m, double reach_m, double vehicle_radius_m);
 
 class CaveAir {
@@ -31,7 +31,7 @@ class CaveAir {
   CaveAir(const AirOptions& o, std::vector<cave::Cloud> clouds, double vehicle_radius_m);
 
   static constexpr double kPuffPeriod_s = 0.5;
-  /// Lifts a puff of dust off the rock that the wash meets; once every kPuffPeriod_s of flight.
+  /// Lifts a puff of dust off the rock that the wash meets; call it once every kPuffPeriod_s of flight.
   void stir(double t_s, const core::Pose& T_world_body, const cave::RayScene& scene);
   std::vector<cave::Cloud> present(double t_s, const core::Vec3& vehicle, bool airborne) const;
 

@@ -1,16 +1,16 @@
-// Dust and droplets as light meets them: what a beam loses on its way, and what they send back.
+// Optics of dust and droplets: the attenuation of a beam along its path, and the light scattered back.
 //
-// Light is lost by Beer and Lambert, I = I0 exp(-tau), tau the optical depth: extinction integrated along the
-// way. Of what is lost a share 1/S per steradian comes straight back, S the cloud's lidar ratio. A pulse of
-// length c t / 2 gathers that over its length; rock, a Lambert surface of reflectivity rho, sends rho / pi.
-// So a stretch of cloud between the optical depths a and b is as bright as rock of reflectivity
+// Light is attenuated by I = I0 exp(-tau) (Beer-Lambert), tau the optical depth: extinction integrated along
+// the path. A fraction 1/S per steradian of the lost light returns straight back, S the cloud's lidar ratio.
+// A pulse of length c t / 2 integrates that over its length; rock, a Lambert surface of reflectivity rho,
+// returns rho / pi. So cloud between the optical depths a and b is as bright as rock of reflectivity
 //
 //   (pi / 2) (1 / S) (exp(-2 a) - exp(-2 b))
 //
-// in its place: never above 0.03 for dust and 0.08 for droplets, where dry rock has 0.2 to 0.6. Around that
-// mean an echo is distributed exponentially: many scatterers at random distances (speckle; Goodman, Speckle
-// Phenomena in Optics, 2007; in radar, Swerling's second case). Model after Hahner et al., Fog Simulation on
-// Real LiDAR Point Clouds, ICCV 2021, whose soft target it is.
+// in its place: never above 0.03 for dust and 0.08 for droplets, while dry rock has 0.2 to 0.6. An echo is
+// distributed exponentially with that mean: many scatterers at random distances (speckle; Goodman, Speckle
+// Phenomena in Optics, 2007; in radar, Swerling's second case). The model is the soft target of Hahner et
+// al., Fog Simulation on Real LiDAR Point Clouds, ICCV 2021.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -24,14 +24,14 @@
 
 namespace karst::sim {
 
-/// What hangs in the air at one moment, and the randomness of its echoes, apart from any sensor's own noise:
-/// a measurement in clear air is the same bytes with and without clouds elsewhere.
+/// The clouds at one moment, and a random stream for their echoes, separate from any sensor's own noise: a
+/// measurement in clear air is the same bytes with and without clouds elsewhere.
 struct Air {
   std::vector<cave::Cloud> clouds;
   core::Random random{0};
 };
 
-/// A beam's way through one cloud.
+/// A beam's segment within one cloud.
 struct Passage {
   double enter_m = 0, leave_m = 0, extinction_1pm = 0, backscatter_1psr = 0;
 
@@ -40,7 +40,7 @@ struct Passage {
   }
 };
 
-/// A beam's way through all clouds; empty for most beams. Reusing one saves its allocation.
+/// A beam's segments within all clouds; empty for most beams. Reusing an object saves its allocation.
 class CloudyPath {
  public:
   /// `ray.direction` is a unit vector.
@@ -48,20 +48,20 @@ class CloudyPath {
   bool clear() const { return passages_.empty(); }
   /// Optical depth from the sensor to `range_m`.
   double depth(double range_m) const;
-  /// Share of light that comes back from `range_m`, there and back.
+  /// Two-way transmittance to `range_m`, 0..1.
   double two_way(double range_m) const { return std::exp(-2 * depth(range_m)); }
 
-  /// A stretch of the way, no longer than a pulse: its echo's mean, as a reflectivity, and where it lies.
+  /// A piece of the path, no longer than a pulse: the mean of its echo, as a reflectivity, and its location.
   struct Stretch {
     double from_m = 0, to_m = 0;  // of its cloudy part
-    double depth = 0;             // optical, of itself
+    double depth = 0;             // its own optical depth
     double mean_echo = 0;
     double echo(core::Random& random) const { return -mean_echo * std::log(1 - random.uniform()); }
-    /// Where in it the echo came from: more often from its near end.
+    /// Draws the range from which the echo came: more often from the near end.
     double place_m(core::Random& random) const;
   };
-  /// Calls f(Stretch) for each cloudy stretch between two ranges, the nearest first, until nothing more can
-  /// come back.
+  /// Calls f(Stretch) for each cloudy stretch between two ranges, the nearest first, until no more light can
+  /// return.
   template <class F>
   void for_each_stretch(double near_m, double far_m, double length_m, F&& f) const {
     if (clear()) return;

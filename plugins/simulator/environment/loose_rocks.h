@@ -1,4 +1,4 @@
-// Which of the cave's boulders are there at a time, and where.
+// Which of the cave's boulders are present at a given time, and their positions.
 #pragma once
 #include <optional>
 
@@ -11,7 +11,7 @@ class LooseRocks {
   explicit LooseRocks(std::vector<cave::LooseRock> boulders)
       : rocks_(std::move(boulders)), there_since_s_(rocks_.size()) {}
 
-  /// Brings them to a time, later than the last. Returns whether any came or moved.
+  /// Advances to a time later than the last. Returns whether any boulder appeared or moved.
   bool advance(double t_s, const core::Vec3& vehicle);
   std::vector<cave::Sphere> present() const;
 

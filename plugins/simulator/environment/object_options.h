@@ -1,4 +1,4 @@
-// The mission file's section `simulator.objects`: what there is to find, and how well it is recognized.
+// The mission file's section `simulator.objects`: the objects to find, and how well they are recognized.
 #pragma once
 #include "core_stack/common/options.h"
 

@@ -35,7 +35,7 @@ void describe(core::OptionTable& t, ObjectOptions& o) {
 namespace {
 
 constexpr double kStep_m = 0.3, kFarthest_m = 4.0, kApart_m = 4.0;
-constexpr double kOffRock_m = 0.15;  // of an object's middle
+constexpr double kOffRock_m = 0.15;  // distance of an object's centre from the rock
 constexpr std::size_t kMaxPlaces = 500000;
 
 Vec3 any_direction(Random& random) {
@@ -48,7 +48,7 @@ Vec3 any_direction(Random& random) {
 
 std::vector<Vec3> flyable_places(const cave::Cave& cave, double clearance_m) {
   using Step = std::array<int, 3>;
-  // Balls of the clearance around two neighbours cover the way between them.
+  // Balls of the clearance around two neighbours cover the segment between them.
   const double step_m = std::min(kStep_m, clearance_m);
   const Vec3& start = cave.description.start.position;
   std::vector<Vec3> places{start};

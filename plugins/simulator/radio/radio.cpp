@@ -25,7 +25,7 @@ bool silent(const RadioOptions& o, TimeNs t) {
   return since_s >= 0 && since_s < o.silent_for_s;
 }
 
-/// One to four bits turned over; of some, the end is missing.
+/// Flips one to four bits; some packets also lose their end.
 void corrupt(std::vector<std::uint8_t>& bytes, Random& random) {
   if (bytes.empty()) return;
   for (std::uint64_t k = 1 + random.bits() % 4; k > 0; --k)
@@ -83,7 +83,7 @@ void Radio::arrive(const cave::RayScene& scene, int from, int to, std::span<cons
     counts.bytes_weak += bytes.size();
     return;
   }
-  // Whoever hears it keeps silent meanwhile, lost to him or not.
+  // A receiver in range keeps silent meanwhile, even if the packet is lost to it.
   receiver.busy_until = std::max(receiver.busy_until, end);
   if (lost) {
     counts.bytes_lost += bytes.size();

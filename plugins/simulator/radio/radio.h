@@ -1,13 +1,13 @@
-// The team's radio: omnidirectional, short of range, slow, lossy. One for all vehicles of a cave.
+// The team's radio: omnidirectional, short-range, slow, lossy. One channel for all vehicles of a cave.
 //
-// A packet is heard by every radio it is strong enough for where it is and where they are when it is sent.
-// The channel is one: a sender waits while it hears another sending (carrier sense) and while it sends
-// itself, so all around one another share the bandwidth. Not modelled: collisions of two that do not hear
-// each other, and capture.
+// A packet is received by every radio where it is strong enough, given all positions when it is sent. There
+// is one channel: a sender waits while it hears another transmission (carrier sense) and while it transmits
+// itself, so radios in range of each other share the bandwidth. Not modelled: collisions of two senders that
+// do not hear each other, and capture.
 //
-// What happens to a packet at a receiver is drawn from the seed, the sender, the packet's number and the
-// receiver, and from nothing else: traffic elsewhere, or the order in which vehicles are asked, changes no
-// outcome.
+// The outcome of a packet at a receiver depends only on the seed, the sender, the packet's number and the
+// receiver, from which it is drawn at random. Traffic elsewhere, or the order in which vehicles are polled,
+// changes no outcome.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -22,11 +22,11 @@ namespace karst::sim {
 struct RadioOptions {
   LinkOptions link;
   double bandwidth_kbps = 64;
-  double latency_ms = 5, jitter_ms = 5;         // behind the time on the air; jitter is uniform
-  double loss = 0;                              // share of packets lost for no reason of distance
-  double corrupt = 0;                           // share of packets that arrive with wrong or missing bytes
-  double queue_bytes = 8000;                    // what a sender holds back; beyond that packets are dropped
-  double silent_after_s = 0, silent_for_s = 0;  // nothing arrives that was sent then
+  double latency_ms = 5, jitter_ms = 5;         // added to the time on the air; jitter is uniform
+  double loss = 0;                              // fraction of packets lost irrespective of distance
+  double corrupt = 0;                           // fraction of packets that arrive with wrong or missing bytes
+  double queue_bytes = 8000;                    // capacity of a sender's queue; packets beyond are dropped
+  double silent_after_s = 0, silent_for_s = 0;  // packets sent during this period are lost
 };
 void describe(core::OptionTable& t, RadioOptions& o);
 
@@ -37,12 +37,12 @@ struct RadioPacket {
   double margin_db = 0;  // as received
 };
 
-/// Bytes by what became of them. A packet is sent once and meets every other radio: what was sent, times
-/// their number, is the sum of heard, weak, lost and deaf.
+/// Packets and bytes by outcome. A packet is sent once and reaches every other radio: the bytes sent, times
+/// the number of other radios, are the sum of heard, weak, lost and deaf.
 struct RadioCounts {
   std::uint64_t packets_sent = 0, bytes_sent = 0;
-  std::uint64_t packets_dropped = 0, bytes_dropped = 0;  // by the sender's full queue, or it being off
-  std::uint64_t packets_heard = 0, bytes_heard = 0;      // by this receiver, the corrupted among them
+  std::uint64_t packets_dropped = 0, bytes_dropped = 0;          // the sender's queue was full, or it was off
+  std::uint64_t packets_heard = 0, bytes_heard = 0;              // by this receiver, the corrupted among them
   std::uint64_t bytes_weak = 0, bytes_lost = 0, bytes_deaf = 0;  // for this receiver; deaf: it was off
   std::uint64_t packets_corrupted = 0;
 };
@@ -51,19 +51,19 @@ class Radio {
  public:
   Radio(const RadioOptions& options, std::uint64_t seed) : options_(options), seed_(seed) {}
 
-  /// A radio by its number; to be called again whenever it has moved. Base stations and dropped nodes, too.
+  /// Sets the position (world, m) of a radio: robot, base station or dropped node. Call it after each motion.
   void place(int radio, const core::Vec3& position) { radios_[radio].position = position; }
-  /// A radio that is off neither sends nor hears.
+  /// A radio that is off neither transmits nor receives.
   void switch_off(int radio) { radios_.at(radio).on = false; }
   void switch_on(int radio) { radios_.at(radio).on = true; }
 
-  /// Puts a packet on the air as soon as the channel is free; stamps must not go back. Throws
-  /// std::out_of_range if the radio was never placed.
+  /// Transmits a packet as soon as the channel is free; stamps must not decrease. Throws std::out_of_range if
+  /// the radio was never placed.
   void send(const cave::RayScene& scene, int from, std::span<const std::uint8_t> bytes, core::TimeNs stamp);
-  /// What has arrived at a radio up to `until` and was not taken yet, in the order of arrival.
+  /// Packets that arrived at a radio up to `until` and were not returned yet, in the order of arrival.
   std::vector<RadioPacket> receive(int to, core::TimeNs until);
 
-  /// What the receiver would have above its need now, without fading.
+  /// Link margin in dB between two radios at their present positions, without fading.
   double margin_db(const cave::RayScene& scene, int a, int b) const;
   const RadioCounts& counts(int radio) const { return radios_.at(radio).counts; }
 
@@ -75,7 +75,7 @@ class Radio {
   struct Station {
     core::Vec3 position = core::Vec3::Zero();
     bool on = true;
-    core::TimeNs busy_until = 0;  // by its own packets, or others' that it hears
+    core::TimeNs busy_until = 0;  // due to its own packets, or others' that it hears
     std::uint64_t sent = 0;
     std::vector<Arrival> arriving;
     RadioCounts counts;

@@ -10,8 +10,8 @@ namespace {
 
 using core::Vec3;
 
-/// Distances at which the segment passes surfaces of the mesh, nearest first; surfaces closer together than a
-/// millimetre count once.
+/// Distances at which the segment crosses surfaces of the mesh, nearest first; surfaces closer together than
+/// a millimetre count once.
 std::vector<double> surfaces_between(const cave::RayScene& scene, const Vec3& a, const Vec3& b) {
   constexpr double kStep_m = 1e-3;
   const double length_m = (b - a).norm();
@@ -24,7 +24,7 @@ std::vector<double> surfaces_between(const cave::RayScene& scene, const Vec3& a,
     const cave::Hit hit = scene.cast(ray, static_cast<float>(length_m - from_m));
     if (!hit.any()) break;
     from_m += static_cast<double>(hit.range_m);
-    // No line passes a triangle twice: it is met again where it is so askew that a step hardly leads off it.
+    // No line crosses a triangle twice: a second hit means grazing incidence, where a step hardly leaves it.
     if (hit.triangle != last) out.push_back(from_m);
     last = hit.triangle;
     from_m += kStep_m;
@@ -68,9 +68,9 @@ double link_margin_db(const LinkOptions& o, const cave::RayScene& scene, const V
   if (o.propagation == Propagation::distance)
     return d <= o.range_m ? std::numeric_limits<double>::infinity()
                           : -std::numeric_limits<double>::infinity();
-  // Nearer than a metre the law does not hold; it is strong enough there.
+  // The law does not hold below 1 m, where the signal is strong enough anyway.
   const double margin_db = 10 * o.path_loss_exponent * std::log10(o.range_m / std::max(d, 1.0));
-  // No need to look for rock where air alone is too much, fading included.
+  // Skips the search for rock where air alone attenuates too much, fading included.
   if (margin_db < -6 * o.fading_db) return margin_db;
   return margin_db - o.rock_db_per_m * rock_between_m(scene, a, b);
 }

@@ -1,8 +1,8 @@
-// How much of a radio's power gets from one place in a cave to another.
+// The path loss of a radio link between two positions in a cave.
 //
-// In air power falls with the distance by the log-distance law, 10 n log10(d) dB. Rock on the straight line
-// takes a number of dB from every metre of it. The budget is what free air of the range takes: without rock a
-// link reaches exactly `range`.
+// In air the loss grows with the distance by the log-distance law, 10 n log10(d) dB. Every metre of rock on
+// the straight line adds a fixed number of dB. The link budget is the loss of air over `range`: without rock
+// a link reaches exactly `range`.
 //
 // Figures. Rock: a wave in a material of little loss is damped by 1636 sigma / sqrt(epsilon_r) dB/m, sigma in
 // S/m (plane wave, loss tangent well below 1: Annan, Ground Penetrating Radar Principles, as 1.64 sigma /
@@ -10,17 +10,17 @@
 // to 20 mS/m from dry to wet: 0.6 to 13 dB/m. The default of 3 dB/m is 5 mS/m at 7; wet clay takes tens. Air:
 // n = 2 is free space, and rough galleries in line of sight are found close to it.
 //
-// What is not modelled: that passages guide waves above some hundred MHz, which carries them farther along
-// straight ones; reflection and diffraction, which carry some of them round bends. Both would help: the model
-// errs on the side of less contact in bends, and says nothing of fading by interference but the random share
-// in `fading_db`.
+// Not modelled: wave guiding in passages above some hundred MHz, which extends the range along straight ones;
+// reflection and diffraction, which carry part of the signal around bends. Both would help: the model
+// underestimates contact in bends, and covers fading by interference only as the random part in
+// `fading_db`.
 #pragma once
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/ray_scene.h"
 
 namespace karst::sim {
 
-/// rock: what this file is about; distance: within the range all is heard, as in the paper.
+/// rock: the model of this file; distance: all packets within the range are received, as in the paper.
 enum class Propagation { rock, distance };
 constexpr auto names_of(Propagation) {
   using enum Propagation;
@@ -36,12 +36,12 @@ struct LinkOptions {
 };
 void describe(core::OptionTable& t, LinkOptions& o);
 
-/// Metres of rock on the straight line between two places in the air. Where the mesh has holes or overlaps,
-/// so that an odd number of surfaces is passed, all from the first surface to the last counts as rock.
+/// Metres of rock on the straight line between two positions in the air. If an odd number of surfaces is
+/// crossed, because the mesh has holes or overlaps, all from the first surface to the last counts as rock.
 double rock_between_m(const cave::RayScene& scene, const core::Vec3& a, const core::Vec3& b);
 
-/// dB above what the receiver needs; negative: too weak. By distance alone: +-infinity within and beyond the
-/// range.
+/// Link margin in dB above the receiver's sensitivity; negative: too weak. With Propagation::distance:
+/// +infinity within the range, -infinity beyond.
 double link_margin_db(const LinkOptions& o, const cave::RayScene& scene, const core::Vec3& a,
                       const core::Vec3& b);
 

@@ -28,7 +28,7 @@ constexpr Unit kUnits[] = {{"vlp16", 16, 15, 100},
                            {"os0_128", 128, 45, 50}};
 
 constexpr float kRangeStep_m = 0.001f;  // as the units report ranges
-constexpr double kPulse_m = 0.75;       // c t / 2 of a pulse of 5 ns: what is nearer together is one echo
+constexpr double kPulse_m = 0.75;       // c t / 2 of a pulse of 5 ns: nearer targets merge into one echo
 
 }  // namespace
 
@@ -83,7 +83,7 @@ Lidar::Return Lidar::through(const CloudyPath& path, const Return& clear, core::
   if (path.depth(end_m) == 0) return clear;
   const double left = path.two_way(end_m);
   const double reflectivity = static_cast<double>(clear.intensity / return_intensity(1, 1, clear.range_m));
-  // The weakest echo it notices: that of rock of 10 % at its greatest range, as data sheets state it.
+  // The weakest detectable echo: that of rock of 10 % at the maximum range, as data sheets state it.
   double strongest = received_light(0.1, max_range_m);
   Return best{std::numeric_limits<float>::quiet_NaN(), 0};
   if (const double light = received_light(reflectivity * left, end_m); light >= strongest) {

@@ -13,12 +13,12 @@ struct LidarOptions {
   std::int64_t columns = 512;
   double rate_hz = 10;
   double noise_m = 0.02;     // standard deviation of a range
-  double dust_fraction = 0;  // of beams that dust or droplets near the vehicle send back
+  double dust_fraction = 0;  // fraction of beams returned by dust or droplets near the vehicle
   double mast_m = 0.1;       // height above the vehicle's centre
 };
 void describe(core::OptionTable& t, LidarOptions& o);
 
-/// vlp16, os0_32, os0_64, os1_64 and os0_128: channels, vertical field of view and reach of well-known units.
+/// vlp16, os0_32, os0_64, os1_64 and os0_128: channels, vertical field of view and range of well-known units.
 std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o);
 
 class Lidar {
@@ -26,9 +26,9 @@ class Lidar {
   explicit Lidar(const LidarOptions& o);
   const std::shared_ptr<const core::LidarModel>& model() const { return model_; }
 
-  /// The sweep that ends at `stamp`, each column cast from where the sensor was when it fired. Const: sweeps
-  /// may be computed on any thread. What clouds leave of an echo may be too weak to be noticed, or a cloud's
-  /// own echo may be reported in its place; if there is neither, that is no measurement (NaN).
+  /// The sweep that ends at `stamp`, each column cast from the sensor's pose when it fired. Const, so sweeps
+  /// may be computed on any thread. An echo attenuated by clouds may be too weak to be detected, or a cloud's
+  /// own echo may be reported in its place; without either there is no measurement (NaN).
   core::LidarScan sweep(const cave::Cave& cave, const PoseTrack& T_world_body, core::TimeNs stamp,
                         core::Random random, Air air = {}) const;
 
@@ -36,7 +36,7 @@ class Lidar {
   struct Return {
     float range_m, intensity;
   };
-  /// What becomes of a beam's return in clear air: of all echoes the strongest is reported.
+  /// The return of a beam through clouds, given its return in clear air: the strongest echo is reported.
   Return through(const CloudyPath& path, const Return& clear, core::Random& random) const;
 
   LidarOptions options_;
@@ -44,12 +44,12 @@ class Lidar {
   std::vector<core::Vec3f> beams_;  // unit vectors in the lidar frame, channel-major
 };
 
-/// Returned share of light: reflectivity * cos(incidence) / (1 + (range / 25 m)^2).
+/// Returned fraction of light: reflectivity * cos(incidence) / (1 + (range / 25 m)^2).
 float return_intensity(double reflectivity, float cos_incidence, float range_m);
 
-/// Light that the receiver gathers, up to a factor of the unit: reflectivity / range^2. Nearer than 2 m its
-/// view and the beam overlap in part only, and no more comes in than from there (the crossover function of
-/// Hahner et al.; units differ, their makers do not say).
+/// Light that the receiver gathers, up to a constant factor: reflectivity / range^2. Below 2 m its field of
+/// view and the beam overlap in part only, and it gathers no more than at 2 m (the crossover function of
+/// Hahner et al.; units differ, and vendors do not publish theirs).
 double received_light(double reflectivity, double range_m);
 
 }  // namespace karst::sim

@@ -1,4 +1,4 @@
-// Magnetic field: the earth's, and that of ore.
+// Magnetic field of the earth and of ore bodies.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"

@@ -33,7 +33,7 @@ core::PoseSample PoseSensor::sample(core::TimeNs stamp, const core::Pose& T_worl
   const double path_m = (T_world_body.position - last_position_).norm();
   last_position_ = T_world_body.position;
   const double step = std::sqrt(path_m / kDriftPath_m);
-  // Of the drift's length, so each of three components has 1 / sqrt(3) of it.
+  // The option is the length of the drift vector, so each of three components has 1 / sqrt(3) of it.
   const double drift_m = options_.drift_percent / 100 * kDriftPath_m / std::sqrt(3.0);
   drift_ += drift_m * step * normal_vector(random_);
   heading_drift_ += options_.heading_drift_rad * step * random_.normal();

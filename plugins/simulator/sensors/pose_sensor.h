@@ -1,4 +1,4 @@
-// A sensor of the whole pose, as good as motion capture or a good LiDAR odometry: noise, delay, slow drift.
+// A sensor of the full pose, like motion capture or a good LiDAR odometry: noise, delay, slow drift.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
@@ -6,7 +6,7 @@
 
 namespace karst::sim {
 
-/// Which vehicles carry it; one with a LiDAR locates itself.
+/// Which vehicles carry it; a vehicle with a LiDAR localizes itself.
 enum class PoseSensorFitted { without_lidar, always, never };
 constexpr auto names_of(PoseSensorFitted) {
   using enum PoseSensorFitted;
@@ -20,7 +20,7 @@ struct PoseSensorOptions {
   double delay_s = 0.05;
   double noise_m = 0.01;  // standard deviation of each component
   double noise_rad = 0.2 * 0.017453292519943295;
-  double drift_percent = 0.02;                             // of the path, after 100 m
+  double drift_percent = 0.02;                             // of the path length, after 100 m
   double heading_drift_rad = 0.05 * 0.017453292519943295;  // after 100 m
 };
 void describe(core::OptionTable& t, PoseSensorOptions& o);

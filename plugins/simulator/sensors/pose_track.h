@@ -1,4 +1,4 @@
-// Where the vehicle was over the last moments: a sweep is measured from a moving sensor.
+// The vehicle's recent poses, since a sweep is measured from a moving sensor.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -21,7 +21,7 @@ inline core::Pose pose_at(const PoseTrack& track, core::TimeNs t) {
   return core::pose_on_track(track, t, &StampedPose::stamp, &StampedPose::pose);
 }
 
-/// Appends, and forgets all but the one last pose from before `oldest`.
+/// Appends a pose, and drops all poses before `oldest` except the last of them.
 inline void append(PoseTrack& track, const StampedPose& p, core::TimeNs oldest) {
   track.push_back(p);
   const auto keep =

@@ -1,4 +1,4 @@
-// Cheap noise for tens of thousands of ranges a scan.
+// Cheap noise for tens of thousands of ranges per scan.
 #pragma once
 #include "core_stack/common/random.h"
 

@@ -1,4 +1,4 @@
-// Which faults of the cave strike a sensor's message, and what they make of a scan.
+// The faults of the cave that affect a sensor's message, and their effect on a scan.
 #pragma once
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ class SensorFaults {
   std::vector<bool> begun_;
 };
 
-/// Does to a scan what the fault does; kinds other than those of scans do nothing.
+/// Applies a fault to a scan; kinds that do not concern scans do nothing.
 void spoil(core::LidarScan& scan, cave::Fault::Kind kind);
 
 }  // namespace karst::sim

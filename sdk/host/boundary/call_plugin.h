@@ -4,9 +4,9 @@
 
 namespace karst::host {
 
-/// Calls `f`, which the ABI declares noexcept. A plugin that breaks that promise from C, or from a standard
-/// that cannot state it, must not terminate the process: through this pointer type the exception can be
-/// caught.
+/// Calls `f`, which the ABI declares noexcept. A plugin that breaks that promise, compiled as C or an older
+/// C++ standard without noexcept types, must not terminate the process: a call through this pointer type lets
+/// the caller catch the exception.
 template <class R, class... Args>
 R call_plugin(R (*f)(Args...), std::type_identity_t<Args>... args) {
   return f(args...);

@@ -7,9 +7,9 @@
 namespace karst::host {
 namespace {
 
-constexpr double kFarthest_m = 1e5;  // no cave is wider; beyond it float rounding would bite
+constexpr double kFarthest_m = 1e5;  // no cave is wider; beyond it float rounding would matter
 constexpr double kLongestTolerance_m = 100.0, kHighestSpeed_mps = 1000.0;
-constexpr double kLowestSpeed_mps = 0.05;  // the least that motion.min_speed can be
+constexpr double kLowestSpeed_mps = 0.05;  // the smallest allowed motion.min_speed
 
 core::Goal to_core(const karst_goal_t& g) {
   core::Goal out;

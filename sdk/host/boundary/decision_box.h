@@ -1,7 +1,7 @@
-// What a policy said in one decide(): collected from the sink, checked for shape, turned into core types.
+// The answer of a policy in one decide(): collected from the sink, checked for form, turned into core types.
 //
-// Shape is finite numbers, bounded counts, readable texts. Whether a goal is free, reachable and affordable
-// is mission control's to judge.
+// Form means finite numbers, bounded counts, readable texts. Mission control judges whether a goal is free,
+// reachable and affordable.
 #pragma once
 #include <string>
 #include <utility>
@@ -22,12 +22,12 @@ class DecisionBox {
   /// Filled through this table while decide() runs.
   karst_decision_sink_t sink();
 
-  /// Why the answer as a whole is no answer; "" if it is one.
+  /// The reason why the answer as a whole is invalid; "" if it is valid.
   std::string fault() const;
-  /// True if the sink refused something: an error that decide() then returns is of its own making.
+  /// True if the sink refused a call: an error that decide() then returns is the policy's own fault.
   bool misused() const { return !fault_.empty(); }
-  /// The goals are stops in order, not choices by score (`karst policy check`). Mission control goes through
-  /// both from the front.
+  /// The goals are stops in order, not alternatives by score (`karst policy check`). Mission control tries
+  /// both kinds from the front.
   bool is_tour() const { return tour_; }
   /// The well-formed part of the answer.
   core::Decision decision() const;

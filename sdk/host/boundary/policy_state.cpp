@@ -8,7 +8,7 @@ namespace {
 
 struct Collected {
   std::vector<std::byte>& bytes;
-  std::string fault;  // stands even if the policy claims success
+  std::string fault;  // counts even if the policy reports success
 };
 
 std::int32_t write(const karst_state_sink_t* sink, const void* bytes, std::uint64_t count,

@@ -1,4 +1,4 @@
-// Text that came over the border: bounded, valid UTF-8, one line.
+// Text that came from a plugin: bounded, valid UTF-8, one line.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -17,7 +17,7 @@ bool is_utf8(std::string_view s);
 /// "" if `text` is one line of UTF-8 of at most `limit` bytes, otherwise what is wrong with it.
 std::string fault_of(const karst_text_t& text, std::uint64_t limit);
 
-/// A copy that is always one line of UTF-8: cut at the limit, bytes that do not belong replaced by '?'.
+/// A copy that is always one line of UTF-8: cut at the limit, invalid bytes replaced by '?'.
 std::string cleaned(const karst_text_t& text, std::uint64_t limit);
 
 /// The bytes as they are.
@@ -29,7 +29,7 @@ inline std::string string_of(const karst_text_t& t) {
 inline karst_text_t view_of(std::string_view s) { return {s.data(), s.size()}; }
 
 void fill_error(karst_error_t* error, std::int32_t code, std::string_view text);
-/// The callee's reason, whatever state it left the struct in.
+/// The callee's reason, read safely whatever the struct contains.
 std::string text_of(const karst_error_t& error);
 
 }  // namespace karst::host

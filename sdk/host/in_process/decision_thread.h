@@ -1,4 +1,4 @@
-// The one thread on which a policy is called, with a limit on how long it is waited for.
+// The one thread on which a policy is called, with a limit on the time that a caller waits for it.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -14,14 +14,14 @@ namespace karst::host {
 class DecisionThread {
  public:
   DecisionThread();
-  /// Joins, unless the thread hangs in a task: then it is left behind with what its task holds.
+  /// Joins, unless the thread hangs in a task: then it is detached and keeps the data its task holds.
   ~DecisionThread();
   DecisionThread(const DecisionThread&) = delete;
   DecisionThread& operator=(const DecisionThread&) = delete;
 
-  /// Runs `task` on the thread; "" once it returned. Otherwise which limit it passed, in words: the thread is
-  /// then given up for good, and all a task refers to must stay alive by itself (shared ownership), as it may
-  /// still run. `task` must not throw. Processor time is that of this thread alone.
+  /// Runs `task` on the thread; returns "" once it has returned, otherwise the limit exceeded, in words. The
+  /// thread is then abandoned for good, and shared ownership must keep alive everything the task refers to,
+  /// as it may still run. `task` must not throw. Processor time is that of this thread alone.
   std::string run(std::function<void()> task, const CallLimits& limits);
   bool hangs() const { return hangs_; }
   std::thread::id id() const { return thread_.get_id(); }

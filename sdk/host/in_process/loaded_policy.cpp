@@ -11,7 +11,7 @@
 
 namespace karst::host {
 
-/// What one call into the plugin needs and leaves behind. Shared with the thread: it outlives a hang.
+/// Inputs and results of one call into the plugin. Shared with the thread, so that it outlives a hang.
 struct LoadedPolicy::Call {
   std::shared_ptr<Session> session;
   karst_error_t error{};
@@ -88,7 +88,7 @@ void LoadedPolicy::start(const PolicyLegacy& former) {
 }
 
 void LoadedPolicy::create_and_init() {
-  // What the thread writes is shared: it may write it long after this function has given up.
+  // The result is shared: the thread may write it long after this function has stopped waiting.
   auto made = std::make_shared<void*>(nullptr);
   require(call("create", [made, table = &table_](Call& c) -> std::int32_t {
     *made = call_plugin(table->create, c.session->host(), &c.error);
@@ -183,7 +183,7 @@ core::Decision LoadedPolicy::decide(const core::DecisionRequest& request) {
   return decision;
 }
 
-/// Tells the policy, and the log, which goals were malformed.
+/// Reports malformed goals to the policy and to the log.
 void LoadedPolicy::refuse(const core::DecisionRequest& request, const DecisionBox& box) {
   for (const auto& [goal, why] : box.refused()) {
     session_->note("warning: " + name_ + ": " + why);

@@ -15,9 +15,9 @@ namespace karst::host {
 
 class LoadedPolicy final : public HostedPolicy {
  public:
-  /// Creates, initializes and activates; with a former object's state first restores that, or notes why not
-  /// and begins anew. `lengths` answers the path service in place of a request's roadmap. Throws
-  /// core::InputError.
+  /// Creates, initializes and activates. Restores a former object's state, if given; on failure logs the
+  /// reason and starts without one. `lengths` answers the path service in place of a request's roadmap.
+  /// Throws core::InputError.
   LoadedPolicy(const PluginFile& plugin, const karst_policy_t& table, const PolicyChoice& choice,
                const PolicyLegacy& former = {}, PathLengths lengths = {});
   ~LoadedPolicy() override { end(); }
@@ -31,12 +31,12 @@ class LoadedPolicy final : public HostedPolicy {
   core::Decision decide(const core::DecisionRequest& request) override;
   void notify(const core::PolicyEvent& event) override;
 
-  /// What another object needs to go on where this one is. A state the policy fails to save is left out.
+  /// The data with which another object can continue. A state that the policy fails to save is left out.
   PolicyLegacy legacy();
 
  private:
   struct Call;
-  /// Runs `work(call)` on the decision thread, work returning a result code. "" or what went wrong.
+  /// Runs `work(call)`, which returns a result code, on the decision thread. Returns "" or the failure.
   template <class Work>
   std::string call(const char* slot, Work work);
   /// Throws core::InputError if there is a fault.
@@ -59,7 +59,7 @@ class LoadedPolicy final : public HostedPolicy {
   DecisionThread thread_;
   void* self_ = nullptr;
   bool active_ = false;
-  int failures_ = 0;  // of decide, in a row
+  int failures_ = 0;  // consecutive failures of decide
 };
 
 }  // namespace karst::host

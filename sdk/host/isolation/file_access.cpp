@@ -18,7 +18,7 @@
 namespace karst::host {
 namespace {
 
-/// What the first version of the interface knows; any kernel that has Landlock does.
+/// The access rights of the first version of the interface, which any kernel with Landlock supports.
 constexpr std::uint64_t kReading = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t kHandled =
     kReading | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
@@ -76,7 +76,7 @@ std::vector<std::filesystem::path> places_to_read(const std::filesystem::path& p
   const std::filesystem::path file = std::filesystem::absolute(plugin, error);
   for (const std::filesystem::path& of : {file, std::filesystem::weakly_canonical(file, error)}) {
     places.push_back(of);
-    // A plugin that lies among all there is takes nothing of it along.
+    // A plugin in the root directory must not make everything readable.
     if (of.parent_path() != of.root_path()) places.push_back(of.parent_path());
   }
   return places;

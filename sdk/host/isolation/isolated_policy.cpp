@@ -8,7 +8,7 @@
 namespace karst::host {
 namespace {
 
-/// The answer to a question of the child, which may ask for anything.
+/// The answer to a query of the child, whose arguments are not trusted.
 PathAnswer lengths(const core::DecisionRequest* request, const Bytes& body) {
   const LengthsQuestion q = read_lengths_question(body);
   if (request == nullptr || request->map == nullptr || request->roadmap == nullptr) return {};
@@ -39,7 +39,7 @@ IsolatedPolicy::~IsolatedPolicy() {
     process_->begin_call("destroy");
     process_->send(static_cast<std::uint32_t>(Said::end), {});
     process_->expect_end();
-  } catch (const std::exception&) {  // it is ended all the same
+  } catch (const std::exception&) {  // the process is ended in any case
   }
 }
 
@@ -81,7 +81,7 @@ RingMessage IsolatedPolicy::question(const char* call, Said kind, const Bytes& b
       process_->end_call();
       return said;
     }
-    process_->check();  // asking again and again is no way to escape the limits
+    process_->check();  // repeated queries must not escape the limits
     process_->send(static_cast<std::uint32_t>(Said::lengths), flatten(lengths(request, said.body)));
   }
 }
@@ -157,7 +157,7 @@ void IsolatedPolicy::notify(const core::PolicyEvent& event) {
   try {
     recover(why);
     broke_between_ = why;
-  } catch (const core::PolicyFailure&) {  // the next decision says so
+  } catch (const core::PolicyFailure&) {  // the next decision reports it
   }
 }
 

@@ -1,8 +1,8 @@
-// A policy in a process of its own, behind the core's port (docs/isolation.md).
+// A policy in a separate process, behind the core's port (docs/isolation.md).
 //
-// Whatever becomes of that process, decide() returns or throws PolicyFailure. The first time the process
-// breaks, decide() answers HOLD and a new one is started that goes on with the state the policy saved last,
-// if it offers that; the second time is a PolicyFailure.
+// Whatever happens to that process, decide() returns or throws PolicyFailure. The first time the process
+// breaks, decide() answers HOLD and a new one is started, which continues with the state that the policy
+// saved last, if it offers that; the second time is a PolicyFailure.
 #pragma once
 #include <memory>
 
@@ -14,7 +14,7 @@ namespace karst::host {
 
 class IsolatedPolicy final : public HostedPolicy {
  public:
-  /// Starts the policy of `file`. Throws core::InputError, as in process.
+  /// Starts the policy of `file`. Throws core::InputError, like a policy in this process.
   IsolatedPolicy(const std::string& file, const PolicyChoice& choice);
   ~IsolatedPolicy() override;
 
@@ -27,14 +27,14 @@ class IsolatedPolicy final : public HostedPolicy {
   core::Decision decide(const core::DecisionRequest& request) override;
   void notify(const core::PolicyEvent& event) override;
 
-  /// Of the policy's process; -1 if there is none.
+  /// Process id of the policy's process; -1 if there is none.
   pid_t process_id() const { return process_ ? process_->id() : -1; }
 
  private:
   void start();
   core::Decision ask(const core::DecisionRequest& request);
   RingMessage question(const char* call, Said kind, const Bytes& body, const core::DecisionRequest* request);
-  /// Starts anew the first time. Throws PolicyFailure the second.
+  /// Restarts the process the first time. Throws PolicyFailure the second time.
   void recover(const std::string& why);
   core::Decision hold(const std::string& why);
 
@@ -46,7 +46,7 @@ class IsolatedPolicy final : public HostedPolicy {
   const core::VoxelMap* map_sent_ = nullptr;
   std::uint64_t revision_sent_ = 0;
   bool restarted_ = false;
-  std::string broke_between_;  // why it broke in an event, until the next decision tells
+  std::string broke_between_;  // why it broke in an event, until the next decision reports it
 };
 
 }  // namespace karst::host

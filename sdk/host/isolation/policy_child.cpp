@@ -53,7 +53,7 @@ class Server {
     choice.source = order.source;
     choice.seed = order.seed;
     choice.failures_allowed = order.failures_allowed;
-    choice.hang_limit_s = choice.cpu_limit_s = 1e9;  // the host's to enforce: it can end this process
+    choice.hang_limit_s = choice.cpu_limit_s = 1e9;  // the host enforces them: it can end this process
     try {
       confine_this_process(order.memory_limit_bytes, places_to_read(order.file));
       const Selection found = open_policy(order.file, order.policy);
@@ -82,7 +82,7 @@ class Server {
     say(Said::decided, flatten(report));
   }
 
-  /// Asks the host. On a thread of the policy, while this one waits for decide() to return.
+  /// Queries the host. Runs on a thread of the policy, while the main thread waits for decide() to return.
   PathAnswer lengths(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
     const std::lock_guard lock(asking_);
     say(Said::asks_lengths, flatten(LengthsQuestion{from, {goals.begin(), goals.end()}, tolerance_m}));

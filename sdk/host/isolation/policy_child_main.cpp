@@ -9,9 +9,9 @@
 #include "sdk/host/isolation/policy_child.h"
 
 int main(int argc, char** argv) {
-  // The kernel ends this process when the host's thread that started it ends, however that comes about:
-  // nothing in this process has to see to it, and nothing in it can stop it. If the host has ended before
-  // this line, the parent is another by now.
+  // The kernel ends this process when the host's thread that started it ends, for whatever reason: it needs
+  // no cooperation of this process, and nothing in it can prevent it. If the host has ended before this line,
+  // the parent process is another one by now.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (argc != 2 || std::atoi(argv[1]) != getppid()) {
     std::fputs("karst-policy-child is started by karst, for policy.isolation = process\n", stderr);
@@ -22,5 +22,5 @@ int main(int argc, char** argv) {
     code = karst::host::serve_policy();
   } catch (const std::exception&) {  // the host sees that this process has ended
   }
-  _exit(code);  // threads of the policy may still run: nothing is torn down
+  _exit(code);  // threads of the policy may still run, so nothing is destroyed
 }

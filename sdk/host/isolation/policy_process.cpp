@@ -33,7 +33,7 @@ struct Descriptor {
   ~Descriptor() { close(value); }
 };
 
-/// A copy far above those the child gets.
+/// A duplicate with a number far above those that the child gets.
 int raised(int descriptor) { return fcntl(descriptor, F_DUPFD_CLOEXEC, 100); }
 
 pid_t spawn(const std::string& program, int requests, int answers) {
@@ -46,7 +46,7 @@ pid_t spawn(const std::string& program, int requests, int answers) {
   posix_spawn_file_actions_adddup2(&files, read_end.value, kRequestsDescriptor);
   posix_spawn_file_actions_adddup2(&files, write_end.value, kAnswersDescriptor);
   posix_spawn_file_actions_addclosefrom_np(&files, kAnswersDescriptor + 1);
-  // A group of its own: Ctrl-C on a terminal ends the mission in order, and must not end the policy before.
+  // A separate process group: Ctrl-C on a terminal ends the mission in order, not the policy first.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none, all;
@@ -69,7 +69,7 @@ pid_t spawn(const std::string& program, int requests, int answers) {
   return id;
 }
 
-/// Directories in /proc/PID/task, by their links; 0 if it is gone.
+/// Number of threads, from the link count of /proc/PID/task; 0 if the process is gone.
 std::size_t threads_of(pid_t id) {
   struct stat s {};
   const std::string path = "/proc/" + std::to_string(id) + "/task";
@@ -134,7 +134,7 @@ void PolicyProcess::begin_call(const char* name) {
   call_ = name;
   call_began_ = std::chrono::steady_clock::now();
   cpu_before_s_ = cpu_s();
-  // The kernel's own limit stands behind watch(), and also ends a process that computes while nobody waits.
+  // The kernel's own limit backs up watch(), and also ends a process that computes between calls.
   rlimit cpu{};
   if (id_ <= 0 || prlimit(id_, RLIMIT_CPU, nullptr, &cpu) != 0) return;
   cpu.rlim_cur =

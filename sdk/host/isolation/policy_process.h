@@ -14,19 +14,19 @@
 
 namespace karst::host {
 
-/// The process is of no more use. `what()` says why, in the same words in every replay.
+/// The process can no longer be used. `what()` gives the reason, in the same words in every replay.
 struct ProcessBroken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The program that such a process runs: lib/karst/karst-policy-child beside this program's folder.
+/// Path of the program that such a process runs: lib/karst/karst-policy-child beside this program's folder.
 std::string policy_child_program();
 
-/// A thread that starts a process and then waits: the process asks the kernel to end it when the thread that
-/// started it ends, which is when this process ends, or this object.
+/// A thread that starts a process and then waits. The started process asks the kernel to end it with the
+/// thread that started it, that is, when this process or this object ends.
 class StartingThread {
  public:
-  /// Throws what `start` throws.
+  /// Passes on exceptions of `start`.
   explicit StartingThread(const std::function<pid_t()>& start);
   ~StartingThread();
   StartingThread(const StartingThread&) = delete;
@@ -44,24 +44,24 @@ class StartingThread {
 
 class PolicyProcess {
  public:
-  /// Starts the program with nothing but its two ends of the rings. Throws core::InputError if it cannot be.
+  /// Starts the program with only its two ends of the rings. Throws core::InputError if it cannot be run.
   PolicyProcess(const std::string& program, CallLimits limits);
   /// Ends it, with a signal that cannot be caught.
   ~PolicyProcess();
   PolicyProcess(const PolicyProcess&) = delete;
   PolicyProcess& operator=(const PolicyProcess&) = delete;
 
-  /// A call is waited for from here to `end_call`. The limits are those of a round, a decision and all that
-  /// is told until the next: many short calls must not add up to a long one.
+  /// Begins the time of a call, which `end_call` ends. The limits apply to a decision cycle: a decision and
+  /// all events until the next one, so that many short calls cannot add up to a long one.
   void begin_call(const char* name);
   void end_call();
   void begin_cycle() { spent_wall_s_ = spent_cpu_s_ = 0; }
   /// Both throw ProcessBroken.
   void send(std::uint32_t kind, std::span<const std::byte> body);
   RingMessage receive(std::size_t max_bytes);
-  /// Throws ProcessBroken if a limit is passed or the process is gone.
+  /// Throws ProcessBroken if a limit is exceeded or the process has ended.
   void check() { watch(); }
-  /// Waits a while for it to end by itself.
+  /// Waits up to a second for the process to end by itself.
   void expect_end() noexcept;
 
   pid_t id() const { return id_; }
@@ -78,8 +78,8 @@ class PolicyProcess {
   RingEnd ring_;
   const char* call_ = "";
   std::chrono::steady_clock::time_point call_began_;
-  double cpu_before_s_ = 0;                    // the call
-  double spent_wall_s_ = 0, spent_cpu_s_ = 0;  // in calls before it, of this round
+  double cpu_before_s_ = 0;                    // processor time before the call
+  double spent_wall_s_ = 0, spent_cpu_s_ = 0;  // in earlier calls of this decision cycle
 };
 
 }  // namespace karst::host

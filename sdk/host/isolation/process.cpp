@@ -21,10 +21,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Between fork and exec: nothing but system calls.
+/// Runs between fork and exec: makes system calls only.
 [[noreturn]] void become(char* const* argv, int log, int nothing, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it died before the line above
+  if (getppid() != parent) _exit(127);  // the parent ended before the line above
   setpgid(0, 0);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_DFL);
   dup2(nothing, STDIN_FILENO);
@@ -58,7 +58,7 @@ pid_t start_process(const std::vector<std::string>& argv, const std::filesystem:
   if (pid < 0)
     throw core::InputError(argv[0], "",
                            std::string("no process can be made for it: ") + std::strerror(fork_error));
-  setpgid(pid, pid);  // here as well: whichever of the two comes first
+  setpgid(pid, pid);  // in parent and child, since either may run first
   return pid;
 }
 

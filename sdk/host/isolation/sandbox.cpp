@@ -27,8 +27,8 @@ void limit(__rlimit_resource resource, rlim_t value, const char* what) {
   if (setrlimit(resource, &both) != 0) cannot(std::string(what) + " cannot be limited", errno);
 }
 
-/// Allowed whatever the arguments. What is not known to this kernel's headers does not exist for libseccomp
-/// either and is passed over.
+/// Allowed with any arguments. Calls that this kernel's headers do not know do not exist for libseccomp
+/// either and are skipped.
 constexpr const char* kAllowed[] = {
     // memory
     "mmap", "munmap", "mprotect", "mremap", "madvise", "mincore", "brk", "membarrier",
@@ -37,11 +37,11 @@ constexpr const char* kAllowed[] = {
     "sched_get_priority_max", "sched_get_priority_min", "nanosleep", "clock_nanosleep", "poll", "ppoll",
     "set_robust_list", "get_robust_list", "rseq", "set_tid_address", "restart_syscall", "exit", "exit_group",
     "gettid", "getcpu",
-    // clocks, and who and where it is
+    // clocks, ids and working directory
     "clock_gettime", "clock_getres", "gettimeofday", "time", "times", "getrusage", "getpid", "getppid",
     "getuid", "geteuid", "getgid", "getegid", "uname", "sysinfo", "getrlimit", "getrandom", "getcwd",
     "arch_prctl",
-    // files that are open, and looking at others
+    // open files, and querying others
     "read", "readv", "pread64", "preadv", "write", "writev", "close", "lseek", "fstat", "stat", "lstat",
     "newfstatat", "fstatat64", "statx", "fstatfs", "statfs", "access", "faccessat", "faccessat2", "readlink",
     "readlinkat", "getdents64", "fadvise64",
@@ -92,9 +92,9 @@ void confine_this_process(std::uint64_t memory_limit_bytes,
   filter.allow("open", SCMP_A1(SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
   filter.allow("openat", SCMP_A2(SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
   filter.allow("clone", SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
-  filter.rule(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // its flags stand in memory: libraries then use clone
+  filter.rule(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // its flags cannot be filtered: libraries then use clone
   filter.allow("tgkill", SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid())));  // abort() and raise()
-  filter.allow("prlimit64", SCMP_A2(SCMP_CMP_EQ, 0));                                 // asking only
+  filter.allow("prlimit64", SCMP_A2(SCMP_CMP_EQ, 0));                                 // read only
   filter.allow("prctl", SCMP_A0(SCMP_CMP_EQ, PR_SET_NAME));
   for (const int command : {F_GETFD, F_SETFD, F_GETFL})
     filter.allow("fcntl", SCMP_A1(SCMP_CMP_EQ, static_cast<scmp_datum_t>(command)));

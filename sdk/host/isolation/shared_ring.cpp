@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kCapacity = 1u << 20, kDataAt = 4096, kSize = kDataAt + kCapacity;
 constexpr long kSlice_ns = 5'000'000;
 
-/// At the start of each end's memory; counts run over, modulo 2^32.
+/// At the start of each end's memory; counts wrap around modulo 2^32.
 struct Counts {
   alignas(64) std::atomic<std::uint32_t> written;  // bytes this end has sent
   alignas(64) std::atomic<std::uint32_t> read;     // bytes it has taken from the other end
@@ -30,7 +30,7 @@ static_assert(std::atomic<std::uint32_t>::is_always_lock_free && sizeof(Counts) 
 Counts& counts(std::byte* memory) { return *reinterpret_cast<Counts*>(memory); }
 
 void wake(std::atomic<std::uint32_t>& word) { syscall(SYS_futex, &word, FUTEX_WAKE, 1, nullptr, nullptr, 0); }
-/// Sleeps while the word holds `seen`, for a slice at most.
+/// Sleeps while the word equals `seen`, for at most one time slice.
 void sleep_on(std::atomic<std::uint32_t>& word, std::uint32_t seen) {
   const timespec slice{0, kSlice_ns};
   syscall(SYS_futex, &word, FUTEX_WAIT, seen, &slice, nullptr, 0);
@@ -44,7 +44,7 @@ void sleep_on(std::atomic<std::uint32_t>& word, std::uint32_t seen) {
 
 RingMemory::RingMemory() : descriptor_(memfd_create("karst-policy", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
   if (descriptor_ < 0) no_memory("no shared memory can be had");
-  // Sealed: were it cut short by the other end, reading it would end this process.
+  // Sealed, because reading memory that the other end has truncated would end this process.
   if (ftruncate(descriptor_, kSize) != 0 ||
       fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
     close(descriptor_);
@@ -140,7 +140,7 @@ RingMessage RingEnd::receive(std::size_t max_bytes) {
   RingMessage message{in.number<std::uint32_t>(), {}};
   const auto size = in.number<std::uint64_t>();
   if (size > max_bytes) throw RingBroken("it sent a message of " + std::to_string(size) + " bytes");
-  // Memory is given as bytes come, not as they are announced.
+  // Memory is allocated as bytes arrive, not as they are announced.
   while (message.body.size() < size) {
     const std::size_t before = message.body.size();
     message.body.resize(std::min<std::size_t>(size, before + kCapacity));

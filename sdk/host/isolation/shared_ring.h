@@ -1,11 +1,11 @@
-// Two rings of bytes in shared memory, one each way, between the host and a policy's process.
+// Two ring buffers in shared memory, one for each direction, between the host and a policy's process.
 //
 // Each end owns one piece of memory that it alone writes: the bytes it sends, how many it has sent, and how
-// many it has read of the other's. The policy's process has the host's mapped read-only, by a descriptor that
-// cannot be used to write. Whoever waits sleeps on the other end's count (futex).
+// many it has read from the other end. The policy's process maps the host's memory read-only, by a descriptor
+// that does not permit writing. A waiting end sleeps on the other end's count (futex).
 //
-// Nothing that stands there is trusted: a count is read once, checked, and bytes are copied before they are
-// looked at.
+// Data in shared memory is not trusted: a count is read once and checked, and bytes are copied before they
+// are parsed.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -15,25 +15,25 @@
 
 namespace karst::host {
 
-/// The other end does not answer any more, or wrote what cannot be. `what()` is for the log.
+/// The other end no longer answers, or wrote invalid data. `what()` is for the log.
 struct RingBroken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One kind of message, and what it says.
+/// The kind and the body of a message.
 struct RingMessage {
   std::uint32_t kind = 0;
   Bytes body;
 };
 
-/// The memory of one end, as the other maps it. Unmapped, and its descriptor closed, with the object.
+/// The memory of one end, which the other end maps. The destructor unmaps it and closes its descriptor.
 class RingMemory {
  public:
   enum class Access { read, write };
 
-  /// New memory, to be written.
+  /// Creates new, writable memory.
   RingMemory();
-  /// Memory that is there: `descriptor`, which is closed with this object.
+  /// Maps existing memory: `descriptor`, which is closed with this object.
   RingMemory(int descriptor, Access access);
   ~RingMemory();
   RingMemory(const RingMemory&) = delete;
@@ -41,7 +41,7 @@ class RingMemory {
 
   std::byte* data() const { return data_; }
   int descriptor() const { return descriptor_; }
-  /// Another descriptor of the same memory that can only be read, closed on exec. To be closed by the caller.
+  /// Another descriptor of the same memory, read-only and close-on-exec. The caller must close it.
   int read_only_descriptor() const;
   void close_descriptor();
 
@@ -52,14 +52,14 @@ class RingMemory {
 
 class RingEnd {
  public:
-  /// Called every few milliseconds while the other end is waited for; throws to give it up.
+  /// Called every few milliseconds while waiting for the other end; throws to stop waiting.
   using Watch = std::function<void()>;
 
   RingEnd(const RingMemory& own, const RingMemory& other, Watch watch);
 
-  /// Returns when all of it is in the ring. Throws what `watch` throws, and RingBroken.
+  /// Returns when the whole message is in the ring. Throws RingBroken, and passes on exceptions of `watch`.
   void send(std::uint32_t kind, std::span<const std::byte> body);
-  /// Throws what `watch` throws, and RingBroken, also for a message of more than `max_bytes`.
+  /// Throws RingBroken, also for a message of more than `max_bytes`, and passes on exceptions of `watch`.
   RingMessage receive(std::size_t max_bytes);
 
  private:
@@ -67,7 +67,7 @@ class RingEnd {
   void read(std::span<std::byte> bytes);
 
   std::byte *own_, *other_;
-  std::uint32_t written_ = 0, read_ = 0;  // never taken from the shared memory
+  std::uint32_t written_ = 0, read_ = 0;  // private copies, never read back from shared memory
   Watch watch_;
 };
 

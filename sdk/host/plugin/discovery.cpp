@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The environment of a process with raised privileges belongs to whoever started it, so it does not count.
+/// The environment of a process with raised privileges is set by the user who started it, so it is ignored.
 std::string environment(const char* name) {
   if (getauxval(AT_SECURE) != 0) return "";
   const char* value = std::getenv(name);

@@ -1,4 +1,4 @@
-// Which policies are there: from names to files, without running a stranger's code in this process.
+// Lists the available policies: from names to files, without running plugin code in this process.
 //
 // Order: files named explicitly, KARST_PLUGIN_PATH (ignored in a privileged process), the user's folder,
 // the installed folder next to the executable. The first file that offers a name wins. Each candidate is
@@ -11,11 +11,11 @@
 
 namespace karst::host {
 
-/// Where policies are looked for.
+/// The files and folders that are searched for policies.
 struct SearchPath {
   std::vector<std::string> files;    // named explicitly, in order
   std::vector<std::string> folders;  // after the files, in order; those that do not exist are skipped
-  double probe_limit_s = 5.0;        // a candidate that takes longer to say its name is broken
+  double probe_limit_s = 5.0;        // a candidate that takes longer to report its name is broken
 };
 
 /// The search path of this process.
@@ -33,8 +33,8 @@ struct ParameterListing {
   std::string id;
   ParameterType type = ParameterType::real;
   std::string unit, default_text, help;
-  double low = 0, high = 0;          // of numbers
-  std::vector<std::string> choices;  // of texts
+  double low = 0, high = 0;          // for numbers
+  std::vector<std::string> choices;  // for texts
 };
 
 /// One policy, or one file that could not be read as a plugin.

@@ -1,13 +1,13 @@
-// A policy plugin behind the core's port: in this process, or in one of its own (docs/isolation.md).
+// A policy plugin behind the core's port: in this process, or in a separate one (docs/isolation.md).
 //
-// In this process the plugin runs on a decision thread of its own. A call that passes a limit of time is
-// abandoned: its services fail from then on, should_stop() says so, and PolicyFailure is
-// thrown. This is the only thing a clock decides, and it is a failure path: a replay of a run in which
+// In this process the plugin runs on its own decision thread. A call that exceeds a time limit is
+// abandoned: its services fail from then on, should_stop() returns nonzero, and PolicyFailure is thrown.
+// Nothing else depends on a wall clock, and this is a failure path: a replay of a run in which
 // no policy hangs is bit-identical.
 //
-// A thread cannot be killed. If it never returns, it stays until the process ends; `abandoned()` tells, and
-// a tool that sees it ends with std::quick_exit or _exit once its files are written, because
-// the stuck code may still run while static objects are destroyed.
+// A thread cannot be killed. If it never returns, it stays until the process ends; `abandoned()` is then
+// true, and a tool should end with std::quick_exit or _exit once its files are written, because the stuck
+// code may still run while static objects are destroyed.
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <cstdint>
@@ -24,18 +24,18 @@ constexpr auto names_of(Isolation) {
   return std::to_array<core::Named<Isolation>>({{in_process, "in_process"}, {process, "process"}});
 }
 
-/// What a mission file or a command line says about its policy.
+/// The policy settings of a mission file or a command line.
 struct PolicyChoice {
   std::string name;
   std::vector<std::string> plugin_files;   // --plugin, before everything else
   boost::property_tree::ptree parameters;  // values as text with units, such as "2 m"
   std::string source = "policy";           // the file the parameters come from, for messages
   std::uint64_t seed = 1;
-  double hang_limit_s = 60.0;  // of a call, by the wall clock
+  double hang_limit_s = 60.0;  // for a call, by the wall clock
   Isolation isolation = Isolation::in_process;
-  double cpu_limit_s = 10.0;  // of a call: of its thread, or of all threads of the policy's own process
+  double cpu_limit_s = 10.0;  // for a call: of its thread, or of all threads of the policy's own process
   std::int64_t memory_limit_mib = 2048;  // of a policy's own process
-  int failures_allowed = 2;              // in a row; one more is a PolicyFailure
+  int failures_allowed = 2;              // consecutive; one more is a PolicyFailure
 };
 
 class HostedPolicy : public core::PolicyPort {

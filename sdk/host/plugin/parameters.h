@@ -17,9 +17,9 @@ class ResolvedParameters {
   ResolvedParameters(const karst_policy_descriptor_t& descriptor, const boost::property_tree::ptree& given,
                      const std::string& source);
 
-  /// One a declared parameter, in the order of declaration; views of this object.
+  /// One value for each declared parameter, in the order of declaration; views of this object.
   std::vector<karst_parameter_value_t> values() const;
-  /// As a mission file says it.
+  /// All values in the format of a mission file.
   const boost::property_tree::ptree& tree() const { return tree_; }
 
  private:

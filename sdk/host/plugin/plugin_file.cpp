@@ -72,7 +72,7 @@ std::string parameter_fault(const karst_parameter_t& p) {
   }
 }
 
-/// The entry found in `handle` may come from a library the plugin links: its own would then be hidden.
+/// Whether the file itself defines `symbol`: dlsym may find the entry of a library that the plugin links.
 bool belongs_to(const void* symbol, const std::string& path) {
   Dl_info info{};
   std::error_code error;

@@ -98,10 +98,10 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
   _exit(0);
 }
 
-/// What a file has to say of 64 policies with 256 parameters each, five texts of a kilobyte to each of them.
+/// Enough for 64 policies with 256 parameters each and five texts of a kilobyte for each parameter.
 constexpr std::size_t kMaxBytes = std::size_t{128} << 20;
 
-/// Reads until the other end closes. False if that takes longer than the limit, or is more than can be.
+/// Reads until the other end closes. False if that takes longer than the limit, or exceeds kMaxBytes.
 bool read_all(int in, double limit_s, std::string& text) {
   using clock = std::chrono::steady_clock;
   const auto until = clock::now() + std::chrono::duration<double>(limit_s);

@@ -1,4 +1,4 @@
-// What a candidate file offers, found out in a child process.
+// Determines in a child process which policies a candidate file offers.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace karst::host {
 
-/// One listing a policy the file offers, or a single one with the reason why it is broken: also if it crashes
-/// or does not answer in time. What it writes to stdout or stderr meanwhile is dropped.
+/// One listing for each policy that the file offers, or a single one with the reason why it is broken, also
+/// if it crashes or does not answer in time. Its output to stdout and stderr is dropped.
 std::vector<PolicyListing> probe(const std::string& file, double limit_s);
 
 }  // namespace karst::host

@@ -1,6 +1,6 @@
-// What a plugin may change in the process and must not: the locale, where a changed decimal point would
-// corrupt every file written after it, and the arithmetic of the thread that calls it: a library linked with
-// -ffast-math has subnormal numbers flushed to zero as soon as it is opened.
+// Process state that a plugin can change but must not: the locale, where a changed decimal point would
+// corrupt every file written afterwards, and the floating-point environment of the calling thread: a library
+// linked with -ffast-math flushes subnormal numbers to zero as soon as it is opened.
 #pragma once
 #include <locale.h>
 
@@ -10,16 +10,16 @@
 
 namespace karst::host {
 
-/// Remembers all that; `restore` puts it back and says what had been changed ("" if nothing). Between a
-/// change of the locale and its restoration other threads see it: a plugin that does this is told off in the
-/// log. To be restored on the thread that made it.
+/// Saves that state; `restore` restores it and returns which parts had changed ("" if none). Between a change
+/// of the locale and its restoration other threads see it: the log warns of a plugin that does this. To be
+/// restored on the thread that saved it.
 class ProcessState {
  public:
   ProcessState();
   std::string restore() const;
 
  private:
-  /// How this thread computes.
+  /// The floating-point environment of this thread.
   struct Arithmetic {
     int rounding, traps;
     bool subnormals;

@@ -13,8 +13,8 @@ struct Selection {
 };
 
 /// The first file on the path that offers `name`, not opened in this process. A file named explicitly must be
-/// sound. Throws core::InputError with what there is, the nearest name, broken candidates and the folders
-/// searched.
+/// valid. Throws core::InputError with the names available, the nearest name, broken candidates and the
+/// folders searched.
 PolicyListing find_policy(const std::string& name, const SearchPath& path);
 
 /// Opens a file that was found to offer `name`.

@@ -19,7 +19,7 @@ namespace {
 using core::Vec3;
 
 constexpr std::uint64_t kLongestText = 64 * 1024;
-// What a session keeps between two decisions (session.cpp, services.cpp); a host's own notes come on top.
+// Limits of a session between two decisions (session.cpp, services.cpp), plus room for the host's own notes.
 constexpr std::uint64_t kMaxLogLines = 400, kMaxDrawings = 1000, kMaxDrawnPoints = 400'000;
 
 std::string line(FlatReader& in, std::uint64_t limit) {
@@ -79,7 +79,7 @@ core::Goal goal(FlatReader& in) {
   return g;
 }
 
-/// As the sink checks it in process.
+/// The same checks as those of the sink in process.
 core::Goal sound_goal(FlatReader& in) {
   core::Goal g = goal(in);
   const std::string fault = goal_fault({to_abi(g.position), g.heading_rad, g.tolerance_m, g.max_speed_mps,

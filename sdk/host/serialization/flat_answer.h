@@ -1,7 +1,7 @@
-// What the host and a policy's process say to each other besides requests, as bytes.
+// The messages between the host and a policy's process other than requests, as bytes.
 //
-// What comes from the policy's process may be anything: whoever reads an answer gets core types that keep the
-// rules an answer in process keeps, or a FlatError.
+// Data from the policy's process is not trusted: reading an answer yields core types that satisfy the same
+// rules as an answer in process, or a FlatError.
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <optional>
@@ -14,8 +14,8 @@
 
 namespace karst::host {
 
-/// Kinds of messages. Each of the host's but `end` is answered by one of the policy's; between, the policy's
-/// process may ask for lengths.
+/// Kinds of messages. Each host message except `end` is answered by one policy message; before it answers,
+/// the policy's process may ask for lengths.
 enum class Said : std::uint32_t {
   start = 1,          // StartOrder -> ready, refused
   decide = 2,         // a request (flat_request.h) -> decided, gave_up
@@ -32,7 +32,7 @@ enum class Said : std::uint32_t {
 
 constexpr std::size_t kMaxAnswerBytes = 32u << 20;  // a state of 16 MiB, drawings of 5 MB, texts
 
-/// What a policy's object leaves to the one that is started in its place.
+/// The data that a policy object leaves to the one started in its place.
 struct PolicyLegacy {
   std::uint64_t numbers_drawn = 0;  // from the host's random stream
   std::optional<Bytes> state;       // "karst.state/1"

@@ -1,7 +1,7 @@
-// Values to bytes and back, for what crosses into another process or a file.
+// Values to bytes and back, for messages to another process and for files.
 //
-// Numbers are written as this machine holds them: both ends are the same build, or a file says its version.
-// Nothing that is read is trusted: every length is checked against what is left, every number against its
+// Numbers are written in this machine's format: both ends are the same build, or a file states its version.
+// Data read is not trusted: every length is checked against the bytes left, every number against its
 // range.
 #pragma once
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace karst::host {
 
 using Bytes = std::vector<std::byte>;
 
-/// What was read is not what was written. `what()` says at which byte, and why.
+/// The bytes are not valid. `what()` gives the byte position and the reason.
 struct FlatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -98,7 +98,7 @@ class FlatReader {
     if (v < low || v > high) fail(std::string(name) + " is out of range");
     return v;
   }
-  /// How many items follow, each of which takes `min_bytes` or more.
+  /// Number of items that follow, each of which takes `min_bytes` or more.
   std::size_t count(std::size_t min_bytes, std::uint64_t most, const char* name) {
     const auto n = number<std::uint64_t>();
     if (n > most || n * min_bytes > left()) fail(std::string("there cannot be so many ") + name);

@@ -16,7 +16,7 @@ constexpr std::uint64_t kMaxClusters = 1'000'000, kMaxCells = 100'000'000, kMaxS
 constexpr std::size_t kKeyBytes = 12, kClusterBytes = 160, kTeammateBytes = 69;
 constexpr std::size_t kBlockBytes = kKeyBytes + sizeof(core::ClassBlock::classes);
 
-/// Finds damage, not malice. Four lanes keep the multiplier busy: a snapshot of megabytes costs little.
+/// Detects damage, not tampering. Four lanes keep the multiplier busy: a snapshot of megabytes costs little.
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   constexpr std::uint64_t prime = 0x9e3779b97f4a7c15ull;
   std::array<std::uint64_t, 4> lane{1, 2, 3, 4};
@@ -173,7 +173,7 @@ void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t sinc
   out.put(planned.search_slack_cells);
 }
 
-/// The body behind a header that agrees with it.
+/// The body, after a check that the header agrees with it.
 FlatReader body_of(std::span<const std::byte> bytes) {
   FlatReader in(bytes);
   if (in.number<std::uint64_t>() != kMagic) in.fail("this is no request");

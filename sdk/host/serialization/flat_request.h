@@ -1,9 +1,9 @@
-// A request as bytes, with all that it points to: for a policy in another process, and for a record that is
-// played back into a policy without a vehicle.
+// A request as bytes, with all the data it points to: for a policy in another process, and for a record that
+// is replayed into a policy without a vehicle.
 //
-// What a policy cannot see is left out: of the map's cells only the class goes, of the roadmap only the
-// clearances from which the same one is built. A map may go as what changed since a former one, which
-// whoever reads it must still hold.
+// Data that a policy cannot see is left out: only the class of the map's cells is written, and only the
+// clearances of the roadmap, from which the reader builds the same one. A map may be written as its changes
+// since an earlier one, which the reader must still hold.
 #pragma once
 #include <memory>
 #include <optional>
@@ -16,26 +16,26 @@
 
 namespace karst::host {
 
-/// The request's map as of its write number `map_since` is known to the reader: only blocks changed after it
-/// are written. 0: all of it.
+/// The reader knows the request's map as of its write number `map_since`: only blocks changed after it are
+/// written. 0: the whole map.
 Bytes flatten(const core::DecisionRequest& request, std::uint64_t map_since = 0);
 
-/// Writes length and sum of what follows the header into it: the last step of flatten(), for who changes its
-/// bytes on purpose. `request` has a header's 32 bytes at least.
+/// Writes length and checksum of the body into the header: the last step of flatten(), for callers that
+/// change its bytes on purpose. `request` has at least the header's 32 bytes.
 void seal(std::span<std::byte> request);
 
-/// Reads requests one after the other, and holds the last.
+/// Reads requests one after the other, and keeps the last.
 class RequestReader {
  public:
-  /// What is kept up to date from request to request. A roadmap takes some time for a large map the first
-  /// time; without, `request().roadmap` is null.
+  /// The data kept up to date from request to request. A roadmap takes some time for a large map the first
+  /// time; without it, `request().roadmap` is null.
   enum class Keeps { map, map_and_roadmap };
   explicit RequestReader(Keeps keeps) : keeps_(keeps) {}
   RequestReader(const RequestReader&) = delete;
   RequestReader& operator=(const RequestReader&) = delete;
 
-  /// Throws FlatError for bytes that flatten() did not write so: cut short, damaged, of another version, or
-  /// changes of a map that is not the one held. Whatever was held is then gone: the next must be whole.
+  /// Throws FlatError for invalid bytes: truncated, damaged, of another version, or changes of a map other
+  /// than the one kept. The map kept is then dropped, and the next request must contain the whole map.
   const core::DecisionRequest& read(std::span<const std::byte> bytes);
   const core::DecisionRequest& request() const { return request_; }
 

@@ -21,7 +21,7 @@ enum : std::uint32_t { kHeader = 1, kRequest = kRequestRecord, kAnswer = 3, kEve
 constexpr int kSchema = 1;
 constexpr std::uint64_t kMaxText = 1u << 20;  // bytes of a record that is JSON
 
-/// FNV-1a. A request has a sum of its own.
+/// FNV-1a. 0 for a request, which contains its own checksum.
 std::uint64_t sum_of(std::uint32_t kind, std::span<const std::byte> payload) {
   if (kind == kRequest) return 0;
   std::uint64_t hash = 14695981039346656037ull;
@@ -31,7 +31,7 @@ std::uint64_t sum_of(std::uint32_t kind, std::span<const std::byte> payload) {
 
 ordered_json to_json(const core::Goal& g) {
   ordered_json j{{"position", {g.position.x(), g.position.y(), g.position.z()}},
-                 {"heading", g.heading_rad},  // NaN, which stands for any, becomes null
+                 {"heading", g.heading_rad},  // NaN, which means any, becomes null
                  {"tolerance", g.tolerance_m},
                  {"max_speed", g.max_speed_mps},
                  {"frontier", g.frontier_id},

@@ -1,10 +1,10 @@
-// What a policy was asked, told and what it answered, in one file: `karst fly --record-requests` writes it,
+// The requests and events of a policy and its answers, in one file: `karst fly --record-requests` writes it,
 // `karst policy replay` reads it.
 //
-// Records follow one another: four bytes of magic, kind, length, sum of the payload, payload. First a header,
-// then events and requests as they came, each request followed by its answer. A request is flat_request.h's,
-// its map as what changed since the request before. All other payloads are JSON. What a killed flight leaves
-// ends within a record at most: that last piece is passed over, and counted.
+// A sequence of records: four bytes of magic, kind, length, checksum of the payload, payload. First a header,
+// then events and requests in order, each request followed by its answer. A request has the format of
+// flat_request.h, its map as the changes since the previous request. All other payloads are JSON. The file of
+// a killed flight may end with an incomplete record, which is skipped and counted.
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace karst::host {
 
 constexpr const char* kRequestLogName = "requests.bin";  // in a run directory
 
-/// Before each record's payload. A request has a sum of its own: `sum` is 0.
+/// Precedes each record's payload. A request contains its own checksum, so its `sum` is 0.
 struct RecordFrame {
   std::uint32_t magic, kind;
   std::uint64_t length, sum;
@@ -26,7 +26,7 @@ struct RecordFrame {
 constexpr std::uint32_t kRequestRecord = 2;  // its kind
 RecordFrame frame_of(std::uint32_t kind, std::span<const std::byte> payload);
 
-/// Whom the requests were put to.
+/// The policy to which the requests were sent.
 struct RequestLogHeader {
   std::string policy, version;
   std::uint64_t seed = 1;  // of its random stream
@@ -35,14 +35,14 @@ struct RequestLogHeader {
 
 /// An answer as JSON, the same text for the same answer: every digit, but neither drawings nor log.
 std::string answer_text(const core::Decision& decision);
-/// An answer in a line for people; what is none stays as it is.
+/// An answer as a readable line; other text is returned unchanged.
 std::string answer_line(const std::string& answer_text);
 
-/// Asks another policy, and writes down what went to and fro. A request is in the file before the policy sees
-/// it.
+/// Forwards to another policy, and records requests, events and answers. A request is in the file before the
+/// policy sees it.
 class RecordingPolicy final : public core::PolicyPort {
  public:
-  /// Throws core::InputError if the file cannot be written, now and whenever the disk is full.
+  /// Throws core::InputError if the file cannot be written; so do later calls, if the disk is full.
   RecordingPolicy(core::PolicyPort& policy, const std::filesystem::path& file,
                   const RequestLogHeader& header);
   std::string name() const override { return policy_.name(); }
@@ -62,17 +62,17 @@ class RecordingPolicy final : public core::PolicyPort {
 /// Reads such a file from its beginning.
 class RequestLogReader {
  public:
-  /// Throws core::InputError with file, byte and reason: also later, from next().
+  /// Throws core::InputError with file, byte and reason; next() does so, too.
   explicit RequestLogReader(const std::filesystem::path& file);
 
   const RequestLogHeader& header() const { return header_; }
   enum class Kind { request, answer, event, end };
-  /// The next record, which can then be looked at.
+  /// Reads the next record; the accessors then return its content.
   Kind next();
   const core::DecisionRequest& request() const { return requests_.request(); }
   const std::string& answer() const { return answer_; }
   const core::PolicyEvent& event() const { return event_; }
-  /// At the end: bytes of a last record that is not whole.
+  /// At the end: number of bytes of an incomplete last record.
   std::uint64_t skipped_bytes() const { return skipped_bytes_; }
 
  private:

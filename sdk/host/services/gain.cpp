@@ -60,7 +60,7 @@ void walk(Window& window, const Vec3& eye, const Vec3& direction, double furthes
   }
   Cell* cell = window.at({key[0], key[1], key[2]});
   while (visit(*cell, key)) {
-    // Without a branch: which border comes next cannot be foretold.
+    // Branchless: which border comes next cannot be predicted.
     const std::size_t y_or_z = next[1] < next[2] ? 1 : 2;
     const std::size_t a = next[0] < next[y_or_z] ? 0 : y_or_z;
     if (next[a] > furthest) return;
@@ -78,7 +78,7 @@ int steps_over(double low, double high, double step) {
   return std::max(1, static_cast<int>(std::ceil((high - low) / step)));
 }
 
-/// Evenly spread values over [low, high], both included, at most `step` apart.
+/// Evenly spaced values over [low, high], both included, at most `step` apart.
 std::vector<double> spread(double low, double high, double step) {
   const int n = steps_over(low, high, step);
   std::vector<double> out;

@@ -1,4 +1,4 @@
-// Information gain: unknown cells a sensor would see from a viewpoint.
+// Information gain: the number of unknown cells that a sensor would see from a viewpoint.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace karst::host {
 
-/// "" if the model makes sense, otherwise what is wrong with it.
+/// "" if the sensor model is valid, otherwise what is wrong with it.
 std::string sensor_fault(const karst_sensor_t& sensor);
-/// "" if a look of a sound sensor into a map of this resolution keeps within the service's limits (memory
-/// grows with the cube of the range in cells), otherwise which one it exceeds.
+/// "" if the view of a valid sensor into a map of this resolution keeps within the service's limits (memory
+/// grows with the cube of the range in cells), otherwise the limit that it exceeds.
 std::string sensor_excess(const karst_sensor_t& sensor, double resolution_m);
 
-/// A sensor's rays in its own frame, spread so that at its range neighbours are at most a cell apart.
+/// A sensor's rays in its own frame, spaced so that neighbours are at most a cell apart at its range.
 class SensorRays {
  public:
   SensorRays(const karst_sensor_t& sensor, double resolution_m);
 
-  /// Unknown cells within range whose ray from the viewpoint meets no occupied cell before. Unknown cells are
-  /// transparent; each is counted once.
+  /// Number of unknown cells within range that a ray from the viewpoint reaches without meeting an occupied
+  /// cell. Unknown cells are transparent; each is counted once.
   std::uint64_t newly_seen(const core::VoxelMap& map, const karst_viewpoint_t& from) const;
 
  private:

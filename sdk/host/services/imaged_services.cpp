@@ -9,7 +9,7 @@
 namespace karst::host {
 
 struct ImagedServices {
-  /// What the request knows of pictures; the surface not imaged yet is worked out once a request.
+  /// The request's record of imaged surface; the surface not imaged yet is computed once for each request.
   struct Account {
     const core::VoxelMap& map;
     const core::ImagedSurface& imaged;

@@ -1,5 +1,5 @@
-// The path service's question, answered from a request's map and roadmap: the same in the host's process, and
-// for a policy in a process of its own.
+// A query of the path service, answered from a request's map and roadmap: the same in the host's process and
+// for a policy in a separate process.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -11,16 +11,16 @@
 
 namespace karst::host {
 
-/// Of one question: blocks, nodes and cells looked at to find a place near goals that are not clear. About
-/// half a second.
+/// Limit for one query: blocks, nodes and cells searched for a clear position near goals that are not clear.
+/// About half a second.
 constexpr std::uint64_t kMaxPathWork = 20'000'000;
 
 struct PathAnswer {
   enum class Status : std::uint32_t { answered, no_roadmap, too_much } status = Status::no_roadmap;
-  std::vector<double> lengths_m;  // a goal each, if answered
+  std::vector<double> lengths_m;  // one for each goal, if answered
 };
 
-/// Lengths of ways through the request's map.
+/// Lengths of paths through the request's map.
 using PathLengths =
     std::function<PathAnswer(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m)>;
 

@@ -215,7 +215,7 @@ struct Services : Serving {
       }
       s.numbers_drawn_ += count;
     });
-    if (code != KARST_OK) std::fill_n(out, count, 0.5);  // never numbers that differ from run to run
+    if (code != KARST_OK) std::fill_n(out, count, 0.5);  // the same in every run
   }
 
   static std::int64_t now_ns(const karst_host_t* h) noexcept { return session(h).now_; }

@@ -1,4 +1,4 @@
-// What every service does: check its arguments, then work through the session's gate.
+// The common part of all services: check the arguments, then run inside the session's gate.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -39,7 +39,7 @@ inline void require_box(const karst_box_t& b) {
 struct Serving {
   static Session& session(const karst_host_t* host) { return *static_cast<Session*>(host->context); }
 
-  /// Runs `work(session)` inside the gate; whatever it throws becomes an error code.
+  /// Runs `work(session)` inside the gate; an exception becomes an error code.
   template <class Work>
   static std::int32_t serve(const karst_host_t* host, karst_error_t* error, Work&& work) noexcept {
     Refusal refusal{KARST_ERROR_FAILED, "the host ran out of memory"};

@@ -40,7 +40,7 @@ void Session::end_deciding() {
 }
 
 void Session::abandon() {
-  abandoned_ = true;  // services that loop look at it
+  abandoned_ = true;  // long-running services check it
   end_deciding();
 }
 

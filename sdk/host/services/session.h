@@ -1,8 +1,8 @@
-// The host's side of one policy object: the tables of services, and what they may touch right now.
+// The host's side of one policy object: the service tables, and the data that they may access at present.
 //
-// A policy that is given up may still be inside a service, reading the core's map. `abandon` therefore first
-// tells the running services to stop, then waits for them to leave; from then on every service fails.
-// Whoever may still call in holds the session by shared_ptr.
+// An abandoned policy may still be inside a service, reading the core's map. `abandon` therefore first
+// tells the running services to stop, then waits for them to return; from then on every service fails.
+// Threads that may still call a service hold the session by shared_ptr.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -24,7 +24,7 @@ namespace karst::host {
 
 class Session {
  public:
-  /// `numbers_drawn`: how far a former session of this policy had come in its random stream.
+  /// `numbers_drawn`: random numbers that a former session of this policy has drawn from its stream.
   Session(std::uint64_t seed, const std::string& policy_id, std::uint64_t numbers_drawn = 0);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -34,7 +34,7 @@ class Session {
   void set_decision_thread(std::thread::id id) { decision_thread_ = id; }
   void set_now(core::TimeNs now) { now_ = now; }
 
-  /// Between these two the request's map and ways may be asked; `lengths`, if given, in place of its roadmap.
+  /// Between these two calls the policy may query map and paths; `lengths`, if given, replaces the roadmap.
   void begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths = {});
   void end_deciding();
   void abandon();
@@ -58,7 +58,7 @@ class Session {
   karst_draw_service_t draw_service_{};
   karst_host_t host_{};
 
-  std::shared_mutex gate_;  // shared: inside a service; exclusive: changing what services may touch
+  std::shared_mutex gate_;  // shared: inside a service; exclusive: changing the data services access
   std::atomic<bool> abandoned_ = false;
   std::atomic<core::TimeNs> now_ = 0;
   std::thread::id decision_thread_;
@@ -66,7 +66,7 @@ class Session {
   PathLengths lengths_;
   const core::ImagedSurface* imaged_ = nullptr;  // null: no colour camera
   const core::RgbCameraModel* rgb_ = nullptr;
-  std::optional<core::UnimagedSurface> unimaged_;  // of this request; made when it is first asked for
+  std::optional<core::UnimagedSurface> unimaged_;  // of this request; computed on first use
   std::mutex kept_mutex_;
   std::map<const karst_map_t*, std::unique_ptr<Snapshot>> kept_;
 
@@ -81,7 +81,7 @@ class Session {
 /// The extension "karst.imaged/1".
 const karst_imaged_service_t* imaged_service();
 
-/// Fills the four tables and the host's own with the functions of services.cpp.
+/// Fills the four service tables and the host table with the functions of services.cpp.
 void install_services(Session& session, karst_host_t& host);
 
 }  // namespace karst::host

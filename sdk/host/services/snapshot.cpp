@@ -10,8 +10,8 @@ namespace {
 using core::Cell;
 using core::CellKey;
 
-/// The keys of the cells whose centres lie in a box. Whole numbers kept as doubles: a box may reach far
-/// beyond any key.
+/// The range of keys of the cells whose centres lie in a box. Integers stored as doubles, since a box may
+/// extend far beyond any key.
 struct KeyBox {
   Eigen::Array3d low, high;
 
@@ -26,7 +26,7 @@ struct KeyBox {
   CellKey high_key() const { return key(high); }
 
  private:
-  /// Clamped, still far outside of the world.
+  /// Clamped to values that are still far outside of the world.
   static CellKey key(const Eigen::Array3d& v) {
     const Eigen::Array3i k = v.max(-1e9).min(1e9).cast<int>();
     return {k.x(), k.y(), k.z()};
@@ -54,7 +54,7 @@ karst_map_info_t info_of(const Snapshot& s) {
 karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, bool through_unknown) {
   const core::Vec3 from = to_core(ray.from), to = to_core(ray.to);
   CellKey end = map.key_of(from);
-  // Until traverse() has begun: from too far outside the world it does not, and all is unknown there.
+  // The result if traverse() visits no cell: it does not start far outside the world, where all is unknown.
   Cell stopped_by = through_unknown ? Cell::free : Cell::unknown;
   core::traverse(from, to, map.resolution_m(), [&](const CellKey& k) {
     end = k;

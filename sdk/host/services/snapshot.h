@@ -1,4 +1,4 @@
-// A map as a policy holds it, and what can be asked of it.
+// The map behind a policy's handle, and the queries on it.
 #pragma once
 #include <memory>
 #include <optional>
@@ -12,7 +12,7 @@ namespace karst::host {
 /// The core's map during one decide(), or a copy.
 struct Snapshot {
   const core::VoxelMap* map = nullptr;
-  std::uint64_t revision = 0;  // the core's, also of a copy
+  std::uint64_t revision = 0;  // of the core's map, also for a copy
   std::unique_ptr<const core::VoxelMap> copy;
 };
 
@@ -21,7 +21,7 @@ std::unique_ptr<Snapshot> copy_of(const Snapshot& original);
 
 karst_map_info_t info_of(const Snapshot& s);
 karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, bool through_unknown);
-/// None if the box holds 2^63 cells or more.
+/// nullopt if the box holds 2^63 cells or more.
 std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const karst_box_t& box);
 std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box);
 

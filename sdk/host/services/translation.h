@@ -7,7 +7,7 @@
 
 namespace karst::host {
 
-/// A request with everything it points to, except the map. Holds what the policy may read while it decides.
+/// A request with all the data it points to, except the map. Owns the data that the policy reads in decide().
 class RequestPack {
  public:
   RequestPack(const core::DecisionRequest& request, const karst_map_t* map);
@@ -23,7 +23,7 @@ class RequestPack {
   karst_request_t request_{};
 };
 
-/// Without its name.
+/// The sensor's name is left empty.
 karst_sensor_t to_abi(const core::RgbCameraModel& camera);
 
 /// A view of `event`, which must outlive it.

@@ -1,5 +1,5 @@
-// How much free space a look at a frontier is expected to show: the host's gain service, shortened,
-// remembered, and bounded by the opening that leads there.
+// Expected information gain of the viewpoint of a frontier: the host's gain service with a shortened range,
+// cached, and bounded by the size of the opening that leads there.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace karst {
 
-/// A ray's cost grows with its range, and the number of rays with its square; and what unknown cells lie far
-/// behind a frontier are mostly rock. So sensors look `range_m` far. A look is remembered until the core's
-/// own figures of its cluster change: its cells, the counts around it, its viewpoint.
+/// The cost of a ray grows with its range, the number of rays with the square of it, and unknown cells far
+/// behind a frontier are mostly rock. So the range of each sensor is cut to `range_m`. A result is cached
+/// until the core's own figures of the cluster change: its cells, the counts around it, its viewpoint.
 class ExpectedGain {
  public:
   double range_m = 5.0;
@@ -33,9 +33,9 @@ class ExpectedGain {
   }
 
   /// Volume in m^3 expected to be seen from the viewpoint of each frontier: the unknown cells in view, but no
-  /// more than lies `depth_m` deep behind the openings in view. What is unknown is mostly rock: behind a
-  /// narrow opening the cells in view would make as much as behind a wide one.
-  /// What is yet to be looked at counts by its openings, or as it was.
+  /// more than lies `depth_m` deep behind the openings in view. Without that bound a narrow opening would
+  /// count as much as a wide one, because most of the unknown cells in view are rock.
+  /// A frontier not evaluated within the limit `looks` counts by its openings, or by its last result.
   std::vector<double> volumes_m3(const Request& request, const std::vector<const Frontier*>& frontiers) {
     begin_decision(request);
     std::vector<const Frontier*> fresh;
@@ -57,14 +57,14 @@ class ExpectedGain {
     return out;
   }
 
-  /// Volume in m^3 expected behind the opening itself, wherever one looks from.
+  /// Volume in m^3 expected behind the opening itself, independent of the viewpoint.
   double behind_m3(const Request& request, const Frontier& f) const {
     const double edge_m = request.map.resolution_m();
     return f.cells * edge_m * edge_m * depth_m * fraction_of_depth(f);
   }
 
  private:
-  /// Of the clusters in range that lie the same way as `f` from its viewpoint.
+  /// Sum over the clusters in range that lie in the same direction as `f` from its viewpoint.
   double behind_openings_m3(const Request& request, const Frontier& f) const {
     constexpr double same_direction = 0.5;  // cosine
     const Vec3 there = f.centroid - f.viewpoint;
@@ -77,8 +77,8 @@ class ExpectedGain {
     return sum_m3;
   }
 
-  /// Of what predictions of 3 m deep came to in flight, nothing but the distance from the way flown told: all
-  /// of it 3 m away and farther, a tenth within 1.5 m. A passage that goes on is seen from afar first.
+  /// How much of a predicted depth of 3 m proved true in flight depended only on the distance from the flown
+  /// path: all of it beyond 3 m, a tenth within 1.5 m. A passage that continues is first seen from afar.
   double fraction_of_depth(const Frontier& f) const {
     constexpr double least = 0.05;
     const double away_m = path_.distance_m(f.centroid);
@@ -97,7 +97,7 @@ class ExpectedGain {
            a.viewpoint_heading_rad == b.viewpoint_heading_rad;
   }
 
-  /// Ids are never used twice: what is offered no more is gone for good, or will be looked at again.
+  /// Ids are never reused: a frontier that is no longer offered is gone, or will be evaluated again.
   void begin_decision(const Request& request) {
     if (request.sequence == sequence_) return;
     sequence_ = request.sequence;

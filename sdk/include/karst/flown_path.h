@@ -1,4 +1,4 @@
-// The flown path as a policy knows it: through the vehicle's positions at each decision.
+// The flown path as a policy knows it: the polyline through the vehicle's positions at each decision.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +15,7 @@ class FlownPath {
     if (points_.empty() || distance(points_.back(), position) > step_m) points_.push_back(position);
   }
 
-  /// From `p` to the polyline; infinity before the first decision.
+  /// Distance from `p` (world, m) to the polyline; infinity before the first decision.
   double distance_m(const Vec3& p) const {
     if (points_.empty()) return std::numeric_limits<double>::infinity();
     double min_m = distance(p, points_.front());

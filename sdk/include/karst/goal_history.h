@@ -1,4 +1,4 @@
-// Remembers where goals have failed: a frontier that remains after a visit cannot be seen from there, and a
+// Remembers visited and failed goals: a frontier that remains after a visit cannot be seen from there, and a
 // rejected goal is likely to be rejected again.
 #pragma once
 #include <algorithm>
@@ -14,7 +14,7 @@ class GoalHistory {
  public:
   struct Verdict {
     bool open = true;              // worth proposing now
-    bool closed_now = false;       // not now, but later
+    bool closed_now = false;       // not open now, but again later
     double revisit_penalty_m = 0;  // to be subtracted from its score
   };
 

@@ -1,4 +1,4 @@
-// What the colour camera has seen of the surface, where the host keeps that account: the extension
+// Which surface cells the colour camera has imaged, if the host keeps that record: the extension
 // "karst.imaged/1". Specification: karst_abi_imaged.h
 #pragma once
 #include <karst_abi_imaged.h>
@@ -13,10 +13,10 @@ namespace karst {
 using SurfaceCell = karst_surface_cell_t;
 using ImagingCamera = karst_imaged_camera_t;
 
-/// Good until decide() returns.
+/// Valid until decide() returns. Points are in the world frame, metres. All calls throw Error on failure.
 class ImagedView {
  public:
-  /// Nothing if this host does not know the extension, or the vehicle carries no colour camera.
+  /// nullopt if this host does not know the extension, or the vehicle carries no colour camera.
   static std::optional<ImagedView> of(const karst_host_t* host) {
     static const std::string id = KARST_IMAGED_ID;
     if (!KARST_HAS(karst_host_t, host, extension)) return std::nullopt;
@@ -32,7 +32,7 @@ class ImagedView {
 
   const ImagingCamera& camera() const { return camera_; }
 
-  /// KARST_IMAGED_* of the cell that holds each point.
+  /// KARST_IMAGED_* of the cell that contains each point, one for each point.
   std::vector<karst_imaged_t> states(const std::vector<Vec3>& points) const {
     std::vector<karst_imaged_t> out(points.size());
     karst_error_t e{};
@@ -54,7 +54,7 @@ class ImagedView {
     check(service_->newly_imaged(host_, from.data(), from.size(), out.data(), &e), e);
     return out;
   }
-  /// Centres of the cells each viewpoint would add.
+  /// For each viewpoint, the centres of the cells that a picture from it would add.
   std::vector<std::vector<Vec3>> newly_imaged_cells(const std::vector<Viewpoint>& from) const {
     std::vector<std::uint64_t> ends(from.size());
     std::vector<Vec3> cells(256 * from.size());

@@ -1,4 +1,4 @@
-// The occupancy map as a policy sees it. Questions go in batches.
+// The occupancy map as a policy sees it. Queries take batches. World frame, metres.
 #pragma once
 #include <memory>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace karst {
 
-/// A view of the map, good until decide() returns; `retained()` gives one that lasts.
+/// A view of the map, valid until decide() returns; `retained()` returns one that lasts. Queries throw Error.
 class MapView {
  public:
   MapView() = default;
@@ -49,7 +49,7 @@ class MapView {
     return out;
   }
 
-  /// Centres of occupied cells in the box that border on free space.
+  /// Centres of the occupied cells in the box that have a free face neighbour.
   std::vector<Vec3> surface(const Box& box) const {
     const karst_box_t in{box.low, box.high};
     std::uint64_t total = 0;
@@ -61,7 +61,7 @@ class MapView {
   }
 
   /// A copy that outlives the request, released with the last view of it. Costs tens of milliseconds for a
-  /// large map; keep none beyond the policy's own life.
+  /// large map; must not outlive the policy object.
   MapView retained() const {
     karst_error_t e{};
     const karst_map_t* kept = host_->map->retain(host_, map_, &e);

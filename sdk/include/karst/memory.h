@@ -1,6 +1,6 @@
-// What a policy remembers from one decision to the next, so that it outlives a crash: a policy that also
-// derives from karst::Restorable names the fields once, and the host saves and restores them
-// (karst_abi_state.h). A policy that does not is started with an empty memory.
+// The state that a policy keeps from one decision to the next, so that it survives a crash: a policy that
+// also derives from karst::Restorable lists its fields once, and the host saves and restores them
+// (karst_abi_state.h). A policy that does not derive from it is restarted without its state.
 //
 //   class Wanderer : public karst::Policy, public karst::Restorable {
 //     void memory(karst::Memory& m) override { m.add(visited_), m.add(turns_); }
@@ -22,14 +22,14 @@
 
 namespace karst {
 
-/// Reads or writes every field it is given, in the order given: the same function does both. Takes plain
-/// values and structs of them, texts, vectors, maps, sets, pairs, optionals, and whatever has a member
-/// `void memory(karst::Memory&)`. Not pointers, nor structs that hold some (MapView, Sensor): they
-/// mean nothing in another process.
+/// Reads or writes every field that is added, in the order of the calls: the same function does both. Takes
+/// plain values and structs of them, strings, vectors, maps, sets, pairs, optionals, and every type with a
+/// member `void memory(karst::Memory&)`. It takes no pointers and no structs that hold pointers (MapView,
+/// Sensor), which are meaningless in another process.
 class Memory {
  public:
   Memory() = default;  // writes
-  /// Reads what sealed() returned. Throws Error if a single bit of it has changed.
+  /// Reads bytes that sealed() returned. Throws Error if they fail the checksum.
   Memory(const void* bytes, std::uint64_t count)
       : reading_(true),
         bytes_(static_cast<const unsigned char*>(bytes), static_cast<const unsigned char*>(bytes) + count) {
@@ -41,7 +41,7 @@ class Memory {
   }
 
   bool reading() const { return reading_; }  // true while restoring
-  /// What was written, with a checksum behind it.
+  /// The written bytes, followed by a checksum.
   std::vector<unsigned char> sealed() const {
     std::vector<unsigned char> out(bytes_);
     const std::uint64_t seal = checksum(bytes_);
@@ -92,7 +92,7 @@ class Memory {
     if (there) add(*value);
   }
 
-  /// Throws Error if bytes are left over: another version wrote them.
+  /// Throws Error if bytes are left over, because another version wrote them.
   void done() const {
     if (at_ != bytes_.size())
       throw Error("the saved state is longer than this policy's", KARST_ERROR_ARGUMENT);
@@ -122,13 +122,13 @@ class Memory {
                   "give this type a member void memory(karst::Memory&), or remember its parts");
     copy(&field, sizeof field);
   }
-  /// Damage is found before anything of its claimed length is allocated.
+  /// Rejects a length beyond the bytes left, before anything of that length is allocated.
   std::uint64_t length(std::uint64_t now, std::size_t element_bytes) {
     plain(now);
     if (reading_ && now > (bytes_.size() - at_) / element_bytes) cut_short();
     return now;
   }
-  /// Texts, and lists of plain values.
+  /// Strings, and lists of plain values.
   template <class List>
   void elements(List& list) {
     const std::uint64_t count = length(list.size(), sizeof(typename List::value_type));
@@ -172,12 +172,12 @@ class Memory {
   std::size_t at_ = 0;
 };
 
-/// Derive from it, beside Policy, to have the policy's memory carried over a restart.
+/// Derive from it, in addition to Policy, to keep the policy's state over a restart.
 class Restorable {
  public:
   virtual ~Restorable() = default;
-  /// Adds every field that a decision depends on and that is no parameter. Called after init() to restore,
-  /// between two calls to save. Throw karst::Error if what was read cannot be.
+  /// Adds every field that a decision depends on, except parameters. Called after init() to restore, and
+  /// between two other calls to save. Throw karst::Error if the values read are not consistent.
   virtual void memory(Memory& memory) = 0;
 };
 

@@ -1,4 +1,4 @@
-// The frontiers worth thinking about: what most policies sort out before they begin to choose.
+// The frontiers worth considering: the filter that most policies apply before they choose.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +13,7 @@ class OpenFrontiers {
  public:
   int min_cells = 10;           // smaller clusters are seldom openings
   double min_distance_m = 0.6;  // a viewpoint nearer than that shows nothing new
-  double patience_s = 3.0;      // nothing to fly to for that long: explored
+  double patience_s = 3.0;      // without a goal for that long, the cave counts as explored
 
   void parameters(Parameters& p) {
     p.add("min_cells", min_cells, 1, 10000, "smaller frontier clusters are ignored");
@@ -29,10 +29,10 @@ class OpenFrontiers {
 
   struct Candidate {
     const Frontier* frontier;
-    double revisit_penalty_m;  // what earlier visits in vain count as, in metres of flight
+    double revisit_penalty_m;  // cost of earlier visits that left the frontier, in metres of flight
   };
 
-  /// Those that can be flown to now, by id; they live as long as the request.
+  /// The frontiers that can be flown to now, by ascending id; the pointers live as long as the request.
   std::vector<Candidate> of(const Request& request) {
     std::vector<Candidate> open;
     some_closed_ = false;
@@ -46,10 +46,10 @@ class OpenFrontiers {
     return open;
   }
 
-  /// Something is being flown to: patience begins anew.
+  /// A goal was found: restarts the time that `patience_s` limits.
   void found_some() { idle_since_ns_ = -1; }
 
-  /// What to answer when there is nothing to fly to.
+  /// The answer when there is nothing to fly to: hold, or explored.
   Decision none_left(const Request& request) {
     if (idle_since_ns_ < 0) idle_since_ns_ = request.stamp_ns;
     if (some_closed_)
@@ -65,13 +65,13 @@ class OpenFrontiers {
   std::int64_t idle_since_ns_ = -1;
 };
 
-/// The core moves a viewpoint a little when the map changes: the goal under way is still the same.
+/// Whether `f` is the goal under way: the core moves a viewpoint a little when the map changes.
 inline bool under_way(const Request& request, const Frontier& f) {
   constexpr double same_place_m = 1.6;
   return request.last_fate == KARST_FATE_UNDER_WAY && distance(f.viewpoint, request.last_goal) < same_place_m;
 }
 
-/// 0 for flying straight on to the frontier's viewpoint, 1 for turning back.
+/// 0 if the frontier's viewpoint lies straight ahead in the direction of flight, 1 if it lies behind.
 inline double turn_fraction(const Request& request, const Frontier& f) {
   const Vec3 there = f.viewpoint - request.position();
   return 0.5 * (1.0 - dot(there, request.direction_of_flight) / std::max(norm(there), 1e-9));

@@ -1,4 +1,4 @@
-// Parameters: one table names every tunable field of a policy with unit, range and a line of help.
+// Parameters: one table lists every tunable field of a policy with unit, range and a line of help.
 // Defaults are the fields' own values, so they are written once.
 #pragma once
 #include <cstdint>
@@ -25,7 +25,7 @@ class Parameters {
     rows_.push_back({KARST_PARAMETER_BOOLEAN, &field, std::move(id), "", std::move(help), "", "",
                      field ? 1.0 : 0.0, 0, 1});
   }
-  /// `choices`: the texts allowed, separated by '|'; empty for any.
+  /// `choices`: the allowed texts, separated by '|'; empty if any text is allowed.
   void add(std::string id, std::string& field, std::string choices, std::string help) {
     rows_.push_back({KARST_PARAMETER_TEXT, &field, std::move(id), "", std::move(help), std::move(choices),
                      field, 0, 0, 0});
@@ -80,7 +80,7 @@ class Parameters {
     return nullptr;
   }
 
-  std::deque<Row> rows_;  // a deque: views of its strings stay good while it grows
+  std::deque<Row> rows_;  // a deque: views of its strings stay valid while it grows
 };
 
 }  // namespace karst

@@ -1,11 +1,11 @@
-// The C++ face of the policy ABI. A policy derives from karst::Policy, writes decide(), and registers itself:
+// The C++ wrapper of the policy ABI. A policy derives from karst::Policy, implements decide() and registers:
 //
 //   class CommittedSegment : public karst::Policy {
 //     karst::Decision decide(const karst::Request& request) override { ... }
 //   };
 //   KARST_POLICY(CommittedSegment, "onward", "1.0.0", "Flies straight on.")
 //
-// Everything here is compiled into the plugin; only the C ABI crosses to the host, and no exception does.
+// Everything here is compiled into the plugin: only the C ABI crosses to the host, never an exception.
 #pragma once
 #include <string>
 
@@ -22,13 +22,13 @@ class Policy {
   Policy(const Policy&) = delete;
   Policy& operator=(const Policy&) = delete;
 
-  /// Names the fields that a mission file may set; their values now are the defaults.
+  /// Lists the fields that a mission file may set; their present values are the defaults.
   virtual void parameters(Parameters&) {}
-  /// Parameters are set. Throw karst::Error if they do not go together.
+  /// Called once the parameters are set. Throw karst::Error if they are inconsistent.
   virtual void init() {}
   virtual void activate() {}
   virtual Decision decide(const Request& request) = 0;
-  /// What became of a goal, and other news. Ignore kinds you do not know.
+  /// The outcome of a goal, and other events. Ignore kinds you do not know.
   virtual void on_event(const Event&) {}
   virtual void deactivate() {}
 };

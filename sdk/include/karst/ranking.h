@@ -1,7 +1,7 @@
-// From a merit for each frontier to a ranked decision: what most greedy policies share.
+// From a merit for each frontier to a ranked decision: the part that most greedy policies share.
 //
-// All scores are in metres of flight, so that weights can be read: a frontier that is worth 5 m more is
-// chosen although its path is 5 m longer (at path_weight 1).
+// All scores are in metres of flight, so that weights are easy to read: a frontier that is worth 5 m more
+// balances a path that is 5 m longer (at path_weight 1).
 #pragma once
 #include <algorithm>
 #include <string>
@@ -12,13 +12,13 @@
 
 namespace karst {
 
-/// What a policy sees in a frontier, before the flight to it is charged.
+/// The value of a frontier to a policy, in metres of flight, before the cost of the flight to it.
 struct Merit {
   double worth_m = 0;
   std::string why;
 };
 
-/// Sorts by score, best first, and leaves `most`.
+/// Sorts by score, best first, and keeps the first `most`.
 inline void keep_best(std::vector<Goal>& goals, std::size_t most) {
   std::sort(goals.begin(), goals.end(), [](const Goal& a, const Goal& b) {
     return a.score != b.score ? a.score > b.score : a.frontier_id < b.frontier_id;
@@ -29,9 +29,9 @@ inline void keep_best(std::vector<Goal>& goals, std::size_t most) {
 class Ranking {
  public:
   double path_weight = 1.0;   // metres of worth for a metre of path
-  double horizon_m = 30.0;    // path beyond it is charged once more: the vehicle works where it is
-  double turn_cost_m = 4.0;   // charged for flying straight back, in part for turning
-  double keep_bonus_m = 4.0;  // for the goal under way: nearly equal goals must not take turns
+  double horizon_m = 30.0;    // each metre of path beyond it costs one metre more: prefers near frontiers
+  double turn_cost_m = 4.0;   // cost of flying straight back; a fraction of it for smaller turns
+  double keep_bonus_m = 4.0;  // for the goal under way, so that the choice does not dither
   int goals = 8;
 
   void parameters(Parameters& p) {
@@ -47,7 +47,7 @@ class Ranking {
   void on_event(const Event& event) { open_.on_event(event); }
   void memory(Memory& m) { m.add(open_); }
 
-  /// `merit_of(frontier)` for each frontier that can be flown to; the best become goals.
+  /// Calls `merit_of(frontier)`, a Merit, for each frontier that can be flown to; the best become goals.
   template <class MeritOf>
   Decision decide(const Request& request, MeritOf&& merit_of) {
     std::vector<Goal> ranked;

@@ -1,4 +1,4 @@
-// From karst::Policy to the C tables: what KARST_POLICY expands to. An author need not read it.
+// From karst::Policy to the C tables: the code behind KARST_POLICY. Policy authors need not read it.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@ inline void fill(karst_error_t* error, std::int32_t code, const char* text) noex
   error->text[n] = '\0';
 }
 
-/// Runs `f`; whatever it throws becomes an error code and a text.
+/// Runs `f`; an exception becomes an error code and a text.
 template <class F>
 std::int32_t guarded(karst_error_t* error, F&& f) noexcept {
   try {
@@ -109,7 +109,7 @@ std::int32_t restore(void* self, const void* bytes, std::uint64_t count, karst_e
   });
 }
 
-/// NULL for a policy that says nothing of its memory.
+/// NULL for a policy that does not derive from Restorable.
 template <class P>
 const void* extension(void*, karst_text_t id) noexcept {
   if constexpr (std::is_base_of_v<Restorable, P>) {
@@ -144,7 +144,7 @@ struct Entry {
   karst_policy_t policy{};
 };
 
-/// The table only serves for its declarations: the fields it points to are gone when this returns.
+/// The table is used for its declarations only: the fields it points to are gone when this returns.
 template <class P>
 std::unique_ptr<Entry> make_entry(const char* id, const char* version, const char* one_line) {
   auto e = std::make_unique<Entry>();
@@ -166,8 +166,8 @@ std::unique_ptr<Entry> make_entry(const char* id, const char* version, const cha
   return e;
 }
 
-/// Made once and kept for the process's life: the host may ask for it until the very end. NULL, which
-/// the host reports, if the policy cannot even be constructed.
+/// Made once and kept as long as the process lives, since the host may ask for it until the end. NULL, which
+/// the host reports, if the policy cannot be constructed.
 template <class P>
 const karst_policy_t* entry(const char* id, const char* version, const char* one_line) noexcept {
   try {

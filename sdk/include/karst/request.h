@@ -1,4 +1,4 @@
-// One request: where the vehicle is, what it knows, and what the host can find out for the policy.
+// One request: the state of the vehicle, the map and frontiers, and the services of the host. World frame.
 #pragma once
 #include <string>
 #include <vector>
@@ -33,8 +33,8 @@ class Request {
 
   const std::uint32_t sequence;  // 1, 2, ...
   const std::int64_t stamp_ns, deadline_ns;
-  const State state;               // predicted at the deadline when flying
-  const Vec3 direction_of_flight;  // unit; the heading when the vehicle stands
+  const State state;               // in flight: predicted for deadline_ns
+  const Vec3 direction_of_flight;  // unit; along the heading while the vehicle is at rest
   const Pose T_world_start;
   const double seconds_before_homing;
   const double max_speed_mps, clearance_m, vehicle_radius_m;
@@ -47,7 +47,7 @@ class Request {
 
   Vec3 position() const { return state.position; }
 
-  /// Lengths of clear paths in metres, +infinity where no way is known; one search for all goals.
+  /// Length of a clear path to each goal in metres, +infinity where none is known; one search for all goals.
   std::vector<double> path_lengths(const Vec3& from, const std::vector<Vec3>& goals,
                                    double tolerance_m) const {
     std::vector<double> out(goals.size());
@@ -58,7 +58,7 @@ class Request {
     return out;
   }
 
-  /// Unknown cells `sensor` would see from each viewpoint. A sensor with a shortened range costs less.
+  /// Number of unknown cells that `sensor` would see, one for each viewpoint. A shorter range costs less.
   std::vector<std::uint64_t> newly_seen(const Sensor& sensor, const std::vector<Viewpoint>& from) const {
     std::vector<std::uint64_t> out(from.size());
     karst_error_t e{};
@@ -82,7 +82,7 @@ class Request {
   }
 
   void log(const std::string& line) const { host_->log(host_, KARST_LOG_INFO, to_abi(line)); }
-  /// Uniform in [0, 1), the same in every replay of the mission's seed.
+  /// Uniform in [0, 1), the same in every replay with the mission's seed.
   double random() const {
     double v = 0;
     host_->random(host_, &v, 1);
@@ -90,11 +90,11 @@ class Request {
   }
   /// For extensions: see karst/imaged.h.
   const karst_host_t* host() const { return host_; }
-  /// True once the host waits no longer: long loops ask now and then, and return.
+  /// True once the host no longer waits: long loops should call it regularly, and return.
   bool should_stop() const { return host_->should_stop(host_) != 0; }
 
  private:
-  /// A service this host does not offer is an error, not a crash.
+  /// A service that this host does not offer is an error, not a crash.
   template <class Service>
   static const Service& offered(const Service* service, const char* what) {
     if (service == nullptr) throw Error(std::string("this host offers no ") + what, KARST_ERROR_UNAVAILABLE);

@@ -1,4 +1,4 @@
-// What the sensors see in passing, without a stop for it.
+// Which points the sensors see in passing, without a stop.
 #pragma once
 #include <algorithm>
 
@@ -6,14 +6,14 @@
 
 namespace karst {
 
-/// Whether a sensor has an all-round view: a camera that faces ahead does not see what it passes.
+/// Whether a sensor has an all-round view: a forward camera does not see what the vehicle passes.
 inline bool sees_all_around(const Request& request) {
   constexpr double nearly_a_turn_rad = 6.0;
   return std::any_of(request.sensors.begin(), request.sensors.end(),
                      [](const Sensor& s) { return s.horizontal_fov_rad > nearly_a_turn_rad; });
 }
 
-/// The flight from where the vehicle is to a viewpoint, if its path is nearly straight.
+/// The flight from the vehicle's position to a viewpoint, if its path is nearly straight.
 class StraightPath {
  public:
   StraightPath(const Vec3& from, const Vec3& to, double path_length_m)
@@ -22,7 +22,7 @@ class StraightPath {
         length_m_(norm(path_)),
         straight_(path_length_m <= max_bent * length_m_) {}
 
-  /// Whether it comes within `within_m` of `p`, `before_m` or more before its end.
+  /// Whether the flight comes within `within_m` of `p` (world), at least `before_m` before its end.
   bool passes(const Vec3& p, double within_m, double before_m = 0) const {
     if (!straight_ || length_m_ <= before_m) return false;
     const double along_m = dot(p - from_, path_) / length_m_;
@@ -31,7 +31,7 @@ class StraightPath {
   }
 
  private:
-  static constexpr double max_bent = 1.2;  // a path no longer than that many times the straight line
+  static constexpr double max_bent = 1.2;  // largest ratio of path length to straight-line distance
 
   Vec3 from_, path_;
   double length_m_;

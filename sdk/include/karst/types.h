@@ -1,4 +1,4 @@
-// The values a policy works with. World frame: x east, y north, z up. Metres, seconds, radians.
+// The values that a policy works with. World frame: x east, y north, z up. Metres, seconds, radians.
 #pragma once
 #include <karst_abi.h>
 
@@ -12,7 +12,7 @@
 
 namespace karst {
 
-/// A service refused, or a policy gives up: the text reaches the mission's log.
+/// Thrown when a service refuses a call; a policy throws it to give up. The text reaches the mission's log.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& text, std::int32_t code = KARST_ERROR_FAILED)
@@ -59,17 +59,17 @@ enum class Cell : karst_cell_t {
   occupied = KARST_CELL_OCCUPIED
 };
 
-/// A group of neighbouring free cells that border on the unknown.
+/// A group of neighbouring free cells that have an unknown face neighbour.
 struct Frontier {
-  std::uint32_t id = 0;  // kept while the cluster shares cells with its former self
+  std::uint32_t id = 0;  // never reused; kept while the cluster shares cells with its last version
   std::uint32_t cells = 0;
   Vec3 centroid, low, high;
   Vec3 normal;                                      // unit, from free into unknown; zero if it has none
   std::uint32_t unknown_cells = 0, free_cells = 0;  // in a box of a few metres around the centroid
-  Vec3 viewpoint;                                   // a clear place that sees it; NaN if none was found
+  Vec3 viewpoint;                                   // clear, sees the cluster; NaN if none was found
   double viewpoint_heading_rad = 0;
   double path_length_m =
-      0;  // to the viewpoint from where a new path would begin; +infinity if no way is known
+      0;  // from the start of a new path to the viewpoint, in metres; +infinity if no path is known
 
   bool reachable() const { return is_finite(viewpoint) && std::isfinite(path_length_m); }
 };
@@ -84,13 +84,13 @@ struct Goal {
   Vec3 position;
   double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: any
   double tolerance_m = 0.5;
-  double max_speed_mps = 0;       // 0: the mission's; not less than motion.min_speed
+  double max_speed_mps = 0;       // 0: the mission's limit; not less than motion.min_speed
   std::uint32_t frontier_id = 0;  // 0: none
   double score = 0;               // higher is better, in the policy's own unit
   std::string why;                // one line for the report
 };
 
-/// The goal that looks at a frontier from the viewpoint the core proposes.
+/// A goal at the viewpoint, and with the heading, that the core proposes for a frontier.
 inline Goal goal_at(const Frontier& f, double score, std::string why) {
   Goal g;
   g.position = f.viewpoint;
@@ -101,7 +101,7 @@ inline Goal goal_at(const Frontier& f, double score, std::string why) {
   return g;
 }
 
-/// What decide() answers. Make one with `fly`, `tour`, `hold`, `explored` or `go_home`.
+/// The answer of decide(). Make one with `fly`, `tour`, `hold`, `explored` or `go_home`.
 struct Decision {
   karst_outcome_t outcome = KARST_OUTCOME_HOLD;
   bool in_order = false;  // a tour
@@ -110,7 +110,7 @@ struct Decision {
 
   /// Ranked choices, best first: the core flies to the first that passes its checks.
   static Decision fly(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, false, std::move(goals), ""}; }
-  /// Goals to visit one after the other. The core may ask again before the last.
+  /// Goals to visit one after the other. The core may ask again before the last one is reached.
   static Decision tour(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, true, std::move(goals), ""}; }
   static Decision hold(std::string reason) { return {KARST_OUTCOME_HOLD, false, {}, std::move(reason)}; }
   static Decision explored(std::string reason) {
@@ -121,7 +121,7 @@ struct Decision {
   }
 };
 
-/// News between two requests. `kind` is one of KARST_EVENT_*; later minor versions add kinds.
+/// An event between two requests. `kind` is one of KARST_EVENT_*; later minor versions add kinds.
 struct Event {
   karst_event_kind_t kind = 0;
   std::int64_t stamp_ns = 0;
@@ -143,7 +143,7 @@ inline Goal from_abi(const karst_goal_t& g) {
   return {g.position, g.heading_rad, g.tolerance_m, g.max_speed_mps, g.frontier_id, g.score, from_abi(g.why)};
 }
 
-/// Throws Error when a service failed.
+/// Throws Error if `code`, which a service returned, is a failure.
 inline void check(std::int32_t code, const karst_error_t& error) {
   if (code != KARST_OK) throw Error(error.text, code);
 }

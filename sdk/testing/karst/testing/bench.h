@@ -1,12 +1,12 @@
-// A policy on the bench: asked through its C tables, as the host asks it, with requests a test writes.
+// A test bench for a policy: calls it through its C tables, as the host does, with requests from the test.
 //
 //   Bench bench(karst_plugin_entry(), map, {{"min_cells", "4"}});
 //   bench.position = map.place('a');
 //   bench.offer(1, map.place('b'), map.place('c'));
 //   const karst::Decision d = bench.decide();
 //
-// The test is linked with the policy's own source, which defines karst_plugin_entry. Any test framework will
-// do.
+// The test is linked with the policy's own source, which defines karst_plugin_entry. Any test framework can
+// be used.
 #pragma once
 #include <cmath>
 #include <cstdlib>
@@ -32,7 +32,7 @@ class Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  // What the next request says; change it as the test needs.
+  // The content of the next request; change it as the test needs. World frame, metres, radians, seconds.
   Vec3 position;
   Vec3 direction_of_flight{1, 0, 0};
   double heading_rad = 0;
@@ -45,7 +45,7 @@ class Bench {
 
   const DrawnHost& host() const { return host_; }
 
-  /// Adds a frontier seen from `viewpoint`, its path measured through the map, its cells counted in a box.
+  /// Adds a frontier (world, m). Its path is measured in the map, its cells are counted in a 4 m cube.
   Frontier& offer(std::uint32_t id, const Vec3& viewpoint, const Vec3& centroid, std::uint32_t cells = 20) {
     Frontier f;
     f.id = id;
@@ -63,7 +63,7 @@ class Bench {
     return frontiers.back();
   }
 
-  /// Offers what the drawing shows, in place of what was offered before; ids from 1.
+  /// Replaces the offered frontiers by those of the drawing; ids from 1.
   void offer_drawn(std::uint32_t min_cells = 1) {
     frontiers.clear();
     for (const Frontier& f : find_frontiers(host_.map(), position, min_cells)) {
@@ -75,15 +75,15 @@ class Bench {
     }
   }
 
-  /// The first goal of the last answer has been reached: the vehicle is there, the policy is told, and paths
-  /// are measured from there.
+  /// The first goal of the last answer is reached: moves the vehicle there, notifies the policy and measures
+  /// all paths from there.
   void arrive() {
     const Goal goal = first_goal();
     position = goal.position;
     close_goal(KARST_EVENT_GOAL_REACHED, KARST_FATE_REACHED, goal, "reached");
     for (Frontier& f : frontiers) f.path_length_m = host_.map().path_length_m(position, f.viewpoint);
   }
-  /// It came to nothing: KARST_EVENT_GOAL_REJECTED, _UNREACHABLE, _ABANDONED or _SUPERSEDED.
+  /// That goal failed. `kind`: KARST_EVENT_GOAL_REJECTED, _UNREACHABLE, _ABANDONED or _SUPERSEDED.
   void fail(karst_event_kind_t kind, const std::string& reason = "as the test wants it") {
     const karst_goal_fate_t fate = kind == KARST_EVENT_GOAL_REJECTED      ? KARST_FATE_REJECTED
                                    : kind == KARST_EVENT_GOAL_UNREACHABLE ? KARST_FATE_UNREACHABLE
@@ -92,7 +92,7 @@ class Bench {
     close_goal(kind, fate, first_goal(), reason);
   }
 
-  /// Asks once. Throws Error if the policy fails.
+  /// Requests one decision. Throws Error if the policy fails.
   Decision decide() {
     std::vector<karst_frontier_cluster_t> clusters;
     for (const Frontier& f : frontiers)
@@ -136,7 +136,7 @@ class Bench {
     return answer;
   }
 
-  /// What the policy remembers, through the extension "karst.state/1". Throws Error if it offers none.
+  /// The policy's saved state, through the extension "karst.state/1". Throws Error if it offers none.
   std::vector<unsigned char> saved() {
     std::vector<unsigned char> bytes;
     const karst_state_sink_t sink{sizeof(karst_state_sink_t), 0, 16u << 20, &bytes, &keep};
@@ -144,8 +144,8 @@ class Bench {
     check(state().save(self_, &sink, &e), e);
     return bytes;
   }
-  /// As after a crash: a new object with the same parameters, and with the memory of `bytes` unless they are
-  /// empty.
+  /// As after a crash: replaces the policy by a new object with the same parameters, and restores its state
+  /// from `bytes` unless they are empty.
   void restart(const std::vector<unsigned char>& bytes) {
     end();
     start(bytes);

@@ -1,5 +1,5 @@
-// The frontiers of a drawn map, as the core would find them: free cells with an unknown face neighbour, in
-// groups that touch.
+// The frontiers of a drawn map, as the core would find them: free cells with an unknown face neighbour,
+// grouped by adjacency (faces, edges and corners).
 #pragma once
 #include <set>
 #include <vector>
@@ -9,9 +9,9 @@
 namespace karst::testing {
 
 /// Clusters of at least `min_cells` cells, with ids from 1 in the order of their first cell (x, then y, then
-/// z). A drawing of a single layer is a floor plan: what is above and below it does not count. The viewpoint
-/// is the cluster's cell nearest its centroid, with the heading of the normal; the path to it is measured
-/// from `from`.
+/// z). A drawing of a single layer is a floor plan: cells above and below it do not count. The viewpoint is
+/// the centre of the cluster's cell nearest its centroid, with the heading of the normal; the path to it is
+/// measured from `from` (world, m).
 inline std::vector<Frontier> find_frontiers(const DrawnMap& map, const Vec3& from,
                                             std::uint32_t min_cells = 1) {
   const bool plan = map.layers() == 1;

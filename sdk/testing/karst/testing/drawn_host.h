@@ -8,7 +8,7 @@
 
 namespace karst::testing {
 
-/// Also an example of how each service is meant: see karst_abi_services.h.
+/// Also a reference for the meaning of each service: see karst_abi_services.h.
 class DrawnHost {
  public:
   explicit DrawnHost(DrawnMap map) : map_(std::move(map)) {
@@ -49,7 +49,7 @@ class DrawnHost {
     return KARST_OK;
   }
 
-  /// First cell along the segment that stops it, found in steps of a hundredth of a cell.
+  /// The first cell that stops the ray from `from` to `to`, found in steps of a hundredth of a cell.
   static karst_ray_end_t cast(const DrawnMap& m, const Vec3& from, const Vec3& to, bool through_unknown) {
     const double length = distance(from, to);
     const int steps = static_cast<int>(std::ceil(length / (0.01 * m.resolution_m())));
@@ -110,7 +110,7 @@ class DrawnHost {
                                     karst_error_t*) noexcept {
     const DrawnMap& m = self(h).map_;
     std::vector<Index> surface;
-    for (const auto& [k, cell] : m.known()) {  // a box may be far larger than what is drawn
+    for (const auto& [k, cell] : m.known()) {  // a box may be far larger than the drawing
       if (cell != Cell::occupied || !holds(box, m.center_of(k))) continue;
       const Index faces[] = {{k.x - 1, k.y, k.z}, {k.x + 1, k.y, k.z}, {k.x, k.y - 1, k.z},
                              {k.x, k.y + 1, k.z}, {k.x, k.y, k.z - 1}, {k.x, k.y, k.z + 1}};
@@ -153,7 +153,7 @@ class DrawnHost {
     const Vec3 t = 2.0 * cross(u, v);
     return v + q.w * t + cross(u, t);
   }
-  /// Cell by cell: unknown, in range, in view, and no occupied cell on the line to its centre.
+  /// Counts the unknown cells in range and in view that have no occupied cell on the line to their centre.
   static std::uint64_t count_seen(const DrawnMap& m, const karst_sensor_t& s, const karst_viewpoint_t& v) {
     const double c = std::cos(v.heading_rad), w = std::sin(v.heading_rad);
     const Vec3 p = s.T_body_sensor.position;

@@ -6,9 +6,9 @@
 //     #######)"});
 //
 // A layer is seen from above: the first row is the northernmost. '#' is occupied, '?' unknown, '.' free; a
-// letter is a free cell with a name. Blanks before a row are ignored; a row that ends early goes on unknown,
-// as does everything outside. Layers go up. The lower south-western corner is the world's origin. A legend
-// gives other characters a meaning; what is tedious to draw is added with fill(), room() and tube().
+// letter is a free cell with a name. Blanks before a row are ignored; cells after the end of a short row and
+// outside the drawing are unknown. Layers are listed bottom first. The lower south-western corner is the
+// world's origin. A legend defines other characters; fill(), room() and tube() add what is tedious to draw.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -35,14 +35,14 @@ struct Index {
 
 class DrawnMap {
  public:
-  using Legend = std::map<char, Cell>;  // of characters beside '#', '.', '?' and letters, or in their stead
+  using Legend = std::map<char, Cell>;  // adds characters to '#', '.', '?' and letters, or replaces them
 
   DrawnMap(double resolution_m, const std::vector<std::string>& layers, const Legend& legend = {})
       : resolution_m_(resolution_m), layers_(layers.size()) {
     for (std::size_t z = 0; z < layers.size(); ++z) draw(layers[z], static_cast<int>(z), legend);
   }
 
-  /// Every cell whose centre lies in the closed box, metres.
+  /// Sets every cell whose centre lies in the closed box (world, m).
   DrawnMap& fill(const Box& box, Cell cell) {
     const Index low = index_of(box.low), high = index_of(box.high);
     for (int x = low.x; x <= high.x; ++x)
@@ -55,13 +55,13 @@ class DrawnMap {
         }
     return *this;
   }
-  /// Free inside, with a wall of one cell around it.
+  /// Adds a free box (world, m), with a wall of one cell around it.
   DrawnMap& room(const Box& inside) {
     const Vec3 wall{resolution_m_, resolution_m_, resolution_m_};
     return fill({inside.low - wall, inside.high + wall}, Cell::occupied).fill(inside, Cell::free);
   }
-  /// Free within `radius_m` of the segment, with a wall of one cell around it, open at both ends. What is
-  /// free already stays free.
+  /// Adds a tube that is free within `radius_m` of the segment (world, m), with a wall of one cell around it
+  /// and open at both ends. Cells that are free already stay free.
   DrawnMap& tube(const Vec3& from, const Vec3& to, double radius_m) {
     const double length = distance(from, to), reach = radius_m + resolution_m_;
     const Vec3 margin{reach, reach, reach};
@@ -91,7 +91,7 @@ class DrawnMap {
   }
 
   double resolution_m() const { return resolution_m_; }
-  std::size_t layers() const { return layers_; }  // drawn
+  std::size_t layers() const { return layers_; }  // number of drawn layers
   const std::map<Index, Cell>& known() const { return known_; }
   Cell at(const Index& i) const {
     const auto found = known_.find(i);
@@ -105,14 +105,14 @@ class DrawnMap {
   Vec3 center_of(const Index& i) const {
     return {(i.x + 0.5) * resolution_m_, (i.y + 0.5) * resolution_m_, (i.z + 0.5) * resolution_m_};
   }
-  /// Centre of the cell named by a letter.
+  /// Centre (world, m) of the cell named by a letter. Throws std::out_of_range if there is none.
   Vec3 place(char letter) const {
     const auto found = places_.find(letter);
     if (found == places_.end()) throw std::out_of_range(std::string("no cell is named ") + letter);
     return center_of(found->second);
   }
 
-  /// Length of the shortest way through free cells that share a face, an edge or a corner; +infinity if none.
+  /// Length (m) of the shortest path through free cells that share a face, edge or corner; +infinity if none.
   double path_length_m(const Vec3& from, const Vec3& to) const {
     const Index start = index_of(from), goal = index_of(to);
     if (at(start) != Cell::free || at(goal) != Cell::free) return std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// What a test expects of a decision, and in words why it is not so. No test framework is needed; with one:
+// Expectations of a decision, with a text that explains a mismatch. No test framework is needed; with one:
 //
 //   EXPECT_EQ(mismatch(bench.decide(), flies_to_frontier(3)), "");
 #pragma once
@@ -21,7 +21,7 @@ inline std::string describe(const Goal& g) {
   out << describe(g.position) << ", frontier " << g.frontier_id << ", score " << g.score << ": " << g.why;
   return out.str();
 }
-/// The whole decision, a goal a line.
+/// The whole decision, with one line for each goal.
 inline std::string describe(const Decision& d) {
   const char* names[] = {"no outcome", "goals", "hold", "explored", "go home"};
   std::string out = d.outcome <= 4 ? names[d.outcome] : "outcome " + std::to_string(d.outcome);
@@ -37,7 +37,7 @@ struct Expectation {
   std::function<bool(const Decision&)> holds;
 };
 
-/// "" if it holds, otherwise what was expected and what came.
+/// "" if the expectation holds, otherwise what was expected and the actual decision.
 inline std::string mismatch(const Decision& d, const Expectation& e) {
   return e.holds(d) ? "" : "expected: " + e.what + "\ngot: " + describe(d);
 }
@@ -54,7 +54,7 @@ inline Expectation flies_to(const Vec3& place, double within_m = 0.5) {
                    distance(d.goals[0].position, place) <= within_m;
           }};
 }
-/// These frontiers, in this order, and no others.
+/// The decision's goals are these frontiers, in this order, and no others.
 inline Expectation offers_frontiers(const std::vector<std::uint32_t>& ids) {
   std::string what = "offers frontiers";
   for (const std::uint32_t id : ids) what += " " + std::to_string(id);
@@ -83,7 +83,7 @@ inline Expectation gives_reason(const std::string& part) {
             return text.find(part) != std::string::npos;
           }};
 }
-/// What the host would take: finite numbers, at most 64 goals, reasons of at most 240 bytes.
+/// The host would accept it: finite numbers, at most 64 goals, reasons of at most 240 bytes.
 inline Expectation is_well_formed() {
   return {"is well formed", [](const Decision& d) {
             if (d.goals.size() > 64 || (d.outcome == KARST_OUTCOME_GOALS && d.goals.empty())) return false;

@@ -1,4 +1,4 @@
-// A sequence of requests, with what happens before each and what is expected of each answer.
+// A sequence of requests, with the events before each and the expectation of each answer.
 //
 //   const std::string fault = play(bench, {
 //       {"at the start", [&](Bench& b) { b.position = map.place('s'); }, flies_to_frontier(1)},
@@ -19,11 +19,11 @@ struct Step {
   std::string name;
   std::function<void(Bench&)> before;  // may be empty
   Expectation expected;
-  double after_s = 1.0;  // time that passes before it
+  double after_s = 1.0;  // time that passes before this step
 };
 
-/// "" if every answer was as expected, otherwise the first step that was not, with the answer. What the
-/// policy throws, it throws.
+/// "" if every answer was as expected, otherwise the first step with a mismatch, and the actual answer.
+/// Rethrows exceptions of the policy.
 inline std::string play(Bench& bench, const std::vector<Step>& steps) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     bench.time_s += steps[i].after_s;
