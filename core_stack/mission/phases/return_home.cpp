@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kAboveHome_m = 0.4;
 // Failed plans in a row. The obstacle may be another vehicle, or the last known place of one that has left.
-constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 6;
+constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 4;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 // Without progress the vehicle lands where it is. A blocked cave does not open while it hovers, and dust
