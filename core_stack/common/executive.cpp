@@ -111,7 +111,7 @@ void Executive::run_periodic(const Periodic& periodic, TimeNs due) {
   note_cost(periodic.name, run_timed_ms(periodic.step));
 }
 
-void Executive::run(Event event) {
+void Executive::run(const Event& event) {
   ++events_;
   running_ = event.periodic ? &event.periodic->name : &kNoName;
   if (!event.periodic) return event.step();

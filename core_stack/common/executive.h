@@ -82,7 +82,7 @@ class Executive {
   struct Job;
   struct Periodic;
   void push(Event event);
-  void run(Event event);
+  void run(const Event& event);
   void run_periodic(const Periodic& step, TimeNs due);
   void note_cost(const std::string& name, double milliseconds);
   void finish(const std::shared_ptr<Job>& job);

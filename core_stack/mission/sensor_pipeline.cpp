@@ -98,7 +98,7 @@ void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
                                                               .believed = believed});
 }
 
-void SensorPipeline::map_scan(std::shared_ptr<const LidarScan> scan) {
+void SensorPipeline::map_scan(const std::shared_ptr<const LidarScan>& scan) {
   integrate(scan->stamp,
             [scan, history = onboard_.flight.estimator().history(), filter = onboard_.options.perception,
              range_m = onboard_.options.mission.mapping_range_m,
@@ -109,7 +109,7 @@ void SensorPipeline::map_scan(std::shared_ptr<const LidarScan> scan) {
             });
 }
 
-void SensorPipeline::on_depth(std::shared_ptr<const DepthImage> image) {
+void SensorPipeline::on_depth(const std::shared_ptr<const DepthImage>& image) {
   integrate(image->stamp, [image, history = onboard_.flight.estimator().history(),
                            self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
     return to_rays(*image, history, self_m);

@@ -49,7 +49,7 @@ class SensorPipeline {
 
   /// A scan of which it is not known when it was taken is not used.
   void on_lidar(std::shared_ptr<const LidarScan> scan);
-  void on_depth(std::shared_ptr<const DepthImage> image);
+  void on_depth(const std::shared_ptr<const DepthImage>& image);
   void on_rgb(const std::shared_ptr<const RgbFrame>& frame);
   /// Used only if no LiDAR locates the vehicle.
   void on_pose(const PoseSample& s);
@@ -70,7 +70,7 @@ class SensorPipeline {
   std::shared_ptr<const LidarScan> stamped_right(std::shared_ptr<const LidarScan> scan);
   void note_localization(const LoamPose& pose, bool accepted);
   void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
-  void map_scan(std::shared_ptr<const LidarScan> scan);
+  void map_scan(const std::shared_ptr<const LidarScan>& scan);
   void integrate(TimeNs stamp, std::function<std::vector<Ray>()> make_rays);
 
   Onboard& onboard_;

@@ -9,7 +9,8 @@ namespace karst::core {
 
 void describe(OptionTable& t, TeamOptions& o) {
   t.add("robots", o.robots, 1, kMaxRobots - 1, "1: one vehicle alone, and no team");
-  t.add("nodes", o.nodes, 0, kMaxRobots / 2 - 2,
+  constexpr int kMaxNodes = kMaxRobots / 2 - 2;
+  t.add("nodes", o.nodes, 0, kMaxNodes,
         "communication nodes that each robot carries, and drops where it comes out of reach");
   t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts; whole seconds");
   t.add("strategy", o.strategy, "where a robot lands when its battery runs low (docs/homing.md)");

@@ -298,7 +298,7 @@ void SimulatedVehicle::take_picture() {
 }
 
 /// Searches the image that `camera` takes now: logs objects in view as truth, sends detections to the core.
-void SimulatedVehicle::look_for_objects(std::shared_ptr<const core::CameraModel> camera, Light light) {
+void SimulatedVehicle::look_for_objects(const std::shared_ptr<const core::CameraModel>& camera, Light light) {
   if (!description_.detects_objects) return;
   const core::Pose T_world_camera = quadrotor_.state().T_world_body * camera->T_body_camera;
   const std::string stream = "objects " + camera->name;

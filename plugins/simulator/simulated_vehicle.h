@@ -55,7 +55,7 @@ class SimulatedVehicle final : public core::Vehicle {
   void fire_lidar();
   void fire_camera(std::size_t index);
   void take_picture();
-  void look_for_objects(std::shared_ptr<const core::CameraModel> camera, Light light);
+  void look_for_objects(const std::shared_ptr<const core::CameraModel>& camera, Light light);
   void report_pose();
   void move_rocks();
   void stir_air();

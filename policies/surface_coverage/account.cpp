@@ -21,7 +21,7 @@ karst_quaternion_t about_z(double heading_rad) {
 
 class HostAccount final : public Account {
  public:
-  explicit HostAccount(karst::ImagedView view) : view_(std::move(view)) {}
+  explicit HostAccount(const karst::ImagedView& view) : view_(view) {}
   const ImagingCamera& camera() const override { return view_.camera(); }
   std::vector<SurfaceCell> unimaged(const Box& box) const override { return view_.unimaged(box); }
   std::vector<std::vector<Vec3>> looks(const std::vector<Viewpoint>& from) const override {
@@ -60,7 +60,7 @@ ImagingCamera camera_of(const karst::Request& request) {
 
 std::unique_ptr<Account> host_account(const karst::Request& request) {
   auto view = karst::ImagedView::of(request.host());
-  return view ? std::make_unique<HostAccount>(std::move(*view)) : nullptr;
+  return view ? std::make_unique<HostAccount>(*view) : nullptr;
 }
 
 class OwnAccount final : public Account {

@@ -40,8 +40,8 @@ std::vector<Row> rows_of(const LostTime& lost) {
 }
 
 void print(const std::string& run, const LostTime& lost) {
-  print_out("%s: explored for %.1f s, %.1f m, %.2f m/s as a mean\n", run.c_str(), lost.explored_s, lost.path_m,
-            lost.path_m / lost.explored_s);
+  print_out("%s: explored for %.1f s, %.1f m, %.2f m/s as a mean\n", run.c_str(), lost.explored_s,
+            lost.path_m, lost.path_m / lost.explored_s);
   print_out("Of that, %.1f s were lost against %.2f m/s throughout:\n", lost.total_s, lost.max_speed_mps);
   print_out("  %-28s %9s %9s %9s %9s\n", "s", "lost", "at it", "braking", "after it");
   for (const Row& row : rows_of(lost))
@@ -56,8 +56,9 @@ void explain(const std::vector<std::string>& runs, double until_s) {
     for (const fs::path& folder : folders) {
       const auto lost = evaluation::lost_time(evaluation::read_run(folder), until_s);
       if (!lost || lost->explored_s <= 0)
-        throw core::InputError(folder.string(), "",
-                               "no telemetry of a flight that explored, or no limits of motion in mission.info");
+        throw core::InputError(
+            folder.string(), "",
+            "no telemetry of a flight that explored, or no limits of motion in mission.info");
       print(folder.string(), *lost);
     }
   }

@@ -39,7 +39,8 @@ void lift(const FreeTiles& free, double clearance_m, std::vector<Vec3>& points) 
     for (double step = kLiftStep_m; step > kMinLiftStep_m && distance < clearance_m;) {
       Vec3 best = points[i];
       for (int m = 0; m < 27; ++m) {
-        const Vec3 q = points[i] + step * Vec3(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
+        const int x = m % 3 - 1, y = m / 3 % 3 - 1, z = m / 9 - 1;
+        const Vec3 q = points[i] + step * Vec3(x, y, z);
         const double d = free.nearest(q, clearance_m).distance_m;
         if (d > distance + 1e-6 && free.at(free.key_of(q))) {
           distance = d;

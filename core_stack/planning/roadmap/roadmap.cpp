@@ -199,7 +199,7 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
   if (!g.rule) return out;
   const std::vector<Vec3> escape = path_to_clear(map, g, from);
   if (escape.empty()) return out;
-  const Vec3 start = escape.back();
+  const Vec3& start = escape.back();
   const double escape_m = path_length_m(escape);
 
   GraphSearch search(g);

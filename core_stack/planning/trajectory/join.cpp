@@ -38,7 +38,7 @@ std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vect
   std::vector<Vec3> plain = committed;
   plain.insert(plain.end(), path.begin() + 1, path.end());
   if (committed.size() < 2 || path.size() < 2) return plain;
-  const Vec3 corner = committed.back();
+  const Vec3& corner = committed.back();
   const double kink = turn_rad(corner - committed[committed.size() - 2], path[1] - corner);
   if (kink < kStraight_rad) return plain;
   const std::vector<Vec3> backwards(committed.rbegin(), committed.rend());

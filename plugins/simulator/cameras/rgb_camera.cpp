@@ -33,6 +33,7 @@ std::uint8_t srgb(float linear) {
     }
     return t;
   }();
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative
   return table[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * kSteps + 0.5f)];
 }
 

@@ -24,7 +24,7 @@ std::optional<Similarity> umeyama(const std::vector<Vec3>& from, const std::vect
     variance += (from[i] - from_mean).squaredNorm() / n;
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 d = svd.singularValues();
+  const Vec3& d = svd.singularValues();
   if (!d.allFinite() || d[1] <= 1e-12 * d[0] || d[0] <= 0) return std::nullopt;
   Vec3 s = Vec3::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) s[2] = -1;

@@ -13,9 +13,9 @@ using core::Vec3;
 
 // Of the limits: from there on a limit counts as what the speed is kept low for.
 constexpr double kNearLimit = 0.7;
-constexpr double kFullSpeed = 0.9;     // of v_max
-constexpr double kFlat = 0.05;         // of v_max: the speed at a slowdown's slowest part varies by less
-constexpr double kProminence = 0.1;    // of v_max: smaller changes of speed are no slowdown of their own
+constexpr double kFullSpeed = 0.9;   // of v_max
+constexpr double kFlat = 0.05;       // of v_max: the speed at a slowdown's slowest part varies by less
+constexpr double kProminence = 0.1;  // of v_max: smaller changes of speed are no slowdown of their own
 constexpr double kStands_mps = 0.1;
 constexpr double kTurns_radps = 0.15;
 constexpr double kLongestStep_s = 1.0;  // a gap in the telemetry is left out
@@ -47,9 +47,10 @@ std::vector<std::vector<Sample>> stretches(const RunRecord& run, double until_s)
     const auto phase = std::find_if(run.phases.begin(), run.phases.end(), [&](const Phase& p) {
       return (p.traits().explores || p.is(core::Phase::look)) && t >= p.begin_s && t <= p.end_s;
     });
-    const bool usable = before_s > 0 && after_s > 0 && before_s < kLongestStep_s && after_s < kLongestStep_s &&
-                        at(i - 1).allFinite() && at(i).allFinite() && at(i + 1).allFinite() &&
-                        std::isfinite((*heading)[i - 1]) && std::isfinite((*heading)[i + 1]);
+    const bool usable = before_s > 0 && after_s > 0 && before_s < kLongestStep_s &&
+                        after_s < kLongestStep_s && at(i - 1).allFinite() && at(i).allFinite() &&
+                        at(i + 1).allFinite() && std::isfinite((*heading)[i - 1]) &&
+                        std::isfinite((*heading)[i + 1]);
     if (t > until_s || phase == run.phases.end() || !usable) {
       joined = false;
       continue;
@@ -121,12 +122,13 @@ void add(LostTime& out, const std::vector<Sample>& samples, const Limits& limits
   std::size_t begin = 0;
   for (std::size_t n = 0; n < lows.size(); ++n) {
     const auto first = samples.begin() + static_cast<std::ptrdiff_t>(lows[n]);
-    const auto last = n + 1 < lows.size() ? samples.begin() + static_cast<std::ptrdiff_t>(lows[n + 1]) + 1
-                                          : samples.end();
+    const auto last =
+        n + 1 < lows.size() ? samples.begin() + static_cast<std::ptrdiff_t>(lows[n + 1]) + 1 : samples.end();
     const auto faster = [](const Sample& a, const Sample& b) { return a.speed_mps < b.speed_mps; };
-    const std::size_t end = n + 1 < lows.size()
-                                ? static_cast<std::size_t>(std::max_element(first, last, faster) - samples.begin())
-                                : samples.size();
+    const std::size_t end =
+        n + 1 < lows.size()
+            ? static_cast<std::size_t>(std::max_element(first, last, faster) - samples.begin())
+            : samples.size();
     const double flat_mps = samples[lows[n]].speed_mps + kFlat * limits.speed_mps;
     std::size_t from = lows[n], to = lows[n] + 1;
     while (from > begin && samples[from - 1].speed_mps <= flat_mps) --from;

@@ -29,14 +29,14 @@ struct Slowdown {
   double total_s() const { return at_s + before_s + after_s; }
 };
 
-/// Of each moment dt of exploring, dt (1 - v / v_max) is lost; v is the reference's speed. The parts sum up to
-/// `total_s`.
+/// Of each moment dt of exploring, dt (1 - v / v_max) is lost; v is the reference's speed. The parts sum up
+/// to `total_s`.
 struct LostTime {
   double explored_s = 0, total_s = 0, path_m = 0, max_speed_mps = 0;
-  double look_around_s = 0;       // at the start, for vehicles whose cameras see one side
-  double turning_s = 0;           // on the spot
-  double waiting_s = 0;           // at rest, neither turning nor looking around
-  double nearly_full_speed_s = 0; // above 0.9 of v_max
+  double look_around_s = 0;           // at the start, for vehicles whose cameras see one side
+  double turning_s = 0;               // on the spot
+  double waiting_s = 0;               // at rest, neither turning nor looking around
+  double nearly_full_speed_s = 0;     // above 0.9 of v_max
   std::array<Slowdown, 4> slowdowns;  // by SlowdownCause
   Slowdown& operator[](SlowdownCause cause) { return slowdowns[static_cast<std::size_t>(cause)]; }
   const Slowdown& operator[](SlowdownCause cause) const { return slowdowns[static_cast<std::size_t>(cause)]; }

@@ -57,7 +57,8 @@ const std::vector<Vec3>& sight_directions() {
     std::vector<Vec3> d;
     for (const int norm : {1, 2, 3})  // faces first: most free cells near a wall are visible along them
       for (int i = 0; i < 27; ++i) {
-        const Vec3 step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+        const Vec3 step(x, y, z);
         if (static_cast<int>(step.squaredNorm()) == norm) d.push_back(step.normalized());
       }
     constexpr int kSpread = 256;
