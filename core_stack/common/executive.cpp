@@ -205,7 +205,7 @@ void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
     Event event = std::move(queue_.back());
     queue_.pop_back();
     now_ = std::max(now_, event.time);
-    run(std::move(event));
+    run(event);
     running_ = &kNoName;
     if (done()) return;
   }

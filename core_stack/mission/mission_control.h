@@ -64,7 +64,7 @@ class MissionControl final : public VehicleSink {
   const std::string& homing_reason() const { return return_home_.reason(); }
 
   void on_lidar(std::shared_ptr<const LidarScan> scan) override { sensors_.on_lidar(std::move(scan)); }
-  void on_depth(std::shared_ptr<const DepthImage> image) override { sensors_.on_depth(std::move(image)); }
+  void on_depth(std::shared_ptr<const DepthImage> image) override { sensors_.on_depth(image); }
   void on_rgb(const std::shared_ptr<const RgbFrame>& frame) override { sensors_.on_rgb(frame); }
   void on_pose(const PoseSample& s) override { sensors_.on_pose(s); }
   void on_objects(const ObjectDetections& look) override { objects_.on_objects(look); }

@@ -30,7 +30,7 @@ SensorPipeline::SensorPipeline(Onboard& onboard, Wiring wiring)
 void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
   scan = stamped_right(std::move(scan));
   if (!scan) return;
-  if (!loam_) return map_scan(std::move(scan));
+  if (!loam_) return map_scan(scan);
   if (onboard_.executive.under_way("localization") > 1)
     return;  // in real time, when localization falls behind: late scans are useless
   const double self_m = onboard_.vehicle.radius_m + kSelfMargin_m;
