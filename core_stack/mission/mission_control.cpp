@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "core_stack/common/error.h"
@@ -30,14 +29,6 @@ double path_back_m(const BatteryStatus& battery) {
 /// The longest sideways flight on a pose that may no longer be valid.
 constexpr double kDoubtfulPath_m = 4.5;
 constexpr double kAnyPath_m = std::numeric_limits<double>::infinity();
-
-/// The angle to turn when looking around: a full turn less the widest camera's view, with a little overlap.
-double turn_to_see_all_around(const VehicleDescription& vehicle) {
-  constexpr double kOverlap_rad = 0.2;
-  double seen_rad = 0;
-  for (const auto& camera : vehicle.cameras) seen_rad = std::max(seen_rad, camera->horizontal_fov_rad);
-  return std::max(0.0, 2 * std::numbers::pi - std::max(0.0, seen_rad - kOverlap_rad));
-}
 
 }  // namespace
 

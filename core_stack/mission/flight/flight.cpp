@@ -1,6 +1,7 @@
 #include "core_stack/mission/flight/flight.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace karst::core {
 namespace {
@@ -124,6 +125,13 @@ void Flight::climb(TimeNs now, double height_m, double speed_mps) {
   keep.along_path = false;
   keep.start_heading_rad = reference().heading_rad;
   trajectory_ = sample_trajectory({from, from + Vec3(0, 0, height_m)}, 0, now, slow, keep);
+}
+
+double turn_to_see_all_around(const VehicleDescription& vehicle) {
+  constexpr double kOverlap_rad = 0.2;
+  double seen_rad = 0;
+  for (const auto& camera : vehicle.cameras) seen_rad = std::max(seen_rad, camera->horizontal_fov_rad);
+  return std::max(0.0, 2 * std::numbers::pi - std::max(0.0, seen_rad - kOverlap_rad));
 }
 
 void Flight::look_around(TimeNs now, double turn_rad) {

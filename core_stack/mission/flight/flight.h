@@ -28,6 +28,9 @@ struct Course {
 /// The limits of a path that may have a speed limit of its own.
 MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps);
 
+/// The angle to turn when looking around: a full turn less the widest camera's view, with a little overlap.
+double turn_to_see_all_around(const VehicleDescription& vehicle);
+
 class Flight {
  public:
   Flight(const CoreOptions& options, const VehicleDescription& vehicle);
@@ -81,7 +84,8 @@ class Flight {
   CommittedSegment until_end(TimeNs t) const;
 
   bool airborne() const { return motors_ == Motors::armed; }
-  bool at_rest(TimeNs now) const { return now >= trajectory_.end(); }
+  bool at_rest(TimeNs now) const { return now >= trajectory_end(); }
+  TimeNs trajectory_end() const { return trajectory_.end(); }
   /// The state on the trajectory at `t`, with level attitude.
   State expected(TimeNs t) const;
   /// Time at which the trajectory is nearest to `p`.

@@ -109,8 +109,17 @@ void ReturnHome::find_path() {
   } else if (landing_spot()) {
     give_up_landing("there is no way there", RelayLanding::Because::not_to_be_had);
   } else if (onboard_.flight.at_rest(now)) {
-    fly_back_as_come();
+    onboard_.vehicle.lidar || looked_around_ ? fly_back_as_come() : look_around();
   }
+}
+
+/// What is in the way may have left since the cameras looked there.
+void ReturnHome::look_around() {
+  looked_around_ = true;
+  failures_ = 0;
+  const double turn_rad = turn_to_see_all_around(onboard_.vehicle);
+  onboard_.flight.look_around(onboard_.now(), turn_rad);
+  retry_ = onboard_.flight.trajectory_end();
 }
 
 void ReturnHome::watch_patience(bool at_home) {
@@ -145,6 +154,7 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
   if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
   if (route.path.found()) {
     failures_ = 0;
+    looked_around_ = false;
     path.fly_by_map();
     return path.follow(route, now);
   }

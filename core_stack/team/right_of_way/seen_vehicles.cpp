@@ -16,6 +16,10 @@ constexpr double kStands_m = 0.25, kStands_mps = 0.25;
 // What flies keeps to a line for half a second; what noise and dust show jumps about.
 constexpr std::size_t kFewestSightings = 5;
 constexpr TimeNs kSeenFor = 4 * kSecond / 10;  // from the first of five to the last, at 10 Hz
+// One that is fast is sooner known from noise, and there is less time.
+constexpr std::size_t kFewestOfFast = 3;
+constexpr TimeNs kFastSeenFor = 2 * kSecond / 10;
+constexpr double kFast_mps = 1.0, kFastOffLine_m = 0.05;
 constexpr std::size_t kMaxTracks = 32;
 constexpr double kOffLine_m = 0.12;  // root mean square
 constexpr double kHeard_m = 1.5;     // from where one that is heard should be
@@ -48,8 +52,8 @@ bool SeenVehicles::Track::forgotten(TimeNs now) const {
 
 /// By a least-squares line through place over time.
 bool SeenVehicles::Track::moves_steadily() const {
-  if (sightings.size() < kFewestSightings || sightings.back().stamp - sightings.front().stamp < kSeenFor)
-    return false;
+  const TimeNs seen_for = sightings.back().stamp - sightings.front().stamp;
+  if (sightings.size() < kFewestOfFast || seen_for < kFastSeenFor) return false;
   const auto n = static_cast<double>(sightings.size());
   double mean_t = 0, var_t = 0;
   Vec3 mean = Vec3::Zero(), cov = Vec3::Zero();
@@ -68,8 +72,11 @@ bool SeenVehicles::Track::moves_steadily() const {
   double off2 = 0;
   for (const Sighting& s : sightings)
     off2 += (s.position - mean - (seconds(s.stamp - begin) - mean_t) * v).squaredNorm() / n;
-  const double moved_m = v.norm() * seconds(sightings.back().stamp - begin);
-  return moved_m > kFlies_m && v.norm() < kFastest_mps && off2 < kOffLine_m * kOffLine_m;
+  const double speed_mps = v.norm();
+  if (speed_mps * seconds(seen_for) < kFlies_m || speed_mps > kFastest_mps) return false;
+  if (sightings.size() < kFewestSightings || seen_for < kSeenFor)
+    return speed_mps > kFast_mps && off2 < kFastOffLine_m * kFastOffLine_m;
+  return off2 < kOffLine_m * kOffLine_m;
 }
 
 SeenVehicles::Track* SeenVehicles::same_as(const Vec3& position, TimeNs stamp) {

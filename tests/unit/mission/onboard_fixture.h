@@ -18,6 +18,9 @@ namespace karst::core {
 
 class OnboardTest : public ::testing::Test {
  protected:
+  explicit OnboardTest(const VehicleDescription& vehicle = with_lidar())
+      : onboard(by_pose_sensor(), vehicle, executive, recorder, policy) {}
+
   static std::filesystem::path fresh_run() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     const auto dir = std::filesystem::path(KARST_BINARY_DIR) / "test_runs" /
@@ -83,7 +86,7 @@ class OnboardTest : public ::testing::Test {
   Recorder recorder{run};
   Executive executive{1};
   ScriptedPolicy policy;
-  Onboard onboard{by_pose_sensor(), with_lidar(), executive, recorder, policy};
+  Onboard onboard;
   PhaseMachine phases;
   GoalTracker goals{recorder};
   PathExecution path{onboard};

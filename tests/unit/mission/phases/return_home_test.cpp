@@ -1,5 +1,7 @@
 #include "core_stack/mission/phases/return_home.h"
 
+#include <cmath>
+
 #include "tests/unit/mission/onboard_fixture.h"
 
 namespace karst::core {
@@ -7,6 +9,7 @@ namespace {
 
 class ReturnHomeTest : public OnboardTest {
  protected:
+  using OnboardTest::OnboardTest;
   void explore_and_go_home(double away_m) {
     hover();
     home.set_home(onboard.flight.reference().position);
@@ -57,6 +60,32 @@ TEST_F(ReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome
   EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
   EXPECT_GE(told("no path home"), 3u);
   EXPECT_EQ(told("back the way it came"), 1u);
+}
+
+class CameraReturnHomeTest : public ReturnHomeTest {
+ protected:
+  CameraReturnHomeTest() : ReturnHomeTest(with_camera()) {}
+  static VehicleDescription with_camera() {
+    VehicleDescription v = with_lidar();
+    v.lidar.reset();
+    v.cameras = {std::make_shared<CameraModel>()};
+    return v;
+  }
+};
+
+// As it was: where another had hovered before it and left, it kept for a minute to what its camera had seen.
+TEST_F(CameraReturnHomeTest, WithoutAWayThroughTheMapItLooksAroundBeforeItFliesBackAsItCame) {
+  explore_and_go_home(6);
+  double turned_rad = 0, last_rad = onboard.flight.reference().heading_rad;
+  steps(60, [&] {
+    const double heading_rad = onboard.flight.reference().heading_rad;
+    turned_rad += std::abs(wrap_angle(heading_rad - last_rad));
+    last_rad = heading_rad;
+    return told("back the way it came") > 0;
+  });
+  EXPECT_EQ(told("back the way it came"), 1u);
+  EXPECT_GT(turned_rad, M_PI);
+  EXPECT_GE(told("no path home"), 6u) << "it asks again after it has looked";
 }
 
 TEST_F(ReturnHomeTest, HeldInPlaceItsPatienceDoesNotRunOut) {
