@@ -202,7 +202,7 @@ TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) 
       draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -1.5, 0}, {60, 1.5, 3}}}, {0, 0, 1});
   const Flown f = fly(cave, folder / "run",
                       team_of(2, "return_to_base",
-                              "--set team.stagger=25s --set simulator.battery_minutes=1.2min"
+                              "--set team.stagger=25s --set simulator.battery_minutes=1.5min"
                               " --set radio.silent_after=5s --set radio.silent_for=200s"));
   ASSERT_EQ(f.robots.size(), 2u) << f.output.text;
   EXPECT_EQ(f.count(f.truth, "contact"), 0);
