@@ -5,7 +5,7 @@
 namespace karst::core {
 namespace {
 
-constexpr double kAboveHome_m = 0.4;
+constexpr double kAboveHome_m = 0.4, kSamePlace_m = 1.0;
 // Failed plans in a row. The obstacle may be another vehicle, or the last known place of one that has left.
 constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 4;
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
@@ -104,22 +104,35 @@ void ReturnHome::arrive() {
 
 void ReturnHome::find_path() {
   const TimeNs now = onboard_.now();
-  if (failures_ < (wiring_.in_company() ? kMaxFailuresInCompany : kMaxFailures)) {
+  if (failures_ < max_failures()) {
     if (now >= retry_) plan();
   } else if (landing_spot()) {
     give_up_landing("there is no way there", RelayLanding::Because::not_to_be_had);
   } else if (onboard_.flight.at_rest(now)) {
-    onboard_.vehicle.lidar || looked_around_ ? fly_back_as_come() : look_around();
+    if (blocked_on_the_way_back())
+      look_around();
+    else
+      fly_back_as_come();
   }
 }
 
-/// What is in the way may have left since the cameras looked there.
+int ReturnHome::max_failures() const { return wiring_.in_company() ? kMaxFailuresInCompany : kMaxFailures; }
+
+/// Whether a vehicle whose cameras see one side has just set out from here, and come to rest again.
+bool ReturnHome::blocked_on_the_way_back() const {
+  return !onboard_.vehicle.lidar && set_out_from_ &&
+         (onboard_.flight.reference().position - *set_out_from_).norm() < kSamePlace_m;
+}
+
+/// What is in the way may have left since the cameras looked there: afterwards one more plan is made. To look
+/// is not to wait: patience begins anew when the turn ends.
 void ReturnHome::look_around() {
-  looked_around_ = true;
-  failures_ = 0;
+  set_out_from_.reset();
+  failures_ = max_failures() - 1;
   const double turn_rad = turn_to_see_all_around(onboard_.vehicle);
   onboard_.flight.look_around(onboard_.now(), turn_rad);
   retry_ = onboard_.flight.trajectory_end();
+  still_.wait(retry_);
 }
 
 void ReturnHome::watch_patience(bool at_home) {
@@ -154,7 +167,6 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
   if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
   if (route.path.found()) {
     failures_ = 0;
-    looked_around_ = false;
     path.fly_by_map();
     return path.follow(route, now);
   }
@@ -189,7 +201,8 @@ void ReturnHome::fly_back_as_come() {
             now, event::Safety{SafetyAction::home, "no path through the map: back the way it came"});
         parts_.path.follow(route, now);
         parts_.path.fly_as_come();
-        failures_ = 0;
+        set_out_from_ = onboard_.flight.reference().position;
+        failures_ = onboard_.vehicle.lidar ? 0 : max_failures() - 1;
       });
 }
 

@@ -60,7 +60,9 @@ class ReturnHome {
   void find_path();
   void plan();
   void on_plan(const Route& route, TimeNs begun);
+  bool blocked_on_the_way_back() const;
   void look_around();
+  int max_failures() const;
   void fly_back_as_come();
   void choose_landing();
   void give_up_landing(const std::string& reason, RelayLanding::Because because);
@@ -75,11 +77,11 @@ class ReturnHome {
   Vec3 home_ = Vec3::Zero();
   double distance_m_ = 0;
   std::string reason_;
-  int failures_ = 0;            // plans in a row that found no way
-  bool planning_ = false;       // or choosing where to land
-  bool looked_around_ = false;  // since a way was found
-  TimeNs retry_ = 0;            // no way home: it is asked for again then
-  TimeNs company_at_ = 0;       // when another vehicle was near the last time
+  int failures_ = 0;                  // plans in a row that found no way
+  bool planning_ = false;             // or choosing where to land
+  std::optional<Vec3> set_out_from_;  // along the flown path, the last time
+  TimeNs retry_ = 0;                  // no way home: it is asked for again then
+  TimeNs company_at_ = 0;             // when another vehicle was near the last time
 };
 
 }  // namespace karst::core

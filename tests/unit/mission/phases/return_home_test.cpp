@@ -73,19 +73,29 @@ class CameraReturnHomeTest : public ReturnHomeTest {
   }
 };
 
-// As it was: where another had hovered before it and left, it kept for a minute to what its camera had seen.
-TEST_F(CameraReturnHomeTest, WithoutAWayThroughTheMapItLooksAroundBeforeItFliesBackAsItCame) {
+TEST_F(CameraReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome) {
   explore_and_go_home(6);
+  steps(60, [this] { return phases.in(Phase::land); });
+  EXPECT_EQ(landed, "");
+  EXPECT_EQ(told("back the way it came"), 1u);
+}
+
+// As it was: where another had hovered before it and left, it kept for a minute to what its camera had seen.
+TEST_F(CameraReturnHomeTest, BlockedOnTheWayBackItLooksAroundAndSetsOutAgain) {
+  explore_and_go_home(6);
+  steps(60, [this] { return told("back the way it came") > 0; });
+  path.avoid(0.1, phases, now());
   double turned_rad = 0, last_rad = onboard.flight.reference().heading_rad;
   steps(60, [&] {
     const double heading_rad = onboard.flight.reference().heading_rad;
     turned_rad += std::abs(wrap_angle(heading_rad - last_rad));
     last_rad = heading_rad;
-    return told("back the way it came") > 0;
+    return told("back the way it came") > 1;
   });
-  EXPECT_EQ(told("back the way it came"), 1u);
   EXPECT_GT(turned_rad, M_PI);
-  EXPECT_GE(told("no path home"), 6u) << "it asks again after it has looked";
+  steps(60, [this] { return phases.in(Phase::land); });
+  EXPECT_EQ(landed, "") << "its patience does not run out";
+  EXPECT_EQ(landed_here, "");
 }
 
 TEST_F(ReturnHomeTest, HeldInPlaceItsPatienceDoesNotRunOut) {
