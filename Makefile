@@ -63,16 +63,19 @@ lint-changed:
 	@cmake -S . -B build-lint -G Ninja -DKARST_TESTS=OFF -DKARST_UNITY=OFF >/dev/null
 	@.ci/tidy build-lint changed
 
+# With clang, which compiles these checks in two thirds of the time g++ takes; the fuzzers share the build.
+ASAN_CMAKE = CC=clang CXX=clang++ cmake -S . -B build-asan -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+  -DKARST_SANITIZE=fuzzer-no-link,address,undefined
 asan:
 	@.ci/install test
-	@cmake -S . -B build-asan -G Ninja -DKARST_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
+	@$(ASAN_CMAKE) >/dev/null
 	@cmake --build build-asan -j $(JOBS)
 	@.ci/ctest build-asan -LE flight
 # What reads files of others, and compiles soon.
 READERS = common_test replay_test simulator_cave_test
 asan-readers:
 	@.ci/install test
-	@cmake -S . -B build-asan -G Ninja -DKARST_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
+	@$(ASAN_CMAKE) >/dev/null
 	@cmake --build build-asan -j $(JOBS) --target $(READERS)
 	@for test in $(READERS); do build-asan/bin/$$test --gtest_brief=1 || exit 1; done
 tsan:
@@ -84,13 +87,12 @@ tsan:
 FUZZ_SECONDS ?= 30
 fuzz:
 	@.ci/install test
-	@CC=clang CXX=clang++ cmake -S . -B build-fuzz -G Ninja -DKARST_SANITIZE=fuzzer-no-link,address,undefined \
-	  -DCMAKE_BUILD_TYPE=RelWithDebInfo >/dev/null
-	@cmake --build build-fuzz -j $(JOBS) --target fuzzers
-	@.ci/fuzz build-fuzz $(FUZZ_SECONDS)
+	@$(ASAN_CMAKE) >/dev/null
+	@cmake --build build-asan -j $(JOBS) --target fuzzers
+	@.ci/fuzz build-asan $(FUZZ_SECONDS)
 
 PREFIX ?= /usr/local
 install: build
 	@cmake --install $(BUILD) --prefix $(PREFIX)
 clean:
-	@rm -rf $(BUILD) build-asan build-tsan build-fuzz build-lint
+	@rm -rf $(BUILD) build-asan build-tsan build-lint

@@ -58,6 +58,10 @@ function(karst_test name)
   target_compile_definitions(${name} PRIVATE KARST_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KARST_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest_main)
+  if(KARST_SANITIZE AND "flight" IN_LIST A_LABELS)  # too slow to fly, and not built
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    return()
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${A_LABELS}" TIMEOUT 900
                        ENVIRONMENT "RC_PARAMS=seed=20261121")  # property tests try the same cases every time
 endfunction()

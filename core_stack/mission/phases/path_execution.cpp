@@ -64,6 +64,7 @@ void PathExecution::follow(const Route& route, TimeNs now) {
     flight_.follow(course);
   }
   narrow_places_ = route.slow.places;
+  as_come_ = false;
   speed_limited_ = route.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = route.path;
   tight_until_ =

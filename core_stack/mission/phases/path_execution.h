@@ -25,9 +25,8 @@ class PathExecution {
   RouteStart start_at_end(TimeNs at) const;
 
   void follow(const Route& route, TimeNs now);
-  /// It flies back along the poses flown: only what it would touch stops it. Or by the map again.
+  /// The path just begun leads back along the poses flown: only what the vehicle would touch stops it.
   void fly_as_come() { as_come_ = true; }
-  void fly_by_map() { as_come_ = false; }
   void brake(TimeNs now);
   /// The same unless it stands.
   void stop(TimeNs now);

@@ -167,7 +167,6 @@ void ReturnHome::on_plan(const Route& route, TimeNs begun) {
   if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
   if (route.path.found()) {
     failures_ = 0;
-    path.fly_by_map();
     return path.follow(route, now);
   }
   ++failures_;

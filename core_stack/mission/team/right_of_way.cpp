@@ -9,7 +9,13 @@ namespace {
 
 constexpr TimeNs kAsideBudget = 300 * kMillisecond;
 constexpr double kAtWaitingPlace_m = 0.5;
-constexpr double kFlies_mps = 0.2, kUnseen_mps = 0.5;
+constexpr double kFlies_mps = 0.2;
+// Two vehicles whose cameras see 4.5 m need 0.7 s to know each other and begin to brake: at 1 m/s each they
+// stop 2 m apart.
+constexpr double kSeen_mps = 1.0, kUnseen_mps = 0.5;
+constexpr double kNearUnheard_m = 6.0, kPassing_mps = 0.7;
+constexpr double kBrake_mps2 = 1.0, kTracked = 0.95;  // of the acceleration, the rest is for control
+constexpr double kCrowd_m = 12.0;
 const double kLooks = std::cos(0.75);  // half a camera's field of view
 
 /// For the record: one that is seen and not heard has no number.
@@ -42,16 +48,21 @@ TeamPhase RightOfWay::phase_to_report() const {
   return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
-/// Without a LiDAR, and while another may be near that is not heard, the vehicle flies slowly where its
-/// cameras do not look. Only level motion counts: in a shaft no heading looks ahead.
-void RightOfWay::look_out() {
+/// The vehicle passes one that it does not hear slowly, also where that one stands: it may set out. Without a
+/// LiDAR, and while it may meet one, it flies no faster than its cameras see, and slower where they do not
+/// look: they look level.
+void RightOfWay::look_out(const std::vector<Neighbour>& others) {
   max_speed_mps_.reset();
-  if (onboard_.vehicle.lidar) return;
-  const Vec3& v = onboard_.flight.state().velocity_mps;
-  const double level_mps = v.head<2>().norm(), heading_rad = onboard_.flight.reference().heading_rad;
-  if (level_mps < kFlies_mps || level_mps < std::abs(v.z())) return;
+  const Vec3 &p = onboard_.flight.state().position, &v = onboard_.flight.state().velocity_mps;
+  const bool passes = std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
+    return !o.heard && (o.position - p).norm() < kNearUnheard_m;
+  });
+  if (passes) max_speed_mps_ = kPassing_mps;
+  if (onboard_.vehicle.lidar || !team_.may_meet_unheard(onboard_.now())) return;
+  max_speed_mps_ = max_speed_mps_.value_or(kSeen_mps);
+  const double speed_mps = v.norm(), heading_rad = onboard_.flight.reference().heading_rad;
   const double ahead_mps = v.x() * std::cos(heading_rad) + v.y() * std::sin(heading_rad);
-  if (ahead_mps < kLooks * level_mps && team_.may_meet_unheard(onboard_.now())) max_speed_mps_ = kUnseen_mps;
+  if (speed_mps > kFlies_mps && ahead_mps < kLooks * speed_mps) max_speed_mps_ = kUnseen_mps;
 }
 
 void RightOfWay::step() {
@@ -62,14 +73,15 @@ void RightOfWay::step() {
     return parts_.path.yield(yield_state_.holds());
   }
   const TimeNs now = onboard_.now();
-  look_out();
   note_arrival();
   const State& s = onboard_.flight.state();
   const std::vector<Neighbour> others = team_.neighbours(now);
+  look_out(others);
   const bool held = yield_state_.holds();
   const RobotId held_for = yield_state_.with();
   const auto action = yield_state_.update(
-      {.distance_m = team_.options().separation_m},
+      {.distance_m = team_.options().separation_m,
+       .brake_mps2 = std::min(kBrake_mps2, kTracked * onboard_.options.motion.max_acceleration_mps2)},
       {team_.self(), s.position, s.velocity_mps, phase_for_team(parts_.phases.phase())}, others, now,
       onboard_.flight.at_rest(now), still_.still_for(onboard_.flight.reference().position, now));
   on_change(held, held_for);
@@ -85,7 +97,7 @@ void RightOfWay::step() {
 
 void RightOfWay::note_arrival() {
   const TimeNs now = onboard_.now();
-  if (!yield_state_.on_the_way() || planning_ || !onboard_.flight.at_rest(now)) return;
+  if (!yield_state_.on_the_way() || !onboard_.flight.at_rest(now)) return;
   const bool there = (onboard_.flight.reference().position - waiting_place_.place).norm() < kAtWaitingPlace_m;
   const bool keeps_passage_open = there && waiting_place_.keeps_passage_open;
   yield_state_.arrived(keeps_passage_open ? YieldState::Place::aside : YieldState::Place::in_the_way, now);
@@ -122,18 +134,15 @@ void RightOfWay::note_failed(const Vec3& place) {
 
 /// To where the one that it gives way to gets by, or before it back along the way come; clear of all others.
 void RightOfWay::make_room(const std::vector<Neighbour>& others) {
-  RoomQuery query;
-  bool there = false;
-  for (const Neighbour& o : others) {
-    if (o.robot == yield_state_.with()) {
-      query.other = o.position;
-      there = true;
-    } else {
-      (o.phase == TeamPhase::aside ? query.standing : query.moving).push_back(o.position);
-    }
-  }
-  if (!there || planning_) return;
+  if (planning_) return;
   planning_ = true;
+  const RobotId with = yield_state_.with();
+  const bool crowd = std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
+    return o.robot != with && o.phase != TeamPhase::aside &&
+           (o.position - onboard_.flight.state().position).norm() < kCrowd_m;
+  });
+  RoomQuery query;
+  query.others = others;
   query.flown = parts_.flown_path.points();
   query.failed = failed_places_;
   query.separation_m = team_.options().separation_m / 2;
@@ -143,7 +152,10 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
       [this, query, start = parts_.path.start_at_stop(begun + kAsideBudget)](Explorer& explorer) {
         return find_room(explorer, query, start);
       },
-      [this, begun, crowd = !query.moving.empty()](const Room& room) { on_room(room, begun, crowd); });
+      [this, begun, with, crowd](const Room& room) {
+        planning_ = false;
+        if (yield_state_.with() == with && !parts_.path.braked_since(begun)) on_room(room, crowd);
+      });
 }
 
 RightOfWay::Room RightOfWay::find_room(Explorer& explorer, RoomQuery query, const RouteStart& start) const {
@@ -160,10 +172,8 @@ RightOfWay::Room RightOfWay::find_room(Explorer& explorer, RoomQuery query, cons
   return room;
 }
 
-void RightOfWay::on_room(const Room& room, TimeNs begun, bool crowd) {
-  planning_ = false;
+void RightOfWay::on_room(const Room& room, bool crowd) {
   const TimeNs now = onboard_.now();
-  if (!yield_state_.holds() || parts_.path.braked_since(begun)) return;
   if (!room.waiting_place) {
     yield_state_.no_room(now, crowd);
     onboard_.recorder.write(
@@ -174,7 +184,8 @@ void RightOfWay::on_room(const Room& room, TimeNs begun, bool crowd) {
   yield_state_.set_out();
   onboard_.recorder.write(now, event::Team{event::TeamAction::make_room, number_of(yield_state_.with()),
                                            waiting_place_.place, waiting_place_.keeps_passage_open});
-  if (room.route.path.found()) parts_.path.follow(room.route, now);
+  if (room.route.path.found()) return parts_.path.follow(room.route, now);
+  still_.wait(now);  // it waits where it stands: only now the others can begin to pass
 }
 
 }  // namespace karst::core

@@ -28,7 +28,7 @@ class RightOfWay {
 
   /// Call ten times a second: stops the vehicle for another with the right of way, and makes room for it.
   void step();
-  /// A limit where it does not look where it flies and may meet a vehicle that it does not hear.
+  /// A limit where it may meet a vehicle that it does not hear.
   std::optional<double> max_speed_mps() const { return max_speed_mps_; }
   /// The phase to report now.
   TeamPhase phase_to_report() const;
@@ -36,7 +36,7 @@ class RightOfWay {
  private:
   void note_arrival();
   void on_change(bool held, RobotId held_for);
-  void look_out();
+  void look_out(const std::vector<Neighbour>& others);
   void note_failed(const Vec3& place);
   void make_room(const std::vector<Neighbour>& others);
   struct Room {
@@ -44,7 +44,7 @@ class RightOfWay {
     Route route;
   };
   Room find_room(Explorer& explorer, RoomQuery query, const RouteStart& start) const;
-  void on_room(const Room& room, TimeNs begun, bool crowd);
+  void on_room(const Room& room, bool crowd);
 
   Onboard& onboard_;
   Teamwork& team_;

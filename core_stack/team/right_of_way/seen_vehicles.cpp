@@ -7,7 +7,7 @@ namespace {
 
 constexpr TimeNs kHistory = kSecond;            // of sightings
 constexpr TimeNs kVelocityOver = kSecond / 2;   // a sighting's middle is off by some centimetres
-constexpr TimeNs kLostMoving = 2 * kSecond;     // then it may be anywhere
+constexpr TimeNs kLostMoving = 3 * kSecond;     // then it may be anywhere
 constexpr TimeNs kLostStanding = 10 * kSecond;  // once it is in the map it is not seen anew
 constexpr double kSame_m = 0.6;                 // from where it should be
 constexpr double kFastest_mps = 4.0;

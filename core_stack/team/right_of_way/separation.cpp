@@ -6,18 +6,18 @@
 namespace karst::core {
 namespace {
 
-int urgency(TeamPhase phase) {
-  switch (phase) {
+int urgency(const Neighbour& vehicle) {
+  switch (vehicle.phase) {
     case TeamPhase::landing:
-      return 0;
+      return vehicle.heard ? 0 : 2;
     case TeamPhase::boxed:
       return 1;
     case TeamPhase::home:
-      return 2;
-    case TeamPhase::explore:
       return 3;
-    default:
+    case TeamPhase::explore:
       return 4;
+    default:
+      return 5;
   }
 }
 
@@ -44,18 +44,17 @@ double stop_distance_m(const SeparationRule& rule, const Neighbour& a, const Nei
   return braking_room_m(rule, std::max(0.0, closing_mps(a, b)));
 }
 
-bool stops_on_the_way(const SeparationRule& rule, const Neighbour& self, const Neighbour& other,
-                      bool makes_room_for_it) {
+bool stops_on_the_way(const SeparationRule& rule, const Neighbour& self, const Neighbour& other) {
   if (other.phase == TeamPhase::aside) return false;
   Neighbour standing = other;
   standing.velocity_mps.setZero();
   const double own_mps = closing_mps(self, standing);
-  const double v = makes_room_for_it ? own_mps : std::max(own_mps, closing_mps(self, other));
+  const double v = std::max(own_mps, closing_mps(self, other));
   return own_mps > kComes_mps && (other.position - self.position).norm() < braking_room_m(rule, v);
 }
 
 bool goes_before(const Neighbour& a, const Neighbour& b) {
-  return std::tuple(urgency(a.phase), a.robot) < std::tuple(urgency(b.phase), b.robot);
+  return std::tuple(urgency(a), a.robot) < std::tuple(urgency(b), b.robot);
 }
 
 std::vector<Neighbour> give_way_to(const SeparationRule& rule, const Neighbour& self,

@@ -29,20 +29,18 @@ double yield_distance_m(const SeparationRule& rule, const Neighbour& a, const Ne
 double stop_distance_m(const SeparationRule& rule, const Neighbour& a, const Neighbour& b);
 
 /// Whether `self`, while it flies to its waiting place, must stop for `other`: it approaches, and after both
-/// have braked less than half the separation would remain. A vehicle that `self` makes room for stops
-/// anyway, so only the braking distance of `self` counts. A vehicle that waits aside is an obstacle in the
+/// have braked less than half the separation would remain. A vehicle that waits aside is an obstacle in the
 /// map, and `self` does not stop for it.
-bool stops_on_the_way(const SeparationRule& rule, const Neighbour& self, const Neighbour& other,
-                      bool makes_room_for_it);
+bool stops_on_the_way(const SeparationRule& rule, const Neighbour& self, const Neighbour& other);
 
 /// Closing speed; negative if the distance grows.
 double closing_mps(const Neighbour& a, const Neighbour& b);
 
 /// Whether a has the right of way over b. This is a strict total order of all vehicles, so no two both go
 /// first and no cycle of vehicles waits for each other. Highest rank: a vehicle that takes off or lands, as
-/// it cannot stop. Then a vehicle without a waiting place, one that flies home and is short of time, one
-/// that explores, and last one that waits aside. At equal rank the lower number goes first: it started first
-/// and has less time left.
+/// it cannot stop. Then a vehicle without a waiting place, one that is seen to fly and not heard, one that
+/// flies home and is short of time, one that explores, and last one that waits aside. At equal rank the lower
+/// number goes first: it started first and has less time left.
 bool goes_before(const Neighbour& a, const Neighbour& b);
 
 /// The vehicles that `self` must stop for: those too near that have the right of way, and those so near that

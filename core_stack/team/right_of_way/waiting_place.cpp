@@ -15,7 +15,8 @@ namespace {
 constexpr double kSearchRadius_m = 12.0, kRetreat_m = 60.0, kStep_m = 1.0;
 constexpr double kGetBy_m = 3.0;
 constexpr std::array kGaps_m = {0.5, 0.2};  // beside a hovering vehicle, more than beside rock
-constexpr double kAhead_m = 0.3;            // path length by which it must arrive before the others
+constexpr double kLead_m = 1.0;             // more than two vehicles are wide
+constexpr double kNearShare = 0.4;          // of the present distance to another, where that is short
 constexpr double kElsewhere_m = 2.0, kRefusedNear_m = 0.5;
 constexpr std::size_t kMaxFailed = 2, kMaxRefused = 40;
 
@@ -33,29 +34,32 @@ std::vector<Vec3> points_back(const std::vector<Vec3>& flown) {
   return back;
 }
 
-/// The distance to each place for the first of all others to arrive; along the straight line where the map
-/// has no path.
-std::vector<double> first_of_others_m(const VoxelMap& map, const Roadmap& roadmap, const RoomQuery& query,
-                                      const std::vector<Vec3>& places) {
-  std::vector<double> first(places.size(), std::numeric_limits<double>::infinity());
-  std::vector<Vec3> others{query.other};
-  for (const Vec3& o : query.moving)
-    if ((o - query.from).norm() < kRetreat_m) others.push_back(o);
-  for (const Vec3& o : others) {
-    const std::vector<double> path_m = roadmap.distances(map, o, places, map.resolution_m());
-    for (std::size_t i = 0; i < places.size(); ++i)
-      first[i] = std::min(first[i], std::isfinite(path_m[i]) ? path_m[i] : (places[i] - o).norm());
+/// By how much the vehicle must arrive before another: see waiting_place.h.
+double lead_m(const RoomQuery& query, const Neighbour& other) {
+  return std::min(kLead_m, kNearShare * (other.position - query.from).norm());
+}
+
+/// The path length to each place within which the vehicle arrives there before every other one. Others fly
+/// along the straight line where the map has no path.
+std::vector<double> at_most_m(const VoxelMap& map, const Roadmap& roadmap, const RoomQuery& query,
+                              const std::vector<Vec3>& places) {
+  std::vector<double> at_most(places.size(), std::numeric_limits<double>::infinity());
+  for (const Neighbour& o : query.others) {
+    if (o.phase == TeamPhase::aside || (o.position - query.from).norm() > kRetreat_m) continue;
+    const std::vector<double> path_m = roadmap.distances(map, o.position, places, map.resolution_m());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double other_m = std::isfinite(path_m[i]) ? path_m[i] : (places[i] - o.position).norm();
+      at_most[i] = std::min(at_most[i], other_m - lead_m(query, o));
+    }
   }
-  return first;
+  return at_most;
 }
 
 /// Whether the place is too near to another vehicle, and nearer than this one is now.
 bool crowds(const RoomQuery& query, const Vec3& place) {
-  const auto by = [&](const Vec3& o) {
-    return (o - place).norm() < std::min(query.separation_m, (o - query.from).norm());
-  };
-  return by(query.other) || std::any_of(query.moving.begin(), query.moving.end(), by) ||
-         std::any_of(query.standing.begin(), query.standing.end(), by);
+  return std::any_of(query.others.begin(), query.others.end(), [&](const Neighbour& o) {
+    return (o.position - place).norm() < std::min(query.separation_m, (o.position - query.from).norm());
+  });
 }
 
 }  // namespace
@@ -68,20 +72,21 @@ std::optional<WaitingPlace> waiting_place(const VoxelMap& map, const Roadmap& ro
   places.insert(places.end(), back.begin(), back.end());
   std::vector<double> own_m = roadmap.distances(map, query.from, places, map.resolution_m());
   own_m.front() = 0;
-  const std::vector<double> others_m = first_of_others_m(map, roadmap, query, places);
+  const std::vector<double> at_most = at_most_m(map, roadmap, query, places);
 
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (std::isfinite(own_m[i]) && others_m[i] - own_m[i] > kAhead_m && !crowds(query, places[i]) &&
+    if (std::isfinite(own_m[i]) && own_m[i] < at_most[i] && !crowds(query, places[i]) &&
         !near_one_of(query.failed, places[i], kElsewhere_m))
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return own_m[a] < own_m[b]; });
   const PlanningOptions& planning = roadmap.options();
   for (const double gap_m : kGaps_m) {
+    if (query.failed.size() >= kMaxFailed) break;
     std::vector<Vec3> refused;
     for (const std::size_t i : order) {
-      if (refused.size() == kMaxRefused || query.failed.size() >= kMaxFailed) break;
+      if (refused.size() == kMaxRefused) break;
       if (near_one_of(refused, places[i], kRefusedNear_m) || !is_clear(map, places[i], planning.clearance_m))
         continue;
       if (keeps_passage_open(map, places[i], query.vehicle_radius_m + gap_m,

@@ -10,16 +10,17 @@ constexpr double kPast_m = 2.0;               // so much farther away than it wa
 constexpr double kNearer_m = 0.3;             // so much nearer: it comes
 constexpr double kMoves_mps = 0.15;           // so fast: it comes, or goes
 constexpr TimeNs kLook = 2 * kSecond;         // another that stands near may want to get by
-constexpr TimeNs kStays = 5 * kSecond;        // in one place; then the place is no good,
+constexpr TimeNs kStays = 3 * kSecond;        // in one place; then the place is no good,
 constexpr TimeNs kPasses = 2 * kSecond;       // unless the other came nearer that lately, or goes,
-constexpr TimeNs kStaysAtMost = 7 * kSecond;  // and even then
+constexpr TimeNs kStaysAtMost = 5 * kSecond;  // and even then
 constexpr TimeNs kStaysAway = 10 * kSecond;   // it does not come
 constexpr TimeNs kSeen = kSecond;             // one that stands aside is in the map by then
 // One that is seen, but not heard, and stands: each waits so much longer than who has the number before.
 constexpr TimeNs kTurn = 3 * kSecond;
-constexpr TimeNs kFirst = 8 * kSecond;  // who goes before waits no longer for room
+constexpr TimeNs kFirst = 5 * kSecond;  // who goes before waits no longer for room
 constexpr TimeNs kAskAgain = 2 * kSecond;
-constexpr int kMaxAttempts = 1, kMaxAttemptsInCrowd = 8;
+constexpr TimeNs kTold = kSecond;  // by then the others have heard that it leaves
+constexpr int kMaxAttempts = 1, kMaxAttemptsInCrowd = 2;
 constexpr TimeNs kBoxed = 15 * kSecond;
 
 double distance_m(const Neighbour& a, const Neighbour& b) { return (a.position - b.position).norm(); }
@@ -30,6 +31,9 @@ double coming_mps(const Neighbour& self, const Neighbour& other) {
   still.velocity_mps.setZero();
   return closing_mps(still, other);
 }
+
+/// It lands, or may not know of this one.
+bool stops_for_nobody(const Neighbour& other) { return !other.heard || other.phase == TeamPhase::landing; }
 
 /// Whether `other`, if it keeps its velocity, passes `self` at half the separation or more.
 bool gets_by(const SeparationRule& rule, const Neighbour& self, const Neighbour& other) {
@@ -53,6 +57,7 @@ void YieldState::begin(const Neighbour& self, const Neighbour& other, TimeNs now
   nearest_m_ = distance_m(self, other);
   aside_since_.reset();
   came_nearer_at_.reset();
+  leaving_ = false;
 }
 
 bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const Neighbour& other, TimeNs now) {
@@ -94,11 +99,17 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     return Action::hold;
   }
   // A vehicle that makes room for one must not fly into another: check all others, too.
-  if (on_the_way_ && std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
-        return stops_on_the_way(rule, self, o, o.robot == *with_ && o.heard);
-      })) {
+  if (on_the_way_ && std::any_of(others.begin(), others.end(),
+                                 [&](const Neighbour& o) { return stops_on_the_way(rule, self, o); })) {
     arrived(Place::in_the_way, now);
     return Action::stop;
+  }
+  const auto urgent = std::find_if(near.begin(), near.end(), [&](const Neighbour& o) {
+    return stops_for_nobody(o) && coming_mps(self, o) > kMoves_mps;
+  });
+  if (!on_the_way_ && urgent != near.end() && !stops_for_nobody(*other)) {
+    begin(self, *urgent, now);
+    return Action::hold;
   }
   if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
   const double coming = coming_mps(self, *other);
@@ -108,8 +119,15 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   if (!leaves && !at_rest) return Action::hold;
   const bool came_nearer = came_nearer_at_ && now - *came_nearer_at_ < kPasses;
   const bool passes = came_nearer || coming < -kMoves_mps || (aside_ && comes);
-  if (leaves || still_for > (passes ? kStaysAtMost : kStays)) {
+  if (leaves || leaving_ || still_for > (passes ? kStaysAtMost : kStays)) {
     asked_at_ = now;
+    // One that hears this one may have set out because it waits: it is told first.
+    if (aside_ && other->heard && !leaves) {
+      aside_ = false;
+      leaving_ = true;
+      asked_at_ = now - kAskAgain + kTold;
+      return Action::hold;
+    }
     return Action::leave;
   }
   if (aside_ || !(comes || now - since_ > kLook)) return Action::hold;
@@ -118,7 +136,7 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
 }
 
 void YieldState::arrived(Place place, TimeNs now) {
-  on_the_way_ = false;
+  on_the_way_ = leaving_ = false;
   aside_ = place == Place::aside;
   if (aside_) attempts_ = 0;
   since_ = nearest_at_ = now;

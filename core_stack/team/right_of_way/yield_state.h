@@ -50,7 +50,8 @@ class YieldState {
   std::optional<TimeNs> came_nearer_at_;
   std::optional<TimeNs> aside_since_;  // the other vehicle
   bool on_the_way_ = false, aside_ = false;
-  int attempts_ = 0;  // waiting places asked for
+  bool leaving_ = false;  // the others have been told that it leaves its place aside
+  int attempts_ = 0;      // waiting places asked for
   TimeNs boxed_until_ = 0;
 };
 

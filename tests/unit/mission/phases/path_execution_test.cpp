@@ -34,12 +34,16 @@ TEST_F(PathExecutionTest, APlaceClosedFarAheadIsFlownAroundAndOneNearByIsBrakedF
   EXPECT_TRUE(onboard.flight.at_rest(now()));
 }
 
-TEST_F(PathExecutionTest, BackAsItCameNothingFarAheadStopsIt) {
+// As it was: a path to a waiting place, flown on the way back, was checked for touch only.
+TEST_F(PathExecutionTest, BackAsItCameNothingFarAheadStopsItUntilTheNextPath) {
   under_way();
   path.fly_as_come();
   path.avoid(25, phases, now());
   EXPECT_FALSE(path.detour_due());
-  path.fly_by_map();
+  const Vec3 from = onboard.flight.reference().position, to = from + Vec3(40, 0, 0);
+  Route next;
+  next.points = {from, to};
+  path.follow(next, now());
   path.avoid(25, phases, now());
   EXPECT_TRUE(path.detour_due());
 }

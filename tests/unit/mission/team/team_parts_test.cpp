@@ -121,7 +121,7 @@ TEST_F(TeamPartsTest, ItYieldsToAVehicleThatItSeesAndDoesNotHear) {
   EXPECT_TRUE(path.has_braked());
   const auto bodies = sharing.others_at(now());
   ASSERT_EQ(bodies.size(), 1u) << "it leaves no ghost in the map";
-  advance(4);
+  advance(5);
   right_of_way.step();
   EXPECT_FALSE(path.yields()) << "it is out of sight";
 }

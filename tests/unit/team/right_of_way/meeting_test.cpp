@@ -104,15 +104,12 @@ class Pilot {
     RoomQuery query;
     query.from = place(), query.flown = flown_, query.failed = kNowhere;
     query.vehicle_radius_m = kRadius_m;
-    for (const Neighbour& o : others)
-      if (o.robot == yield_state_.with())
-        query.other = o.position;
-      else
-        query.moving.push_back(o.position);
+    query.others = others;
     const auto found = waiting_place(Tube::instance().map, Tube::instance().roadmap, query);
-    if (!found) return yield_state_.no_room(now, !query.moving.empty());
+    if (!found) return yield_state_.no_room(now, others.size() > 1);
     ++made_room_;
     waiting_place_ = *found, target_m_ = found->place.x();
+    if (found->place == place()) still_.wait(now);
     yield_state_.set_out();
   }
 
@@ -202,18 +199,19 @@ TEST(Meeting, WhereOneWhoHoldsTheKeyLiesAboutAMemberNobodyTouchesAnother) {
 TEST(WaitingPlace, IsNotBeyondAnotherThatIsNearerToIt) {
   const Tube& tube = Tube::instance();
   RoomQuery query;
-  query.from = {0, 0.1, kHeight_m}, query.other = {4, 0.1, kHeight_m}, query.vehicle_radius_m = kRadius_m;
+  query.from = {0, 0.1, kHeight_m}, query.others = {{2, {4, 0.1, kHeight_m}}},
+  query.vehicle_radius_m = kRadius_m;
   for (double x = -30; x <= 0; x += 0.5) query.flown.push_back({x, 0.1, kHeight_m});
   const auto alone = waiting_place(tube.map, tube.roadmap, query);
   ASSERT_TRUE(alone);
   EXPECT_FALSE(alone->keeps_passage_open);
   EXPECT_LT(alone->place.x(), -25) << "as far back as it came";
-  query.moving = {{-10, 0.1, kHeight_m}};
+  query.others.push_back({3, {-10, 0.1, kHeight_m}});
   const auto before_one = waiting_place(tube.map, tube.roadmap, query);
   ASSERT_TRUE(before_one);
-  EXPECT_LT(before_one->place.x(), -3);
-  EXPECT_GT(before_one->place.x(), -5) << "half way to the one behind it";
-  query.moving = {{-3, 0.1, kHeight_m}};
+  EXPECT_LT(before_one->place.x(), -2.5);
+  EXPECT_GE(before_one->place.x(), -4.5) << "it arrives there a metre before the one behind it";
+  query.others.back().position.x() = -3;
   EXPECT_FALSE(waiting_place(tube.map, tube.roadmap, query)) << "between two there is no room";
 }
 
@@ -223,14 +221,15 @@ TEST(WaitingPlace, KeepsItsDistanceFromOthersThatWait) {
   Roadmap roadmap{PlanningOptions{}};
   roadmap.update(map, changes);
   RoomQuery query;
-  query.from = {0, 0.1, 1.1}, query.other = {4, 0.1, 1.1}, query.vehicle_radius_m = kRadius_m;
+  query.from = {0, 0.1, 1.1}, query.others = {{2, {4, 0.1, 1.1}}}, query.vehicle_radius_m = kRadius_m;
   const auto alone = waiting_place(map, roadmap, query);
   ASSERT_TRUE(alone && alone->keeps_passage_open);
-  query.standing = {alone->place - (query.other - alone->place).normalized() * 0.2};
-  query.from = query.standing.front() + Vec3(0, -2, 0);
+  const Vec3 waits = alone->place - (query.others[0].position - alone->place).normalized() * 0.2;
+  query.others.push_back({3, waits, Vec3::Zero(), TeamPhase::aside});
+  query.from = waits + Vec3(0, -2, 0);
   const auto beside = waiting_place(map, roadmap, query);
   ASSERT_TRUE(beside);
-  EXPECT_GE((beside->place - query.standing.front()).norm(), query.separation_m);
+  EXPECT_GE((beside->place - waits).norm(), query.separation_m);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(SeenVehicles, OneThatFliesOutOfSightIsForgotten) {
   Sky sky;
   sky.fly({5, 0, 1}, {-1, 0, 0}, 1);
   EXPECT_FALSE(sky.seen.neighbours(sky.now + kSecond).empty());
-  EXPECT_TRUE(sky.seen.neighbours(sky.now + 3 * kSecond).empty());
+  EXPECT_TRUE(sky.seen.neighbours(sky.now + 4 * kSecond).empty());
 }
 
 TEST(SeenVehicles, NoiseThatJumpsAboutAndWhatIsTooFastAreNone) {
