@@ -18,7 +18,7 @@ if(KARST_WERROR)
   list(APPEND KARST_WARNINGS -Werror)
 endif()
 if(KARST_SANITIZE)
-  add_compile_options(-fsanitize=${KARST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${KARST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${KARST_SANITIZE})
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")  # lines for the reports, and assertions
 endif()

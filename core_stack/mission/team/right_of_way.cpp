@@ -143,6 +143,7 @@ void RightOfWay::make_room(const std::vector<Neighbour>& others) {
   });
   RoomQuery query;
   query.others = others;
+  for (Neighbour& o : query.others) o.position += seconds(kAsideBudget) * o.velocity_mps;
   query.flown = parts_.flown_path.points();
   query.failed = failed_places_;
   query.separation_m = team_.options().separation_m / 2;

@@ -32,8 +32,10 @@ double coming_mps(const Neighbour& self, const Neighbour& other) {
   return closing_mps(still, other);
 }
 
-/// It lands, or may not know of this one.
-bool stops_for_nobody(const Neighbour& other) { return !other.heard || other.phase == TeamPhase::landing; }
+/// Whether `self` has the right of way. One that is not heard does not know it, so if it comes, it has not.
+bool goes_first(const Neighbour& self, const Neighbour& other) {
+  return goes_before(self, other) && (other.heard || coming_mps(self, other) <= kMoves_mps);
+}
 
 /// Whether `other`, if it keeps its velocity, passes `self` at half the separation or more.
 bool gets_by(const SeparationRule& rule, const Neighbour& self, const Neighbour& other) {
@@ -65,7 +67,7 @@ bool YieldState::over(const SeparationRule& rule, const Neighbour& self, const N
   if (on_the_way_ && !other.heard) return false;
   const double d = distance_m(self, other);
   if (other.phase != TeamPhase::aside) aside_since_.reset();
-  if (goes_before(self, other)) {
+  if (goes_first(self, other)) {
     if (other.phase == TeamPhase::aside) {
       if (!aside_since_) aside_since_ = now;
       return now - *aside_since_ > kSeen + (other.heard ? 0 : (self.robot - 1) * kTurn);
@@ -104,14 +106,16 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
     arrived(Place::in_the_way, now);
     return Action::stop;
   }
-  const auto urgent = std::find_if(near.begin(), near.end(), [&](const Neighbour& o) {
-    return stops_for_nobody(o) && coming_mps(self, o) > kMoves_mps;
-  });
-  if (!on_the_way_ && urgent != near.end() && !stops_for_nobody(*other)) {
+  const auto comes_and_does_not_stop = [&](const Neighbour& o) {
+    return (!o.heard || o.phase == TeamPhase::landing) && coming_mps(self, o) > kMoves_mps;
+  };
+  const auto urgent = std::find_if(near.begin(), near.end(), comes_and_does_not_stop);
+  if (!on_the_way_ && urgent != near.end() && !comes_and_does_not_stop(*other)) {
     begin(self, *urgent, now);
+    asked_at_ = 0;
     return Action::hold;
   }
-  if (on_the_way_ || goes_before(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
+  if (on_the_way_ || goes_first(self, *other) || now - asked_at_ < kAskAgain) return Action::hold;
   const double coming = coming_mps(self, *other);
   const bool comes = coming > kMoves_mps;
   // One that is not heard may not know of this one, and come straight at it.
@@ -121,8 +125,8 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   const bool passes = came_nearer || coming < -kMoves_mps || (aside_ && comes);
   if (leaves || leaving_ || still_for > (passes ? kStaysAtMost : kStays)) {
     asked_at_ = now;
-    // One that hears this one may have set out because it waits: it is told first.
-    if (aside_ && other->heard && !leaves) {
+    // Another may have set out because this one waits: it is told first.
+    if (aside_ && !leaves) {
       aside_ = false;
       leaving_ = true;
       asked_at_ = now - kAskAgain + kTold;

@@ -18,7 +18,7 @@ class YieldState {
   };
 
   /// What to do now, to be asked ten times a second. `self` has the phase that it would be in without others,
-  /// and has kept to one place for `still_for`, whomever it waited for.
+  /// and has kept to one place for `still_for`: whomever it waited for, or since it waits there aside.
   Action update(const SeparationRule& rule, Neighbour self, const std::vector<Neighbour>& others, TimeNs now,
                 bool at_rest, TimeNs still_for);
 
