@@ -48,7 +48,8 @@ std::string boulder_before(const cave::Cave& cave, Random& r) {
   const double radius_m = r.uniform(0.5, 1.5), within_m = radius_m + 0.3 + kFallsAhead_m;
   Vec3 place = start, best = start;
   for (int step = 0; step < 100 && (best - start).norm() < within_m + 1; ++step) {
-    const Vec3 direction = Vec3(r.normal(), r.normal(), 0.3 * r.normal()).normalized();
+    const double up = 0.3 * r.normal(), left = r.normal();
+    const Vec3 direction = Vec3(r.normal(), left, up).normalized();
     const double free_m = std::min(cave.scene.ray_cast(place, direction, 30), 30.0);
     place += 0.5 * free_m * direction;
     if ((place - start).norm() > (best - start).norm()) best = place;

@@ -88,7 +88,9 @@ std::vector<ObjectDetection> ObjectDetector::detect(const cave::Cave& cave, cons
   const double per_image = options_.false_per_min * core::seconds(camera.period) / 60;
   if (random.uniform() < per_image) {  // rock that looks like something
     const double wide = std::tan(camera.horizontal_fov_rad / 2), high = std::tan(camera.vertical_fov_rad / 2);
-    const Vec3 d = Vec3(1, random.uniform(-wide, wide), random.uniform(-high, high)).normalized();
+    // One statement a draw: compilers differ in the order in which they evaluate arguments.
+    const double up = random.uniform(-high, high);
+    const Vec3 d = Vec3(1, random.uniform(-wide, wide), up).normalized();
     const auto kind = static_cast<ObjectKind>(1 + static_cast<int>(random.uniform() * core::kObjectKinds));
     const double range_m =
         cave.scene.ray_cast(T_world_camera.position, T_world_camera.orientation * d,

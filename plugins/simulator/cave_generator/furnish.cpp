@@ -75,8 +75,9 @@ void add_heap(CavePlan& plan, const CaveField& field, const Site& site, Random& 
   for (int i = 0; i < blocks; ++i) {
     const Vec3 above = scattered(heap, spread, random);
     const double size = 0.3 * std::exp(0.5 * random.normal()) * std::clamp(site.half_width_m / 2.5, 0.7, 2.0);
-    const Vec3 half = std::clamp(size, 0.22, 1.4) *
-                      Vec3(random.uniform(0.8, 1.4), random.uniform(0.7, 1.1), random.uniform(0.45, 0.9));
+    // One statement a draw: compilers differ in the order in which they evaluate arguments.
+    const double height = random.uniform(0.45, 0.9), width = random.uniform(0.7, 1.1);
+    const Vec3 half = std::clamp(size, 0.22, 1.4) * Vec3(random.uniform(0.8, 1.4), width, height);
     const double lean = 0.35 * random.normal();
     const auto floor = rock_along(field, above, -1);
     // Towards the middle of the heap blocks lie on top of others.

@@ -8,7 +8,7 @@
 
 #include "core_stack/common/random.h"
 #include "core_stack/homing/landing/link_estimate.h"
-#include "core_stack/planning/roadmap/roadmap.h"
+#include "core_stack/planning/search/grid_planner.h"
 #include "tests/unit/homing/passage.h"
 #include "tests/unit/planning/test_maps.h"
 
@@ -126,22 +126,20 @@ TEST(OthersGetBy, StillWhenTheyHaveMappedIt) {
   Random random = Random::stream(5, "landed");
   int allowed = 0, closed_without = 0;
   for (int n = 0; n < 200; ++n) {
-    std::vector<CellChange> changes;
-    VoxelMap map = passage(random.uniform(2, 4), random.uniform(1.3, 1.9), 8, &changes);
-    const Vec3 standing(random.uniform(-0.5, 0.5), random.uniform(-1, 1), kRobotRadius_m);
+    const double width_m = random.uniform(2, 4), height_m = random.uniform(1.3, 1.9);
+    VoxelMap map = passage(width_m, height_m, 12);  // open beyond the cube that is looked at
+    const auto within = [&](double half) { return random.uniform(-half, half); };
+    const Vec3 standing{within(0.5), within(1), kRobotRadius_m};  // in braces: drawn from left to right
     const double clearance_m = search_clearance_m(planning, map.resolution_m());
     const bool by_radius = keeps_passage_open(map, standing, kRobotRadius_m, clearance_m, 3),
                as_mapped = keeps_passage_open(map, standing, kRobotRadius_m + kAsMapped_m, clearance_m, 3);
-    const Vec3 landed = standing + 0.1 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    const Vec3 landed = standing + Vec3{within(0.1), within(0.1), 0};
     for (int i = 0; i < 1000; ++i) {
-      const Vec3 p =
-          landed + kRobotRadius_m * Vec3(random.normal(), random.normal(), random.normal()).normalized();
+      const Vec3 towards{random.normal(), random.normal(), random.normal()};
+      const Vec3 p = landed + kRobotRadius_m * towards.normalized();
       map.assign(map.key_of(p), 1, 2.0f);
     }
-    Roadmap roadmap(planning);
-    roadmap.update(map, changes);
-    const bool open =
-        std::isfinite(roadmap.distances(map, {-3, 0.1, 0.8}, std::vector{Vec3(3, 0.1, 0.8)}, 0.6).front());
+    const bool open = plan_on_grid_squeezing(map, {-3, 0.1, 0.8}, {3, 0.1, 0.8}, planning).found();
     EXPECT_TRUE(open || !as_mapped) << n;
     allowed += as_mapped;
     closed_without += by_radius && !open;
