@@ -34,6 +34,14 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 
+# For folders whose code runs in a policy's own process: UBSan's vptr check reads memory through a pipe, which the
+# sandbox forbids.
+macro(karst_runs_in_sandbox)
+  if(KARST_SANITIZE MATCHES undefined)
+    add_compile_options(-fno-sanitize=vptr)
+  endif()
+endmacro()
+
 # karst_library(NAME sources... [LINK libs...]): a static library with the project's warnings; includes are
 # written from the project's root.
 function(karst_library name)

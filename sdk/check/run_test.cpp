@@ -5,6 +5,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/sanitized.h"
 #include "sdk/check/run_check.h"
 
 namespace karst::check {
@@ -14,11 +15,9 @@ namespace {
 void limit_resources() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-#ifndef __SANITIZE_ADDRESS__
   constexpr rlim_t most = rlim_t{6} << 30;
   const rlimit memory{most, most};
-  setrlimit(RLIMIT_DATA, &memory);
-#endif
+  if (!kSanitized) setrlimit(RLIMIT_DATA, &memory);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include <optional>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/sanitized.h"
 
 namespace karst::cave {
 namespace {
@@ -35,18 +36,6 @@ struct AnswerHead {
   Answer kind;
   std::uint64_t vertices = 0, triangles = 0;  // for a failure, `vertices` is the length of the reason
 };
-
-/// The shadow memory of a sanitizer exceeds any limit.
-constexpr bool memory_can_be_limited() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-  return false;
-#endif
-#endif
-  return true;
-}
 
 std::uint64_t address_space_in_use() {
   std::uint64_t pages = 0;
@@ -66,7 +55,7 @@ void confine(const ImportLimits& limits, pid_t parent) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGXCPU}) std::signal(signal, SIG_DFL);
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_CPU, limits.cpu_s, 5);  // at the hard limit it would be killed without a reason
-  if (memory_can_be_limited()) set_limit(RLIMIT_AS, address_space_in_use() + limits.memory_bytes);
+  if (!kSanitized) set_limit(RLIMIT_AS, address_space_in_use() + limits.memory_bytes);
   if (const int null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/sanitized.h"
 #include "sdk/host/isolation/file_access.h"
 
 namespace karst::host {
@@ -80,7 +81,7 @@ class Filter {
 
 void confine_this_process(std::uint64_t memory_limit_bytes,
                           const std::vector<std::filesystem::path>& readable) {
-  if (memory_can_be_limited()) limit(RLIMIT_AS, memory_limit_bytes, "memory");
+  if (!kSanitized) limit(RLIMIT_AS, memory_limit_bytes, "memory");
   limit(RLIMIT_CORE, 0, "core dumps");
   limit(RLIMIT_FSIZE, 0, "the size of files");
   limit(RLIMIT_NOFILE, 64, "open files");

@@ -17,13 +17,4 @@ namespace karst::host {
 void confine_this_process(std::uint64_t memory_limit_bytes,
                           const std::vector<std::filesystem::path>& readable);
 
-/// The shadow memory of a sanitizer exceeds any limit, so such a build has none.
-constexpr bool memory_can_be_limited() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return false;
-#else
-  return true;
-#endif
-}
-
 }  // namespace karst::host
