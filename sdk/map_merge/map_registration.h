@@ -1,6 +1,6 @@
 // Registers one flight's map in another's, or gives a reason why no pose can be trusted. docs/map_merge.md
 //
-//   similar places --> 150 poses --a few steps of ICP--> 8 --ICP--> the best and its rivals --> a
+//   similar places --> 12 poses --a few steps of ICP--> 8 --ICP--> the best and its rivals --> a
 //   verdict
 //
 // ICP converges from every start. The maps decide whether a result is credible: enough rock coincides, little
