@@ -21,8 +21,8 @@ SteepestView steepest_view(const VehicleDescription& vehicle);
 /// Why `path`, flown after the whole of `flown_path`, is steeper than the vehicle sees; nothing if it is not.
 /// A path is too steep if within kClimbWindow_m of its length it climbs or sinks by h > 3 m, and that stretch
 /// extends horizontally by less than h / tan(steepest view). Exempt are heights that the vehicle has reached
-/// before within 4 m of there (give or take half a metre if that was more than kClimbWindow_m of path ago), so
-/// that the path back is always allowed.
+/// before within 4 m of there (give or take half a metre if that was more than kClimbWindow_m of path ago),
+/// so that the path back is always allowed.
 std::optional<std::string> blind_climb(const SteepestView& view, const std::vector<Vec3>& flown_path,
                                        const std::vector<Vec3>& path);
 
