@@ -79,6 +79,12 @@ struct Meeting {
       if ((last = step()) == Action::make_room || last == Action::leave) return last;
     return last;
   }
+  /// It makes room, and waits where the other can pass.
+  void wait_aside() {
+    ASSERT_EQ(run(4), Action::make_room);
+    yield_state.set_out();
+    yield_state.arrived(YieldState::Place::aside, now);
+  }
 };
 
 TEST(YieldState, MakesRoomForOneThatComesAndWaitsUntilItIsPast) {
@@ -117,9 +123,7 @@ TEST(YieldState, GoesOnWhenTheOtherDoesNotComeOrIsNoMoreHeard) {
 
 TEST(YieldState, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
   Meeting m;
-  ASSERT_EQ(m.run(4), Action::make_room);
-  m.yield_state.set_out();
-  m.yield_state.arrived(YieldState::Place::aside, m.now);
+  m.wait_aside();
   m.other.velocity_mps.setZero();
   m.other.position = {3.5, 0, 0};
   EXPECT_EQ(m.run(12), Action::leave);
@@ -129,9 +133,7 @@ TEST(YieldState, LeavesAPlaceWhereTheOtherDoesNotGetBy) {
 TEST(YieldState, NobodyStaysInOnePlaceForLongWhileAnotherFliesAroundIt) {
   Meeting m;
   m.other.position = {2, 0, 0}, m.other.velocity_mps = {0, 0, 0};
-  ASSERT_EQ(m.run(4), Action::make_room);
-  m.yield_state.set_out();
-  m.yield_state.arrived(YieldState::Place::aside, m.now);
+  m.wait_aside();
   Action last = Action::hold;
   for (int i = 0; i < 200 && last == Action::hold; ++i) {
     const double a = 0.05 * i;  // round it, now nearer and now farther
@@ -146,9 +148,7 @@ TEST(YieldState, NobodyStaysInOnePlaceForLongWhileAnotherFliesAroundIt) {
 // As it was: in a small hall one set out past another that waited aside, and that one left its place then.
 TEST(YieldState, WhoLeavesAPlaceAsideSaysSoFirst) {
   Meeting m;
-  ASSERT_EQ(m.run(4), Action::make_room);
-  m.yield_state.set_out();
-  m.yield_state.arrived(YieldState::Place::aside, m.now);
+  m.wait_aside();
   m.other.velocity_mps.setZero();
   TimeNs aside_until = 0;
   while (m.step() != Action::leave) {
