@@ -48,14 +48,15 @@ TeamPhase RightOfWay::phase_to_report() const {
   return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
-/// The vehicle passes one that it does not hear slowly, also where that one stands: it may set out. Without a
-/// LiDAR, and while it may meet one, it flies no faster than its cameras see, and slower where they do not
+/// The vehicle passes one that it does not hear slowly, also where that one stands: it may set out. It does not
+/// slow down where it flies away from it: that one follows, and would have to be as slow. Without a LiDAR, and while it may meet one, it flies no faster than its cameras see, and slower where they do not
 /// look: they look level.
 void RightOfWay::look_out(const std::vector<Neighbour>& others) {
   max_speed_mps_.reset();
   const Vec3 &p = onboard_.flight.state().position, &v = onboard_.flight.state().velocity_mps;
   const bool passes = std::any_of(others.begin(), others.end(), [&](const Neighbour& o) {
-    return !o.heard && (o.position - p).norm() < kNearUnheard_m;
+    const Vec3 to_other = o.position - p;
+    return !o.heard && to_other.norm() < kNearUnheard_m && v.dot(to_other) > -kFlies_mps * to_other.norm();
   });
   if (passes) max_speed_mps_ = kPassing_mps;
   if (onboard_.vehicle.lidar || !team_.may_meet_unheard(onboard_.now())) return;

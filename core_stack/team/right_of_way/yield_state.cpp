@@ -19,6 +19,9 @@ constexpr TimeNs kSeen = kSecond;             // one that stands aside is in the
 constexpr TimeNs kTurn = 3 * kSecond;
 constexpr TimeNs kFirst = 5 * kSecond;  // who goes before waits no longer for room
 constexpr TimeNs kAskAgain = 2 * kSecond;
+// One that is not heard and comes is so near, or is there so soon: do not set out.
+constexpr double kTooNear_m = 2.5;
+constexpr TimeNs kTooLate = 2 * kSecond;
 constexpr TimeNs kTold = kSecond;  // by then the others have heard that it leaves
 constexpr int kMaxAttempts = 1, kMaxAttemptsInCrowd = 2;
 constexpr TimeNs kBoxed = 15 * kSecond;
@@ -121,6 +124,10 @@ YieldState::Action YieldState::update(const SeparationRule& rule, Neighbour self
   // One that is not heard may not know of this one, and come straight at it.
   const bool leaves = !other->heard && comes && !(aside_ && gets_by(rule, self, *other));
   if (!leaves && !at_rest) return Action::hold;
+  // It may have planned its way around this one, as around rock: whoever sets out now flies into that way.
+  const double away_m = distance_m(self, *other);
+  if (!other->heard && comes && at_rest && (away_m < kTooNear_m || away_m < coming * seconds(kTooLate)))
+    return Action::hold;
   const bool came_nearer = came_nearer_at_ && now - *came_nearer_at_ < kPasses;
   const bool passes = came_nearer || coming < -kMoves_mps || (aside_ && comes);
   if (leaves || leaving_ || still_for > (passes ? kStaysAtMost : kStays)) {

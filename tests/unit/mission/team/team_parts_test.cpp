@@ -126,6 +126,24 @@ TEST_F(TeamPartsTest, ItYieldsToAVehicleThatItSeesAndDoesNotHear) {
   EXPECT_FALSE(path.yields()) << "it is out of sight";
 }
 
+// As it was: one that made room went before the other all the way home, both as slow as they pass each other.
+TEST_F(TeamPartsTest, ItFliesSlowlyNearOneThatItDoesNotHearUnlessItFliesAwayFromIt) {
+  fly_ahead(30);
+  advance(4);
+  for (const double ahead_m : {4.0, -4.0}) {
+    for (int i = 0; i < 10; ++i) {
+      advance(0.1);
+      const Vec3 to_other = Vec3(ahead_m, 0.5, 0);
+      work.note_seen(std::vector<Vec3>{onboard.flight.state().position + to_other}, now());
+    }
+    right_of_way.step();
+    EXPECT_EQ(right_of_way.max_speed_mps().has_value(), ahead_m > 0) << ahead_m;
+    advance(5);
+    right_of_way.step();
+    EXPECT_FALSE(right_of_way.max_speed_mps().has_value()) << "it is out of sight";
+  }
+}
+
 TEST_F(TeamPartsTest, AClaimedGoalIsToldToTheOthersUntilItIsGivenUp) {
   Goal goal;
   goal.position = {7, 1, 2};

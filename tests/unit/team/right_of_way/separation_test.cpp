@@ -270,7 +270,7 @@ TEST(YieldState, OnItsWayToMakeRoomStopsForAThirdThatItFliesAt) {
 // As it was: without room it waited for one that did not hear it until that one had left.
 TEST(YieldState, WithNoRoomGoesBeforeOneThatIsNotHeardAndDoesNotComeNearer) {
   Meeting m;
-  m.other = {kMaxRobots, {2.5, 0, 0}, {-0.3, 0, 0}, TeamPhase::landing, 0, false};
+  m.other = {kMaxRobots, {3.2, 0, 0}, {-0.16, 0, 0}, TeamPhase::landing, 0, false};
   Action last = m.step();
   for (int i = 0; i < 40 && last != Action::leave && last != Action::make_room; ++i) {
     m.other.velocity_mps.y() = i % 2 ? 0.4 : -0.4;  // to and fro
@@ -282,10 +282,17 @@ TEST(YieldState, WithNoRoomGoesBeforeOneThatIsNotHeardAndDoesNotComeNearer) {
   while (m.step() != Action::go_on) ASSERT_LT(m.now, 10 * kSecond);
 
   Meeting comes;
-  comes.other = {kMaxRobots, {2.5, 0, 0}, {-0.3, 0, 0}, TeamPhase::landing, 0, false};
+  comes.other = {kMaxRobots, {3.2, 0, 0}, {-0.16, 0, 0}, TeamPhase::landing, 0, false};
   while (comes.step() != Action::leave) ASSERT_LT(comes.now, 5 * kSecond);
   comes.yield_state.no_room(comes.now, false);
   EXPECT_EQ(comes.run(4), Action::leave) << "it does not know who goes first";
+}
+
+// As it was: one that stood left when the other, which took it for rock, was about to pass.
+TEST(YieldState, WhoStandsDoesNotSetOutWhenOneThatIsNotHeardIsNear) {
+  Meeting m;
+  m.other = {kMaxRobots, {3, 0, 0}, {-1.7, 0, 0}, TeamPhase::landing, 0, false};
+  while (m.other.position.x() > 0.5) ASSERT_EQ(m.step(), Action::hold) << m.other.position.x();
 }
 
 TEST(YieldState, AmongACrowdWaitsLongerForRoomBeforeItGoesFirst) {
