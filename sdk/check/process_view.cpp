@@ -13,6 +13,11 @@
 #include <iterator>
 #include <thread>
 
+/// A sanitizer's own heap, of which mallinfo2 knows nothing (sanitizer/allocator_interface.h); null without
+/// one.
+extern "C" [[gnu::weak]] std::size_t
+__sanitizer_get_current_allocated_bytes();  // NOLINT(bugprone-reserved-identifier): its name
+
 namespace karst::check {
 namespace {
 
@@ -119,6 +124,7 @@ std::size_t thread_count() {
 }
 
 std::size_t heap_bytes() {
+  if (__sanitizer_get_current_allocated_bytes != nullptr) return __sanitizer_get_current_allocated_bytes();
   const struct mallinfo2 m = mallinfo2();
   return m.uordblks + m.hblkhd;
 }

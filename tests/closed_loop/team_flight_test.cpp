@@ -195,8 +195,8 @@ TEST(Team, GetsByEachOtherInANarrowPassage) {
 }
 
 /// Robot 1 goes home, robot 2 flies in, and neither hears the other from before they meet until it is over.
-// As it was: each took the other for rock, which does not move, and braked too late. And as it was: robot 2 went
-// back before robot 1 at 0.7 m/s, all the way, until robot 1 had no battery left.
+// As it was: each took the other for rock, which does not move, and braked too late. And as it was: robot 2
+// went back before robot 1 at 0.7 m/s, all the way, until robot 1 had no battery left.
 TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) {
   const auto folder = fresh_folder("team_silence");
   const std::string cave =

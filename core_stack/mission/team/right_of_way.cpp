@@ -48,8 +48,9 @@ TeamPhase RightOfWay::phase_to_report() const {
   return yield_state_.reported(phase_for_team(parts_.phases.phase()), onboard_.now());
 }
 
-/// The vehicle passes one that it does not hear slowly, also where that one stands: it may set out. It does not
-/// slow down where it flies away from it: that one follows, and would have to be as slow. Without a LiDAR, and while it may meet one, it flies no faster than its cameras see, and slower where they do not
+/// The vehicle passes one that it does not hear slowly, also where that one stands: it may set out. It does
+/// not slow down where it flies away from it: that one follows, and would have to be as slow. Without a
+/// LiDAR, and while it may meet one, it flies no faster than its cameras see, and slower where they do not
 /// look: they look level.
 void RightOfWay::look_out(const std::vector<Neighbour>& others) {
   max_speed_mps_.reset();
