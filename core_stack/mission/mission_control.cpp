@@ -43,6 +43,7 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       team_(in_team(team)),
       sensors_(onboard_, sensor_wiring()),
       exploration_(onboard_, {phases_, goals_, path_, flown_path_, endurance_}, exploration_wiring()),
+      steering_(onboard_, {phases_, goals_, path_}),
       return_home_(onboard_,
                    {phases_, goals_, path_, flown_path_, endurance_,
                     team_ && team_->landing ? &*team_->landing : nullptr},
@@ -260,6 +261,7 @@ void MissionControl::fly_phase() {
       break;
     case Phase::explore:
       exploration_.step();
+      steering_.step();
       return_home_.watch_time();
       break;
     case Phase::home:

@@ -4,8 +4,8 @@
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done       (state/phase.cpp)
 //
 // Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
-// PathExecution, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class wires
-// them.
+// PathExecution, Steering, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class
+// wires them.
 #pragma once
 #include <functional>
 #include <optional>
@@ -15,6 +15,7 @@
 #include "core_stack/mission/object_search.h"
 #include "core_stack/mission/phases/exploration.h"
 #include "core_stack/mission/phases/return_home.h"
+#include "core_stack/mission/phases/steering.h"
 #include "core_stack/mission/phases/take_off.h"
 #include "core_stack/mission/sensor_pipeline.h"
 #include "core_stack/mission/team/right_of_way.h"
@@ -128,6 +129,7 @@ class MissionControl final : public VehicleSink {
   std::optional<InTeam> team_;
   SensorPipeline sensors_;
   Exploration exploration_;
+  Steering steering_;
   ReturnHome return_home_;
   ObjectSearch objects_;
 

@@ -85,6 +85,11 @@ const Flight kFlights[] = {
      [](const fs::path&) {
        return alone(generated_cave("small", 7), "information_gain", "--set simulator.vehicle=camera_uav");
      }},
+    {"information_gain_by_camera_with_a_receding_horizon",
+     [](const fs::path&) {
+       return alone(generated_cave("small", 7), "information_gain",
+                    "--set simulator.vehicle=camera_uav --set motion.trajectory=horizon");
+     }},
     {"viewpoint_tour_through_a_narrow_passage",
      [](const fs::path& folder) {
        return alone(corridor_cave(folder), "viewpoint_tour", "--set planning.narrow_margin=\"0.08 m\"");

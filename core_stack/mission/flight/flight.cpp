@@ -193,6 +193,22 @@ State Flight::expected(TimeNs t) const {
   return {t, sample.position, velocity_at(t), from_heading(sample.heading_rad), Vec3::Zero()};
 }
 
+MotionState Flight::motion_at(TimeNs t) const {
+  const Reference& r = reference();
+  const double dt = seconds(t - r.stamp);
+  return {r.position + dt * r.velocity_mps + 0.5 * dt * dt * r.acceleration_mps2,
+          r.velocity_mps + dt * r.acceleration_mps2, wrap_angle(r.heading_rad + dt * r.heading_rate_radps),
+          r.heading_rate_radps};
+}
+
+std::vector<TrajectorySample> Flight::samples_from(TimeNs t) const {
+  std::vector<TrajectorySample> out{trajectory_.at(t)};
+  for (TimeNs at = t; at < trajectory_.end();) out.push_back(trajectory_.at(at += trajectory_.period));
+  return out;
+}
+
+double Flight::braking_mps2() const { return kBrakingFraction * limits_.max_acceleration_mps2; }
+
 Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) const {
   CommittedSegment out{
       {trajectory_.at(t).position}, velocity_at(t).norm(), trajectory_.at(t).heading_rad, departure_at(t)};
@@ -210,7 +226,7 @@ Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) co
 
 Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
   const double v = velocity_at(t).norm();
-  return committed_segment(t, v * v / (2 * kBrakingFraction * limits_.max_acceleration_mps2));
+  return committed_segment(t, v * v / (2 * braking_mps2()));
 }
 
 Flight::CommittedSegment Flight::until_end(TimeNs t) const {

@@ -10,6 +10,7 @@
 #include "core_stack/localization/estimator.h"
 #include "core_stack/mission/flight/emergency_landing.h"
 #include "core_stack/mission/options/mission_options.h"
+#include "core_stack/planning/horizon/rollout.h"
 #include "core_stack/planning/trajectory/minimum_snap.h"
 #include "core_stack/vehicle/vehicle.h"
 
@@ -88,6 +89,13 @@ class Flight {
   TimeNs trajectory_end() const { return trajectory_.end(); }
   /// The state on the trajectory at `t`, with level attitude.
   State expected(TimeNs t) const;
+  /// Where the vehicle will be at `t`, a moment from now, for planning on from there in motion. This is not
+  /// the trajectory: the reference lags behind it where it bends.
+  MotionState motion_at(TimeNs t) const;
+  /// The trajectory from `t` to its end, every 100 ms.
+  std::vector<TrajectorySample> samples_from(TimeNs t) const;
+  /// Planned stops brake so hard.
+  double braking_mps2() const;
   /// Time at which the trajectory is nearest to `p`.
   TimeNs time_nearest(const Vec3& p) const;
   double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }

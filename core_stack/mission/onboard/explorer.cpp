@@ -6,7 +6,8 @@ Explorer::Explorer(const CoreOptions& options, const VehicleDescription& vehicle
     : limits_(clearance_limits(options.planning, vehicle)),
       world_(options, vehicle),
       home_estimator_(options, vehicle, world_, team_),
-      cycle_(options, vehicle, policy, world_, home_estimator_) {}
+      cycle_(options, vehicle, policy, world_, home_estimator_),
+      horizon_(vehicle) {}
 
 std::vector<CellChange> Explorer::integrate(const std::vector<Ray>& rays) {
   std::vector<CellChange> changes = world_.integrate(rays);
@@ -23,6 +24,11 @@ std::vector<CellChange> Explorer::declare_launch_site(const Vec3& hover_point) {
 void Explorer::note_picture(const Pose& T_world_camera) { world_.note_picture(T_world_camera); }
 
 CycleResult Explorer::decide(const CycleInput& input) { return cycle_.decide(input, team_.claims()); }
+
+std::optional<HorizonPlan> Explorer::plan_horizon(const HorizonQuery& query,
+                                                 std::optional<double> exploring_s) {
+  return horizon_.plan(world_, query, exploring_s);
+}
 
 void Explorer::tell(const std::vector<PolicyEvent>& events, TimeNs now) { cycle_.tell(events, now); }
 

@@ -13,6 +13,7 @@
 #include "core_stack/mission/policy/policy_port.h"
 #include "core_stack/mission/world_model/clearance_checks.h"
 #include "core_stack/mission/world_model/home_estimator.h"
+#include "core_stack/mission/world_model/horizon_guide.h"
 #include "core_stack/mission/world_model/team_membership.h"
 #include "core_stack/mission/world_model/world_model.h"
 #include "core_stack/team/relay_homing.h"
@@ -35,6 +36,8 @@ class Explorer {
   void note_picture(const Pose& T_world_camera);
 
   CycleResult decide(const CycleInput& input);
+  /// See HorizonGuide::plan.
+  std::optional<HorizonPlan> plan_horizon(const HorizonQuery& query, std::optional<double> exploring_s);
   /// Plans a path home or around a new obstacle.
   Path plan_to(const Vec3& from, const Vec3& to);
   /// Estimates the return home. If the map shows no path, its length is taken as `flown_length_m`.
@@ -80,6 +83,7 @@ class Explorer {
   TeamMembership team_;
   HomeEstimator home_estimator_;
   DecisionCycle cycle_;
+  HorizonGuide horizon_;
 };
 
 }  // namespace karst::core

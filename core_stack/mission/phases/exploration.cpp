@@ -9,7 +9,8 @@ namespace {
 
 /// Between two decision cycles: time for a scan or two at a place just reached.
 constexpr TimeNs kPause = 400 * kMillisecond;
-constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
+constexpr TimeNs kSteeredPeriod = 1500 * kMillisecond;  // while the horizon is replanned
+constexpr double kFacing_rad = 0.2;                     // a goal's heading is reached when nearer than this
 
 /// A drawing's fields in the event. Serialized on the map lane: 100 000 points take 0.2 s.
 std::string text_of(const Drawing& d) {
@@ -77,12 +78,16 @@ void Exploration::choose() {
   if (flight.at_rest(now)) {
     path.take_no_detour();
     // The sensors observe this place before the next goal is chosen.
-    return goals.goal() && !path.blocked() ? reach_goal(now) : begin_cycle(Joins::at_stop);
+    const bool there = goals.goal() && !path.blocked() && !path.steered();
+    return there ? reach_goal(now) : begin_cycle(Joins::at_stop);
   }
   if (path.blocked() || goals.next()) return;  // wait for the brake, or until the goal is passed
   if (goals.goal() && reached(flight.reference(), *goals.goal())) return reach_goal(now);
   if (goals.goal() && !goals.frontier_open()) return begin_cycle(Joins::at_stop);
-  if (flight.remaining_s(now) < o.append_before_s) {
+  if (onboard_.options.motion.trajectory == TrajectoryKind::horizon) {
+    // Plans end short of the goal: nothing can be appended, and the next goal is wanted in flight.
+    if (!goals.goal() || now - last_cycle_ > kSteeredPeriod) begin_cycle(Joins::at_stop);
+  } else if (flight.remaining_s(now) < o.append_before_s) {
     // An appended path's speed limit applies from here on: do not append while the current path has one.
     if (o.append && !append_tried_ && !path.speed_limited()) begin_cycle(Joins::at_end);
     append_tried_ = true;
@@ -163,7 +168,8 @@ void Exploration::fly_to(const CycleInput& input, const CycleResult& result, con
   GoalTracker& goals = parts_.goals;
   PathExecution& path = parts_.path;
   const bool keeps_to_it = goals.is_under_way(*result.goal) && !input.appending;
-  if (keeps_to_it && !path.blocked() && !path.detour_due()) return;
+  const bool stands_before_it = path.steered() && onboard_.flight.at_rest(now);
+  if (keeps_to_it && !path.blocked() && !path.detour_due() && !stands_before_it) return;
   if (input.appending && goals.goal()) {
     goals.append(*result.goal, now);
   } else {

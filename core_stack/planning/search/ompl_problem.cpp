@@ -129,7 +129,7 @@ class Shortest : public ob::PathLengthOptimizationObjective {
 
 }  // namespace
 
-OmplProblem make_problem(const FreeTiles& free, std::shared_ptr<const SampledCells> cells,
+OmplProblem make_problem(const FreeTiles& free, const std::shared_ptr<const SampledCells>& cells,
                          const OmplQuery& query) {
   const auto space = std::make_shared<ob::RealVectorStateSpace>(3);
   ob::RealVectorBounds bounds(3);

@@ -47,7 +47,7 @@ struct OmplProblem {
 };
 
 /// R^3 within the box; a state is valid if it is clear, and a motion if every point of it is.
-OmplProblem make_problem(const FreeTiles& free, std::shared_ptr<const SampledCells> cells,
+OmplProblem make_problem(const FreeTiles& free, const std::shared_ptr<const SampledCells>& cells,
                          const OmplQuery& query);
 
 }  // namespace karst::core

@@ -9,8 +9,8 @@ namespace karst::core {
 /// Steers a heading to wanted values within rate and acceleration limits, one step per sample.
 class HeadingCourse {
  public:
-  HeadingCourse(double heading_rad, const MotionLimits& limits, double period_s)
-      : heading_rad_(heading_rad), limits_(limits), period_s_(period_s) {}
+  HeadingCourse(double heading_rad, const MotionLimits& limits, double period_s, double rate_radps = 0)
+      : heading_rad_(heading_rad), rate_radps_(rate_radps), limits_(limits), period_s_(period_s) {}
   double step(double wanted_rad);
   double heading_rad() const { return heading_rad_; }
   double rate_radps() const { return rate_radps_; }
@@ -18,7 +18,7 @@ class HeadingCourse {
   bool settled_at(double wanted_rad) const;
 
  private:
-  double heading_rad_, rate_radps_ = 0;
+  double heading_rad_, rate_radps_;
   MotionLimits limits_;
   double period_s_;
 };

@@ -1,0 +1,43 @@
+// Steering: while the vehicle explores, it plans the next three seconds three times a second, and looks at
+// what is unknown on its way to the goal.
+#pragma once
+#include <optional>
+
+#include "core_stack/mission/phases/goal_tracker.h"
+#include "core_stack/mission/phases/path_execution.h"
+
+namespace karst::core {
+
+class Steering {
+ public:
+  struct Parts {
+    const PhaseMachine& phases;
+    const GoalTracker& goals;
+    PathExecution& path;
+  };
+  Steering(Onboard& onboard, const Parts& parts) : onboard_(onboard), parts_(parts) {}
+
+  /// Call ten times a second.
+  void step();
+
+ private:
+  bool applies() const;
+  bool goal_waits() const;
+  /// A LiDAR sees all around: there is nothing to turn for.
+  bool turns() const { return !onboard_.vehicle.lidar; }
+  void note_goal();
+  HorizonQuery query(TimeNs at) const;
+  void on_plan(const std::optional<HorizonPlan>& plan, TimeNs begun);
+
+  Onboard& onboard_;
+  Parts parts_;
+  std::optional<Vec3> goal_;  // under way
+  TimeNs goal_since_ = 0;
+  std::optional<double> direct_s_;  // that it was away when first planned for
+  std::optional<Legs> legs_;        // of the last plan
+  TimeNs legs_begin_ = 0;
+  TimeNs last_ = 0;
+  bool planning_ = false;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,213 @@
+#include "core_stack/planning/horizon/horizon_planner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core_stack/common/random.h"
+
+namespace karst::core {
+namespace {
+
+constexpr double kHorizon_s = kLegs * seconds(kLeg);
+constexpr int kHorizonSamples = static_cast<int>(kLegs * kLeg / kRolloutPeriod);
+constexpr int kViews = 4;  // along the horizon
+constexpr int kFirst = 24, kElites = 6, kChildren = 8, kRounds = 3;
+constexpr double kSpread = 0.6, kHeadingSpread_rad = 0.8;  // of the first round; of the maximal speed
+constexpr double kNarrower = 0.5;                          // a round
+constexpr double kBetter_s = 0.1;                          // than what is under way, to be worth a change
+constexpr double kFlies_mps = 0.2;                         // or else it has no direction
+constexpr double kLevel_m = 1.0;                           // may be climbed whatever the sensors see
+
+struct Candidate {
+  Legs legs;
+  Rollout motion;
+  double value_s = 0, time_left_s = 0, gain_m3 = 0;
+};
+
+double longest_m(const std::vector<ViewRay>& rays) {
+  double out = 0;
+  for (const ViewRay& r : rays) out = std::max(out, r.range_m);
+  return out;
+}
+
+class Search {
+ public:
+  Search(const VoxelMap& map, const Roadmap& roadmap, const DistanceTree& to_goal,
+         const std::vector<ViewRay>& rays, const HorizonQuery& q)
+      : map_(map),
+        roadmap_(roadmap),
+        to_goal_(to_goal),
+        rays_(rays),
+        q_(q),
+        local_(map, q.start.position, kHorizon_s * q.limits.max_speed_mps + longest_m(rays)),
+        random_(q.seed) {}
+
+  std::optional<HorizonPlan> run() {
+    std::vector<Candidate> best;
+    const std::vector<Legs> seeds = first_guesses();
+    for (const Legs& legs : seeds) consider(legs, best);
+    for (int i = 0; i < kFirst; ++i)
+      consider(varied(seeds[static_cast<std::size_t>(i) % seeds.size()], 1), best);
+    double spread = 1;
+    for (int round = 0; round < kRounds; ++round) {
+      keep_best(best);
+      spread *= kNarrower;
+      std::vector<Legs> parents;
+      for (const Candidate& c : best) parents.push_back(c.legs);
+      for (const Legs& legs : parents)
+        for (int i = 0; i < kChildren; ++i) consider(varied(legs, spread), best);
+    }
+    keep_best(best);
+    if (best.empty() || !(best.front().value_s > value_under_way() + kBetter_s)) return std::nullopt;
+    Candidate& c = best.front();
+    return HorizonPlan{
+        q_.start, std::move(c.motion.samples), c.legs, kHorizon_s + c.time_left_s, c.gain_m3, tried_, clear_};
+  }
+
+ private:
+  /// The last plan, the shortest path to the goal fast and slowly, and to stay.
+  std::vector<Legs> first_guesses() {
+    std::vector<Legs> out;
+    if (q_.last) out.push_back(*q_.last);
+    const Path path = to_goal_.find(map_, roadmap_, q_.start.position);
+    if (path.found() && path.points.size() > 1)
+      for (const double share : {1.0, 0.6})
+        out.push_back(along(path.points, share * q_.limits.max_speed_mps));
+    Legs stay;
+    for (Leg& leg : stay) leg.heading_rad = q_.start.heading_rad;
+    out.push_back(stay);
+    return out;
+  }
+
+  static Vec3 point_at(const std::vector<Vec3>& points, double length_m) {
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const double step_m = (points[i] - points[i - 1]).norm();
+      if (step_m > 0 && length_m <= step_m)
+        return points[i - 1] + length_m / step_m * (points[i] - points[i - 1]);
+      length_m -= step_m;
+    }
+    return points.back();
+  }
+
+  Legs along(const std::vector<Vec3>& points, double speed_mps) const {
+    Legs legs;
+    Vec3 from = q_.start.position;
+    double heading_rad = q_.start.heading_rad;
+    for (int i = 0; i < kLegs; ++i) {
+      const Vec3 to = point_at(points, speed_mps * (i + 1) * seconds(kLeg));
+      Vec3 v = (to - from) / seconds(kLeg);
+      if (v.norm() > speed_mps) v *= speed_mps / v.norm();
+      if (q_.turns && v.head<2>().norm() > kFlies_mps) heading_rad = std::atan2(v.y(), v.x());
+      legs[static_cast<std::size_t>(i)] = {v, heading_rad};
+      from = to;
+    }
+    return legs;
+  }
+
+  Legs varied(Legs legs, double spread) {
+    const double v_max = q_.limits.max_speed_mps, sigma = kSpread * spread * v_max;
+    for (Leg& leg : legs) {
+      for (int axis = 0; axis < 3; ++axis)
+        leg.velocity_mps[axis] += (axis == 2 ? 0.4 : 1.0) * sigma * random_.normal();
+      if (const double v = leg.velocity_mps.norm(); v > v_max) leg.velocity_mps *= v_max / v;
+      if (q_.turns)
+        leg.heading_rad = wrap_angle(leg.heading_rad + kHeadingSpread_rad * spread * random_.normal());
+    }
+    return legs;
+  }
+
+  void consider(const Legs& legs, std::vector<Candidate>& out) {
+    ++tried_;
+    Candidate c{legs, roll_out(q_.start, legs, q_.limits, q_.braking_mps2)};
+    if (!level(c.motion.samples) || !clear(c.motion.samples)) return;
+    ++clear_;
+    const std::optional<double> left_s = time_left_s(c.motion.end);
+    if (!left_s) return;
+    c.time_left_s = *left_s;
+    c.gain_m3 = gain_m3(c.motion.samples);
+    c.value_s = q_.worth_s_per_m3 * c.gain_m3 - c.time_left_s;
+    out.push_back(std::move(c));
+  }
+
+  static void keep_best(std::vector<Candidate>& out) {
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.value_s > b.value_s; });
+    if (out.size() > kElites) out.resize(kElites);
+  }
+
+  /// Whether it climbs and sinks no steeper than the sensors see.
+  bool level(const std::vector<TrajectorySample>& samples) const {
+    const Vec3 d = samples.back().position - samples.front().position;
+    return std::abs(d.z()) <= kLevel_m + std::tan(q_.steepest_rad) * d.head<2>().norm();
+  }
+
+  bool clear(const std::vector<TrajectorySample>& samples) const {
+    for (std::size_t i = 0; i + 1 < samples.size(); i += 2) {
+      const Vec3& to = samples[std::min(i + 2, samples.size() - 1)].position;
+      if (!roadmap_.segment_clear(samples[i].position, to, q_.clearance_m)) return false;
+    }
+    return true;
+  }
+
+  /// The time from there to the goal. What is flown away from the goal while braking counts twice.
+  std::optional<double> time_left_s(const MotionState& s) const {
+    const double v = s.velocity_mps.norm(), a = q_.limits.max_acceleration_mps2,
+                 v_max = q_.limits.max_speed_mps;
+    const double stop_m = v * v / (2 * q_.braking_mps2);
+    std::optional<double> left_m = to_goal_.length_m(map_, roadmap_, s.position);
+    if (stop_m > 0.05) {
+      const Vec3 stop = s.position + stop_m / v * s.velocity_mps;
+      if (const auto from_stop = to_goal_.length_m(map_, roadmap_, stop)) left_m = *from_stop + stop_m;
+    }
+    if (!left_m) return std::nullopt;
+    double left_s = *left_m / v_max + std::max(0.0, v_max - v) / a;
+    if (std::isfinite(q_.goal.heading_rad))
+      left_s = std::max(left_s, std::abs(wrap_angle(q_.goal.heading_rad - s.heading_rad)) /
+                                    q_.limits.max_heading_rate_radps);
+    return left_s;
+  }
+
+  double gain_m3(const std::vector<TrajectorySample>& samples) {
+    if (q_.worth_s_per_m3 <= 0) return 0;
+    std::array<ViewPose, kViews> poses;
+    for (int i = 0; i < kViews; ++i) {
+      const auto at = std::min<std::size_t>(static_cast<std::size_t>((i + 1) * kHorizonSamples / kViews),
+                                            samples.size() - 1);
+      poses[static_cast<std::size_t>(i)] = {samples[at].position, samples[at].heading_rad};
+    }
+    return local_.gain_m3(rays_, poses);
+  }
+
+  double value_under_way() {
+    constexpr double kNone = -std::numeric_limits<double>::infinity();
+    if (q_.under_way.empty()) return kNone;
+    const auto at = [this](int i) {
+      return q_.under_way[std::min(static_cast<std::size_t>(i), q_.under_way.size() - 1)];
+    };
+    MotionState end;
+    end.position = at(kHorizonSamples).position;
+    end.heading_rad = at(kHorizonSamples).heading_rad;
+    end.velocity_mps = (at(kHorizonSamples + 1).position - end.position) / seconds(kRolloutPeriod);
+    const std::optional<double> left_s = time_left_s(end);
+    return left_s ? q_.worth_s_per_m3 * gain_m3(q_.under_way) - *left_s : kNone;
+  }
+
+  const VoxelMap& map_;
+  const Roadmap& roadmap_;
+  const DistanceTree& to_goal_;
+  const std::vector<ViewRay>& rays_;
+  const HorizonQuery& q_;
+  ViewMap local_;
+  Random random_;
+  int tried_ = 0, clear_ = 0;
+};
+
+}  // namespace
+
+std::optional<HorizonPlan> plan_horizon(const VoxelMap& map, const Roadmap& roadmap,
+                                        const DistanceTree& to_goal, const std::vector<ViewRay>& rays,
+                                        const HorizonQuery& query) {
+  return Search(map, roadmap, to_goal, rays, query).run();
+}
+
+}  // namespace karst::core

@@ -1,0 +1,104 @@
+#include "core_stack/planning/horizon/view_gain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace karst::core {
+namespace {
+
+constexpr double kSpacing_rad = 0.105;
+constexpr double kLidarRange_m = 8.0;  // farther away a scan is too sparse to close a frontier
+constexpr double kLidarSpacing_rad = 0.26;
+
+/// Directions on a grid of azimuth and elevation in the sensor's frame, at the cells' centres.
+void add_rays(double azimuth_rad, double low_rad, double high_rad, double spacing_rad, double range_m,
+              const Pose& T_body_sensor, std::vector<ViewRay>& out) {
+  const int columns = std::max(1, static_cast<int>(std::lround(azimuth_rad / spacing_rad)));
+  const int rows = std::max(1, static_cast<int>(std::lround((high_rad - low_rad) / spacing_rad)));
+  const double da = azimuth_rad / columns, de = (high_rad - low_rad) / rows;
+  for (int r = 0; r < rows; ++r) {
+    const double e = low_rad + (r + 0.5) * de;
+    for (int c = 0; c < columns; ++c) {
+      const double a = -azimuth_rad / 2 + (c + 0.5) * da;
+      const Vec3 direction(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      out.push_back({T_body_sensor.orientation * direction, range_m, da * de * std::cos(e)});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ViewRay> view_rays(const VehicleDescription& vehicle) {
+  std::vector<ViewRay> rays;
+  for (const auto& c : vehicle.cameras)
+    add_rays(c->horizontal_fov_rad, -c->vertical_fov_rad / 2, c->vertical_fov_rad / 2, kSpacing_rad,
+             0.9 * c->max_range_m, c->T_body_camera, rays);
+  if (const auto& l = vehicle.lidar)
+    add_rays(2 * std::numbers::pi, l->elevation_rad.back(), l->elevation_rad.front(), kLidarSpacing_rad,
+             std::min<double>(kLidarRange_m, l->max_range_m), l->T_body_lidar, rays);
+  return rays;
+}
+
+ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m)
+    : resolution_m_(map.resolution_m()) {
+  const auto half = static_cast<std::int32_t>(std::ceil(half_edge_m / resolution_m_));
+  const CellKey middle = map.key_of(center);
+  low_ = {middle.x - half, middle.y - half, middle.z - half};
+  edge_ = 2 * half + 1;
+  cells_.assign(
+      static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_),
+      Cell::unknown);
+  seen_by_.assign(cells_.size(), 0);
+  map.for_each_in_box(low_, {middle.x + half, middle.y + half, middle.z + half},
+                      [this](const CellKey& k, Cell c) { cells_[index_of(k)] = c; });
+}
+
+std::size_t ViewMap::index_of(const CellKey& k) const {
+  const auto e = static_cast<std::size_t>(edge_);
+  return (static_cast<std::size_t>(k.z - low_.z) * e + static_cast<std::size_t>(k.y - low_.y)) * e +
+         static_cast<std::size_t>(k.x - low_.x);
+}
+
+double ViewMap::gain_m3(std::span<const ViewRay> rays, std::span<const ViewPose> poses) {
+  const double step_m = resolution_m_, per_cell = 1 / resolution_m_;
+  const double share_a_step = std::exp(-step_m / kExpected_m), half_a_step = std::sqrt(share_a_step);
+  const Vec3 low(low_.x, low_.y, low_.z);
+  const std::uint32_t before_first = last_pose_;
+  double gain = 0;
+  for (const ViewPose& pose : poses) {
+    ++last_pose_;
+    const double c = std::cos(pose.heading_rad), s = std::sin(pose.heading_rad);
+    const Vec3 from = pose.position * per_cell - low;
+    for (const ViewRay& ray : rays) {
+      const Vec3& d = ray.direction;
+      const Vec3 step(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());  // one cell's edge
+      const int steps = static_cast<int>(ray.range_m * per_cell);
+      double share = half_a_step;
+      Vec3 p = from - 0.5 * step;
+      for (int i = 1; i <= steps; ++i) {  // at the middle of each step
+        p += step;
+        const auto x = static_cast<std::int32_t>(std::floor(p.x())),
+                   y = static_cast<std::int32_t>(std::floor(p.y())),
+                   z = static_cast<std::int32_t>(std::floor(p.z()));
+        if (x < 0 || y < 0 || z < 0 || x >= edge_ || y >= edge_ || z >= edge_) break;
+        const auto e = static_cast<std::size_t>(edge_);
+        const std::size_t at =
+            (static_cast<std::size_t>(z) * e + static_cast<std::size_t>(y)) * e + static_cast<std::size_t>(x);
+        const Cell cell = cells_[at];
+        if (cell == Cell::occupied) break;
+        if (cell == Cell::free) continue;
+        std::uint32_t& seen_by = seen_by_[at];
+        if (seen_by <= before_first || seen_by == last_pose_) {
+          seen_by = last_pose_;
+          const double r = (i - 0.5) * step_m;
+          gain += share * r * r * ray.solid_angle_sr * step_m;
+        }
+        share *= share_a_step;
+      }
+    }
+  }
+  return gain;
+}
+
+}  // namespace karst::core

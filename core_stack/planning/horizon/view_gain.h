@@ -1,0 +1,52 @@
+// View gain: how much unknown space the sensors will see from poses along a motion.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/vehicle/vehicle.h"
+
+namespace karst::core {
+
+/// A sample of the sensors' view, in the frame of the level body.
+struct ViewRay {
+  Vec3 direction = Vec3::UnitX();  // unit vector
+  double range_m = 0;
+  double solid_angle_sr = 0;  // that it stands for
+};
+
+/// Rays about 6 degrees apart that fill the view of all cameras and of the LiDAR.
+std::vector<ViewRay> view_rays(const VehicleDescription& vehicle);
+
+/// A level pose.
+struct ViewPose {
+  Vec3 position = Vec3::Zero();
+  double heading_rad = 0;
+};
+
+/// A copy of the map around a place, for many thousand rays. Cells outside of it count as occupied.
+class ViewMap {
+ public:
+  ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m);
+
+  /// The volume in m^3 that is unknown and will be seen from `poses`, each cell once. A ray ends at rock. Of
+  /// what lies behind the first unknown cell the less is expected to be free the deeper it lies: rock is
+  /// near. The share falls by 1/e in kExpected_m.
+  double gain_m3(std::span<const ViewRay> rays, std::span<const ViewPose> poses);
+
+  static constexpr double kExpected_m = 1.5;
+
+ private:
+  std::size_t index_of(const CellKey& k) const;
+
+  double resolution_m_;
+  CellKey low_;
+  std::int32_t edge_;
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> seen_by_;  // number of the last pose that counted the cell
+  std::uint32_t last_pose_ = 0;
+};
+
+}  // namespace karst::core

@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core_stack/planning/horizon/horizon_planner.h"
+#include "core_stack/planning/search/grid_planner.h"
+#include "tests/unit/planning/test_maps.h"
+
+namespace karst::core {
+namespace {
+
+MotionLimits limits() {
+  MotionLimits out;
+  out.max_acceleration_mps2 = 1.5;
+  return out;
+}
+
+VehicleDescription camera_vehicle() {
+  auto camera = std::make_shared<CameraModel>();
+  camera->horizontal_fov_rad = 1.38;
+  camera->vertical_fov_rad = 1.1;
+  VehicleDescription v;
+  v.cameras.push_back(camera);
+  return v;
+}
+
+/// A hall of 8 x 4 m, known up to x = `known_m`, and from x = 2 to 12 m only up to y = `known_y_m`.
+VoxelMap hall(double known_m, std::vector<CellChange>& changes, double known_y_m = 8) {
+  VoxelMap map{MapOptions{}};
+  const int known = static_cast<int>(known_m / map.resolution_m());
+  const int known_y = static_cast<int>(known_y_m / map.resolution_m());
+  testing::draw(
+      map, {-1, -1, -1}, {known, 41, 21},
+      [&](const CellKey& k) {
+        if (k.x >= 10 && k.x < 60 && k.y >= known_y) return Cell::unknown;
+        const bool inside = k.x >= 0 && k.y >= 0 && k.y < 40 && k.z >= 0 && k.z < 20;
+        return inside ? Cell::free : Cell::occupied;
+      },
+      &changes);
+  return map;
+}
+
+TEST(ViewGain, OfNothingKnownIsTheIntegralOverTheView) {
+  const VoxelMap map{MapOptions{}};
+  const std::vector<ViewRay> rays = view_rays(camera_vehicle());
+  ViewMap view(map, Vec3::Zero(), 6);
+  const double range_m = 0.9 * 4.5, lambda = ViewMap::kExpected_m;
+  double solid_angle_sr = 0;
+  for (const ViewRay& r : rays) solid_angle_sr += r.solid_angle_sr;
+  EXPECT_NEAR(solid_angle_sr, 1.38 * 2 * std::sin(0.55), 0.01);
+  const double x = range_m / lambda;  // of r^2 e^(-r / lambda) dr
+  const double integral = lambda * lambda * lambda * (2 - std::exp(-x) * (x * x + 2 * x + 2));
+  EXPECT_NEAR(view.gain_m3(rays, std::array{ViewPose{}}), solid_angle_sr * integral,
+              0.12 * solid_angle_sr * integral);
+}
+
+TEST(ViewGain, CountsEachCellOnceAndNothingBehindRock) {
+  std::vector<CellChange> changes;
+  VoxelMap map = hall(6, changes);
+  const std::vector<ViewRay> rays = view_rays(camera_vehicle());
+  ViewMap view(map, Vec3(4, 4, 2), 8);
+  const ViewPose ahead{{4, 4, 2}, 0}, back{{4, 4, 2}, std::numbers::pi};
+  const double once = view.gain_m3(rays, std::array{ahead});
+  EXPECT_GT(once, 1);
+  EXPECT_DOUBLE_EQ(view.gain_m3(rays, std::array{ahead, ahead}), once);
+  EXPECT_DOUBLE_EQ(view.gain_m3(rays, std::array{back}), 0);
+  for (int y = 0; y < 40; ++y)
+    for (int z = 0; z < 20; ++z) map.assign({29, y, z}, 1, 2.0f);  // a wall before what is unknown
+  ViewMap walled(map, Vec3(4, 4, 2), 8);
+  EXPECT_DOUBLE_EQ(walled.gain_m3(rays, std::array{ahead}), 0);
+}
+
+TEST(Rollout, KeepsToTheLimitsAndEndsAtRest) {
+  rc::check([] {
+    const auto real = [](double low, double high) {
+      return low + (high - low) * *rc::gen::inRange(0, 1000001) / 1e6;
+    };
+    const MotionLimits l = limits();
+    const auto velocity = [&] {
+      Vec3 v;
+      for (int i = 0; i < 3; ++i) v[i] = real(-1, 1);
+      return Vec3(v * (l.max_speed_mps / std::max(1.0, v.norm())));
+    };
+    MotionState start;
+    start.velocity_mps = velocity();
+    start.heading_rate_radps = real(-1, 1);
+    Legs legs;
+    for (Leg& leg : legs) {
+      leg.velocity_mps = velocity();
+      leg.heading_rad = real(-3, 3);
+    }
+    const Rollout r = roll_out(start, legs, l, 1.2);
+    const auto& s = r.samples;
+    const double dt = 0.1;
+    Vec3 before = start.velocity_mps;
+    for (std::size_t i = 1; i < s.size(); ++i) {
+      const Vec3 v = (s[i].position - s[i - 1].position) / dt;
+      RC_ASSERT(v.norm() < l.max_speed_mps + 1e-6);
+      RC_ASSERT((v - before).norm() < dt * l.max_acceleration_mps2 + 1e-6);
+      RC_ASSERT(std::abs(wrap_angle(s[i].heading_rad - s[i - 1].heading_rad)) <
+                dt * l.max_heading_rate_radps + 1e-9);
+      before = v;
+    }
+    RC_ASSERT(before.norm() <= 0.5 * dt * 1.2 + 1e-6);  // the mean of the last step
+  });
+}
+
+class HorizonTest : public ::testing::Test {
+ protected:
+  HorizonTest() : map(hall(16, changes)) {
+    roadmap.update(map, changes);
+    query.limits = limits();
+    query.braking_mps2 = 1.2;
+    query.start.position = {3, 4, 2};
+    query.goal.position = {14, 4, 2};
+  }
+  std::optional<HorizonPlan> plan() {
+    to_goal.update(roadmap, query.goal.position);
+    return plan_horizon(map, roadmap, to_goal, rays, query);
+  }
+
+  std::vector<CellChange> changes;
+  VoxelMap map;
+  PlanningOptions options;
+  Roadmap roadmap{options};
+  DistanceTree to_goal;
+  std::vector<ViewRay> rays = view_rays(camera_vehicle());
+  HorizonQuery query;
+};
+
+TEST_F(HorizonTest, FliesToTheGoalAsFastAsItCanWhereNothingIsToBeSeen) {
+  query.worth_s_per_m3 = 0;
+  const auto p = plan();
+  ASSERT_TRUE(p);
+  const double direct_s = 11 / 2.0 + 2 / 1.5;
+  EXPECT_LT(p->time_left_s, 1.15 * direct_s);
+  EXPECT_GT(p->samples[30].position.x(), 7);
+}
+
+TEST_F(HorizonTest, EveryPlanIsClearToItsStopAndTheSameEachTime) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    query.seed = seed;
+    query.start.position.y() = 1 + 0.3 * static_cast<double>(seed);
+    query.start.velocity_mps = {1.5, seed % 2 ? 0.5 : -0.5, 0};
+    const auto p = plan();
+    if (!p) continue;
+    std::vector<Vec3> points;
+    for (const TrajectorySample& s : p->samples) points.push_back(s.position);
+    EXPECT_EQ(first_blocked_segment(map, points, query.clearance_m - 0.02), -1) << seed;
+    const auto again = plan();
+    ASSERT_TRUE(again);
+    ASSERT_EQ(again->samples.size(), p->samples.size());
+    for (std::size_t i = 0; i < p->samples.size(); ++i)
+      ASSERT_EQ(again->samples[i].position, p->samples[i].position);
+  }
+}
+
+TEST_F(HorizonTest, TurnsToWhatItHasNotSeenWhereThatIsWorthIt) {
+  changes.clear();
+  map = hall(16, changes, 6.4);
+  roadmap = Roadmap{options};
+  roadmap.update(map, changes);
+  query.worth_s_per_m3 = 0;
+  const auto fast = plan();
+  query.worth_s_per_m3 = 0.5;
+  const auto sees = plan();
+  ASSERT_TRUE(fast && sees);
+  ViewMap view(map, query.start.position, 12);
+  const auto gain_m3 = [&](const HorizonPlan& p) {
+    const auto pose = [&](std::size_t i) {
+      return ViewPose{p.samples[i].position, p.samples[i].heading_rad};
+    };
+    return view.gain_m3(rays, std::array{pose(10), pose(20), pose(30)});
+  };
+  EXPECT_GT(gain_m3(*sees), 3 * gain_m3(*fast) + 2);
+  EXPECT_GT(sees->time_left_s, fast->time_left_s - 0.3) << "it costs time";
+}
+
+TEST_F(HorizonTest, WithoutAWayToTheGoalThereIsNoPlan) {
+  query.goal.position = {30, 4, 2};
+  EXPECT_FALSE(plan());
+}
+
+TEST_F(HorizonTest, WhatIsUnderWayIsKeptUnlessAPlanIsBetter) {
+  query.worth_s_per_m3 = 0;
+  const auto first = plan();
+  ASSERT_TRUE(first);
+  query.under_way = first->samples;
+  const auto second = plan();
+  if (second) {
+    EXPECT_LT(second->time_left_s, first->time_left_s);
+  }
+}
+
+}  // namespace
+}  // namespace karst::core
