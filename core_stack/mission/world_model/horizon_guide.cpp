@@ -10,6 +10,9 @@ namespace {
 /// In the first seconds what is seen from the start says little of the cave.
 constexpr double kShortest_s = 10;
 constexpr double kLeast_m3 = 1;
+/// Paths are refined to more than the clearance where there is room; plans keep this much more everywhere. In
+/// a tighter place there is no plan, and the path is flown.
+constexpr double kMargin_m = 0.1;
 
 }  // namespace
 
@@ -26,7 +29,7 @@ std::optional<HorizonPlan> HorizonGuide::plan(WorldModel& world, HorizonQuery qu
       usual.roadmap().approach(map, query.goal.position, usual.planning().preferred_clearance_m);
   if (!root) return std::nullopt;
   to_goal_.update(usual.roadmap(), *root);
-  query.clearance_m = usual.clearance_m();
+  query.clearance_m = usual.clearance_m() + kMargin_m;
   query.steepest_rad = steepest_rad_;
   query.worth_s_per_m3 =
       exploring_s ? std::max(kShortest_s, *exploring_s) / std::max(kLeast_m3, map.free_volume_m3()) : 0;
