@@ -26,7 +26,7 @@ void Explorer::note_picture(const Pose& T_world_camera) { world_.note_picture(T_
 CycleResult Explorer::decide(const CycleInput& input) { return cycle_.decide(input, team_.claims()); }
 
 std::optional<HorizonPlan> Explorer::plan_horizon(const HorizonQuery& query,
-                                                 std::optional<double> exploring_s) {
+                                                  std::optional<double> exploring_s) {
   return horizon_.plan(world_, query, exploring_s);
 }
 

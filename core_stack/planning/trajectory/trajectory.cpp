@@ -121,7 +121,8 @@ void describe(OptionTable& t, MotionLimits& o) {
   t.add("max_heading_acceleration", o.max_heading_acceleration_radps2, "rad/s^2", 0.05, 50,
         "greatest change of the rate of turning");
   t.add("trajectory", o.trajectory,
-        "how paths become motion: the paper's sampling, minimum-snap polynomials, or replanned with a receding horizon");
+        "how paths become motion: the paper's sampling, minimum-snap polynomials, or replanned with a "
+        "receding horizon");
 }
 
 TrajectorySample Trajectory::at(TimeNs t) const {

@@ -9,7 +9,8 @@ namespace karst::core {
 enum class TrajectoryKind { sampled, polynomial, horizon };
 constexpr auto names_of(TrajectoryKind) {
   using enum TrajectoryKind;
-  return std::to_array<Named<TrajectoryKind>>({{sampled, "sampled"}, {polynomial, "polynomial"}, {horizon, "horizon"}});
+  return std::to_array<Named<TrajectoryKind>>(
+      {{sampled, "sampled"}, {polynomial, "polynomial"}, {horizon, "horizon"}});
 }
 
 }  // namespace karst::core
