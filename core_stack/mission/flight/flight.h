@@ -94,7 +94,7 @@ class Flight {
   MotionState motion_at(TimeNs t) const;
   /// The trajectory from `t` to its end, every 100 ms.
   std::vector<TrajectorySample> samples_from(TimeNs t) const;
-  /// Planned stops brake so hard.
+  /// The deceleration of planned stops.
   double braking_mps2() const;
   /// Time at which the trajectory is nearest to `p`.
   TimeNs time_nearest(const Vec3& p) const;

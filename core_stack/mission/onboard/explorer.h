@@ -9,11 +9,11 @@
 
 #include "core_stack/mission/decision/cycle.h"
 #include "core_stack/mission/decision/decision_cycle.h"
+#include "core_stack/mission/decision/horizon_guide.h"
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/mission/policy/policy_port.h"
 #include "core_stack/mission/world_model/clearance_checks.h"
 #include "core_stack/mission/world_model/home_estimator.h"
-#include "core_stack/mission/world_model/horizon_guide.h"
 #include "core_stack/mission/world_model/team_membership.h"
 #include "core_stack/mission/world_model/world_model.h"
 #include "core_stack/team/relay_homing.h"

@@ -10,7 +10,8 @@ namespace {
 /// Between two decision cycles: time for a scan or two at a place just reached.
 constexpr TimeNs kPause = 400 * kMillisecond;
 constexpr TimeNs kSteeredPeriod = 1500 * kMillisecond;  // while the horizon is replanned
-constexpr double kFacing_rad = 0.2;                     // a goal's heading is reached when nearer than this
+constexpr double kOff_m = 0.05;
+constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
 
 /// A drawing's fields in the event. Serialized on the map lane: 100 000 points take 0.2 s.
 std::string text_of(const Drawing& d) {
@@ -78,7 +79,8 @@ void Exploration::choose() {
   if (flight.at_rest(now)) {
     path.take_no_detour();
     // The sensors observe this place before the next goal is chosen.
-    const bool there = goals.goal() && !path.blocked() && !path.steered();
+    const bool there =
+        goals.goal() && !path.blocked() && (!path.steered() || reached(flight.reference(), *goals.goal()));
     return there ? reach_goal(now) : begin_cycle(Joins::at_stop);
   }
   if (path.blocked() || goals.next()) return;  // wait for the brake, or until the goal is passed
@@ -177,7 +179,10 @@ void Exploration::fly_to(const CycleInput& input, const CycleResult& result, con
     append_tried_ = false;
   }
   wiring_.claim(*result.goal);
-  path.follow(route, now);
+  // The horizon may have moved on from where the route begins: then it goes on to the new goal.
+  const bool off = path.steered() && !onboard_.flight.at_rest(now) &&
+                   (onboard_.flight.expected(now).position - route.points.front()).norm() > kOff_m;
+  if (!off) path.follow(route, now);
 }
 
 void Exploration::watch_progress() {

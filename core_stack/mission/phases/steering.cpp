@@ -23,6 +23,16 @@ Legs moved_on(const Legs& legs, TimeNs since) {
   return out;
 }
 
+/// Runs on the map lane. Whatever fails there, the path under way goes on.
+std::optional<HorizonPlan> plan(Explorer& explorer, const HorizonQuery& query,
+                                std::optional<double> exploring_s) {
+  try {
+    return explorer.plan_horizon(query, exploring_s);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 bool Steering::applies() const {
@@ -40,11 +50,12 @@ void Steering::step() {
   last_ = now;
   const std::optional<double> exploring_s =
       goal_waits() ? std::nullopt : std::optional(seconds(now - parts_.phases.since()));
+  const HorizonQuery asked = query(now + kBudget);
+  asked_goal_ = asked.goal.position;
+  asked_limits_ = asked.limits;
   onboard_.map.job(
       "horizon", kBudget,
-      [query = query(now + kBudget), exploring_s](Explorer& explorer) {
-        return explorer.plan_horizon(query, exploring_s);
-      },
+      [asked, exploring_s](Explorer& explorer) { return plan(explorer, asked, exploring_s); },
       [this, now](const std::optional<HorizonPlan>& plan) { on_plan(plan, now); });
 }
 
@@ -60,6 +71,10 @@ bool Steering::goal_waits() const {
   return direct_s_ && seconds(onboard_.now() - goal_since_) > kLater * *direct_s_ + kLater_s;
 }
 
+MotionLimits Steering::limits(const Goal& goal) const {
+  return onboard_.flight.limits(goal.max_speed_mps > 0 ? std::optional(goal.max_speed_mps) : std::nullopt);
+}
+
 HorizonQuery Steering::query(TimeNs at) const {
   const Flight& flight = onboard_.flight;
   const Goal& goal = *parts_.goals.goal();
@@ -69,7 +84,7 @@ HorizonQuery Steering::query(TimeNs at) const {
   if (legs_ && at - legs_begin_ < kLegs * kLeg) q.last = moved_on(*legs_, at - legs_begin_);
   q.goal = {goal.position, goal.heading_rad};
   q.turns = turns();
-  q.limits = flight.limits(goal.max_speed_mps > 0 ? std::optional(goal.max_speed_mps) : std::nullopt);
+  q.limits = limits(goal);
   q.braking_mps2 = flight.braking_mps2();
   q.seed = static_cast<std::uint64_t>(at);
   return q;
@@ -79,7 +94,9 @@ void Steering::on_plan(const std::optional<HorizonPlan>& plan, TimeNs begun) {
   planning_ = false;
   const TimeNs now = onboard_.now();
   if (!plan || !applies() || parts_.path.outdated(begun)) return;
-  if (!goal_ || (*goal_ - parts_.goals.goal()->position).norm() >= kSame_m) return;
+  // The goal, or the speed that is allowed, may have changed since.
+  const Goal& goal = *parts_.goals.goal();
+  if ((asked_goal_ - goal.position).norm() >= kSame_m || asked_limits_ != limits(goal)) return;
   const Reference& reference = onboard_.flight.reference();
   if ((reference.position - plan->start.position).norm() > kOff_m ||
       (reference.velocity_mps - plan->start.velocity_mps).norm() > kOff_mps)
@@ -88,12 +105,8 @@ void Steering::on_plan(const std::optional<HorizonPlan>& plan, TimeNs begun) {
   legs_ = plan->legs;
   legs_begin_ = now;
   Course course;
-  for (const TrajectorySample& sample : plan->samples) course.points.push_back(sample.position);
-  course.start_speed_mps = plan->start.velocity_mps.norm();
-  course.start = now;
   course.heading.along_path = turns();
-  course.heading.start_heading_rad = plan->start.heading_rad;
-  if (const double own_mps = parts_.goals.goal()->max_speed_mps; own_mps > 0) course.max_speed_mps = own_mps;
+  if (goal.max_speed_mps > 0) course.max_speed_mps = goal.max_speed_mps;
   Trajectory trajectory;
   trajectory.start = now;
   trajectory.samples = plan->samples;

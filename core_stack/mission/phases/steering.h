@@ -26,6 +26,7 @@ class Steering {
   /// A LiDAR sees all around: there is nothing to turn for.
   bool turns() const { return !onboard_.vehicle.lidar; }
   void note_goal();
+  MotionLimits limits(const Goal& goal) const;
   HorizonQuery query(TimeNs at) const;
   void on_plan(const std::optional<HorizonPlan>& plan, TimeNs begun);
 
@@ -33,7 +34,9 @@ class Steering {
   Parts parts_;
   std::optional<Vec3> goal_;  // under way
   TimeNs goal_since_ = 0;
-  std::optional<double> direct_s_;  // that it was away when first planned for
+  Vec3 asked_goal_ = Vec3::Zero();  // of the plan that is being made
+  MotionLimits asked_limits_;       // the same
+  std::optional<double> direct_s_;  // the time to the goal when it was first planned for
   std::optional<Legs> legs_;        // of the last plan
   TimeNs legs_begin_ = 0;
   TimeNs last_ = 0;

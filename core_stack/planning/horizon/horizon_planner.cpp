@@ -16,12 +16,13 @@ constexpr double kSpread = 0.6, kHeadingSpread_rad = 0.8;  // of the first round
 constexpr double kNarrower = 0.5;                          // a round
 constexpr double kBetter_s = 0.1;                          // than what is under way, to be worth a change
 constexpr double kFlies_mps = 0.2;                         // or else it has no direction
+constexpr double kNear_m = 1.0;                            // of the goal it turns to its heading at last
 constexpr double kLevel_m = 1.0;                           // may be climbed whatever the sensors see
 
 struct Candidate {
   Legs legs;
   Rollout motion;
-  double value_s = 0, time_left_s = 0, gain_m3 = 0;
+  double value_s = 0, time_left_s = 0;
 };
 
 double longest_m(const std::vector<ViewRay>& rays) {
@@ -34,13 +35,10 @@ class Search {
  public:
   Search(const VoxelMap& map, const Roadmap& roadmap, const DistanceTree& to_goal,
          const std::vector<ViewRay>& rays, const HorizonQuery& q)
-      : map_(map),
-        roadmap_(roadmap),
-        to_goal_(to_goal),
-        rays_(rays),
-        q_(q),
-        local_(map, q.start.position, kHorizon_s * q.limits.max_speed_mps + longest_m(rays)),
-        random_(q.seed) {}
+      : map_(map), roadmap_(roadmap), to_goal_(to_goal), rays_(rays), q_(q), random_(q.seed) {
+    if (q.worth_s_per_m3 > 0)
+      local_.emplace(map, q.start.position, kHorizon_s * q.limits.max_speed_mps + longest_m(rays));
+  }
 
   std::optional<HorizonPlan> run() {
     std::vector<Candidate> best;
@@ -60,8 +58,7 @@ class Search {
     keep_best(best);
     if (best.empty() || !(best.front().value_s > value_under_way() + kBetter_s)) return std::nullopt;
     Candidate& c = best.front();
-    return HorizonPlan{
-        q_.start, std::move(c.motion.samples), c.legs, kHorizon_s + c.time_left_s, c.gain_m3, tried_, clear_};
+    return HorizonPlan{q_.start, std::move(c.motion.samples), c.legs, kHorizon_s + c.time_left_s};
   }
 
  private:
@@ -117,15 +114,12 @@ class Search {
   }
 
   void consider(const Legs& legs, std::vector<Candidate>& out) {
-    ++tried_;
     Candidate c{legs, roll_out(q_.start, legs, q_.limits, q_.braking_mps2)};
     if (!level(c.motion.samples) || !clear(c.motion.samples)) return;
-    ++clear_;
     const std::optional<double> left_s = time_left_s(c.motion.end);
     if (!left_s) return;
     c.time_left_s = *left_s;
-    c.gain_m3 = gain_m3(c.motion.samples);
-    c.value_s = q_.worth_s_per_m3 * c.gain_m3 - c.time_left_s;
+    c.value_s = q_.worth_s_per_m3 * gain_m3(c.motion.samples) - c.time_left_s;
     out.push_back(std::move(c));
   }
 
@@ -137,8 +131,10 @@ class Search {
 
   /// Whether it climbs and sinks no steeper than the sensors see.
   bool level(const std::vector<TrajectorySample>& samples) const {
-    const Vec3 d = samples.back().position - samples.front().position;
-    return std::abs(d.z()) <= kLevel_m + std::tan(q_.steepest_rad) * d.head<2>().norm();
+    return std::all_of(samples.begin(), samples.end(), [&](const TrajectorySample& s) {
+      const Vec3 d = s.position - q_.start.position;
+      return std::abs(d.z()) <= kLevel_m + std::tan(q_.steepest_rad) * d.head<2>().norm();
+    });
   }
 
   bool clear(const std::vector<TrajectorySample>& samples) const {
@@ -160,22 +156,23 @@ class Search {
       if (const auto from_stop = to_goal_.length_m(map_, roadmap_, stop)) left_m = *from_stop + stop_m;
     }
     if (!left_m) return std::nullopt;
-    double left_s = *left_m / v_max + std::max(0.0, v_max - v) / a;
-    if (std::isfinite(q_.goal.heading_rad))
-      left_s = std::max(left_s, std::abs(wrap_angle(q_.goal.heading_rad - s.heading_rad)) /
-                                    q_.limits.max_heading_rate_radps);
-    return left_s;
+    // It never reaches v_max on a short way; at the goal nothing is left.
+    double left_s = *left_m / v_max + std::min(std::max(0.0, v_max - v) / a, std::sqrt(*left_m / a));
+    if (!q_.turns || !std::isfinite(q_.goal.heading_rad)) return left_s;
+    const double turn_s =
+        std::abs(wrap_angle(q_.goal.heading_rad - s.heading_rad)) / q_.limits.max_heading_rate_radps;
+    return *left_m < kNear_m ? left_s + turn_s : std::max(left_s, turn_s);
   }
 
   double gain_m3(const std::vector<TrajectorySample>& samples) {
-    if (q_.worth_s_per_m3 <= 0) return 0;
+    if (!local_) return 0;
     std::array<ViewPose, kViews> poses;
     for (int i = 0; i < kViews; ++i) {
       const auto at = std::min<std::size_t>(static_cast<std::size_t>((i + 1) * kHorizonSamples / kViews),
                                             samples.size() - 1);
       poses[static_cast<std::size_t>(i)] = {samples[at].position, samples[at].heading_rad};
     }
-    return local_.gain_m3(rays_, poses);
+    return local_->gain_m3(rays_, poses);
   }
 
   double value_under_way() {
@@ -197,9 +194,8 @@ class Search {
   const DistanceTree& to_goal_;
   const std::vector<ViewRay>& rays_;
   const HorizonQuery& q_;
-  ViewMap local_;
+  std::optional<ViewMap> local_;  // if what is seen is worth anything
   Random random_;
-  int tried_ = 0, clear_ = 0;
 };
 
 }  // namespace

@@ -44,8 +44,6 @@ struct HorizonPlan {
   std::vector<TrajectorySample> samples;  // from the start to rest, every 100 ms
   Legs legs;
   double time_left_s = 0;  // to the goal, from the start, by way of this plan
-  double gain_m3 = 0;
-  int candidates = 0, clear = 0;
 };
 
 /// `to_goal`: rooted at the goal and up to date. Nothing if no candidate is better than what is under way.

@@ -8,6 +8,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kSpacing_rad = 0.105;
+constexpr double kMostCells = 64;      // from the middle to a side
 constexpr double kLidarRange_m = 8.0;  // farther away a scan is too sparse to close a frontier
 constexpr double kLidarSpacing_rad = 0.26;
 
@@ -42,7 +43,7 @@ std::vector<ViewRay> view_rays(const VehicleDescription& vehicle) {
 
 ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m)
     : resolution_m_(map.resolution_m()) {
-  const auto half = static_cast<std::int32_t>(std::ceil(half_edge_m / resolution_m_));
+  const auto half = static_cast<std::int32_t>(std::min(kMostCells, std::ceil(half_edge_m / resolution_m_)));
   const CellKey middle = map.key_of(center);
   low_ = {middle.x - half, middle.y - half, middle.z - half};
   edge_ = 2 * half + 1;

@@ -26,14 +26,15 @@ struct ViewPose {
   double heading_rad = 0;
 };
 
-/// A copy of the map around a place, for many thousand rays. Cells outside of it count as occupied.
+/// A copy of the map around a place, for many thousand rays. It holds at most 129 cells a side; rays end at
+/// its boundary.
 class ViewMap {
  public:
   ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m);
 
-  /// The volume in m^3 that is unknown and will be seen from `poses`, each cell once. A ray ends at rock. Of
-  /// what lies behind the first unknown cell the less is expected to be free the deeper it lies: rock is
-  /// near. The share falls by 1/e in kExpected_m.
+  /// The unknown volume in m^3 that will be seen from `poses`. Each cell counts once. A ray ends at rock.
+  /// Volume behind the first unknown cell of a ray counts less with depth, by a factor of e every
+  /// kExpected_m: rock is near.
   double gain_m3(std::span<const ViewRay> rays, std::span<const ViewPose> poses);
 
   static constexpr double kExpected_m = 1.5;

@@ -13,14 +13,6 @@ constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
 constexpr CellKey kNothing{std::numeric_limits<std::int32_t>::max(), 0, 0};
 constexpr CellKey kRoot{std::numeric_limits<std::int32_t>::min(), 0, 0};
 
-/// A tile of the roadmap as last seen by the tree. A node is identified by its cell: no two share one.
-struct TreeTile {
-  std::uint64_t seen = 0;
-  std::vector<RoadmapNode> nodes;
-  std::vector<double> length_m;  // to the root
-  std::vector<CellKey> next;     // the cell of the next node on the path
-};
-
 struct PastNode {
   std::uint32_t tile;
   RoadmapNode node;
@@ -38,6 +30,14 @@ struct Entry {
 }  // namespace
 
 struct DistanceTree::Tree {
+  /// A tile of the roadmap as last seen by the tree. A node is identified by its cell: no two share one.
+  struct TreeTile {
+    std::uint64_t seen = 0;
+    std::vector<RoadmapNode> nodes;
+    std::vector<double> length_m;  // to the root
+    std::vector<CellKey> next;     // the cell of the next node on the path
+  };
+
   std::optional<Vec3> root;
   std::vector<Join> joins;      // of the root
   std::vector<CellKey> joined;  // cells of their nodes

@@ -140,12 +140,14 @@ TEST_F(HorizonTest, FliesToTheGoalAsFastAsItCanWhereNothingIsToBeSeen) {
 }
 
 TEST_F(HorizonTest, EveryPlanIsClearToItsStopAndTheSameEachTime) {
+  int plans = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     query.seed = seed;
     query.start.position.y() = 1 + 0.3 * static_cast<double>(seed);
     query.start.velocity_mps = {1.5, seed % 2 ? 0.5 : -0.5, 0};
     const auto p = plan();
     if (!p) continue;
+    ++plans;
     std::vector<Vec3> points;
     for (const TrajectorySample& s : p->samples) points.push_back(s.position);
     EXPECT_EQ(first_blocked_segment(map, points, query.clearance_m - 0.02), -1) << seed;
@@ -155,6 +157,27 @@ TEST_F(HorizonTest, EveryPlanIsClearToItsStopAndTheSameEachTime) {
     for (std::size_t i = 0; i < p->samples.size(); ++i)
       ASSERT_EQ(again->samples[i].position, p->samples[i].position);
   }
+  EXPECT_GE(plans, 15);
+}
+
+// As it was: to be still on the way in three seconds was worth more than to be there.
+TEST_F(HorizonTest, ArrivesAtTheGoalAndFacesAsAsked) {
+  query.worth_s_per_m3 = 0;
+  query.goal = {{6, 4, 2}, 1.0};
+  for (int i = 0; i < 40; ++i) {
+    query.seed = static_cast<std::uint64_t>(i);
+    const auto p = plan();
+    const std::vector<TrajectorySample> s = p ? p->samples : query.under_way;
+    ASSERT_FALSE(s.empty());
+    const auto at = [&](std::size_t k) { return s[std::min(k, s.size() - 1)]; };
+    query.start = {at(3).position, (at(4).position - at(2).position) / 0.2, at(3).heading_rad,
+                   wrap_angle(at(4).heading_rad - at(2).heading_rad) / 0.2};
+    query.under_way.assign(s.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(3, s.size() - 1)),
+                           s.end());
+    if (p) query.last = p->legs;
+  }
+  EXPECT_LT((query.start.position - query.goal.position).norm(), 0.5);
+  EXPECT_LT(std::abs(wrap_angle(query.start.heading_rad - 1.0)), 0.3);
 }
 
 TEST_F(HorizonTest, TurnsToWhatItHasNotSeenWhereThatIsWorthIt) {

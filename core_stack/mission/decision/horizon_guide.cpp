@@ -1,4 +1,4 @@
-#include "core_stack/mission/world_model/horizon_guide.h"
+#include "core_stack/mission/decision/horizon_guide.h"
 
 #include <algorithm>
 
