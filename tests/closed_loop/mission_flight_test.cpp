@@ -57,28 +57,25 @@ INSTANTIATE_TEST_SUITE_P(Policies, EveryPolicy,
                                            "unknown_ratio", "information_gain", "viewpoint_tour",
                                            "deep_cave"));
 
-/// Three seeds, 60 s each: the sum of what is explored is greater, and nothing is touched.
-TEST(RecedingHorizon, ExploresMoreByCameraThanSampledTrajectories) {
+// As it was: decisions turned the vehicle in flight faster than the tracker could follow, and it touched
+// rock.
+TEST(RecedingHorizon, ExploresByCameraAndKeepsItsClearance) {
   const auto folder = fresh_folder("flight_horizon");
-  const auto explored_m3 = [&](const std::string& trajectory, int seed) {
-    const auto run = folder / (trajectory + std::to_string(seed));
+  for (int seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto run = folder / std::to_string(seed);
     const Output out =
         run_karst("fly --cave " + generated_cave("small", 7) +
                   " --policy information_gain --set simulator.vehicle=camera_uav --seed " +
                   std::to_string(seed) + " --set mission.max_flight_time=100s" +
-                  " --set motion.trajectory=" + trajectory + " --quiet --no-report --out " + run.string());
+                  " --set motion.trajectory=horizon --quiet --no-report --out " + run.string());
     EXPECT_EQ(out.code, 0) << out.text;
     const nlohmann::json m = metrics_of(run);
     EXPECT_EQ(m["outcome"], "landed");
-    EXPECT_GT(m["min_clearance_m"].get<double>(), 0.15) << trajectory << seed;
-    return m["explored_volume_m3"].get<double>();
-  };
-  double sampled_m3 = 0, horizon_m3 = 0;
-  for (int seed = 1; seed <= 3; ++seed) {
-    sampled_m3 += explored_m3("sampled", seed);
-    horizon_m3 += explored_m3("horizon", seed);
+    EXPECT_EQ(m["contacts"], 0);
+    EXPECT_GT(m["min_clearance_m"].get<double>(), 0.2);
+    EXPECT_GT(m["explored_volume_m3"].get<double>(), 200);
   }
-  EXPECT_GT(horizon_m3, sampled_m3);
 }
 
 /// What is there to compare with flies as safely, if not as well.

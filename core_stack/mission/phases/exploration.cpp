@@ -10,8 +10,7 @@ namespace {
 /// Between two decision cycles: time for a scan or two at a place just reached.
 constexpr TimeNs kPause = 400 * kMillisecond;
 constexpr TimeNs kSteeredPeriod = 1500 * kMillisecond;  // while the horizon is replanned
-constexpr double kOff_m = 0.05;
-constexpr double kFacing_rad = 0.2;  // a goal's heading is reached when nearer than this
+constexpr double kFacing_rad = 0.2;                     // a goal's heading is reached when nearer than this
 
 /// A drawing's fields in the event. Serialized on the map lane: 100 000 points take 0.2 s.
 std::string text_of(const Drawing& d) {
@@ -80,13 +79,13 @@ void Exploration::choose() {
     path.take_no_detour();
     // The sensors observe this place before the next goal is chosen.
     const bool there =
-        goals.goal() && !path.blocked() && (!path.steered() || reached(flight.reference(), *goals.goal()));
+        goals.goal() && !path.blocked() && (!steers() || reached(flight.reference(), *goals.goal()));
     return there ? reach_goal(now) : begin_cycle(Joins::at_stop);
   }
   if (path.blocked() || goals.next()) return;  // wait for the brake, or until the goal is passed
   if (goals.goal() && reached(flight.reference(), *goals.goal())) return reach_goal(now);
   if (goals.goal() && !goals.frontier_open()) return begin_cycle(Joins::at_stop);
-  if (onboard_.options.motion.trajectory == TrajectoryKind::horizon) {
+  if (steers()) {
     // Plans end short of the goal: nothing can be appended, and the next goal is wanted in flight.
     if (!goals.goal() || now - last_cycle_ > kSteeredPeriod) begin_cycle(Joins::at_stop);
   } else if (flight.remaining_s(now) < o.append_before_s) {
@@ -170,8 +169,8 @@ void Exploration::fly_to(const CycleInput& input, const CycleResult& result, con
   GoalTracker& goals = parts_.goals;
   PathExecution& path = parts_.path;
   const bool keeps_to_it = goals.is_under_way(*result.goal) && !input.appending;
-  const bool stands_before_it = path.steered() && onboard_.flight.at_rest(now);
-  if (keeps_to_it && !path.blocked() && !path.detour_due() && !stands_before_it) return;
+  const bool at_rest = onboard_.flight.at_rest(now);
+  if (keeps_to_it && !path.blocked() && !path.detour_due() && !(steers() && at_rest)) return;
   if (input.appending && goals.goal()) {
     goals.append(*result.goal, now);
   } else {
@@ -179,10 +178,10 @@ void Exploration::fly_to(const CycleInput& input, const CycleResult& result, con
     append_tried_ = false;
   }
   wiring_.claim(*result.goal);
-  // The horizon may have moved on from where the route begins: then it goes on to the new goal.
-  const bool off = path.steered() && !onboard_.flight.at_rest(now) &&
-                   (onboard_.flight.expected(now).position - route.points.front()).norm() > kOff_m;
-  if (!off) path.follow(route, now);
+  // In flight the horizon turns to the new goal by itself: from where the reference is, no faster than it
+  // can.
+  if (steers() && !at_rest && !path.detour_due()) return;
+  path.follow(route, now);
 }
 
 void Exploration::watch_progress() {

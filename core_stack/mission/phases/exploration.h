@@ -35,6 +35,8 @@ class Exploration {
 
  private:
   enum class Joins { at_stop, at_end };  // where the vehicle can stop, or at the end of the current path
+  /// Whether motion is replanned with a receding horizon (Steering).
+  bool steers() const { return onboard_.options.motion.trajectory == TrajectoryKind::horizon; }
   void pass_goal();
   void choose();
   void begin_cycle(Joins joins);

@@ -64,7 +64,7 @@ void PathExecution::follow(const Route& route, TimeNs now) {
     flight_.follow(course);
   }
   narrow_places_ = route.slow.places;
-  as_come_ = steered_ = false;
+  as_come_ = false;
   speed_limited_ = route.max_speed_mps < options_.motion.max_speed_mps;
   const Path& path = route.path;
   tight_until_ =
@@ -79,7 +79,6 @@ void PathExecution::steer(const Course& course, const Trajectory& plan) {
   flight_.follow(course, plan);
   narrow_places_.clear();
   as_come_ = speed_limited_ = false;
-  steered_ = true;
   tight_until_ = 0;
 }
 

@@ -27,8 +27,6 @@ class PathExecution {
   void follow(const Route& route, TimeNs now);
   /// Follows a plan of the receding horizon, which ends in a stop before the goal.
   void steer(const Course& course, const Trajectory& plan);
-  /// It does so now.
-  bool steered() const { return steered_; }
   /// The path just begun leads back along the poses flown: only what the vehicle would touch stops it.
   void fly_as_come() { as_come_ = true; }
   void brake(TimeNs now);
@@ -80,7 +78,7 @@ class PathExecution {
   Flight& flight_;
   Recorder& recorder_;
   std::vector<Vec3> narrow_places_;  // of the path under way, and of what it was joined to
-  bool speed_limited_ = false, as_come_ = false, steered_ = false;
+  bool speed_limited_ = false, as_come_ = false;
   TimeNs tight_until_ = 0;  // until then the path leads out of a place tighter than it should be
   bool blocked_ = false, detour_due_ = false, yields_ = false;
   std::optional<TimeNs> braked_at_;
