@@ -10,9 +10,9 @@ namespace {
 /// In the first seconds what is seen from the start says little of the cave.
 constexpr double kShortest_s = 10;
 constexpr double kLeast_m3 = 1;
-/// Paths are refined to more than the clearance where there is room; plans keep this much more everywhere. In
-/// a tighter place there is no plan, and the path is flown.
-constexpr double kMargin_m = 0.1;
+/// What is passed unseen costs the way back to it as well, and not only the time that a volume takes on
+/// average.
+constexpr double kWorth = 2;
 
 }  // namespace
 
@@ -29,10 +29,11 @@ std::optional<HorizonPlan> HorizonGuide::plan(WorldModel& world, HorizonQuery qu
       usual.roadmap().approach(map, query.goal.position, usual.planning().preferred_clearance_m);
   if (!root) return std::nullopt;
   to_goal_.update(usual.roadmap(), *root);
-  query.clearance_m = usual.clearance_m() + kMargin_m;
+  query.clearance_m = usual.clearance_m();
   query.steepest_rad = steepest_rad_;
   query.worth_s_per_m3 =
-      exploring_s ? std::max(kShortest_s, *exploring_s) / std::max(kLeast_m3, map.free_volume_m3()) : 0;
+      exploring_s ? kWorth * std::max(kShortest_s, *exploring_s) / std::max(kLeast_m3, map.free_volume_m3())
+                  : 0;
   return plan_horizon(map, usual.roadmap(), to_goal_, rays_, query);
 }
 

@@ -15,9 +15,9 @@ namespace karst::core {
 class HorizonGuide {
  public:
   explicit HorizonGuide(const VehicleDescription& vehicle);
-  /// The next seconds of motion (plan_horizon). A cubic metre is worth the time that one has taken so far:
-  /// `exploring_s` by the known free volume. Without `exploring_s` nothing is worth a detour. Returns nothing
-  /// if no clear way leads to the goal, or if what is under way is as good.
+  /// The next seconds of motion (plan_horizon). A cubic metre is worth twice the time that one has taken so
+  /// far, `exploring_s` by the known free volume. Without `exploring_s` nothing is worth a detour. Returns
+  /// nothing if no clear way leads to the goal, or if what is under way is as good.
   std::optional<HorizonPlan> plan(WorldModel& world, HorizonQuery query, std::optional<double> exploring_s);
 
  private:

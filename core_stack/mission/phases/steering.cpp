@@ -23,16 +23,6 @@ Legs moved_on(const Legs& legs, TimeNs since) {
   return out;
 }
 
-/// Runs on the map lane. Whatever fails there, the path under way goes on.
-std::optional<HorizonPlan> plan(Explorer& explorer, const HorizonQuery& query,
-                                std::optional<double> exploring_s) {
-  try {
-    return explorer.plan_horizon(query, exploring_s);
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 bool Steering::applies() const {
@@ -55,7 +45,7 @@ void Steering::step() {
   asked_limits_ = asked.limits;
   onboard_.map.job(
       "horizon", kBudget,
-      [asked, exploring_s](Explorer& explorer) { return plan(explorer, asked, exploring_s); },
+      [asked, exploring_s](Explorer& explorer) { return explorer.plan_horizon(asked, exploring_s); },
       [this, now](const std::optional<HorizonPlan>& plan) { on_plan(plan, now); });
 }
 

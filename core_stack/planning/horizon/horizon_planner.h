@@ -4,8 +4,7 @@
 // Candidates are sequences of legs (rollout.h). Each is followed by a stop, and is dropped unless every bit
 // of it, the stop included, is clear in the map. The value of a candidate in seconds is
 //
-//   what it sees / (what a second of this flight has seen so far)  -  time left to the goal from where it
-//   ends.
+//   worth_s_per_m3 * what it sees  -  time left to the goal from where it ends.
 //
 // The best candidates are varied, with less spread each time (the cross-entropy method; Rubinstein, 1999).
 #pragma once

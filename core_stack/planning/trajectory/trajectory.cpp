@@ -122,7 +122,7 @@ void describe(OptionTable& t, MotionLimits& o) {
         "greatest change of the rate of turning");
   t.add("trajectory", o.trajectory,
         "how paths become motion: the paper's sampling, minimum-snap polynomials, or replanned with a "
-        "receding horizon (an experiment: see docs/planning.md)");
+        "receding horizon (see docs/planning.md)");
 }
 
 TrajectorySample Trajectory::at(TimeNs t) const {

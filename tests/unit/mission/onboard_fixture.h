@@ -18,8 +18,9 @@ namespace karst::core {
 
 class OnboardTest : public ::testing::Test {
  protected:
-  explicit OnboardTest(const VehicleDescription& vehicle = with_lidar())
-      : onboard(by_pose_sensor(), vehicle, executive, recorder, policy) {}
+  explicit OnboardTest(const VehicleDescription& vehicle = with_lidar(),
+                       const CoreOptions& options = by_pose_sensor())
+      : onboard(options, vehicle, executive, recorder, policy) {}
 
   static std::filesystem::path fresh_run() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
