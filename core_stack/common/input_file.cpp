@@ -1,9 +1,13 @@
 #include "core_stack/common/input_file.h"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/statfs.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <sstream>
@@ -25,9 +29,20 @@ const char* kind_of(mode_t mode) {
   throw InputError(file, "", "cannot be opened: " + reason);
 }
 
-void check(const std::string& file, const struct stat& status, std::uintmax_t max_bytes) {
+/// A file of the kernel's own (/proc, /sys): a regular file of size 0 that may never end, or act when read.
+bool is_of_the_kernel(const struct statfs& system) {
+  constexpr std::array kKernels = {PROC_SUPER_MAGIC, SYSFS_MAGIC,        DEBUGFS_MAGIC,      TRACEFS_MAGIC,
+                                   SECURITYFS_MAGIC, CGROUP_SUPER_MAGIC, CGROUP2_SUPER_MAGIC};
+  return std::any_of(kKernels.begin(), kKernels.end(), [&](auto magic) {
+    return static_cast<long>(system.f_type) == static_cast<long>(magic);
+  });
+}
+
+void check(const std::string& file, const struct stat& status, const struct statfs& system,
+           std::uintmax_t max_bytes) {
   if (!S_ISREG(status.st_mode))
     throw InputError(file, "", "is " + std::string(kind_of(status.st_mode)) + ", not a regular file");
+  if (is_of_the_kernel(system)) throw InputError(file, "", "is a file of the kernel, not a regular file");
   if (const auto size = static_cast<std::uintmax_t>(status.st_size); size > max_bytes)
     throw InputError(file, "",
                      "is " + std::to_string(size) + " bytes long; more than " + std::to_string(max_bytes) +
@@ -55,15 +70,18 @@ class Handle {
 
 void check_input(const std::string& file, std::uintmax_t max_bytes) {
   struct stat status {};
-  if (stat(file.c_str(), &status) != 0) fail_to_open(file);
-  check(file, status, max_bytes);
+  struct statfs system {};
+  if (stat(file.c_str(), &status) != 0 || statfs(file.c_str(), &system) != 0) fail_to_open(file);
+  check(file, status, system, max_bytes);
 }
 
 std::ifstream open_input(const std::string& file, std::uintmax_t max_bytes) {
   const Handle handle(file);
   struct stat status {};
-  if (fstat(handle.descriptor(), &status) != 0) fail_to_open(file);
-  check(file, status, max_bytes);
+  struct statfs system {};
+  if (fstat(handle.descriptor(), &status) != 0 || fstatfs(handle.descriptor(), &system) != 0)
+    fail_to_open(file);
+  check(file, status, system, max_bytes);
   std::ifstream in(handle.name(), std::ios::binary);
   if (!in) fail_to_open(file);
   return in;

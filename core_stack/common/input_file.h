@@ -1,5 +1,5 @@
 // Opening what a user, or a file of somebody else's, names. Only a regular file is read: a FIFO would block,
-// a device such as /dev/zero never ends, and a directory opens without an error.
+// a device or a file of the kernel (/proc) may never end, and a directory opens without an error.
 #pragma once
 #include <cstdint>
 #include <fstream>

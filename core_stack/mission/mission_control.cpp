@@ -148,6 +148,7 @@ MissionResult MissionControl::end() {
            emergency_ ? *emergency_ + ": it did not come down"
                       : "the vehicle did not come back within ten minutes after the time limit");
   });
+  if (!result_) result_ = MissionResult{MissionOutcome::aborted, "", standing_, ""};
   attempt([this] {
     if (!team_) return;
     const bool where_it_should = result_->outcome == MissionOutcome::landed;
@@ -163,7 +164,6 @@ MissionResult MissionControl::end() {
       throw InputError(onboard_.recorder.directory().string(), "", "cannot be written: is the disk full?");
   });
   attempt([this] { onboard_.recorder.final_map(onboard_.map.while_idle().map()); });
-  if (!result_) result_ = MissionResult{MissionOutcome::aborted, "", standing_, ""};
   result_->record_problem = problem;
   return *result_;
 }
@@ -281,7 +281,7 @@ void MissionControl::take_off() {
     case TakeOff::State::climbs:
       return;
     case TakeOff::State::does_not_lift:
-      onboard_.flight.disarm();
+      switch_off_motors(now());
       return finish(MissionOutcome::stuck, "it does not lift off: too heavy for its motors?");
     case TakeOff::State::hovers:
       break;
@@ -428,10 +428,14 @@ void MissionControl::on_ground(TimeNs stamp) {
   if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
-/// Stops the motors before anything else: a vehicle that has lost its pose would never land again.
-void MissionControl::touch_down(TimeNs stamp) {
+void MissionControl::switch_off_motors(TimeNs stamp) {
   onboard_.flight.disarm();
   vehicle_.command(onboard_.flight.control(stamp));
+}
+
+/// Stops the motors before anything else: a vehicle that has lost its pose would never land again.
+void MissionControl::touch_down(TimeNs stamp) {
+  switch_off_motors(stamp);
   try {
     finish_on_ground();
   } catch (...) {  // it has landed, even if this cannot be recorded

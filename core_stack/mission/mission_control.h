@@ -113,6 +113,7 @@ class MissionControl final : public VehicleSink {
   void on_map(const MapNews& news);
   void record();
   void enter(Phase phase, const std::string& reason);
+  void switch_off_motors(TimeNs stamp);
   void touch_down(TimeNs stamp);
   void finish_on_ground();
   void finish(MissionOutcome outcome, const std::string& reason);

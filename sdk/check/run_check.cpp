@@ -10,6 +10,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
+#include "core_stack/common/json_file.h"
 #include "core_stack/common/options.h"
 #include "sdk/host/isolation/process.h"
 #include "sdk/host/plugin/probe.h"
@@ -104,12 +105,15 @@ TestResult run_in_child(const CheckOptions& o, const std::string& policy, const 
   host::ProcessEnd end;
   const std::string ended = wait_for(host::start_process(argv, folder / "output"), progress, o, end);
   r.wall_s = seconds_since(begin);
-  std::ifstream in(folder / "result.json");
-  const ordered_json said = ordered_json::parse(in, nullptr, false);
+  // The plugin under test may have written it.
+  const auto said = core::json_of_file<ordered_json>((folder / "result.json").string());
+  const auto text = [&](const char* key) {
+    return said.contains(key) && said[key].is_string() ? said[key].get<std::string>() : std::string();
+  };
   if (ended.empty() && end.signal == 0 && end.exit_code == 0 && said.is_object()) {
-    r.reason = said.value("reason", "");
-    r.figures = said.value("figures", ordered_json::object());
-    r.verdict = core::parse<Verdict>(said.value("outcome", "")).value_or(r.verdict);
+    r.reason = text("reason");
+    if (said.contains("figures") && said["figures"].is_object()) r.figures = said["figures"];
+    r.verdict = core::parse<Verdict>(text("outcome")).value_or(Verdict::failed);
     return r;
   }
   r.verdict = Verdict::failed;

@@ -102,6 +102,29 @@ INSTANTIATE_TEST_SUITE_P(
                       Breaker{"scribbling", "garbage came from its process in decide()"}),
     [](const auto& i) { return std::string(i.param.file); });
 
+double processor_s(pid_t process) {
+  clockid_t clock{};
+  timespec t{};
+  EXPECT_EQ(clock_getcpuclockid(process, &clock), 0);
+  EXPECT_EQ(clock_gettime(clock, &t), 0);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// What a process computed between two calls was never counted, and it may ignore the kernel's signal.
+TEST(IsolatedPlugin, ThatComputesBetweenTwoCallsIsEnded) {
+  host::PolicyChoice c = isolated();
+  c.cpu_limit_s = 1;
+  Room room;
+  const auto policy = load("busy_between", c);
+  EXPECT_EQ(policy->decide(room.request).outcome, core::Outcome::goals);
+  const pid_t first = dynamic_cast<host::IsolatedPolicy&>(*policy).process_id();
+  while (processor_s(first) < 4) usleep(10000);
+  const core::Decision d = policy->decide(room.request);
+  EXPECT_EQ(d.outcome, core::Outcome::hold);
+  EXPECT_THAT(d.reason, HasSubstr("its process took more than 1 s of processor time between two calls"));
+  EXPECT_EQ(kill(first, 0), -1) << "its process is still there";
+}
+
 /// What fails without breaking the process is told in the same words as in process.
 class FailingPlugin : public ::testing::TestWithParam<const char*> {};
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace karst::core {
 namespace {
@@ -70,12 +71,12 @@ void Flight::follow(const Course& c) {
          sample_trajectory(c.points, c.start_speed_mps, c.start, limits(c.max_speed_mps), c.heading, c.slow));
 }
 
-void Flight::follow(const Course& course, const Trajectory& ready) {
+void Flight::follow(const Course& course, Trajectory ready) {
+  slow_ = course.slow;  // the only copy that takes memory: if there is none, the old trajectory stays whole
   heading_ = course.heading;
   path_speed_mps_ = course.max_speed_mps;
-  slow_ = course.slow;
   braking_ = false;
-  trajectory_ = ready;
+  trajectory_ = std::move(ready);
 }
 
 MotionLimits Flight::limits(std::optional<double> max_speed_mps) const {
@@ -162,11 +163,12 @@ void Flight::land_now(TimeNs now, double max_path_m) noexcept {
 
 /// The newly found pose may place the reference beside the descent line: hover at the current state.
 void Flight::break_off_landing(TimeNs now) {
-  emergency_landing_.break_off();
   const TrajectorySample here{state().position, heading_of(state().orientation)};
-  trajectory_ = {};
-  trajectory_.start = now;
-  trajectory_.samples = {here};
+  Trajectory hover;
+  hover.start = now;
+  hover.samples = {here};
+  emergency_landing_.break_off();
+  trajectory_ = std::move(hover);
   tracker_.reset(now, here.position, here.heading_rad);
 }
 

@@ -51,7 +51,7 @@ class Flight {
 
   void follow(const Course& course);
   /// Follows a trajectory along the path that was prepared beforehand on the map lane.
-  void follow(const Course& course, const Trajectory& ready);
+  void follow(const Course& course, Trajectory ready);
   /// The limits that `follow` observes.
   MotionLimits limits(std::optional<double> max_speed_mps = std::nullopt) const;
   /// Limits the speed from now on, also along the rest of the current path.

@@ -7,8 +7,8 @@ RecordStore::Taken RecordStore::take(const SentRecord& r) {
   if (held.holds(r.number)) return find(r.author, r.number)->bytes == r.bytes ? Taken::known : Taken::differs;
   if (r.number > max_records_) return Taken::full;
   if (!held.takes(r.number)) return Taken::too_far;
+  records_[{r.author, r.number}] = r;  // first: without memory for it, it must not count as held
   held.add(r.number);
-  records_[{r.author, r.number}] = r;
   return Taken::fresh;
 }
 

@@ -1,3 +1,4 @@
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <unordered_map>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/output_file.h"
@@ -20,12 +22,19 @@ namespace {
 using core::InputError;
 using core::Vec3f;
 
-std::string lower_extension(const std::string& path) {
-  std::string e = std::filesystem::path(path).extension().string();
-  std::transform(e.begin(), e.end(), e.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return e;
-}
+/// Opens the mesh and no file that the mesh names, such as an OBJ's materials: that may be a FIFO, or
+/// anything.
+class OnlyThisFile final : public Assimp::DefaultIOSystem {
+ public:
+  explicit OnlyThisFile(std::string path) : path_(std::move(path)) {}
+  bool Exists(const char* file) const override { return file == path_ && DefaultIOSystem::Exists(file); }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return file == path_ ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+
+ private:
+  std::string path_;
+};
 
 /// Numbers equal vertices once, in the order of first appearance. The importer's own steps for this and for
 /// polygons end the program on some damaged files.
@@ -125,6 +134,7 @@ std::string ply_bytes(const TriangleMesh& mesh) {
 
 TriangleMesh import_mesh(const std::string& path, const std::string& extension) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new OnlyThisFile(path));  // the importer owns it
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(path, "", std::string("is no mesh that can be read: ") + importer.GetErrorString());
@@ -140,6 +150,13 @@ TriangleMesh import_mesh(const std::string& path, const std::string& extension) 
 }
 
 }  // namespace
+
+std::string lower_extension(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
 
 TriangleMesh load_mesh(const std::string& path) {
   const std::string extension = lower_extension(path);

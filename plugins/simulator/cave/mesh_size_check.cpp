@@ -1,7 +1,8 @@
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <string_view>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
@@ -138,9 +139,12 @@ void check_ply(const std::string& path, std::ifstream& in) {
   if (header.format != "ascii") return check_binary_ply(path, header, body, header_size);
   std::uintmax_t expected = 0, lines = 0;
   for (const PlyElement& e : header.elements) expected += e.count;
-  std::istringstream text(body);
-  for (std::string line; std::getline(text, line);)
-    lines += line.find_first_not_of(" \t\r") != std::string::npos;
+  for (std::size_t begin = 0; begin < body.size();) {
+    const std::size_t end = std::min(body.find('\n', begin), body.size());
+    lines +=
+        std::string_view(body).substr(begin, end - begin).find_first_not_of(" \t\r") != std::string::npos;
+    begin = end + 1;
+  }
   if (lines < expected)
     throw InputError(path, "",
                      "the file is truncated: its header declares " + std::to_string(expected) +
@@ -153,9 +157,9 @@ void check_declared_size(const std::string& path) {
   std::ifstream in = core::open_input(path, core::kMaxMeshFileBytes);
   const std::uintmax_t size = std::filesystem::file_size(path);
   if (size == 0) throw InputError(path, "", "the file is empty");
-  const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".stl" || extension == ".STL") check_stl(path, in, size);
-  if (extension == ".ply" || extension == ".PLY") check_ply(path, in);
+  const std::string extension = lower_extension(path);
+  if (extension == ".stl") check_stl(path, in, size);
+  if (extension == ".ply") check_ply(path, in);
 }
 
 }  // namespace karst::cave

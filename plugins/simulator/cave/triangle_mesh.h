@@ -27,4 +27,7 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh);
 /// would silently ignore the missing data.
 void check_declared_size(const std::string& path);
 
+/// The extension of the file's name in small letters, with its dot.
+std::string lower_extension(const std::string& path);
+
 }  // namespace karst::cave

@@ -58,8 +58,8 @@ void IsolatedPolicy::start() {
   revision_sent_ = 0;
   process_ = std::make_unique<PolicyProcess>(policy_child_program(),
                                              CallLimits{choice_.hang_limit_s, choice_.cpu_limit_s});
-  const RingMessage said = question("create", Said::start, flatten(order), nullptr);
   try {
+    const RingMessage said = question("create", Said::start, flatten(order), nullptr);
     if (said.kind == static_cast<std::uint32_t>(Said::refused)) throw input_error(read_text(said.body));
     if (said.kind != static_cast<std::uint32_t>(Said::ready))
       throw ProcessBroken("it did not say it is ready");

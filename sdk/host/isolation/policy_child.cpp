@@ -14,8 +14,6 @@
 namespace karst::host {
 namespace {
 
-constexpr std::size_t kMaxRequestBytes = std::size_t{4} << 30;
-
 class Server {
  public:
   Server(const RingMemory& own, const RingMemory& hosts)

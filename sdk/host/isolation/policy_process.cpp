@@ -134,7 +134,10 @@ void PolicyProcess::begin_call(const char* name) {
   call_ = name;
   call_began_ = std::chrono::steady_clock::now();
   cpu_before_s_ = cpu_s();
-  // The kernel's own limit backs up watch(), and also ends a process that computes between calls.
+  if (cpu_after_s_)
+    if (const std::string which = passed(limits_, 0, cpu_before_s_ - *cpu_after_s_); !which.empty())
+      throw ProcessBroken("its process " + which + " between two calls");
+  // The kernel's own limit backs up watch(); a process may ignore its signal.
   rlimit cpu{};
   if (id_ <= 0 || prlimit(id_, RLIMIT_CPU, nullptr, &cpu) != 0) return;
   cpu.rlim_cur =
@@ -144,7 +147,8 @@ void PolicyProcess::begin_call(const char* name) {
 
 void PolicyProcess::end_call() {
   spent_wall_s_ += waited_s();
-  spent_cpu_s_ += cpu_s() - cpu_before_s_;
+  cpu_after_s_ = cpu_s();
+  spent_cpu_s_ += *cpu_after_s_ - cpu_before_s_;
 }
 
 double PolicyProcess::waited_s() const {

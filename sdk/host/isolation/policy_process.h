@@ -79,6 +79,7 @@ class PolicyProcess {
   const char* call_ = "";
   std::chrono::steady_clock::time_point call_began_;
   double cpu_before_s_ = 0;                    // processor time before the call
+  std::optional<double> cpu_after_s_;          // and after the last one
   double spent_wall_s_ = 0, spent_cpu_s_ = 0;  // in earlier calls of this decision cycle
 };
 

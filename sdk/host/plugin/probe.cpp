@@ -152,10 +152,14 @@ std::vector<PolicyListing> probe(const std::string& file, double limit_s) {
     return broken(file, std::string("crashes when opened: ") + strsignal(WTERMSIG(status)));
   const json said = json::parse(text, nullptr, false);
   if (!said.is_object()) return broken(file, "ended the process when opened");
-  if (said.contains("broken")) return broken(file, said.at("broken"));
-  std::vector<PolicyListing> out;
-  for (const json& j : said.at("policies")) out.push_back(from_json(file, said.at("abi"), j));
-  return out;
+  try {  // the plugin may have written it
+    if (said.contains("broken")) return broken(file, said.at("broken"));
+    std::vector<PolicyListing> out;
+    for (const json& j : said.at("policies")) out.push_back(from_json(file, said.at("abi"), j));
+    return out;
+  } catch (const std::exception&) {
+    return broken(file, "wrote to files that it had not opened");
+  }
 }
 
 }  // namespace karst::host

@@ -16,6 +16,8 @@
 
 namespace karst::host {
 
+constexpr std::size_t kMaxRequestBytes = std::size_t{1} << 30;  // a map of 30 million m^3
+
 /// The reader knows the request's map as of its write number `map_since`: only blocks changed after it are
 /// written. 0: the whole map.
 Bytes flatten(const core::DecisionRequest& request, std::uint64_t map_since = 0);

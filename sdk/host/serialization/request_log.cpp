@@ -177,7 +177,8 @@ std::optional<RequestLogReader::Record> RequestLogReader::read() {
   in_.read(reinterpret_cast<char*>(&frame), sizeof frame);
   at_ += sizeof frame;
   if (!in_ || frame.magic != kMagic) fail("this is no record of requests, or it is damaged");
-  if (frame.kind != kRequest && frame.length > kMaxText) fail("it is longer than it can be");
+  if (frame.length > (frame.kind == kRequest ? kMaxRequestBytes : kMaxText))
+    fail("it is longer than it can be");
   if (frame.length > size_ - at_) {  // the flight was killed while it was written
     skipped_bytes_ = sizeof frame + size_ - at_;
     return std::nullopt;

@@ -77,6 +77,15 @@ TEST_F(InputFile, OtherKindsAreNamed) {
   close(socket_fd);
 }
 
+// /proc/self/pagemap is a regular file of size 0, and can be read to 128 GiB.
+TEST_F(InputFile, AFileOfTheKernelIsRefusedUnderAnyName) {
+  fs::create_symlink("/proc/self/pagemap", path("events.jsonl"));
+  for (const std::string& file : {std::string("/proc/self/pagemap"), path("events.jsonl")})
+    EXPECT_EQ(error_of(file), file + ": is a file of the kernel, not a regular file");
+  EXPECT_EQ(error_of("/sys/kernel/mm/transparent_hugepage/enabled").find(": is a file of the kernel"),
+            std::string("/sys/kernel/mm/transparent_hugepage/enabled").size());
+}
+
 TEST_F(InputFile, TheSizeIsBounded) {
   std::ofstream(path("x")) << std::string(101, 'x');
   EXPECT_EQ(error_of(path("x")), path("x") + ": is 101 bytes long; more than 100 are not read");

@@ -57,10 +57,12 @@ class FakeVehicle final : public Vehicle {
   // What a test may change in flight.
   bool imu_works = true, pose_sensor_works = true, lidar_works = true;
   double battery_s = 120;              // left now
+  double load_kg = 0;                  // that the description does not know of
   Vec3 wind_push_mps2 = Vec3::Zero();  // world frame
 
   const Pose& pose() const { return pose_; }
   const Vec3& velocity_mps() const { return velocity_mps_; }
+  const AttitudeRateCommand& commanded() const { return command_; }
 
   VehicleDescription description() const override { return description_; }
   void command(const AttitudeRateCommand& command) override { command_ = command; }
@@ -74,6 +76,8 @@ class FakeVehicle final : public Vehicle {
  private:
   static constexpr TimeNs kTick = 5 * kMillisecond;
   static constexpr double kGravity_mps2 = 9.81;
+
+  double mass_kg() const { return description_.mass_kg + load_kg; }
 
   void tick(TimeNs now, VehicleSink& sink) {
     const Vec3 specific_force = move(now, sink);
@@ -93,12 +97,12 @@ class FakeVehicle final : public Vehicle {
   /// Returns the specific force in the body frame.
   Vec3 move(TimeNs now, VehicleSink& sink) {
     const double dt_s = seconds(kTick), thrust_n = command_.armed ? command_.thrust_n : 0;
-    if (standing_ && thrust_n <= description_.mass_kg * kGravity_mps2) return {0, 0, kGravity_mps2};
+    if (standing_ && thrust_n <= mass_kg() * kGravity_mps2) return {0, 0, kGravity_mps2};
     if (std::exchange(standing_, false)) sink.on_lift_off(now);
     const Quat before = pose_.orientation;
     pose_.orientation = (before * exp_so3(command_.body_rate_radps * dt_s)).normalized();
     const Vec3 force_mps2 =
-        before.slerp(0.5, pose_.orientation) * Vec3(0, 0, thrust_n / description_.mass_kg) + wind_push_mps2;
+        before.slerp(0.5, pose_.orientation) * Vec3(0, 0, thrust_n / mass_kg()) + wind_push_mps2;
     const Vec3 acceleration_mps2 = force_mps2 - Vec3(0, 0, kGravity_mps2);
     pose_.position += velocity_mps_ * dt_s + acceleration_mps2 * dt_s * dt_s / 2;
     velocity_mps_ += acceleration_mps2 * dt_s;

@@ -103,6 +103,13 @@ class MissionControlTest : public ::testing::Test {
 const Texts kWholeMission{"standby", "takeoff", "explore", "home", "land", "done"};
 const Texts kCutShort{"standby", "takeoff", "explore", "land", "done"};
 
+// As it was: the mission was over, and the last command still had the motors climb.
+TEST_F(MissionControlTest, ThatDoesNotLiftOffEndsWithTheMotorsOff) {
+  vehicle.load_kg = 100;
+  EXPECT_EQ(fly().outcome, MissionOutcome::stuck);
+  EXPECT_FALSE(vehicle.commanded().armed);
+}
+
 TEST_F(MissionControlTest, ExploresAsThePolicySaysComesHomeAndLandsAtTheStart) {
   const std::vector<Decision> script{fly_to(5), fly_to(9), explored()};
   std::size_t asked = 0;

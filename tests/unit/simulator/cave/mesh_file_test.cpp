@@ -174,6 +174,15 @@ TEST_F(MeshFiles, AFifoIsNoMesh) {
   EXPECT_EQ(e, path("f.ply") + ": is a FIFO, not a regular file");
 }
 
+// The importer opened what an OBJ names as its materials, wherever that was, and waited for a FIFO.
+TEST_F(MeshFiles, AFileThatAMeshNamesIsNotOpened) {
+  ASSERT_EQ(mkfifo(path("materials").c_str(), 0600), 0);
+  std::ofstream(path("m.obj")) << "mtllib materials\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  alarm(20);  // instead of a test that waits for ever
+  EXPECT_EQ(load_mesh(path("m.obj")).triangles.size(), 1u);
+  alarm(0);
+}
+
 TEST_F(MeshFiles, ColladaWithYUpIsTurned) {
   const auto collada = [](const std::string& axis) {
     return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
@@ -203,7 +212,7 @@ TEST_F(MeshFiles, ColladaWithYUpIsTurned) {
 }
 
 TEST_F(MeshFiles, TruncatedFilesAreRefusedWhereverTheyEnd) {
-  for (const char* name : {"t.stl", "t.ply"}) {
+  for (const char* name : {"t.stl", "t.ply", "t.Stl", "t.PlY"}) {
     const std::string whole = written(name);
     for (const double fraction : {0.02, 0.3, 0.5, 0.9, 0.999}) {
       const auto bytes = static_cast<std::size_t>(fraction * static_cast<double>(whole.size()));
