@@ -49,12 +49,16 @@ GoalChoice GoalSelection::choose(const GoalQuery& query, const std::vector<Goal>
     }
     ++plans;
     const Path path = world_->plan(*query.roadmap, input.from, goal.position);
-    const std::optional<std::string> failure =
-        path.found() ? blind_climb(view_, input.flown_path, path.points) : "no path: " + path.reason;
-    if (failure) {
-      ledger_->close(world_->map(), goal.position, input.now, *failure);
+    if (!path.found()) {
+      const std::string failure = "no path: " + path.reason;
+      ledger_->close(world_->map(), goal.position, input.now, failure);
       ++closed;
-      choice.rejected.push_back({goal, *failure});
+      choice.rejected.push_back({goal, failure});
+    } else if (const auto blind = blind_climb(view_, input.flown_path, path.points)) {
+      ledger_->pause(world_->map(), goal.position, input.now,
+                     *blind);  // from elsewhere, the way there is less steep
+      ++closed;
+      choice.rejected.push_back({goal, *blind});
     } else if (affordable(input, goal, path)) {
       choice.goal = goal;
       choice.path = path;

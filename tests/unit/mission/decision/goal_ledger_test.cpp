@@ -39,6 +39,25 @@ TEST(GoalLedger, ReopensAfterThePauseWhenTheMapThereChanged) {
   EXPECT_FALSE(ledger.closed(map, Vec3::Zero(), {.at = 11 * kSecond}));
 }
 
+TEST(GoalLedger, APlaceThatCannotBeFlownToFromHereIsOpenAgainSoonWhateverTheMap) {
+  const VoxelMap map{MapOptions{}};
+  GoalLedger ledger;
+  ledger.pause(map, Vec3::Zero(), 0, "too steep");
+  EXPECT_EQ(ledger.closed(map, Vec3::Zero(), {.at = kSecond}), "too steep");
+  EXPECT_FALSE(ledger.closed(map, Vec3::Zero(), {.at = 3 * kSecond}));
+  ledger.close(map, Vec3::Zero(), 0, "tried");
+  EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), {.at = 9 * kSecond})) << "the first pause of a failure";
+}
+
+TEST(GoalLedger, AfterFourPausesAPlaceIsClosed) {
+  const VoxelMap map{MapOptions{}};
+  GoalLedger ledger;
+  for (int i = 0; i < 4; ++i) ledger.pause(map, Vec3::Zero(), 0, "too steep");
+  EXPECT_FALSE(ledger.closed(map, Vec3::Zero(), {.at = 3 * kSecond}));
+  ledger.pause(map, Vec3::Zero(), 0, "too steep");
+  EXPECT_TRUE(ledger.closed(map, Vec3::Zero(), {.at = 100000 * kSecond})) << "while the map is the same";
+}
+
 TEST(GoalLedger, ThePauseDoublesWithEveryAttempt) {
   VoxelMap map{MapOptions{}};
   GoalLedger ledger;

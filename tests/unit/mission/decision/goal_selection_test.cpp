@@ -121,5 +121,21 @@ TEST(GoalSelection, ClosesGoalsThatWouldBeClimbedToBlindly) {
   EXPECT_EQ(choice.rejected[0].reason, "it was tried before: " + why);
 }
 
+// As it was: a goal that was too steep from one place was closed from everywhere, until the map there
+// changed. A vehicle with cameras left a chamber whose upper half it had not seen, and came back a minute
+// later.
+TEST(GoalSelection, TakesAGoalFromFartherAwayThatWasTooSteepFromNearBy) {
+  VoxelMap hall{MapOptions{}};
+  carve_box(hall, Vec3(0, 0, 0), Vec3(24, 6, 10));
+  Selecting s(hall);
+  const Goal up = goal_at(Vec3(4, 3, 7));
+  EXPECT_FALSE(s.choose({up}).goal);
+  s.input.from = Vec3(20, 3, 2);
+  s.input.now = kSecond;
+  EXPECT_FALSE(s.choose({up}).goal) << "a moment ago it was too steep";
+  s.input.now = 3 * kSecond;
+  EXPECT_TRUE(s.choose({up}).goal);
+}
+
 }  // namespace
 }  // namespace karst::core
