@@ -1,7 +1,6 @@
 #include "core_stack/mission/phases/steering.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace karst::core {
 namespace {

@@ -4,19 +4,10 @@
 
 #include "core_stack/planning/search/grid_planner.h"
 #include "tests/unit/mission/mapped_world.h"
+#include "tests/unit/planning/horizon/camera_vehicle.h"
 
 namespace karst::core {
 namespace {
-
-VehicleDescription camera_vehicle() {
-  auto camera = std::make_shared<CameraModel>();
-  camera->horizontal_fov_rad = 1.38;
-  camera->vertical_fov_rad = 1.1;
-  VehicleDescription vehicle;
-  vehicle.cameras.push_back(camera);
-  vehicle.T_world_start.position = Vec3(3, 3, 1);
-  return vehicle;
-}
 
 class HorizonGuideTest : public ::testing::Test {
  protected:

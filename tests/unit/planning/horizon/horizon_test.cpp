@@ -6,6 +6,7 @@
 
 #include "core_stack/planning/horizon/horizon_planner.h"
 #include "core_stack/planning/search/grid_planner.h"
+#include "tests/unit/planning/horizon/camera_vehicle.h"
 #include "tests/unit/planning/test_maps.h"
 
 namespace karst::core {
@@ -15,15 +16,6 @@ MotionLimits limits() {
   MotionLimits out;
   out.max_acceleration_mps2 = 1.5;
   return out;
-}
-
-VehicleDescription camera_vehicle() {
-  auto camera = std::make_shared<CameraModel>();
-  camera->horizontal_fov_rad = 1.38;
-  camera->vertical_fov_rad = 1.1;
-  VehicleDescription v;
-  v.cameras.push_back(camera);
-  return v;
 }
 
 /// A hall of 8 x 4 m, known up to x = `known_m`, and from x = 2 to 12 m only up to y = `known_y_m`.
