@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 CMAKE_FLAGS ?=
 DEMO_RUN ?= runs/demo
 
-.PHONY: help demo test build bench faults format check-format lint lint-changed asan asan-readers tsan fuzz install clean
+.PHONY: help demo test build bench faults format check-format lint lint-changed asan asan-readers tsan fuzz docs install clean
 help:
 	@echo "make demo     install, build, generate a cave, fly a mission through it, write the report"
 	@echo "make test     install, build, run every test"
@@ -14,6 +14,7 @@ help:
 	@echo "make lint-changed  the tidiness of what a branch changes;  make asan-readers  what reads files, under ASan and UBSan"
 	@echo "make asan     unit tests under AddressSanitizer and UBSan;  make tsan  under ThreadSanitizer"
 	@echo "make fuzz     every reader of files under libFuzzer, FUZZ_SECONDS=30 each"
+	@echo "make docs     the documentation as a site with search and the reference of the headers; no dead links"
 	@echo "make install  into PREFIX (/usr/local)"
 
 build:
@@ -90,6 +91,10 @@ fuzz:
 	@$(ASAN_CMAKE) >/dev/null
 	@cmake --build build-asan -j $(JOBS) --target fuzzers
 	@.ci/fuzz build-asan $(FUZZ_SECONDS)
+
+docs:
+	@.ci/install docs
+	@docs/site/build.py $(BUILD)/site
 
 PREFIX ?= /usr/local
 install: build
