@@ -6,6 +6,7 @@
 
 #include "core_stack/mission/decision/frontier_offers.h"
 #include "core_stack/mission/policy/policy_port.h"
+#include "core_stack/mission/policy/policy_with_fallback.h"
 #include "core_stack/team/team_node.h"
 
 namespace karst::core {
@@ -36,6 +37,7 @@ struct CycleResult {
   Outcome outcome = Outcome::hold;
   bool out_of_time = false;  // the reason why nothing is left to explore
   std::string reason, policy;
+  DecidedBy decided_by = DecidedBy::policy;
   std::optional<Goal> goal;  // accepted, with `path` from CycleInput::from to it
   Path path;
   std::vector<RejectedGoal> rejected;

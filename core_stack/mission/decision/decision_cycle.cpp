@@ -61,10 +61,26 @@ CycleResult DecisionCycle::decide(const CycleInput& input, const Claims& claims)
     if (const auto place = chosen_.centroid(id))
       ledger_.close(world_->map(), *place, input.now, "looked at a short while ago");
 
-  // Narrow passages come last: when nothing else is reachable, or no other goal was acceptable. They must
-  // wait while the current goal may still reveal more.
+  ask(policy_.begin_cycle(input.now), input, claims, result);
+  if (result.outcome == Outcome::hold && input.standing && policy_.fallback_stands_by())
+    ask(DecidedBy::fallback, input, claims, result);
+
+  if (result.goal || !input.standing) {
+    policy_.note_busy();
+  } else if (result.outcome == Outcome::explored) {
+    policy_.note_explored(result.decided_by);
+  } else {
+    policy_.note_idle(input.now);
+  }
+  result.unseen = offers_.take_unseen();
+  result.plan_ms = elapsed_ms(begin) - result.decide_ms;
+  return result;
+}
+
+/// Narrow passages come last: when nothing else is reachable, or no other goal was acceptable. They must wait
+/// while the current goal may still reveal more.
+void DecisionCycle::ask(DecidedBy by, const CycleInput& input, const Claims& claims, CycleResult& result) {
   const ClearanceRoadmap& first = world_->roadmap_at(input.from);
-  const DecidedBy by = policy_.begin_cycle(input.now);
   const Question question = ask_about(first, input, claims);
   const bool in_range = any_reachable(question.request.frontiers);
   const bool may_be_narrow =
@@ -73,15 +89,6 @@ CycleResult DecisionCycle::decide(const CycleInput& input, const Claims& claims)
   const bool nothing_left = result.outcome == Outcome::explored && !result.out_of_time;
   if (may_be_narrow && (!in_range || nothing_left))
     answer(ask_about(*world_->narrow(), input, claims), by, result);
-
-  if (result.goal || !input.standing) {
-    policy_.note_busy();
-  } else {
-    policy_.note_idle(input.now);
-  }
-  result.unseen = offers_.take_unseen();
-  result.plan_ms = elapsed_ms(begin) - result.decide_ms;
-  return result;
 }
 
 void DecisionCycle::tell(const std::vector<PolicyEvent>& events, TimeNs now) {
@@ -139,6 +146,7 @@ void DecisionCycle::answer(const Question& question, DecidedBy by, CycleResult& 
   PolicyAnswer answer = policy_.ask(question.request, by);
   result.decide_ms += elapsed_ms(begin);
   result.policy = answer.name;
+  result.decided_by = answer.by;
   if (!answer.failure.empty()) result.policy_failure = answer.failure;
   Decision& decision = answer.decision;
   result.outcome = decision.outcome;
@@ -161,6 +169,7 @@ void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer,
     const PolicyAnswer fallback = policy_.ask_fallback(question.request);
     by = fallback.by;
     result.policy = fallback.name;
+    result.decided_by = fallback.by;
     last = selection_.choose(question.goals, fallback.decision.goals);
     result.rejected.insert(result.rejected.end(), last.rejected.begin(), last.rejected.end());
   }

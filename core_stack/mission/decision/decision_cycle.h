@@ -34,6 +34,8 @@ class DecisionCycle {
     GoalQuery goals;
   };
 
+  /// Asks about the wide passages, and about the narrow ones if those have nothing left.
+  void ask(DecidedBy by, const CycleInput& input, const Claims& claims, CycleResult& result);
   Question ask_about(const ClearanceRoadmap& roadmap, const CycleInput& input, const Claims& claims);
   DecisionRequest request(const ClearanceRoadmap& roadmap, const CycleInput& input);
   void answer(const Question& question, DecidedBy by, CycleResult& result);

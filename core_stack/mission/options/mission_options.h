@@ -23,6 +23,7 @@ struct MissionOptions {
   bool append = true;
   double append_before_s = 2.5;
   double goal_timeout_s = 10.0;
+  double explored_patience_s = 5.0;
   double home_margin = 0.15;
   double home_reserve_s = 20.0;
   double landing_speed_mps = 0.4;

@@ -1,6 +1,7 @@
 // Exploration: decides when to ask the policy, and joins its goal to the current trajectory.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ class Exploration {
   void record_cycle(const CycleInput& input, const CycleResult& result);
   void watch_progress();
   void reach_goal(TimeNs now);
+  /// Whether `explored`, the answer to a vehicle at rest, is believed.
+  bool is_over(const CycleResult& result);
 
   Onboard& onboard_;
   Parts parts_;
@@ -54,6 +57,7 @@ class Exploration {
   bool cycle_running_ = false;
   bool append_tried_ = false;  // to the current goal
   TimeNs last_cycle_ = 0;
+  std::optional<TimeNs> explored_since_;  // all answers since then have been `explored`, the vehicle at rest
 };
 
 }  // namespace karst::core

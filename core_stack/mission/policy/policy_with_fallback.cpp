@@ -10,6 +10,7 @@ constexpr TimeNs kMaxIdle = 2 * kSecond;
 }  // namespace
 
 DecidedBy PolicyWithFallback::begin_cycle(TimeNs now) {
+  if (explored_ || fallback_found_nothing_) return DecidedBy::policy;
   if (!idle_since_ || now - *idle_since_ < kMaxIdle) return DecidedBy::policy;
   idle_since_.reset();
   return DecidedBy::fallback;

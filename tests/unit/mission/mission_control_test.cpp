@@ -135,11 +135,54 @@ TEST_F(MissionControlTest, ExploresAsThePolicySaysComesHomeAndLandsAtTheStart) {
   EXPECT_EQ(heard, (std::vector{Kind::goal_reached, Kind::goal_reached, Kind::homing}));
 }
 
-TEST_F(MissionControlTest, APolicyThatHasNothingSendsItHomeFromItsHover) {
+// As it was: a policy that once had no goal ended the mission.
+TEST_F(MissionControlTest, ExploresOnWhenThePolicySaidExploredOnce) {
+  const std::vector<Decision> script{fly_to(5), explored(), fly_to(9), explored()};
+  std::size_t asked = 0;
+  policy.script = [&](const DecisionRequest&) { return script[std::min(asked++, script.size() - 1)]; };
+  options.mission.append = false;
+  options.mission.decision_period_s = 600;
+  double farthest_m = 0;
+  fly([&](MissionControl&) { farthest_m = std::max(farthest_m, vehicle.pose().position.x()); });
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(homing_reason(), "explored: all seen");
+  EXPECT_NEAR(farthest_m, 9, 0.5);
+}
+
+TEST_F(MissionControlTest, NowExploredAndNowAGoalExploresUntilTheBatterySendsItHome) {
+  vehicle.battery_s = 70;
+  policy.script = [on = policy.script, asked = 0](const DecisionRequest& r) mutable {
+    return ++asked % 2 == 1 ? explored() : on(r);
+  };
+  EXPECT_EQ(fly().outcome, MissionOutcome::landed);
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_FALSE(homing_reason().starts_with("explored")) << homing_reason();
+  EXPECT_NE(homing_reason().find("time"), std::string::npos) << homing_reason();
+}
+
+TEST_F(MissionControlTest, WithoutPatienceTheFirstExploredSendsItHome) {
+  options.mission.explored_patience_s = 0;
+  policy.script = [](const DecisionRequest&) { return explored(); };
+  EXPECT_EQ(fly().outcome, MissionOutcome::landed);
+  EXPECT_LE(told("decision", "outcome").size(), 2u);
+}
+
+TEST_F(MissionControlTest, APolicyThatHasNothingForFiveSecondsSendsItHomeFromItsHover) {
   policy.script = [](const DecisionRequest&) { return explored(); };
   EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_EQ(homing_reason(), "explored: all seen");
+  const Texts by = told("decision", "policy");
+  EXPECT_GT(by.size(), 10u) << "it is asked again every 0.4 s";
+  EXPECT_EQ(std::count(by.begin(), by.end(), "scripted"), static_cast<std::ptrdiff_t>(by.size()));
+  std::vector<double> decided_s, homed_s;
+  for (const nlohmann::json& e : events) {
+    if (e["kind"] == "decision") decided_s.push_back(e["t"].get<double>());
+    if (e["kind"] == "phase" && e["phase"] == "home") homed_s.push_back(e["t"].get<double>());
+  }
+  ASSERT_EQ(homed_s.size(), 1u);
+  EXPECT_GT(homed_s.front() - decided_s.front(), 4.99);
+  EXPECT_LT(homed_s.front() - decided_s.front(), 6);
   ASSERT_EQ(policy.heard.size(), 1u);
   EXPECT_EQ(policy.heard.front().kind, PolicyEvent::Kind::homing);
 }

@@ -161,6 +161,45 @@ TEST(Explorer, APolicyMayHoldAStandingVehicleForTwoSecondsAndNoLonger) {
   EXPECT_EQ(room.decide(hold).policy, "fallback");
 }
 
+TEST(Explorer, APolicyThatSaysExploredIsNotOverruledThoughFrontiersAreLeft) {
+  Room room;
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    room.input.now = cycle * kSecond / 2;
+    const CycleResult r = room.decide([](const DecisionRequest& request) {
+      EXPECT_FALSE(request.frontiers.empty());
+      Decision d;
+      d.outcome = Outcome::explored;
+      return d;
+    });
+    EXPECT_EQ(r.outcome, Outcome::explored) << cycle;
+    EXPECT_EQ(r.policy, "scripted") << cycle;
+  }
+}
+
+TEST(Explorer, WhereTheFallbackFindsNothingThePolicyIsStillAskedFirst) {
+  Room room({}, Vec3(8, 6, 4), "");  // closed: no frontier at all
+  int asked = 0;
+  const auto hold = [&](const DecisionRequest&) {
+    ++asked;
+    return Decision{};
+  };
+  EXPECT_EQ(room.decide(hold).outcome, Outcome::hold);
+  room.input.now = 2 * kSecond;
+  EXPECT_EQ(room.decide(hold).policy, "fallback");
+  EXPECT_EQ(asked, 1);
+  room.input.now = 3 * kSecond;
+  const CycleResult both = room.decide(hold);
+  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(both.outcome, Outcome::explored) << "the policy's hold does not hide that nothing is left";
+  EXPECT_EQ(both.policy, "fallback");
+  room.input.now = 4 * kSecond;
+  const CycleResult own = room.propose(Vec3(6.5, 4, 2));
+  EXPECT_TRUE(own.goal) << "a place of its own that the fallback knows nothing of";
+  EXPECT_EQ(own.policy, "scripted");
+  room.input.now = 5 * kSecond;
+  EXPECT_EQ(room.decide(hold).outcome, Outcome::hold) << "the vehicle has been busy: two seconds begin anew";
+}
+
 CoreOptions narrow_allowed() {
   CoreOptions options;
   options.planning.narrow_margin_m = 0.08;

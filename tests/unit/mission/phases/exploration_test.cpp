@@ -8,10 +8,10 @@ namespace {
 
 class ExplorationTest : public OnboardTest {
  protected:
-  void begin() {
-    // A hall around the vehicle, open at one end.
+  /// In a hall around the vehicle that is open at one end, or closed.
+  void begin(const std::vector<std::string>& open = {"x+"}) {
     onboard.map.while_idle().integrate(
-        box_rays(VoxelMap{MapOptions{}}, Vec3(-3, -3, -1), Vec3(20, 6, 4), {"x+"}));
+        box_rays(VoxelMap{MapOptions{}}, Vec3(-3, -3, -1), Vec3(20, 6, 4), open));
     hover();
     onboard.map.while_idle().set_home(onboard.flight.reference().position);
     phases.enter(Phase::takeoff, now());
@@ -35,6 +35,13 @@ class ExplorationTest : public OnboardTest {
     goal.position = place;
     goal.heading_rad = std::numeric_limits<double>::quiet_NaN();
     d.goals = {goal};
+    return d;
+  }
+
+  static Decision explored() {
+    Decision d;
+    d.outcome = Outcome::explored;
+    d.reason = "all seen";
     return d;
   }
 
@@ -77,6 +84,101 @@ TEST_F(ExplorationTest, ThePolicysWishToGoHomeIsFollowedAtTheEndOfTheRound) {
   EXPECT_EQ(went_home, "");
   steps(1.5);
   EXPECT_EQ(went_home, "the policy asked for it: tea");
+}
+
+// As it was: the first such answer ended the mission.
+TEST_F(ExplorationTest, OneExploredBetweenGoalsDoesNotEndIt) {
+  begin();
+  answer = [&](const DecisionRequest&) { return asked == 1 ? explored() : go_to({6, 0, 1}); };
+  steps(2);
+  EXPECT_TRUE(goals.goal()) << events();
+  EXPECT_EQ(went_home, "");
+}
+
+TEST_F(ExplorationTest, GoesHomeWhenAllAnswersOfFiveSecondsSayExplored) {
+  begin();
+  std::vector<TimeNs> at;
+  answer = [&](const DecisionRequest& r) {
+    at.push_back(r.stamp);
+    return explored();
+  };
+  for (int i = 0; i < 100 && went_home.empty(); ++i) steps(0.1);
+  EXPECT_EQ(went_home, "explored: all seen");
+  ASSERT_GT(at.size(), 10u) << "it is asked again every 0.4 s";
+  EXPECT_GE(at.back() - at.front(), 5 * kSecond);
+  EXPECT_LT(at.back() - at.front(), 6 * kSecond);
+  EXPECT_EQ(told("\"fallback\""), 0u) << "there are frontiers, but the policy has said that it wants none";
+}
+
+TEST_F(ExplorationTest, AHoldBetweenBeginsTheFiveSecondsAnew) {
+  begin();
+  std::vector<TimeNs> at;
+  answer = [&](const DecisionRequest& r) {
+    at.push_back(r.stamp);
+    return asked == 10 ? Decision{} : explored();
+  };
+  for (int i = 0; i < 200 && went_home.empty(); ++i) steps(0.1);
+  EXPECT_EQ(went_home, "explored: all seen");
+  ASSERT_GT(at.size(), 11u);
+  EXPECT_GE(at.back() - at[10], 5 * kSecond);
+  EXPECT_LT(at.back() - at[10], 6 * kSecond);
+}
+
+TEST_F(ExplorationTest, NowExploredAndNowAGoalGoesOnExploring) {
+  begin();
+  int at_rest = 0;
+  answer = [&](const DecisionRequest& r) {
+    if (r.state.velocity_mps.norm() > 0.1) return Decision{};
+    return ++at_rest % 2 == 1 ? explored() : go_to({r.state.position.x() < 3 ? 6.0 : 0.0, 0, 1});
+  };
+  steps(40);
+  EXPECT_EQ(went_home, "");
+  EXPECT_GT(told("\"reached\""), 2u);
+}
+
+TEST_F(ExplorationTest, APolicyThatNowHoldsAndNowSaysExploredStillComesHomeWhereNothingIsLeft) {
+  begin({});
+  answer = [&](const DecisionRequest&) { return asked % 2 == 1 ? explored() : Decision{}; };
+  steps(2 + onboard.options.mission.explored_patience_s + 3);
+  EXPECT_TRUE(went_home.starts_with("explored: ")) << went_home;
+}
+
+TEST_F(ExplorationTest, WhereTheFallbackFindsNothingAHoldingPolicyComesHomeAndMayChangeItsMind) {
+  begin({});
+  steps(2 + 4);
+  EXPECT_GT(told("\"fallback\""), 0u);
+  EXPECT_EQ(went_home, "");
+  answer = [&](const DecisionRequest&) { return go_to({6, 0, 1}); };
+  steps(1);
+  EXPECT_TRUE(goals.goal()) << events();
+  answer = [](const DecisionRequest&) { return Decision{}; };
+  steps(30);
+  EXPECT_EQ(went_home, "explored: no frontier can be reached");
+}
+
+TEST_F(ExplorationTest, WithoutBatteryForAnyGoalItGoesHomeAtOnce) {
+  begin();
+  BatteryStatus low;
+  low.stamp = now();
+  low.seconds_left = onboard.options.mission.home_reserve_s + 1;
+  endurance.note(low);
+  answer = [](const DecisionRequest&) { return go_to({6, 0, 1}); };
+  while (asked == 0) steps(0.1);
+  steps(onboard.options.mission.decision_budget_s + 0.2);
+  EXPECT_EQ(went_home, "what is left is too far for the battery, or for the time allowed");
+}
+
+TEST_F(ExplorationTest, WhileTheSupervisorHoldsItNoPatienceRunsOut) {
+  begin();
+  answer = [](const DecisionRequest&) { return explored(); };
+  steps(3);
+  path.obey(SafetyAction::brake);
+  steps(10);
+  path.obey(SafetyAction::none);
+  steps(2);
+  EXPECT_EQ(went_home, "");
+  steps(5);
+  EXPECT_EQ(went_home, "explored: all seen");
 }
 
 TEST_F(ExplorationTest, WhatWasDecidedBeforeABrakeIsNotFlown) {

@@ -70,6 +70,56 @@ TEST(PolicyWithFallback, AVehicleThatIsBusyIsNotIdle) {
   EXPECT_EQ(asked.begin_cycle(3 * kSecond), DecidedBy::fallback);
 }
 
+TEST(PolicyWithFallback, APolicyThatSaysExploredIsNotOverruled) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  for (int half_seconds = 0; half_seconds < 20; ++half_seconds) {
+    EXPECT_EQ(asked.begin_cycle(half_seconds * kSecond / 2), DecidedBy::policy) << half_seconds;
+    asked.note_explored(DecidedBy::policy);
+  }
+  EXPECT_FALSE(asked.fallback_stands_by());
+}
+
+TEST(PolicyWithFallback, APolicyThatNowHoldsAndNowSaysExploredLosesItsTurnLikeOneThatHolds) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  std::string turns;
+  for (int half_seconds = 0; half_seconds < 8; ++half_seconds) {
+    const TimeNs now = half_seconds * kSecond / 2;
+    turns += asked.begin_cycle(now) == DecidedBy::policy ? 'p' : 'f';
+    if (half_seconds % 2 == 1) {
+      asked.note_explored(DecidedBy::policy);
+    } else {
+      asked.note_idle(now);
+    }
+  }
+  EXPECT_EQ(turns, "pppppfpp") << "never straight after `explored`, and idle anew since the fallback's turn";
+}
+
+TEST(PolicyWithFallback, AFallbackThatFoundNothingStandsByUntilTheVehicleIsBusy) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  asked.note_idle(0);
+  ASSERT_EQ(asked.begin_cycle(2 * kSecond), DecidedBy::fallback);
+  EXPECT_FALSE(asked.fallback_stands_by());
+  asked.note_explored(DecidedBy::fallback);
+  EXPECT_TRUE(asked.fallback_stands_by());
+  asked.note_explored(DecidedBy::policy);
+  asked.note_idle(9 * kSecond);
+  EXPECT_EQ(asked.begin_cycle(60 * kSecond), DecidedBy::policy) << "the policy is asked first";
+  EXPECT_TRUE(asked.fallback_stands_by());
+  asked.note_busy();
+  EXPECT_FALSE(asked.fallback_stands_by());
+}
+
+TEST(PolicyWithFallback, InPlaceOfAFailedPolicyTheFallbackIsAskedOnce) {
+  Counting policy;
+  PolicyWithFallback asked(policy);
+  policy.fails = true;
+  asked.note_explored(asked.ask({}, DecidedBy::policy).by);
+  EXPECT_FALSE(asked.fallback_stands_by());
+}
+
 TEST(PolicyWithFallback, LimitsWhatThePolicyDrawsInAFlight) {
   Counting policy;
   policy.answer.drawings.resize(OutputLimits{}.drawings);
