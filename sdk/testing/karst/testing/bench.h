@@ -16,6 +16,7 @@
 
 #include <karst/testing/drawn_frontiers.h>
 #include <karst/testing/drawn_host.h>
+#include <karst/testing/sensors.h>
 
 namespace karst::testing {
 
@@ -39,7 +40,7 @@ class Bench {
   double time_s = 0, seconds_before_homing = 600;
   karst_goal_fate_t last_fate = KARST_FATE_NONE;
   Vec3 last_goal;
-  std::vector<Sensor> sensors;
+  std::vector<Sensor> sensors{lidar()};
   std::vector<Frontier> frontiers;
   std::vector<Teammate> teammates;
 

@@ -49,12 +49,25 @@ class DrawnHost {
     return KARST_OK;
   }
 
-  /// The first cell that stops the ray from `from` to `to`, found in steps of a hundredth of a cell.
-  static karst_ray_end_t cast(const DrawnMap& m, const Vec3& from, const Vec3& to, bool through_unknown) {
-    const double length = distance(from, to);
-    const int steps = static_cast<int>(std::ceil(length / (0.01 * m.resolution_m())));
+  /// The share of the line from `from` to `to` after which it is outside the box for good.
+  static double share_until_left(const Box& box, const Vec3& from, const Vec3& to) {
+    double share = 1;
+    const auto leaves = [&share](double low, double high, double a, double b) {
+      if (a != b) share = std::min(share, ((b > a ? high : low) - a) / (b - a));
+    };
+    leaves(box.low.x, box.high.x, from.x, to.x);
+    leaves(box.low.y, box.high.y, from.y, to.y);
+    leaves(box.low.z, box.high.z, from.z, to.z);
+    return std::max(share, 0.0);
+  }
+  /// The first cell that stops the ray from `from` to `to`, found in steps of a hundredth of a cell. Steps
+  /// that stay in a cell are left out, and those after the share `known_share` of the ray, where nothing is
+  /// known.
+  static karst_ray_end_t cast(const DrawnMap& m, const Vec3& from, const Vec3& to, bool through_unknown,
+                              double known_share = 1) {
+    const int steps = static_cast<int>(std::ceil(distance(from, to) / (0.01 * m.resolution_m())));
     karst_ray_end_t end{};
-    for (int i = 0; i <= steps; ++i) {
+    for (int i = 0;;) {
       const Index at = m.index_of(from + (steps == 0 ? 0.0 : static_cast<double>(i) / steps) * (to - from));
       const Cell c = m.at(at);
       end.center = m.center_of(at);
@@ -62,10 +75,15 @@ class DrawnHost {
       end.state = static_cast<karst_cell_t>(Cell::free);
       if (c == Cell::occupied || (c == Cell::unknown && !through_unknown)) {
         end.state = static_cast<karst_cell_t>(c);
-        break;
+        return end;
       }
+      if (i == steps) return end;
+      const Box cell = box_around(end.center, 0.5 * m.resolution_m());
+      const int last_inside =
+          static_cast<int>(share_until_left(cell, from, to) * steps) - 1;  // but for rounding
+      i = std::min(std::max(i + 1, last_inside), steps);
+      if (through_unknown && i > known_share * steps) i = steps;
     }
-    return end;
   }
   static std::int32_t cast_rays(const karst_host_t* h, const karst_map_t*, const karst_segment_t* rays,
                                 std::uint64_t count, std::uint32_t flags, karst_ray_end_t* out,
@@ -139,8 +157,9 @@ class DrawnHost {
   /// Whether the direction, in the sensor's frame, is within its field of view.
   static bool in_view(const karst_sensor_t& s, const Vec3& d) {
     const double azimuth = std::atan2(d.y, d.x);
-    if (s.kind == KARST_SENSOR_CAMERA && d.x <= 0) return false;
-    const double flat = s.kind == KARST_SENSOR_CAMERA ? d.x : std::hypot(d.x, d.y);
+    const bool is_camera = s.kind == KARST_SENSOR_CAMERA || s.kind == KARST_SENSOR_RGB;
+    if (is_camera && d.x <= 0) return false;
+    const double flat = is_camera ? d.x : std::hypot(d.x, d.y);
     const double elevation = std::atan2(d.z, flat);
     return std::abs(azimuth) <= 0.5 * s.horizontal_fov_rad && elevation >= s.low_elevation_rad &&
            elevation <= s.high_elevation_rad;
@@ -160,13 +179,14 @@ class DrawnHost {
     const Vec3 eye = Vec3(v.position) + Vec3(c * p.x - w * p.y, w * p.x + c * p.y, p.z);
     const karst_quaternion_t q = s.T_body_sensor.orientation;
     std::uint64_t count = 0;
-    const Box around = box_around(eye, s.max_range_m);
+    const Box around = box_around(eye, s.max_range_m), drawing = m.bounds();
     for_each_in(m, {around.low, around.high}, [&](const Index& k) {
       const Vec3 there = m.center_of(k), away = there - eye;
       if (m.at(k) != Cell::unknown || norm(away) < s.min_range_m || norm(away) > s.max_range_m) return;
       const Vec3 body{c * away.x + w * away.y, -w * away.x + c * away.y, away.z};
       if (!in_view(s, rotated({q.w, -q.x, -q.y, -q.z}, body))) return;
-      if (cast(m, eye, there, true).state == static_cast<karst_cell_t>(Cell::free)) ++count;
+      const double known_share = share_until_left(drawing, eye, there);
+      if (cast(m, eye, there, true, known_share).state == static_cast<karst_cell_t>(Cell::free)) ++count;
     });
     return count;
   }

@@ -93,6 +93,17 @@ class DrawnMap {
   double resolution_m() const { return resolution_m_; }
   std::size_t layers() const { return layers_; }  // number of drawn layers
   const std::map<Index, Cell>& known() const { return known_; }
+  /// The least box (world, m) with all known cells in it; the origin without any.
+  Box bounds() const {
+    if (known_.empty()) return {};
+    Index low = known_.begin()->first, high = low;
+    for (const auto& [i, cell] : known_) {
+      low = {std::min(low.x, i.x), std::min(low.y, i.y), std::min(low.z, i.z)};
+      high = {std::max(high.x, i.x), std::max(high.y, i.y), std::max(high.z, i.z)};
+    }
+    const Vec3 half = 0.5 * resolution_m_ * Vec3(1, 1, 1);
+    return {center_of(low) - half, center_of(high) + half};
+  }
   Cell at(const Index& i) const {
     const auto found = known_.find(i);
     return found == known_.end() ? Cell::unknown : found->second;
