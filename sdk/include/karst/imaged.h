@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include <karst/chunks.h>
 #include <karst/request.h>
 
 namespace karst {
@@ -35,8 +36,10 @@ class ImagedView {
   /// KARST_IMAGED_* of the cell that contains each point, one for each point.
   std::vector<karst_imaged_t> states(const std::vector<Vec3>& points) const {
     std::vector<karst_imaged_t> out(points.size());
-    karst_error_t e{};
-    check(service_->states(host_, points.data(), points.size(), out.data(), &e), e);
+    for_chunks(points.size(), KARST_MAX_BATCH, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(service_->states(host_, points.data() + begin, size, out.data() + begin, &e), e);
+    });
     return out;
   }
   std::vector<SurfaceCell> unimaged(const Box& box) const {
@@ -50,38 +53,46 @@ class ImagedView {
   }
   std::vector<std::uint64_t> newly_imaged(const std::vector<Viewpoint>& from) const {
     std::vector<std::uint64_t> out(from.size());
-    karst_error_t e{};
-    check(service_->newly_imaged(host_, from.data(), from.size(), out.data(), &e), e);
+    for_chunks(from.size(), KARST_MAX_GAIN_VIEWPOINTS, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(service_->newly_imaged(host_, from.data() + begin, size, out.data() + begin, &e), e);
+    });
     return out;
   }
   /// For each viewpoint, the centres of the cells that a picture from it would add.
   std::vector<std::vector<Vec3>> newly_imaged_cells(const std::vector<Viewpoint>& from) const {
-    std::vector<std::uint64_t> ends(from.size());
-    std::vector<Vec3> cells(256 * from.size());
-    const auto ask = [&] {
-      karst_error_t e{};
-      check(service_->newly_imaged_cells(host_, from.data(), from.size(), ends.data(), cells.data(),
-                                         cells.size(), &e),
-            e);
-      const std::uint64_t total = ends.empty() ? 0 : ends.back();
-      const bool all = total <= cells.size();
-      cells.resize(total);
-      return all;
-    };
-    if (!ask()) ask();
     std::vector<std::vector<Vec3>> out;
-    std::uint64_t begin = 0;
-    for (const std::uint64_t end : ends) {
-      out.emplace_back(cells.begin() + static_cast<std::ptrdiff_t>(begin),
-                       cells.begin() + static_cast<std::ptrdiff_t>(end));
-      begin = end;
-    }
+    for_chunks(from.size(), KARST_MAX_GAIN_VIEWPOINTS, [&](std::size_t begin, std::size_t size) {
+      add_newly_imaged_cells(from.data() + begin, size, out);
+    });
     return out;
   }
 
  private:
   ImagedView(const karst_host_t* host, const karst_imaged_service_t* service)
       : host_(host), service_(service) {}
+
+  /// Of as many viewpoints as one call takes.
+  void add_newly_imaged_cells(const Viewpoint* from, std::size_t count,
+                              std::vector<std::vector<Vec3>>& out) const {
+    std::vector<std::uint64_t> ends(count);
+    std::vector<Vec3> cells(256 * count);
+    const auto ask = [&] {
+      karst_error_t e{};
+      check(service_->newly_imaged_cells(host_, from, count, ends.data(), cells.data(), cells.size(), &e), e);
+      const std::uint64_t total = ends.empty() ? 0 : ends.back();
+      const bool all = total <= cells.size();
+      cells.resize(total);
+      return all;
+    };
+    if (!ask()) ask();
+    std::uint64_t begin = 0;
+    for (const std::uint64_t end : ends) {
+      out.emplace_back(cells.begin() + static_cast<std::ptrdiff_t>(begin),
+                       cells.begin() + static_cast<std::ptrdiff_t>(end));
+      begin = end;
+    }
+  }
 
   const karst_host_t* host_;
   const karst_imaged_service_t* service_;

@@ -1,8 +1,9 @@
-// The occupancy map as a policy sees it. Queries take batches. World frame, metres.
+// The occupancy map as a policy sees it. Queries take batches of any size. World frame, metres.
 #pragma once
 #include <memory>
 #include <vector>
 
+#include <karst/chunks.h>
 #include <karst/types.h>
 
 namespace karst {
@@ -23,19 +24,23 @@ class MapView {
 
   std::vector<Cell> cells(const std::vector<Vec3>& points) const {
     std::vector<Cell> out(points.size());
-    karst_error_t e{};
-    check(host_->map->cell_states(host_, map_, points.data(), points.size(),
-                                  reinterpret_cast<karst_cell_t*>(out.data()), &e),
-          e);
+    for_chunks(points.size(), KARST_MAX_BATCH, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(host_->map->cell_states(host_, map_, points.data() + begin, size,
+                                    reinterpret_cast<karst_cell_t*>(out.data() + begin), &e),
+            e);
+    });
     return out;
   }
   Cell cell(const Vec3& point) const { return cells({point}).front(); }
 
   std::vector<karst_ray_end_t> cast(const std::vector<karst_segment_t>& rays, bool through_unknown) const {
     std::vector<karst_ray_end_t> out(rays.size());
-    karst_error_t e{};
     const std::uint32_t flags = through_unknown ? std::uint32_t{KARST_RAY_THROUGH_UNKNOWN} : 0u;
-    check(host_->map->cast_rays(host_, map_, rays.data(), rays.size(), flags, out.data(), &e), e);
+    for_chunks(rays.size(), KARST_MAX_BATCH, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(host_->map->cast_rays(host_, map_, rays.data() + begin, size, flags, out.data() + begin, &e), e);
+    });
     return out;
   }
 
@@ -44,8 +49,10 @@ class MapView {
     in.reserve(boxes.size());
     for (const Box& b : boxes) in.push_back({b.low, b.high});
     std::vector<karst_cell_counts_t> out(boxes.size());
-    karst_error_t e{};
-    check(host_->map->count_in_boxes(host_, map_, in.data(), in.size(), out.data(), &e), e);
+    for_chunks(in.size(), KARST_MAX_BATCH, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(host_->map->count_in_boxes(host_, map_, in.data() + begin, size, out.data() + begin, &e), e);
+    });
     return out;
   }
 

@@ -1,6 +1,5 @@
 // From karst::Policy to the C tables: the code behind KARST_POLICY. Policy authors need not read it.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
@@ -13,11 +12,17 @@
 
 namespace karst::border {
 
+/// The longest beginning of the text, `limit` bytes at most, that cuts no UTF-8 sequence.
+inline std::size_t whole_bytes(const char* text, std::size_t size, std::size_t limit) noexcept {
+  if (size <= limit) return size;
+  while (limit > 0 && (static_cast<unsigned char>(text[limit]) & 0xC0) == 0x80) --limit;
+  return limit;
+}
+
 inline void fill(karst_error_t* error, std::int32_t code, const char* text) noexcept {
   if (error == nullptr) return;
   error->code = code;
-  std::size_t n = std::min<std::size_t>(std::strlen(text), KARST_ERROR_TEXT_SIZE - 1);
-  while (n > 0 && n == KARST_ERROR_TEXT_SIZE - 1 && (text[n] & 0xC0) == 0x80) --n;  // cut no UTF-8 sequence
+  const std::size_t n = whole_bytes(text, std::strlen(text), KARST_ERROR_TEXT_SIZE - 1);
   std::memcpy(error->text, text, n);
   error->text[n] = '\0';
 }
@@ -58,12 +63,39 @@ inline std::int32_t init(void* self, const karst_parameter_value_t* values, std:
 inline std::int32_t activate(void* self, karst_error_t* error) noexcept {
   return guarded(error, [&] { self_of(self).policy->activate(); });
 }
+/// What one line of a decision may hold, in bytes.
+constexpr std::size_t line_limit = 240;
+
+/// Cuts what the host would refuse: goals beyond the first `max_goals`, and texts beyond the limit. One line
+/// of the log tells of each kind.
+inline void fit(Decision& decision, std::size_t max_goals, const Request& request) {
+  std::vector<Goal>& goals = decision.goals;
+  if (goals.size() > max_goals) {
+    request.log("of " + std::to_string(goals.size()) + " goals only the first " + std::to_string(max_goals) +
+                " are offered: the host takes no more");
+    goals.resize(max_goals);
+  }
+  std::size_t texts = 0;
+  const auto cut = [&texts](std::string& text) {
+    const std::size_t n = whole_bytes(text.data(), text.size(), line_limit);
+    if (n == text.size()) return;
+    text.resize(n);
+    ++texts;
+  };
+  for (Goal& g : goals) cut(g.why);
+  cut(decision.reason);
+  if (texts > 0)
+    request.log(std::to_string(texts) + (texts == 1 ? " text is" : " texts are") + " cut to " +
+                std::to_string(line_limit) + " bytes: the host takes no longer lines");
+}
+
 inline std::int32_t decide(void* self, const karst_request_t* request, const karst_decision_sink_t* sink,
                            karst_error_t* error) noexcept {
   return guarded(error, [&] {
     Hosted& h = self_of(self);
     const Request view(h.host, *request);
-    const Decision decision = h.policy->decide(view);
+    Decision decision = h.policy->decide(view);
+    fit(decision, sink->max_goals, view);
     std::vector<karst_goal_t> goals;
     goals.reserve(decision.goals.size());
     for (const Goal& g : decision.goals) goals.push_back(to_abi(g));

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <karst/chunks.h>
 #include <karst/map_view.h>
 #include <karst/types.h>
 
@@ -47,24 +48,29 @@ class Request {
 
   Vec3 position() const { return state.position; }
 
-  /// Length of a clear path to each goal in metres, +infinity where none is known; one search for all goals.
+  /// Length of a clear path to each goal in metres, +infinity where none is known; one search for all goals,
+  /// if there are no more than KARST_MAX_PATH_GOALS.
   std::vector<double> path_lengths(const Vec3& from, const std::vector<Vec3>& goals,
                                    double tolerance_m) const {
     std::vector<double> out(goals.size());
-    karst_error_t e{};
-    check(offered(host_->path, "paths")
-              .lengths(host_, from, goals.data(), goals.size(), tolerance_m, out.data(), &e),
-          e);
+    const karst_path_service_t& path = offered(host_->path, "paths");
+    for_chunks(goals.size(), KARST_MAX_PATH_GOALS, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(path.lengths(host_, from, goals.data() + begin, size, tolerance_m, out.data() + begin, &e), e);
+    });
     return out;
   }
 
   /// Number of unknown cells that `sensor` would see, one for each viewpoint. A shorter range costs less.
   std::vector<std::uint64_t> newly_seen(const Sensor& sensor, const std::vector<Viewpoint>& from) const {
     std::vector<std::uint64_t> out(from.size());
-    karst_error_t e{};
-    check(offered(host_->gain, "gains")
-              .newly_seen(host_, map.handle(), &sensor, 1, from.data(), from.size(), out.data(), &e),
+    const karst_gain_service_t& gain = offered(host_->gain, "gains");
+    for_chunks(from.size(), KARST_MAX_GAIN_VIEWPOINTS, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(
+          gain.newly_seen(host_, map.handle(), &sensor, 1, from.data() + begin, size, out.data() + begin, &e),
           e);
+    });
     return out;
   }
 

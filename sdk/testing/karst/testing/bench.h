@@ -130,7 +130,7 @@ class Bench {
     r.teammates = teammates.data();
     r.teammate_count = teammates.size();
     Decision answer;
-    karst_decision_sink_t sink{sizeof(karst_decision_sink_t), 64, &answer, &add_goals, &set_outcome};
+    karst_decision_sink_t sink{sizeof(karst_decision_sink_t), max_goals, &answer, &add_goals, &set_outcome};
     karst_error_t e{};
     check(policy_->decide(self_, &r, &sink, &e), e);
     last_answer_ = answer;
@@ -207,10 +207,13 @@ class Bench {
     to.insert(to.end(), from, from + count);
     return KARST_OK;
   }
+  static constexpr std::uint32_t max_goals = 64;  // as the host
   static std::int32_t add_goals(const karst_decision_sink_t* sink, const karst_goal_t* goals,
-                                std::uint64_t count, karst_error_t*) noexcept {
-    for (std::uint64_t i = 0; i < count; ++i)
-      static_cast<Decision*>(sink->context)->goals.push_back(from_abi(goals[i]));
+                                std::uint64_t count, karst_error_t* error) noexcept {
+    std::vector<Goal>& all = static_cast<Decision*>(sink->context)->goals;
+    if (count > max_goals || all.size() + count > max_goals)
+      return refuse(error, KARST_ERROR_LIMIT, "more goals than the host accepts in one decision");
+    for (std::uint64_t i = 0; i < count; ++i) all.push_back(from_abi(goals[i]));
     return KARST_OK;
   }
   static std::int32_t set_outcome(const karst_decision_sink_t* sink, karst_outcome_t outcome,

@@ -2,11 +2,20 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <karst/testing/drawn_map.h>
 
 namespace karst::testing {
+
+/// Fills the error, if there is one to fill; returns the code.
+inline std::int32_t refuse(karst_error_t* error, std::int32_t code, std::string_view text) noexcept {
+  if (error == nullptr) return code;
+  error->code = code;
+  error->text[text.copy(error->text, KARST_ERROR_TEXT_SIZE - 1)] = '\0';
+  return code;
+}
 
 /// Also a reference for the meaning of each service: see karst_abi_services.h.
 class DrawnHost {
@@ -33,6 +42,9 @@ class DrawnHost {
 
  private:
   static DrawnHost& self(const karst_host_t* h) { return *static_cast<DrawnHost*>(h->context); }
+  static std::int32_t too_many(karst_error_t* e) noexcept {
+    return refuse(e, KARST_ERROR_LIMIT, "more items than one call takes");
+  }
 
   static std::int32_t info(const karst_host_t* h, const karst_map_t*, karst_map_info_t* out,
                            karst_error_t*) noexcept {
@@ -43,7 +55,8 @@ class DrawnHost {
     return KARST_OK;
   }
   static std::int32_t cell_states(const karst_host_t* h, const karst_map_t*, const karst_vec3_t* points,
-                                  std::uint64_t count, karst_cell_t* out, karst_error_t*) noexcept {
+                                  std::uint64_t count, karst_cell_t* out, karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
     for (std::uint64_t i = 0; i < count; ++i)
       out[i] = static_cast<karst_cell_t>(self(h).map_.at(Vec3(points[i])));
     return KARST_OK;
@@ -87,7 +100,8 @@ class DrawnHost {
   }
   static std::int32_t cast_rays(const karst_host_t* h, const karst_map_t*, const karst_segment_t* rays,
                                 std::uint64_t count, std::uint32_t flags, karst_ray_end_t* out,
-                                karst_error_t*) noexcept {
+                                karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
     for (std::uint64_t i = 0; i < count; ++i)
       out[i] = cast(self(h).map_, rays[i].from, rays[i].to, (flags & KARST_RAY_THROUGH_UNKNOWN) != 0);
     return KARST_OK;
@@ -108,7 +122,9 @@ class DrawnHost {
         }
   }
   static std::int32_t count_in_boxes(const karst_host_t* h, const karst_map_t*, const karst_box_t* boxes,
-                                     std::uint64_t count, karst_cell_counts_t* out, karst_error_t*) noexcept {
+                                     std::uint64_t count, karst_cell_counts_t* out,
+                                     karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
     const DrawnMap& m = self(h).map_;
     for (std::uint64_t i = 0; i < count; ++i) {
       out[i] = {};
@@ -149,7 +165,8 @@ class DrawnHost {
   static void release(const karst_host_t*, const karst_map_t*) noexcept {}
 
   static std::int32_t lengths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
-                              std::uint64_t count, double, double* out, karst_error_t*) noexcept {
+                              std::uint64_t count, double, double* out, karst_error_t* e) noexcept {
+    if (count > KARST_MAX_PATH_GOALS) return too_many(e);
     for (std::uint64_t i = 0; i < count; ++i) out[i] = self(h).map_.path_length_m(from, goals[i]);
     return KARST_OK;
   }
@@ -192,7 +209,8 @@ class DrawnHost {
   }
   static std::int32_t newly_seen(const karst_host_t* h, const karst_map_t*, const karst_sensor_t* sensors,
                                  std::uint64_t sensor_count, const karst_viewpoint_t* viewpoints,
-                                 std::uint64_t count, std::uint64_t* out, karst_error_t*) noexcept {
+                                 std::uint64_t count, std::uint64_t* out, karst_error_t* e) noexcept {
+    if (sensor_count > 16 || count > KARST_MAX_GAIN_VIEWPOINTS) return too_many(e);
     for (std::uint64_t i = 0; i < count; ++i)
       for (std::uint64_t j = 0; j < sensor_count; ++j)
         out[i * sensor_count + j] = count_seen(self(h).map_, sensors[j], viewpoints[i]);
