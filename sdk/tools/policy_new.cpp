@@ -28,13 +28,24 @@ namespace fs = std::filesystem;
 using core::InputError;
 
 struct Template {
-  std::string_view name, help, policy, test;
+  std::string_view name, help;
+  std::string_view id;      // of its policy
+  std::string_view ending;  // of its sources
+  std::string_view policy, test;
+  std::string_view setting;  // of a parameter, for the README
 };
 
-std::array<Template, 3> templates() {
-  return {{{"nearest", "flies to the nearest frontier", nearest_policy(), nearest_test()},
-           {"tour", "a short tour over the nearest viewpoints", tour_policy(), tour_test()},
-           {"memory", "remembers across decisions: branch by branch", memory_policy(), memory_test()}}};
+constexpr std::string_view kSetting = "min_cells=20";
+
+std::array<Template, 4> templates() {
+  return {
+      {{"nearest", "flies to the nearest frontier", "my_nearest", ".cpp", nearest_policy(), nearest_test(),
+        kSetting},
+       {"tour", "a short tour over the nearest viewpoints", "my_tour", ".cpp", tour_policy(), tour_test(),
+        kSetting},
+       {"memory", "remembers across decisions: branch by branch", "my_memory", ".cpp", memory_policy(),
+        memory_test(), kSetting},
+       {"c", "in C: flies to the lowest frontier", "deepest", ".c", c_policy(), c_test(), "max_path=50"}}};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -43,9 +54,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// The template's text with the policy's name replaced by `name`.
-std::string renamed(std::string_view text, std::string_view kind, const std::string& name) {
-  const std::string id = "my_" + std::string(kind);
+/// The template's text with the policy's name `id` replaced by `name`.
+std::string renamed(std::string_view text, const std::string& id, const std::string& name) {
   return replaced(replaced(std::string(text), id, name), class_name(id), class_name(name));
 }
 
@@ -81,17 +91,29 @@ void write(const fs::path& file, const std::string& text) {
   if (!out) throw InputError(file.string(), "", std::string("cannot be written: ") + std::strerror(errno));
 }
 
+std::string cmake_of(const Template& from, const std::string& name) {
+  return from.ending == ".c" ? renamed(c_cmake(), std::string(from.id), name)
+                             : renamed(policy_cmake(), "my_nearest", name);
+}
+
+std::string readme_of(const Template& from, const std::string& name) {
+  std::string text = renamed(policy_readme(), "my_nearest", name);
+  text = replaced(text, "@ending@", std::string(from.ending));
+  text = replaced(text, "@setting@", std::string(from.setting));
+  return replaced(text, "@karst@", karst_command());
+}
+
 void write_folder(const fs::path& folder, const Template& from, const std::string& name,
                   const std::string& sdk) {
-  std::string cmake = renamed(policy_cmake(), "nearest", name);
+  std::string cmake = cmake_of(from, name);
   if (!sdk.empty())
     cmake = replaced(cmake, "find_package(karst REQUIRED)",
                      "find_package(karst REQUIRED HINTS [==[" + sdk + "]==])");
   write(folder / "CMakeLists.txt", cmake);
-  write(folder / "README.md",
-        replaced(renamed(policy_readme(), "nearest", name), "@karst@", karst_command()));
-  write(folder / (name + ".cpp"), renamed(from.policy, from.name, name));
-  write(folder / (name + "_test.cpp"), renamed(from.test, from.name, name));
+  write(folder / "README.md", readme_of(from, name));
+  const std::string id(from.id), ending(from.ending);
+  write(folder / (name + ending), renamed(from.policy, id, name));
+  write(folder / (name + "_test" + ending), renamed(from.test, id, name));
 }
 
 void write_policy(const std::string& name, const std::string& dir, const std::string& kind) {
@@ -115,8 +137,9 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
     throw;
   }
   print_out("%s: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
+  const std::string ending(from->ending);
   for (const std::string& file :
-       {name + ".cpp", name + "_test.cpp", std::string("CMakeLists.txt"), std::string("README.md")})
+       {name + ending, name + "_test" + ending, std::string("CMakeLists.txt"), std::string("README.md")})
     print_out("  %s\n", file.c_str());
   print_out(
       "next, in that folder:\n  cmake -S . -B build && cmake --build build && ctest --test-dir build\n"

@@ -7,7 +7,7 @@ class App;
 
 namespace karst::tools {
 
-/// Adds `new NAME [--dir D] [--template nearest|tour|memory]` to the command `policy`.
+/// Adds `new NAME [--dir D] [--template nearest|tour|memory|c]` to the command `policy`.
 void add_policy_new(CLI::App& policy);
 
 }  // namespace karst::tools

@@ -12,8 +12,15 @@ std::string_view tour_test();
 std::string_view memory_policy();
 std::string_view memory_test();
 
-// Common to all of them; the texts name my_nearest.
+// Common to those; the text names my_nearest.
 std::string_view policy_cmake();
+
+// From examples/policies/plain_c.
+std::string_view c_policy();
+std::string_view c_test();
+std::string_view c_cmake();
+
+// Common to all of them; the text names my_nearest.
 std::string_view policy_readme();
 
 }  // namespace karst::tools

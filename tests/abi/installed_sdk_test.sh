@@ -12,6 +12,7 @@ for example in right_hand plain_c; do
   cmake --build "$work/$example" >> "$work/$example.log" 2>&1 || { cat "$work/$example.log"; exit 1; }
 done
 "$work/right_hand/right_hand_test"
+"$work/plain_c/deepest_test"
 cmake --install "$work/right_hand" --prefix "$work/home/.local" >> "$work/install.log"
 test -f "$work/home/.local/share/karst/policies/right_hand.so"
 

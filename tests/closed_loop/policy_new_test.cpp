@@ -34,6 +34,38 @@ TEST_P(Template, IsTheTutorialsPolicy) {
 }
 INSTANTIATE_TEST_SUITE_P(All, Template, ::testing::Values("nearest", "tour", "memory"));
 
+TEST(PolicyNew, InCIsTheExampleInC) {
+  const fs::path folder = fresh_folder("policy_new_c"),
+                 example = fs::path(KARST_SOURCE_DIR) / "examples/policies/plain_c";
+  const Output out = policy_new("deepest --template c --dir " + folder.string(), folder);
+  ASSERT_EQ(out.code, 0) << out.text;
+  EXPECT_TRUE(out.says("deepest_test.c")) << out.text;
+  for (const char* file : {"deepest.c", "deepest_test.c"})
+    EXPECT_EQ(bytes_of(folder / "deepest" / file), bytes_of(example / file)) << file;
+  std::string cmake = bytes_of(folder / "deepest/CMakeLists.txt");
+  const std::string hint = " HINTS [==[" KARST_BINARY_DIR "]==]";
+  ASSERT_NE(cmake.find(hint), std::string::npos) << cmake;
+  EXPECT_EQ(cmake.erase(cmake.find(hint), hint.size()), bytes_of(example / "CMakeLists.txt"));
+  const std::string readme = bytes_of(folder / "deepest/README.md");
+  EXPECT_NE(readme.find("`deepest.c`"), std::string::npos) << readme;
+  EXPECT_NE(readme.find("policy.parameters.max_path=50"), std::string::npos) << readme;
+  EXPECT_EQ(readme.find("@"), std::string::npos) << "a place left unfilled";
+}
+
+// A name that is a word of the template's own code changes its texts only.
+TEST(PolicyNew, InCTakesAnyName) {
+  const fs::path folder = fresh_folder("policy_new_c_named");
+  ASSERT_EQ(policy_new("create --template c --dir " + folder.string(), folder).code, 0);
+  const std::string source = bytes_of(folder / "create/create.c"),
+                    example = bytes_of(fs::path(KARST_SOURCE_DIR) / "examples/policies/plain_c/deepest.c");
+  EXPECT_NE(source.find(".id = TEXT(\"create\")"), std::string::npos);
+  EXPECT_NE(source.find(".name = TEXT(\"Create\")"), std::string::npos);
+  std::size_t named = 0;
+  for (std::size_t at = example.find("eepest"); at != std::string::npos; at = example.find("eepest", at + 1))
+    ++named;
+  EXPECT_EQ(named, 2u) << "only its id and its name";
+}
+
 TEST(PolicyNew, NamesEverythingAfterThePolicy) {
   const fs::path folder = fresh_folder("policy_new_named");
   ASSERT_EQ(policy_new("deep_first_2 --dir " + folder.string() + "/not/yet/there", folder).code, 0);
@@ -92,7 +124,7 @@ TEST(PolicyNew, SaysWhereItCannotWrite) {
 TEST(PolicyNew, NamesTheTemplatesThereAre) {
   const Output out = policy_new("mine --template best", fresh_folder("policy_new_template"));
   EXPECT_EQ(out.code, 1);
-  EXPECT_TRUE(out.says("{nearest,tour,memory}")) << out.text;
+  EXPECT_TRUE(out.says("{nearest,tour,memory,c}")) << out.text;
 }
 
 }  // namespace

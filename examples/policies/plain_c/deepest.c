@@ -10,12 +10,13 @@
 #define TEXT(literal) \
   { literal, sizeof literal - 1 }
 
-typedef struct deepest {
+/* One object of the policy: its parameter, and whatever it has to remember. */
+typedef struct object {
   double max_path_m;
-} deepest_t;
+} object_t;
 
 static void* create(const karst_host_t* host, karst_error_t* error) {
-  deepest_t* self = malloc(sizeof *self);
+  object_t* self = malloc(sizeof *self);
   (void)host;
   if (!self) {
     error->code = KARST_ERROR_FAILED;
@@ -26,7 +27,7 @@ static void* create(const karst_host_t* host, karst_error_t* error) {
 
 static int32_t init(void* self, const karst_parameter_value_t* values, uint64_t count, karst_error_t* error) {
   (void)error;
-  if (count == 1) ((deepest_t*)self)->max_path_m = values[0].number; /* in the order of declaration */
+  if (count == 1) ((object_t*)self)->max_path_m = values[0].number; /* in the order of declaration */
   return KARST_OK;
 }
 
@@ -37,7 +38,7 @@ static int32_t activate(void* self, karst_error_t* error) {
 
 static int32_t decide(void* self, const karst_request_t* request, const karst_decision_sink_t* sink,
                       karst_error_t* error) {
-  const double max_path_m = ((const deepest_t*)self)->max_path_m;
+  const double max_path_m = ((const object_t*)self)->max_path_m;
   const karst_frontier_cluster_t* best = NULL;
   for (uint64_t i = 0; i < request->frontier_count; ++i) {
     const karst_frontier_cluster_t* f = &request->frontiers[i];
@@ -93,7 +94,7 @@ static const karst_policy_descriptor_t descriptor = {
     .one_line = TEXT("Flies to the lowest frontier."),
 };
 
-static const karst_policy_t deepest = {
+static const karst_policy_t table = {
     .size = sizeof(karst_policy_t),
     .descriptor = &descriptor,
     .create = create,
@@ -105,7 +106,7 @@ static const karst_policy_t deepest = {
     .destroy = destroy,
 };
 
-static const karst_policy_t* policy(uint32_t index) { return index == 0 ? &deepest : NULL; }
+static const karst_policy_t* policy(uint32_t index) { return index == 0 ? &table : NULL; }
 
 static const karst_plugin_t plugin = {
     .size = sizeof(karst_plugin_t),

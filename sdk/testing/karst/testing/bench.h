@@ -35,6 +35,7 @@ class Bench {
 
   // The content of the next request; change it as the test needs. World frame, metres, radians, seconds.
   Vec3 position;
+  Vec3 start;  // position of T_world_start
   Vec3 direction_of_flight{1, 0, 0};
   double heading_rad = 0;
   double time_s = 0, seconds_before_homing = 600;
@@ -114,6 +115,7 @@ class Bench {
     r.stamp_ns = r.deadline_ns = r.state.stamp_ns = host_.now_ns;
     r.state.position = position;
     r.state.orientation = {std::cos(heading_rad / 2), 0, 0, std::sin(heading_rad / 2)};
+    r.T_world_start.position = start;
     r.T_world_start.orientation.w = 1;
     r.direction_of_flight = direction_of_flight;
     r.seconds_before_homing = seconds_before_homing;
