@@ -48,6 +48,34 @@ TEST(RecordRequests, ReplayAnswersAsInFlight) {
                   .says("decisions of highest_frontier"));
 }
 
+/// The exit code as the shell reports it: 128 and the number of the signal that ended the process.
+Output ended(const std::string& arguments) {
+  return run_command("{ " KARST_BINARY_DIR "/bin/karst " + arguments + "; echo ended with $?; }");
+}
+
+// As it was: nothing said who had crashed, and where.
+TEST(RecordRequests, ACrashInProcessIsNamedAndItsRequestIsKept) {
+  const auto dir = fresh_folder("record_requests_crash");
+  const std::string plugin = " --plugin " KARST_BINARY_DIR "/tests/plugins/crash_later.so",
+                    says = "karst: the policy plain crashed in decide(), request 3 (SIGSEGV)\n";
+  const Output flight =
+      ended("fly --cave " + generated_cave("small", 7) + " --policy plain" + plugin +
+            " --set policy.isolation=in_process --set mission.max_flight_time=45s --quiet --no-report"
+            " --record-requests --out " +
+            (dir / "run").string());
+  EXPECT_TRUE(flight.says(says)) << flight.text;
+  EXPECT_TRUE(flight.says("ended with 139")) << flight.text;
+
+  const std::string replay = "policy replay " + (dir / "run").string() + plugin;
+  const Output before = run_karst(replay + " --to 2 --expect-same");
+  EXPECT_EQ(before.code, 0) << before.text;
+  EXPECT_TRUE(before.says("2 decisions of plain 1.2.3, 2 as recorded, 0 different")) << before.text;
+  EXPECT_FALSE(before.says("cut short")) << before.text;
+  const Output again = ended(replay);
+  EXPECT_TRUE(again.says(says)) << "the request that it crashed on is there\n" << again.text;
+  EXPECT_TRUE(again.says("ended with 139")) << again.text;
+}
+
 TEST(RecordRequests, BadInputIsNamed) {
   const auto dir = fresh_folder("record_requests_bad");
   const Output none = run_karst("policy replay " + dir.string());

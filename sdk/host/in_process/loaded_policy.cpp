@@ -6,6 +6,7 @@
 #include "sdk/host/boundary/call_plugin.h"
 #include "sdk/host/boundary/policy_state.h"
 #include "sdk/host/boundary/text.h"
+#include "sdk/host/in_process/crash_note.h"
 #include "sdk/host/plugin/process_state.h"
 #include "sdk/host/services/translation.h"
 
@@ -17,6 +18,7 @@ struct LoadedPolicy::Call {
   karst_error_t error{};
   std::string failure;  // "" if the call succeeded
   std::string process_change;
+  std::string if_it_crashes;  // said on stderr
 };
 
 LoadedPolicy::LoadedPolicy(const PluginFile& plugin, const karst_policy_t& table, const PolicyChoice& choice,
@@ -43,11 +45,13 @@ template <class Work>
 std::string LoadedPolicy::call(const char* slot, Work work) {
   auto call = std::make_shared<Call>();
   call->session = session_;
+  call->if_it_crashes = if_it_crashes(slot);
   const ProcessState before;
   const std::string given_up_as = thread_.run(
       [call, work] {
         const ProcessState state;
         try {
+          CrashNote note(call->if_it_crashes);
           if (work(*call) != KARST_OK) call->failure = text_of(call->error);
         } catch (const std::exception& e) {
           call->failure = std::string("it threw an exception across the border: ") + e.what();
@@ -64,6 +68,15 @@ std::string LoadedPolicy::call(const char* slot, Work work) {
   }
   if (!call->process_change.empty()) warn_of_change(call->process_change, std::string("in ") + slot + "()");
   return call->failure.empty() ? "" : std::string(slot) + "(): " + call->failure;
+}
+
+/// Nothing for a policy's own process: its host says how that ended.
+std::string LoadedPolicy::if_it_crashes(const std::string& slot) const {
+  if (choice_.isolation == Isolation::process) return "";
+  const std::string request = last_request_ == 0 ? "before the first request"
+                              : slot == "decide" ? "request " + std::to_string(last_request_)
+                                                 : "after request " + std::to_string(last_request_);
+  return "karst: the policy " + name_ + " crashed in " + slot + "(), " + request;
 }
 
 void LoadedPolicy::warn_of_change(const std::string& what, const std::string& when) {
@@ -159,6 +172,7 @@ core::Decision LoadedPolicy::failed(const std::string& why) {
 
 core::Decision LoadedPolicy::decide(const core::DecisionRequest& request) {
   if (thread_.hangs()) throw core::PolicyFailure(name_ + " hangs");
+  last_request_ = request.sequence;
   struct Question {
     Question(const core::DecisionRequest& r, const karst_map_t* map) : pack(r, map) {}
     RequestPack pack;

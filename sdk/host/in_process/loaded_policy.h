@@ -39,6 +39,8 @@ class LoadedPolicy final : public HostedPolicy {
   /// Runs `work(call)`, which returns a result code, on the decision thread. Returns "" or the failure.
   template <class Work>
   std::string call(const char* slot, Work work);
+  /// What is said on stderr if the policy crashes in this slot.
+  std::string if_it_crashes(const std::string& slot) const;
   /// Throws core::InputError if there is a fault.
   void require(const std::string& fault) const;
   void start(const PolicyLegacy& former);
@@ -59,7 +61,8 @@ class LoadedPolicy final : public HostedPolicy {
   DecisionThread thread_;
   void* self_ = nullptr;
   bool active_ = false;
-  int failures_ = 0;  // consecutive failures of decide
+  int failures_ = 0;                // consecutive failures of decide
+  std::uint32_t last_request_ = 0;  // its number; 0: none yet
 };
 
 }  // namespace karst::host

@@ -50,6 +50,7 @@ class Server {
     choice.parameters = order.parameters;
     choice.source = order.source;
     choice.seed = order.seed;
+    choice.isolation = Isolation::process;
     choice.failures_allowed = order.failures_allowed;
     choice.hang_limit_s = choice.cpu_limit_s = 1e9;  // the host enforces them: it can end this process
     try {
