@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/rounded.h"
 #include "sdk/evaluation/record/whole_file.h"
+#include "sdk/map_merge/icp.h"
 #include "sdk/map_merge/map_inputs.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
@@ -149,6 +151,9 @@ void check_can_write(const std::string& stem) {
 }
 
 int merge(const MergeArguments& args) {
+  if (!map_merge::has_icp())
+    throw std::runtime_error(
+        "this karst was built without PCL: apt-get install libpcl-dev and build again");
   const map_merge::MapRegistrationOptions options = options_of(args);
   const std::string stem = stem_of(args.out);
   if (!args.force)

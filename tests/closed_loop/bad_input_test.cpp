@@ -316,8 +316,9 @@ TEST(BadInput, AFifoOrADeviceIsNoInput) {
       expect_refused(within_limits(arguments), {why.c_str(), "not a regular file"});
   }
   expect_refused(within_limits("policy check " + at("f.so")), {"is a FIFO"});
-  expect_refused(within_limits("map merge " + at("f.bt") + " " + at("f.bt") + " --out " + at("m")),
-                 {"is a FIFO"});
+  const Output merged = within_limits("map merge " + at("f.bt") + " " + at("f.bt") + " --out " + at("m"));
+  expect_refused(merged, {});
+  EXPECT_TRUE(merged.says("is a FIFO") || merged.says("built without PCL")) << merged.text;
   EXPECT_NE(within_limits("table " + at("run")).code, 124) << "it waited for the FIFO";
 }
 
