@@ -1,6 +1,8 @@
 // The `karst` command.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "core_stack/common/options.h"
 #include "sdk/terminal/terminal.h"
@@ -19,14 +21,26 @@
 
 namespace {
 
-/// The first word that names no command where one was expected; "" if all words so far are valid.
-std::string wrong_command(const CLI::App& app) {
+/// The command to which the words lead as far as they are valid.
+const CLI::App& reached(const CLI::App& app) {
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
-  const std::vector<std::string> rest = at->remaining();
-  if (at->get_require_subcommand_min() == 0 || rest.empty()) return "";
+  return *at;
+}
+
+/// True of `karst` and of a group such as `karst policy` with nothing behind them.
+bool is_bare_group(const CLI::App& app) {
+  const CLI::App& at = reached(app);
+  return at.get_require_subcommand_min() > 0 && at.remaining().empty();
+}
+
+/// The first word that names no command where one was expected; "" if all words so far are valid.
+std::string wrong_command(const CLI::App& app) {
+  const CLI::App& at = reached(app);
+  const std::vector<std::string> rest = at.remaining();
+  if (at.get_require_subcommand_min() == 0 || rest.empty()) return "";
   std::vector<std::string> names;
-  for (const CLI::App* command : at->get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* command : at.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
   const std::string near = karst::core::nearest_name(rest.front(), names);
   return "\"" + rest.front() + "\" is no command" + (near.empty() ? "" : "; did you mean " + near + "?");
@@ -35,6 +49,10 @@ std::string wrong_command(const CLI::App& app) {
 /// CLI11's own codes above 100 are useless to scripts: a usage error gets the code of any other error.
 int exit_code(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_name() == "RuntimeError") return e.get_exit_code();
+  if (e.get_name() == "RequiredError" && is_bare_group(app)) {
+    std::fputs(app.help().c_str(), stdout);
+    return 0;
+  }
   const std::string wrong = e.get_exit_code() == 0 ? "" : wrong_command(app);
   if (!wrong.empty()) karst::print_error("karst: %s\n", wrong.c_str());
   return app.exit(e) == 0 ? 0 : 1;

@@ -280,8 +280,19 @@ TEST(BadInput, UsageErrorsNameTheWord) {
   expect_refused(run_karst("fly --threads many"), {"--threads", "many"});
 }
 
+// It was an error: "A subcommand is required".
+TEST(BadInput, KarstAndItsGroupsAlonePrintTheirHelp) {
+  for (const char* group : {"", "policy", "cave", "map"}) {
+    const Output alone = run_karst(group), help = run_karst(std::string(group) + " --help");
+    EXPECT_EQ(alone.code, 0) << alone.text;
+    EXPECT_EQ(alone.text, help.text);
+    EXPECT_TRUE(alone.says("Usage:") && alone.says("Subcommands:")) << alone.text;
+  }
+  for (const char* wrong : {"--nonsense", "policy --nonsense", "map --nonsense"})
+    expect_refused(run_karst(wrong), {"--nonsense"});
+}
+
 TEST(BadInput, UsageErrorsTeach) {
-  EXPECT_NE(run_karst("").code, 0);
   const Output nothing = run_karst("fly");
   EXPECT_NE(nothing.code, 0);
   EXPECT_TRUE(nothing.says("--cave")) << nothing.text;
