@@ -139,7 +139,7 @@ void evaluate(const EvaluateArguments& args) {
         points, evaluation::open_reference(reference, args.density_per_m2, points));
     result["map"]["file"] = map_file;
   }
-  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
   if (result["trajectory"].is_null() && result["map"].is_null())
     throw core::InputError(args.run, "", "nothing to compare it with: name a --truth or a --reference");
 

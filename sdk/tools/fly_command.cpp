@@ -59,8 +59,8 @@ void print_objects(const nlohmann::ordered_json& m) {
 }
 
 void print_outcome(const nlohmann::ordered_json& metrics) {
-  print_out("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
-            metrics["reason"].get<std::string>().c_str());
+  print_wrapped(stdout, 2, "%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
+                metrics["reason"].get<std::string>().c_str());
 }
 
 void print_flight(const nlohmann::ordered_json& metrics, const flight::FlightRequest& request) {
@@ -92,9 +92,10 @@ void print_team(const flight::TeamResult& team, const nlohmann::ordered_json& me
   print_out("  robot  explored  outcome    at the base\n");
   for (std::size_t i = 0; i < team.robots.size(); ++i) {
     const flight::RobotResult& r = team.robots[i];
-    print_out("  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1, r.exploration_time_s,
-              core::name_of(r.mission.outcome), r.connected ? "connected" : "cut off", r.records_at_base,
-              r.records, r.mission.reason.c_str());
+    print_wrapped(stdout, 9, "  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1,
+                  r.exploration_time_s, core::name_of(r.mission.outcome),
+                  r.connected ? "connected" : "cut off", r.records_at_base, r.records,
+                  r.mission.reason.c_str());
   }
   print_objects(metrics);
   print_out("  over the air     %.0f kB in %.0f s\nLook next at:\n",
@@ -169,8 +170,9 @@ int fly(const FlyArguments& args) {
       print_flight(outcome.metrics, request);
   }
   if (!outcome.record_problem.empty())
-    print_error("karst: %s\nkarst: the %s record is incomplete: %s\n", outcome.record_problem.c_str(),
-                flight::is_team(mission) ? "flights'" : "flight's", request.run_dir.c_str());
+    print_wrapped(stderr, 7, "karst: %s\nkarst: the %s record is incomplete: %s\n",
+                  outcome.record_problem.c_str(), flight::is_team(mission) ? "flights'" : "flight's",
+                  request.run_dir.c_str());
   int code = flight::kNotLanded;
   if (outcome.landed) code = std::fflush(stdout) == 0 ? 0 : 1;
   if (mission_flight.hangs()) {  // nothing may be destroyed

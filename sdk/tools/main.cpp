@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     code = exit_code(app, e);
   } catch (const std::exception& e) {
-    karst::print_error("karst: %s\n", e.what());
+    karst::print_wrapped(stderr, 7, "karst: %s\n", e.what());
     code = 1;
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;

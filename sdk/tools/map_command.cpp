@@ -129,7 +129,8 @@ std::vector<Placed> place_all(const std::vector<map_merge::MapInput>& maps,
 void print(const Placed& p) {
   const map_merge::MapRegistration& r = p.registration;
   const core::Vec3& t = r.T_target_source.position;
-  print_out("%s: %s\n", p.map->name.c_str(), r.trusted ? "in place" : ("refused: " + r.reason).c_str());
+  print_wrapped(stdout, 2, "%s: %s\n", p.map->name.c_str(),
+                r.trusted ? "in place" : ("refused: " + r.reason).c_str());
   print_out("  moved by (%.2f, %.2f, %.2f) m, turned by %.2f deg%s\n", t.x(), t.y(), t.z(),
             core::heading_of(r.T_target_source.orientation) * 180 / std::numbers::pi,
             r.trusted ? "" : " at best");
@@ -152,8 +153,7 @@ void check_can_write(const std::string& stem) {
 
 int merge(const MergeArguments& args) {
   if (!map_merge::has_icp())
-    throw std::runtime_error(
-        "this karst was built without PCL: apt-get install libpcl-dev and build again");
+    throw std::runtime_error("this karst was built without PCL: apt-get install libpcl-dev and build again");
   const map_merge::MapRegistrationOptions options = options_of(args);
   const std::string stem = stem_of(args.out);
   if (!args.force)

@@ -35,7 +35,7 @@ struct SelectArguments {
 
 ordered_json known(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(); }
 
-void tell(const std::string& message) { print_error("%s\n", message.c_str()); }
+void tell(const std::string& message) { print_wrapped(stderr, 2, "%s\n", message.c_str()); }
 
 Experience experience_of(const SelectArguments& args) {
   std::vector<std::string> files = args.results;
@@ -66,7 +66,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
               cave.*far.value, e.caves[n.cave].figures.*far.value);
   }
   if (s.refused) {
-    print_out("No policy is named: %s.\n", s.reason.c_str());
+    print_wrapped(stdout, 2, "No policy is named: %s.\n", s.reason.c_str());
     return;
   }
   print_out("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
@@ -81,7 +81,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m)
     if (!std::isnan(figures[m])) print_out(" %s %.3g", e.metrics[m].c_str(), figures[m]);
-  print_out("\n%s.\n", s.reason.c_str());
+  print_wrapped(stdout, 2, "\n%s.\n", s.reason.c_str());
 }
 
 ordered_json parameters_json(const selection::Preset& preset) {

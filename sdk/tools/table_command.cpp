@@ -158,7 +158,7 @@ void add_table_command(CLI::App& app) {
     }
     if (all.size() > 1) print_spread(all);
     std::fflush(stdout);
-    for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+    for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
     for (const std::string& p : skipped) print_error("karst: passed over: %s\n", p.c_str());
     if (!problems.empty() || skipped.size() == runs->size()) throw CLI::RuntimeError(1);
   });
