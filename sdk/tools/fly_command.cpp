@@ -117,11 +117,23 @@ void make_cave_cache(const fs::path& folder) {
                            "is not a writable directory" + (error ? ": " + error.message() : ""));
 }
 
+/// Says what `policy auto` chose: before take-off, since it may be a reason not to fly.
+void print_choice(const flight::Mission& mission) {
+  std::string parameters;
+  for (const auto& [key, value] : mission.policy_parameters)
+    parameters += (parameters.empty() ? " with " : ", ") + key + "=" + value.data();
+  print_wrapped(stdout, 2, "policy auto: %s%s\n  %s\n", mission.policy.c_str(), parameters.c_str(),
+                mission.policy_selection.c_str());
+  std::fflush(stdout);  // the status line is another stream
+}
+
 flight::Mission mission_of(const FlyArguments& args) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
+  const bool is_auto = mission.policy == flight::kAutoPolicy;
   flight::choose_policy(mission);
+  if (is_auto && !args.quiet && !args.json) print_choice(mission);
   flight::check(mission.faults, mission.core.team.robots, mission.file);
   core::check(mission.core.team, mission.core.homing, mission.file);
   if (!mission.cave.empty()) flight::check_cave(mission.cave, mission.start);
@@ -224,7 +236,7 @@ void add_fly_command(CLI::App& app) {
       "a second of flight takes a second, as on a vehicle: what is not ready in time counts as an "
       "overrun (timing.json), and no two flights are the same");
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
-  fly_app->add_flag("--quiet", args->quiet, "no status line");
+  fly_app->add_flag("--quiet", args->quiet, "no status line; nothing on what policy auto chose");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
   fly_app
       ->add_option(
