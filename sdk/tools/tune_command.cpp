@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/csv_cell.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/run/run_campaign.h"
@@ -93,11 +94,11 @@ std::string parameters_text(const campaign::Settings& parameters) {
 
 void write_table(const fs::path& file, const TuneResult& r, const std::string& metric) {
   std::string text = "candidate";
-  for (const auto& [key, value] : r.tried.front().parameters) text += "," + key;
-  text += "," + metric + "\n";
+  for (const auto& [key, value] : r.tried.front().parameters) text += "," + core::csv_cell(key);
+  text += "," + core::csv_cell(metric) + "\n";
   for (std::size_t i = 0; i < r.tried.size(); ++i) {
     text += std::to_string(i);
-    for (const auto& [key, value] : r.tried[i].parameters) text += "," + value;
+    for (const auto& [key, value] : r.tried[i].parameters) text += "," + core::csv_cell(value);
     std::array<char, 32> number;
     std::snprintf(number.data(), number.size(), ",%.6g\n", r.tried[i].mean);
     text += number.data();
