@@ -44,7 +44,8 @@ host::PolicyChoice choice_of(const ReplayArguments& args, const host::RequestLog
   }
   c.source = args.run;
   c.seed = header.seed;
-  c.hang_limit_s = kNoLimit_s;
+  c.isolation = host::Isolation::in_process;  // a debugger sees the policy's code
+  c.hang_limit_s = c.cpu_limit_s = kNoLimit_s;
   return c;
 }
 
