@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/json_point.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/cave.h"
@@ -284,7 +285,9 @@ void add_cave_command(CLI::App& app) {
 
   auto d = std::make_shared<DescribeArguments>();
   CLI::App* like = cave->add_subcommand(
-      "describe", "What a cave is like: what karst select compares caves by (docs/select.md)");
+      "describe",
+      "What a cave is like: the figures by which karst select compares caves\n\nThey are explained in " +
+          core::doc_path("docs/select.md") + ".");
   like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
       ->required();
   like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")

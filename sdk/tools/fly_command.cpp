@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/cave_check.h"
 #include "sdk/flight/fly.h"
@@ -201,12 +202,14 @@ void add_fly_command(CLI::App& app) {
   CLI::App* fly_app = app.add_subcommand(
       "fly",
       "Fly one mission and write its run directory and report.\n\n"
-      "  karst fly examples/missions/demo.info\n"
+      "  karst fly mission.info\n"
       "  karst fly --cave caves/tunnel.stl --start \"1 2 1.5 90\" --policy highest_frontier\n"
-      "  karst fly demo.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
-      "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the record "
-      "is incomplete, 1 not "
-      "flown or nothing could be printed.");
+      "  karst fly mission.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
+      "Missions to start from: " +
+          core::doc_path("examples/missions") +
+          "\n\n"
+          "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the "
+          "record is incomplete, 1 not flown or nothing could be printed.");
   fly_app->add_option("mission", args->mission_file, "mission file (.info)")->check(not_empty());
   fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
       ->check(not_empty());
@@ -218,7 +221,8 @@ void add_fly_command(CLI::App& app) {
                    "exploration policy; see karst policy list; auto: selected for the cave")
       ->check(not_empty());
   fly_app
-      ->add_option("--preset", args->overrides.preset, "file with a policy and its parameters (docs/tune.md)")
+      ->add_option("--preset", args->overrides.preset,
+                   "file with a policy and its parameters (" + core::doc_path("docs/tune.md") + ")")
       ->check(not_empty());
   fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
       ->allow_extra_args(false)

@@ -46,9 +46,23 @@ std::string wrong_command(const CLI::App& app) {
   return "\"" + rest.front() + "\" is no command" + (near.empty() ? "" : "; did you mean " + near + "?");
 }
 
+/// The help of a command, to which `words` lead, and of all below it.
+void print_help_of_all(const CLI::App& app, const std::string& words) {
+  std::fputs(app.get_formatter()->make_help(&app, words, CLI::AppFormatMode::Normal).c_str(), stdout);
+  for (const CLI::App* below :
+       app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); })) {
+    std::fputs("\n", stdout);
+    print_help_of_all(*below, words + " " + below->get_name());
+  }
+}
+
 /// CLI11's own codes above 100 are useless to scripts: a usage error gets the code of any other error.
 int exit_code(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_name() == "RuntimeError") return e.get_exit_code();
+  if (e.get_name() == "CallForAllHelp") {
+    print_help_of_all(app, app.get_name());
+    return 0;
+  }
   if (e.get_name() == "RequiredError" && is_bare_group(app)) {
     std::fputs(app.help().c_str(), stdout);
     return 0;
@@ -90,6 +104,8 @@ int main(int argc, char** argv) {
   karst::tools::add_map_command(app);
   karst::tools::add_select_command(app);
   karst::tools::add_tune_command(app);
+  // Set last: commands inherit what is there when they are added, and need none of their own.
+  app.set_help_all_flag("--help-all", "Print the help of every command and exit");
   int code = 0;
   try {
     app.parse(argc, argv);

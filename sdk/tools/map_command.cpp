@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/rounded.h"
 #include "sdk/evaluation/record/whole_file.h"
@@ -209,7 +210,8 @@ void add_map_command(CLI::App& app) {
   command->add_option("--resolution", args->resolution_m, "metres to which clouds are thinned out")
       ->capture_default_str()
       ->check(number_in(0.05, 1.0));
-  command->add_option("--set", args->settings, "limit=value; see docs/map_merge.md")->allow_extra_args(false);
+  command->add_option("--set", args->settings, "limit=value; see " + core::doc_path("docs/map_merge.md"))
+      ->allow_extra_args(false);
   command->add_flag("--json", args->json, "print the report as JSON");
   command->add_flag("--force", args->force, "overwrite");
   command->callback([args] {

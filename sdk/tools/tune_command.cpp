@@ -9,6 +9,7 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/csv_cell.h"
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/run/run_campaign.h"
 #include "sdk/evaluation/record/whole_file.h"
@@ -213,7 +214,9 @@ void add_tune_command(CLI::App& app) {
   tune_app->add_option("--flights", args->tune.flights, "how many flights it may take in all")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  tune_app->add_option("--method", args->method, "bobyqa, direct, crs (docs/tune.md)")->capture_default_str();
+  tune_app
+      ->add_option("--method", args->method, "bobyqa, direct, crs (" + core::doc_path("docs/tune.md") + ")")
+      ->capture_default_str();
   tune_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\"")->capture_default_str();
   tune_app->add_option("--profile", args->profile, "as of karst compare")->capture_default_str();
   tune_app->add_option("--mission", args->mission, "mission file with settings that all share")
