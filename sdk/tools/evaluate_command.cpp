@@ -171,15 +171,19 @@ void add_evaluate_command(CLI::App& app) {
       "  karst evaluate runs/cave --reference scanner.pcd            map error, point to point\n\n"
       "Writes evaluation.json into the run (or beside the trajectory) and adds plots to its report.");
   command->add_option("run", args->run, "run directory, or a trajectory (TUM)")
+      ->type_name(kFile)
       ->required()
       ->check(not_empty());
   command->add_option("--truth", args->truth, "true poses; default: the run's ground_truth.tum")
+      ->type_name(kFile)
       ->check(not_empty());
   command
       ->add_option("--reference", args->reference,
                    "cave .info, mesh or cloud (PCD, PLY) to measure the map against; default: the run's cave")
+      ->type_name(kFile)
       ->check(not_empty());
   command->add_option("--map", args->map, "map to measure (.bt, .ot, .ply, .pcd); default: the run's")
+      ->type_name(kFile)
       ->check(not_empty());
   command
       ->add_option("--density", args->density_per_m2, "points a square metre, where the reference is a mesh")

@@ -210,8 +210,11 @@ void add_fly_command(CLI::App& app) {
           "\n\n"
           "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the "
           "record is incomplete, 1 not flown or nothing could be printed.");
-  fly_app->add_option("mission", args->mission_file, "mission file (.info)")->check(not_empty());
+  fly_app->add_option("mission", args->mission_file, "mission file (.info)")
+      ->type_name(kFile)
+      ->check(not_empty());
   fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
+      ->type_name(kFile)
       ->check(not_empty());
   fly_app
       ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
@@ -219,17 +222,22 @@ void add_fly_command(CLI::App& app) {
   fly_app
       ->add_option("--policy", args->overrides.policy,
                    "exploration policy; see karst policy list; auto: selected for the cave")
+      ->type_name(kPolicy)
       ->check(not_empty());
   fly_app
       ->add_option("--preset", args->overrides.preset,
                    "file with a policy and its parameters (" + core::doc_path("docs/tune.md") + ")")
+      ->type_name(kFile)
       ->check(not_empty());
   fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
   fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")->allow_extra_args(false);
   fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
-  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")->check(not_empty());
+  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")
+      ->type_name(kFolder)
+      ->check(not_empty());
   fly_app
       ->add_option("--threads", args->threads,
                    "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "
@@ -247,11 +255,13 @@ void add_fly_command(CLI::App& app) {
           "--cave-cache", args->cave_cache,
           "folder that keeps what the evaluation works out of a cave, for other flights in it; made if "
           "it is not there")
+      ->type_name(kFolder)
       ->check(not_empty());
   fly_app
       ->add_option("--check", args->check,
                    "do not fly: look at everything that can be wrong and write the mission as resolved to "
                    "this file")
+      ->type_name(kFile)
       ->check(not_empty());
   fly_app->add_flag(
       "--record-requests", args->record_requests,

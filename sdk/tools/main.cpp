@@ -1,23 +1,13 @@
 // The `karst` command.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core_stack/common/options.h"
 #include "sdk/terminal/terminal.h"
-#include "sdk/tools/cave_command.h"
-#include "sdk/tools/compare_command.h"
-#include "sdk/tools/evaluate_command.h"
-#include "sdk/tools/explain_time_command.h"
-#include "sdk/tools/fly_command.h"
-#include "sdk/tools/map_command.h"
-#include "sdk/tools/policy_command.h"
-#include "sdk/tools/replay_command.h"
-#include "sdk/tools/report_command.h"
-#include "sdk/tools/select_command.h"
-#include "sdk/tools/table_command.h"
-#include "sdk/tools/tune_command.h"
+#include "sdk/tools/karst_command.h"
 
 namespace {
 
@@ -75,42 +65,13 @@ int exit_code(const CLI::App& app, const CLI::ParseError& e) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
-      "karst: fly exploration policies through caves.\n\n"
-      "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
-      "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
-      "  karst compare CAMPAIGN.info                                    say which of several policies is "
-      "better\n"
-      "  karst policy list                                              see what can be flown\n"
-      "  karst policy new NAME                                          begin a policy of your own\n"
-      "  karst replay scans --out runs/replayed                         localize and map from recorded "
-      "scans\n"
-      "  karst evaluate runs/demo                                       errors of trajectory and map\n"
-      "  karst map merge runs/a runs/b --out maps/both                  maps of several flights in one",
-      "karst"};
-  app.set_version_flag("--version", KARST_VERSION);
-  app.require_subcommand(1);
-  karst::tools::add_fly_command(app);
-  karst::tools::add_compare_command(app);
-  karst::tools::add_trials_command(app);
-  karst::tools::add_results_command(app);
-  karst::tools::add_policy_command(app);
-  karst::tools::add_cave_command(app);
-  karst::tools::add_report_command(app);
-  karst::tools::add_table_command(app);
-  karst::tools::add_explain_time_command(app);
-  karst::tools::add_replay_command(app);
-  karst::tools::add_evaluate_command(app);
-  karst::tools::add_map_command(app);
-  karst::tools::add_select_command(app);
-  karst::tools::add_tune_command(app);
-  // Set last: commands inherit what is there when they are added, and need none of their own.
-  app.set_help_all_flag("--help-all", "Print the help of every command and exit");
+  std::shared_ptr<CLI::App> app;
   int code = 0;
   try {
-    app.parse(argc, argv);
+    app = karst::tools::karst_command();
+    app->parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    code = exit_code(app, e);
+    code = exit_code(*app, e);
   } catch (const std::exception& e) {
     karst::print_wrapped(stderr, 7, "karst: %s\n", e.what());
     code = 1;

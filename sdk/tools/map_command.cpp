@@ -201,9 +201,11 @@ void add_map_command(CLI::App& app) {
       "A registration that cannot be trusted is refused with the reason, and then nothing is written.\n"
       "Exit code: 0 merged, 2 refused, 1 an error.");
   command->add_option("maps", args->maps, "run directories, OctoMap files (.bt, .ot) or clouds (.ply, .pcd)")
+      ->type_name(kFile)
       ->required()
       ->expected(2, 1000);
   command->add_option("--out,-o", args->out, "path without ending: writes .ot, .bt, .ply and .json")
+      ->type_name(kFile)
       ->required()
       ->check(not_empty());
   command->add_flag("--six", args->six, "the maps' z axes need not point up");

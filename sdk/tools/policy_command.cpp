@@ -92,7 +92,7 @@ void add_policy_command(CLI::App& app) {
   CLI::App* list =
       policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
   list->add_option("--plugin", args->plugins, "Look at this plugin file first")
-      ->type_name("FILE")
+      ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
   list->add_flag("--json", args->json, "Write JSON");

@@ -185,10 +185,11 @@ void add_replay_command(CLI::App& app) {
           core::doc_path("docs/replay.md") +
           ").\n"
           "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
-  command->add_option("scans", args->scans, "folder of scans")->check(not_empty());
-  command->add_option("--out,-o", args->out, "run directory")->check(not_empty());
+  command->add_option("scans", args->scans, "folder of scans")->type_name(kFolder)->check(not_empty());
+  command->add_option("--out,-o", args->out, "run directory")->type_name(kFolder)->check(not_empty());
   command
       ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
+      ->type_name(kFile)
       ->check(not_empty());
   command->add_option("--set", args->settings, "key=value; see --keys")->allow_extra_args(false);
   command->add_flag("--json", args->json, "print metrics.json instead of a summary; no progress");

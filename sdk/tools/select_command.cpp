@@ -239,10 +239,12 @@ void add_select_command(CLI::App& app) {
       "  karst select --leave-one-out --results mine.info               what selecting is worth\n\n"
       "Exit code: 0 a policy is named, 3 nothing similar was flown, 1 an error.");
   select->add_option("--cave", args->cave, "mesh, cave .info, map (.bt, .ot), or INFO file of figures")
+      ->type_name(kFile)
       ->check(not_empty());
   select->add_option("--start", args->start, "\"x y z\", of a mesh")->check(not_empty());
   select
       ->add_option("--results", args->results, "stores of campaigns, experiences; default: what is installed")
+      ->type_name(kFile)
       ->check(not_empty());
   select->add_option("--metric", args->options.metric, "the figure to do best in")
       ->check(not_empty())
@@ -253,9 +255,14 @@ void add_select_command(CLI::App& app) {
   select
       ->add_option("--preset", args->preset,
                    "write the policy with its parameters here, for karst fly --preset")
+      ->type_name(kFile)
       ->check(not_empty());
-  select->add_option("--learn", args->learn, "stores to distil into --out")->check(not_empty());
-  select->add_option("--out", args->out, "of --learn: the experience, an INFO file")->check(not_empty());
+  select->add_option("--learn", args->learn, "stores to distil into --out")
+      ->type_name(kFile)
+      ->check(not_empty());
+  select->add_option("--out", args->out, "of --learn: the experience, an INFO file")
+      ->type_name(kFile)
+      ->check(not_empty());
   select->add_flag("--leave-one-out", args->leave_one_out, "say what selecting is worth");
   select->add_flag("--json", args->json, "Write JSON");
   select->callback([args] {

@@ -199,10 +199,15 @@ void add_tune_command(CLI::App& app) {
       "the same "
       "words it goes on where it was stopped or killed.\nExit code: 0 done, 130 stopped, 1 otherwise.");
   tune_app->add_option("policy", args->policy, "the policy; policy:key=value,... keeps these as given")
+      ->type_name(kPolicy)
       ->required()
       ->check(not_empty());
-  tune_app->add_option("--caves", args->caves, "cave .info files to tune on")->required()->check(not_empty());
+  tune_app->add_option("--caves", args->caves, "cave .info files to tune on")
+      ->type_name(kFile)
+      ->required()
+      ->check(not_empty());
   tune_app->add_option("--held-out", args->held_out, "cave .info files that only judge what came of it")
+      ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--parameter", args->parameters, "a parameter to tune; default: all that are numbers")
       ->allow_extra_args(false)
@@ -220,12 +225,15 @@ void add_tune_command(CLI::App& app) {
   tune_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\"")->capture_default_str();
   tune_app->add_option("--profile", args->profile, "as of karst compare")->capture_default_str();
   tune_app->add_option("--mission", args->mission, "mission file with settings that all share")
+      ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
       ->allow_extra_args(false);
   tune_app->add_option("--plugin", args->plugin, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--out", args->out, "folder for the preset, the table and the stores")
+      ->type_name(kFolder)
       ->required()
       ->check(not_empty())
       ->check(no_file());

@@ -21,6 +21,19 @@ while read -r path; do
   esac
 done < named.txt
 
+# Completion and manual pages lie where shells and man(1) look; the pages name documentation of this installation.
+share=$work/karst/share
+for file in bash-completion/completions/karst zsh/site-functions/_karst man/man1/karst.1 man/man1/karst-policy-new.1; do
+  test -s "$share/$file" || { echo "$file is not installed"; exit 1; }
+done
+bash --norc -c ". '$share/bash-completion/completions/karst' && complete -p karst" > completion.txt
+if grep -rF "$binary" "$share/man"; then echo "a manual page names the folder of the build"; exit 1; fi
+grep -rhoE "(docs|examples)/[A-Za-z0-9_./-]*[A-Za-z0-9_]" "$share/man" | sort -u > named_by_man.txt
+test "$(wc -l < named_by_man.txt)" -ge 4
+while read -r path; do
+  test -e "$share/doc/karst/$path" || { echo "a manual page names $path, which is not there"; exit 1; }
+done < named_by_man.txt
+
 code=0
 "$karst" fly --quiet --cave cave.info --policy nearest_frontier --set "mission.max_flight_time=10 s" --out run \
   > fly.log 2>&1 || code=$?
