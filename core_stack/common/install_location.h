@@ -1,11 +1,27 @@
-// Where this installation keeps its plugins: relative to the executable, in the build tree as when installed.
+// Where this installation keeps what it loads and what its texts name: relative to the executable, in the
+// build tree as when installed.
 #pragma once
 #include <filesystem>
+#include <string>
+#include <system_error>
 
 namespace karst::core {
 
-inline std::filesystem::path plugin_root() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "karst";
+/// The folder that holds bin, lib and share.
+inline std::filesystem::path install_root() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+}
+
+inline std::filesystem::path plugin_root() { return install_root() / "lib" / "karst"; }
+
+/// The folder that holds docs and examples.
+inline std::filesystem::path doc_root() { return install_root() / "share" / "doc" / "karst"; }
+
+/// The path of a page or an example, such as "docs/select.md"; what to install if it is not there.
+inline std::string doc_path(const std::string& name) {
+  const std::filesystem::path file = doc_root() / name;
+  std::error_code error;
+  return std::filesystem::exists(file, error) ? file.string() : name + " of the package karst-doc";
 }
 
 }  // namespace karst::core

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 
 namespace karst::core {
 
@@ -13,7 +14,8 @@ void describe(OptionTable& t, TeamOptions& o) {
   t.add("nodes", o.nodes, 0, kMaxNodes,
         "communication nodes that each robot carries, and drops where it comes out of reach");
   t.add("stagger", o.stagger_s, "s", 0, 7200, "between two starts; whole seconds");
-  t.add("strategy", o.strategy, "where a robot lands when its battery runs low (docs/homing.md)");
+  t.add("strategy", o.strategy,
+        "where a robot lands when its battery runs low (" + doc_path("docs/homing.md") + ")");
   t.add("separation", o.separation_m, "m", 1.0, 20,
         "of two vehicles nearer than this, and what they need to stop, one gives way: to who lands or has no "
         "room, "

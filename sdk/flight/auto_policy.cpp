@@ -118,8 +118,8 @@ void choose_policy(Mission& m) {
   if (results.empty())
     throw InputError(m.file, "policy.auto.results",
                      "no experience is installed: name a store or an experience");
-  const selection::Experience e =
-      selection::load_experience({results}, [](const std::string& s) { print_error("%s\n", s.c_str()); });
+  const selection::Experience e = selection::load_experience(
+      {results}, [](const std::string& s) { print_wrapped(stderr, 2, "%s\n", s.c_str()); });
   const selection::Selected s =
       selection::select(e, figures, o.select, m.file,
                         o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));

@@ -84,7 +84,7 @@ evaluation::Truth truth_if_known(const fs::path& run_dir, const Finishing& how,
                     evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems));
   } catch (const core::InputError& e) {
     lost_cave = true;
-    print_error("karst: coverage is not known: %s\n", e.what());
+    print_wrapped(stderr, 7, "karst: coverage is not known: %s\n", e.what());
     return {};
   }
 }
@@ -113,7 +113,7 @@ nlohmann::json finish_run(const fs::path& run_dir, const Finishing& how) {
   nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &run_problems);
   problems.insert(problems.end(), run_problems.begin(), run_problems.end());
   if (lost_cave) keep_known(metrics, run_dir);
-  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
   if (how.report == Report::written) evaluation::write_report(run_dir);
   return metrics;
@@ -128,7 +128,7 @@ void finish_team(const fs::path& run_dir, const Finishing& how, nlohmann::ordere
   evaluation::set_figures(metrics, evaluation::team_object_figures(team, team.problems));
   problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are reported
   if (lost_cave) keep_known(metrics, run_dir);
-  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
   write_team_telemetry(team);
   if (how.report == Report::written) evaluation::write_team_report(team, metrics);

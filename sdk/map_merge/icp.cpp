@@ -35,6 +35,8 @@ Pose pose_of(const Eigen::Matrix4f& T) {
 
 }  // namespace
 
+bool has_icp() { return true; }
+
 struct Icp::Storage {
   Vec3 middle;
   PclCloud::Ptr target;

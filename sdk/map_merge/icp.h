@@ -1,6 +1,8 @@
 // Iterative closest point with PCL: point to plane, from far to near.
 #pragma once
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "sdk/map_merge/map_piece.h"
 
@@ -12,6 +14,9 @@ struct IcpRound {
   int iterations;
   std::size_t max_points;
 };
+
+/// False if karst was built without PCL: then no Icp can be made.
+bool has_icp();
 
 /// Holds the target's search tree; PCL stays in icp.cpp.
 class Icp {

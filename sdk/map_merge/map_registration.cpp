@@ -3,11 +3,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "core_stack/common/format_text.h"
 
 namespace karst::map_merge {
 namespace {
 
+using core::format_text;
 using core::OptionTable;
 using core::Pose;
 using core::Vec3;
@@ -48,12 +50,6 @@ std::vector<Candidate> distinct_best(std::vector<Candidate> all, std::size_t mos
   return kept;
 }
 
-std::string text(const char* format, auto... values) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 /// The reason to reject the registration; empty if there is none.
 std::string objection(const MapRegistration& r, double cell_m, bool free_known,
                       const MapRegistrationOptions& options) {
@@ -62,26 +58,30 @@ std::string objection(const MapRegistration& r, double cell_m, bool free_known,
   const double needed = options.coarse.gravity_known ? 1.0 : 1.5;
   const double min_overlap = needed * (free_known ? limits.min_overlap : limits.min_overlap_blind);
   if (r.overlay.overlap() < min_overlap)
-    return text("only %.0f %% of the rock coincides; at least %.0f %% must%s", 100 * r.overlay.overlap(),
-                100 * min_overlap, free_known ? "" : " where no free space is known");
+    return format_text("only %.0f %% of the rock coincides; at least %.0f %% must%s",
+                       100 * r.overlay.overlap(), 100 * min_overlap,
+                       free_known ? "" : " where no free space is known");
   if (r.shared_m2 < limits.min_shared_m2)
-    return text("only %.0f m^2 of rock coincide; at least %.0f m^2 must", r.shared_m2, limits.min_shared_m2);
+    return format_text("only %.0f m^2 of rock coincide; at least %.0f m^2 must", r.shared_m2,
+                       limits.min_shared_m2);
   if (r.overlay.agreement() < limits.min_agreement)
-    return text("%.0f %% of the rock stands in space the other map knows to be free; at most %.0f %% may",
-                100 * (1 - r.overlay.agreement()), 100 * (1 - limits.min_agreement));
+    return format_text(
+        "%.0f %% of the rock stands in space the other map knows to be free; at most %.0f %% may",
+        100 * (1 - r.overlay.agreement()), 100 * (1 - limits.min_agreement));
   if (r.overlay.residual_m() > limits.max_residual_cells * cell_m)
-    return text("the residual is %.2f m; at most %.2f m may remain", r.overlay.residual_m(),
-                limits.max_residual_cells * cell_m);
+    return format_text("the residual is %.2f m; at most %.2f m may remain", r.overlay.residual_m(),
+                       limits.max_residual_cells * cell_m);
   if (options.coarse.gravity_known && tilt_of(r.T_target_source) > limits.max_tilt_rad)
-    return text("the maps would be tilted against each other by %.1f deg, though both know where up is",
-                tilt_of(r.T_target_source) * 180 / std::numbers::pi);
+    return format_text(
+        "the maps would be tilted against each other by %.1f deg, though both know where up is",
+        tilt_of(r.T_target_source) * 180 / std::numbers::pi);
   if (r.hold < limits.min_hold)
-    return text(
+    return format_text(
         "the rock that coincides leaves a direction free, as a smooth tube does (hold %.3f; at least %.3f)",
         r.hold, limits.min_hold);
   if (r.rival > limits.max_rival)
-    return text("another pose fits nearly as well (%.0f %% as good; at most %.0f %% may be)", 100 * r.rival,
-                100 * limits.max_rival);
+    return format_text("another pose fits nearly as well (%.0f %% as good; at most %.0f %% may be)",
+                       100 * r.rival, 100 * limits.max_rival);
   return "";
 }
 

@@ -61,7 +61,7 @@ std::string mesh_hash_of(const std::string& cave_file, const std::string& start)
 
 std::string installed_experience() {
   const std::filesystem::path file =
-      core::plugin_root().parent_path().parent_path() / "share" / "karst" / "experience.info";
+      core::install_root() / "share" / "karst" / "experience.info";
   return std::filesystem::is_regular_file(file) ? file.string() : "";
 }
 

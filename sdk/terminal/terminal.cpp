@@ -1,45 +1,102 @@
 #include "sdk/terminal/terminal.h"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <string>
 
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/printable.h"
 
 namespace karst {
 namespace {
 
 constexpr std::size_t kMaxErrorBytes = 8000;
+constexpr std::size_t kMinColumns = 20, kUsualColumns = 80;  // a terminal may say 0
 
 std::string formatted(const char* format, std::va_list arguments) {
-  std::va_list again;
-  va_copy(again, arguments);
-  std::string text(static_cast<std::size_t>(std::max(0, std::vsnprintf(nullptr, 0, format, arguments))),
-                   '\0');
-  std::vsnprintf(text.data(), text.size() + 1, format, again);
-  va_end(again);
-  return core::printable(text);
+  return core::printable(core::format_text_list(format, arguments));
+}
+
+std::string cut(std::string text) {
+  if (text.size() <= kMaxErrorBytes) return text;
+  return text.substr(0, kMaxErrorBytes) + "... (" + std::to_string(text.size()) + " bytes)\n";
+}
+
+void put(std::FILE* to, const std::string& text) { std::fwrite(text.data(), 1, text.size(), to); }
+
+/// Of UTF-8: bytes that continue a character take no column.
+std::size_t columns_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string wrapped_line(std::string_view line, std::size_t columns, std::size_t indent) {
+  std::string out;
+  std::size_t used = 0;
+  for (bool first = true; !line.empty(); first = false) {
+    const std::size_t begin = std::min(line.find_first_not_of(' '), line.size()),
+                      end = std::min(line.find(' ', begin), line.size());
+    const std::string_view word = line.substr(begin, end - begin);
+    used += columns_of(line.substr(0, end));
+    if (first || word.empty() || used <= columns) {
+      out += line.substr(0, end);
+    } else {
+      out += "\n" + std::string(indent, ' ');
+      out += word;
+      used = indent + columns_of(word);
+    }
+    line.remove_prefix(end);
+  }
+  return out;
 }
 
 }  // namespace
+
+std::size_t terminal_columns(std::FILE* to) {
+  const int file = fileno(to);
+  if (isatty(file) != 1) return 0;
+  winsize size{};
+  return ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col >= kMinColumns ? size.ws_col : kUsualColumns;
+}
+
+std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent) {
+  if (columns == 0) return std::string(text);
+  std::string out;
+  for (;;) {
+    const std::size_t end = text.find('\n');
+    out += wrapped_line(text.substr(0, end), columns, indent);
+    if (end == std::string_view::npos) return out;
+    out += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
 
 void print_out(const char* format, ...) {
   std::va_list arguments;
   va_start(arguments, format);
   const std::string text = formatted(format, arguments);
   va_end(arguments);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  put(stdout, text);
 }
 
 void print_error(const char* format, ...) {
   std::va_list arguments;
   va_start(arguments, format);
-  std::string text = formatted(format, arguments);
+  const std::string text = cut(formatted(format, arguments));
   va_end(arguments);
-  if (text.size() > kMaxErrorBytes)
-    text = text.substr(0, kMaxErrorBytes) + "... (" + std::to_string(text.size()) + " bytes)\n";
-  std::fwrite(text.data(), 1, text.size(), stderr);
+  put(stderr, text);
+}
+
+void print_wrapped(std::FILE* to, std::size_t indent, const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  const std::string text = formatted(format, arguments);
+  va_end(arguments);
+  put(to, wrapped(to == stderr ? cut(text) : text, terminal_columns(to), indent));
 }
 
 }  // namespace karst

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <string>
 
+#include "sdk/tools/help/value_types.h"
+
 namespace karst::tools {
 
 /// An empty value such as `--policy ""` is a mistake, for example an unset shell variable, not the default.

@@ -1,6 +1,5 @@
 #include "sdk/tools/campaign_progress.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <array>
@@ -50,11 +49,6 @@ double coverage_of(const campaign::StoredTrial& trial) {
   return trial.result.figures[static_cast<std::size_t>(evaluation::metric_index("coverage"))];
 }
 
-std::size_t terminal_width() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
-}
-
 }  // namespace
 
 CampaignProgress::CampaignProgress(bool quiet, std::size_t jobs)
@@ -99,7 +93,7 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
                     100 * tallies_[i].coverage / tallies_[i].trials);
   std::string line = bar(p) + text(" %zu/%zu · %s", p.finished, p.trials, time_left(p).c_str()) + pace +
                      (p.failed ? text(" · %zu failed", p.failed) : "");
-  const std::size_t width = terminal_width();
+  const std::size_t width = terminal_columns(stderr);
   std::fprintf(stderr, "%s\r\033[K%s\n\033[K%s", drawn_ ? "\033[A" : "", line.substr(0, width).c_str(),
                found.substr(0, width - 1).c_str());
   std::fflush(stderr);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/json_point.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/cave.h"
@@ -256,6 +257,7 @@ void add_cave_command(CLI::App& app) {
       ->check(whole_64_bits())
       ->capture_default_str();
   make->add_option("--out,-o", g->out, "Path of the cave without ending, such as caves/demo")
+      ->type_name(kFile)
       ->required()
       ->check(not_empty());
   make->add_option("--set", g->set, "A value of the recipe, key=value; any number of these")
@@ -269,7 +271,7 @@ void add_cave_command(CLI::App& app) {
 
   auto i = std::make_shared<InfoArguments>();
   CLI::App* tell = cave->add_subcommand("info", "Size, start, clearance and reachable volume of a cave");
-  tell->add_option("file", i->file, "A cave's .info file, or a mesh")->required();
+  tell->add_option("file", i->file, "A cave's .info file, or a mesh")->type_name(kFile)->required();
   tell->add_option("--start", i->start, "\"x y z\", for a mesh or instead of the file's own")
       ->check(not_empty());
   tell->add_option("--resolution", i->options.resolution_m, "Edge of the map's cells, m")
@@ -284,8 +286,11 @@ void add_cave_command(CLI::App& app) {
 
   auto d = std::make_shared<DescribeArguments>();
   CLI::App* like = cave->add_subcommand(
-      "describe", "What a cave is like: what karst select compares caves by (docs/select.md)");
+      "describe",
+      "What a cave is like: the figures by which karst select compares caves\n\nThey are explained in " +
+          core::doc_path("docs/select.md") + ".");
   like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
+      ->type_name(kFile)
       ->required();
   like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")
       ->check(not_empty());

@@ -202,21 +202,25 @@ void add_compare_command(CLI::App& app) {
       "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");
   compare_app
       ->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves")
+      ->type_name(kPolicyOrFile)
       ->required()
       ->check(not_empty());
-  compare_app->add_option("--caves", args->caves, "cave .info files")->check(not_empty());
+  compare_app->add_option("--caves", args->caves, "cave .info files")->type_name(kFile)->check(not_empty());
   compare_app->add_option("--seeds", args->seeds, "how many seeds: 1, 2, 3 ...; default 10")
       ->check(CLI::Range(1, 100000));
   compare_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\" (default) or 5min");
   compare_app->add_option("--profile", args->profile,
                           "campaign (default): without what costs time only; full");
-  compare_app->add_option("--mission", args->mission, "mission file with settings that all share");
+  compare_app->add_option("--mission", args->mission, "mission file with settings that all share")
+      ->type_name(kFile);
   compare_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
       ->allow_extra_args(false);
   compare_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
       ->allow_extra_args(false)
       ->expected(1);
   compare_app->add_option("--out", args->out, "the campaign's folder; default runs/NAME")
+      ->type_name(kFolder)
       ->check(not_empty())
       ->check(no_file());
   compare_app->add_option("--jobs", args->jobs, "trials flown at once; default: one a core")
@@ -266,10 +270,14 @@ void add_results_command(CLI::App& app) {
       "results",
       "What a campaign found, also while it flies: verdicts, or every trial as CSV or JSON.\n\n"
       "  karst results runs/CAMPAIGN\n  karst results runs/CAMPAIGN --csv trials.csv --json trials.json");
-  results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")->required();
+  results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")
+      ->type_name(kFile)
+      ->required();
   results_app->add_option("--csv", args->csv, "write a line a trial; - for standard output")
+      ->type_name(kFile)
       ->check(not_empty());
   results_app->add_option("--json", args->json, "write everything; - for standard output")
+      ->type_name(kFile)
       ->check(not_empty());
   results_app->add_option("--metric", args->metric,
                           "figure that the verdict is about; default: as the campaign declared");

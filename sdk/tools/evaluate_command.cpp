@@ -139,7 +139,7 @@ void evaluate(const EvaluateArguments& args) {
         points, evaluation::open_reference(reference, args.density_per_m2, points));
     result["map"]["file"] = map_file;
   }
-  for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+  for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
   if (result["trajectory"].is_null() && result["map"].is_null())
     throw core::InputError(args.run, "", "nothing to compare it with: name a --truth or a --reference");
 
@@ -171,15 +171,19 @@ void add_evaluate_command(CLI::App& app) {
       "  karst evaluate runs/cave --reference scanner.pcd            map error, point to point\n\n"
       "Writes evaluation.json into the run (or beside the trajectory) and adds plots to its report.");
   command->add_option("run", args->run, "run directory, or a trajectory (TUM)")
+      ->type_name(kFile)
       ->required()
       ->check(not_empty());
   command->add_option("--truth", args->truth, "true poses; default: the run's ground_truth.tum")
+      ->type_name(kFile)
       ->check(not_empty());
   command
       ->add_option("--reference", args->reference,
                    "cave .info, mesh or cloud (PCD, PLY) to measure the map against; default: the run's cave")
+      ->type_name(kFile)
       ->check(not_empty());
   command->add_option("--map", args->map, "map to measure (.bt, .ot, .ply, .pcd); default: the run's")
+      ->type_name(kFile)
       ->check(not_empty());
   command
       ->add_option("--density", args->density_per_m2, "points a square metre, where the reference is a mesh")

@@ -11,6 +11,7 @@
 #include "sdk/evaluation/metrics/lost_time.h"
 #include "sdk/evaluation/team/team_folders.h"
 #include "sdk/terminal/terminal.h"
+#include "sdk/tools/help/value_types.h"
 
 namespace karst::tools {
 namespace {
@@ -73,7 +74,9 @@ void add_explain_time_command(CLI::App& app) {
   };
   CLI::App& command = *app.add_subcommand("explain-time", "what a flight lost time for while it explored");
   auto arguments = std::make_shared<Arguments>();
-  command.add_option("RUN", arguments->runs, "run directories, as `karst fly --out` writes them")->required();
+  command.add_option("RUN", arguments->runs, "run directories, as `karst fly --out` writes them")
+      ->type_name(kFolder)
+      ->required();
   command.add_option("--until", arguments->until_s, "seconds of the run's time; later ones do not count")
       ->check(CLI::PositiveNumber);
   command.callback([arguments] { explain(arguments->runs, arguments->until_s); });

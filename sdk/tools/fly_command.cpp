@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/cave_check.h"
 #include "sdk/flight/fly.h"
@@ -59,8 +60,8 @@ void print_objects(const nlohmann::ordered_json& m) {
 }
 
 void print_outcome(const nlohmann::ordered_json& metrics) {
-  print_out("%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
-            metrics["reason"].get<std::string>().c_str());
+  print_wrapped(stdout, 2, "%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
+                metrics["reason"].get<std::string>().c_str());
 }
 
 void print_flight(const nlohmann::ordered_json& metrics, const flight::FlightRequest& request) {
@@ -92,9 +93,10 @@ void print_team(const flight::TeamResult& team, const nlohmann::ordered_json& me
   print_out("  robot  explored  outcome    at the base\n");
   for (std::size_t i = 0; i < team.robots.size(); ++i) {
     const flight::RobotResult& r = team.robots[i];
-    print_out("  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1, r.exploration_time_s,
-              core::name_of(r.mission.outcome), r.connected ? "connected" : "cut off", r.records_at_base,
-              r.records, r.mission.reason.c_str());
+    print_wrapped(stdout, 9, "  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1,
+                  r.exploration_time_s, core::name_of(r.mission.outcome),
+                  r.connected ? "connected" : "cut off", r.records_at_base, r.records,
+                  r.mission.reason.c_str());
   }
   print_objects(metrics);
   print_out("  over the air     %.0f kB in %.0f s\nLook next at:\n",
@@ -116,11 +118,23 @@ void make_cave_cache(const fs::path& folder) {
                            "is not a writable directory" + (error ? ": " + error.message() : ""));
 }
 
+/// Says what `policy auto` chose: before take-off, since it may be a reason not to fly.
+void print_choice(const flight::Mission& mission) {
+  std::string parameters;
+  for (const auto& [key, value] : mission.policy_parameters)
+    parameters += (parameters.empty() ? " with " : ", ") + key + "=" + value.data();
+  print_wrapped(stdout, 2, "policy auto: %s%s\n  %s\n", mission.policy.c_str(), parameters.c_str(),
+                mission.policy_selection.c_str());
+  std::fflush(stdout);  // the status line is another stream
+}
+
 flight::Mission mission_of(const FlyArguments& args) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
+  const bool is_auto = mission.policy == flight::kAutoPolicy;
   flight::choose_policy(mission);
+  if (is_auto && !args.quiet && !args.json) print_choice(mission);
   flight::check(mission.faults, mission.core.team.robots, mission.file);
   core::check(mission.core.team, mission.core.homing, mission.file);
   if (!mission.cave.empty()) flight::check_cave(mission.cave, mission.start);
@@ -169,8 +183,9 @@ int fly(const FlyArguments& args) {
       print_flight(outcome.metrics, request);
   }
   if (!outcome.record_problem.empty())
-    print_error("karst: %s\nkarst: the %s record is incomplete: %s\n", outcome.record_problem.c_str(),
-                flight::is_team(mission) ? "flights'" : "flight's", request.run_dir.c_str());
+    print_wrapped(stderr, 7, "karst: %s\nkarst: the %s record is incomplete: %s\n",
+                  outcome.record_problem.c_str(), flight::is_team(mission) ? "flights'" : "flight's",
+                  request.run_dir.c_str());
   int code = flight::kNotLanded;
   if (outcome.landed) code = std::fflush(stdout) == 0 ? 0 : 1;
   if (mission_flight.hangs()) {  // nothing may be destroyed
@@ -187,14 +202,19 @@ void add_fly_command(CLI::App& app) {
   CLI::App* fly_app = app.add_subcommand(
       "fly",
       "Fly one mission and write its run directory and report.\n\n"
-      "  karst fly examples/missions/demo.info\n"
+      "  karst fly mission.info\n"
       "  karst fly --cave caves/tunnel.stl --start \"1 2 1.5 90\" --policy highest_frontier\n"
-      "  karst fly demo.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
-      "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the record "
-      "is incomplete, 1 not "
-      "flown or nothing could be printed.");
-  fly_app->add_option("mission", args->mission_file, "mission file (.info)")->check(not_empty());
+      "  karst fly mission.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"
+      "Missions to start from: " +
+          core::doc_path("examples/missions") +
+          "\n\n"
+          "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the "
+          "record is incomplete, 1 not flown or nothing could be printed.");
+  fly_app->add_option("mission", args->mission_file, "mission file (.info)")
+      ->type_name(kFile)
+      ->check(not_empty());
   fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
+      ->type_name(kFile)
       ->check(not_empty());
   fly_app
       ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
@@ -202,16 +222,22 @@ void add_fly_command(CLI::App& app) {
   fly_app
       ->add_option("--policy", args->overrides.policy,
                    "exploration policy; see karst policy list; auto: selected for the cave")
+      ->type_name(kPolicy)
       ->check(not_empty());
   fly_app
-      ->add_option("--preset", args->overrides.preset, "file with a policy and its parameters (docs/tune.md)")
+      ->add_option("--preset", args->overrides.preset,
+                   "file with a policy and its parameters (" + core::doc_path("docs/tune.md") + ")")
+      ->type_name(kFile)
       ->check(not_empty());
   fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
   fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")->allow_extra_args(false);
   fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
-  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")->check(not_empty());
+  fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")
+      ->type_name(kFolder)
+      ->check(not_empty());
   fly_app
       ->add_option("--threads", args->threads,
                    "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "
@@ -222,18 +248,20 @@ void add_fly_command(CLI::App& app) {
       "a second of flight takes a second, as on a vehicle: what is not ready in time counts as an "
       "overrun (timing.json), and no two flights are the same");
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
-  fly_app->add_flag("--quiet", args->quiet, "no status line");
+  fly_app->add_flag("--quiet", args->quiet, "no status line; nothing on what policy auto chose");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
   fly_app
       ->add_option(
           "--cave-cache", args->cave_cache,
           "folder that keeps what the evaluation works out of a cave, for other flights in it; made if "
           "it is not there")
+      ->type_name(kFolder)
       ->check(not_empty());
   fly_app
       ->add_option("--check", args->check,
                    "do not fly: look at everything that can be wrong and write the mission as resolved to "
                    "this file")
+      ->type_name(kFile)
       ->check(not_empty());
   fly_app->add_flag(
       "--record-requests", args->record_requests,

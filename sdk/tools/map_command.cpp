@@ -7,11 +7,14 @@
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/rounded.h"
 #include "sdk/evaluation/record/whole_file.h"
+#include "sdk/map_merge/icp.h"
 #include "sdk/map_merge/map_inputs.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
@@ -127,7 +130,8 @@ std::vector<Placed> place_all(const std::vector<map_merge::MapInput>& maps,
 void print(const Placed& p) {
   const map_merge::MapRegistration& r = p.registration;
   const core::Vec3& t = r.T_target_source.position;
-  print_out("%s: %s\n", p.map->name.c_str(), r.trusted ? "in place" : ("refused: " + r.reason).c_str());
+  print_wrapped(stdout, 2, "%s: %s\n", p.map->name.c_str(),
+                r.trusted ? "in place" : ("refused: " + r.reason).c_str());
   print_out("  moved by (%.2f, %.2f, %.2f) m, turned by %.2f deg%s\n", t.x(), t.y(), t.z(),
             core::heading_of(r.T_target_source.orientation) * 180 / std::numbers::pi,
             r.trusted ? "" : " at best");
@@ -149,6 +153,8 @@ void check_can_write(const std::string& stem) {
 }
 
 int merge(const MergeArguments& args) {
+  if (!map_merge::has_icp())
+    throw std::runtime_error("this karst was built without PCL: apt-get install libpcl-dev and build again");
   const map_merge::MapRegistrationOptions options = options_of(args);
   const std::string stem = stem_of(args.out);
   if (!args.force)
@@ -195,16 +201,19 @@ void add_map_command(CLI::App& app) {
       "A registration that cannot be trusted is refused with the reason, and then nothing is written.\n"
       "Exit code: 0 merged, 2 refused, 1 an error.");
   command->add_option("maps", args->maps, "run directories, OctoMap files (.bt, .ot) or clouds (.ply, .pcd)")
+      ->type_name(kFile)
       ->required()
       ->expected(2, 1000);
   command->add_option("--out,-o", args->out, "path without ending: writes .ot, .bt, .ply and .json")
+      ->type_name(kFile)
       ->required()
       ->check(not_empty());
   command->add_flag("--six", args->six, "the maps' z axes need not point up");
   command->add_option("--resolution", args->resolution_m, "metres to which clouds are thinned out")
       ->capture_default_str()
       ->check(number_in(0.05, 1.0));
-  command->add_option("--set", args->settings, "limit=value; see docs/map_merge.md")->allow_extra_args(false);
+  command->add_option("--set", args->settings, "limit=value; see " + core::doc_path("docs/map_merge.md"))
+      ->allow_extra_args(false);
   command->add_flag("--json", args->json, "print the report as JSON");
   command->add_flag("--force", args->force, "overwrite");
   command->callback([args] {

@@ -76,7 +76,7 @@ void print_text(const std::vector<PolicyListing>& all, const host::SearchPath& p
                 q.help.c_str());
   }
   for (const PolicyListing& p : all)
-    if (!p.broken.empty()) print_out("broken: %s\n    %s\n", p.file.c_str(), p.broken.c_str());
+    if (!p.broken.empty()) print_wrapped(stdout, 4, "broken: %s\n    %s\n", p.file.c_str(), p.broken.c_str());
   if (!all.empty() && !verbose) return;
   print_out("%s:\n", all.empty() ? "no policies found; searched" : "searched");
   for (const std::string& folder : path.folders) print_out("    %s\n", folder.c_str());
@@ -92,7 +92,7 @@ void add_policy_command(CLI::App& app) {
   CLI::App* list =
       policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
   list->add_option("--plugin", args->plugins, "Look at this plugin file first")
-      ->type_name("FILE")
+      ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
   list->add_flag("--json", args->json, "Write JSON");

@@ -165,7 +165,9 @@ void add_policy_new(CLI::App& policy) {
   CLI::App* command = policy.add_subcommand(
       "new", "Write a folder with a policy to start from: its code, its test, its build");
   command->add_option("NAME", args->name, "What the policy is called: [a-z][a-z0-9_]*")->required();
-  command->add_option("--dir", args->dir, "The folder is written into this one")->check(not_empty());
+  command->add_option("--dir", args->dir, "The folder is written into this one")
+      ->type_name(kFolder)
+      ->check(not_empty());
   command->add_option("--template", args->kind, help)->check(CLI::IsMember(names))->capture_default_str();
   command->callback([args] { write_policy(args->name, args->dir, args->kind); });
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/printable.h"
 #include "plugins/replay/decimal_time.h"
 #include "sdk/flight/finish_run.h"
@@ -106,7 +107,8 @@ void print_summary(const replay::ReplaySummary& s, const nlohmann::json& metrics
   if (s.without_times)
     print_out(
         "note: the points have no times, so motion during a scan was not compensated; see time.direction and "
-        "compensated in docs/replay.md\n");
+        "compensated in %s\n",
+        core::doc_path("docs/replay.md").c_str());
   print_out("Look next at:\n");
   if (report) print_out("  %s   the map in 3D; open it in a browser\n", (run_dir / "report.html").c_str());
   print_out("  %s   the trajectory (TUM); karst evaluate %s --truth FILE\n",
@@ -179,12 +181,15 @@ void add_replay_command(CLI::App& app) {
       "  karst replay flight7 --out runs/flight7 --set map.resolution=\"0.3 m\"\n"
       "  karst replay --keys\n\n"
       "SCANS is a folder; a small file recording.info in it, or --info, declares what the files do not say: "
-      "stamps, layout, units, frames, rings (docs/replay.md).\n"
-      "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
-  command->add_option("scans", args->scans, "folder of scans")->check(not_empty());
-  command->add_option("--out,-o", args->out, "run directory")->check(not_empty());
+      "stamps, layout, units, frames, rings (" +
+          core::doc_path("docs/replay.md") +
+          ").\n"
+          "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
+  command->add_option("scans", args->scans, "folder of scans")->type_name(kFolder)->check(not_empty());
+  command->add_option("--out,-o", args->out, "run directory")->type_name(kFolder)->check(not_empty());
   command
       ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
+      ->type_name(kFile)
       ->check(not_empty());
   command->add_option("--set", args->settings, "key=value; see --keys")->allow_extra_args(false);
   command->add_flag("--json", args->json, "print metrics.json instead of a summary; no progress");

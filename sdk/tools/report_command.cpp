@@ -13,6 +13,7 @@
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/team_metrics.h"
 #include "sdk/terminal/terminal.h"
+#include "sdk/tools/help/value_types.h"
 
 namespace karst::tools {
 namespace {
@@ -64,7 +65,9 @@ void add_report_command(CLI::App& app) {
       "Evaluate a run directory again and rewrite its metrics.json and report.html; also for a run that was "
       "cut short. Or write the report of a campaign, also while it flies.\n\n"
       "  karst report runs/demo\n  karst report runs/CAMPAIGN --worst");
-  report->add_option("run", args->run, "run directory, or a campaign's folder or store")->required();
+  report->add_option("run", args->run, "run directory, or a campaign's folder or store")
+      ->type_name(kFile)
+      ->required();
   report->add_flag("--no-report", args->no_report, "of a run: metrics only, no report.html");
   report->add_option("--metric", args->metric,
                      "of a campaign: the figure that its verdict is about; default: as it declared");

@@ -44,7 +44,8 @@ host::PolicyChoice choice_of(const ReplayArguments& args, const host::RequestLog
   }
   c.source = args.run;
   c.seed = header.seed;
-  c.hang_limit_s = kNoLimit_s;
+  c.isolation = host::Isolation::in_process;  // a debugger sees the policy's code
+  c.hang_limit_s = c.cpu_limit_s = kNoLimit_s;
   return c;
 }
 
@@ -123,10 +124,14 @@ void add_request_replay_command(CLI::App& policy) {
       "  gdb --args karst policy replay runs/demo --plugin build/lib/karst/policies/mine.so --to 40\n\n"
       "Exit code: 0 replayed, 2 with --expect-same: an answer differs, 1 an error.");
   app->add_option("run", args->run, "run directory, or a file of recorded requests")
+      ->type_name(kFile)
       ->required()
       ->check(not_empty());
-  app->add_option("--policy", args->policy, "another policy than the one recorded")->check(not_empty());
+  app->add_option("--policy", args->policy, "another policy than the one recorded")
+      ->type_name(kPolicy)
+      ->check(not_empty());
   app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
   app->add_option("--set", args->settings, "parameter=value")->allow_extra_args(false);

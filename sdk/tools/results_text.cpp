@@ -79,8 +79,8 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   for (const campaign::RankedContestant& place : verdicts.ranking) print_row(results, place, means);
   print_out("\n");
   for (const campaign::Comparison& c : verdicts.comparisons)
-    if (c.metric == verdicts.metric) print_out("%s\n", c.sentence.c_str());
-  if (results.contestants.size() > 2) print_out("\n%s\n", verdicts.sentence.c_str());
+    if (c.metric == verdicts.metric) print_wrapped(stdout, 2, "%s\n", c.sentence.c_str());
+  if (results.contestants.size() > 2) print_wrapped(stdout, 2, "\n%s\n", verdicts.sentence.c_str());
 }
 
 }  // namespace karst::tools

@@ -35,7 +35,7 @@ struct SelectArguments {
 
 ordered_json known(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(); }
 
-void tell(const std::string& message) { print_error("%s\n", message.c_str()); }
+void tell(const std::string& message) { print_wrapped(stderr, 2, "%s\n", message.c_str()); }
 
 Experience experience_of(const SelectArguments& args) {
   std::vector<std::string> files = args.results;
@@ -66,7 +66,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
               cave.*far.value, e.caves[n.cave].figures.*far.value);
   }
   if (s.refused) {
-    print_out("No policy is named: %s.\n", s.reason.c_str());
+    print_wrapped(stdout, 2, "No policy is named: %s.\n", s.reason.c_str());
     return;
   }
   print_out("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
@@ -81,7 +81,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m)
     if (!std::isnan(figures[m])) print_out(" %s %.3g", e.metrics[m].c_str(), figures[m]);
-  print_out("\n%s.\n", s.reason.c_str());
+  print_wrapped(stdout, 2, "\n%s.\n", s.reason.c_str());
 }
 
 ordered_json parameters_json(const selection::Preset& preset) {
@@ -239,10 +239,12 @@ void add_select_command(CLI::App& app) {
       "  karst select --leave-one-out --results mine.info               what selecting is worth\n\n"
       "Exit code: 0 a policy is named, 3 nothing similar was flown, 1 an error.");
   select->add_option("--cave", args->cave, "mesh, cave .info, map (.bt, .ot), or INFO file of figures")
+      ->type_name(kFile)
       ->check(not_empty());
   select->add_option("--start", args->start, "\"x y z\", of a mesh")->check(not_empty());
   select
       ->add_option("--results", args->results, "stores of campaigns, experiences; default: what is installed")
+      ->type_name(kFile)
       ->check(not_empty());
   select->add_option("--metric", args->options.metric, "the figure to do best in")
       ->check(not_empty())
@@ -253,9 +255,14 @@ void add_select_command(CLI::App& app) {
   select
       ->add_option("--preset", args->preset,
                    "write the policy with its parameters here, for karst fly --preset")
+      ->type_name(kFile)
       ->check(not_empty());
-  select->add_option("--learn", args->learn, "stores to distil into --out")->check(not_empty());
-  select->add_option("--out", args->out, "of --learn: the experience, an INFO file")->check(not_empty());
+  select->add_option("--learn", args->learn, "stores to distil into --out")
+      ->type_name(kFile)
+      ->check(not_empty());
+  select->add_option("--out", args->out, "of --learn: the experience, an INFO file")
+      ->type_name(kFile)
+      ->check(not_empty());
   select->add_flag("--leave-one-out", args->leave_one_out, "say what selecting is worth");
   select->add_flag("--json", args->json, "Write JSON");
   select->callback([args] {

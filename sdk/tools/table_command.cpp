@@ -15,6 +15,7 @@
 
 #include "core_stack/common/json_file.h"
 #include "sdk/terminal/terminal.h"
+#include "sdk/tools/help/value_types.h"
 
 namespace karst::tools {
 namespace {
@@ -131,7 +132,7 @@ void add_table_command(CLI::App& app) {
                                        "Print the figures of finished runs, and how they spread, as a "
                                        "Markdown table.\n\n  karst table runs/*/");
   auto runs = std::make_shared<std::vector<std::string>>();
-  table->add_option("runs", *runs, "run directories")->required();
+  table->add_option("runs", *runs, "run directories")->type_name(kFolder)->required();
   table->callback([runs] {
     std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
     for (const Column& c : kColumns) {
@@ -158,7 +159,7 @@ void add_table_command(CLI::App& app) {
     }
     if (all.size() > 1) print_spread(all);
     std::fflush(stdout);
-    for (const std::string& p : problems) print_error("karst: %s\n", p.c_str());
+    for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
     for (const std::string& p : skipped) print_error("karst: passed over: %s\n", p.c_str());
     if (!problems.empty() || skipped.size() == runs->size()) throw CLI::RuntimeError(1);
   });

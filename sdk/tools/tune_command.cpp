@@ -7,7 +7,9 @@
 #include <thread>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/csv_cell.h"
 #include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/run/run_campaign.h"
 #include "sdk/evaluation/record/whole_file.h"
@@ -93,11 +95,11 @@ std::string parameters_text(const campaign::Settings& parameters) {
 
 void write_table(const fs::path& file, const TuneResult& r, const std::string& metric) {
   std::string text = "candidate";
-  for (const auto& [key, value] : r.tried.front().parameters) text += "," + key;
-  text += "," + metric + "\n";
+  for (const auto& [key, value] : r.tried.front().parameters) text += "," + core::csv_cell(key);
+  text += "," + core::csv_cell(metric) + "\n";
   for (std::size_t i = 0; i < r.tried.size(); ++i) {
     text += std::to_string(i);
-    for (const auto& [key, value] : r.tried[i].parameters) text += "," + value;
+    for (const auto& [key, value] : r.tried[i].parameters) text += "," + core::csv_cell(value);
     std::array<char, 32> number;
     std::snprintf(number.data(), number.size(), ",%.6g\n", r.tried[i].mean);
     text += number.data();
@@ -197,10 +199,15 @@ void add_tune_command(CLI::App& app) {
       "the same "
       "words it goes on where it was stopped or killed.\nExit code: 0 done, 130 stopped, 1 otherwise.");
   tune_app->add_option("policy", args->policy, "the policy; policy:key=value,... keeps these as given")
+      ->type_name(kPolicy)
       ->required()
       ->check(not_empty());
-  tune_app->add_option("--caves", args->caves, "cave .info files to tune on")->required()->check(not_empty());
+  tune_app->add_option("--caves", args->caves, "cave .info files to tune on")
+      ->type_name(kFile)
+      ->required()
+      ->check(not_empty());
   tune_app->add_option("--held-out", args->held_out, "cave .info files that only judge what came of it")
+      ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--parameter", args->parameters, "a parameter to tune; default: all that are numbers")
       ->allow_extra_args(false)
@@ -212,16 +219,21 @@ void add_tune_command(CLI::App& app) {
   tune_app->add_option("--flights", args->tune.flights, "how many flights it may take in all")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  tune_app->add_option("--method", args->method, "bobyqa, direct, crs (docs/tune.md)")->capture_default_str();
+  tune_app
+      ->add_option("--method", args->method, "bobyqa, direct, crs (" + core::doc_path("docs/tune.md") + ")")
+      ->capture_default_str();
   tune_app->add_option("--time", args->flight_time, "flight time, such as \"300 s\"")->capture_default_str();
   tune_app->add_option("--profile", args->profile, "as of karst compare")->capture_default_str();
   tune_app->add_option("--mission", args->mission, "mission file with settings that all share")
+      ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
       ->allow_extra_args(false);
   tune_app->add_option("--plugin", args->plugin, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--out", args->out, "folder for the preset, the table and the stores")
+      ->type_name(kFolder)
       ->required()
       ->check(not_empty())
       ->check(no_file());

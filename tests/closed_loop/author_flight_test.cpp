@@ -68,5 +68,39 @@ TEST(NewPolicy, ReadmeHoldsForAnInstalledKarst) {
   type_the_readme("karst", (folder / "prefix/bin").string(), folder);
 }
 
+/// What a document has typed into the debugger.
+std::vector<std::string> debugger_commands(const std::string& document) {
+  const std::string prompt = "(gdb) ";
+  std::vector<std::string> out;
+  for (const std::string& line : lines_of(document))
+    if (line.starts_with(prompt)) out.push_back(line.substr(prompt.size()));
+  return out;
+}
+
+TEST(NewPolicy, StopsInADebuggerAsDocumented) {
+  if (run_command("command -v gdb").code != 0) GTEST_SKIP() << "gdb is not installed";
+  const std::string so = "build/lib/karst/policies/my_nearest.so";
+  const std::vector<std::string> before{
+      "karst policy new my_nearest", "cd my_nearest", "cmake -S . -B build && cmake --build build",
+      "karst fly --cave " + generated_cave("small", 7) + " --policy my_nearest --plugin " + so +
+          " --set mission.max_flight_time=20s --quiet --no-report --record-requests --out runs/first" +
+          " || test $? = 2"};
+  Shell shell(fresh_folder("author_debugger"));
+  for (const std::string& command : before) {
+    const Output out = shell.run(command);
+    ASSERT_EQ(out.code, 0) << command << "\n" << out.text;
+  }
+  std::string gdb = "gdb --batch -nx";
+  const auto typed = debugger_commands(bytes_of(fs::path(KARST_SOURCE_DIR) / "docs/testing_policies.md"));
+  ASSERT_EQ(typed.size(), 3u);
+  for (const std::string& command : typed) gdb += " -ex '" + command + "'";
+  const Output stopped =
+      shell.run(gdb + " -ex 'backtrace 1' --args karst policy replay runs/first --plugin " + so + " --to 40");
+  if (stopped.says("Could not trace the inferior process"))
+    GTEST_SKIP() << "this machine does not let a debugger trace a program";
+  EXPECT_TRUE(stopped.says("Breakpoint 1, ") || stopped.says("Breakpoint 1.1, ")) << stopped.text;
+  EXPECT_TRUE(stopped.says("MyNearest::decide") && stopped.says("my_nearest.cpp:")) << stopped.text;
+}
+
 }  // namespace
 }  // namespace karst

@@ -49,6 +49,7 @@ type_in "karst policy new deep_first" 9
 type_in "cd deep_first"
 type_in "cmake -S . -B build" 1
 type_in "cmake --build build" 1
+readelf --sections "$so" | grep -q "\.debug_info" || failed "the policy is built without debug information"
 type_in "ctest --test-dir build" 4
 type_in "karst policy list --plugin $so" 4
 grep -q "deep_first 0.1.0" /tmp/output || failed "it is not listed"

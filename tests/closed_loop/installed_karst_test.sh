@@ -9,6 +9,31 @@ karst=$work/karst/bin/karst
 cd "$work"
 export HOME="$work"  # no policies of this user
 "$karst" cave generate --preset small --seed 7 --set volume=500 --set "grid=0.4 m" --out cave > cave.log 2>&1
+
+# Pages and examples that help texts name are those of this installation.
+{ "$karst" --help-all; "$karst" fly --keys; "$karst" replay --keys; } > help.txt
+grep -oE "[^[:space:]\"'(]*(docs|examples)/[A-Za-z0-9_./-]*[A-Za-z0-9_]" help.txt | sort -u > named.txt
+test "$(wc -l < named.txt)" -ge 5
+while read -r path; do
+  case $path in
+    "$(realpath "$work")/karst/share/doc/karst/"*) test -e "$path" || { echo "help names $path, which is not there"; exit 1; } ;;
+    *) echo "help names $path, which is not of this installation"; exit 1 ;;
+  esac
+done < named.txt
+
+# Completion and manual pages lie where shells and man(1) look; the pages name documentation of this installation.
+share=$work/karst/share
+for file in bash-completion/completions/karst zsh/site-functions/_karst man/man1/karst.1 man/man1/karst-policy-new.1; do
+  test -s "$share/$file" || { echo "$file is not installed"; exit 1; }
+done
+bash --norc -c ". '$share/bash-completion/completions/karst' && complete -p karst" > completion.txt
+if grep -rF "$binary" "$share/man"; then echo "a manual page names the folder of the build"; exit 1; fi
+grep -rhoE "(docs|examples)/[A-Za-z0-9_./-]*[A-Za-z0-9_]" "$share/man" | sort -u > named_by_man.txt
+test "$(wc -l < named_by_man.txt)" -ge 4
+while read -r path; do
+  test -e "$share/doc/karst/$path" || { echo "a manual page names $path, which is not there"; exit 1; }
+done < named_by_man.txt
+
 code=0
 "$karst" fly --quiet --cave cave.info --policy nearest_frontier --set "mission.max_flight_time=10 s" --out run \
   > fly.log 2>&1 || code=$?

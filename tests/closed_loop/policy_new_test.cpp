@@ -79,6 +79,14 @@ TEST(PolicyNew, NamesEverythingAfterThePolicy) {
   }
 }
 
+// It was a Release build: a debugger showed no line of it.
+TEST(PolicyNew, BuildsWithDebugInformation) {
+  const fs::path folder = fresh_folder("policy_new_debug");
+  ASSERT_EQ(policy_new("deep_first --dir " + folder.string(), folder).code, 0);
+  EXPECT_NE(bytes_of(folder / "deep_first/CMakeLists.txt").find("set(CMAKE_BUILD_TYPE RelWithDebInfo)"),
+            std::string::npos);
+}
+
 class BadName : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 
 TEST_P(BadName, IsRefusedWithAReasonAndNothingIsWritten) {

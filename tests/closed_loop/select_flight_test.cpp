@@ -79,6 +79,32 @@ TEST(PolicyAuto, TheMissionsTableWinsAndNothingElseIsAsked) {
   EXPECT_NE(mission.find("the mission's table says so"), std::string::npos);
 }
 
+// It said nothing: one had to open mission.info.
+TEST(PolicyAuto, SaysOnTheTerminalWhatItChoseAndWhy) {
+  const fs::path dir = fresh_folder("policy_auto_said");
+  const std::string cave = small_cave(dir, 3);
+  write(dir / "experience.info", experience());
+  write(dir / "known.info", "verticality 0.65\nwidth \"3.1 m\"\n");
+  const std::string fly = "fly --cave " + cave +
+                          " --policy auto --set policy.auto.results=" + (dir / "experience.info").string() +
+                          " --set policy.auto.description=" + (dir / "known.info").string() + " --check ";
+  const std::string resolved = (dir / "resolved.info").string();
+  const Output said = run_karst(fly + resolved);
+  ASSERT_EQ(said.code, 0) << said.text;
+  EXPECT_TRUE(
+      said.says("policy auto: unknown_ratio with goals=4\n  ratio is expected to do best in coverage_auc"))
+      << said.text;
+  for (const char* without : {" --quiet", " --json"}) {
+    const Output silent = run_karst(fly + (dir / "again.info").string() + without);
+    EXPECT_EQ(silent.code, 0) << silent.text;
+    EXPECT_FALSE(silent.says("policy auto")) << silent.text;
+    fs::remove(dir / "again.info");
+  }
+  const Output named = run_karst("fly " + resolved + " --check " + (dir / "named.info").string());
+  EXPECT_EQ(named.code, 0) << named.text;
+  EXPECT_FALSE(named.says("policy auto")) << "nothing was chosen: " << named.text;
+}
+
 TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const fs::path dir = fresh_folder("policy_auto_refused");
   const std::string cave = small_cave(dir, 3), out = " --out " + (dir / "run").string();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core_stack/common/install_location.h"
 #include "core_stack/planning/trajectory/heading.h"
 
 namespace karst::core {
@@ -122,7 +123,8 @@ void describe(OptionTable& t, MotionLimits& o) {
         "greatest change of the rate of turning");
   t.add("trajectory", o.trajectory,
         "how paths become motion: the paper's sampling, minimum-snap polynomials, or replanned with a "
-        "receding horizon (see docs/planning.md)");
+        "receding horizon (see " +
+            doc_path("docs/planning.md") + ")");
 }
 
 TrajectorySample Trajectory::at(TimeNs t) const {

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+#include <string>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 
 namespace karst::cave {
 
+using core::format_text;
 using core::InputError;
 using core::Vec3;
 using core::Vec3f;
@@ -38,54 +40,42 @@ Surroundings look_around(const RayScene& scene, const Vec3& place) {
 void check_start(const Cave& cave, double vehicle_radius_m) {
   const CaveDescription& d = cave.description;
   const Surroundings s = look_around(cave.scene, d.start.position);
-  char text[200];
-  const auto refuse = [&] { throw InputError(d.file, "start", text); };
+  const auto refuse = [&](const std::string& reason) { throw InputError(d.file, "start", reason); };
   const auto& p = d.start.position;
-  if (s.clearance_m < vehicle_radius_m) {
-    std::snprintf(text, sizeof text, "(%.2f %.2f %.2f) is %.2f m from rock; the vehicle's radius is %.2f m",
-                  p.x(), p.y(), p.z(), s.clearance_m, vehicle_radius_m);
-    refuse();
-  }
-  if (s.odd_fraction < 0.5) {
-    std::snprintf(text, sizeof text,
-                  "(%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces", p.x(),
-                  p.y(), p.z(), s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock",
-                  100 * s.odd_fraction);
-    refuse();
-  }
+  if (s.clearance_m < vehicle_radius_m)
+    refuse(format_text("(%.2f %.2f %.2f) is %.2f m from rock; the vehicle's radius is %.2f m", p.x(), p.y(),
+                       p.z(), s.clearance_m, vehicle_radius_m));
+  if (s.odd_fraction < 0.5)
+    refuse(format_text("(%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
+                       p.x(), p.y(), p.z(), s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock",
+                       100 * s.odd_fraction));
   constexpr double kPinholes = 0.0005;  // 2 of 4096 rays may slip between triangles that do not quite join
   if (s.escape_fraction > kPinholes) {
     const auto& e = s.escape_direction;
-    std::snprintf(
-        text, sizeof text,
+    refuse(format_text(
         "the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about (%.2f %.2f %.2f)",
-        100 * s.escape_fraction, p.x(), p.y(), p.z(), e.x(), e.y(), e.z());
-    refuse();
+        100 * s.escape_fraction, p.x(), p.y(), p.z(), e.x(), e.y(), e.z()));
   }
 }
 
 void lay_objects(Cave& cave) {
   constexpr double kMin_m = 0.02, kLiesOn_m = 1;
   for (CaveObject& o : cave.description.objects) {
-    char text[200];
-    const auto refuse = [&] { throw InputError(cave.description.file, "object.position", text); };
+    const auto refuse = [&](const std::string& reason) {
+      throw InputError(cave.description.file, "object.position", reason);
+    };
     const Vec3& p = o.position;
     const Surroundings s = look_around(cave.scene, p);
-    if (s.odd_fraction < 0.5) {
-      std::snprintf(
-          text, sizeof text,
+    if (s.odd_fraction < 0.5)
+      refuse(format_text(
           "the %s at (%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
           core::name_of(o.kind), p.x(), p.y(), p.z(),
-          s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_fraction);
-      refuse();
-    }
+          s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_fraction));
     const Nearest rock = cave.scene.nearest(p, kLiesOn_m);
-    if (rock.found && rock.distance_m < kMin_m) {
-      std::snprintf(text, sizeof text,
-                    "the %s at (%.2f %.2f %.2f) is %.3f m from rock: its middle must be 0.02 m off at least",
-                    core::name_of(o.kind), p.x(), p.y(), p.z(), rock.distance_m);
-      refuse();
-    }
+    if (rock.found && rock.distance_m < kMin_m)
+      refuse(format_text(
+          "the %s at (%.2f %.2f %.2f) is %.3f m from rock: its middle must be 0.02 m off at least",
+          core::name_of(o.kind), p.x(), p.y(), p.z(), rock.distance_m));
     o.normal = rock.found ? Vec3((p - rock.point).normalized()) : Vec3(Vec3::Zero());
   }
 }
@@ -97,14 +87,13 @@ void check_climb(const Cave& cave, const Vec3& standing, double climb_m, double 
     const Vec3 p = standing + Vec3(0, 0, risen_m);
     const Nearest rock = cave.scene.nearest(p, vehicle_radius_m);
     if (rock.distance_m > vehicle_radius_m - kRounding_m) continue;
-    char text[240];
-    std::snprintf(
-        text, sizeof text,
-        "from the floor below it, at (%.2f %.2f %.2f), the vehicle can rise by %.2f m only: rock is in "
-        "the way at (%.2f %.2f %.2f). The first hover is %.2f m up: start elsewhere or hover lower",
-        standing.x(), standing.y(), standing.z(), std::max(risen_m - kAir_m, 0.0), rock.point.x(),
-        rock.point.y(), rock.point.z(), climb_m);
-    throw InputError(cave.description.file, "start", text);
+    throw InputError(
+        cave.description.file, "start",
+        format_text(
+            "from the floor below it, at (%.2f %.2f %.2f), the vehicle can rise by %.2f m only: rock is in "
+            "the way at (%.2f %.2f %.2f). The first hover is %.2f m up: start elsewhere or hover lower",
+            standing.x(), standing.y(), standing.z(), std::max(risen_m - kAir_m, 0.0), rock.point.x(),
+            rock.point.y(), rock.point.z(), climb_m));
   }
 }
 

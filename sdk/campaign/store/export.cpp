@@ -7,12 +7,14 @@
 #include <ostream>
 #include <utility>
 
+#include "core_stack/common/csv_cell.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::campaign {
 namespace {
 
+using core::csv_cell;
 using nlohmann::ordered_json;
 
 /// Names and values of the wall-clock quantities.
@@ -29,17 +31,8 @@ std::array<std::pair<const char*, double>, 9> timing_of(const TrialTiming& t) {
            {"plan_max_ms", f.plan_max_ms}}};
 }
 
-std::string cell(std::string text) {
-  for (char& c : text) {
-    if (c == ',') c = ';';
-    if (c == '"') c = '\'';
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  return text;
-}
-
 /// The shortest text that parses to the same number.
-std::string cell(double v) {
+std::string number_cell(double v) {
   if (!std::isfinite(v)) return "";
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), v).ptr;
@@ -86,13 +79,14 @@ void write_csv(std::ostream& out, const CampaignResults& results, const std::vec
   for (std::size_t i = 0; i < results.trials.size(); ++i) {
     const TrialResult& t = results.trials[i];
     const ContestantEntry& who = results.contestants[t.contestant];
-    out << cell(who.name) << ',' << cell(who.policy) << ',' << cell(results.caves[t.cave].name) << ','
-        << t.seed << ',' << (t.failed ? "failed" : "done") << ',' << cell(t.outcome) << ',' << cell(t.reason);
-    for (const double v : t.figures) out << ',' << cell(v);
-    out << ',' << cell(extras[i].binary_version) << ',' << cell(extras[i].mission_hash) << ','
-        << cell(extras[i].timing.machine);
-    for (const auto& [name, v] : timing_of(extras[i].timing)) out << ',' << cell(v);
-    out << ',' << cell(t.run_dir) << '\n';
+    out << csv_cell(who.name) << ',' << csv_cell(who.policy) << ',' << csv_cell(results.caves[t.cave].name)
+        << ',' << t.seed << ',' << (t.failed ? "failed" : "done") << ',' << csv_cell(t.outcome) << ','
+        << csv_cell(t.reason);
+    for (const double v : t.figures) out << ',' << number_cell(v);
+    out << ',' << csv_cell(extras[i].binary_version) << ',' << csv_cell(extras[i].mission_hash) << ','
+        << csv_cell(extras[i].timing.machine);
+    for (const auto& [name, v] : timing_of(extras[i].timing)) out << ',' << number_cell(v);
+    out << ',' << csv_cell(t.run_dir) << '\n';
   }
 }
 

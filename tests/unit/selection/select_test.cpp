@@ -84,6 +84,21 @@ TEST(Select, NamesThePolicyThatDoesWellInCavesLikeIt) {
   EXPECT_NEAR(weight, 1, 1e-12);
 }
 
+// Reasons were cut after 399 characters.
+TEST(Select, ReasonsAreWholeHoweverLongTheNames) {
+  Experience e = experience(20, 0.3, 0.02, 3);
+  for (Preset& p : e.contestants) p.name += std::string(500, 'x');
+  for (KnownCave& c : e.caves) c.name += std::string(500, 'y');
+  const Selected like = select(e, cave_figures(0, 0.7), {}, "cave");
+  EXPECT_NE(like.reason.find(name_of_first(e, like) + " is expected to do best"), std::string::npos);
+  EXPECT_NE(like.reason.find(e.caves[like.near.front().cave].name + " (distance"), std::string::npos);
+  EXPECT_TRUE(like.reason.ends_with("in profile campaign")) << like.reason;
+  const Selected far = select(e, cave_figures(9, 0.7), {}, "cave");
+  ASSERT_TRUE(far.refused);
+  EXPECT_NE(far.reason.find("most unlike is its "), std::string::npos) << far.reason;
+  EXPECT_TRUE(far.reason.ends_with(" in all")) << far.reason;
+}
+
 TEST(Select, IsTheSameEveryTime) {
   const Experience e = experience(9, 0.2, 0.1, 5);
   const Selected a = select(e, cave_figures(0.1, 0.5), {}, "cave"),

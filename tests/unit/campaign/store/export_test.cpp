@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/host/isolation/process.h"
 #include "tests/unit/campaign/store/store_fixture.h"
+#include "tests/unit/common/csv_reader.h"
 
 namespace karst::campaign {
 namespace {
@@ -29,25 +32,52 @@ TEST(Export, IntoADeviceLeavesItADevice) {
   EXPECT_FALSE(fs::exists("/dev/full.part"));
 }
 
-TEST(Export, AwkReadsEveryCellOfTheCsv) {
-  const fs::path store = small_store("csv"), csv = store.parent_path() / "trials.csv";
+/// Writes the store's trials beside it.
+fs::path exported(const fs::path& store) {
+  const fs::path csv = store.parent_path() / "trials.csv";
   std::ofstream out(csv);
   const auto [results, extras] = read_with_extras(store);
   write_csv(out, results, extras);
-  out.close();
-  const auto awk = [&](const std::string& program) {
-    return run_process({"/usr/bin/awk", "-F,", program, csv.string()}, 100).out;
+  return csv;
+}
+
+// Commas became semicolons, quotes apostrophes, and line ends blanks.
+TEST(Export, TheCsvHoldsEveryCellAsItWas) {
+  const fs::path csv = exported(small_store("csv"));
+  std::ifstream in(csv);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::vector<std::vector<std::string>> rows = test::read_csv(text);
+  ASSERT_EQ(rows.size(), 4u);
+  const std::size_t figures = evaluation::metric_definitions().size();
+  for (const std::vector<std::string>& row : rows) ASSERT_EQ(row.size(), 7 + figures + 3 + 9 + 1);
+  const auto beginning = [&](std::size_t row) {
+    return std::vector<std::string>(rows[row].begin(), rows[row].begin() + 7);
   };
-  const std::size_t columns = 7 + evaluation::metric_definitions().size() + 3 + 9 + 1;
-  EXPECT_EQ(awk("{ print NF }"), [&] {
-    std::string n = std::to_string(columns) + "\n";
-    return n + n + n + n;
-  }());
-  EXPECT_EQ(awk("NR > 1 { print $1, $3, $4, $5 }"),
-            "near maze 2 done\nhigh shaft 1 done\nhigh shaft 9 failed\n");
-  const double wanted = trial_of(2, 1, 1).result.figures[0];
-  EXPECT_EQ(std::stod(awk("NR == 3 { print $8 }")), std::stod(std::to_string(wanted)));
-  EXPECT_EQ(awk("NR == 3 { print ($11 == \"\") }"), "1\n") << "not known is empty";
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(beginning(0), (Words{"contestant", "policy", "cave", "seed", "status", "outcome", "reason"}));
+  const std::string reason = trial_of(0, 0, 2).result.reason;
+  EXPECT_NE(reason.find_first_of(","), std::string::npos) << "nothing is tested";
+  EXPECT_EQ(beginning(1), (Words{"near", "policy", "maze", "2", "done", "landed", reason}));
+  EXPECT_EQ(beginning(2), (Words{"high", "policy", "shaft", "1", "done", "landed", reason}));
+  EXPECT_EQ(beginning(3), (Words{"high", "policy", "shaft", "9", "failed", "failed", reason}));
+  EXPECT_EQ(std::stod(rows[2][7]), trial_of(2, 1, 1).result.figures[0]);
+  EXPECT_EQ(rows[2][10], "") << "not known is empty";
+  EXPECT_EQ(rows[2].back(), "trials/2/1/1");
+  EXPECT_EQ(text.find('\r'), std::string::npos) << "lines end with LF";
+}
+
+TEST(Export, SqliteImportsTheCsv) {
+  const fs::path csv = exported(small_store("sqlite"));
+  const auto asked = [&](const std::string& query) {
+    return run_process(
+               {"/usr/bin/sqlite3", ":memory:", ".import --csv \"" + csv.string() + "\" trial", query}, 100)
+        .out;
+  };
+  EXPECT_EQ(asked("SELECT contestant, cave, seed, status FROM trial"),
+            "near|maze|2|done\nhigh|shaft|1|done\nhigh|shaft|9|failed\n");
+  EXPECT_EQ(asked("SELECT count(*) FROM trial WHERE reason = 'a reason, with \"quotes\"' || char(10)"),
+            "3\n");
+  EXPECT_EQ(asked("SELECT DISTINCT run_dir FROM trial WHERE cave = 'maze'"), "trials/0/0/2\n");
 }
 
 TEST(Export, TheJsonHoldsEverything) {

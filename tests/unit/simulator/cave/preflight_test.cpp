@@ -71,6 +71,13 @@ TEST(Preflight, ALowCeilingOverTheLaunchSiteIsRefusedWithTheHeightThatIsLeft) {
   EXPECT_NE(e.find("rock is in the way at (0.00 0.00 3.00)"), std::string::npos) << e;
 }
 
+// Reasons were cut after 239 characters.
+TEST(Preflight, AReasonIsSaidToItsEndHoweverLongItsNumbers) {
+  const std::string e = climb_refusal(box_mesh({-5, -5, 0}, {5, 5, 3}), {0, 0, 0.3}, 1e200);
+  EXPECT_GT(e.size(), 300u) << e;
+  EXPECT_TRUE(e.ends_with("start elsewhere or hover lower")) << e;
+}
+
 TEST(Preflight, ABlockThatReachesIntoTheClimbIsRefusedAndOneBesideItIsNot) {
   for (const double reach : {0.28, 0.32}) {
     auto mesh = box_mesh({-5, -5, 0}, {5, 5, 5});

@@ -1,0 +1,88 @@
+#include "sdk/tools/help/command_tree.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+#include "sdk/tools/help/value_types.h"
+
+namespace karst::tools {
+namespace {
+
+/// CLI11 shows the values allowed as "TEXT:{ply,stl}".
+std::vector<std::string> choices_in(const std::string& type) {
+  const std::size_t open = type.find('{'), close = type.find('}', std::min(open, type.size()));
+  if (open == std::string::npos || close == std::string::npos) return {};
+  std::istringstream in(type.substr(open + 1, close - open - 1));
+  std::vector<std::string> choices;
+  for (std::string choice; std::getline(in, choice, ',');) choices.push_back(choice);
+  return choices;
+}
+
+ValueKind kind_of(const CommandOption& option) {
+  if (option.value == kFile) return ValueKind::file;
+  if (option.value == kFolder) return ValueKind::folder;
+  if (option.value == kPolicy) return ValueKind::policy;
+  if (option.value == kPolicyOrFile) return ValueKind::policy_or_file;
+  return option.choices.empty() ? ValueKind::other : ValueKind::choice;
+}
+
+CommandOption option_of(const CLI::Option& from) {
+  CommandOption out;
+  for (const std::string& name : from.get_snames()) out.names.push_back("-" + name);
+  for (const std::string& name : from.get_lnames()) out.names.push_back("--" + name);
+  if (out.names.empty()) out.argument = from.get_name(true);
+  out.help = from.get_description();
+  out.required = from.get_required();
+  if (from.get_items_expected_max() == 0) return out;  // a flag
+  const std::string type = from.get_type_name();
+  out.value = type.substr(0, type.find(':'));
+  out.choices = choices_in(type);
+  out.kind = kind_of(out);
+  out.default_text = from.get_default_str();
+  out.repeats = from.get_items_expected_max() > 1;
+  out.several = out.repeats && from.get_allow_extra_args();
+  return out;
+}
+
+void add(const CLI::App& app, std::vector<std::string> words, std::vector<Command>& out) {
+  words.push_back(app.get_name());
+  Command command;
+  command.words = words;
+  const std::string description = app.get_description();
+  const std::size_t line = std::min(description.find('\n'), description.size()),
+                    rest = std::min(description.find_first_not_of('\n', line), description.size());
+  command.summary = description.substr(0, line);
+  if (command.summary.ends_with('.')) command.summary.pop_back();
+  if (const std::string name = words.back() + ": "; command.summary.starts_with(name))
+    command.summary.erase(0, name.size());
+  command.details = description.substr(rest);
+  if (const std::string footer = app.get_footer(); !footer.empty())
+    command.details += (command.details.empty() ? "" : "\n\n") + footer;
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* o) { return !o->get_group().empty(); })) {
+    const CommandOption value = option_of(*option);
+    (value.names.empty() ? command.arguments : command.options).push_back(value);
+  }
+  const std::vector<const CLI::App*> below =
+      app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); });
+  for (const CLI::App* b : below) command.below.push_back(b->get_name());
+  out.push_back(command);
+  for (const CLI::App* b : below) add(*b, words, out);
+}
+
+}  // namespace
+
+std::vector<Command> commands_of(const CLI::App& root) {
+  std::vector<Command> out;
+  add(root, {}, out);
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& separator) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : separator) + word;
+  return out;
+}
+
+}  // namespace karst::tools

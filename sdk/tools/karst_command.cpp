@@ -1,0 +1,75 @@
+#include "sdk/tools/karst_command.h"
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+#include <string>
+
+#include "sdk/tools/cave_command.h"
+#include "sdk/tools/compare_command.h"
+#include "sdk/tools/evaluate_command.h"
+#include "sdk/tools/explain_time_command.h"
+#include "sdk/tools/fly_command.h"
+#include "sdk/tools/help_commands.h"
+#include "sdk/tools/map_command.h"
+#include "sdk/tools/policy_command.h"
+#include "sdk/tools/replay_command.h"
+#include "sdk/tools/report_command.h"
+#include "sdk/tools/select_command.h"
+#include "sdk/tools/table_command.h"
+#include "sdk/tools/tune_command.h"
+
+namespace karst::tools {
+namespace {
+
+/// Lists commands by the first line of their description: the rest is the help of each.
+class ListingFormatter : public CLI::Formatter {
+ public:
+  std::string make_subcommand(const CLI::App* command) const override {
+    const std::string description = command->get_description();
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_display_name(true),
+                             description.substr(0, description.find('\n')), column_width_);
+    return out.str();
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<CLI::App> karst_command() {
+  auto app = std::make_shared<CLI::App>(
+      "karst: fly exploration policies through caves.\n\n"
+      "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
+      "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
+      "  karst compare CAMPAIGN.info                                    say which of several policies is "
+      "better\n"
+      "  karst policy list                                              see what can be flown\n"
+      "  karst policy new NAME                                          begin a policy of your own\n"
+      "  karst replay scans --out runs/replayed                         localize and map from recorded "
+      "scans\n"
+      "  karst evaluate runs/demo                                       errors of trajectory and map\n"
+      "  karst map merge runs/a runs/b --out maps/both                  maps of several flights in one",
+      "karst");
+  app->formatter(std::make_shared<ListingFormatter>());
+  app->set_version_flag("--version", KARST_VERSION);
+  app->require_subcommand(1);
+  add_fly_command(*app);
+  add_compare_command(*app);
+  add_trials_command(*app);
+  add_results_command(*app);
+  add_policy_command(*app);
+  add_cave_command(*app);
+  add_report_command(*app);
+  add_table_command(*app);
+  add_explain_time_command(*app);
+  add_replay_command(*app);
+  add_evaluate_command(*app);
+  add_map_command(*app);
+  add_select_command(*app);
+  add_tune_command(*app);
+  add_help_commands(*app);
+  // Set last: commands inherit what is there when they are added, and need none of their own.
+  app->set_help_all_flag("--help-all", "Print the help of every command and exit");
+  return app;
+}
+
+}  // namespace karst::tools
