@@ -60,6 +60,7 @@ ordered_json trial_json(const CampaignResults& results, const TrialResult& t, co
                  {"status", t.failed ? "failed" : "done"},
                  {"outcome", t.outcome},
                  {"reason", t.reason},
+                 {"ended", t.ended},
                  {"figures", ordered_json::object()},
                  {"curve", ordered_json::array()},
                  {"binary_version", extras.binary_version},
@@ -78,7 +79,7 @@ ordered_json trial_json(const CampaignResults& results, const TrialResult& t, co
 }  // namespace
 
 void write_csv(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras) {
-  out << "contestant,policy,cave,seed,status,outcome,reason";
+  out << "contestant,policy,cave,seed,status,outcome,reason,ended";
   for (const evaluation::MetricDefinition& m : evaluation::metric_definitions()) out << ',' << m.name;
   out << ",binary_version,mission_hash,machine";
   for (const auto& [name, ignored] : timing_of({})) out << ',' << name;
@@ -87,7 +88,8 @@ void write_csv(std::ostream& out, const CampaignResults& results, const std::vec
     const TrialResult& t = results.trials[i];
     const ContestantEntry& who = results.contestants[t.contestant];
     out << cell(who.name) << ',' << cell(who.policy) << ',' << cell(results.caves[t.cave].name) << ','
-        << t.seed << ',' << (t.failed ? "failed" : "done") << ',' << cell(t.outcome) << ',' << cell(t.reason);
+        << t.seed << ',' << (t.failed ? "failed" : "done") << ',' << cell(t.outcome) << ',' << cell(t.reason)
+        << ',' << cell(t.ended);
     for (const double v : t.figures) out << ',' << cell(v);
     out << ',' << cell(extras[i].binary_version) << ',' << cell(extras[i].mission_hash) << ','
         << cell(extras[i].timing.machine);

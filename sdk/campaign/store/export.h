@@ -7,10 +7,10 @@
 
 namespace karst::campaign {
 
-/// A header, then one line per trial: contestant, policy, cave, seed, status, outcome, reason, every figure,
-/// binary_version, mission_hash, machine, wall-clock times, run_dir. No cell contains a comma, a quote or a
-/// line end (a comma in a reason becomes a semicolon), so that `awk -F,` can read it; unknown values are
-/// empty.
+/// A header, then one line per trial: contestant, policy, cave, seed, status, outcome, reason, ended, every
+/// figure, binary_version, mission_hash, machine, wall-clock times, run_dir. No cell contains a comma, a
+/// quote or a line end (a comma in a reason becomes a semicolon), so that `awk -F,` can read it; unknown
+/// values are empty.
 void write_csv(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras);
 
 /// One object: `schema` "karst.results/1", the campaign, its contestants and caves, and `trials` with

@@ -38,16 +38,17 @@ TEST(Export, AwkReadsEveryCellOfTheCsv) {
   const auto awk = [&](const std::string& program) {
     return run_process({"/usr/bin/awk", "-F,", program, csv.string()}, 100).out;
   };
-  const std::size_t columns = 7 + evaluation::metric_definitions().size() + 3 + 9 + 1;
+  const std::size_t columns = 8 + evaluation::metric_definitions().size() + 3 + 9 + 1;
   EXPECT_EQ(awk("{ print NF }"), [&] {
     std::string n = std::to_string(columns) + "\n";
     return n + n + n + n;
   }());
   EXPECT_EQ(awk("NR > 1 { print $1, $3, $4, $5 }"),
             "near maze 2 done\nhigh shaft 1 done\nhigh shaft 9 failed\n");
+  EXPECT_EQ(awk("NR == 3 { print $8 }"), "home after 1 s: the pose was lost; 'twice'\n");
   const double wanted = trial_of(2, 1, 1).result.figures[0];
-  EXPECT_EQ(std::stod(awk("NR == 3 { print $8 }")), std::stod(std::to_string(wanted)));
-  EXPECT_EQ(awk("NR == 3 { print ($11 == \"\") }"), "1\n") << "not known is empty";
+  EXPECT_EQ(std::stod(awk("NR == 3 { print $9 }")), std::stod(std::to_string(wanted)));
+  EXPECT_EQ(awk("NR == 3 { print ($12 == \"\") }"), "1\n") << "not known is empty";
 }
 
 TEST(Export, TheJsonHoldsEverything) {
@@ -60,6 +61,7 @@ TEST(Export, TheJsonHoldsEverything) {
   ASSERT_EQ(json["trials"].size(), 3u);
   const auto& t = json["trials"][1];
   EXPECT_EQ(t["contestant"], "high");
+  EXPECT_EQ(t["ended"], trial_of(2, 1, 1).result.ended);
   EXPECT_EQ(t["curve"].size(), 20u);
   EXPECT_EQ(t["curve"][3][0], 6.0);
   EXPECT_EQ(t["figures"].size(), evaluation::metric_definitions().size());
