@@ -8,6 +8,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/stall_watch.h"
 #include "sdk/evaluation/metrics/metrics.h"
+#include "sdk/evaluation/team/run_ending.h"
 #include "sdk/flight/run_files.h"
 #include "sdk/flight/status_line.h"
 #include "sdk/flight/team_metrics.h"
@@ -30,7 +31,7 @@ constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};
   std::fprintf(stderr,
                "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
                running.empty() ? "a step" : ("\"" + running + "\"").c_str(), run_dir.c_str());
-  std::_Exit(kNotLanded);
+  std::_Exit(kNotAsMeant);
 }
 
 void refuse_for_team(const FlightRequest& request) {
@@ -168,7 +169,7 @@ nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, doubl
   write_timing(run_dir, running_->lockstep->executive(0), wall_s);
   const nlohmann::json metrics =
       finish_run(run_dir, {mission_.cave, mission_.start, request_.report, request_.cave_cache});
-  outcome.landed = result.outcome == core::MissionOutcome::landed;
+  outcome.endings = evaluation::read_endings(run_dir);
   outcome.record_problem = result.record_problem;
   return nlohmann::ordered_json(metrics);
 }
@@ -189,7 +190,7 @@ nlohmann::ordered_json MissionFlight::finish_members(FlightOutcome& outcome, dou
   evaluation::write_metrics(run_dir, metrics);
   write_team_timing(run_dir, {outcome.team->duration_s, wall_s, request_.threads});
   finish_team(run_dir, how, metrics);
-  outcome.landed = metrics["outcome"] == core::name_of(core::MissionOutcome::landed);
+  outcome.endings = evaluation::read_endings(run_dir);
   outcome.record_problem = outcome.team->record_problem;
   return metrics;
 }
@@ -209,7 +210,8 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
   } catch (const std::exception& e) {  // such as a full disk: the flight still took place
     outcome.record_problem = e.what();
   }
-  outcome.landed &= outcome.record_problem.empty();
+  outcome.as_meant = outcome.record_problem.empty() && !outcome.endings.empty() &&
+                     evaluation::joint_ending(outcome.endings).as_meant;
   return outcome;
 }
 

@@ -10,18 +10,20 @@
 #include <string>
 #include <vector>
 
+#include "sdk/evaluation/metrics/ending.h"
 #include "sdk/flight/flight_setup.h"
 #include "sdk/flight/team_flight.h"
 
 namespace karst::flight {
 
-constexpr int kNotLanded = 2;  // exit code of a flight that did not end with the vehicle where it should land
+constexpr int kNotAsMeant = 2;  // exit code of a flight whose mission did not go as meant
 
 struct FlightOutcome {
-  bool landed = false;             // all vehicles landed where they should
-  nlohmann::ordered_json metrics;  // null if they could not be computed
-  std::optional<TeamResult> team;  // for a team's flight
-  std::string record_problem;      // why the record is incomplete; "" if it is not
+  bool as_meant = false;  // the mission went so, of every vehicle, and the record is complete
+  std::vector<evaluation::Ending> endings;  // of each vehicle; empty if they are not known
+  nlohmann::ordered_json metrics;           // null if they could not be computed
+  std::optional<TeamResult> team;           // for a team's flight
+  std::string record_problem;               // why the record is incomplete; "" if it is not
 };
 
 class MissionFlight {

@@ -12,6 +12,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
+#include "sdk/evaluation/metrics/summary.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/cave_check.h"
 #include "sdk/flight/fly.h"
@@ -59,19 +60,33 @@ void print_objects(const nlohmann::ordered_json& m) {
                         : "");
 }
 
-void print_outcome(const nlohmann::ordered_json& metrics) {
-  print_wrapped(stdout, 2, "%s: %s\n", metrics["outcome"].get<std::string>().c_str(),
-                metrics["reason"].get<std::string>().c_str());
+/// Of one vehicle, or of a whole team.
+void print_outcome(const nlohmann::ordered_json& metrics, const evaluation::Ending& ending) {
+  const std::string how = ending.sentence.empty() ? metrics["reason"].get<std::string>() : ending.sentence;
+  print_wrapped(stdout, 2, "%s: %s;\n  %s\n", metrics["outcome"].get<std::string>().c_str(),
+                evaluation::achievement_of(metrics, ending).c_str(), how.c_str());
 }
 
-void print_flight(const nlohmann::ordered_json& metrics, const flight::FlightRequest& request) {
+/// On standard error, whatever else is printed: what flew is not what was to be flown.
+void print_failed_policies(const std::vector<evaluation::Ending>& endings) {
+  for (std::size_t i = 0; i < endings.size(); ++i) {
+    const auto& failed = endings[i].failed_policy;
+    const std::string robot = endings.size() > 1 ? "of robot " + std::to_string(i + 1) + " " : "";
+    if (failed)
+      print_error("karst: the policy %sfailed at %.1f s, and the fallback took over: %s\n", robot.c_str(),
+                  failed->time_s, failed->why.c_str());
+  }
+}
+
+void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequest& request) {
+  const nlohmann::ordered_json& metrics = outcome.metrics;
   const auto number = [&](const char* key, const char* format) {
     if (metrics[key].is_null()) return std::string("unknown");
     std::array<char, 64> text;
     std::snprintf(text.data(), text.size(), format, metrics[key].get<double>());
     return std::string(text.data());
   };
-  print_outcome(metrics);
+  print_outcome(metrics, evaluation::joint_ending(outcome.endings));
   print_out("  flight time      %s\n  path length      %s\n  mean speed       %s\n",
             number("flight_time_s", "%.0f s").c_str(), number("path_length_m", "%.0f m").c_str(),
             number("mean_speed_mps", "%.2f m/s").c_str());
@@ -87,18 +102,19 @@ void print_flight(const nlohmann::ordered_json& metrics, const flight::FlightReq
   print_out("  %s   all figures\n", (request.run_dir / "metrics.json").c_str());
 }
 
-void print_team(const flight::TeamResult& team, const nlohmann::ordered_json& metrics,
-                const flight::FlightRequest& request) {
-  print_outcome(metrics);
+void print_team(const flight::FlightOutcome& outcome, const flight::FlightRequest& request) {
+  const flight::TeamResult& team = *outcome.team;
+  const bool known = outcome.endings.size() == team.robots.size();
+  print_outcome(outcome.metrics, evaluation::joint_ending(outcome.endings));
   print_out("  robot  explored  outcome    at the base\n");
   for (std::size_t i = 0; i < team.robots.size(); ++i) {
     const flight::RobotResult& r = team.robots[i];
     print_wrapped(stdout, 9, "  %5zu  %6.0f s  %-9s  %s, %u of %u records   %s\n", i + 1,
                   r.exploration_time_s, core::name_of(r.mission.outcome),
                   r.connected ? "connected" : "cut off", r.records_at_base, r.records,
-                  r.mission.reason.c_str());
+                  (known ? outcome.endings[i].sentence : r.mission.reason).c_str());
   }
-  print_objects(metrics);
+  print_objects(outcome.metrics);
   print_out("  over the air     %.0f kB in %.0f s\nLook next at:\n",
             1e-3 * static_cast<double>(team.bytes_on_air), team.duration_s);
   if (request.report == flight::Report::written)
@@ -178,16 +194,17 @@ int fly(const FlyArguments& args) {
     if (args.json)
       print_json(outcome.metrics);
     else if (outcome.team)
-      print_team(*outcome.team, outcome.metrics, request);
+      print_team(outcome, request);
     else
-      print_flight(outcome.metrics, request);
+      print_flight(outcome, request);
   }
+  print_failed_policies(outcome.endings);
   if (!outcome.record_problem.empty())
     print_wrapped(stderr, 7, "karst: %s\nkarst: the %s record is incomplete: %s\n",
                   outcome.record_problem.c_str(), flight::is_team(mission) ? "flights'" : "flight's",
                   request.run_dir.c_str());
-  int code = flight::kNotLanded;
-  if (outcome.landed) code = std::fflush(stdout) == 0 ? 0 : 1;
+  int code = flight::kNotAsMeant;
+  if (outcome.as_meant) code = std::fflush(stdout) == 0 ? 0 : 1;
   if (mission_flight.hangs()) {  // nothing may be destroyed
     std::fflush(stdout);
     std::_Exit(code);
@@ -208,8 +225,10 @@ void add_fly_command(CLI::App& app) {
       "Missions to start from: " +
           core::doc_path("examples/missions") +
           "\n\n"
-          "Exit code: 0 landed at the start (of a team: all landed), 2 flown but not landed there or the "
-          "record is incomplete, 1 not flown or nothing could be printed.");
+          "Exit code: 0 the mission went as meant: explored until nothing was left, or the time or the "
+          "battery, and landed at the start or as a relay (of a team: all did). 2 it did not: sent home or "
+          "down early, landed elsewhere, or the record is incomplete. 1 not flown, or nothing could be "
+          "printed.");
   fly_app->add_option("mission", args->mission_file, "mission file (.info)")
       ->type_name(kFile)
       ->check(not_empty());

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "core_stack/common/json_file.h"
+#include "sdk/evaluation/team/run_ending.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/help/value_types.h"
 
@@ -90,6 +91,16 @@ std::optional<double> quantile(const std::vector<double>& sorted, double fractio
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
+/// How the run ended, as a cell of a Markdown table; "" if its events do not tell.
+std::string ending_cell(const std::string& run) {
+  std::string text = evaluation::read_ending(run).sentence;
+  for (char& c : text) {  // either would end the cell
+    if (c == '|') c = '/';
+    if (c == '\n') c = ' ';
+  }
+  return text;
+}
+
 /// The kind of a folder that is not a run, such as a campaign's; "" for a run.
 std::string no_run(const std::string& folder) {
   namespace fs = std::filesystem;
@@ -121,7 +132,7 @@ void print_spread(const std::vector<nlohmann::json>& runs) {
                        (fraction == 0 ? counted : "") + " |";
     for (std::size_t i = 0; i < kColumns.size(); ++i)
       line += " " + text_of(quantile(sorted[i], fraction), kColumns[i]) + " |";
-    print_out("%s\n", line.c_str());
+    print_out("%s |\n", line.c_str());
   }
 }
 
@@ -139,7 +150,7 @@ void add_table_command(CLI::App& app) {
       head += std::string(" ") + c.title + " |";
       rule += "---:|";
     }
-    print_out("%s\n%s\n", head.c_str(), rule.c_str());
+    print_out("%s ended |\n%s---|\n", head.c_str(), rule.c_str());
     std::vector<std::string> problems;
     std::vector<nlohmann::json> all;
     std::vector<std::string> skipped;
@@ -154,7 +165,7 @@ void add_table_command(CLI::App& app) {
       std::string line = "|";
       for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
       for (const Column& c : kColumns) line += " " + text_of(number_of(m, c), c) + " |";
-      print_out("%s\n", line.c_str());
+      print_out("%s %s |\n", line.c_str(), ending_cell(run).c_str());
       if (!m.contains("no_figures")) all.push_back(m);
     }
     if (all.size() > 1) print_spread(all);

@@ -28,6 +28,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 host::PolicyChoice isolated(const std::string& policy = "plain") {
   host::PolicyChoice c = choice_of(policy);
@@ -74,11 +75,14 @@ TEST_P(BreakingPlugin, IsHeldOnceStartedOnceMoreThenGivenUp) {
   const std::string says = kSanitized && std::string(GetParam().says).find("signal") != std::string::npos
                                ? "its process ended in decide()"
                                : GetParam().says;
-  EXPECT_THAT(d.reason, AllOf(HasSubstr("plain broke, and was started once more"), HasSubstr(says)));
+  const std::string asked = "request 1 at 5.0 s";  // the room's, both times
+  EXPECT_THAT(d.reason,
+              AllOf(HasSubstr("plain broke, and was started once more"), HasSubstr(says), HasSubstr(asked)));
   EXPECT_THAT(d.log, Contains(HasSubstr(says)));
   const pid_t second = dynamic_cast<host::IsolatedPolicy&>(*policy).process_id();
   EXPECT_THAT(failure_of(*policy, room.request),
-              AllOf(HasSubstr(says), HasSubstr("had been started once more before")));
+              AllOf(StartsWith("plain: "), HasSubstr(says), HasSubstr(asked),
+                    HasSubstr("had been started once more before")));
   EXPECT_EQ(kill(second, 0), -1) << "its process is still there";
   EXPECT_THAT(failure_of(*policy, room.request), HasSubstr(says));
   policy->notify({core::PolicyEvent::Kind::homing, 0, {}, ""});
@@ -143,7 +147,8 @@ TEST_P(FailingPlugin, FailsAsInProcess) {
     EXPECT_EQ(a.log, b.log);
   }
   const std::string failure = failure_of(*in_process, room.request);
-  EXPECT_THAT(failure, HasSubstr("failed 3 times in a row"));
+  EXPECT_THAT(failure,
+              AllOf(StartsWith(policy + " failed 3 times in a row"), HasSubstr("request 1 at 5.0 s")));
   EXPECT_EQ(failure_of(*in_child, room.request), failure);
 }
 
@@ -240,8 +245,9 @@ TEST(IsolatedPlugin, ThatCrashesInAnEventTellsWithTheNextDecision) {
   Room room;
   const auto policy = load_isolated("crash_in_event");
   EXPECT_EQ(policy->decide(room.request).goals.size(), 1u);
-  policy->notify({core::PolicyEvent::Kind::goal_reached, 0, {}, ""});
-  EXPECT_THAT(policy->decide(room.request).reason, HasSubstr("in on_event()"));
+  policy->notify({core::PolicyEvent::Kind::goal_reached, 7 * core::kSecond, {}, ""});
+  EXPECT_THAT(policy->decide(room.request).reason,
+              AllOf(HasSubstr("in on_event()"), HasSubstr("event reached at 7.0 s")));
   EXPECT_EQ(policy->decide(room.request).goals.size(), 1u);
   policy->notify({core::PolicyEvent::Kind::goal_reached, 0, {}, ""});
   EXPECT_THAT(failure_of(*policy, room.request), HasSubstr("in on_event()"));

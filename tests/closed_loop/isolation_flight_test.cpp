@@ -11,12 +11,15 @@ constexpr const char* kInChild =
     " --set policy.isolation=process --set policy.cpu_limit=1s --set policy.hang_limit=10s "
     "--set policy.memory_limit_mib=512";
 
-std::filesystem::path fly(const std::string& name, const std::string& arguments, int flight_s) {
+/// `said`: gets what was printed, if given.
+std::filesystem::path fly(const std::string& name, const std::string& arguments, int flight_s,
+                          std::string* said = nullptr) {
   const auto run = fresh_folder("isolation_" + name) / "run";
   const Output out = run_karst("fly --cave " + generated_cave("small", 7) + " " + arguments +
                                " --set mission.max_flight_time=" + std::to_string(flight_s) +
                                "s --quiet --no-report --out " + run.string());
   EXPECT_EQ(out.code, 0) << out.text;
+  if (said) *said = out.text;
   return run;
 }
 
@@ -37,10 +40,11 @@ TEST_P(SameFlight, ByteForByteInAProcessOfItsOwn) {
 INSTANTIATE_TEST_SUITE_P(Policies, SameFlight, ::testing::Values("nearest_frontier", "unknown_ratio"));
 
 TEST(CrashInFlight, CostsThePolicyAndTheVehicleLands) {
+  std::string said;
   const auto run = fly(
       "crash_later",
       std::string("--policy plain --plugin ") + KARST_BINARY_DIR + "/tests/plugins/crash_later.so" + kInChild,
-      70);
+      70, &said);
   const auto m = nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
   ASSERT_TRUE(m.is_object());
   EXPECT_EQ(m["outcome"], "landed");
@@ -49,6 +53,11 @@ TEST(CrashInFlight, CostsThePolicyAndTheVehicleLands) {
   const std::string events = bytes_of(run / "events.jsonl");
   EXPECT_NE(events.find("plain broke, and was started once more"), std::string::npos);
   EXPECT_NE(events.find("the policy failed: plain: its process ended in decide()"), std::string::npos);
+  EXPECT_NE(events.find(", request 4 at "), std::string::npos) << "it answers two, and breaks from then on";
+  EXPECT_NE(said.find("karst: the policy failed at "), std::string::npos) << said;
+  EXPECT_NE(said.find("and the fallback took over: plain: its process ended in decide()"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("plain, and after it failed the fallback, explored"), std::string::npos) << said;
 }
 
 /// Every way a plugin of the drawer misbehaves once it is loaded.

@@ -47,6 +47,9 @@ TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
   EXPECT_LT(m["landing_error_m"].get<double>(), 1.0);
   EXPECT_GT(m["battery_left"].get<double>(), 0.0);
   EXPECT_GT(m["coverage"].get<double>(), 0.5);
+  EXPECT_EQ(m["completed"], 1);
+  EXPECT_TRUE(out.says(std::string("landed: ") + GetParam() + " explored ")) << out.text;
+  EXPECT_TRUE(out.says("\n  home because ")) << out.text;
   for (const char* file : {"mission.info", "events.jsonl", "trajectory.tum", "ground_truth.tum", "map.bt",
                            "map.ot", "map.ply", "timing.json", "report.html", "telemetry.csv"})
     EXPECT_GT(std::filesystem::file_size(run / file), 0u) << file;
@@ -268,7 +271,7 @@ TEST(Payload, TooHeavyToLiftOffEndsTheMissionOnTheGround) {
                                " --set simulator.body.payload=5kg --quiet --no-report --out " + run.string());
   EXPECT_EQ(out.code, 2) << out.text;
   EXPECT_EQ(metrics_of(run)["outcome"], "stuck");
-  EXPECT_TRUE(out.says("does not lift off")) << out.text;
+  EXPECT_TRUE(out.says("it did not lift off (too heavy for its motors?)")) << out.text;
 }
 
 TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThreadCount) {
@@ -331,6 +334,8 @@ TEST(LostPose, AVehicleThatHasItAgainOnTheWayDownFliesHome) {
     const std::string events = bytes_of(folder / "run/events.jsonl");
     EXPECT_NE(events.find("the state estimate is lost"), std::string::npos);
     EXPECT_NE(events.find("the pose is known again"), std::string::npos);
+    // It may have turned back for want of time just before.
+    EXPECT_EQ(out.code, metrics_of(folder / "run")["completed"] == 1 ? 0 : 2) << out.text;
     EXPECT_EQ(metrics_of(folder / "run")["outcome"], "landed") << out.text;
     EXPECT_EQ(metrics_of(folder / "run")["contacts"], 0);
   }
@@ -367,6 +372,8 @@ TEST(LostPose, AVehicleThatStandsDoesNotTakeOffAgain) {
         run_karst("fly --cave " + cave + " --set mission.max_flight_time=60s --quiet --no-report --out " +
                   run.string());
     EXPECT_EQ(metrics_of(run)["contacts"], 0) << out.text;
+    EXPECT_EQ(out.code, 2) << "landed at the start, but early: " << out.text;
+    EXPECT_TRUE(out.says("\n  home after ") && out.says(" s: the pose was lost (")) << out.text;
     const std::string truth = bytes_of(run / "truth_events.jsonl");
     const auto count = [&truth](const std::string& event) {
       int n = 0;

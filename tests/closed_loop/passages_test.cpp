@@ -134,6 +134,7 @@ TEST(ShutIn, AVehicleWithoutAWayHomeLandsWhereItIsWithinFifteenSeconds) {
       run_karst("fly --cave " + cave + " --set mission.max_flight_time=120s --quiet --no-report --out " +
                 (folder / "run").string());
   EXPECT_EQ(out.code, 2) << out.text;
+  EXPECT_TRUE(out.says("there was no way home, and waiting did not help")) << out.text;
   const std::string truth = bytes_of(folder / "run" / "truth_events.jsonl");
   const auto fallen = nlohmann::json::parse(
       truth.substr(truth.rfind('{', truth.find("rockfall")))

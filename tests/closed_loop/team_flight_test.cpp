@@ -58,10 +58,11 @@ Flown fly(const std::string& cave, const std::filesystem::path& run, const std::
   return f;
 }
 
-/// What must hold of every team that nothing befell.
+/// What must hold of every team that nothing befell: also landed as relays, its mission went as meant.
 void expect_all_well(const Flown& f, std::size_t robots) {
   ASSERT_EQ(f.robots.size(), robots) << f.output.text;
   EXPECT_EQ(f.output.code, 0) << f.output.text;
+  EXPECT_TRUE(f.output.says("all " + std::to_string(robots) + " robots flew as meant")) << f.output.text;
   EXPECT_EQ(f.metrics["outcome"], "landed");
   EXPECT_EQ(f.metrics["contacts"], 0);
   EXPECT_EQ(f.metrics["robots_connected"], 1);
@@ -318,6 +319,8 @@ TEST(Team, WithoutOneThatNeverComesBackGoesOn) {
                       team_of(3, "relay_chain", "--set team.lost_robot=1 --set team.lost_after=30s"));
   ASSERT_EQ(f.robots.size(), 3u);
   EXPECT_EQ(f.output.code, 2) << "not all came down";
+  EXPECT_TRUE(f.output.says("robot 1: lost after ") && !f.output.says("robots flew as meant"))
+      << f.output.text;
   EXPECT_EQ(f.robots[0]["outcome"], "lost");
   EXPECT_EQ(f.count(f.truth, "contact"), 0);
   for (const int i : {1, 2}) {

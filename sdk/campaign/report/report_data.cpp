@@ -64,8 +64,9 @@ ordered_json trial_row(const CampaignResults& results, const TrialResult& t, con
     figures.push_back(number_or_null(t.figures[m]));
     counted.push_back(number_or_null(figure_of(t, static_cast<int>(m), results.horizon_s)));
   }
-  ordered_json row = {{"contestant", t.contestant}, {"cave", t.cave},       {"seed", t.seed},
-                      {"failed", t.failed},         {"outcome", t.outcome}, {"reason", t.reason}};
+  ordered_json row = {
+      {"contestant", t.contestant}, {"cave", t.cave},     {"seed", t.seed},  {"failed", t.failed},
+      {"outcome", t.outcome},       {"reason", t.reason}, {"ended", t.ended}};
   std::error_code no_matter;
   const bool kept = !t.run_dir.empty() && fs::is_directory(t.run_dir, no_matter);
   row["run"] = kept ? ordered_json(relative_url(t.run_dir, folder)) : ordered_json(nullptr);

@@ -9,7 +9,7 @@
 namespace karst::campaign {
 namespace {
 
-enum Kind { kFailed, kContact, kNotLanded, kSlow };
+enum Kind { kFailed, kContact, kNotLanded, kNotAsMeant, kSlow };
 
 struct Judged {
   Kind kind = kSlow;
@@ -29,6 +29,15 @@ double mean_in_cave(const CampaignResults& results, std::size_t cave, int metric
   return n > 0 ? sum / n : std::nan("");
 }
 
+bool went_wrong(const TrialResult& trial) {
+  const auto completed = static_cast<std::size_t>(evaluation::metric_index("completed"));
+  return trial.figures[completed] == 0;  // a team has no such figure: NaN
+}
+
+std::string with_ending(const std::string& what, const TrialResult& trial) {
+  return trial.ended.empty() ? what : what + ": " + trial.ended;
+}
+
 }  // namespace
 
 std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric, std::size_t count) {
@@ -46,9 +55,11 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
     if (t.failed) {
       j = {kFailed, 0, {i, "failed"}};
     } else if (t.outcome == core::name_of(core::MissionOutcome::contact)) {
-      j = {kContact, j.against_cave, {i, "touched rock"}};
+      j = {kContact, j.against_cave, {i, with_ending("touched rock", t)}};
     } else if (t.outcome != core::name_of(core::MissionOutcome::landed)) {
-      j = {kNotLanded, j.against_cave, {i, "did not land: " + t.outcome}};
+      j = {kNotLanded, j.against_cave, {i, with_ending("did not land (" + t.outcome + ")", t)}};
+    } else if (went_wrong(t)) {
+      j = {kNotAsMeant, j.against_cave, {i, with_ending("did not go as meant", t)}};
     } else if (less ? fraction <= 1 : fraction >= 1) {
       continue;  // not below its cave's mean: not a bad trial
     }

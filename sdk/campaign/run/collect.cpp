@@ -12,6 +12,7 @@
 #include "sdk/campaign/run/executor.h"
 #include "sdk/evaluation/metrics/coverage_curve.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
+#include "sdk/evaluation/team/run_ending.h"
 
 namespace karst::campaign {
 namespace {
@@ -88,6 +89,7 @@ StoredTrial collect(const Plan& plan, const TrialKey& key, const fs::path& folde
   r.reason = r.failed ? failure(plan, run_dir, note.end) : text_of(metrics, "reason");
   for (const evaluation::MetricDefinition& m : evaluation::metric_definitions())
     r.figures.push_back(metrics.is_object() ? number_of(metrics, m.name) : kUnknown);
+  if (!r.failed) r.ended = evaluation::read_ending(run_dir).sentence;
   const evaluation::RunRecord run = evaluation::read_run(run_dir);
   r.curve = curve_of(run, metrics.is_object() ? number_of(metrics, "coverage") : kUnknown);
   trial.binary_version = plan.contestants.at(r.contestant).binary_version;

@@ -53,6 +53,7 @@ ordered_json trial_json(const CampaignResults& results, const TrialResult& t, co
                  {"status", t.failed ? "failed" : "done"},
                  {"outcome", t.outcome},
                  {"reason", t.reason},
+                 {"ended", t.ended},
                  {"figures", ordered_json::object()},
                  {"curve", ordered_json::array()},
                  {"binary_version", extras.binary_version},
@@ -71,7 +72,7 @@ ordered_json trial_json(const CampaignResults& results, const TrialResult& t, co
 }  // namespace
 
 void write_csv(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras) {
-  out << "contestant,policy,cave,seed,status,outcome,reason";
+  out << "contestant,policy,cave,seed,status,outcome,reason,ended";
   for (const evaluation::MetricDefinition& m : evaluation::metric_definitions()) out << ',' << m.name;
   out << ",binary_version,mission_hash,machine";
   for (const auto& [name, ignored] : timing_of({})) out << ',' << name;
@@ -81,7 +82,7 @@ void write_csv(std::ostream& out, const CampaignResults& results, const std::vec
     const ContestantEntry& who = results.contestants[t.contestant];
     out << csv_cell(who.name) << ',' << csv_cell(who.policy) << ',' << csv_cell(results.caves[t.cave].name)
         << ',' << t.seed << ',' << (t.failed ? "failed" : "done") << ',' << csv_cell(t.outcome) << ','
-        << csv_cell(t.reason);
+        << csv_cell(t.reason) << ',' << csv_cell(t.ended);
     for (const double v : t.figures) out << ',' << number_cell(v);
     out << ',' << csv_cell(extras[i].binary_version) << ',' << csv_cell(extras[i].mission_hash) << ','
         << csv_cell(extras[i].timing.machine);

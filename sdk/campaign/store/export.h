@@ -7,9 +7,9 @@
 
 namespace karst::campaign {
 
-/// A header, then one line per trial: contestant, policy, cave, seed, status, outcome, reason, every figure,
-/// binary_version, mission_hash, machine, wall-clock times, run_dir. Cells are quoted as RFC 4180 has it
-/// (core_stack/common/csv_cell.h), lines end with LF, and unknown values are empty.
+/// A header, then one line per trial: contestant, policy, cave, seed, status, outcome, reason, ended, every
+/// figure, binary_version, mission_hash, machine, wall-clock times, run_dir. Cells are quoted as RFC 4180 has
+/// it (core_stack/common/csv_cell.h), lines end with LF, and unknown values are empty.
 void write_csv(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras);
 
 /// One object: `schema` "karst.results/1", the campaign, its contestants and caves, and `trials` with

@@ -19,13 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using sqlite::Statement;
 
-/// The store's columns of the figures, in the order of the definitions; NULL for missing ones.
-std::string figures_or_null(const fs::path& file, sqlite3* db) {
+/// The store's columns of the figures, in the order of the definitions, then `ended`; NULL for missing ones,
+/// in a store of an earlier karst.
+std::string newer_columns(const fs::path& file, sqlite3* db) {
   const std::set<std::string> there = trial_columns(file, db);
   std::string text;
   for (const evaluation::MetricDefinition& m : evaluation::metric_definitions())
     text += there.contains(std::string(m.name)) ? ", " + std::string(m.name) : ", NULL";
-  return text;
+  return text + (there.contains("ended") ? ", ended" : ", NULL");
 }
 
 void read_curves(const fs::path& file, sqlite3* db, const std::map<std::int64_t, std::size_t>& place,
@@ -74,7 +75,7 @@ ResultsWithExtras read_with_extras(const fs::path& folder_or_file) {
       "SELECT id, contestant, cave, seed, status, outcome, reason, run_dir, binary_version, mission_hash,"
       " machine, trial_s, wall_s, simulated_s, decide_mean_ms, decide_p99_ms, decide_max_ms, plan_mean_ms,"
       " plan_p99_ms, plan_max_ms" +
-          figures_or_null(file, db) +
+          newer_columns(file, db) +
           " FROM trial LEFT JOIN timing ON timing.trial = trial.id ORDER BY contestant, cave, seed");
   while (s.step()) {
     TrialResult t;
@@ -90,8 +91,9 @@ ResultsWithExtras read_with_extras(const fs::path& folder_or_file) {
     const evaluation::WallClock flight{wall_s,     simulated_s, simulated_s / wall_s, s.real(14), s.real(15),
                                        s.real(16), s.real(17),  s.real(18),           s.real(19)};
     all.extras.push_back({s.text(8), s.text(9), {s.text(10), s.real(11), flight}});
-    for (std::size_t i = 0; i < evaluation::metric_definitions().size(); ++i)
-      t.figures.push_back(s.real(static_cast<int>(20 + i)));
+    const std::size_t figures = evaluation::metric_definitions().size();
+    for (std::size_t i = 0; i < figures; ++i) t.figures.push_back(s.real(static_cast<int>(20 + i)));
+    t.ended = s.text(static_cast<int>(20 + figures));
     results.trials.push_back(std::move(t));
   }
   read_curves(file, db, place, results.trials);

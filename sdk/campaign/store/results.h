@@ -33,6 +33,7 @@ struct TrialResult {
   std::string run_dir;          // absolute
   std::vector<double> figures;  // in the order of evaluation::metric_definitions(); NaN: not known
   std::vector<CurvePoint> curve;
+  std::string ended = {};  // evaluation::Ending::sentence; "" if it failed, or an earlier karst stored it
 };
 
 struct CampaignResults {

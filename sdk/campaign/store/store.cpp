@@ -121,6 +121,12 @@ void Store::add(const StoredTrial& trial) {
     names += ", " + std::string(definitions[i].name);
     marks += ", ?" + std::to_string(11 + i);
   }
+  const int ended_at = static_cast<int>(11 + definitions.size());
+  const bool tells_ending = trial_columns(file_, db_.get()).contains("ended");  // or an earlier karst made it
+  if (tells_ending) {
+    names += ", ended";
+    marks += ", ?" + std::to_string(ended_at);
+  }
   sqlite::Transaction transaction(file_, db_.get());
   Statement row(file_, db_.get(),
                 "INSERT OR REPLACE INTO trial(id, contestant, cave, seed, status, outcome, reason,"
@@ -130,6 +136,7 @@ void Store::add(const StoredTrial& trial) {
   row.bind(5, std::string(r.failed ? "failed" : "done")).bind(6, r.outcome).bind(7, r.reason);
   row.bind(8, trial.binary_version).bind(9, trial.mission_hash).bind(10, r.run_dir);
   for (std::size_t i = 0; i < definitions.size(); ++i) row.bind(static_cast<int>(11 + i), r.figures[i]);
+  if (tells_ending) row.bind(ended_at, r.ended);
   row.run();
   Statement(file_, db_.get(), "DELETE FROM curve WHERE trial = ?1").bind(1, id).run();
   Statement point(file_, db_.get(), "INSERT INTO curve VALUES(?1, ?2, ?3, ?4)");

@@ -71,7 +71,7 @@ std::string schema_sql() {
          "NULL,"
          " binary_version TEXT NOT NULL, mission_hash TEXT NOT NULL, run_dir TEXT NOT NULL" +
          figure_columns("", " REAL") +
-         ", UNIQUE(contestant, cave, seed));"
+         ", ended TEXT, UNIQUE(contestant, cave, seed));"
          "CREATE TABLE curve(trial INTEGER NOT NULL REFERENCES trial, time_s REAL NOT NULL, explored_m3 REAL,"
          " coverage REAL, PRIMARY KEY(trial, time_s)) WITHOUT ROWID;"
          "CREATE TABLE timing(trial INTEGER PRIMARY KEY REFERENCES trial, machine TEXT NOT NULL, trial_s "
@@ -79,7 +79,7 @@ std::string schema_sql() {
          " wall_s REAL, simulated_s REAL, decide_mean_ms REAL, decide_p99_ms REAL, decide_max_ms REAL,"
          " plan_mean_ms REAL, plan_p99_ms REAL, plan_max_ms REAL);"
          "CREATE VIEW result AS SELECT contestant.name AS contestant, cave.name AS cave, trial.seed,"
-         " trial.status, trial.outcome, trial.reason" +
+         " trial.status, trial.outcome, trial.reason, trial.ended" +
          figure_columns("trial.", "") +
          ", trial.binary_version, trial.mission_hash, trial.run_dir, trial.id"
          " FROM trial JOIN contestant ON contestant.id = trial.contestant JOIN cave ON cave.id = trial.cave"

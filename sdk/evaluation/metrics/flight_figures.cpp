@@ -16,7 +16,6 @@ namespace event = core::event;
 
 constexpr double kStandingSpeed_mps = 0.2;
 constexpr double kProgress_m = 0.5;
-constexpr double kAtStart_m = 1;  // the mission's own bound for a landing at the start
 
 bool within(const RunRecord& run, double t_s, bool core::PhaseTraits::*trait) {
   return std::any_of(run.phases.begin(), run.phases.end(),
@@ -170,10 +169,12 @@ std::optional<double> last_finite(const std::vector<double>* column) {
   return *last;
 }
 
-bool completed(const RunRecord& run, std::optional<double> landing_error_m) {
-  const auto end = run.last<event::Outcome>();
-  if (!end || end->outcome != MissionOutcome::landed) return false;
-  if (landing_error_m.value_or(0) > kAtStart_m) return false;
+std::optional<double> landed_off_m(const RunRecord& run) {
+  if (run.truth.empty()) return std::nullopt;
+  return (run.truth.back().T_world_body.position - run.truth.front().T_world_body.position).head<2>().norm();
+}
+
+bool explored_to_its_end(const RunRecord& run) {
   double explored_until_s = -1;
   for (const Phase& p : run.phases)
     if (p.traits().explores) explored_until_s = p.end_s;
@@ -184,6 +185,12 @@ bool completed(const RunRecord& run, std::optional<double> landing_error_m) {
            (safety->action == core::SafetyAction::home || safety->action == core::SafetyAction::land) &&
            e["t"].get<double>() <= explored_until_s;
   });
+}
+
+bool completed(const RunRecord& run, std::optional<double> landing_error_m) {
+  const auto end = run.last<event::Outcome>();
+  return end && end->outcome == MissionOutcome::landed && !(landing_error_m.value_or(0) > kAtStart_m) &&
+         explored_to_its_end(run);
 }
 
 double flight_begin_s(const RunRecord& run) {
@@ -208,9 +215,7 @@ FlightFigures flight_figures(const RunRecord& run) {
   f.exploring_speed_mps = spent.mean_speed_mps;
   f.longest_stall_s = longest_stall_s(run, poses);
   f.min_clearance_m = min_clearance_m(run);
-  if (!run.truth.empty())
-    f.landing_error_m =
-        (run.truth.back().T_world_body.position - run.truth.front().T_world_body.position).head<2>().norm();
+  f.landing_error_m = landed_off_m(run);
   f.battery_left = last_finite(run.telemetry.column("battery_fraction"));
   f.energy_wh = energy_wh(run, begin_s, end_s);
   farthest(poses, begin_s, end_s, f);

@@ -18,9 +18,17 @@ struct FlightFigures {
 
 FlightFigures flight_figures(const RunRecord& run);
 
-/// Whether the mission succeeded: the outcome is landed, truly at the start (within 1 m; without ground truth
-/// by the vehicle's own estimate), and exploration ended because nothing was left, because of time or
-/// battery, or by the policy's decision, not because the supervisor sent the vehicle home or made it land.
+constexpr double kAtStart_m = 1;  // the mission's own bound for a landing at the start
+
+/// Horizontal distance from the first true position to the last; none without ground truth.
+std::optional<double> landed_off_m(const RunRecord& run);
+
+/// Whether exploration ended because nothing was left, because of time or battery, or by the policy's
+/// decision, not because the supervisor sent the vehicle home or made it land.
+bool explored_to_its_end(const RunRecord& run);
+
+/// Whether the mission succeeded: the outcome is landed, truly at the start (within kAtStart_m; without
+/// ground truth by the vehicle's own estimate), and it explored to its end.
 bool completed(const RunRecord& run, std::optional<double> landing_error_m);
 
 /// Time of take-off: the begin of the first phase after standby, or the first telemetry row.

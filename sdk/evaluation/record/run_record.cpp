@@ -47,6 +47,11 @@ void note_absent(const RunRecord& run, const char* file, const char* consequence
     problems.push_back(std::string(file) + ": not there; " + consequence);
 }
 
+std::vector<json> read_flight_events(const fs::path& run_dir, std::vector<std::string>& problems) {
+  return read_events(run_dir / "events.jsonl", "t", "kind", problems,
+                     [](const json& line) { event::read(line); });
+}
+
 void check_stamped(const json& line, const char* time, const char* kind) {
   if (!line.is_object() || !event_number(line, time) || event_text(line, kind).empty())
     throw event::Malformed(std::string("is not an event (a JSON object with \"") + time + "\" and \"" + kind +
@@ -151,8 +156,7 @@ RunRecord read_run(const fs::path& run_dir) {
   note_absent(run, "map_growth.bin", "the map cannot be drawn", problems);
   note_absent(run, "map.bt", "the run did not come to its end; the volume is the telemetry's last", problems);
   run.settings = read_settings(run_dir / "mission.info", problems);
-  run.events = read_events(run_dir / "events.jsonl", "t", "kind", problems,
-                           [](const json& line) { event::read(line); });
+  run.events = read_flight_events(run_dir, problems);
   run.truth_events = read_events(run_dir / "truth_events.jsonl", "time_s", "event", problems);
   run.truth_objects = read_events(run_dir / "truth_objects.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);
@@ -167,6 +171,14 @@ RunRecord read_run(const fs::path& run_dir) {
   run.growth = read_map_growth(run_dir / "map_growth.bin", problems);
   run.timing = read_json(run_dir / "timing.json", problems);
   run.evaluation = read_json(run_dir / "evaluation.json", problems);
+  run.phases = find_phases(run);
+  return run;
+}
+
+RunRecord read_events_alone(const fs::path& run_dir) {
+  RunRecord run;
+  run.directory = run_dir;
+  run.events = read_flight_events(run_dir, run.problems);
   run.phases = find_phases(run);
   return run;
 }

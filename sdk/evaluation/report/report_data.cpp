@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sdk/evaluation/metrics/flight_figures.h"
+#include "sdk/evaluation/metrics/summary.h"
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/report_curve.h"
 #include "sdk/evaluation/report/report_goals.h"
@@ -68,8 +69,11 @@ ordered_json event_rows(const RunRecord& run) {
 ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   const double duration_s = std::max(1.0, run.last_time_s());
   std::vector<std::string> problems = run.problems;
+  const Ending ending = ending_of(run);
   ordered_json d;
   d["metrics"] = metrics;
+  d["summary"] = summary_of(metrics, ending);
+  d["as_meant"] = ending.sentence.empty() ? ordered_json(nullptr) : ordered_json(ending.as_meant);
   d["duration_s"] = duration_s;
   d["begin_s"] = flight_begin_s(run);
   d["phases"] = ordered_json::array();

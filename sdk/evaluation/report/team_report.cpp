@@ -6,6 +6,7 @@
 #include "core_stack/common/json_file.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
+#include "sdk/evaluation/metrics/summary.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/evaluation/report/report_curve.h"
 #include "sdk/evaluation/report/report_scene.h"
@@ -90,7 +91,7 @@ void add_base(ordered_json& d, const TeamRecord& team, std::vector<std::string>&
   d["tree"] = std::move(tree);
 }
 
-ordered_json robot_data(const RunRecord& r) {
+ordered_json robot_data(const RunRecord& r, const Ending& ending) {
   const Table& t = r.telemetry;
   ordered_json d;
   d["phases"] = ordered_json::array();
@@ -99,6 +100,7 @@ ordered_json robot_data(const RunRecord& r) {
   d["battery"] = report_curve(t.times(), t.column("battery_fraction"), 100);
   d["volume"] = report_curve(t.times(), t.column("explored_m3"));
   d["reported"] = std::filesystem::exists(r.directory / "report.html");
+  d["ending"] = ending.sentence;
   return d;
 }
 
@@ -129,15 +131,21 @@ ordered_json team_report_data(const TeamRecord& team, const ordered_json& metric
   std::vector<std::string> problems = team.problems;
   for (const RunRecord& r : team.robots)
     for (const std::string& p : r.problems) problems.push_back(r.directory.filename().string() + "/" + p);
+  std::vector<Ending> endings;
+  for (const RunRecord& r : team.robots) endings.push_back(ending_of(r));
+  const Ending joint = joint_ending(endings);
   ordered_json d;
   d["metrics"] = metrics;
+  d["summary"] = summary_of(metrics, joint);
+  d["as_meant"] = joint.sentence.empty() ? ordered_json(nullptr) : ordered_json(joint.as_meant);
   d["duration_s"] = duration_s;
   d["begin_s"] = flight_begin_s(team.merged);
   d["settings"] = ordered_json::array();
   for (const Setting& s : team.settings) d["settings"].push_back({s.key, s.value});
   d["timing"] = team.timing;
   d["robots"] = ordered_json::array();
-  for (const RunRecord& r : team.robots) d["robots"].push_back(robot_data(r));
+  for (std::size_t i = 0; i < team.robots.size(); ++i)
+    d["robots"].push_back(robot_data(team.robots[i], endings[i]));
   add_base(d, team, problems);
   d["volume"] = report_curve(team.merged.telemetry.times(), team.merged.telemetry.column("explored_m3"));
   d["events"] = event_rows(team);

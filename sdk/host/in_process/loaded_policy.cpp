@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/boundary/asked.h"
 #include "sdk/host/boundary/call_plugin.h"
 #include "sdk/host/boundary/policy_state.h"
 #include "sdk/host/boundary/text.h"
@@ -185,11 +186,12 @@ core::Decision LoadedPolicy::decide(const core::DecisionRequest& request) {
     return call_plugin(table->decide, self, &question->pack.request(), &sink, &c.error);
   });
   session_->end_deciding();
-  if (thread_.hangs()) throw core::PolicyFailure(name_ + ": " + fault);
-  if (!fault.empty()) return failed(fault);
+  const std::string where = ", " + asked(request);
+  if (thread_.hangs()) throw core::PolicyFailure(name_ + ": " + fault + where);
+  if (!fault.empty()) return failed(fault + where);
   const DecisionBox& box = question->box;
   refuse(request, box);
-  if (const std::string bad = box.fault(); !bad.empty()) return failed(bad);
+  if (const std::string bad = box.fault(); !bad.empty()) return failed(bad + where);
   failures_ = 0;
   core::Decision decision = box.decision();
   decision.drawings = session_->take_drawings();

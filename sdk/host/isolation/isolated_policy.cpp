@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/boundary/asked.h"
 #include "sdk/host/serialization/flat_request.h"
 
 namespace karst::host {
@@ -95,7 +96,7 @@ core::Decision IsolatedPolicy::ask(const core::DecisionRequest& request) {
   const RingMessage said = question("decide", Said::decide, body, &request);
   if (said.kind == static_cast<std::uint32_t>(Said::gave_up)) throw core::PolicyFailure(read_text(said.body));
   if (said.kind != static_cast<std::uint32_t>(Said::decided))
-    throw ProcessBroken("it answered something else");
+    throw ProcessBroken("it answered something else in decide()");
   DecisionReport report = read_decision_report(said.body);
   legacy_.numbers_drawn = report.legacy.numbers_drawn;
   if (report.legacy.state) legacy_.state = std::move(report.legacy.state);
@@ -113,6 +114,7 @@ core::Decision IsolatedPolicy::decide(const core::DecisionRequest& request) {
   } catch (const FlatError& e) {
     why = std::string("garbage came from its process in decide(): ") + e.what();
   }
+  why += ", " + asked(request);
   recover(why);
   return hold(why);
 }
@@ -148,12 +150,13 @@ void IsolatedPolicy::notify(const core::PolicyEvent& event) {
   try {
     const RingMessage said = question("on_event", Said::event, flatten(event), nullptr);
     if (said.kind == static_cast<std::uint32_t>(Said::noted)) return;
-    why = "it answered something else";
+    why = "it answered something else in on_event()";
   } catch (const ProcessBroken& e) {
     why = e.what();
   } catch (const FlatError& e) {
     why = std::string("garbage came from its process in on_event(): ") + e.what();
   }
+  why += ", " + told(event);
   try {
     recover(why);
     broke_between_ = why;

@@ -9,7 +9,7 @@ function showWorst() {
   const coverage = metricNames.indexOf("coverage"), m = data.verdicts.metric;
   const shown = [...new Set([m, coverage])].filter((k) => k >= 0);
   if (!data.worst.length) {
-    element("worst-table").parentElement.replaceChildren(make("p", { className: "quiet" }, data.trials.length ? "None failed, touched rock, or fell behind its cave's mean." : "Nothing has flown yet."));
+    element("worst-table").parentElement.replaceChildren(make("p", { className: "quiet" }, data.trials.length ? "None failed, touched rock, went other than meant, or fell behind its cave's mean." : "Nothing has flown yet."));
     return;
   }
   fillTable(element("worst-table"),
@@ -34,7 +34,7 @@ function startTrials() {
     const table = make("table");
     fillTable(table, [["contestant", "name"], ["cave", "name"], ["seed", "number"], "outcome", "report", ...data.metrics.map((_, m) => [metricLabel(m), "number"])],
       data.trials.map((t) => [[named(t.contestant), "name"], [caveNames[t.cave], "name"], [String(t.seed), "number"],
-        make("span", { title: t.reason }, t.failed ? "failed" : t.outcome), [trialLink(t), "name"], ...t.figures.map((v) => [numberText(v, 4), "number"])]));
+        make("span", { title: t.ended || t.reason }, t.failed ? "failed" : t.outcome), [trialLink(t), "name"], ...t.figures.map((v) => [numberText(v, 4), "number"])]));
     box.append(table);
   });
 }

@@ -38,16 +38,18 @@ function eventLine(e) {
   return [`robot ${robot}`, eventText(rest)].filter(Boolean).join(": ");
 }
 
-/** What was flown, and how it ended; `more` stands behind. */
+/** What was flown, in a sentence, and whether the mission went as meant; `more` stands behind the title. */
 function showTitle(more = []) {
   const m = data.metrics;
   const seed = typeof m.seed === "number" ? "seed " + m.seed : "";
   const title = [m.policy || "unknown policy", m.cave || "unknown cave", seed, ...more].filter(Boolean);
   element("title").textContent = title.join(" · ");
   document.title = "karst: " + title.join(", ");
-  element("outcome").textContent = (endedWell(m.outcome) ? "✓ " : "✕ ") + (m.outcome || "not known");
-  element("outcome").className = "badge " + (endedWell(m.outcome) ? "landed" : "");
-  element("reason").textContent = m.reason || "";
+  const good = data.as_meant ?? endedWell(m.outcome);
+  element("outcome").textContent = (good ? "✓ " : "✕ ") + (m.outcome || "not known") +
+    (endedWell(m.outcome) && !good ? ", not as meant" : "");
+  element("outcome").className = "badge " + (good ? "landed" : "");
+  element("summary").textContent = data.summary + (data.as_meant === null && m.reason ? "; " + m.reason : "");
 }
 
 /** [[name, [value, unit]], ...] as cards. */

@@ -6,7 +6,10 @@
 #include <fstream>
 #include <limits>
 #include <regex>
+#include <set>
 #include <sstream>
+#include <string>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "sdk/campaign/report/report_parts.h"
@@ -202,6 +205,26 @@ TEST(CampaignReport, WorstTrialsComeInTheOrderOfTheirTrouble) {
   for (const auto& [place, trial] : {std::pair{0u, 9u}, {1u, 7u}, {2u, 3u}, {3u, 1u}})
     EXPECT_EQ(worst[place].trial, trial);
   EXPECT_EQ(worst_trials(results, metric, 2).size(), 2u);
+}
+
+TEST(CampaignReport, ListsTrialsThatCameHomeEarlyWithHowTheyEnded) {
+  CampaignResults results = fake_campaign(2, 1, 6, 0.0, 0.0);
+  const int metric = evaluation::metric_index("coverage_auc");
+  results.trials[2].outcome = "stuck";
+  results.trials[2].ended = "on the ground 9 m from the start: the battery was nearly empty";
+  results.trials[4].ended = "home after 4 s: the pose was lost; 98 % battery left";
+  figure(results.trials[4], "completed") = 0;
+  figure(results.trials[8], "completed") = 0;  // of a store of an earlier karst: without its ending
+  results.trials[10].ended = "home because nothing was left to explore; 62 % battery left";
+  figure(results.trials[10], "completed") = 1;
+  const auto worst = worst_trials(results, metric, 3);
+  ASSERT_EQ(worst.size(), 3u);
+  EXPECT_EQ(worst[0].why, "did not land (stuck): " + results.trials[2].ended);
+  std::set<std::pair<std::size_t, std::string>> early;  // of the same figure, in either order
+  for (const std::size_t i : {1u, 2u}) early.emplace(worst[i].trial, worst[i].why);
+  EXPECT_EQ(early, (std::set<std::pair<std::size_t, std::string>>{
+                       {4, "did not go as meant: " + results.trials[4].ended}, {8, "did not go as meant"}}));
+  EXPECT_EQ(written(results)["trials"][4]["ended"], results.trials[4].ended);
 }
 
 TEST(CampaignReport, IsNotBrokenByHostileNames) {

@@ -202,6 +202,31 @@ TEST(Collect, AFlightThatDidNotLandIsDone) {
   EXPECT_EQ(t.result.figures[static_cast<std::size_t>(evaluation::metric_index("contacts"))], 1);
 }
 
+/// Leaves the record of a flight that the supervisor sent home.
+const std::string kSentHome = R"(
+printf '%s\n' '{"t": 1, "kind": "phase", "phase": "takeoff"}' '{"t": 4, "kind": "phase", "phase": "explore"}' \
+  '{"t": 5, "kind": "safety", "action": "home", "reason": "no sensor sees the cave any more"}' \
+  '{"t": 5, "kind": "phase", "phase": "home", "reason": "no sensor sees the cave any more"}' \
+  '{"t": 7, "kind": "outcome", "outcome": "landed", "reason": "at the start"}' > $2/events.jsonl
+echo '{"outcome": "landed", "reason": "at the start", "completed": 0, "battery_left": 0.98}' > $2/metrics.json
+)";
+
+TEST(Collect, TellsHowAFlightEndedThatCameHomeEarly) {
+  const TrialResult r = collected("c_early", kSentHome + "exit 2").result;
+  EXPECT_FALSE(r.failed) << r.reason;
+  EXPECT_EQ(r.outcome, "landed");
+  EXPECT_EQ(r.reason, "at the start");
+  EXPECT_EQ(r.ended, "home after 4 s: no sensor saw the cave any more; 98 % battery left");
+  EXPECT_EQ(r.figures[static_cast<std::size_t>(evaluation::metric_index("completed"))], 0);
+}
+
+// How far a record goes that a signal cut off may depend on the machine's load.
+TEST(Collect, OfAFailedTrialTellsTheReasonAlone) {
+  const TrialResult r = collected("c_failed", kSentHome + "kill -SEGV $$").result;
+  EXPECT_TRUE(r.failed);
+  EXPECT_EQ(r.ended, "");
+}
+
 TEST(Collect, OneThatLeftNoFiguresIsFailedWhateverItsExitCode) {
   EXPECT_TRUE(collected("c_none", "exit 0").result.failed);
   EXPECT_TRUE(collected("c_bad", "echo '{' > $2/metrics.json").result.failed);

@@ -49,19 +49,23 @@ TEST(Export, TheCsvHoldsEveryCellAsItWas) {
   const std::vector<std::vector<std::string>> rows = test::read_csv(text);
   ASSERT_EQ(rows.size(), 4u);
   const std::size_t figures = evaluation::metric_definitions().size();
-  for (const std::vector<std::string>& row : rows) ASSERT_EQ(row.size(), 7 + figures + 3 + 9 + 1);
+  for (const std::vector<std::string>& row : rows) ASSERT_EQ(row.size(), 8 + figures + 3 + 9 + 1);
   const auto beginning = [&](std::size_t row) {
-    return std::vector<std::string>(rows[row].begin(), rows[row].begin() + 7);
+    return std::vector<std::string>(rows[row].begin(), rows[row].begin() + 8);
   };
   using Words = std::vector<std::string>;
-  EXPECT_EQ(beginning(0), (Words{"contestant", "policy", "cave", "seed", "status", "outcome", "reason"}));
+  EXPECT_EQ(beginning(0),
+            (Words{"contestant", "policy", "cave", "seed", "status", "outcome", "reason", "ended"}));
   const std::string reason = trial_of(0, 0, 2).result.reason;
   EXPECT_NE(reason.find_first_of(","), std::string::npos) << "nothing is tested";
-  EXPECT_EQ(beginning(1), (Words{"near", "policy", "maze", "2", "done", "landed", reason}));
-  EXPECT_EQ(beginning(2), (Words{"high", "policy", "shaft", "1", "done", "landed", reason}));
-  EXPECT_EQ(beginning(3), (Words{"high", "policy", "shaft", "9", "failed", "failed", reason}));
-  EXPECT_EQ(std::stod(rows[2][7]), trial_of(2, 1, 1).result.figures[0]);
-  EXPECT_EQ(rows[2][10], "") << "not known is empty";
+  const std::string ended = trial_of(2, 1, 1).result.ended;
+  EXPECT_EQ(beginning(1),
+            (Words{"near", "policy", "maze", "2", "done", "landed", reason, trial_of(0, 0, 2).result.ended}));
+  EXPECT_EQ(beginning(2), (Words{"high", "policy", "shaft", "1", "done", "landed", reason, ended}));
+  EXPECT_EQ(beginning(3), (Words{"high", "policy", "shaft", "9", "failed", "failed", reason,
+                                 trial_of(2, 1, 9).result.ended}));
+  EXPECT_EQ(std::stod(rows[2][8]), trial_of(2, 1, 1).result.figures[0]);
+  EXPECT_EQ(rows[2][11], "") << "not known is empty";
   EXPECT_EQ(rows[2].back(), "trials/2/1/1");
   EXPECT_EQ(text.find('\r'), std::string::npos) << "lines end with LF";
 }
@@ -90,6 +94,7 @@ TEST(Export, TheJsonHoldsEverything) {
   ASSERT_EQ(json["trials"].size(), 3u);
   const auto& t = json["trials"][1];
   EXPECT_EQ(t["contestant"], "high");
+  EXPECT_EQ(t["ended"], trial_of(2, 1, 1).result.ended);
   EXPECT_EQ(t["curve"].size(), 20u);
   EXPECT_EQ(t["curve"][3][0], 6.0);
   EXPECT_EQ(t["figures"].size(), evaluation::metric_definitions().size());

@@ -56,7 +56,8 @@ inline StoredTrial trial_of(std::size_t contestant, std::size_t cave, std::int64
       "a reason, with \"quotes\"\n",
       "trials/" + std::to_string(contestant) + "/" + std::to_string(cave) + "/" + std::to_string(seed),
       {},
-      {}};
+      {},
+      "home after " + std::to_string(seed) + " s: the pose was lost, \"twice\""};
   for (std::size_t i = 0; i < evaluation::metric_definitions().size(); ++i)
     t.result.figures.push_back(i % 5 == 3 ? NAN : base + static_cast<double>(i) / 7);
   for (int i = 0; i < 20; ++i) t.result.curve.push_back({2.0 * i, base * i, i / 20.0});

@@ -59,6 +59,7 @@ TEST(Store, GivesBackWhatItWasGiven) {
     EXPECT_EQ(std::tuple(t.contestant, t.cave, t.seed), std::tuple(k, c, seed));
     EXPECT_EQ(t.failed, seed == 9);
     EXPECT_EQ(t.reason, wanted.result.reason);
+    EXPECT_EQ(t.ended, wanted.result.ended);
     EXPECT_EQ(t.run_dir, (file.parent_path() / wanted.result.run_dir).string());
     ASSERT_EQ(t.figures.size(), wanted.result.figures.size());
     for (std::size_t f = 0; f < t.figures.size(); ++f) {
@@ -211,6 +212,24 @@ TEST(Store, ThatLacksAFigureIsReadWithoutAndNotWritten) {
   const auto coverage = static_cast<std::size_t>(evaluation::metric_index("coverage"));
   EXPECT_TRUE(std::isnan(read_results(file).trials[0].figures[coverage]));
   EXPECT_TRUE(says(error_of([&] { Store::open(file); }), "trial.coverage"));
+}
+
+// An earlier karst did not tell how a trial ended.
+TEST(Store, ThatLacksTheEndingsIsReadAndWrittenWithout) {
+  const fs::path file = full_store(quick_folder("no_endings"));
+  sqlite3* db = nullptr;
+  sqlite3_open(file.c_str(), &db);
+  ASSERT_EQ(
+      sqlite3_exec(db, "DROP VIEW result; ALTER TABLE trial DROP COLUMN ended", nullptr, nullptr, nullptr),
+      SQLITE_OK);
+  sqlite3_close(db);
+  Store store = Store::open(file);
+  store.add(trial_of(0, 0, 1));
+  const CampaignResults r = read_results(file);
+  EXPECT_EQ(r.trials.size(), all_trials(small_head()).size());
+  EXPECT_EQ(r.trials[0].ended, "");
+  EXPECT_EQ(r.trials[0].reason, trial_of(0, 0, 1).result.reason);
+  EXPECT_EQ(r.trials[0].figures[0], trial_of(0, 0, 1).result.figures[0]);
 }
 
 RC_GTEST_PROP(Store, ThatIsDamagedIsAnErrorOrReadButNeverACrash, ()) {

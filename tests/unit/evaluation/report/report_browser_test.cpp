@@ -1,6 +1,8 @@
 // The report's page in a real browser.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/team_report.h"
 #include "tests/unit/evaluation/fake_run.h"
@@ -32,6 +34,23 @@ TEST(ReportInBrowser, ShowsTheFlightWithoutAnError) {
   for (std::size_t at = body.find("<canvas"); at != std::string::npos; at = body.find("<canvas", at + 1))
     ++canvases;
   EXPECT_EQ(canvases, 7u);  // the view and six plots
+}
+
+TEST(ReportInBrowser, TellsInItsHeadHowTheFlightEndedAndIsGreenOnlyIfThatWasMeant) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path());
+  const std::string well = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(well.find("<span id=\"outcome\" class=\"badge landed\">✓ landed</span>"), std::string::npos);
+  EXPECT_NE(well.find("lateral explored "), std::string::npos);
+  EXPECT_NE(well.find("; home after "), std::string::npos);
+  std::ofstream(dir.path() / "events.jsonl", std::ios::app)
+      << R"({"t": 3, "kind": "safety", "action": "home", "reason": "no sensor sees the cave any more"})"
+      << "\n";
+  write_report(dir.path());
+  const std::string early = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(early.find("✕ landed, not as meant</span>"), std::string::npos);
+  EXPECT_EQ(early.find("badge landed"), std::string::npos);
 }
 
 TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {

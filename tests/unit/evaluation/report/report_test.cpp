@@ -9,6 +9,7 @@
 #include "core_stack/common/error.h"
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/report/report_goals.h"
+#include "sdk/evaluation/report/team_report.h"
 #include "tests/unit/evaluation/fake_run.h"
 
 namespace karst::evaluation {
@@ -66,6 +67,53 @@ TEST(Report, HoldsTheRunsData) {
   EXPECT_GT(d["goals"].size(), 5u);
   EXPECT_EQ(d["phases"].size(), 4u);
   EXPECT_FALSE(d["curves"]["volume"].empty());
+}
+
+TEST(Report, SumsTheFlightUpAndSaysWhetherItWentAsMeant) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  write_report(dir.path());
+  const json whole = data_of(bytes_of(dir.path() / "report.html"));
+  EXPECT_EQ(whole["as_meant"], true);
+  const std::string summary = whole["summary"];
+  EXPECT_EQ(summary.find("lateral explored "), 0u) << summary;
+  EXPECT_NE(summary.find(" of winding_tunnel in 76 s, "), std::string::npos) << summary;
+  EXPECT_NE(summary.find("; home after 38 s; 87 % battery left"), std::string::npos) << summary;
+  std::ofstream(dir.path() / "events.jsonl", std::ios::app)
+      << R"({"t": 10, "kind": "safety", "action": "home", "reason": "no sensor sees the cave any more"})"
+      << "\n";
+  write_report(dir.path());
+  EXPECT_EQ(data_of(bytes_of(dir.path() / "report.html"))["as_meant"], false);
+  fs::remove(dir.path() / "events.jsonl");
+  write_report(dir.path());
+  EXPECT_TRUE(data_of(bytes_of(dir.path() / "report.html"))["as_meant"].is_null()) << "nobody knows";
+}
+
+TEST(Report, OfATeamSumsItUpAndHasAnEndingOfEachRobot) {
+  TemporaryDirectory dir;
+  test::FakeRunOptions small;
+  small.length_m = 12;
+  small.map_resolution_m = 0.5;
+  for (const char* robot : {"robot_1", "robot_2"}) test::write_fake_run(dir.path() / robot, small);
+  dir.write("team.jsonl", R"({"t":0,"kind":"team","robots":2}
+{"t":0,"kind":"start","robot":1}
+{"t":20,"kind":"start","robot":2}
+)");
+  dir.write("metrics.json",
+            R"({"policy": "lateral", "explored_volume_m3": 99.7, "robots": [{}, {}], "duration_s": 32})");
+  write_team_report(dir.path());
+  const json well = data_of(bytes_of(dir.path() / "report.html"));
+  EXPECT_EQ(well["as_meant"], true);
+  EXPECT_EQ(well["summary"], "a team of 2 with lateral explored 100 m³ in 32 s; all 2 robots flew as meant");
+  EXPECT_EQ(well["robots"][1]["ending"], well["robots"][0]["ending"]) << "times count from its own take-off";
+  EXPECT_EQ(well["robots"][0]["ending"].get<std::string>().find("home after "), 0u);
+  std::ofstream(dir.path() / "robot_2" / "events.jsonl", std::ios::app)
+      << R"({"t": 3, "kind": "safety", "action": "home", "reason": "no sensor sees the cave any more"})"
+      << "\n";
+  write_team_report(dir.path());
+  const json other = data_of(bytes_of(dir.path() / "report.html"));
+  EXPECT_EQ(other["as_meant"], false);
+  EXPECT_NE(other["summary"].get<std::string>().find("; robot 2: home after "), std::string::npos);
 }
 
 TEST(Report, UsesTheMetricsThatWereWritten) {

@@ -40,7 +40,7 @@ function showRobots(follow) {
       number(withUnit(m.exploration_time_s, "s")), make("td", {}, m.outcome || "–"),
       number(withUnit(typeof m.battery_left === "number" ? 100 * m.battery_left : null, "%", 2)),
       make("td", {}, m.connected === undefined ? "–" : m.connected ? "yes" : "no"), number(String(m.records ?? "–")),
-      number(String(m.records_at_base ?? "–")), make("td", {}, m.reason || ""), make("td", {}, link));
+      number(String(m.records_at_base ?? "–")), make("td", {}, r.ending || m.reason || ""), make("td", {}, link));
     row.addEventListener("click", () => {
       for (const other of body.children) other.classList.toggle("on", other === row);
       follow(i + 1);

@@ -1,0 +1,244 @@
+#include "sdk/evaluation/metrics/ending.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "sdk/evaluation/metrics/flight_figures.h"
+
+namespace karst::evaluation {
+namespace {
+
+using core::MissionOutcome;
+namespace event = core::event;
+
+/// A reason as mission control records it, and as it reads once the flight is over. What follows a reason
+/// that ends in a colon is a detail.
+struct Reason {
+  std::string_view recorded, afterwards;
+};
+constexpr std::array kReasons = {
+    Reason{"explored: no frontier can be reached", "nothing was left to explore"},
+    Reason{"explored: no frontier left that can be accepted", "nothing was left to explore"},
+    Reason{"explored: ", "nothing was left to explore"},
+    Reason{"what is left is too far for the battery, or for the time allowed",
+           "what was left was too far for the battery, or for the time allowed"},
+    Reason{"the time left only just suffices for the way home",
+           "the time left only just sufficed for the way home"},
+    Reason{"the policy asked for it: an error of the core: ", "the core failed"},
+    Reason{"the policy asked for it: ", "the policy asked for it"},
+    Reason{"the state estimate is lost: ", "the pose was lost"},
+    Reason{"the state estimate stays degraded", "the state estimate stayed degraded"},
+    Reason{"no sensor sees the cave any more", "no sensor saw the cave any more"},
+    Reason{"the run directory cannot be written any more (disk full?)",
+           "the run directory could not be written any more (disk full?)"},
+    Reason{"the battery ends", "the battery was nearly empty"},
+    Reason{"no way home, and waiting does not help", "there was no way home, and waiting did not help"},
+    Reason{"supervision does not come any more", "the supervision did not come any more"},
+    Reason{"control does not come any more", "the control did not come any more"},
+    Reason{"it does not lift off: ", "it did not lift off"},
+};
+constexpr std::string_view kOutOfContact = "out of contact, but there is no time for another place";
+constexpr std::string_view kInContact = "in contact";
+constexpr std::string_view kPolicyFailed = "the policy failed: ";
+
+std::string afterwards(const std::string& reason) {
+  for (const Reason& known : kReasons) {
+    if (!reason.starts_with(known.recorded)) continue;
+    const std::string detail = reason.substr(known.recorded.size());
+    if (detail.empty()) return std::string(known.afterwards);
+    if (known.recorded.ends_with(": ")) return std::string(known.afterwards) + " (" + detail + ")";
+  }
+  return reason;
+}
+
+std::string number(const char* format, double v) {
+  std::array<char, 40> text;
+  std::snprintf(text.data(), text.size(), format, v);
+  return text.data();
+}
+
+/// The begin of a phase that ended something.
+struct Turn {
+  double time_s = 0;
+  core::Phase phase{};
+  std::string why;  // afterwards; may be empty
+};
+
+/// What the events tell of a flight.
+struct Course {
+  std::optional<double> takeoff_s;
+  std::optional<Turn> turned_back;  // the first time that it went home, or down before that
+  std::optional<Turn> came_down;    // the last time that it went down for a reason of its own
+  std::optional<core::Phase> last;  // before it was over
+  bool out_of_contact = false;      // it landed as a relay so
+  bool as_relay = false;
+  bool to_its_end = false;  // it explored to its end
+};
+
+std::string why_turned(const RunRecord& run, const std::string& reason) {
+  const auto homing = run.last<event::Homing>();
+  if (homing && reason.starts_with("the time left only just suffices")) {
+    if (homing->reason == "battery") return "the battery only just sufficed for the way home";
+    if (homing->reason == "time limit") return "the time allowed only just sufficed for the way home";
+  }
+  return afterwards(reason);
+}
+
+Course course_of(const RunRecord& run) {
+  Course c;
+  for (const nlohmann::json& e : run.events) {
+    const auto phase = event::as<event::Phase>(e);
+    if (!phase || phase->phase == core::Phase::done) continue;
+    const double time_s = e["t"].get<double>();
+    c.last = phase->phase;
+    if (!core::traits_of(phase->phase).airborne) continue;
+    if (!c.takeoff_s) c.takeoff_s = time_s;
+    const bool down = phase->phase == core::Phase::land;
+    if (!down && phase->phase != core::Phase::home) continue;
+    const Turn turn{time_s, phase->phase, why_turned(run, phase->reason)};
+    if (!c.turned_back) c.turned_back = turn;
+    c.out_of_contact = down && phase->reason == kOutOfContact;
+    if (down && !phase->reason.empty() && phase->reason != kInContact && !c.out_of_contact)
+      c.came_down = turn;
+  }
+  const auto landing = run.last<event::Landing>();
+  c.as_relay = landing && landing->state == event::LandingState::claimed;
+  c.to_its_end = explored_to_its_end(run);
+  return c;
+}
+
+/// " after 64 s" of flight; "" if it did not take off.
+std::string after(const Course& c, double time_s) {
+  return c.takeoff_s ? number(" after %.0f s", time_s - *c.takeoff_s) : "";
+}
+
+/// Why exploration ended, behind "home" and the like.
+std::string cause(const Course& c) {
+  if (!c.turned_back) return "";
+  const Turn& turn = *c.turned_back;
+  if (turn.why.empty()) return after(c, turn.time_s);
+  return c.to_its_end ? " because " + turn.why : after(c, turn.time_s) + ": " + turn.why;
+}
+
+bool had_turned_back(const Course& c) { return c.turned_back && c.turned_back->phase == core::Phase::home; }
+
+/// Why exploration had ended before something else ended the flight.
+std::string earlier_cause(const Course& c) {
+  return had_turned_back(c) ? "; it had turned back" + cause(c) : "";
+}
+
+std::string doing(const Course& c) {
+  switch (c.last.value_or(core::Phase::standby)) {  // without a default: the compiler names what is left out
+    case core::Phase::takeoff:
+      return " while taking off";
+    case core::Phase::look:
+    case core::Phase::explore:
+      return " while exploring";
+    case core::Phase::home:
+      return " on the way home";
+    case core::Phase::land:
+      return " while landing";
+    case core::Phase::standby:
+    case core::Phase::done:
+      return " before take-off";
+    case core::Phase::replay:
+      break;
+  }
+  return "";
+}
+
+std::string of_landing(const Course& c, const EndFigures& figures) {
+  if (c.as_relay)
+    return std::string("landed as a relay") + (c.out_of_contact ? ", out of contact with the base," : "") +
+           cause(c);
+  const double off_m = figures.landing_error_m.value_or(0);
+  return "home" + cause(c) + (off_m > kAtStart_m ? number("; landed %.1f m from the start", off_m) : "");
+}
+
+/// `reason`: "on the ground 12.3 m from the start", or why it never left the ground.
+std::string of_stuck(const Course& c, const std::string& reason) {
+  if (!c.came_down) return afterwards(reason) + earlier_cause(c);
+  return reason + (had_turned_back(c) ? "" : after(c, c.came_down->time_s)) + ": " + c.came_down->why +
+         earlier_cause(c);
+}
+
+std::string of_outcome(const Course& c, const event::Outcome& end, double end_s, const EndFigures& figures) {
+  const std::string because = end.reason.empty() ? "" : ": " + end.reason;
+  switch (end.outcome) {  // without a default: the compiler names what is left out
+    case MissionOutcome::landed:
+      return of_landing(c, figures);
+    case MissionOutcome::stuck:
+      return of_stuck(c, end.reason);
+    case MissionOutcome::aborted:
+      return "given up" + after(c, c.came_down ? c.came_down->time_s : end_s) + because + earlier_cause(c);
+    case MissionOutcome::battery:
+      return "battery empty" + after(c, end_s) + doing(c) + earlier_cause(c);
+    case MissionOutcome::contact:
+    case MissionOutcome::lost:
+      return core::name_of(end.outcome) + after(c, end_s) + doing(c) + because + earlier_cause(c);
+    case MissionOutcome::replayed:
+    case MissionOutcome::incomplete:
+      break;
+  }
+  return core::name_of(end.outcome) + because;
+}
+
+/// When the outcome was recorded.
+double outcome_time_s(const RunRecord& run) {
+  for (auto e = run.events.rbegin(); e != run.events.rend(); ++e)
+    if (event::is_kind(*e, event::Outcome::kKind)) return (*e)["t"].get<double>();
+  return run.last_time_s();
+}
+
+std::optional<FailedPolicy> failed_policy(const RunRecord& run) {
+  for (const nlohmann::json& e : run.events) {
+    const auto safety = event::as<event::Safety>(e);
+    if (!safety || safety->action != core::SafetyAction::fallback) continue;
+    const bool known = safety->reason.starts_with(kPolicyFailed);
+    return FailedPolicy{e["t"].get<double>(),
+                        known ? safety->reason.substr(kPolicyFailed.size()) : safety->reason};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Ending ending_of(const RunRecord& run, const EndFigures& figures) {
+  if (run.events.empty()) return {};
+  const Course course = course_of(run);
+  const auto end = run.last<event::Outcome>();
+  Ending ending;
+  ending.failed_policy = failed_policy(run);
+  ending.as_meant = (end && end->outcome == MissionOutcome::replayed) ||
+                    completed(run, course.as_relay ? std::nullopt : figures.landing_error_m);
+  ending.sentence = end ? of_outcome(course, *end, outcome_time_s(run), figures)
+                        : "the record ends" + after(course, run.last_time_s()) + doing(course);
+  const bool empty = end && end->outcome == MissionOutcome::battery;
+  if (figures.battery_left && std::isfinite(*figures.battery_left) && !empty)
+    ending.sentence += number("; %.0f %% battery left", 100 * *figures.battery_left);
+  return ending;
+}
+
+Ending ending_of(const RunRecord& run) {
+  return ending_of(run, {landed_off_m(run), last_finite(run.telemetry.column("battery_fraction"))});
+}
+
+Ending joint_ending(const std::vector<Ending>& robots) {
+  if (robots.size() == 1) return robots.front();
+  const auto silent = [](const Ending& e) { return e.sentence.empty(); };
+  if (std::all_of(robots.begin(), robots.end(), silent)) return {};
+  Ending joint{.as_meant = true, .sentence = ""};
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (robots[i].as_meant) continue;
+    joint.as_meant = false;
+    joint.sentence += (joint.sentence.empty() ? "robot " : ". Robot ") + std::to_string(i + 1) + ": " +
+                      (silent(robots[i]) ? "nothing recorded" : robots[i].sentence);
+  }
+  if (joint.as_meant) joint.sentence = "all " + std::to_string(robots.size()) + " robots flew as meant";
+  return joint;
+}
+
+}  // namespace karst::evaluation

@@ -1,0 +1,39 @@
+// How a flight ended and why its exploration did, in a sentence for people.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sdk/evaluation/record/run_record.h"
+
+namespace karst::evaluation {
+
+/// A policy that failed in flight, so that the fallback took over.
+struct FailedPolicy {
+  double time_s = 0;  // of the record
+  std::string why;
+};
+
+struct Ending {
+  /// Whether the mission went as meant: like completed(), but a landing as a relay counts, too, and so does a
+  /// recording that was replayed to its end.
+  bool as_meant = false;
+  /// "home because nothing was left to explore; 62 % battery left", "home after 4 s: the pose was lost".
+  /// Times count from take-off. Empty: the record has no events.
+  std::string sentence;
+  std::optional<FailedPolicy> failed_policy = {};
+};
+
+/// The figures of a run that say more than its events; empty where they are not known.
+struct EndFigures {
+  std::optional<double> landing_error_m, battery_left;  // as in FlightFigures
+};
+
+Ending ending_of(const RunRecord& run, const EndFigures& figures);
+/// With the figures from the record itself.
+Ending ending_of(const RunRecord& run);
+
+/// Of a team whose robots ended so: as meant if each was, or else the robots that were not, by number.
+Ending joint_ending(const std::vector<Ending>& robots);
+
+}  // namespace karst::evaluation

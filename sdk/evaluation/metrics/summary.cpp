@@ -1,0 +1,65 @@
+#include "sdk/evaluation/metrics/summary.h"
+
+#include <array>
+#include <cstdio>
+#include <optional>
+
+namespace karst::evaluation {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::optional<double> number_of(const ordered_json& metrics, const char* key) {
+  const auto found = metrics.find(key);
+  if (found == metrics.end() || !found->is_number()) return std::nullopt;
+  return found->get<double>();
+}
+
+std::string text_of(const ordered_json& metrics, const char* key) {
+  const auto found = metrics.find(key);
+  return found != metrics.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// The number in `format`; "" if it is not known.
+std::string part(const char* format, std::optional<double> v) {
+  if (!v) return "";
+  std::array<char, 80> text;
+  std::snprintf(text.data(), text.size(), format, *v);
+  return text.data();
+}
+
+std::string who(const ordered_json& metrics, const Ending& ending) {
+  const std::string policy = text_of(metrics, "policy");
+  const auto robots = metrics.find("robots");
+  const bool team = robots != metrics.end() && robots->is_array();
+  if (team) return "a team of " + std::to_string(robots->size()) + (policy.empty() ? "" : " with " + policy);
+  if (policy.empty()) return "the vehicle";
+  return policy + (ending.failed_policy ? ", and after it failed the fallback," : "");
+}
+
+}  // namespace
+
+std::string achievement_of(const ordered_json& metrics, const Ending& ending) {
+  const std::string cave = text_of(metrics, "cave");
+  const auto volume_m3 = number_of(metrics, "explored_volume_m3"), coverage = number_of(metrics, "coverage");
+  auto time_s = number_of(metrics, "flight_time_s");
+  if (const auto team_s = number_of(metrics, "duration_s"))
+    time_s = team_s;  // not all robots' times added up
+  std::string text = who(metrics, ending);
+  if (volume_m3) {
+    text += part(" explored %.0f m³", volume_m3) + (cave.empty() ? "" : " of " + cave);
+    if (coverage) text += part(" (%.1f %% of what can be reached)", 100 * *coverage);
+    text += part(" in %.0f s", time_s);
+  } else {
+    text += " flew" + (cave.empty() ? "" : " in " + cave) + part(" for %.0f s", time_s);
+  }
+  const auto clearance_m = number_of(metrics, "min_clearance_m");
+  if (clearance_m && *clearance_m > 0) text += part(", %.2f m or more from rock", clearance_m);
+  return text;
+}
+
+std::string summary_of(const ordered_json& metrics, const Ending& ending) {
+  return achievement_of(metrics, ending) + (ending.sentence.empty() ? "" : "; " + ending.sentence);
+}
+
+}  // namespace karst::evaluation

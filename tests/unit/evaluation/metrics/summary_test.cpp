@@ -1,0 +1,63 @@
+#include "sdk/evaluation/metrics/summary.h"
+
+#include <gtest/gtest.h>
+
+namespace karst::evaluation {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json metrics() {
+  return {{"policy", "nearest_frontier"},  {"cave", "small"},    {"flight_time_s", 39.715},
+          {"explored_volume_m3", 505.528}, {"coverage", 0.3867}, {"min_clearance_m", 0.3803}};
+}
+const Ending kHome{.as_meant = true,
+                   .sentence = "home because nothing was left to explore; 62 % battery left"};
+
+TEST(Summary, TellsWhoExploredHowMuchOfWhatHowFastHowCloseToRockAndHowItEnded) {
+  EXPECT_EQ(
+      summary_of(metrics(), kHome),
+      "nearest_frontier explored 506 m³ of small (38.7 % of what can be reached) in 40 s, 0.38 m or more "
+      "from rock; home because nothing was left to explore; 62 % battery left");
+}
+
+TEST(Summary, LeavesOutWhatIsNotKnown) {
+  ordered_json m = metrics();
+  for (const char* key : {"coverage", "min_clearance_m"}) m[key] = nullptr;
+  EXPECT_EQ(achievement_of(m, kHome), "nearest_frontier explored 506 m³ of small in 40 s");
+  m["explored_volume_m3"] = nullptr;
+  EXPECT_EQ(achievement_of(m, kHome), "nearest_frontier flew in small for 40 s");
+  m["flight_time_s"] = nullptr;
+  EXPECT_EQ(achievement_of(m, kHome), "nearest_frontier flew in small");
+  EXPECT_EQ(summary_of(ordered_json::object(), {}), "the vehicle flew");
+  EXPECT_EQ(summary_of({{"policy", 3}, {"explored_volume_m3", "much"}}, {}), "the vehicle flew")
+      << "damaged figures are not known";
+}
+
+TEST(Summary, OfAFlightThatTouchedRockClaimsNoClearance) {
+  ordered_json m = metrics();
+  m["min_clearance_m"] = -0.01;
+  EXPECT_EQ(achievement_of(m, kHome).find("from rock"), std::string::npos);
+}
+
+TEST(Summary, AfterAFailureOfThePolicyNamesTheFallback) {
+  Ending ending = kHome;
+  ending.failed_policy = FailedPolicy{6.7, "it crashed"};
+  EXPECT_EQ(
+      achievement_of(metrics(), ending).find("nearest_frontier, and after it failed the fallback, explored"),
+      0u);
+}
+
+TEST(Summary, OfATeamCountsItsRobotsAndTakesTheWholeTime) {
+  ordered_json m = metrics();
+  m["flight_time_s"] = 170.0;  // of all robots together
+  m["min_clearance_m"] = nullptr;
+  m["duration_s"] = 95.2;
+  m["robots"] = {ordered_json::object(), ordered_json::object()};
+  EXPECT_EQ(
+      achievement_of(m, kHome),
+      "a team of 2 with nearest_frontier explored 506 m³ of small (38.7 % of what can be reached) in 95 s");
+}
+
+}  // namespace
+}  // namespace karst::evaluation
