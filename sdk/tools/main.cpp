@@ -7,6 +7,7 @@
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/compare_command.h"
 #include "sdk/tools/evaluate_command.h"
+#include "sdk/tools/explain_command.h"
 #include "sdk/tools/explain_time_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/map_command.h"
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   karst::tools::add_cave_command(app);
   karst::tools::add_report_command(app);
   karst::tools::add_table_command(app);
+  karst::tools::add_explain_command(app);
   karst::tools::add_explain_time_command(app);
   karst::tools::add_replay_command(app);
   karst::tools::add_evaluate_command(app);
