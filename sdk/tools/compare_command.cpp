@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -13,6 +14,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
+#include "sdk/campaign/paper/paper.h"
 #include "sdk/campaign/plan/campaign.h"
 #include "sdk/campaign/report/campaign_page.h"
 #include "sdk/campaign/run/run_campaign.h"
@@ -186,6 +188,17 @@ void write_to(const std::string& file, const std::function<void(std::ostream&)>&
   evaluation::write_whole_file(file, out.str());
 }
 
+void write_paper_files(const std::string& from, const std::string& folder, campaign::PaperOptions options) {
+  if (!options.metric.empty()) check_metric(options.metric);
+  if (const char* path = std::getenv("PATH")) options.search_path = path;
+  const campaign::PaperFiles files = campaign::write_paper(from, folder, options);
+  for (const fs::path& file : files.written) print_out("%s\n", file.c_str());
+  if (!files.with_pdf)
+    print_error(
+        "karst: no PDF of the figures: rsvg-convert is not there; apt-get install librsvg2-bin, and write "
+        "again with --force\n");
+}
+
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
@@ -263,13 +276,16 @@ void add_trials_command(CLI::App& app) {
 
 void add_results_command(CLI::App& app) {
   struct Arguments {
-    std::string folder, csv, json, metric;
+    std::string folder, csv, json, metric, paper;
+    bool force = false;
   };
   auto args = std::make_shared<Arguments>();
   CLI::App* results_app = app.add_subcommand(
       "results",
-      "What a campaign found, also while it flies: verdicts, or every trial as CSV or JSON.\n\n"
-      "  karst results runs/CAMPAIGN\n  karst results runs/CAMPAIGN --csv trials.csv --json trials.json");
+      "What a campaign found, also while it flies: verdicts, every trial as CSV or JSON, or what a paper "
+      "needs.\n\n"
+      "  karst results runs/CAMPAIGN\n  karst results runs/CAMPAIGN --csv trials.csv --json trials.json\n"
+      "  karst results runs/CAMPAIGN --paper paper             tables, figures and methods");
   results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")
       ->type_name(kFile)
       ->required();
@@ -281,7 +297,18 @@ void add_results_command(CLI::App& app) {
       ->check(not_empty());
   results_app->add_option("--metric", args->metric,
                           "figure that the verdict is about; default: as the campaign declared");
+  CLI::Option* paper = results_app
+                           ->add_option("--paper", args->paper,
+                                        "folder for tables (LaTeX, Markdown), figures (SVG, PDF) and methods")
+                           ->check(not_empty())
+                           ->check(no_file());
+  results_app->add_flag("--force", args->force, "with --paper: overwrite files that are there")->needs(paper);
   results_app->callback([args] {
+    if (!args->paper.empty()) {
+      const auto if_there = args->force ? campaign::IfThere::overwrite : campaign::IfThere::refuse;
+      write_paper_files(args->folder, args->paper, {args->metric, if_there, ""});
+    }
+    if (!args->paper.empty() && args->csv.empty() && args->json.empty()) return;
     const campaign::ResultsWithExtras all = campaign::read_with_extras(args->folder);
     if (!args->csv.empty())
       write_to(args->csv, [&](std::ostream& out) { campaign::write_csv(out, all.results, all.extras); });

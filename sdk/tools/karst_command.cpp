@@ -7,6 +7,7 @@
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/compare_command.h"
 #include "sdk/tools/evaluate_command.h"
+#include "sdk/tools/explain_command.h"
 #include "sdk/tools/explain_time_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/help_commands.h"
@@ -60,6 +61,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_cave_command(*app);
   add_report_command(*app);
   add_table_command(*app);
+  add_explain_command(*app);
   add_explain_time_command(*app);
   add_replay_command(*app);
   add_evaluate_command(*app);

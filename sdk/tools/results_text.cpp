@@ -8,6 +8,7 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
+#include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/campaign/verdict/verdict.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/terminal/terminal.h"
@@ -16,9 +17,6 @@ namespace karst::tools {
 namespace {
 
 using campaign::CampaignResults;
-
-constexpr std::array kColumns = {"coverage_auc",     "coverage",      "restricted_t50_s",
-                                 "restricted_t90_s", "path_length_m", "contacts"};
 
 std::string number(double v) {
   if (!std::isfinite(v)) return "-";
@@ -65,8 +63,8 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   options.metric = metric;
   const campaign::Verdicts verdicts = campaign::compare_all(results, options);
   std::vector<std::string> figures = {metric};
-  for (const char* c : kColumns)
-    if (c != metric) figures.emplace_back(c);
+  for (const std::string_view f : campaign::headline_figures())
+    if (f != metric) figures.emplace_back(f);
   std::string head = "| place | contestant | trials | failed |", rule = "|---:|---|---:|---:|";
   std::vector<std::vector<double>> means;
   for (const std::string& f : figures) {

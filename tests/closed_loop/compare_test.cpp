@@ -217,6 +217,15 @@ TEST(Compare, WhatCannotShowADifferenceIsSaidBeforeItFliesAndTheDeclaredMetricIs
   EXPECT_TRUE(other.says("declared path_length_m before it flew; what follows is about coverage."))
       << other.text;
   EXPECT_TRUE(other.says("failed | coverage |")) << other.text;
+
+  const std::string paper = "results " + out + " --paper " + (dir / "paper").string();
+  const Output written = run_karst(paper), again = run_karst(paper), forced = run_karst(paper + " --force");
+  EXPECT_EQ(written.code, 0) << written.text;
+  EXPECT_TRUE(written.says((dir / "paper/ranking.tex").string())) << written.text;
+  EXPECT_NE(bytes_of(dir / "paper/ranking.tex").find("path\\_length\\_m"), std::string::npos);
+  EXPECT_EQ(again.code, 1);
+  EXPECT_TRUE(again.says("is there already; --force overwrites it")) << again.text;
+  EXPECT_EQ(forced.code, 0) << forced.text;
 }
 
 TEST(Compare, AnotherCampaignInTheFolderIsRefusedSayingWhatDiffersAndMoreSeedsAreFlown) {

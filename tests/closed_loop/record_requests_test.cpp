@@ -76,6 +76,36 @@ TEST(RecordRequests, ACrashInProcessIsNamedAndItsRequestIsKept) {
   EXPECT_TRUE(again.says("ended with 139")) << again.text;
 }
 
+TEST(RecordRequests, ADecisionIsExplainedWithItsWholeList) {
+  const auto dir = fresh_folder("explain");
+  const std::string run = (dir / "run").string();
+  fly_recorded(run, "");
+  std::istringstream lines(bytes_of(dir / "run/events.jsonl"));
+  std::string t_s;  // of the first decision with goals: its line begins with {"t":
+  for (std::string line; t_s.empty() && std::getline(lines, line);)
+    if (line.find("\"kind\":\"decision\"") != std::string::npos &&
+        line.find("\"outcome\":\"goals\"") != std::string::npos)
+      t_s = line.substr(5, line.find(',') - 5);
+  ASSERT_FALSE(t_s.empty());
+  const Output whole = run_karst("explain " + run + " --at " + t_s);
+  EXPECT_EQ(whole.code, 0) << whole.text;
+  for (const char* part : {"Decision ", ", phase explore, by nearest_frontier: goals",
+                           " offered:", "Request ", "best first:", "   1  score "})
+    EXPECT_TRUE(whole.says(part)) << part << " in:\n" << whole.text;
+  std::filesystem::remove(dir / "run/requests.bin");
+  const Output events = run_karst("explain " + run + " --at " + t_s);
+  EXPECT_EQ(events.code, 0) << events.text;
+  EXPECT_TRUE(events.says("fly with --record-requests")) << events.text;
+
+  const Output early = run_karst("explain " + run + " --at 0"),
+               wrong = run_karst("explain " + run + " --at soon");
+  EXPECT_EQ(early.code, 1);
+  EXPECT_TRUE(early.says("--at 0: no decision had been made by then")) << early.text;
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_TRUE(wrong.says("--at: soon: expected a time such as 1:34")) << wrong.text;
+  EXPECT_EQ(run_karst("explain /no/such/run --at 1:00").code, 1);
+}
+
 TEST(RecordRequests, BadInputIsNamed) {
   const auto dir = fresh_folder("record_requests_bad");
   const Output none = run_karst("policy replay " + dir.string());

@@ -82,26 +82,29 @@ ordered_json report_verdicts(const Verdicts& verdicts) {
   return d;
 }
 
+ordered_json report_summary(const CampaignResults& results, const VerdictOptions& options, int metric) {
+  const evaluation::MetricDefinition& figure =
+      evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
+  const Interval possible{figure.least, figure.most};
+  std::vector<evaluation::Differences> values(results.contestants.size(),
+                                              evaluation::Differences(results.caves.size()));
+  for (const TrialResult& t : results.trials) {
+    const double v = figure_of(t, metric, results.horizon_s);
+    if (std::isfinite(v)) values[t.contestant][t.cave].push_back(v);
+  }
+  ordered_json row = ordered_json::array();
+  for (const evaluation::Differences& by_cave : values) {
+    ordered_json caves = ordered_json::array();
+    for (const auto& one : by_cave) caves.push_back(summary({one}, options, possible));
+    row.push_back({{"all", summary(by_cave, options, possible)}, {"caves", std::move(caves)}});
+  }
+  return row;
+}
+
 ordered_json report_summaries(const CampaignResults& results, const VerdictOptions& options) {
   ordered_json figures = ordered_json::array();
-  for (int m = 0; m < static_cast<int>(evaluation::metric_definitions().size()); ++m) {
-    const evaluation::MetricDefinition& figure =
-        evaluation::metric_definitions()[static_cast<std::size_t>(m)];
-    const Interval possible{figure.least, figure.most};
-    std::vector<evaluation::Differences> values(results.contestants.size(),
-                                                evaluation::Differences(results.caves.size()));
-    for (const TrialResult& t : results.trials) {
-      const double v = figure_of(t, m, results.horizon_s);
-      if (std::isfinite(v)) values[t.contestant][t.cave].push_back(v);
-    }
-    ordered_json row = ordered_json::array();
-    for (const evaluation::Differences& by_cave : values) {
-      ordered_json caves = ordered_json::array();
-      for (const auto& one : by_cave) caves.push_back(summary({one}, options, possible));
-      row.push_back({{"all", summary(by_cave, options, possible)}, {"caves", std::move(caves)}});
-    }
-    figures.push_back(std::move(row));
-  }
+  for (int m = 0; m < static_cast<int>(evaluation::metric_definitions().size()); ++m)
+    figures.push_back(report_summary(results, options, m));
   return figures;
 }
 

@@ -25,8 +25,12 @@ MeanInterval mean_interval(const evaluation::Differences& values, const VerdictO
 /// Verdicts, ranking, and comparisons of every pair of contestants in every figure.
 nlohmann::ordered_json report_verdicts(const Verdicts& verdicts);
 
-/// Summary of each contestant's trials: [figure][contestant] -> {all, caves}, each with n, mean and interval
-/// or null. Caves have equal weight.
+/// Summary of each contestant's trials in one figure: [contestant] -> {all, caves}, each with n, mean and
+/// interval or null. Caves have equal weight.
+nlohmann::ordered_json report_summary(const CampaignResults& results, const VerdictOptions& options,
+                                      int metric);
+
+/// The same of all figures: [figure][contestant].
 nlohmann::ordered_json report_summaries(const CampaignResults& results, const VerdictOptions& options);
 
 /// Coverage and explored volume over time on one time grid: of every trial, and means with intervals by

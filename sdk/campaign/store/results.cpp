@@ -51,7 +51,10 @@ void read_conditions(const std::string& definition, const std::string& source, C
   results.profile = tree.get("profile", "");
   results.metric = tree.get("metric", results.metric);
   for (const auto& [key, contestant] : tree) {
-    if (key != "contestant" || contestant.get("settings", "{}") != "{}") continue;
+    if (key != "contestant") continue;
+    if (results.flight_time.empty())  // the horizon is the same for all (plan.h)
+      results.flight_time = contestant.get("mission.mission.max_flight_time", "");
+    if (contestant.get("settings", "{}") != "{}") continue;
     for (const auto& [name, value] : core::leaves_of(contestant.get_child("mission", {})))
       if (!name.starts_with("policy.") && name != "mission.max_flight_time")
         results.shared.emplace_back(name, value);

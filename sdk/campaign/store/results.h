@@ -47,10 +47,11 @@ struct CampaignResults {
   // Keys and values of the resolved mission shared by the contestants without settings of their own: all
   // except policy, flight time and cave.
   std::vector<std::pair<std::string, std::string>> shared = {};
+  std::string flight_time = {};  // mission.max_flight_time with its unit; "" if unknown
 };
 
-/// Reads profile, metric and shared settings from a campaign's definition. `source` names the store in
-/// errors. Throws core::InputError if the text is not a definition.
+/// Reads profile, metric, flight time and shared settings from a campaign's definition. `source` names the
+/// store in errors. Throws core::InputError if the text is not a definition.
 void read_conditions(const std::string& definition, const std::string& source, CampaignResults& results);
 
 }  // namespace karst::campaign

@@ -92,9 +92,10 @@ std::size_t min_pairs(std::size_t contestants, double alpha);
 /// Throws InputError if the metric is unknown, a trial occurs twice, or a trial lacks a value for a figure.
 Verdicts compare_all(const CampaignResults& results, const VerdictOptions& options = {});
 
-/// Each contestant's mean over caves (with equal weight), restricted to the caves and seeds that all of them
-/// flew, so that caves flown by some only do not affect the comparison; over all its own trials if there are
-/// none in common. NaN if nothing is known.
+/// Each contestant's values by cave, restricted to the caves and seeds that all of them flew, so that caves
+/// flown by some only do not affect the comparison; all its own values if there are none in common.
+std::vector<evaluation::Differences> comparable_figures(const CampaignResults& results, int metric);
+/// Means of these over caves, with equal weight. NaN if nothing is known.
 std::vector<double> comparable_means(const CampaignResults& results, int metric);
 
 /// The value of a trial in a figure; a failed trial gets a value instead of a gap where one can be defined

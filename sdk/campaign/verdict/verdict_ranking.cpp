@@ -49,7 +49,7 @@ std::string letter(std::size_t i) {
 
 }  // namespace
 
-std::vector<double> comparable_means(const CampaignResults& results, int metric) {
+std::vector<evaluation::Differences> comparable_figures(const CampaignResults& results, int metric) {
   std::vector<Flown> flown(results.contestants.size());
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> flown_by;
   for (const TrialResult& t : results.trials)
@@ -59,13 +59,19 @@ std::vector<double> comparable_means(const CampaignResults& results, int metric)
     }
   const bool any_shared =
       std::any_of(flown_by.begin(), flown_by.end(), [&](auto& k) { return k.second == flown.size(); });
-  std::vector<double> means;
+  std::vector<evaluation::Differences> figures;
   for (const Flown& own : flown) {
-    evaluation::Differences by_cave(results.caves.size());
+    evaluation::Differences& by_cave = figures.emplace_back(results.caves.size());
     for (const auto& [key, f] : own)
       if (!any_shared || flown_by[key] == flown.size()) by_cave[key.first].push_back(f);
-    means.push_back(evaluation::mean_difference(by_cave));
   }
+  return figures;
+}
+
+std::vector<double> comparable_means(const CampaignResults& results, int metric) {
+  std::vector<double> means;
+  for (const evaluation::Differences& by_cave : comparable_figures(results, metric))
+    means.push_back(evaluation::mean_difference(by_cave));
   return means;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core_stack/common/counted.h"
+#include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/campaign/verdict/verdict_parts.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
@@ -16,60 +17,8 @@ using core::counted;
 using evaluation::Forecast;
 using evaluation::MetricDefinition;
 
-/// The phrase for one figure; figures without a phrase are named.
-struct Phrase {
-  std::string_view metric;
-  std::string_view more, less;  // "A ... than B" if A has more of it, and if it has less
-  std::string_view subject;     // "no difference shown in ..."
-};
-constexpr std::array kPhrases = {
-    Phrase{"completed", "completes more flights than", "completes fewer flights than", "flights completed"},
-    Phrase{"contacts", "touches rock more often than", "touches rock less often than", "contacts"},
-    Phrase{"path_length_m", "flies farther than", "flies less far than", "path length"},
-    Phrase{"mean_speed_mps", "flies faster than", "flies slower than", "mean speed"},
-    Phrase{"exploring_speed_mps", "explores at a higher speed than", "explores at a lower speed than",
-           "exploring speed"},
-    Phrase{"standing_share", "stands more than", "stands less than", "standing"},
-    Phrase{"energy_wh", "draws more energy than", "draws less energy than", "energy"},
-    Phrase{"explored_volume_m3", "explores more than", "explores less than", "explored volume"},
-    Phrase{"coverage", "ends with more coverage than", "ends with less coverage than", "final coverage"},
-    Phrase{"coverage_auc", "covers more, averaged over the flight, than",
-           "covers less, averaged over the flight, than", "coverage averaged over the flight"},
-    Phrase{"restricted_t50_s", "covers 50 % later than", "covers 50 % sooner than", "time to 50 % coverage"},
-    Phrase{"restricted_t90_s", "covers 90 % later than", "covers 90 % sooner than", "time to 90 % coverage"},
-    Phrase{"restricted_t95_s", "covers 95 % later than", "covers 95 % sooner than", "time to 95 % coverage"},
-    Phrase{"surface_seen", "sees more of the surface than", "sees less of the surface than", "surface seen"},
-    Phrase{"surface_imaged", "takes pictures of more of the surface than",
-           "takes pictures of less of the surface than", "surface in pictures"},
-    Phrase{"depth_m", "comes deeper than", "comes less deep than", "depth reached"},
-    Phrase{"min_clearance_m", "keeps farther from rock than", "comes nearer to rock than", "least clearance"},
-};
-
 const MetricDefinition& definition(int metric) {
   return evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
-}
-
-const Phrase* phrase_of(std::string_view metric) {
-  const auto p = std::find_if(kPhrases.begin(), kPhrases.end(), [&](auto& k) { return k.metric == metric; });
-  return p == kPhrases.end() ? nullptr : p;
-}
-
-std::string verb(const MetricDefinition& d, bool more) {
-  if (const Phrase* p = phrase_of(d.name)) return std::string(more ? p->more : p->less);
-  return std::string(more ? "has more " : "has less ") + std::string(d.name) + " than";
-}
-
-std::string subject(const MetricDefinition& d) {
-  const Phrase* p = phrase_of(d.name);
-  return std::string(p ? p->subject : d.name);
-}
-
-/// Fractions are given in percentage points.
-bool is_fraction(std::string_view name) {
-  constexpr std::array kFractions = {"completed",      "standing_share", "coverage",          "coverage_auc",
-                                     "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
-                                     "surface_imaged", "battery_left",   "data_at_base_share"};
-  return std::find(kFractions.begin(), kFractions.end(), name) != kFractions.end();
 }
 
 std::string unit_of(const MetricDefinition& d) {
@@ -77,14 +26,7 @@ std::string unit_of(const MetricDefinition& d) {
 }
 
 /// Uses as many decimals as two significant digits of `scale` need.
-std::string number(double v, double scale) {
-  const double magnitude = scale > 0 ? std::floor(std::log10(scale)) : 0;
-  const int decimals = std::clamp(1 - static_cast<int>(magnitude), 0, 6);
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, v);
-  const std::string_view zero("-0.000000", static_cast<std::size_t>(decimals ? decimals + 3 : 2));
-  return text.data() == zero ? std::string(text.data() + 1) : text.data();
-}
+std::string number(double v, double scale) { return fixed_text(v, decimals_for(scale, 2)); }
 
 std::string p_text(double p) {
   if (p < 0.001) return "p < 0.001";
@@ -156,13 +98,9 @@ std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
 }
 
 std::string names_of(const std::vector<RankedContestant>& places, const CampaignResults& results) {
-  std::string text;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    text += (i == 0                   ? ""
-             : i + 1 == places.size() ? " and "
-                                      : ", ") +
-            results.contestants[places[i].contestant].name;
-  return text;
+  std::vector<std::string> names;
+  for (const RankedContestant& place : places) names.push_back(results.contestants[place.contestant].name);
+  return listed(names);
 }
 
 }  // namespace
@@ -171,11 +109,11 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
   const MetricDefinition& d = definition(c.metric);
   const std::string &a = results.contestants[c.a].name, &b = results.contestants[c.b].name;
   if (c.pairs == 0)
-    return "nothing to compare in " + subject(d) + ": no cave and seed of which it is known of both " + a +
+    return "nothing to compare in " + subject_of(d) + ": no cave and seed of which it is known of both " + a +
            " and " + b;
   const bool a_has_more = c.difference > 0;
   if (c.shown == Shown::no_difference) {
-    const std::string between = "no difference shown between " + a + " and " + b + " in " + subject(d);
+    const std::string between = "no difference shown between " + a + " and " + b + " in " + subject_of(d);
     if (c.difference == 0 && c.test.positive + c.test.negative == 0)
       return between + ": all " + counted(c.pairs, "pair") + " equal";
     const bool primary = d.name == options.metric;
@@ -184,7 +122,7 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
   }
   // The better contestant is named first; for figures without a better direction, the one with more.
   const bool a_first = c.shown == Shown::a_better || c.shown == Shown::a_more;
-  return (a_first ? a : b) + " " + verb(d, a_first == a_has_more) + " " + (a_first ? b : a) + ": " +
+  return (a_first ? a : b) + " " + verb_of(d, a_first == a_has_more) + " " + (a_first ? b : a) + ": " +
          size_of(c, results, options);
 }
 
@@ -192,7 +130,7 @@ std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results
   const std::vector<RankedContestant>& ranking = verdicts.ranking;
   if (ranking.size() < 2) return "nothing to compare: a verdict needs two contestants";
   if (ranking.size() == 2) return verdicts.find(0, 1, verdicts.metric)->sentence;
-  const std::string by = " in " + subject(definition(verdicts.metric));
+  const std::string by = " in " + subject_of(definition(verdicts.metric));
   std::vector<RankedContestant> first;  // those to which no contestant is shown to be better
   std::copy_if(ranking.begin(), ranking.end(), std::back_inserter(first),
                [](const RankedContestant& p) { return p.best == 1; });

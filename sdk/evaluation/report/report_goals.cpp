@@ -34,7 +34,7 @@ class GoalSpans {
   void accept(const GoalSpan& goal) {
     std::erase_if(open_, [&](std::size_t i) {  // the same goal again, on another path
       const bool same = distance(spans_[i].position, goal.position) < kSameGoal_m;
-      if (same) close(i, goal.t_s, "planned anew", "");
+      if (same) close(i, goal.t_s, kPlannedAnew, "");
       return same;
     });
     while (open_.size() > 1) close_last(goal.t_s);  // replaces the goal appended before

@@ -148,10 +148,11 @@ void RecordingPolicy::notify(const core::PolicyEvent& e) {
   policy_.notify(e);
 }
 
-RequestLogReader::RequestLogReader(const std::filesystem::path& file)
+RequestLogReader::RequestLogReader(const std::filesystem::path& file, RequestReader::Keeps keeps)
     : file_(file.string()),
       in_(core::open_input(file_, core::kMaxDataFileBytes)),
-      size_(std::filesystem::file_size(file)) {
+      size_(std::filesystem::file_size(file)),
+      requests_(keeps) {
   const std::optional<Record> first = read();
   if (!first || first->kind != kHeader) fail("a record of requests begins with whom they were put to");
   try {

@@ -63,7 +63,8 @@ class RecordingPolicy final : public core::PolicyPort {
 class RequestLogReader {
  public:
   /// Throws core::InputError with file, byte and reason; next() does so, too.
-  explicit RequestLogReader(const std::filesystem::path& file);
+  explicit RequestLogReader(const std::filesystem::path& file,
+                            RequestReader::Keeps keeps = RequestReader::Keeps::map_and_roadmap);
 
   const RequestLogHeader& header() const { return header_; }
   enum class Kind { request, answer, event, end };
@@ -87,7 +88,7 @@ class RequestLogReader {
   std::ifstream in_;
   std::uint64_t size_ = 0, at_ = 0, record_ = 0, skipped_bytes_ = 0;
   RequestLogHeader header_;
-  RequestReader requests_{RequestReader::Keeps::map_and_roadmap};
+  RequestReader requests_;
   std::string answer_;
   core::PolicyEvent event_{};
 };

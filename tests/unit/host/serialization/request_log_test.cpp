@@ -104,6 +104,14 @@ TEST_F(Recorded, ComesBackAsItWas) {
   EXPECT_EQ(log.next(), RequestLogReader::Kind::end);
 }
 
+TEST_F(Recorded, IsReadWithoutRoadmapsByWhoNeedsNone) {
+  RequestLogReader log(file, RequestReader::Keeps::map);
+  ASSERT_EQ(log.next(), RequestLogReader::Kind::request);
+  EXPECT_EQ(log.request().roadmap, nullptr);
+  ASSERT_EQ(log.next(), RequestLogReader::Kind::answer);
+  EXPECT_EQ(log.answer(), answers[0]);
+}
+
 TEST_F(Recorded, MapGoesAsWhatChanged) {
   const std::string all = bytes();
   EXPECT_LT(all.size(), 2 * flatten(room.request).size()) << "four requests, and the whole map once";

@@ -1,0 +1,31 @@
+#include "sdk/campaign/paper/printed_figure.h"
+
+#include <cctype>
+#include <cmath>
+
+#include "sdk/campaign/verdict/figure_words.h"
+
+namespace karst::campaign {
+
+PrintedFigure printed_figure(int metric) {
+  const auto& figure = evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
+  const std::string subject = subject_of(figure), unit(figure.unit);
+  PrintedFigure printed{subject, subject, unit, unit, 1, figure.better};
+  if (subject != figure.name)  // its key has no capital
+    printed.heading.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(subject.front())));
+  if (is_fraction(figure.name))
+    printed.unit = "%", printed.difference_unit = "percentage points", printed.factor = 100;
+  return printed;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " (" + unit + ")";
+}
+
+std::string printed_number(double v, int decimals) {
+  if (!std::isfinite(v)) return "\u2013";
+  const std::string text = fixed_text(v, decimals);
+  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+}
+
+}  // namespace karst::campaign

@@ -1,0 +1,89 @@
+#include "sdk/tools/explain_command.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/time.h"
+#include "sdk/evaluation/decisions/clock.h"
+#include "sdk/evaluation/decisions/decision_text.h"
+#include "sdk/evaluation/team/team_folders.h"
+#include "sdk/host/serialization/request_log.h"
+#include "sdk/terminal/terminal.h"
+#include "sdk/tools/arguments.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using evaluation::DecisionRecord;
+using evaluation::RecordedAnswer;
+using host::RequestLogReader;
+
+DecisionRecord decision_of(const std::string& run, const std::string& at) {
+  if (evaluation::is_team(run))
+    throw core::InputError(
+        run, "",
+        "is the run of a team; name one of its robots, such as " + (fs::path(run) / "robot_1").string());
+  const auto at_s = evaluation::seconds_of_clock(at);
+  if (!at_s) throw core::InputError("--at", at, "expected a time such as 1:34, or 94 for seconds");
+  const evaluation::RunRecord record = evaluation::read_run(run);
+  if (auto decision = evaluation::decision_at(record, *at_s)) return *decision;
+  const auto last = evaluation::decision_at(record, evaluation::kLongestRun_s);
+  throw core::InputError(run, last ? "--at " + at : "events.jsonl",
+                         last ? "no decision had been made by then" : "holds no decision");
+}
+
+/// What the policy answered to the requests of this decision: two where it was asked again for narrow
+/// passages, none where the fallback decided.
+std::vector<RecordedAnswer> answers_of(const fs::path& requests, const DecisionRecord& decision) {
+  std::vector<RecordedAnswer> answers;
+  RequestLogReader log(requests, host::RequestReader::Keeps::map);
+  for (auto kind = log.next(); kind != RequestLogReader::Kind::end; kind = log.next()) {
+    if (kind == RequestLogReader::Kind::event) continue;
+    const double stamp_s = core::seconds(log.request().stamp);
+    if (stamp_s > decision.t_s) break;
+    if (kind == RequestLogReader::Kind::answer && evaluation::was_asked_for(decision, stamp_s))
+      answers.push_back({log.request().sequence, stamp_s, log.answer()});
+  }
+  return answers;
+}
+
+void explain_decision(const std::string& run, const std::string& at) {
+  const DecisionRecord decision = decision_of(run, at);
+  print_out("%s", evaluation::decision_text(decision).c_str());
+  const fs::path requests = fs::path(run) / host::kRequestLogName;
+  if (!fs::exists(requests)) {
+    print_out("\nGoals behind the accepted one are not recorded: fly with --record-requests to see all.\n");
+    return;
+  }
+  const std::vector<RecordedAnswer> answers = answers_of(requests, decision);
+  if (answers.empty())
+    print_out("\nThe policy was not asked: requests.bin has no request of this decision.\n");
+  for (const RecordedAnswer& a : answers) print_out("\n%s", evaluation::answer_table(a, decision).c_str());
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app) {
+  struct Arguments {
+    std::string run, at;
+  };
+  auto args = std::make_shared<Arguments>();
+  CLI::App* explain = app.add_subcommand(
+      "explain",
+      "Why the vehicle flew to this goal: the decision at a time of the flight, or the last one before it, "
+      "with its goals, what became of them, and the frontiers offered.\n\n"
+      "  karst explain runs/demo --at 1:34\n"
+      "  karst fly demo.info --record-requests --out runs/demo     keeps the whole ranked lists, too");
+  explain->add_option("run", args->run, "run directory; of a team that of a robot")
+      ->required()
+      ->check(not_empty());
+  explain->add_option("--at", args->at, "time of the flight: 1:34, or 94 for seconds")->required();
+  explain->callback([args] { explain_decision(args->run, args->at); });
+}
+
+}  // namespace karst::tools

@@ -1,0 +1,182 @@
+// Decisions out of a run record written by hand.
+#include <gtest/gtest.h>
+
+#include "sdk/evaluation/decisions/decision_record.h"
+#include "sdk/evaluation/decisions/decision_text.h"
+#include "tests/unit/evaluation/fake_run.h"
+
+namespace karst::evaluation {
+namespace {
+
+using test::TemporaryDirectory;
+
+constexpr const char* kThreeDecisions = R"({"t":2.0,"kind":"phase","phase":"takeoff","reason":""}
+{"t":5.0,"kind":"phase","phase":"explore","reason":""}
+{"t":10.3,"kind":"decision","appending":false,"frontiers":2,"goals":3,"outcome":"goals","policy":"mine","reason":""}
+{"t":10.3,"kind":"frontiers","clusters":[[7,4,0,1,120],[9,-3,1,1,40]]}
+{"t":10.3,"kind":"frontier","id":11,"position":[0,0,9],"reason":"no sensor sees it","state":"refused"}
+{"t":10.3,"kind":"goal","frontier":9,"heading":null,"position":[-2,1,1],"reason":"it lies in unknown space","score":9.5,"state":"rejected","why":"largest"}
+{"t":10.3,"kind":"goal","frontier":7,"heading":0.1,"position":[3,0,1],"reason":"","score":7.25,"state":"accepted","why":"nearest"}
+{"t":14.6,"kind":"decision","appending":false,"frontiers":1,"goals":1,"outcome":"goals","policy":"mine","reason":""}
+{"t":14.6,"kind":"frontiers","clusters":[[7,4,0,1,80]]}
+{"t":16.0,"kind":"goal","frontier":7,"heading":0.1,"position":[3,0,1],"reason":"","score":7.25,"state":"reached","why":"nearest"}
+{"t":16.7,"kind":"decision","appending":false,"frontiers":0,"goals":0,"outcome":"explored","policy":"mine","reason":"nothing is left"}
+{"t":16.7,"kind":"frontiers","clusters":[]}
+{"t":16.7,"kind":"phase","phase":"home","reason":"explored"}
+)";
+
+RunRecord record_of(const std::string& events, const std::string& trajectory = "10.3 1 0 1 0 0 0 1\n") {
+  const TemporaryDirectory dir;
+  dir.write("events.jsonl", events);
+  dir.write("trajectory.tum", trajectory);
+  return read_run(dir.path());
+}
+
+/// The decision at a time, of which the test knows that it is there.
+DecisionRecord decision_of(const RunRecord& run, double t_s) {
+  const auto found = decision_at(run, t_s);
+  EXPECT_TRUE(found) << "no decision at " << t_s;
+  return found.value_or(DecisionRecord{});
+}
+
+TEST(Decision, IsTheLastOneByThen) {
+  const RunRecord run = record_of(kThreeDecisions);
+  EXPECT_FALSE(decision_at(run, 10.29));
+  for (const auto& [t_s, number] : {std::pair(10.3, 1u), {14.59, 1u}, {14.6, 2u}, {14.597, 2u}, {99.0, 3u}}) {
+    const DecisionRecord d = decision_of(run, t_s);
+    EXPECT_EQ(d.number, number) << t_s;
+    EXPECT_EQ(d.of, 3u);
+  }
+  EXPECT_FALSE(decision_at(record_of("{\"t\":2.0,\"kind\":\"phase\",\"phase\":\"takeoff\"}\n"), 99));
+  EXPECT_FALSE(decision_at(record_of(""), 99));
+}
+
+TEST(Decision, HasItsGoalsItsFrontiersAndItsPhase) {
+  const DecisionRecord d = decision_of(record_of(kThreeDecisions), 10.3);
+  EXPECT_EQ(d.phase, "explore");
+  ASSERT_EQ(d.refused.size(), 1u);
+  EXPECT_EQ(d.refused[0].reason, "it lies in unknown space");
+  ASSERT_TRUE(d.accepted);
+  EXPECT_EQ(d.accepted->frontier, 7u);
+  ASSERT_EQ(d.offered.size(), 2u);
+  EXPECT_EQ(d.offered[1].unknown_cells, 40u);
+  ASSERT_EQ(d.unseen.size(), 1u);
+  EXPECT_EQ(d.unseen[0].id, 11u);
+}
+
+TEST(Decision, OnWhichTheVehicleFliesHomeWasMadeWhileItExplored) {
+  const DecisionRecord d = decision_of(record_of(kThreeDecisions), 20);
+  EXPECT_EQ(d.phase, "explore");
+  EXPECT_EQ(d.decision.outcome, core::Outcome::explored);
+  EXPECT_FALSE(d.accepted);
+  EXPECT_FALSE(d.flown);
+}
+
+TEST(Decision, KnowsWhatBecameOfItsGoal) {
+  const RunRecord run = record_of(kThreeDecisions);
+  const auto first = decision_of(run, 10.3).flown;
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->accepted_s, 10.3);
+  EXPECT_EQ(first->until_s, 16.0);
+  EXPECT_EQ(first->fate, "reached");
+  const auto second = decision_of(run, 14.6).flown;
+  ASSERT_TRUE(second) << "it flew on";
+  EXPECT_EQ(second->accepted_s, 10.3);
+}
+
+TEST(Decision, FollowsAGoalThatWasPlannedAnew) {
+  const std::string goal =
+      R"("kind":"goal","frontier":7,"position":[3,0,1],"score":1,"why":"","reason":"","state":)";
+  const std::string decision = R"("kind":"decision","outcome":"goals"})",
+                    phase = R"({"t":0,"kind":"phase","phase":"explore"})";
+  const std::string events = phase + "\n{\"t\":1," + decision + "\n{\"t\":1," + goal +
+                             "\"accepted\"}\n{\"t\":2," + decision + "\n{\"t\":2," + goal +
+                             "\"accepted\"}\n{\"t\":3," + goal + "\"abandoned\"}\n";
+  const auto flown = decision_of(record_of(events), 1).flown;
+  ASSERT_TRUE(flown);
+  EXPECT_EQ(flown->planned_anew, 1);
+  EXPECT_EQ(flown->fate, "abandoned");
+  EXPECT_EQ(flown->until_s, 3);
+}
+
+TEST(Decision, IsWhatARequestBetweenTheLastOneAndItselfWasFor) {
+  const RunRecord run = record_of(kThreeDecisions);
+  const DecisionRecord first = decision_of(run, 10.3), second = decision_of(run, 14.6);
+  EXPECT_TRUE(was_asked_for(first, 10.0));
+  EXPECT_FALSE(was_asked_for(first, 10.3)) << "it takes effect some time after it was asked for";
+  EXPECT_FALSE(was_asked_for(second, 10.0));
+  EXPECT_TRUE(was_asked_for(second, 10.3)) << "asked for as soon as the first was there";
+  EXPECT_TRUE(was_asked_for(second, 14.3));
+}
+
+TEST(DecisionText, TellsAllThatWasRecorded) {
+  EXPECT_EQ(decision_text(decision_of(record_of(kThreeDecisions), 10.3)),
+            "Decision 1 of 3 at 0:10.30, phase explore, by mine: goals. 3 goals proposed.\n"
+            "  refused  (-2.00 1.00 1.00) m, frontier 9, score 9.500, largest: it lies in unknown space\n"
+            "  accepted (3.00 0.00 1.00) m, frontier 7, score 7.250, nearest\n"
+            "The goal was reached at 0:16.00, 5.7 s later.\n"
+            "2 frontiers were offered:\n"
+            "    id  unknown cells  distance, m  centroid, m\n"
+            "     7            120          3.0  (4.00 0.00 1.00)\n"
+            "     9             40          4.1  (-3.00 1.00 1.00)\n"
+            "Left out: frontier 11 at (0.00 0.00 9.00) m: no sensor sees it\n");
+}
+
+TEST(DecisionText, OfAGoalUnderWayAndOfNone) {
+  const RunRecord run = record_of(kThreeDecisions, "");
+  EXPECT_EQ(decision_text(decision_of(run, 14.6)),
+            "Decision 2 of 3 at 0:14.60, phase explore, by mine: goals. 1 goal proposed.\n"
+            "Flew on to the goal accepted at 0:10.30, which was reached at 0:16.00, 1.4 s later.\n"
+            "1 frontier was offered:\n"
+            "    id  unknown cells  distance, m  centroid, m\n"
+            "     7             80            ?  (4.00 0.00 1.00)\n");
+  EXPECT_EQ(
+      decision_text(decision_of(run, 16.7)),
+      "Decision 3 of 3 at 0:16.70, phase explore, by mine: explored, nothing is left. 0 goals proposed.\n"
+      "The vehicle flew to no goal.\n"
+      "No frontiers were offered.\n");
+}
+
+TEST(DecisionText, OfARecordThatEndsSaysSo) {
+  const std::string all = kThreeDecisions;
+  const std::string cut = all.substr(0, all.find("{\"t\":14.6"));
+  EXPECT_NE(decision_text(decision_of(record_of(cut), 10.3))
+                .find("The goal was still flown to when the record ends."),
+            std::string::npos);
+}
+
+TEST(AnswerTable, HasTheWholeRankedListWithWhatBecameOfEachGoal) {
+  const std::string answer =
+      R"({"outcome":"goals","reason":"","goals":[)"
+      R"({"position":[-2.0,1.0,1.0],"heading":null,"frontier":9,"score":9.5,"why":"largest"},)"
+      R"({"position":[3.0,0.0,1.0],"heading":0.1,"frontier":7,"score":7.25,"why":"nearest"},)"
+      R"({"position":[5.0,5.0,1.0],"heading":null,"frontier":0,"score":1.0,"why":"last"}]})";
+  const RunRecord run = record_of(kThreeDecisions);
+  EXPECT_EQ(answer_table({2, 10.0, answer}, decision_of(run, 10.3)),
+            "Request 2 at 0:10.00: goals, 3 goals, best first:\n"
+            "   1  score 9.500  (-2.00 1.00 1.00) m, frontier 9, largest\n"
+            "        refused: it lies in unknown space\n"
+            "   2  score 7.250  (3.00 0.00 1.00) m, frontier 7, nearest\n"
+            "        accepted\n"
+            "   3  score 1.000  (5.00 5.00 1.00) m, no frontier, last\n"
+            "        not tried\n");
+  EXPECT_NE(
+      answer_table({3, 14.3, answer}, decision_of(run, 14.6)).find("nearest\n        under way already\n"),
+      std::string::npos);
+}
+
+TEST(AnswerTable, OfAFailureOrOfAnotherShapeSaysWhatItIs) {
+  const DecisionRecord d = decision_of(record_of(kThreeDecisions), 10.3);
+  EXPECT_EQ(answer_table({1, 10, R"({"failure":"it hangs"})"}, d),
+            "Request 1 at 0:10.00: the policy failed: it hangs\n");
+  EXPECT_EQ(answer_table({1, 10, R"({"outcome":"hold","reason":"wait","goals":[]})"}, d),
+            "Request 1 at 0:10.00: hold, wait, 0 goals\n");
+  for (const char* text : {"no JSON", "[1]", "{\"outcome\":3}", "{\"goals\":7}"})
+    EXPECT_EQ(answer_table({1, 10, text}, d), std::string("Request 1 at 0:10.00: ") + text + "\n");
+  EXPECT_NE(
+      answer_table({1, 10, "{\"goals\":[7,{\"position\":[1]}]}"}, d).find("score ?  (?) m, no frontier"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace karst::evaluation
