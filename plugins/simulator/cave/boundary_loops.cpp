@@ -128,6 +128,8 @@ BoundaryLoop measured_loop(const TriangleMesh& mesh, std::vector<std::uint32_t> 
   return loop;
 }
 
+std::string two_digits(double v) { return core::format_text(v < 99 ? "%.2g" : "%.0f", v); }
+
 /// The open edges as pairs in the direction in which the triangles run, sorted.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> directions(const std::vector<OpenEdge>& edges) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
@@ -183,10 +185,10 @@ const BoundaryLoop* loop_towards(const std::vector<BoundaryLoop>& loops, const V
 std::string hole_text(const BoundaryLoop* loop) {
   if (loop == nullptr) return "; no edge is open: parts of the mesh do not touch each other there";
   return core::format_text(
-      "; the open edges nearest to it are a loop of %zu, %.2g m across, %.2g m2, around %.1f %.1f %.1f. "
+      "; the open edges nearest to it are a loop of %zu, %s m across, %s m2, around %.1f %.1f %.1f. "
       "`karst cave info CAVE --cap OUT.ply` closes such loops",
-      loop->vertices.size(), loop->diameter_m, loop->area_m2, loop->centre.x(), loop->centre.y(),
-      loop->centre.z());
+      loop->vertices.size(), two_digits(loop->diameter_m).c_str(), two_digits(loop->area_m2).c_str(),
+      loop->centre.x(), loop->centre.y(), loop->centre.z());
 }
 
 }  // namespace karst::cave

@@ -58,7 +58,7 @@ std::optional<MeshAdvice> axis_of(const MeshShape& shape, const MeshFrame& frame
     return std::nullopt;
   const bool is_z = frame.up == core::UpAxis::z;
   return MeshAdvice{
-      format_text("read with %s up it is %.3g m high and %.3g m wide, and %.0f %% of its surface stands "
+      format_text("read with %s up it is %.1f m high and %.1f m wide, and %.0f %% of its surface stands "
                   "upright: it likely has %s up",
                   is_z ? "z" : "y", size.z(), size.y(), 100 * (shape.facing.x() + shape.facing.y()),
                   is_z ? "y" : "z"),

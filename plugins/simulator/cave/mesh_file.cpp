@@ -97,7 +97,7 @@ void check_reach(const std::string& path, const std::vector<MeshPart>& parts, co
   if (box.isEmpty() || box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() <= kFarthestVertex_m)
     return;
   const Vec3 &low = box.min(), &high = box.max();
-  std::string why = kRule + core::format_text("; these reach from %.6g %.6g %.6g to %.6g %.6g %.6g m",
+  std::string why = kRule + core::format_text("; these reach from %.0f %.0f %.0f to %.0f %.0f %.0f m",
                                               low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
   for (const MeshAdvice& a : mesh_advice({box}, frame)) why += "; " + to_text(a);
   if (box.sizes().maxCoeff() <= kFarthestVertex_m && !holds_double_precision(path))
