@@ -11,6 +11,8 @@ class InputError : public std::runtime_error {
  public:
   InputError(const std::string& file, const std::string& place, const std::string& reason)
       : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + reason) {}
+  /// The same error, and `more` about it.
+  InputError(const InputError& error, const std::string& more) : std::runtime_error(error.what() + more) {}
 };
 
 }  // namespace karst::core

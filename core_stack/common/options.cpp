@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/former_keys.h"
 #include "core_stack/common/units.h"
 
@@ -17,16 +18,9 @@ namespace {
 namespace pt = boost::property_tree;
 using Row = OptionTable::Row;
 
-/// Shortest text that reads back as the same double.
-std::string number_text(double v) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, v).ptr;
-  return {buffer, end};
-}
-
 std::string range_text(const Row& row) {
   const std::string unit = row.unit.empty() ? "" : " " + row.unit;
-  return number_text(row.low) + " to " + number_text(row.high) + unit;
+  return shortest_text(row.low) + " to " + shortest_text(row.high) + unit;
 }
 
 std::string expected_text(const Row& row) {
@@ -94,7 +88,7 @@ std::string value_text(const Row& row) {
   struct Text {
     const Row& row;
     std::string operator()(const double* v) const {
-      return number_text(*v) + (row.unit.empty() ? "" : " " + row.unit);
+      return shortest_text(*v) + (row.unit.empty() ? "" : " " + row.unit);
     }
     std::string operator()(const std::int64_t* v) const { return std::to_string(*v); }
     std::string operator()(const bool* v) const { return *v ? "true" : "false"; }

@@ -17,6 +17,7 @@ constexpr std::array kUnits = {
     Unit{"cm", "length", 0.01},
     Unit{"mm", "length", 0.001},
     Unit{"km", "length", 1000},
+    Unit{"ft", "length", 0.3048},
     Unit{"s", "time", 1},
     Unit{"ms", "time", 0.001},
     Unit{"min", "time", 60},

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/executive.h"
 #include "core_stack/common/options.h"
+#include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/messages.h"
 #include "core_stack/vehicle/mission_outcome.h"
 #include "core_stack/vehicle/object_detection.h"
@@ -71,6 +72,7 @@ struct VehicleSetup {
   std::string run_dir;  // it may write its own files here, such as ground truth; "" for none
   double climb_m = 0;   // by which it will rise from where it stands, before anything is known
   std::uint64_t seed = 1;
+  MeshKeys mesh = {};  // of a cave that is a bare mesh
 };
 
 /// A vehicle plugin's factory. `options()` describes the section of the mission file that bears the

@@ -42,7 +42,7 @@ bool in_sight(const cave::RayScene& scene, const Vec3& a, const Vec3& b) {
 }
 
 cave::Cave cave_for_team(const ObjectOptions& objects, const core::VehicleSetup& setup) {
-  cave::Cave cave = cave::load_cave(setup.cave, setup.start);
+  cave::Cave cave = cave::load_cave(setup.cave, setup.start, setup.mesh);
   for (const cave::LooseRock& rock : cave.description.boulders)
     if (rock.within_m > 0)
       throw InputError(cave.description.file, "boulder.within",

@@ -47,7 +47,7 @@ std::vector<std::shared_ptr<const DepthCamera>> mount_cameras(const SimulatorOpt
 }
 
 cave::Cave cave_with_objects(const SimulatorOptions& o, const core::VehicleSetup& setup) {
-  cave::Cave cave = cave::load_cave(setup.cave, setup.start);
+  cave::Cave cave = cave::load_cave(setup.cave, setup.start, setup.mesh);
   place_objects(cave, o.objects, setup.seed);
   return cave;
 }

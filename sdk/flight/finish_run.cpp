@@ -42,7 +42,7 @@ double cell_size_m(const fs::path& run_dir) {
 /// Ground truth from the cave's mesh. Its functions own the cave that they query.
 evaluation::Truth truth_of(const Finishing& how, double resolution_m,
                            const std::vector<evaluation::PicturePose>& pictures) {
-  const auto cave = std::make_shared<cave::Cave>(cave::load_cave(how.cave, how.start));
+  const auto cave = std::make_shared<cave::Cave>(cave::load_cave(how.cave, how.start, how.mesh));
   evaluation::ReachableOptions options;  // its clearance is not the mission's: coverage compares missions
   options.resolution_m = resolution_m;
   const auto reachable = std::make_shared<evaluation::Reachable>(evaluation::find_reachable_once(

@@ -4,6 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core_stack/vehicle/mesh_keys.h"
+
 namespace karst::flight {
 
 enum class Report { written, none };
@@ -12,6 +14,7 @@ struct Finishing {
   std::string cave, start;  // "" if the cave is not known: metrics that need it are null
   Report report = Report::written;
   std::filesystem::path cave_cache = {};  // folder for data common to all flights of a cave; "": no cache
+  core::MeshKeys mesh = {};               // of a cave that is a bare mesh
 };
 
 /// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics.

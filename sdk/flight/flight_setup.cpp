@@ -29,6 +29,7 @@ core::VehicleSetup vehicle_setup(const Mission& mission, const fs::path& run_dir
   core::VehicleSetup setup;
   setup.cave = mission.cave;
   setup.start = mission.start;
+  setup.mesh = mission.mesh;
   setup.run_dir = run_dir.string();
   setup.climb_m = mission.core.mission.takeoff_height_m;
   setup.seed = static_cast<std::uint64_t>(mission.seed);

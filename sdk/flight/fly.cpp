@@ -167,8 +167,8 @@ nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, doubl
   const fs::path& run_dir = request_.run_dir;
   const core::MissionResult& result = *running_->lockstep->state(0).ended;
   write_timing(run_dir, running_->lockstep->executive(0), wall_s);
-  const nlohmann::json metrics =
-      finish_run(run_dir, {mission_.cave, mission_.start, request_.report, request_.cave_cache});
+  const nlohmann::json metrics = finish_run(
+      run_dir, {mission_.cave, mission_.start, request_.report, request_.cave_cache, mission_.mesh});
   outcome.endings = evaluation::read_endings(run_dir);
   outcome.record_problem = result.record_problem;
   return nlohmann::ordered_json(metrics);
@@ -176,7 +176,7 @@ nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, doubl
 
 nlohmann::ordered_json MissionFlight::finish_members(FlightOutcome& outcome, double wall_s) const {
   const fs::path& run_dir = request_.run_dir;
-  const Finishing how{mission_.cave, mission_.start, request_.report, request_.cave_cache};
+  const Finishing how{mission_.cave, mission_.start, request_.report, request_.cave_cache, mission_.mesh};
   // First writes the metrics that the flight itself knows, so that they are kept if the evaluation is killed,
   // for example for lack of memory.
   std::vector<nlohmann::json> own(members_.size());

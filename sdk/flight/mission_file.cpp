@@ -32,6 +32,7 @@ void describe_mission(OptionTable& t, Mission& m) {
           "cave .info file, or a mesh (STL, PLY, OBJ, DAE); relative to the mission file");
     c.add("start", m.start, {},
           "\"x y z [heading_deg]\" above the floor to start from; empty: the cave's own");
+    describe(c, m.mesh);
   });
   t.under("policy", [&m](OptionTable& p) {
     p.add("name", m.policy, {},
@@ -144,14 +145,15 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   m.cave = core::beside(file, m.cave);
   m.core.team.key_file = core::beside(file, m.core.team.key_file);
   const std::string recorded_policy = m.policy;
+  if (!overrides.cave.empty()) {  // another cave, another start and mesh
+    m.cave = overrides.cave;
+    m.start = "";
+    m.mesh = {};
+  }
   for (const auto& [key, value] : settings)
     if (!put_below(kParameters, key, value, m.policy_parameters) &&
         !put_below(kAuto, key, as_given(key, value), m.auto_policy))
       table.set("--set", key, value);
-  if (!overrides.cave.empty()) {
-    m.cave = overrides.cave;
-    if (!set_to("cave.start")) m.start = "";  // another cave, another start
-  }
   if (!overrides.start.empty()) m.start = overrides.start;
   const auto other_policy = [&](const std::string& name, const pt::ptree& parameters) {
     m.policy = name;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core_stack/mission/options/mission_options.h"
+#include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/vehicle.h"
 #include "sdk/flight/team_faults.h"
 #include "sdk/host/plugin/hosted_policy.h"
@@ -27,6 +28,7 @@ struct MissionOverrides {
 struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
+  core::MeshKeys mesh;  // of a cave that is a bare mesh
   std::int64_t seed = 1, policy_stream = 0;
   host::Isolation policy_isolation = host::Isolation::in_process;  // docs/isolation.md
   double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;

@@ -4,6 +4,8 @@
 #include <map>
 #include <numbers>
 
+#include "plugins/simulator/cave/joined_vertices.h"
+
 namespace karst::selection {
 namespace {
 
@@ -25,17 +27,7 @@ MeshFacts mesh_facts(const cave::TriangleMesh& mesh) {
   MeshFacts facts;
   facts.triangles = mesh.triangles.size();
   if (mesh.vertices.empty()) return facts;
-  // Vertices at the same position get the number of the first of them.
-  std::vector<std::uint32_t> order(mesh.vertices.size()), first(mesh.vertices.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto key = [&](std::uint32_t i) {
-    const Vec3f& v = mesh.vertices[i];
-    return std::array<float, 3>{v.x(), v.y(), v.z()};
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+  const std::vector<std::uint32_t> first = cave::first_at_position(mesh);
   // Each edge once per triangle: the lower number first, and whether the triangle runs along it that way.
   std::vector<std::array<std::uint32_t, 3>> runs;
   runs.reserve(3 * mesh.triangles.size());

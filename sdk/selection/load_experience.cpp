@@ -5,7 +5,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "plugins/simulator/cave/cave.h"
-#include "sdk/campaign/plan/hash.h"
+#include "sdk/campaign/plan/mesh_hash.h"
 #include "sdk/campaign/store/store.h"
 #include "sdk/selection/describe.h"
 
@@ -56,7 +56,7 @@ Experience load_experience(const std::vector<std::string>& files,
 
 std::string mesh_hash_of(const std::string& cave_file, const std::string& start) {
   if (source_of(cave_file) != Source::mesh) return "";
-  return campaign::sha256_of_file(cave::describe_cave(cave_file, start).mesh_path);
+  return campaign::mesh_hash(cave::mesh_of(cave::describe_cave(cave_file, start)));
 }
 
 std::string installed_experience() {

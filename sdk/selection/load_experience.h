@@ -14,7 +14,7 @@ namespace karst::selection {
 Experience load_experience(const std::vector<std::string>& files,
                            const std::function<void(const std::string&)>& tell);
 
-/// SHA-256 of a cave's mesh, which identifies caves in campaigns; "" if it is not a mesh. Throws InputError.
+/// The hash of a cave's mesh that identifies caves in campaigns; "" if it is not a mesh. Throws InputError.
 std::string mesh_hash_of(const std::string& cave_file, const std::string& start);
 
 /// The experience installed with karst; "" if there is none.

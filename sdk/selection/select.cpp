@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
@@ -66,16 +65,26 @@ std::vector<Expected> ranking_of(const Values& v, const std::vector<double>& lev
   return ranking;
 }
 
+/// The values that a metric can have in a cave.
+struct PossibleRange {
+  double least, most;
+  double nearest_to(double value) const { return std::clamp(value, least, most); }  // NaN stays NaN
+};
+
+/// No flight maps more volume than the cave has.
+PossibleRange possible_range(const std::string& metric, const CaveFigures& cave) {
+  const evaluation::MetricDefinition& figure =
+      evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(metric))];
+  PossibleRange range{figure.least, figure.most};
+  const bool is_volume = metric == "explored_volume_m3" || metric == "reachable_volume_m3";
+  if (is_volume && !std::isnan(cave.volume_m3)) range.most = std::min(range.most, cave.volume_m3);
+  return range;
+}
+
 /// Student's interval from the errors in left-out caves: for the mean in a new cave.
 void give_intervals(const Experience& e, const Values& v, const std::vector<double>& level,
                     const Kernel& kernel, double probability, std::vector<Expected>& ranking) {
   const std::vector<double> residuals = left_out_residuals(e, v, level, kernel, Predicted::value);
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const double x : v.mean)
-    if (!std::isnan(x)) {
-      least = std::min(least, x);
-      most = std::max(most, x);
-    }
   for (Expected& x : ranking) {
     double squares = 0;
     int n = 0;
@@ -89,16 +98,12 @@ void give_intervals(const Experience& e, const Values& v, const std::vector<doub
     const double half = boost::math::quantile(student, 0.5 + probability / 2) * std::sqrt(squares / n);
     x.low = x.value - half;
     x.high = x.value + half;
-    if (least >= 0) x.low = std::max(0.0, x.low);
-    if (least >= 0 && most <= 1) x.high = std::min(1.0, x.high);
   }
 }
 
 /// Intervals of the mean over other seeds in flown caves; unknown if a cave has fewer than two seeds.
 void give_intervals_there(const Experience& e, std::size_t metric, const std::vector<std::size_t>& there,
                           double probability, std::vector<Expected>& ranking) {
-  const evaluation::MetricDefinition& figure =
-      evaluation::metric_definitions()[static_cast<std::size_t>(evaluation::metric_index(e.metrics[metric]))];
   const auto caves = static_cast<double>(there.size());
   for (Expected& x : ranking) {
     double variance = 0;
@@ -111,8 +116,8 @@ void give_intervals_there(const Experience& e, std::size_t metric, const std::ve
     if (!std::isfinite(variance)) continue;
     const boost::math::students_t student(degrees);
     const double half = boost::math::quantile(student, 0.5 + probability / 2) * std::sqrt(variance);
-    x.low = std::max(figure.least, x.value - half);
-    x.high = std::min(figure.most, x.value + half);
+    x.low = x.value - half;
+    x.high = x.value + half;
   }
 }
 
@@ -180,6 +185,9 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
     give_intervals_there(e, metric, same, options.level, s.ranking);
   else
     give_intervals(e, values, level, kernel, options.level, s.ranking);
+  const PossibleRange range = possible_range(options.metric, cave);
+  for (Expected& x : s.ranking)
+    for (double* value : {&x.value, &x.low, &x.high}) *value = range.nearest_to(*value);
   s.confidence = confidence_of(values, weight, sign, s.ranking.front().contestant, !s.flown);
   s.refused = !s.flown && s.near.front().distance.value > s.limit;
   s.reason = s.refused ? why_far(e, cave, s.near.front(), s.limit)
@@ -188,12 +196,14 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
   return s;
 }
 
-std::vector<double> expected_figures(const Experience& e, const Selected& s, std::size_t contestant) {
+std::vector<double> expected_figures(const Experience& e, const CaveFigures& cave, const Selected& s,
+                                     std::size_t contestant) {
   std::vector<double> weight(e.caves.size(), 0.0), out;
   for (const NearCave& n : s.near) weight[n.cave] = n.weight;
   for (std::size_t m = 0; m < e.metrics.size(); ++m) {
     const Values values = values_of(e, m);
-    out.push_back(predict(values, levels(values), weight, contestant));
+    const double expected = predict(values, levels(values), weight, contestant);
+    out.push_back(possible_range(e.metrics[m], cave).nearest_to(expected));
   }
   return out;
 }

@@ -40,14 +40,16 @@ struct Selected {
 };
 
 /// `mesh_hash`: SHA-256 of the cave's mesh, "" if unknown. If two contestants have flown in this cave (the
-/// same mesh, or the same figures to the sixth digit), their results there decide. Throws InputError if
+/// same mesh, or the same figures to the sixth digit), their results there decide. Values and intervals stay
+/// within what the metric can be in this cave, as in expected_figures(). Throws InputError if
 /// the experience has no value of the metric, or if the description, which comes from `source`, has no
 /// figure.
 Selected select(const Experience& experience, const CaveFigures& cave, const SelectOptions& options,
                 const std::string& source, const std::string& mesh_hash = "");
 
-/// The predicted figures of one contestant with the same bandwidth, by metric of the experience.
-std::vector<double> expected_figures(const Experience& experience, const Selected& selected,
-                                     std::size_t contestant);
+/// The predicted figures of one contestant with the same bandwidth, by metric of the experience. None is
+/// outside of what its metric can be in this cave: an explored volume is at most that of the cave.
+std::vector<double> expected_figures(const Experience& experience, const CaveFigures& cave,
+                                     const Selected& selected, std::size_t contestant);
 
 }  // namespace karst::selection

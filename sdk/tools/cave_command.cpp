@@ -8,17 +8,25 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/json_point.h"
 #include "core_stack/common/output_file.h"
+#include "plugins/simulator/cave/boundary_loops.h"
 #include "plugins/simulator/cave/cave.h"
+#include "plugins/simulator/cave/mesh_advice.h"
+#include "plugins/simulator/cave/propose_start.h"
+#include "plugins/simulator/cave/remedies.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "sdk/selection/cave_facts.h"
 #include "sdk/selection/describe.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/cave_cap.h"
+#include "sdk/tools/mesh_options.h"
 
 namespace karst::tools {
 namespace {
@@ -36,6 +44,8 @@ struct GenerateArguments {
 
 struct InfoArguments {
   std::string file, start;
+  MeshOptions mesh;
+  CapArguments cap;
   bool json = false;
   evaluation::ReachableOptions options;
 };
@@ -134,14 +144,21 @@ void generate(const GenerateArguments& args) {
             info_path.c_str(), info_path.c_str());
 }
 
-ordered_json json_of(const InfoArguments& args, const selection::MeshFacts& m) {
-  return {{"file", args.file},          {"triangles", m.triangles},
-          {"low_m", core::list(m.low)}, {"high_m", core::list(m.high)},
-          {"closed", m.odd_edges == 0}, {"edges", m.edges},
-          {"odd_edges", m.odd_edges}};
+/// Facts that need no start.
+struct MeshReport {
+  selection::MeshFacts facts;
+  cave::MeshFrame frame;
+  std::vector<cave::MeshAdvice> advice;
+  std::size_t holes = 0;  // loops of open edges
+};
+
+MeshReport report_of(const cave::RayScene& scene, const cave::MeshFrame& frame) {
+  return {selection::mesh_facts(scene.mesh()), frame, cave::mesh_advice(cave::shape_of(scene), frame),
+          cave::boundary_loops(scene.mesh()).size()};
 }
 
-void print_mesh(const InfoArguments& args, const selection::MeshFacts& m) {
+void print_mesh(const InfoArguments& args, const MeshReport& report) {
+  const selection::MeshFacts& m = report.facts;
   const Vec3 e = m.high - m.low;
   print_out("%s\n", args.file.c_str());
   print_out("  triangles          %zu\n", m.triangles);
@@ -152,27 +169,68 @@ void print_mesh(const InfoArguments& args, const selection::MeshFacts& m) {
   else
     print_out("  closed             no, %zu of %zu edges do not join two triangles that face the same side\n",
               m.odd_edges, m.edges);
+  if (report.holes > 0)
+    print_out("  open edges         %s; --cap OUT.ply closes holes\n",
+              core::counted(report.holes, "loop").c_str());
+  if (!cave::is_plain(report.frame))
+    print_out("  read as            %s\n", cave::to_text(report.frame).c_str());
+  for (const cave::MeshAdvice& a : report.advice)
+    print_out("  check              %s: %s\n", a.finding.c_str(), a.remedy.c_str());
+}
+
+ordered_json json_of(const InfoArguments& args, const MeshReport& report) {
+  const selection::MeshFacts& m = report.facts;
+  ordered_json j{{"file", args.file},          {"triangles", m.triangles},
+                 {"low_m", core::list(m.low)}, {"high_m", core::list(m.high)},
+                 {"closed", m.odd_edges == 0}, {"edges", m.edges},
+                 {"odd_edges", m.odd_edges},   {"open_loops", report.holes}};
+  j["advice"] = ordered_json::array();
+  for (const cave::MeshAdvice& a : report.advice)
+    j["advice"].push_back({{"finding", a.finding}, {"remedy", a.remedy}});
+  return j;
+}
+
+/// Of a cave without a start: its shape, and a start that suits.
+void info_without_start(const InfoArguments& args, const core::MeshKeys& keys) {
+  const cave::MeshFile mesh = cave::mesh_of(args.file, keys);
+  const cave::RayScene scene(cave::load_mesh(mesh));
+  const MeshReport report = report_of(scene, mesh.frame);
+  std::optional<cave::StartPose> suits;
+  if (report.advice.empty())
+    suits = cave::propose_start(scene);  // in another frame it would be another place
+  if (args.json) {
+    ordered_json j = json_of(args, report);
+    j["proposed_start"] = suits ? ordered_json(cave::start_text(*suits)) : ordered_json();
+    print_json(j);
+    return;
+  }
+  print_mesh(args, report);
+  if (suits)
+    print_out("  start              none given; one that suits: --start \"%s\"\n",
+              cave::start_text(*suits).c_str());
+  else
+    print_out("  no start pose: give --start \"x y z\" for clearance and volumes\n");
+}
+
+/// Adds to a refusal what helps.
+evaluation::Reachable reachable_of(const cave::Cave& cave, const evaluation::ReachableOptions& options) {
+  const Vec3& start = cave.description.start.position;
+  try {
+    return evaluation::find_reachable(cave.scene.mesh(), start, options, cave.description.mesh_path);
+  } catch (const InputError& e) {
+    throw InputError(e, cave::remedies(cave.scene, cave.description.mesh_frame, start));
+  }
 }
 
 void info(const InfoArguments& args) {
-  const bool bare = std::filesystem::path(args.file).extension() != ".info";
-  if (bare && args.start.empty()) {
-    if (!std::filesystem::exists(args.file)) throw InputError(args.file, "", "no such cave file");
-    const selection::MeshFacts facts = selection::mesh_facts(cave::load_mesh(args.file));
-    if (args.json) {
-      print_json(json_of(args, facts));
-    } else {
-      print_mesh(args, facts);
-      print_out("  no start pose: give --start \"x y z\" for clearance and volumes\n");
-    }
-    return;
-  }
-  const cave::Cave cave = cave::load_cave(args.file, args.start);
-  const selection::MeshFacts facts = selection::mesh_facts(cave.scene.mesh());
+  const core::MeshKeys keys = mesh_keys_of(args.mesh);
+  if (!args.cap.out.empty()) return write_capped(cave::mesh_of(args.file, keys), args.cap, args.json);
+  if (args.start.empty() && !cave::has_start(args.file)) return info_without_start(args, keys);
+  const cave::Cave cave = cave::load_cave(args.file, args.start, keys);
+  const MeshReport report = report_of(cave.scene, cave.description.mesh_frame);
   const Vec3 start = cave.description.start.position;
   const double clearance_m = cave.scene.distance_to_rock(start, 100);
-  const evaluation::Reachable r =
-      evaluation::find_reachable(cave.scene.mesh(), start, args.options, cave.description.mesh_path);
+  const evaluation::Reachable r = reachable_of(cave, args.options);
   const selection::PassageFacts passages = selection::passage_facts(cave.scene, r);
   double lowest = 1e9, highest = -1e9;
   r.flyable.for_each([&](const core::CellKey& k) {
@@ -181,7 +239,7 @@ void info(const InfoArguments& args) {
     highest = std::max(highest, z);
   });
   if (args.json) {
-    ordered_json j = json_of(args, facts);
+    ordered_json j = json_of(args, report);
     j["start"] = core::list(start);
     j["start_heading_rad"] = cave.description.start.heading_rad;
     j["start_clearance_m"] = clearance_m;
@@ -196,7 +254,7 @@ void info(const InfoArguments& args) {
     print_json(j);
     return;
   }
-  print_mesh(args, facts);
+  print_mesh(args, report);
   print_out("  start              %.2f %.2f %.2f, %.2f m from rock\n", start.x(), start.y(), start.z(),
             clearance_m);
   print_out("  free volume        %.0f m3, connected to the start, in cells of %g m\n", r.free_volume_m3(),
@@ -280,8 +338,17 @@ void add_cave_command(CLI::App& app) {
   tell->add_option("--clearance", i->options.clearance_m, "Least distance to rock when flying, m")
       ->check(number_in(0.05, 5.0))
       ->capture_default_str();
+  add_mesh_options(*tell, i->mesh);
+  tell->add_option("--cap", i->cap.out, "Close the holes and write the mesh, in metres with z up, to OUT.ply")
+      ->check(not_empty());
+  tell->add_option("--cap-limit", i->cap.limit_m, "Holes that are wider stay open, m")
+      ->check(number_in(0.01, 1000))
+      ->capture_default_str();
   tell->add_flag("--json", i->json, "Write JSON");
-  tell->footer("Example:\n  karst cave info tunnel.stl --start \"1 2 1.5\"");
+  tell->footer(
+      "Examples:\n  karst cave info tunnel.stl --start \"1 2 1.5\"\n"
+      "  karst cave info scan.obj --unit mm --up y\n"
+      "  karst cave info tunnel.stl --cap closed.ply");
   tell->callback([i] { info(*i); });
 
   auto d = std::make_shared<DescribeArguments>();

@@ -1,4 +1,4 @@
-// `karst cave generate` and `karst cave info`.
+// `karst cave generate`, `karst cave info` and `karst cave describe`.
 #pragma once
 
 namespace CLI {
@@ -7,7 +7,7 @@ class App;
 
 namespace karst::tools {
 
-/// Adds both to the application. `parse` throws errors as exceptions with file, place and reason.
+/// Adds them to the application. `parse` throws errors as exceptions with file, place and reason.
 void add_cave_command(CLI::App& app);
 
 }  // namespace karst::tools

@@ -20,6 +20,7 @@
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
+#include "sdk/tools/mesh_options.h"
 
 namespace karst::tools {
 namespace {
@@ -32,6 +33,7 @@ struct FlyArguments {
   std::optional<std::int64_t> seed;
   fs::path cave_cache;
   std::vector<std::string> plugins;
+  MeshOptions mesh;
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool keys = false, json = false, quiet = false, no_report = false, real_time = false,
        record_requests = false;
@@ -147,13 +149,16 @@ void print_choice(const flight::Mission& mission) {
 flight::Mission mission_of(const FlyArguments& args) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
+  for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
   const bool is_auto = mission.policy == flight::kAutoPolicy;
   flight::choose_policy(mission);
   if (is_auto && !args.quiet && !args.json) print_choice(mission);
   flight::check(mission.faults, mission.core.team.robots, mission.file);
   core::check(mission.core.team, mission.core.homing, mission.file);
-  if (!mission.cave.empty()) flight::check_cave(mission.cave, mission.start);
+  if (!mission.cave.empty())
+    for (const std::string& note : flight::check_cave(mission.cave, mission.start, mission.mesh))
+      if (!args.quiet) print_error("note: %s: %s\n", mission.cave.c_str(), note.c_str());
   return mission;
 }
 
@@ -238,6 +243,7 @@ void add_fly_command(CLI::App& app) {
   fly_app
       ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
       ->check(not_empty());
+  add_mesh_options(*fly_app, args->mesh);
   fly_app
       ->add_option("--policy", args->overrides.policy,
                    "exploration policy; see karst policy list; auto: selected for the cave")

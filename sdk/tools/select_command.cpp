@@ -78,7 +78,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   for (const auto& [key, value] : first.parameters)
     print_out("  %s = %s\n", key.c_str(), value.data().c_str());
   print_out("Expected there:");
-  const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
+  const std::vector<double> figures = expected_figures(e, cave, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m)
     if (!std::isnan(figures[m])) print_out(" %s %.3g", e.metrics[m].c_str(), figures[m]);
   print_wrapped(stdout, 2, "\n%s.\n", s.reason.c_str());
@@ -118,7 +118,7 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
                             {"expected", x.value},
                             {"low", known(x.low)},
                             {"high", known(x.high)}});
-  const std::vector<double> figures = expected_figures(e, s, s.ranking.front().contestant);
+  const std::vector<double> figures = expected_figures(e, cave, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m) j["expected"][e.metrics[m]] = known(figures[m]);
   return j;
 }

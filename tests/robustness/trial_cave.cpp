@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/random.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/host/isolation/process.h"
@@ -81,6 +82,10 @@ void write_trial_cave(const Trial& t, const fs::path& karst, const fs::path& cav
   out << "mesh \"" << fs::absolute(described.mesh_path).string() << "\"\nstart \"" << start.position.x()
       << ' ' << start.position.y() << ' ' << start.position.z() << ' '
       << start.heading_rad * 180 / std::numbers::pi << "\"\n";
+  const cave::MeshFrame& frame = described.mesh_frame;
+  if (!cave::is_plain(frame))
+    out << core::format_text("scale %.17g\nup %s\noffset \"%.17g %.17g %.17g\"\n", frame.metres_per_unit,
+                             core::name_of(frame.up), frame.offset.x(), frame.offset.y(), frame.offset.z());
   if (t.fault == Fault::sensor_gap || t.fault == Fault::imu_dropout) out << fault_block(t);
   if (t.fault == Fault::rockfall) {
     Random r = Random::stream(static_cast<std::uint64_t>(t.number), "boulder");

@@ -2,6 +2,7 @@
 
 #include <boost/property_tree/ptree.hpp>
 #include <filesystem>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
@@ -16,8 +17,15 @@ using core::OptionTable;
 using core::Vec3;
 namespace pt = boost::property_tree;
 
-CaveDescription read_cave_file(const std::string& path, const std::string& start) {
-  CaveDescription cave;
+/// A cave as its file has it.
+struct CaveOfFile {
+  CaveDescription cave;  // without its start
+  std::string start;     // "": none
+};
+
+CaveOfFile read_cave_file(const std::string& path) {
+  CaveOfFile read;
+  CaveDescription& cave = read.cave;
   cave.file = path;
   pt::ptree plain;  // without the blocks that may be repeated
   for (const auto& [name, child] : core::read_info(path)) {
@@ -37,38 +45,57 @@ CaveDescription read_cave_file(const std::string& path, const std::string& start
       plain.push_back({name, child});
     }
   }
-  std::string own_start, mesh;
+  std::string mesh;
+  core::MeshKeys keys;
   OptionTable table;
   table.add("mesh", mesh, {}, "file of the rock's triangles, relative to this file");
-  table.add("start", own_start, {}, "place above the floor to start from: x y z [heading_deg]");
+  describe(table, keys);
+  table.add("start", read.start, {}, "place above the floor to start from: x y z [heading_deg]");
   table.add("reflectivity", cave.reflectivity, "", 0, 1, "share of light that bare rock returns");
   table.read(path, plain);
   if (mesh.empty()) throw InputError(path, "mesh", "missing: name the file with the rock's triangles");
   cave.mesh_path = (std::filesystem::path(path).parent_path() / mesh).string();
-  if (start.empty() && own_start.empty())
-    throw InputError(path, "start", "missing: give \"x y z [heading_deg]\"");
-  cave.start = start.empty() ? read_start(path, own_start) : read_start("start given for " + path, start);
-  return cave;
+  cave.mesh_frame = mesh_frame(path, cave.mesh_path, keys);
+  return read;
+}
+
+CaveOfFile read_cave(const std::string& path, const core::MeshKeys& keys) {
+  if (path.empty()) throw InputError("cave", "", "no cave given: name a cave's .info file or a mesh");
+  if (!std::filesystem::exists(path))
+    throw InputError(path, "", "no such cave file; `karst cave generate` makes one");
+  if (std::filesystem::path(path).extension() == ".info") {
+    if (keys != core::MeshKeys{})
+      throw InputError(path, "",
+                       "is a cave file: it states scale, unit, up and offset of its mesh itself; they can be "
+                       "given beside a bare mesh only");
+    return read_cave_file(path);
+  }
+  CaveOfFile bare;
+  bare.cave.file = bare.cave.mesh_path = path;
+  bare.cave.mesh_frame = mesh_frame(path, path, keys);
+  return bare;
 }
 
 }  // namespace
 
-CaveDescription describe_cave(const std::string& path, const std::string& start) {
-  if (path.empty()) throw InputError("cave", "", "no cave given: name a cave's .info file or a mesh");
-  if (!std::filesystem::exists(path))
-    throw InputError(path, "", "no such cave file; `karst cave generate` makes one");
-  if (std::filesystem::path(path).extension() == ".info") return read_cave_file(path, start);
-  if (start.empty())
-    throw InputError(path, "start", "a bare mesh needs a start pose \"x y z [heading_deg]\"");
-  CaveDescription cave;
-  cave.file = cave.mesh_path = path;
-  cave.start = read_start("start given for " + path, start);
-  return cave;
+CaveDescription describe_cave(const std::string& path, const std::string& start, const core::MeshKeys& mesh) {
+  CaveOfFile read = read_cave(path, mesh);
+  if (start.empty() && read.start.empty())
+    throw InputError(path, "start", "missing: give \"x y z [heading_deg]\"; `karst cave info` proposes one");
+  read.cave.start =
+      start.empty() ? read_start(path, read.start) : read_start("start given for " + path, start);
+  return std::move(read.cave);
 }
 
-Cave load_cave(const std::string& path, const std::string& start) {
-  CaveDescription description = describe_cave(path, start);
-  TriangleMesh mesh = load_mesh(description.mesh_path);
+MeshFile mesh_of(const std::string& path, const core::MeshKeys& mesh) {
+  return mesh_of(read_cave(path, mesh).cave);
+}
+
+bool has_start(const std::string& path) { return !read_cave(path, {}).start.empty(); }
+
+Cave load_cave(const std::string& path, const std::string& start, const core::MeshKeys& keys) {
+  CaveDescription description = describe_cave(path, start, keys);
+  TriangleMesh mesh = load_mesh(mesh_of(description));
   Cave cave{std::move(description), RayScene(std::move(mesh))};
   lay_objects(cave);
   return cave;

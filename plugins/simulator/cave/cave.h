@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "core_stack/common/geometry.h"
+#include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/object_detection.h"
+#include "plugins/simulator/cave/mesh_frame.h"
 #include "plugins/simulator/cave/ray_scene.h"
 
 namespace karst::cave {
@@ -93,6 +95,7 @@ struct CaveObject {
 struct CaveDescription {
   std::string file;       // as named by the user
   std::string mesh_path;  // the same, or the mesh that the .info file names
+  MeshFrame mesh_frame;   // of the mesh's file; all other places are in metres with z up
   StartPose start;
   double reflectivity = 0.5;  // of bare rock, 0..1
   std::vector<Patch> patches;
@@ -104,9 +107,14 @@ struct CaveDescription {
 };
 
 /// Reads a cave `.info` file, or describes a bare mesh, which requires `start` ("x y z [heading_deg]"; if not
-/// empty it replaces the file's own). Throws InputError. The file's keys, by example:
+/// empty it replaces the file's own). `mesh` is for a bare mesh: in a cave file the keys stand in the file.
+/// Throws InputError. The file's keys, by example:
 ///
 ///   mesh tunnel.ply              ; relative to this file
+///   unit mm                      ; of the mesh: m (default), cm, mm, ft
+///   scale 1                      ; of the mesh, beside the unit
+///   up y                         ; of the mesh: z (default) or y
+///   offset "1000 0 2000"         ; in the mesh's own coordinates, subtracted first
 ///   start "1 2 1.5 90"           ; x y z in metres, heading in degrees counter-clockwise from east
 ///   reflectivity 0.5
 ///   patch { position "4 2 1" radius "3 m" reflectivity 0.1 }     ; any number of blocks, here and below
@@ -116,7 +124,15 @@ struct CaveDescription {
 ///   cloud { position "12 2 1" size "8 4 3" extinction "0.1 1/m" of dust }
 ///   fault { sensor lidar kind lost after "40 s" for "1 s" }
 ///   object { kind backpack position "20 3 0.2" }
-CaveDescription describe_cave(const std::string& path, const std::string& start);
+CaveDescription describe_cave(const std::string& path, const std::string& start,
+                              const core::MeshKeys& mesh = {});
+
+/// The mesh of a cave, for what needs no start. Throws InputError.
+MeshFile mesh_of(const std::string& path, const core::MeshKeys& mesh = {});
+inline MeshFile mesh_of(const CaveDescription& cave) { return {cave.mesh_path, cave.mesh_frame}; }
+
+/// Whether the cave's file gives a start; a bare mesh has none. Throws InputError.
+bool has_start(const std::string& path);
 
 struct Cave {
   CaveDescription description;
@@ -124,7 +140,7 @@ struct Cave {
 };
 
 /// describe_cave, then loads its mesh and places the objects on it (lay_objects).
-Cave load_cave(const std::string& path, const std::string& start);
+Cave load_cave(const std::string& path, const std::string& start, const core::MeshKeys& mesh = {});
 
 /// Reflectivity of the rock at a position: that of the last patch that contains it.
 double reflectivity_at(const CaveDescription& cave, const core::Vec3& place);

@@ -39,11 +39,6 @@ std::vector<double> read_numbers(const std::string& source, const std::string& k
   return numbers;
 }
 
-Vec3 read_vector(const std::string& source, const std::string& key, const std::string& text) {
-  const auto n = read_numbers(source, key, text, 3, 3, "three numbers \"x y z\"");
-  return {n[0], n[1], n[2]};
-}
-
 /// Reads a block; `table` holds its keys with the block's name as prefix.
 void read_block(const std::string& source, const std::string& name, const pt::ptree& tree,
                 OptionTable& table) {
@@ -60,6 +55,11 @@ constexpr auto names_of(CloudOf) {
 }
 
 }  // namespace
+
+Vec3 read_vector(const std::string& source, const std::string& key, const std::string& text) {
+  const auto n = read_numbers(source, key, text, 3, 3, "three numbers \"x y z\"");
+  return {n[0], n[1], n[2]};
+}
 
 StartPose read_start(const std::string& source, const std::string& text) {
   const auto n = read_numbers(source, "start", text, 3, 4, "\"x y z [heading_deg]\"");

@@ -6,6 +6,8 @@
 
 namespace karst::cave {
 
+/// "x y z"
+core::Vec3 read_vector(const std::string& source, const std::string& key, const std::string& text);
 /// "x y z [heading_deg]"
 StartPose read_start(const std::string& source, const std::string& text);
 Patch read_patch(const std::string& source, const boost::property_tree::ptree& tree);

@@ -1,39 +1,47 @@
+#include <algorithm>
+#include <cstring>
+// After what it uses and does not include.
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/scene.h>
 
-#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <unordered_map>
 #include <utility>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/import_child.h"
+#include "plugins/simulator/cave/mesh_advice.h"
+#include "plugins/simulator/cave/mesh_offset.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
 
 namespace karst::cave {
 namespace {
 
 using core::InputError;
+using core::Vec3;
 using core::Vec3f;
 
 /// Opens the mesh and no file that the mesh names, such as an OBJ's materials: that may be a FIFO, or
-/// anything.
+/// anything. With `bytes` the mesh is read from there.
 class OnlyThisFile final : public Assimp::DefaultIOSystem {
  public:
-  explicit OnlyThisFile(std::string path) : path_(std::move(path)) {}
+  OnlyThisFile(std::string path, std::string bytes) : path_(std::move(path)), bytes_(std::move(bytes)) {}
   bool Exists(const char* file) const override { return file == path_ && DefaultIOSystem::Exists(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return file == path_ ? DefaultIOSystem::Open(file, mode) : nullptr;
+    if (file != path_) return nullptr;
+    if (bytes_.empty()) return DefaultIOSystem::Open(file, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
   }
 
  private:
-  std::string path_;
+  std::string path_, bytes_;
 };
 
 /// Numbers equal vertices once, in the order of first appearance. The importer's own steps for this and for
@@ -63,19 +71,48 @@ class JoinedVertices {
   std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> index_;  // never iterated
 };
 
-/// Polygons become triangle fans around their first corner.
-void append_mesh(const std::string& path, const aiMesh& part, const aiMatrix4x4& T, JoinedVertices& joined,
-                 TriangleMesh& out) {
-  std::vector<std::uint32_t> index(part.mNumVertices);
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D v = T * part.mVertices[i];
-    // 1e5 m: floats still resolve 8 mm there; larger coordinates mean other units or map coordinates.
-    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) ||
-        std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e5f)
-      throw InputError(path, "vertex " + std::to_string(i),
-                       "coordinates must be finite and within 100 km of the origin");
-    index[i] = joined.index({v.x, v.y, v.z});
+/// A part of the file, and how its vertices become places in metres.
+struct MeshPart {
+  const aiMesh& mesh;
+  aiMatrix4x4 T_file_part;
+  const MeshFrame& frame;
+  Vec3 offset_left;  // what is still to be subtracted
+
+  Vec3 vertex(unsigned i) const {
+    const aiVector3D v = T_file_part * mesh.mVertices[i];
+    return to_metres(frame, Vec3(v.x, v.y, v.z) - offset_left);
   }
+};
+
+/// Refuses coordinates that floats do not resolve, and says what helps: other units, or an offset.
+void check_reach(const std::string& path, const std::vector<MeshPart>& parts, const MeshFrame& frame) {
+  constexpr const char* kRule = "coordinates must be finite and within 100 km of the origin";
+  Eigen::AlignedBox3d box;
+  for (const MeshPart& part : parts)
+    for (unsigned i = 0; i < part.mesh.mNumVertices; ++i) {
+      const Vec3 v = part.vertex(i);
+      if (!v.allFinite()) throw InputError(path, "vertex " + std::to_string(i), kRule);
+      box.extend(v);
+    }
+  if (box.isEmpty() || box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() <= kFarthestVertex_m)
+    return;
+  const Vec3 &low = box.min(), &high = box.max();
+  std::string why = kRule + core::format_text("; these reach from %.0f %.0f %.0f to %.0f %.0f %.0f m",
+                                              low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  for (const MeshAdvice& a : mesh_advice({box}, frame)) why += "; " + to_text(a);
+  if (box.sizes().maxCoeff() <= kFarthestVertex_m && !holds_double_precision(path))
+    why += core::format_text(
+        "; but the file holds single precision, which there is rounded to %.2g: export it near its "
+        "origin, or as OBJ",
+        float_spacing((to_file(frame, low) - frame.offset).cwiseAbs().maxCoeff()));
+  throw InputError(path, "", why);
+}
+
+/// Polygons become triangle fans around their first corner.
+void append_part(const std::string& path, const MeshPart& placed, JoinedVertices& joined, TriangleMesh& out) {
+  const aiMesh& part = placed.mesh;
+  std::vector<std::uint32_t> index(part.mNumVertices);
+  for (unsigned i = 0; i < part.mNumVertices; ++i) index[i] = joined.index(placed.vertex(i).cast<float>());
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
     for (unsigned k = 0; k < face.mNumIndices; ++k)
@@ -90,13 +127,13 @@ void append_mesh(const std::string& path, const aiMesh& part, const aiMatrix4x4&
   }
 }
 
-void append_node(const std::string& path, const aiScene& scene, const aiNode& node,
-                 const aiMatrix4x4& T_parent, JoinedVertices& joined, TriangleMesh& out) {
+void collect_parts(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_parent,
+                   const MeshFrame& frame, const Vec3& offset_left, std::vector<MeshPart>& out) {
   const aiMatrix4x4 T = T_parent * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i)
-    append_mesh(path, *scene.mMeshes[node.mMeshes[i]], T, joined, out);
+    out.push_back({*scene.mMeshes[node.mMeshes[i]], T, frame, offset_left});
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    append_node(path, scene, *node.mChildren[i], T, joined, out);
+    collect_parts(scene, *node.mChildren[i], T, frame, offset_left, out);
 }
 
 template <class T>
@@ -132,19 +169,33 @@ std::string ply_bytes(const TriangleMesh& mesh) {
   return bytes;
 }
 
-TriangleMesh import_mesh(const std::string& path, const std::string& extension) {
+TriangleMesh import_mesh(const std::string& path, const std::string& extension, const MeshFrame& frame) {
+  const bool is_collada = extension == ".dae";  // nested transforms: the offset is subtracted afterwards
+  std::string bytes;
+  if (has_offset(frame) && !is_collada) bytes = bytes_less_offset(path, frame);
   Assimp::Importer importer;
-  importer.SetIOHandler(new OnlyThisFile(path));  // the importer owns it
+  importer.SetIOHandler(new OnlyThisFile(path, std::move(bytes)));  // the importer owns it
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(path, "", std::string("is no mesh that can be read: ") + importer.GetErrorString());
 
   // The Collada importer rotates every file to y up: rotate it back to z up.
   aiMatrix4x4 T_world_file;
-  if (extension == ".dae") aiMatrix4x4::RotationX(AI_MATH_HALF_PI_F, T_world_file);
+  if (is_collada) aiMatrix4x4::RotationX(AI_MATH_HALF_PI_F, T_world_file);
+  std::vector<MeshPart> parts;
+  collect_parts(*scene, *scene->mRootNode, T_world_file, frame,
+                is_collada ? frame.offset : Vec3(Vec3::Zero()), parts);
+  if (is_collada && has_offset(frame)) {  // where they were before it
+    MeshFrame before = frame;
+    before.offset.setZero();
+    std::vector<MeshPart> unmoved;
+    collect_parts(*scene, *scene->mRootNode, T_world_file, before, Vec3::Zero(), unmoved);
+    check_reach(path, unmoved, before);
+  }
+  check_reach(path, parts, frame);
   TriangleMesh mesh;
   JoinedVertices joined(mesh.vertices);
-  append_node(path, *scene, *scene->mRootNode, T_world_file, joined, mesh);
+  for (const MeshPart& part : parts) append_part(path, part, joined, mesh);
   if (mesh.triangles.empty()) throw InputError(path, "", "the mesh has no triangle");
   return mesh;
 }
@@ -158,12 +209,12 @@ std::string lower_extension(const std::string& path) {
   return e;
 }
 
-TriangleMesh load_mesh(const std::string& path) {
+TriangleMesh load_mesh(const std::string& path, const MeshFrame& frame) {
   const std::string extension = lower_extension(path);
   if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".dae")
     throw InputError(path, "", "a mesh must be a .stl, .ply, .obj or .dae file");
   check_declared_size(path);
-  return import_in_child(path, [&] { return import_mesh(path, extension); });
+  return import_in_child(path, [&] { return import_mesh(path, extension, frame); });
 }
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh) {

@@ -7,6 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
+#include "plugins/simulator/cave/boundary_loops.h"
 
 namespace karst::cave {
 
@@ -15,14 +16,13 @@ using core::InputError;
 using core::Vec3;
 using core::Vec3f;
 
-Surroundings look_around(const RayScene& scene, const Vec3& place) {
-  constexpr int kRays = 4096;
+Surroundings look_around(const RayScene& scene, const Vec3& place, int rays) {
   Surroundings s;
   s.clearance_m = scene.distance_to_rock(place, 100.0);
   int escaped = 0, odd = 0;
-  for (int i = 0; i < kRays; ++i) {
+  for (int i = 0; i < rays; ++i) {
     // Fibonacci lattice: equal areas on the sphere.
-    const double z = 1 - (2 * i + 1.0) / kRays, r = std::sqrt(1 - z * z);
+    const double z = 1 - (2 * i + 1.0) / rays, r = std::sqrt(1 - z * z);
     const double azimuth = 2 * std::numbers::pi * i / std::numbers::phi;
     const Vec3 d(r * std::cos(azimuth), r * std::sin(azimuth), z);
     const int n = scene.crossings({place.cast<float>(), d.cast<float>()});
@@ -31,8 +31,8 @@ Surroundings look_around(const RayScene& scene, const Vec3& place) {
     ++escaped;
     s.escape_direction += d;
   }
-  s.escape_fraction = static_cast<double>(escaped) / kRays;
-  s.odd_fraction = static_cast<double>(odd) / kRays;
+  s.escape_fraction = static_cast<double>(escaped) / rays;
+  s.odd_fraction = static_cast<double>(odd) / rays;
   if (escaped > 0 && s.escape_direction.norm() > 0) s.escape_direction.normalize();
   return s;
 }
@@ -49,13 +49,24 @@ void check_start(const Cave& cave, double vehicle_radius_m) {
     refuse(format_text("(%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
                        p.x(), p.y(), p.z(), s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock",
                        100 * s.odd_fraction));
-  constexpr double kPinholes = 0.0005;  // 2 of 4096 rays may slip between triangles that do not quite join
   if (s.escape_fraction > kPinholes) {
     const auto& e = s.escape_direction;
-    refuse(format_text(
-        "the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about (%.2f %.2f %.2f)",
-        100 * s.escape_fraction, p.x(), p.y(), p.z(), e.x(), e.y(), e.z()));
+    refuse(format_text("the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about "
+                       "(%.2f %.2f %.2f)",
+                       100 * s.escape_fraction, p.x(), p.y(), p.z(), e.x(), e.y(), e.z()) +
+           hole_text(loop_towards(boundary_loops(cave.scene.mesh()), p, e)));
   }
+}
+
+std::optional<Resting> lowered_sphere(const RayScene& scene, const Vec3& from, double radius_m) {
+  constexpr double kDeepest_m = 3, kTouch_m = 1e-4;
+  for (Vec3 p = from; from.z() - p.z() <= kDeepest_m;) {
+    const Nearest n = scene.nearest(p, kDeepest_m + 2 * radius_m);
+    const double gap_m = n.distance_m - radius_m;
+    if (gap_m <= kTouch_m) return Resting{p, n};
+    p.z() -= std::max(gap_m, kTouch_m);
+  }
+  return std::nullopt;
 }
 
 void lay_objects(Cave& cave) {

@@ -1,5 +1,7 @@
 // Checks before the flight whether the start pose is suitable, and gives a reason if it is not.
 #pragma once
+#include <optional>
+
 #include "plugins/simulator/cave/cave.h"
 
 namespace karst::cave {
@@ -11,7 +13,10 @@ struct Surroundings {
   core::Vec3 escape_direction = core::Vec3::Zero();  // mean direction of those rays
   double odd_fraction = 0;                           // of rays that pass an odd number of surfaces
 };
-Surroundings look_around(const RayScene& scene, const core::Vec3& place);
+Surroundings look_around(const RayScene& scene, const core::Vec3& place, int rays = 4096);
+
+/// Share of rays that may slip between triangles that do not quite join: 2 of 4096.
+constexpr double kPinholes = 0.0005;
 
 /// Throws InputError if the vehicle's sphere does not fit at the start pose, if the place is not inside the
 /// cave, or if the mesh has a hole there: a ray escapes without meeting rock.
@@ -27,6 +32,14 @@ void check_start(const Cave& cave, double vehicle_radius_m);
 /// InputError if an object lies in rock or outside the cave, or touches rock: with its centre nearer than
 /// 2 cm it could not be seen.
 void lay_objects(Cave& cave);
+
+/// A sphere that has come to rest on rock, and the rock that it touches.
+struct Resting {
+  core::Vec3 centre = core::Vec3::Zero();
+  Nearest rock;
+};
+/// Sphere tracing straight down, at most 3 m; the sphere comes to rest 0.1 mm or less above the rock.
+std::optional<Resting> lowered_sphere(const RayScene& scene, const core::Vec3& from, double radius_m);
 
 /// Throws InputError if the vehicle's sphere, `standing` with its centre there, cannot rise straight up by
 /// `climb_m` and have 0.1 m of air left above: a ceiling or a block is in the way.

@@ -222,7 +222,7 @@ double RayScene::ray_cast(const Vec3& from, const Vec3& direction, double max_ra
   return static_cast<double>(cast(ray, static_cast<float>(max_range_m)).range_m);
 }
 
-int RayScene::crossings(const Ray& ray) const {
+std::vector<double> RayScene::surfaces(const Ray& ray) const {
   constexpr double kOneSurface_m = 1e-4;
   std::vector<double> ranges;
   PacketSearch search;
@@ -240,14 +240,11 @@ int RayScene::crossings(const Ray& ray) const {
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(handles_->scene, &search.context, &r);
   std::sort(ranges.begin(), ranges.end());
-  int n = 0;
-  double counted = -1;
+  std::size_t n = 0;  // of those that count, which are moved to the front
   for (const double range : ranges)
-    if (counted < 0 || range > counted + kOneSurface_m) {
-      ++n;
-      counted = range;
-    }
-  return n;
+    if (n == 0 || range > ranges[n - 1] + kOneSurface_m) ranges[n++] = range;
+  ranges.resize(n);
+  return ranges;
 }
 
 Nearest RayScene::nearest(const Vec3& p, double within_m) const {

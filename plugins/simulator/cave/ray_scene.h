@@ -58,8 +58,10 @@ class RayScene {
 
   /// Range to rock from `from` along `direction` (of any length), or infinity.
   double ray_cast(const core::Vec3& from, const core::Vec3& direction, double max_range_m) const;
-  /// Number of mesh surfaces that the ray crosses; surfaces closer together than 0.1 mm count once.
-  int crossings(const Ray& ray) const;
+  /// Ranges at which the ray crosses surfaces of the mesh, ascending; surfaces closer together than 0.1 mm
+  /// count once.
+  std::vector<double> surfaces(const Ray& ray) const;
+  int crossings(const Ray& ray) const { return static_cast<int>(surfaces(ray).size()); }
 
   Nearest nearest(const core::Vec3& p, double within_m) const;
   double distance_to_rock(const core::Vec3& p, double within_m) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core_stack/common/geometry.h"
+#include "plugins/simulator/cave/mesh_frame.h"
 
 namespace karst::cave {
 
@@ -15,10 +16,13 @@ struct TriangleMesh {
 };
 
 /// Reads .stl, .ply, .obj or .dae: all parts of the file joined into one mesh, its node transforms applied.
-/// STL, PLY and OBJ are taken as metres with z up; Collada files state their unit and axis and are converted
-/// to that. Throws InputError on a file that is missing, truncated, empty, no mesh, or has a vertex that is
-/// not finite. Triangles without area are dropped.
-TriangleMesh load_mesh(const std::string& path);
+/// STL, PLY and OBJ are taken in the given frame; Collada files state their unit and axis and are converted
+/// to metres with z up before the frame's scale and offset apply. The offset is subtracted in double
+/// precision. Throws InputError on a file that is missing, truncated, empty, no mesh, or has a vertex that is
+/// not finite, more than 100 km from the origin, or was rounded to floats that far from it. Triangles without
+/// area are dropped.
+TriangleMesh load_mesh(const std::string& path, const MeshFrame& frame = {});
+inline TriangleMesh load_mesh(const MeshFile& file) { return load_mesh(file.path, file.frame); }
 
 /// Writes a binary .ply, or a binary .stl if the path ends in .stl. Throws InputError if it cannot.
 void write_mesh(const std::string& path, const TriangleMesh& mesh);

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "plugins/simulator/cave/preflight.h"
 #include "plugins/simulator/dynamics/contact.h"
 
 namespace karst::sim {
@@ -12,20 +13,12 @@ using core::Vec3;
 
 namespace {
 
-/// Sphere tracing straight down; the sphere comes to rest 0.1 mm or less above the floor.
+/// None if there is no floor near below, or one too steep to stand on.
 std::optional<Vec3> standing_place(const cave::RayScene& scene, const Vec3& from, double radius_m) {
-  constexpr double kDeepest_m = 3, kTouch_m = 1e-4;
-  for (Vec3 p = from; from.z() - p.z() <= kDeepest_m;) {
-    const cave::Nearest n = scene.nearest(p, kDeepest_m + 2 * radius_m);
-    const double gap_m = n.distance_m - radius_m;
-    if (gap_m > kTouch_m) {
-      p.z() -= std::max(gap_m, kTouch_m);
-      continue;
-    }
-    const Touch touch{n.point, (n.point - p).normalized(), 0};
-    return supports(touch, Vec3::Zero()) ? std::optional(p) : std::nullopt;
-  }
-  return std::nullopt;
+  const std::optional<cave::Resting> rest = cave::lowered_sphere(scene, from, radius_m);
+  if (!rest) return std::nullopt;
+  const Touch touch{rest->rock.point, (rest->rock.point - rest->centre).normalized(), 0};
+  return supports(touch, Vec3::Zero()) ? std::optional(rest->centre) : std::nullopt;
 }
 
 void add_disc(cave::TriangleMesh& mesh, const Vec3& centre, double radius_m) {

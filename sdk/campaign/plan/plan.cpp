@@ -13,6 +13,7 @@
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/campaign/plan/ask_karst.h"
 #include "sdk/campaign/plan/hash.h"
+#include "sdk/campaign/plan/mesh_hash.h"
 #include "sdk/campaign/plan/plan_text.h"
 
 namespace karst::campaign {
@@ -58,7 +59,7 @@ PlannedContestant planned(const ContestantSpec& who, pt::ptree mission, const fs
 
 PlannedCave planned(const CaveSpec& cave) {
   const cave::CaveDescription description = cave::describe_cave(cave.file, cave.start);
-  PlannedCave out{cave.name, cave.file, cave.start, sha256_of_file(description.mesh_path), {}};
+  PlannedCave out{cave.name, cave.file, cave.start, mesh_hash(cave::mesh_of(description)), {}};
   std::string said;
   if (fs::path(description.mesh_path).lexically_normal() != fs::path(cave.file).lexically_normal())
     for (const core::InfoLine& line : core::info_lines(cave.file, core::Includes::refuse))

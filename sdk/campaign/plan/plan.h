@@ -21,7 +21,7 @@ struct PlannedContestant {
 
 struct PlannedCave {
   std::string name, file, start;
-  std::string mesh_hash;  // SHA-256 of the mesh's bytes
+  std::string mesh_hash;  // of its bytes and frame (mesh_hash.h)
   std::string hash;       // of the mesh and of the whole content of the .info file
 };
 

@@ -73,11 +73,10 @@ MapReference open_reference(const std::string& file, double points_per_m2, const
   if (is_mesh(file)) {
     reference.kind = "mesh";
     reference.density_per_m2 = points_per_m2;
-    const std::string mesh_file = ending_of(file) == ".info" ? cave::describe_cave(file, "").mesh_path : file;
     Eigen::AlignedBox3d box;
     for (const Vec3& p : points) box.extend(p);
     if (!points.empty())
-      samples = sample_surface(cave::load_mesh(mesh_file), points_per_m2, box, kMargin_m, file);
+      samples = sample_surface(cave::load_mesh(cave::mesh_of(file)), points_per_m2, box, kMargin_m, file);
   } else {
     reference.kind = "cloud";
     for (const replay::ScanPoint& p : replay::read_scan(file).points) samples.push_back(p.position);

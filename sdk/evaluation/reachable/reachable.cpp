@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core_stack/common/error.h"
+#include "plugins/simulator/cave/boundary_loops.h"
 #include "sdk/evaluation/reachable/open_cave.h"
 #include "sdk/evaluation/reachable/sight.h"
 #include "sdk/evaluation/reachable/triangle_cells.h"
@@ -101,10 +102,12 @@ Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const 
   Reachable r;
   r.options = options;
   std::optional<CellSet> free = flood_between(rock, seed);
-  if (!free)
-    throw InputError(
-        name, where,
-        "free space leads outside the mesh near " + place_text(center_of(find_opening(rock, seed), edge)));
+  if (!free) {
+    const Vec3 opening = center_of(find_opening(rock, seed), edge);
+    throw InputError(name, where,
+                     "free space leads outside the mesh near " + place_text(opening) +
+                         cave::hole_text(cave::nearest_loop(mesh, cave::boundary_loops(mesh), opening)));
+  }
   r.free = std::move(*free);
 
   CellSet clear = r.free;

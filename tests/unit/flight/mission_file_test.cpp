@@ -106,6 +106,21 @@ TEST(MissionFile, TheCommandLineWins) {
   EXPECT_EQ(m.core.motion.max_speed_mps, 1.0);
 }
 
+TEST(MissionFile, HowABareMeshIsReadIsRecordedAndGoesWithItsCave) {
+  const std::string file = written(
+      "mesh_keys.info", "cave { file a.ply unit mm up y scale 2 offset \"1 2 3\" start \"0 0 0\" }\n");
+  const core::MeshKeys keys{2, core::MeshUnit::mm, core::UpAxis::y, "1 2 3"};
+  EXPECT_EQ(read_mission(file, {}).mesh, keys);
+  EXPECT_EQ(recorded_mission(read_mission(file, {}), {}, "").get<std::string>("cave.offset"), "1 2 3");
+  MissionOverrides o;
+  o.cave = "other.ply";
+  EXPECT_EQ(read_mission(file, o).mesh, core::MeshKeys{}) << "another cave, another mesh";
+  o.values = {{"cave.unit", "cm"}};
+  EXPECT_EQ(read_mission(file, o).mesh.unit, core::MeshUnit::cm);
+  EXPECT_TRUE(holds(error_of("unit.info", "cave { file a.ply unit furlong }\n"),
+                    "cave.unit: expected one of m cm mm ft"));
+}
+
 TEST(MissionFile, ASettingIsHonouredOrRefusedBesideItsOption) {
   MissionOverrides o;
   o.cave = "other.ply";

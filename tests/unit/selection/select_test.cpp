@@ -1,7 +1,9 @@
 #include "sdk/selection/select.h"
 
 #include <gtest/gtest.h>
+#include <rapidcheck.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -148,6 +150,62 @@ TEST(Select, IntervalsHoldAsManyCavesAsTheySay) {
   }
   EXPECT_GT(inside, 0.85 * all);
   EXPECT_LT(inside, 0.97 * all);
+}
+
+std::size_t index_of(const Experience& e, const std::string& metric) {
+  return static_cast<std::size_t>(std::find(e.metrics.begin(), e.metrics.end(), metric) - e.metrics.begin());
+}
+
+// As it was: of a small cave it expected more volume explored than it has, as in the larger caves like it.
+TEST(Select, NeverExpectsMoreThanTheCaveHas) {
+  Experience e = experience(12, 0.3, 0.02, 3);
+  const std::size_t volume = index_of(e, "explored_volume_m3"), coverage = index_of(e, "coverage");
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    for (std::size_t k = 0; k < 3; ++k) {
+      e.at(k, c, volume) = {5, 0.9 * e.caves[c].figures.volume_m3 + 10 * static_cast<double>(k), 50};
+      e.at(k, c, coverage) = {5, 0.98 - 0.01 * static_cast<double>(k), 0.05};
+    }
+  CaveFigures small = cave_figures(-1, 0.4);
+  small.volume_m3 = 1000;  // less than was explored in any of the known caves, of 1839 m3 and more
+  const Selected in_small = select(e, small, {"explored_volume_m3"}, "cave");
+  EXPECT_EQ(name_of_first(e, in_small), "both") << "the order is by what was flown, not by the limit";
+  for (const Expected& x : in_small.ranking) {
+    EXPECT_LE(x.value, small.volume_m3);
+    EXPECT_LE(x.high, small.volume_m3);
+    EXPECT_GE(x.low, 0);
+    EXPECT_LE(x.low, x.value);
+  }
+  const std::vector<double> expected = expected_figures(e, small, in_small, 0);
+  EXPECT_EQ(expected[volume], 1000);
+  EXPECT_LE(expected[coverage], 1);
+  // Of a cave whose volume is not known nothing more can be said.
+  CaveFigures unknown = small;
+  unknown.volume_m3 = kUnknown;
+  EXPECT_GT(expected_figures(e, unknown, select(e, unknown, {}, "cave"), 0)[volume], 1600);
+}
+
+TEST(Select, SharesAreSharesAndTheirIntervalsToo) {
+  EXPECT_TRUE(rc::check("shares", [] {
+    const auto seed = *rc::gen::inRange<std::uint64_t>(1, 1000);
+    Experience e = experience(8, *rc::gen::inRange(0, 20) / 10.0, 0.5, seed);  // means below 0 and above 1
+    karst::core::Random random(seed);
+    for (const char* metric : {"coverage", "explored_volume_m3", "completed", "energy_wh"})
+      for (std::size_t c = 0; c < e.caves.size(); ++c)
+        for (std::size_t k = 0; k < 3; ++k)
+          e.at(k, c, index_of(e, metric)) = {3, random.uniform(-1, 3) * e.caves[c].figures.volume_m3, 0.1};
+    const CaveFigures cave = cave_figures(random.uniform(-1, 1), random.uniform());
+    for (const char* metric : {"coverage_auc", "coverage", "explored_volume_m3", "completed", "energy_wh"}) {
+      const std::string name = metric;
+      const double most = name == "explored_volume_m3" ? cave.volume_m3 : name == "energy_wh" ? 1e99 : 1.0;
+      const Selected s = select(e, cave, {name}, "cave");
+      for (const Expected& x : s.ranking)
+        for (const double v : {x.value, x.low, x.high}) RC_ASSERT(v >= 0 && v <= most);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double v = expected_figures(e, cave, s, k)[index_of(e, name)];
+        RC_ASSERT(v >= 0 && v <= most);
+      }
+    }
+  }));
 }
 
 TEST(Select, RefusesWhatIsUnlikeAllThatWasFlownAndNamesWhy) {

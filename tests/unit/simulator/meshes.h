@@ -45,6 +45,12 @@ inline void append(cave::TriangleMesh& m, const cave::TriangleMesh& other) {
   for (const auto& t : other.triangles) m.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
+inline Eigen::AlignedBox3d box_of(const cave::TriangleMesh& m) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3f& v : m.vertices) box.extend(v.cast<double>());
+  return box;
+}
+
 /// A closed tunnel along x with a rough, many-cornered cross section.
 inline cave::TriangleMesh tunnel_mesh(double length_m, double radius_m, std::uint64_t seed) {
   constexpr std::uint32_t kCorners = 24;

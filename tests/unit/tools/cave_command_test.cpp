@@ -82,17 +82,119 @@ TEST(CaveCommand, BareMeshWithoutStartStillTellsItsShape) {
   EXPECT_NEAR(j["height_m_p10_p50_p90"][1].get<double>(), 3.0, 0.01);
 }
 
+/// Why the command fails.
+std::string reason(std::vector<std::string> words) {
+  try {
+    run(std::move(words));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+/// A room of 8 x 5 x 3 m and a corridor that leads east from it, closed or with an open end.
+karst::cave::TriangleMesh room_with_corridor(bool open) {
+  std::set<std::array<int, 3>> cells;
+  karst::test::fill(cells, {0, 0, 0}, {8, 5, 3});
+  karst::test::fill(cells, {8, 1, 0}, {16, 3, 2});
+  auto mesh = karst::test::lattice_mesh(cells, 1.0, {0.03, 0.04, 0.05});
+  if (open)
+    std::erase_if(mesh.triangles, [&](const auto& t) {
+      return mesh.vertices[t[0]].x() > 16 && mesh.vertices[t[1]].x() > 16 && mesh.vertices[t[2]].x() > 16;
+    });
+  return mesh;
+}
+
+TEST(CaveCommand, WithoutAStartOneIsProposedThatInfoAccepts) {
+  const fs::path folder = fresh_folder();
+  const std::string mesh = (folder / "room.ply").string(), info = (folder / "room.info").string();
+  karst::cave::write_mesh(mesh, room_with_corridor(false));
+  std::ofstream(info) << "mesh room.ply\n";
+  for (const std::string& file : {mesh, info}) {
+    const auto bare = nlohmann::json::parse(run({"cave", "info", "--json", file}));
+    ASSERT_TRUE(bare["proposed_start"].is_string()) << file;
+    const std::string start = bare["proposed_start"];
+    const auto j = nlohmann::json::parse(run({"cave", "info", "--json", "--start", start, file}));
+    EXPECT_GE(j["start_clearance_m"], 0.7);
+    EXPECT_GT(j["fly_through_volume_m3"], 10);
+    const std::string text = run({"cave", "info", file});
+    EXPECT_NE(text.find("--start \"" + start + "\""), std::string::npos) << text;
+  }
+}
+
+TEST(CaveCommand, ARefusedStartIsAnsweredWithOneThatSuits) {
+  const std::string mesh = (fresh_folder() / "room.ply").string();
+  karst::cave::write_mesh(mesh, room_with_corridor(false));
+  const std::string e = reason({"cave", "info", mesh, "--start", "4 2 9"});
+  EXPECT_NE(e.find("room.ply: start 4.0 2.0 9.0: outside the mesh; a start that suits: --start \""),
+            std::string::npos)
+      << e;
+}
+
+TEST(CaveCommand, UnitAndAxisAreAdvisedAndApplied) {
+  const fs::path folder = fresh_folder();
+  auto mesh = room_with_corridor(false);
+  for (auto& v : mesh.vertices) v = 1000.0f * karst::core::Vec3f(v.x(), v.z(), -v.y());
+  const std::string file = (folder / "mm.ply").string();
+  karst::cave::write_mesh(file, mesh);
+  const auto j = nlohmann::json::parse(run({"cave", "info", "--json", file}));
+  ASSERT_FALSE(j["advice"].empty());
+  EXPECT_EQ(j["advice"][0]["remedy"], "unit mm");
+  EXPECT_TRUE(j["proposed_start"].is_null()) << "it would be a place in a wrong frame";
+  EXPECT_NE(run({"cave", "info", file}).find(": unit mm\n"), std::string::npos);
+  const std::vector<std::string> right{"--unit", "mm", "--up", "y", "--json"};
+  const auto fine = nlohmann::json::parse(run(with({"cave", "info", file}, right)));
+  EXPECT_TRUE(fine["advice"].empty()) << fine["advice"].dump();
+  ASSERT_TRUE(fine["proposed_start"].is_string());
+  const std::string start = fine["proposed_start"];
+  const auto flat = nlohmann::json::parse(run(with({"cave", "info", file, "--start", start}, right)));
+  // The same as of the mesh that was never turned.
+  const std::string plain = (folder / "plain.ply").string();
+  karst::cave::write_mesh(plain, room_with_corridor(false));
+  const auto same = nlohmann::json::parse(run({"cave", "info", plain, "--start", "4 2 1.2", "--json"}));
+  EXPECT_NEAR(flat["reachable_volume_m3"].get<double>(), same["reachable_volume_m3"].get<double>(), 0.3);
+}
+
+TEST(CaveCommand, CapClosesAHoleAndSaysWhatItClosed) {
+  const fs::path folder = fresh_folder();
+  const std::string mesh = (folder / "open.ply").string(), closed = (folder / "closed.ply").string();
+  karst::cave::write_mesh(mesh, room_with_corridor(true));
+  const std::string e = reason({"cave", "info", mesh, "--start", "4 2 1.2"});
+  EXPECT_NE(e.find("free space leads outside the mesh near 1"), std::string::npos) << e;
+  EXPECT_NE(e.find("a loop of 8, 2.8 m across, 4 m2, around 16.0 2.0 1."), std::string::npos) << e;
+  const std::string said = run({"cave", "info", mesh, "--cap", closed});
+  EXPECT_NE(said.find("1 loop of open edges, 1 closed"), std::string::npos) << said;
+  EXPECT_NE(said.find("4.00 m2,   2.83 m across"), std::string::npos) << said;
+  const auto j = nlohmann::json::parse(run({"cave", "info", "--json", closed, "--start", "4 2 1.2"}));
+  EXPECT_TRUE(j["closed"]);
+  EXPECT_EQ(j["open_loops"], 0);
+  EXPECT_NE(reason({"cave", "info", mesh, "--cap", closed}).find("is there already"), std::string::npos);
+  const std::string other = (folder / "other.ply").string();
+  EXPECT_NE(reason({"cave", "info", mesh, "--cap", other, "--cap-limit", "2"}).find("no hole was closed"),
+            std::string::npos);
+  EXPECT_NE(reason({"cave", "info", closed, "--cap", other}).find("nothing to close"), std::string::npos);
+  EXPECT_NE(reason({"cave", "info", mesh, "--cap", (folder / "x.obj").string()}).find(".ply or .stl"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(other));
+}
+
+TEST(CaveCommand, BadMeshOptionsNameTheReason) {
+  const std::string mesh = (fresh_folder() / "room.ply").string();
+  karst::cave::write_mesh(mesh, room_with_corridor(false));
+  const auto refused = [&](const std::string& option, const std::string& value) {
+    return reason({"cave", "info", mesh, option, value});
+  };
+  EXPECT_NE(refused("--unit", "furlong").find("command line: unit: expected one of m cm mm ft"),
+            std::string::npos);
+  EXPECT_NE(refused("--scale", "0").find("command line: scale: expected a number in"), std::string::npos);
+  EXPECT_NE(refused("--scale", "nan").find("command line: scale: expected a number in"), std::string::npos);
+  EXPECT_NE(refused("--up", "x").find("command line: up: expected one of z y"), std::string::npos);
+  EXPECT_NE(refused("--offset", "1 2").find("offset: expected three numbers"), std::string::npos);
+}
+
 TEST(CaveCommand, BadArgumentsNameTheReason) {
   const fs::path folder = fresh_folder();
   const std::string out = (folder / "c").string();
-  const auto reason = [](std::vector<std::string> words) -> std::string {
-    try {
-      run(std::move(words));
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "no error";
-  };
   EXPECT_NE(reason({"cave", "generate", "--preset", "larg", "--out", out}).find("did you mean large?"),
             std::string::npos);
   EXPECT_NE(reason({"cave", "generate", "--set", "volum=900", "--out", out}).find("did you mean volume?"),

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sdk/campaign/plan/hash.h"
+#include "sdk/campaign/plan/mesh_hash.h"
 #include "sdk/campaign/plan/plan_text.h"
 #include "sdk/campaign/run/folder.h"
 #include "sdk/campaign/store/results.h"
@@ -178,6 +179,23 @@ TEST(Hash, IsWhatSha256sumPrints) {
   EXPECT_EQ(sha256_of_file(file), wanted);
   EXPECT_EQ(sha256(bytes), wanted);
   EXPECT_NE(error_of([] { sha256_of_file("/nowhere"); }), "");
+}
+
+TEST(Hash, OfAMeshCoversHowItIsRead) {
+  const fs::path file = fresh_folder("mesh") / "a.obj";
+  std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto hash_of = [&](const core::MeshKeys& keys) {
+    return mesh_hash({file.string(), cave::mesh_frame("test", file.string(), keys)});
+  };
+  EXPECT_EQ(hash_of({}), sha256_of_file(file)) << "as in campaigns that were flown before";
+  const std::set<std::string> hashes{hash_of({}), hash_of({2, core::MeshUnit::m, core::UpAxis::z, ""}),
+                                     hash_of({1, core::MeshUnit::mm, core::UpAxis::z, ""}),
+                                     hash_of({1, core::MeshUnit::m, core::UpAxis::y, ""}),
+                                     hash_of({1, core::MeshUnit::m, core::UpAxis::z, "0 0 1"})};
+  EXPECT_EQ(hashes.size(), 5u);
+  EXPECT_EQ(hash_of({0.001, core::MeshUnit::m, core::UpAxis::z, ""}),
+            hash_of({1, core::MeshUnit::mm, core::UpAxis::z, "0 0 0"}))
+      << "the same rock";
 }
 
 }  // namespace

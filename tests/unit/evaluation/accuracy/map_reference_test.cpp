@@ -45,6 +45,16 @@ TEST(PointTree, FindsTheNearestAndThoseWithinOfAll) {
   EXPECT_FALSE(tree.nearest(Vec3::Constant(std::nan(""))));
 }
 
+TEST(OpenReference, ReadsTheMeshOfACaveFileInItsUnit) {
+  const test::TemporaryDirectory folder;
+  folder.write("a.obj", "v 0 0 0\nv 10000 0 0\nv 10000 0 -10000\nv 0 0 -10000\nf 1 2 3\nf 1 3 4\n");
+  folder.write("a.info", "mesh a.obj\nunit mm\nup y\n");  // the floor of 10 m; a start is of no use here
+  const MapReference reference =
+      open_reference((folder.path() / "a.info").string(), 400, {Vec3(0, 0, 0), Vec3(10, 10, 1)});
+  EXPECT_NEAR(static_cast<double>(reference.points), 40000, 1);
+  EXPECT_NEAR(reference.distance_m({5, 5, 0.3}), 0.3, 0.01);
+}
+
 TEST(SampleSurface, HasTheDensityAskedForEverywhereOnTheSurface) {
   const Eigen::AlignedBox3d all(Vec3::Zero(), Vec3::Constant(10));
   const auto points = sample_surface(floor_mesh(), 400, all, 0, "floor");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/closest_point.h"
@@ -191,7 +192,41 @@ TEST(Reachable, OpenCaveNamesTheHole) {
     double x = 0, y = 0, z = 0;
     ASSERT_EQ(std::sscanf(what.c_str() + what.find("near ") + 5, "%lf %lf %lf", &x, &y, &z), 3) << what;
     EXPECT_LT((Vec3(x, y, z) - Vec3(8, 1.5, 1.5)).norm(), 1.5) << what;
+    EXPECT_NE(what.find("a loop of 4, 1.4 m across, 1 m2, around 8.0 1.4 1."), std::string::npos) << what;
+    EXPECT_NE(what.find("--cap OUT.ply"), std::string::npos) << what;
   }
+}
+
+/// The mesh as an OBJ file, its coordinates turned.
+std::string written_obj(const std::string& name, const TriangleMesh& mesh, bool y_up) {
+  const std::filesystem::path folder = std::filesystem::path(KARST_BINARY_DIR) / "test_runs";
+  std::filesystem::create_directories(folder);
+  std::ofstream out(folder / name);
+  out.precision(9);
+  for (const auto& v : mesh.vertices)
+    if (y_up)
+      out << "v " << v.x() << ' ' << v.z() << ' ' << -v.y() << '\n';
+    else
+      out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+  for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+  return (folder / name).string();
+}
+
+TEST(Reachable, ACaveWithYUpHasTheSameVolumes) {
+  Lattice cells;
+  fill(cells, {0, 0, 0}, {7, 2, 2});
+  fill(cells, {5, 0, 0}, {7, 6, 3});
+  const TriangleMesh mesh = lattice_mesh(cells, 1.0, kOffset);
+  karst::cave::MeshFrame y_up;
+  y_up.up = karst::core::UpAxis::y;
+  const TriangleMesh a = karst::cave::load_mesh(written_obj("z_up.obj", mesh, false)),
+                     b = karst::cave::load_mesh(written_obj("y_up.obj", mesh, true), y_up);
+  const Vec3 start(1, 1, 1);
+  const Reachable of_a = find_reachable(a, start, {}, "a"), of_b = find_reachable(b, start, {}, "b");
+  EXPECT_GT(of_a.reachable_cells, 1000u);
+  EXPECT_EQ(keys(of_a.reachable), keys(of_b.reachable));
+  EXPECT_EQ(of_a.volume_m3(), of_b.volume_m3());
+  EXPECT_EQ(of_a.flyable_cells, of_b.flyable_cells);
 }
 
 TEST(Reachable, BadStartsAreErrors) {

@@ -97,6 +97,51 @@ TEST_F(CaveFiles, AStartThatIsGivenReplacesTheFilesOwn) {
 TEST_F(CaveFiles, ABareMeshNeedsAStart) {
   EXPECT_NE(error_of([&] { cave::load_cave(folder_ + "/box.ply", ""); }).find("start"), std::string::npos);
   EXPECT_EQ(cave::load_cave(folder_ + "/box.ply", "1 1 1 45").description.start.position, Vec3(1, 1, 1));
+  EXPECT_FALSE(cave::has_start(folder_ + "/box.ply"));
+  EXPECT_FALSE(cave::has_start(info("mesh box.ply")));
+  EXPECT_TRUE(cave::has_start(info("mesh box.ply\nstart \"0 0 1\"")));
+}
+
+TEST_F(CaveFiles, TheFrameOfTheMeshIsReadAndTheStartIsInMetres) {
+  // In the file 10 x 4 x 10 m in millimetres with y up, 1 m, 2 m and 3 m off its origin.
+  cave::write_mesh(folder_ + "/mm.ply", box_mesh({1000, 2000, 3000}, {11000, 6000, 13000}));
+  const cave::Cave c =
+      cave::load_cave(info("mesh mm.ply\nunit mm\nup y\noffset \"1000 2000 3000\"\nstart \"5 -5 1\"\n"), "");
+  const Eigen::AlignedBox3d box = box_of(c.scene.mesh());
+  EXPECT_LT((box.min() - Vec3(0, -10, 0)).norm(), 1e-5) << box.min().transpose();
+  EXPECT_LT((box.max() - Vec3(10, 0, 4)).norm(), 1e-5) << box.max().transpose();
+  EXPECT_EQ(c.description.start.position, Vec3(5, -5, 1));
+  const core::MeshKeys keys{1, core::MeshUnit::mm, core::UpAxis::y, "1000 2000 3000"};
+  const cave::Cave bare = cave::load_cave(folder_ + "/mm.ply", "5 -5 1", keys);
+  EXPECT_EQ(bare.scene.mesh().vertices, c.scene.mesh().vertices);
+  const cave::MeshFile mesh = cave::mesh_of(folder_ + "/mm.ply", keys);
+  EXPECT_EQ(cave::to_text(mesh.frame), cave::to_text(c.description.mesh_frame));
+  EXPECT_EQ(cave::load_mesh(mesh).vertices, c.scene.mesh().vertices);
+}
+
+TEST_F(CaveFiles, MistakesInTheFrameOfTheMeshAreNamed) {
+  const std::string head = "mesh box.ply\nstart \"0 0 1\"\n";
+  const auto expect = [&](const std::string& line, const std::string& part) {
+    const std::string e = error_for(head + line);
+    EXPECT_NE(e.find(part), std::string::npos) << "\"" << e << "\" lacks \"" << part << "\"";
+    EXPECT_NE(e.find("cave.info"), std::string::npos) << e;
+  };
+  expect("unit furlong", "unit: expected one of m cm mm ft, got \"furlong\"");
+  expect("unit \"mm cm\"", "unit: expected one of");
+  expect("scale 0", "scale: expected a number in 1e-06 to 1e+06, got \"0\"");
+  expect("scale -1", "scale: expected a number");
+  expect("scale nan", "scale: expected a number");
+  expect("scale \"2 m\"", "this key has no unit");
+  expect("up x", "up: expected one of z y, got \"x\"");
+  expect("offset \"1 2\"", "offset: expected three numbers \"x y z\", got \"1 2\"");
+  expect("offset \"1 2 nan\"", "offset: expected three numbers");
+  expect("offset 1", "offset: expected three numbers");
+  expect("unit mm\nunit cm", "unit: given twice");
+  expect("units mm", "did you mean unit?");
+  const std::string beside = error_of([&] {
+    cave::describe_cave(info(head), "", {1, core::MeshUnit::mm, core::UpAxis::z, ""});
+  });
+  EXPECT_NE(beside.find("cave.info: is a cave file"), std::string::npos) << beside;
 }
 
 TEST_F(CaveFiles, ErrorsNameTheKeyAndWhatWasExpected) {

@@ -48,6 +48,8 @@ TEST(Preflight, AHoleAtTheStartIsReportedWithDirectionAndShare) {
   const std::string e = refusal(box_mesh({-2, -2, -2}, {2, 2, 2}, 0b111101), Vec3::Zero());
   EXPECT_NE(e.find("hole"), std::string::npos) << e;
   EXPECT_NE(e.find("(1.00 "), std::string::npos) << e;
+  EXPECT_NE(e.find("loop of 4, 5.7 m across, 16 m2, around 2.0 "), std::string::npos) << e;
+  EXPECT_NE(e.find("--cap"), std::string::npos) << e;
 }
 
 TEST(Preflight, ASingleMissingTriangleIsFound) {
@@ -84,6 +86,15 @@ TEST(Preflight, ABlockThatReachesIntoTheClimbIsRefusedAndOneBesideItIsNot) {
     append(mesh, box_mesh({reach, -1, 1.5}, {2, 1, 2}));
     EXPECT_EQ(climb_refusal(mesh, {0, 0, 0.3}, 1.5) == "", reach > 0.3) << reach;
   }
+}
+
+TEST(Preflight, ALoweredSphereRestsOnTheFloorOrNowhere) {
+  const cave::RayScene hall(box_mesh({-5, -5, 0}, {5, 5, 9}));
+  const auto rest = cave::lowered_sphere(hall, {1, 2, 2}, 0.3);
+  ASSERT_TRUE(rest);
+  EXPECT_LT((rest->centre - Vec3(1, 2, 0.3)).norm(), 2e-4);
+  EXPECT_LT((rest->rock.point - Vec3(1, 2, 0)).norm(), 1e-9);
+  EXPECT_FALSE(cave::lowered_sphere(hall, {1, 2, 4}, 0.3)) << "more than 3 m up";
 }
 
 TEST(Preflight, StandingOnASlopeOrBesideAWallIsNotInTheWayOfTheClimb) {
