@@ -17,11 +17,11 @@ inline std::filesystem::path plugin_root() { return install_root() / "lib" / "ka
 /// The folder that holds docs and examples.
 inline std::filesystem::path doc_root() { return install_root() / "share" / "doc" / "karst"; }
 
-/// The path of a page or an example, such as "docs/select.md"; what to install if it is not there.
+/// The path of a page or an example, such as "docs/select.md"; if it is not installed, where else it is.
 inline std::string doc_path(const std::string& name) {
   const std::filesystem::path file = doc_root() / name;
   std::error_code error;
-  return std::filesystem::exists(file, error) ? file.string() : name + " of the package karst-doc";
+  return std::filesystem::exists(file, error) ? file.string() : name + " of karst's sources";
 }
 
 }  // namespace karst::core

@@ -160,7 +160,7 @@ typedef uint32_t karst_outcome_t;
 enum {
   KARST_OUTCOME_GOALS = 1,    /* the goals in the sink */
   KARST_OUTCOME_HOLD = 2,     /* continue to the current goal, or stay; the core asks again soon */
-  KARST_OUTCOME_EXPLORED = 3, /* nothing is left to explore: fly home */
+  KARST_OUTCOME_EXPLORED = 3, /* nothing is left to explore: it flies home if the next answers agree */
   KARST_OUTCOME_GO_HOME = 4   /* fly home for another reason */
 };
 

@@ -1,7 +1,8 @@
 #include "sdk/selection/cave_facts.h"
 
 #include <algorithm>
-#include <map>
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "plugins/simulator/cave/joined_vertices.h"

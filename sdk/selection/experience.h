@@ -15,7 +15,7 @@ namespace karst::selection {
 struct KnownCave {
   std::string name;
   CaveFigures figures;
-  std::string hash = {};  // SHA-256 of the mesh's bytes; "" if unknown
+  std::string hash = {};  // campaign::mesh_hash(); "" if unknown
 };
 
 struct Preset {

@@ -60,8 +60,7 @@ std::string mesh_hash_of(const std::string& cave_file, const std::string& start)
 }
 
 std::string installed_experience() {
-  const std::filesystem::path file =
-      core::install_root() / "share" / "karst" / "experience.info";
+  const std::filesystem::path file = core::install_root() / "share" / "karst" / "experience.info";
   return std::filesystem::is_regular_file(file) ? file.string() : "";
 }
 

@@ -39,11 +39,10 @@ struct Selected {
   double confidence = 0;          // fraction of resampled experiences with the same winner
 };
 
-/// `mesh_hash`: SHA-256 of the cave's mesh, "" if unknown. If two contestants have flown in this cave (the
+/// `mesh_hash`: that of campaign::mesh_hash(), "" if unknown. If two contestants have flown in this cave (the
 /// same mesh, or the same figures to the sixth digit), their results there decide. Values and intervals stay
-/// within what the metric can be in this cave, as in expected_figures(). Throws InputError if
-/// the experience has no value of the metric, or if the description, which comes from `source`, has no
-/// figure.
+/// within what the metric can be in this cave, as in expected_figures(). Throws InputError if the experience
+/// has no value of the metric, or if the description, which comes from `source`, has no figure.
 Selected select(const Experience& experience, const CaveFigures& cave, const SelectOptions& options,
                 const std::string& source, const std::string& mesh_hash = "");
 

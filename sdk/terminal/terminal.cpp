@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core_stack/common/character_count.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/printable.h"
 
@@ -28,12 +29,6 @@ std::string cut(std::string text) {
 
 void put(std::FILE* to, const std::string& text) { std::fwrite(text.data(), 1, text.size(), to); }
 
-/// Of UTF-8: bytes that continue a character take no column.
-std::size_t columns_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 std::string wrapped_line(std::string_view line, std::size_t columns, std::size_t indent) {
   std::string out;
   std::size_t used = 0;
@@ -41,13 +36,13 @@ std::string wrapped_line(std::string_view line, std::size_t columns, std::size_t
     const std::size_t begin = std::min(line.find_first_not_of(' '), line.size()),
                       end = std::min(line.find(' ', begin), line.size());
     const std::string_view word = line.substr(begin, end - begin);
-    used += columns_of(line.substr(0, end));
+    used += core::character_count(line.substr(0, end));
     if (first || word.empty() || used <= columns) {
       out += line.substr(0, end);
     } else {
       out += "\n" + std::string(indent, ' ');
       out += word;
-      used = indent + columns_of(word);
+      used = indent + core::character_count(word);
     }
     line.remove_prefix(end);
   }

@@ -24,6 +24,8 @@ std::string fate_of(const cave::CapOfLoop& c, double limit_m) {
   switch (c.left) {
     case LeftOpen::no:
       return "closed";
+    case LeftOpen::slit:
+      return "left open, all on one line: nothing passes";
     case LeftOpen::too_large:
       return core::format_text("left open, wider than --cap-limit %g", limit_m);
     case LeftOpen::seam:
@@ -33,10 +35,7 @@ std::string fate_of(const cave::CapOfLoop& c, double limit_m) {
 }
 
 ordered_json cap_json(const cave::CapOfLoop& c) {
-  const char* const fate = c.left == LeftOpen::no     ? "closed"
-                           : c.left == LeftOpen::seam ? "seam"
-                                                      : "too_large";
-  return {{"fate", fate},
+  return {{"fate", core::name_of(c.left)},
           {"edges", c.loop.vertices.size()},
           {"area_m2", c.loop.area_m2},
           {"diameter_m", c.loop.diameter_m},

@@ -12,6 +12,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/json_point.h"
 #include "core_stack/common/output_file.h"
@@ -49,12 +50,6 @@ struct InfoArguments {
   bool json = false;
   evaluation::ReachableOptions options;
 };
-
-std::string text(const char* format, auto... values) {
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 /// One line that is rewritten on a terminal, otherwise one line for each new step.
 class Progress {
@@ -100,7 +95,8 @@ void write_info(const std::string& path, const std::string& mesh, const cave::Ge
   const Vec3& p = cave.start.position;
   out << "mesh \"" << mesh << "\"\n"
       << "start \""
-      << text("%g %g %g %.1f", p.x(), p.y(), p.z(), cave.start.heading_rad * 180 / std::numbers::pi)
+      << core::format_text("%g %g %g %.1f", p.x(), p.y(), p.z(),
+                           cave.start.heading_rad * 180 / std::numbers::pi)
       << "\"\nreflectivity 0.5\n";
   out.flush();
   if (!out) throw InputError(path, "", "cannot be written");
@@ -288,10 +284,10 @@ std::string generate_footer() {
   std::string presets;
   for (const std::string& name : cave::cave_presets()) {
     const cave::CaveRecipe r = cave::cave_preset(name);
-    presets +=
-        text("  %-9s %6.0f m3, passages about %.1f m wide, %d loops, %d domes, %d shafts, %d chimneys\n",
-             name.c_str(), r.volume_m3, r.passage_width_m, static_cast<int>(r.loops),
-             static_cast<int>(r.domes), static_cast<int>(r.shafts), static_cast<int>(r.chimneys));
+    presets += core::format_text(
+        "  %-9s %6.0f m3, passages about %.1f m wide, %d loops, %d domes, %d shafts, %d chimneys\n",
+        name.c_str(), r.volume_m3, r.passage_width_m, static_cast<int>(r.loops), static_cast<int>(r.domes),
+        static_cast<int>(r.shafts), static_cast<int>(r.chimneys));
   }
   return "Examples:\n"
          "  karst cave generate --preset small --seed 7 --out caves/demo\n"
@@ -339,7 +335,9 @@ void add_cave_command(CLI::App& app) {
       ->check(number_in(0.05, 5.0))
       ->capture_default_str();
   add_mesh_options(*tell, i->mesh);
-  tell->add_option("--cap", i->cap.out, "Close the holes and write the mesh, in metres with z up, to OUT.ply")
+  tell->add_option("--cap", i->cap.out,
+                   "Close the holes and write the mesh, in metres with z up, to this new .ply or .stl file")
+      ->type_name(kFile)
       ->check(not_empty());
   tell->add_option("--cap-limit", i->cap.limit_m, "Holes that are wider stay open, m")
       ->check(number_in(0.01, 1000))

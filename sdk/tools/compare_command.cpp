@@ -194,9 +194,10 @@ void write_paper_files(const std::string& from, const std::string& folder, campa
   const campaign::PaperFiles files = campaign::write_paper(from, folder, options);
   for (const fs::path& file : files.written) print_out("%s\n", file.c_str());
   if (!files.with_pdf)
-    print_error(
-        "karst: no PDF of the figures: rsvg-convert is not there; apt-get install librsvg2-bin, and write "
-        "again with --force\n");
+    print_wrapped(
+        stderr, 7,
+        "karst: no PDF of the figures: rsvg-convert is not there; apt-get install librsvg2-bin, and "
+        "write again with --force\n");
 }
 
 }  // namespace
@@ -300,6 +301,7 @@ void add_results_command(CLI::App& app) {
   CLI::Option* paper = results_app
                            ->add_option("--paper", args->paper,
                                         "folder for tables (LaTeX, Markdown), figures (SVG, PDF) and methods")
+                           ->type_name(kFolder)
                            ->check(not_empty())
                            ->check(no_file());
   results_app->add_flag("--force", args->force, "with --paper: overwrite files that are there")->needs(paper);

@@ -75,11 +75,13 @@ void add_explain_command(CLI::App& app) {
   auto args = std::make_shared<Arguments>();
   CLI::App* explain = app.add_subcommand(
       "explain",
-      "Why the vehicle flew to this goal: the decision at a time of the flight, or the last one before it, "
-      "with its goals, what became of them, and the frontiers offered.\n\n"
+      "Say why the vehicle flew to a goal.\n\n"
+      "Prints the decision at a time of the flight, or the last one before it: its goals, what became of "
+      "them, and the frontiers offered.\n\n"
       "  karst explain runs/demo --at 1:34\n"
       "  karst fly demo.info --record-requests --out runs/demo     keeps the whole ranked lists, too");
   explain->add_option("run", args->run, "run directory; of a team that of a robot")
+      ->type_name(kFolder)
       ->required()
       ->check(not_empty());
   explain->add_option("--at", args->at, "time of the flight: 1:34, or 94 for seconds")->required();

@@ -273,7 +273,7 @@ void add_fly_command(CLI::App& app) {
       "a second of flight takes a second, as on a vehicle: what is not ready in time counts as an "
       "overrun (timing.json), and no two flights are the same");
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
-  fly_app->add_flag("--quiet", args->quiet, "no status line; nothing on what policy auto chose");
+  fly_app->add_flag("--quiet", args->quiet, "no status line, no notes, nothing on what policy auto chose");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
   fly_app
       ->add_option(

@@ -18,12 +18,16 @@ inline void add_mesh_options(CLI::App& app, MeshOptions& given) {
   core::MeshKeys keys;
   core::OptionTable table;
   describe(table, keys);
-  for (const auto& row : table.rows())
+  for (const auto& row : table.rows()) {
+    std::string help = row.help;
+    for (const std::string& choice : row.choices)
+      help += (&choice == &row.choices.front() ? ": " : " or ") + choice;
     app.add_option_function<std::string>(
            "--" + row.key,
            [&given, key = row.key](const std::string& value) { given.emplace_back(key, value); },
-           row.help + "; a cave file has it as a key")
+           help + "; a cave file has it as a key")
         ->check(not_empty());
+  }
 }
 
 /// Throws core::InputError naming the option.

@@ -100,6 +100,8 @@ std::string readme_of(const Template& from, const std::string& name) {
   std::string text = renamed(policy_readme(), "my_nearest", name);
   text = replaced(text, "@ending@", std::string(from.ending));
   text = replaced(text, "@setting@", std::string(from.setting));
+  // For a debugger: without class or file the name would fit functions of karst, too.
+  text = replaced(text, "@decide@", from.ending == ".c" ? name + ".c:decide" : class_name(name) + "::decide");
   return replaced(text, "@karst@", karst_command());
 }
 

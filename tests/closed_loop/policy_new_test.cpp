@@ -49,6 +49,7 @@ TEST(PolicyNew, InCIsTheExampleInC) {
   const std::string readme = bytes_of(folder / "deepest/README.md");
   EXPECT_NE(readme.find("`deepest.c`"), std::string::npos) << readme;
   EXPECT_NE(readme.find("policy.parameters.max_path=50"), std::string::npos) << readme;
+  EXPECT_NE(readme.find("`break deepest.c:decide`"), std::string::npos) << readme;
   EXPECT_EQ(readme.find("@"), std::string::npos) << "a place left unfilled";
 }
 
@@ -82,8 +83,13 @@ TEST(PolicyNew, NamesEverythingAfterThePolicy) {
 // It was a Release build: a debugger showed no line of it.
 TEST(PolicyNew, BuildsWithDebugInformation) {
   const fs::path folder = fresh_folder("policy_new_debug");
-  ASSERT_EQ(policy_new("deep_first --dir " + folder.string(), folder).code, 0);
-  EXPECT_NE(bytes_of(folder / "deep_first/CMakeLists.txt").find("set(CMAKE_BUILD_TYPE RelWithDebInfo)"),
+  for (const char* kind : {"nearest", "c"}) {
+    const std::string name = std::string("debugged_") + kind;
+    ASSERT_EQ(policy_new(name + " --template " + kind + " --dir " + folder.string(), folder).code, 0);
+    EXPECT_NE(bytes_of(folder / name / "CMakeLists.txt").find("set(CMAKE_BUILD_TYPE RelWithDebInfo)"),
+              std::string::npos);
+  }
+  EXPECT_NE(bytes_of(folder / "debugged_nearest/README.md").find("`break DebuggedNearest::decide`"),
             std::string::npos);
 }
 

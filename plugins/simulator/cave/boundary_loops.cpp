@@ -45,12 +45,16 @@ std::vector<OpenEdge> open_edges(const TriangleMesh& mesh) {
 class LoopWalk {
  public:
   LoopWalk(std::vector<OpenEdge> edges, std::size_t vertices)
-      : edges_(std::move(edges)), used_(edges_.size(), false), place_(vertices, kNone) {
+      : edges_(std::move(edges)),
+        used_(edges_.size(), false),
+        place_(vertices, kNone),
+        end_(vertices, kNone) {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       ends_.push_back({edges_[e].from, e});
       ends_.push_back({edges_[e].to, e});
     }
     std::sort(ends_.begin(), ends_.end());
+    for (std::size_t i = ends_.size(); i-- > 0;) end_[ends_[i].first] = i;
   }
 
   /// The vertices of each loop, in either direction.
@@ -86,18 +90,19 @@ class LoopWalk {
     for (const std::uint32_t v : path) place_[v] = kNone;
   }
 
-  /// The number of edges if there is none.
-  std::size_t unused_at(std::uint32_t vertex) const {
-    for (auto end = std::lower_bound(ends_.begin(), ends_.end(), End{vertex, 0});
-         end != ends_.end() && end->first == vertex; ++end)
-      if (!used_[end->second]) return end->second;
-    return edges_.size();
+  /// The number of edges if there is none. An edge once used stays so: each of its ends is passed once.
+  std::size_t unused_at(std::uint32_t vertex) {
+    std::size_t& at = end_[vertex];
+    const auto is_here = [&] { return at < ends_.size() && ends_[at].first == vertex; };
+    while (is_here() && used_[ends_[at].second]) ++at;
+    return is_here() ? ends_[at].second : edges_.size();
   }
 
   std::vector<OpenEdge> edges_;
   std::vector<bool> used_;
   std::vector<End> ends_;           // sorted
   std::vector<std::size_t> place_;  // of each vertex in the path; kNone off it
+  std::vector<std::size_t> end_;    // of each vertex: where in `ends_` its unused edges may begin
 };
 
 /// Half the sum of the cross products of consecutive corners (Newell): its length is the area in the plane

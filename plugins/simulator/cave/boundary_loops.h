@@ -28,8 +28,8 @@ const BoundaryLoop* nearest_loop(const TriangleMesh& mesh, const std::vector<Bou
 const BoundaryLoop* loop_towards(const std::vector<BoundaryLoop>& loops, const core::Vec3& from,
                                  const core::Vec3& direction);
 
-/// "24 open edges, 1.9 m across, 2.8 m2, around 12.0 0.0 1.5", and how to close them; of null, that there are
-/// none. Continues a sentence about a hole.
+/// "; the open edges nearest to it are a loop of 24, 1.9 m across, 2.8 m2, around 12.0 0.0 1.5", and how to
+/// close it; of null, that no edge is open. Continues a sentence about a hole.
 std::string hole_text(const BoundaryLoop* loop);
 
 }  // namespace karst::cave

@@ -72,6 +72,18 @@ std::optional<std::vector<Ear>> clipped_ears(const std::vector<Flat>& corners, d
   return ears;
 }
 
+/// By the areas between the centre and each edge: of a loop that crosses itself, these do not cancel.
+bool is_slit(const BoundaryLoop& loop, const TriangleMesh& mesh) {
+  constexpr double kRounding = 1e-9;
+  double area_m2 = 0;
+  for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+    const Vec3 a = mesh.vertices[loop.vertices[i]].cast<double>() - loop.centre,
+               b = mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]].cast<double>() - loop.centre;
+    area_m2 += a.cross(b).norm() / 2;
+  }
+  return area_m2 <= kRounding * loop.diameter_m * loop.diameter_m;
+}
+
 bool is_seam(const RayScene& scene, const BoundaryLoop& loop) {
   constexpr int kRays = 256;
   const Vec3 aside = loop.diameter_m / 4 * loop.normal;
@@ -98,7 +110,9 @@ Capped cap_holes(const RayScene& scene, double max_diameter_m) {
   Capped capped{scene.mesh(), {}};
   for (BoundaryLoop& loop : boundary_loops(scene.mesh())) {
     CapOfLoop& c = capped.loops.emplace_back(CapOfLoop{std::move(loop), LeftOpen::no});
-    if (c.loop.diameter_m > max_diameter_m)
+    if (is_slit(c.loop, scene.mesh()))
+      c.left = LeftOpen::slit;
+    else if (c.loop.diameter_m > max_diameter_m)
       c.left = LeftOpen::too_large;
     else if (is_seam(scene, c.loop))
       c.left = LeftOpen::seam;

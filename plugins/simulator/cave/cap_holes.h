@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
 #include "plugins/simulator/cave/boundary_loops.h"
 #include "plugins/simulator/cave/ray_scene.h"
 
@@ -16,9 +17,16 @@ std::vector<std::array<std::uint32_t, 3>> cap_of(const BoundaryLoop& loop, Trian
 
 enum class LeftOpen {
   no,         // it was closed
+  slit,       // its edges lie on one line, as where a corner meets the middle of an edge: nothing passes
   too_large,  // wider than the limit
   seam        // air of the cave on both sides: parts of the mesh meet there
 };
+/// What became of the loop.
+constexpr auto names_of(LeftOpen) {
+  using enum LeftOpen;
+  return std::to_array<core::Named<LeftOpen>>(
+      {{no, "closed"}, {slit, "slit"}, {too_large, "too_large"}, {seam, "seam"}});
+}
 
 struct CapOfLoop {
   BoundaryLoop loop;
@@ -30,9 +38,9 @@ struct Capped {
   std::vector<CapOfLoop> loops;  // the largest first
 };
 
-/// Closes each loop of open edges of at most `max_diameter_m`, unless it is a seam: most rays from either
-/// side of the loop's centre, a quarter of its diameter off, cross an odd number of surfaces, as they do
-/// inside the cave only.
+/// Closes each loop of open edges of at most `max_diameter_m`, unless it is a slit or a seam. Of a seam most
+/// rays from either side of the loop's centre, a quarter of its diameter off, cross an odd number of
+/// surfaces, as they do inside the cave only.
 Capped cap_holes(const RayScene& scene, double max_diameter_m);
 
 }  // namespace karst::cave

@@ -27,8 +27,7 @@ struct MeshAdvice {
 
 /// Findings for a mesh that was read in this frame; none if it looks like a cave in metres with z up.
 ///
-/// - Unit: the size of the passages. No cave has passages 600 m across: such a mesh is not in metres, which
-/// is
+/// - Unit: the size of the passages. No cave has passages 600 m across: that such a mesh is not in metres is
 ///   said as certain. From 60 m on, centimetres are likely. From 1000 m on it is taken for millimetres (of
 ///   passages 1 m across and more), below for centimetres. A mesh of more than 100 km is likely in
 ///   millimetres.

@@ -185,7 +185,7 @@ TriangleMesh import_mesh(const std::string& path, const std::string& extension, 
   std::vector<MeshPart> parts;
   collect_parts(*scene, *scene->mRootNode, T_world_file, frame,
                 is_collada ? frame.offset : Vec3(Vec3::Zero()), parts);
-  if (is_collada && has_offset(frame)) {  // where they were before it
+  if (is_collada && has_offset(frame)) {  // the importer rounded them to floats where they were before
     MeshFrame before = frame;
     before.offset.setZero();
     std::vector<MeshPart> unmoved;

@@ -178,7 +178,7 @@ std::string shifted_text_ply(const Shift& shift, const PlyHeader& header, std::s
   return with_lines(
       shift, body, "line of data ", [&](std::string_view line, const std::string& place, std::string& out) {
         std::size_t at = 0;
-        if (next_word(line, at).empty()) return;  // the importer needs no empty line
+        if (next_word(line, at).empty()) return;  // an empty line holds no vertex
         while (element < header.elements.size() && passed == header.elements[element].count) {
           ++element;
           passed = 0;

@@ -14,8 +14,8 @@ constexpr std::size_t kHeadingWidth = 14;  // characters after which a heading g
 struct Escape {
   std::string_view plain, latex;
 };
-// [ and * could be read as options of the end of a row before them. The minus sign is no letter of the usual
-// fonts; the quotes' commands need no other font encoding.
+// [ and * could be read as options of the end of a row before them. The usual fonts have neither the minus
+// sign nor the raised 3 as a letter; the quotes' commands need no other font encoding.
 constexpr Escape kEscapes[] = {
     {"\\", "\\textbackslash{}"},
     {"{", "\\{"},
@@ -39,6 +39,7 @@ constexpr Escape kEscapes[] = {
     {"\u2212", "$-$"},
     {"\u2013", "\\textendash{}"},
     {"\u2020", "\\textdagger{}"},
+    {"\u00B3", "$^3$"},
 };
 
 /// Of these, two in a row would become a dash or a quotation mark.
@@ -57,8 +58,7 @@ std::string heading_text(const PaperColumn& column) {
     broken = broken || breaks;
   }
   if (!column.unit.empty()) {
-    const std::string unit = column.unit == "m^3" ? "m$^3$" : latex_text(column.unit);
-    text += (broken ? "\\\\(" : " (") + unit + ")";
+    text += (broken ? "\\\\(" : " (") + latex_text(column.unit) + ")";
   }
   if (!broken) return text;
   return std::string("\\shortstack[") + (column.aligned == Aligned::right ? "r" : "l") + "]{" + text + "}";

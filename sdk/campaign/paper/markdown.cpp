@@ -1,6 +1,8 @@
 #include "sdk/campaign/paper/markdown.h"
 
+#include "core_stack/common/character_count.h"
 #include "core_stack/common/printable.h"
+#include "sdk/campaign/paper/printed_figure.h"
 
 namespace karst::campaign {
 namespace {
@@ -27,18 +29,14 @@ std::string markdown_text(std::string_view plain) {
 std::string markdown_table(const PaperTable& table) {
   constexpr std::size_t kRule = 3;  // "--:" is the shortest that every reader takes
   const auto grid = laid_out(
-      table, kRule,
-      [](const PaperColumn& c) {
-        const std::string unit = c.unit == "m^3" ? "m\u00B3" : markdown_text(c.unit);
-        return markdown_text(c.heading) + (unit.empty() ? "" : " (" + unit + ")");
-      },
+      table, kRule, [](const PaperColumn& c) { return markdown_text(with_unit(c.heading, c.unit)); },
       [](const PaperCell& c) {
         return c.bold ? "**" + markdown_text(c.text) + "**" : markdown_text(c.text);
       });
   std::vector<std::string> rules;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool right = table.columns[c].aligned == Aligned::right;
-    const std::string dashes(width_of(grid.front()[c]) - 1, '-');
+    const std::string dashes(core::character_count(grid.front()[c]) - 1, '-');
     rules.push_back(right ? dashes + ":" : ":" + dashes);
   }
   std::string out =

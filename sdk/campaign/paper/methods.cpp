@@ -109,7 +109,7 @@ std::string failures_sentence(const CampaignResults& results) {
   for (std::size_t i = 0; i < failed.size(); ++i)
     if (failed[i] > 0) parts.push_back(std::to_string(failed[i]) + " of " + results.contestants[i].name);
   if (parts.empty()) return "No flight failed.";
-  return "Flights that failed (crashed, hung or could not start): " + listed(parts) +
+  return "Flights that failed (the simulation crashed, hung or could not start): " + listed(parts) +
          "; they count with what they had reached, and a value that is not in their record counts as the "
          "worst.";
 }

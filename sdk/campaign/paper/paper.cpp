@@ -66,6 +66,7 @@ PaperFiles write_paper(const fs::path& folder_or_store, const fs::path& folder, 
   const ResultsWithExtras campaign = read_with_extras(folder_or_store);
   VerdictOptions verdict;
   verdict.metric = options.metric.empty() ? campaign.results.metric : options.metric;
+  verdict.simulations = 0;  // a paper has no forecast
   const Texts texts = paper_texts(campaign, verdict);
   const auto converter = pdf_converter(options.search_path);
   PaperFiles files{files_of(texts, folder, converter.has_value()), converter.has_value()};

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
-namespace karst::campaign {
+#include "core_stack/common/character_count.h"
 
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
+namespace karst::campaign {
 
 std::vector<std::vector<std::string>> laid_out(const PaperTable& table, std::size_t min_width,
                                                const std::function<std::string(const PaperColumn&)>& heading,
@@ -20,9 +17,9 @@ std::vector<std::vector<std::string>> laid_out(const PaperTable& table, std::siz
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     std::size_t width = min_width;
-    for (const auto& line : grid) width = std::max(width, width_of(line[c]));
+    for (const auto& line : grid) width = std::max(width, core::character_count(line[c]));
     for (auto& line : grid) {
-      const std::string blanks(width - width_of(line[c]), ' ');
+      const std::string blanks(width - core::character_count(line[c]), ' ');
       line[c] = table.columns[c].aligned == Aligned::right ? blanks + line[c] : line[c] + blanks;
     }
   }

@@ -1,5 +1,6 @@
 // A table of a paper as a value: what stands in it, in whatever language it is written.
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -27,9 +28,6 @@ struct PaperTable {
   std::vector<PaperColumn> columns;
   std::vector<std::vector<PaperCell>> rows;  // each with a cell for every column
 };
-
-/// Characters, not bytes, of UTF-8.
-std::size_t width_of(const std::string& text);
 
 /// The headings and then the rows, written by the two functions, with the texts of a column padded to one
 /// width of at least `min_width`.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core_stack/common/character_count.h"
 #include "core_stack/common/printable.h"
-#include "sdk/campaign/paper/paper_table.h"
 #include "sdk/campaign/verdict/figure_words.h"
 
 namespace karst::campaign {
@@ -41,7 +41,7 @@ std::string xml_text(const std::string& plain) {
 std::string pt(double v) { return fixed_text(v, 2); }
 
 double text_width_pt(const std::string& text, double size_pt) {
-  return kCharacter * size_pt * static_cast<double>(width_of(text));
+  return kCharacter * size_pt * static_cast<double>(core::character_count(text));
 }
 
 std::string attribute(const char* name, std::string_view value) {

@@ -1,13 +1,13 @@
 #include "sdk/campaign/store/export.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <utility>
 
 #include "core_stack/common/csv_cell.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
@@ -31,13 +31,7 @@ std::array<std::pair<const char*, double>, 9> timing_of(const TrialTiming& t) {
            {"plan_max_ms", f.plan_max_ms}}};
 }
 
-/// The shortest text that parses to the same number.
-std::string number_cell(double v) {
-  if (!std::isfinite(v)) return "";
-  std::array<char, 32> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), v).ptr;
-  return {text.data(), end};
-}
+std::string number_cell(double v) { return std::isfinite(v) ? core::shortest_text(v) : ""; }
 
 ordered_json value(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "core_stack/common/format_text.h"
 
 namespace karst::campaign {
 namespace {
@@ -54,12 +55,7 @@ std::string verb_of(const evaluation::MetricDefinition& d, bool more) {
   return std::string(more ? "has more " : "has less ") + std::string(d.name) + " than";
 }
 
-bool is_fraction(std::string_view name) {
-  constexpr std::array kFractions = {"completed",      "standing_share", "coverage",          "coverage_auc",
-                                     "coverage_at_25", "coverage_at_50", "coverage_at_75",    "surface_seen",
-                                     "surface_imaged", "battery_left",   "data_at_base_share"};
-  return std::find(kFractions.begin(), kFractions.end(), name) != kFractions.end();
-}
+bool is_fraction(const evaluation::MetricDefinition& d) { return d.unit.empty() && d.most == 1; }
 
 std::span<const std::string_view> headline_figures() {
   static constexpr std::array<std::string_view, 6> kNames = {
@@ -73,10 +69,9 @@ int decimals_for(double scale, int digits) {
 }
 
 std::string fixed_text(double v, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, v);
+  const std::string text = core::format_text("%.*f", decimals, v);
   const std::string_view zero("-0.000000", static_cast<std::size_t>(decimals ? decimals + 3 : 2));
-  return text.data() == zero ? std::string(text.data() + 1) : text.data();
+  return text == zero ? text.substr(1) : text;
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -16,7 +16,7 @@ std::string subject_of(const evaluation::MetricDefinition& figure);
 std::string verb_of(const evaluation::MetricDefinition& figure, bool more);
 
 /// Whether it is a share, which is printed in percent; differences are then in percentage points.
-bool is_fraction(std::string_view figure);
+bool is_fraction(const evaluation::MetricDefinition& figure);
 
 /// The figures that say most of a campaign, beside the one that decides the verdict.
 std::span<const std::string_view> headline_figures();

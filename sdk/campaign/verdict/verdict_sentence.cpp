@@ -22,7 +22,7 @@ const MetricDefinition& definition(int metric) {
 }
 
 std::string unit_of(const MetricDefinition& d) {
-  return is_fraction(d.name) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
+  return is_fraction(d) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
 }
 
 /// Uses as many decimals as two significant digits of `scale` need.
@@ -55,7 +55,7 @@ std::string failures(const Comparison& c, const CampaignResults& results) {
 /// The size of the difference with its interval, signed so that the mean is positive.
 std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
   const MetricDefinition& d = definition(c.metric);
-  const double factor = is_fraction(d.name) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
+  const double factor = is_fraction(d) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
   double low = sign * c.interval.low, high = sign * c.interval.high;
   if (low > high) std::swap(low, high);
   const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
@@ -82,7 +82,7 @@ std::string why_none(const Comparison& c, const CampaignResults& results, const 
 std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
   const Forecast& f = c.forecast_worthwhile;
   const MetricDefinition& d = definition(c.metric);
-  const double factor = is_fraction(d.name) ? 100 : 1, effect = factor * c.worthwhile;
+  const double factor = is_fraction(d) ? 100 : 1, effect = factor * c.worthwhile;
   const std::string difference = "a difference of " + number(100 * options.worthwhile, 10) + " % (" +
                                  number(effect, effect) + unit_of(d) + ")";
   if (options.simulations == 0) return "";

@@ -1,9 +1,11 @@
 #include "sdk/evaluation/decisions/clock.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <string_view>
+#include <system_error>
+
+#include "core_stack/common/format_text.h"
 
 namespace karst::evaluation {
 namespace {
@@ -31,10 +33,8 @@ std::optional<double> seconds_of_clock(const std::string& text) {
 
 std::string clock_text(double t_s) {
   const long long hundredths = std::llround(100 * std::abs(t_s));
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%s%lld:%02lld.%02lld", t_s < 0 ? "-" : "", hundredths / 6000,
-                hundredths / 100 % 60, hundredths % 100);
-  return text.data();
+  return core::format_text("%s%lld:%02lld.%02lld", t_s < 0 ? "-" : "", hundredths / 6000,
+                           hundredths / 100 % 60, hundredths % 100);
 }
 
 }  // namespace karst::evaluation

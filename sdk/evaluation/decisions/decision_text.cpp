@@ -1,11 +1,10 @@
 #include "sdk/evaluation/decisions/decision_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/decisions/clock.h"
 
@@ -13,6 +12,7 @@ namespace karst::evaluation {
 namespace {
 
 using core::counted;
+using core::format_text;
 using core::Vec3;
 using nlohmann::json;
 namespace event = core::event;
@@ -20,17 +20,12 @@ namespace event = core::event;
 constexpr double kSamePlace_m = 1e-6;  // as events and answers hold a goal
 constexpr double kUnderWay_m = 0.3;    // nearer than this the vehicle flies on to the goal that it has
 
-template <class... Values>
-std::string printed(const char* format, Values... values) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
+std::string number_text(double v, const char* format) {
+  return std::isfinite(v) ? format_text(format, v) : "?";
 }
 
-std::string number_text(double v, const char* format) { return std::isfinite(v) ? printed(format, v) : "?"; }
-
 std::string place_text(const Vec3& p) {
-  return p.allFinite() ? printed("(%.2f %.2f %.2f)", p.x(), p.y(), p.z()) : "(?)";
+  return p.allFinite() ? format_text("(%.2f %.2f %.2f)", p.x(), p.y(), p.z()) : "(?)";
 }
 
 std::string frontier_text(std::uint32_t id) {
@@ -43,8 +38,8 @@ std::string after(const std::string& introduction, const std::string& text) {
 }
 
 std::string goal_line(const char* what, const event::Goal& g) {
-  return printed("  %-9s", what) + place_text(g.position) + " m, " + frontier_text(g.frontier) + ", score " +
-         number_text(g.score, "%.3f") + after(", ", g.why) + after(": ", g.reason) + "\n";
+  return format_text("  %-9s", what) + place_text(g.position) + " m, " + frontier_text(g.frontier) +
+         ", score " + number_text(g.score, "%.3f") + after(", ", g.why) + after(": ", g.reason) + "\n";
 }
 
 std::string fate_text(const DecisionRecord& d) {
@@ -56,7 +51,7 @@ std::string fate_text(const DecisionRecord& d) {
   if (g.planned_anew > 0)
     text += "planned anew " + counted(static_cast<std::size_t>(g.planned_anew), "time") + ", then ";
   if (!g.until_s) return text + "still flown to when the record ends.\n";
-  return text + g.fate + " at " + clock_text(*g.until_s) + ", " + printed("%.1f", *g.until_s - d.t_s) +
+  return text + g.fate + " at " + clock_text(*g.until_s) + ", " + format_text("%.1f", *g.until_s - d.t_s) +
          " s later" + after(": ", g.reason) + ".\n";
 }
 
@@ -65,9 +60,9 @@ std::string frontier_lines(const DecisionRecord& d) {
   std::string text = counted(d.offered.size(), "frontier") + (d.offered.size() == 1 ? " was" : " were") +
                      " offered:\n    id  unknown cells  distance, m  centroid, m\n";
   for (const event::Cluster& c : d.offered) {
-    const std::string distance = d.vehicle ? printed("%.1f", (c.centroid - *d.vehicle).norm()) : "?";
-    text +=
-        printed("%6u  %13u  %11s  ", c.id, c.unknown_cells, distance.c_str()) + place_text(c.centroid) + "\n";
+    const std::string distance = d.vehicle ? format_text("%.1f", (c.centroid - *d.vehicle).norm()) : "?";
+    text += format_text("%6u  %13u  %11s  ", c.id, c.unknown_cells, distance.c_str()) +
+            place_text(c.centroid) + "\n";
   }
   return text;
 }
@@ -99,7 +94,7 @@ std::string fate_in(const DecisionRecord& d, const Vec3& place) {
 }  // namespace
 
 std::string decision_text(const DecisionRecord& d) {
-  std::string text = printed("Decision %zu of %zu at ", d.number, d.of) + clock_text(d.t_s) +
+  std::string text = format_text("Decision %zu of %zu at ", d.number, d.of) + clock_text(d.t_s) +
                      after(", phase ", d.phase) + after(", by ", d.decision.policy) + ": " +
                      core::name_of(d.decision.outcome) + after(", ", d.decision.reason) + ". " +
                      counted(d.decision.goals, "goal") + " proposed" +
@@ -127,7 +122,7 @@ std::string answer_table(const RecordedAnswer& recorded, const DecisionRecord& d
   std::size_t rank = 0;
   for (const json& goal : *goals) {
     const Vec3 place = place_of(goal);
-    text += printed("%4zu  score ", ++rank) +
+    text += format_text("%4zu  score ", ++rank) +
             number_text(event_number(goal, "score").value_or(event::kUnknown), "%.3f") + "  " +
             place_text(place) + " m, " + frontier_text(frontier_of(goal)) +
             after(", ", event_text(goal, "why")) + "\n        " + fate_in(d, place) + "\n";

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
+#include "core_stack/common/format_text.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 
 namespace karst::evaluation {
 namespace {
 
+using core::format_text;
 using core::MissionOutcome;
 namespace event = core::event;
 
@@ -52,12 +53,6 @@ std::string afterwards(const std::string& reason) {
     if (known.recorded.ends_with(": ")) return std::string(known.afterwards) + " (" + detail + ")";
   }
   return reason;
-}
-
-std::string number(const char* format, double v) {
-  std::array<char, 40> text;
-  std::snprintf(text.data(), text.size(), format, v);
-  return text.data();
 }
 
 /// The begin of a phase that ended something.
@@ -112,7 +107,7 @@ Course course_of(const RunRecord& run) {
 
 /// " after 64 s" of flight; "" if it did not take off.
 std::string after(const Course& c, double time_s) {
-  return c.takeoff_s ? number(" after %.0f s", time_s - *c.takeoff_s) : "";
+  return c.takeoff_s ? format_text(" after %.0f s", time_s - *c.takeoff_s) : "";
 }
 
 /// Why exploration ended, behind "home" and the like.
@@ -155,7 +150,7 @@ std::string of_landing(const Course& c, const EndFigures& figures) {
     return std::string("landed as a relay") + (c.out_of_contact ? ", out of contact with the base," : "") +
            cause(c);
   const double off_m = figures.landing_error_m.value_or(0);
-  return "home" + cause(c) + (off_m > kAtStart_m ? number("; landed %.1f m from the start", off_m) : "");
+  return "home" + cause(c) + (off_m > kAtStart_m ? format_text("; landed %.1f m from the start", off_m) : "");
 }
 
 /// `reason`: "on the ground 12.3 m from the start", or why it never left the ground.
@@ -218,7 +213,7 @@ Ending ending_of(const RunRecord& run, const EndFigures& figures) {
                         : "the record ends" + after(course, run.last_time_s()) + doing(course);
   const bool empty = end && end->outcome == MissionOutcome::battery;
   if (figures.battery_left && std::isfinite(*figures.battery_left) && !empty)
-    ending.sentence += number("; %.0f %% battery left", 100 * *figures.battery_left);
+    ending.sentence += format_text("; %.0f %% battery left", 100 * *figures.battery_left);
   return ending;
 }
 

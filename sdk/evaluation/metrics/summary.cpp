@@ -1,8 +1,8 @@
 #include "sdk/evaluation/metrics/summary.h"
 
-#include <array>
-#include <cstdio>
 #include <optional>
+
+#include "core_stack/common/format_text.h"
 
 namespace karst::evaluation {
 namespace {
@@ -22,10 +22,7 @@ std::string text_of(const ordered_json& metrics, const char* key) {
 
 /// The number in `format`; "" if it is not known.
 std::string part(const char* format, std::optional<double> v) {
-  if (!v) return "";
-  std::array<char, 80> text;
-  std::snprintf(text.data(), text.size(), format, *v);
-  return text.data();
+  return v ? core::format_text(format, *v) : "";
 }
 
 std::string who(const ordered_json& metrics, const Ending& ending) {

@@ -1,19 +1,16 @@
 // What a policy was asked or told, named in the messages about its failures: what to look for in a record
 // of requests (docs/testing_policies.md). The same in every replay.
 #pragma once
-#include <array>
-#include <cstdio>
 #include <string>
 
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/time.h"
 #include "core_stack/mission/policy/policy_port.h"
 
 namespace karst::host {
 
 inline std::string at_time(core::TimeNs stamp) {
-  std::array<char, 40> text;
-  std::snprintf(text.data(), text.size(), " at %.1f s", core::seconds(stamp));
-  return text.data();
+  return core::format_text(" at %.1f s", core::seconds(stamp));
 }
 
 /// "request 7 at 12.3 s".

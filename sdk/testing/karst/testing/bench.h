@@ -27,7 +27,7 @@ class Bench {
   Bench(const karst_plugin_t* plugin, DrawnMap map, Values values = {}, std::uint32_t index = 0)
       : host_(std::move(map)), policy_(plugin->policy(index)), values_(std::move(values)) {
     if (policy_ == nullptr) throw Error("the plugin has no such policy");
-    start({});
+    create({});
   }
   ~Bench() { end(); }
   Bench(const Bench&) = delete;
@@ -151,7 +151,7 @@ class Bench {
   /// from `bytes` unless they are empty.
   void restart(const std::vector<unsigned char>& bytes) {
     end();
-    start(bytes);
+    create(bytes);
   }
 
   void tell(karst_event_kind_t kind, const Goal& goal, const std::string& reason = "") {
@@ -172,7 +172,7 @@ class Bench {
     last_fate = fate;
     tell(kind, goal, reason);
   }
-  void start(const std::vector<unsigned char>& bytes) {
+  void create(const std::vector<unsigned char>& bytes) {
     karst_error_t e{};
     self_ = policy_->create(host_.host(), &e);
     if (self_ == nullptr) throw Error(e.text, e.code);

@@ -71,7 +71,7 @@ TEST(LatexTable, IsABooktabsTable) {
   const PaperTable table{
       "a b%",
       "Caves of 50 %",
-      {{"Name", "", Aligned::left}, {"Volume", "m^3"}},
+      {{"Name", "", Aligned::left}, {"Volume", "m\u00B3"}},
       {std::vector<PaperCell>{{"x_1"}, {"10.5", true}}, std::vector<PaperCell>{{"y"}, {"9.0"}}}};
   EXPECT_EQ(latex_table(table),
             "% Needs \\usepackage{booktabs}.\n"

@@ -33,7 +33,7 @@ TEST(MarkdownTable, IsAlignedInItsSource) {
   const PaperTable table{
       "t",
       "Caves of 50 %",
-      {{"Name", "", Aligned::left}, {"Volume", "m^3"}},
+      {{"Name", "", Aligned::left}, {"Volume", "m\u00B3"}},
       {std::vector<PaperCell>{{"x_1"}, {"10.5", true}}, std::vector<PaperCell>{{"y"}, {"9.0"}}}};
   EXPECT_EQ(markdown_table(table),
             "**Table:** Caves of 50 %\n"

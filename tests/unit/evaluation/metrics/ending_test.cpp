@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 
+#include "core_stack/common/input_file.h"
 #include "core_stack/common/time.h"
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -45,13 +44,6 @@ Ending ending(const std::string& events, const EndFigures& figures = {}) {
   TemporaryDirectory dir;
   dir.write("events.jsonl", events);
   return ending_of(read_events_alone(dir.path()), figures);
-}
-
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::ostringstream all;
-  all << in.rdbuf();
-  return all.str();
 }
 
 /// What sends a vehicle home without the supervisor: the mission goes as meant.
@@ -107,7 +99,7 @@ std::string sources() {
   std::string all;
   for (const auto& e :
        std::filesystem::recursive_directory_iterator(std::string(KARST_SOURCE_DIR) + "/core_stack/mission"))
-    if (e.path().extension() == ".cpp") all += bytes_of(e.path());
+    if (e.path().extension() == ".cpp") all += core::read_input(e.path(), core::kMaxTextFileBytes);
   return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
 }
 

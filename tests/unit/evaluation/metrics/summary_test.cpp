@@ -11,12 +11,12 @@ ordered_json metrics() {
   return {{"policy", "nearest_frontier"},  {"cave", "small"},    {"flight_time_s", 39.715},
           {"explored_volume_m3", 505.528}, {"coverage", 0.3867}, {"min_clearance_m", 0.3803}};
 }
-const Ending kHome{.as_meant = true,
-                   .sentence = "home because nothing was left to explore; 62 % battery left"};
+const Ending kWentHome{.as_meant = true,
+                       .sentence = "home because nothing was left to explore; 62 % battery left"};
 
 TEST(Summary, TellsWhoExploredHowMuchOfWhatHowFastHowCloseToRockAndHowItEnded) {
   EXPECT_EQ(
-      summary_of(metrics(), kHome),
+      summary_of(metrics(), kWentHome),
       "nearest_frontier explored 506 m³ of small (38.7 % of what can be reached) in 40 s, 0.38 m or more "
       "from rock; home because nothing was left to explore; 62 % battery left");
 }
@@ -24,11 +24,11 @@ TEST(Summary, TellsWhoExploredHowMuchOfWhatHowFastHowCloseToRockAndHowItEnded) {
 TEST(Summary, LeavesOutWhatIsNotKnown) {
   ordered_json m = metrics();
   for (const char* key : {"coverage", "min_clearance_m"}) m[key] = nullptr;
-  EXPECT_EQ(achievement_of(m, kHome), "nearest_frontier explored 506 m³ of small in 40 s");
+  EXPECT_EQ(achievement_of(m, kWentHome), "nearest_frontier explored 506 m³ of small in 40 s");
   m["explored_volume_m3"] = nullptr;
-  EXPECT_EQ(achievement_of(m, kHome), "nearest_frontier flew in small for 40 s");
+  EXPECT_EQ(achievement_of(m, kWentHome), "nearest_frontier flew in small for 40 s");
   m["flight_time_s"] = nullptr;
-  EXPECT_EQ(achievement_of(m, kHome), "nearest_frontier flew in small");
+  EXPECT_EQ(achievement_of(m, kWentHome), "nearest_frontier flew in small");
   EXPECT_EQ(summary_of(ordered_json::object(), {}), "the vehicle flew");
   EXPECT_EQ(summary_of({{"policy", 3}, {"explored_volume_m3", "much"}}, {}), "the vehicle flew")
       << "damaged figures are not known";
@@ -37,11 +37,11 @@ TEST(Summary, LeavesOutWhatIsNotKnown) {
 TEST(Summary, OfAFlightThatTouchedRockClaimsNoClearance) {
   ordered_json m = metrics();
   m["min_clearance_m"] = -0.01;
-  EXPECT_EQ(achievement_of(m, kHome).find("from rock"), std::string::npos);
+  EXPECT_EQ(achievement_of(m, kWentHome).find("from rock"), std::string::npos);
 }
 
 TEST(Summary, AfterAFailureOfThePolicyNamesTheFallback) {
-  Ending ending = kHome;
+  Ending ending = kWentHome;
   ending.failed_policy = FailedPolicy{6.7, "it crashed"};
   EXPECT_EQ(
       achievement_of(metrics(), ending).find("nearest_frontier, and after it failed the fallback, explored"),
@@ -55,7 +55,7 @@ TEST(Summary, OfATeamCountsItsRobotsAndTakesTheWholeTime) {
   m["duration_s"] = 95.2;
   m["robots"] = {ordered_json::object(), ordered_json::object()};
   EXPECT_EQ(
-      achievement_of(m, kHome),
+      achievement_of(m, kWentHome),
       "a team of 2 with nearest_frontier explored 506 m³ of small (38.7 % of what can be reached) in 95 s");
 }
 

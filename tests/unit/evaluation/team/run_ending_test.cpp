@@ -12,12 +12,12 @@ namespace {
 
 using test::TemporaryDirectory;
 
-constexpr const char* kHome = R"({"t": 1, "kind": "phase", "phase": "takeoff"}
+constexpr const char* kHomeEvents = R"({"t": 1, "kind": "phase", "phase": "takeoff"}
 {"t": 4, "kind": "phase", "phase": "explore"}
 {"t": 64, "kind": "phase", "phase": "home", "reason": "explored: no frontier can be reached"}
 {"t": 92, "kind": "outcome", "outcome": "landed", "reason": "at the start"}
 )";
-constexpr const char* kLost = R"({"t": 1, "kind": "phase", "phase": "takeoff"}
+constexpr const char* kLostEvents = R"({"t": 1, "kind": "phase", "phase": "takeoff"}
 {"t": 4, "kind": "phase", "phase": "explore"}
 {"t": 5, "kind": "safety", "action": "land", "reason": "the state estimate is lost: no pose for too long"}
 {"t": 5, "kind": "phase", "phase": "land", "reason": "the state estimate is lost: no pose for too long"}
@@ -27,7 +27,7 @@ constexpr const char* kLost = R"({"t": 1, "kind": "phase", "phase": "takeoff"}
 TEST(RunEnding, OfAVehicleIsThatOfItsEventsAndFigures) {
   TemporaryDirectory dir;
   EXPECT_EQ(read_ending(dir.path()).sentence, "") << "no events";
-  dir.write("events.jsonl", kHome);
+  dir.write("events.jsonl", kHomeEvents);
   EXPECT_EQ(read_ending(dir.path()).sentence, "home because nothing was left to explore");
   EXPECT_TRUE(read_ending(dir.path()).as_meant);
   dir.write("metrics.json", R"({"battery_left": 0.622, "landing_error_m": 1.5})");
@@ -36,7 +36,7 @@ TEST(RunEnding, OfAVehicleIsThatOfItsEventsAndFigures) {
   EXPECT_FALSE(read_ending(dir.path()).as_meant);
   dir.write("metrics.json", "{cut");
   EXPECT_TRUE(read_ending(dir.path()).as_meant) << "damaged figures are not known";
-  dir.write("events.jsonl", kLost);
+  dir.write("events.jsonl", kLostEvents);
   EXPECT_EQ(read_ending(dir.path()).sentence, "home after 4 s: the pose was lost (no pose for too long)");
   EXPECT_FALSE(read_ending(dir.path()).as_meant);
   EXPECT_EQ(read_ending(dir.path() / "nowhere").sentence, "");
@@ -46,12 +46,12 @@ TEST(RunEnding, OfATeamIsOneForEachRobotAndAsMeantIfAllAre) {
   TemporaryDirectory dir;
   for (const char* robot : {"robot_1", "robot_2"}) std::filesystem::create_directory(dir.path() / robot);
   dir.write("team.jsonl", "{\"t\": 0, \"kind\": \"team\", \"robots\": 2}\n");
-  dir.write("robot_1/events.jsonl", kHome);
-  dir.write("robot_2/events.jsonl", kHome);
+  dir.write("robot_1/events.jsonl", kHomeEvents);
+  dir.write("robot_2/events.jsonl", kHomeEvents);
   ASSERT_EQ(read_endings(dir.path()).size(), 2u);
   EXPECT_TRUE(read_ending(dir.path()).as_meant);
   EXPECT_EQ(read_ending(dir.path()).sentence, "all 2 robots flew as meant");
-  dir.write("robot_2/events.jsonl", kLost);
+  dir.write("robot_2/events.jsonl", kLostEvents);
   EXPECT_FALSE(read_ending(dir.path()).as_meant);
   EXPECT_EQ(read_ending(dir.path()).sentence,
             "robot 2: home after 4 s: the pose was lost (no pose for too long)");

@@ -163,7 +163,8 @@ TEST_F(ExplorationTest, WithoutBatteryForAnyGoalItGoesHomeAtOnce) {
   low.seconds_left = onboard.options.mission.home_reserve_s + 1;
   endurance.note(low);
   answer = [](const DecisionRequest&) { return go_to({6, 0, 1}); };
-  while (asked == 0) steps(0.1);
+  for (int i = 0; i < 30 && asked == 0; ++i) steps(0.1);
+  ASSERT_EQ(asked, 1);
   steps(onboard.options.mission.decision_budget_s + 0.2);
   EXPECT_EQ(went_home, "what is left is too far for the battery, or for the time allowed");
 }

@@ -162,6 +162,21 @@ TEST(CapHoles, SeamsOfTilesStayOpenAndTheEntranceIsClosed) {
   EXPECT_EQ(RayScene(c.mesh).crossings({Vec3f(5, 0.1f, 0.2f), Vec3f::UnitX()}), 1) << "no wall at the seam";
 }
 
+TEST(CapHoles, ASlitIsNoHole) {
+  // The wall at -x is two quads, whose corners lie in the middle of the floor's and the roof's edge.
+  TriangleMesh m = box_mesh({0, 0, 0}, {2, 2, 2}, 0b111110);
+  add_quad(m, {0, 0, 0}, {0, 1, 0}, {0, 1, 2}, {0, 0, 2});
+  add_quad(m, {0, 1, 0}, {0, 2, 0}, {0, 2, 2}, {0, 1, 2});
+  const Capped c = cap_holes(RayScene(m), 20);
+  ASSERT_EQ(c.loops.size(), 2u);
+  for (const cave::CapOfLoop& l : c.loops) {
+    EXPECT_EQ(l.left, LeftOpen::slit);
+    EXPECT_EQ(l.loop.vertices.size(), 3u);
+  }
+  EXPECT_EQ(c.mesh.triangles.size(), m.triangles.size());
+  EXPECT_EQ(c.mesh.vertices.size(), m.vertices.size());
+}
+
 TEST(CapHoles, AConcaveHoleIsCoveredWithinItsBorder) {
   // A floor with a hole like the letter U; a fan round its middle would cover the tongue of rock, too.
   TriangleMesh m;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <functional>
 
@@ -179,6 +180,11 @@ TEST_F(MeshFrames, FloatsNearTheOriginMayHaveAnOffset) {
     EXPECT_FALSE(cave::holds_double_precision(folder_ + "/" + name)) << name;
     EXPECT_LT(difference(load_mesh(folder_ + "/" + name, offset(near)), tunnel_), 2e-5) << name;
   }
+  std::string bytes = read_bytes(folder_ + "/near.stl");
+  bytes.replace(0, 5, "solid");  // as some programs begin a binary file
+  const std::string solid = written("solid.stl", bytes);
+  EXPECT_FALSE(cave::holds_double_precision(solid));
+  EXPECT_LT(difference(load_mesh(solid, offset(near)), tunnel_), 2e-5);
   const std::string big = written("big.ply", binary_ply<float>(there, Vec3::Zero(), "float", true));
   EXPECT_LT(difference(load_mesh(big, offset(near)), tunnel_), 2e-5);
 }
@@ -252,6 +258,12 @@ TEST_F(MeshFrames, OnlyVerticesAreMoved) {
       "ply\nformat ascii 1.0\nelement camera 2\nproperty float f\nelement vertex 1\nproperty float q\n"
       "property float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n";
+  EXPECT_EQ(moved("b.stl", "solid a\r\n vertex 1 2 4\r\nendsolid a\r\n"),
+            "solid a\r\n vertex 0 0 1\r\nendsolid a\r\n");
+  const std::string dos =
+      "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty float x\r\nproperty float y\r\n"
+      "property float z\r\nend_header\r\n";
+  EXPECT_EQ(moved("b.ply", dos + "1.5 2 3\r\n"), dos + "0.5 0 0\r\n");
   EXPECT_EQ(moved("a.ply", head + "9\n9\n9 1.5 2 3\n3 0 0 0\n"), head + "9\n9\n9 0.5 0 0\n3 0 0 0\n");
 }
 
@@ -281,7 +293,9 @@ RC_GTEST_PROP(MeshFrame, ThereAndBackIsTheSamePlace, ()) {
   const Vec3 x = cave::to_metres(f, Vec3(1, 0, 0)), y = cave::to_metres(f, Vec3(0, 1, 0)),
              z = cave::to_metres(f, Vec3(0, 0, 1));
   RC_ASSERT(std::abs(x.cross(y).dot(z) / std::pow(f.metres_per_unit, 3) - 1) < 1e-9);
-  RC_ASSERT(cave::to_text(f) == cave::to_text(f));
+  MeshFrame other = f;
+  other.offset.z() += 1;
+  RC_ASSERT(cave::to_text(other) != cave::to_text(f));
 }
 
 }  // namespace
