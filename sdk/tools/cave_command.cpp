@@ -204,8 +204,10 @@ void info_without_start(const InfoArguments& args, const core::MeshKeys& keys) {
   if (suits)
     print_out("  start              none given; one that suits: --start \"%s\"\n",
               cave::start_text(*suits).c_str());
+  else if (report.advice.empty())
+    print_out("  start              none given, and none found that suits: give --start \"x y z\"\n");
   else
-    print_out("  no start pose: give --start \"x y z\" for clearance and volumes\n");
+    print_out("  start              none given; one is proposed when unit, axis and origin are right\n");
 }
 
 /// Adds to a refusal what helps.

@@ -1,5 +1,6 @@
 #include "plugins/simulator/cave/cap_holes.h"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "plugins/simulator/cave/mesh_frame.h"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
