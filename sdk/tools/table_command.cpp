@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -77,6 +78,16 @@ std::optional<double> number_of(const nlohmann::json& metrics, const Column& col
   return column.factor * value->get<double>();
 }
 
+/// The columns for which at least one run has a number.
+std::vector<Column> known_columns(const std::vector<nlohmann::json>& runs) {
+  std::vector<Column> known;
+  std::copy_if(kColumns.begin(), kColumns.end(), std::back_inserter(known), [&runs](const Column& c) {
+    return std::any_of(runs.begin(), runs.end(),
+                       [&c](const nlohmann::json& m) { return number_of(m, c).has_value(); });
+  });
+  return known;
+}
+
 std::string text_of(const std::optional<double>& number, const Column& column) {
   if (!number) return "-";
   std::array<char, 32> text;
@@ -112,14 +123,14 @@ std::string no_run(const std::string& folder) {
 }
 
 /// Prints the spread of the figures over all runs that have some, in five lines of the same table.
-void print_spread(const std::vector<nlohmann::json>& runs) {
+void print_spread(const std::vector<nlohmann::json>& runs, const std::vector<Column>& columns) {
   std::map<std::string, int> outcomes;
   for (const nlohmann::json& m : runs) ++outcomes[text_of(m, "outcome")];
   std::string counted;
   for (const auto& [outcome, count] : outcomes)
     counted += (counted.empty() ? "" : ", ") + std::to_string(count) + " " + outcome;
   std::vector<std::vector<double>> sorted;
-  for (const Column& c : kColumns) {
+  for (const Column& c : columns) {
     std::vector<double>& values = sorted.emplace_back();
     for (const nlohmann::json& m : runs)
       if (const auto v = number_of(m, c)) values.push_back(*v);
@@ -130,8 +141,8 @@ void print_spread(const std::vector<nlohmann::json>& runs) {
         std::pair{"greatest", 1.0}}) {
     std::string line = std::string("| **") + title + "** | of " + std::to_string(runs.size()) + " | | " +
                        (fraction == 0 ? counted : "") + " |";
-    for (std::size_t i = 0; i < kColumns.size(); ++i)
-      line += " " + text_of(quantile(sorted[i], fraction), kColumns[i]) + " |";
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      line += " " + text_of(quantile(sorted[i], fraction), columns[i]) + " |";
     print_out("%s |\n", line.c_str());
   }
 }
@@ -145,14 +156,13 @@ void add_table_command(CLI::App& app) {
   auto runs = std::make_shared<std::vector<std::string>>();
   table->add_option("runs", *runs, "run directories")->type_name(kFolder)->required();
   table->callback([runs] {
-    std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
-    for (const Column& c : kColumns) {
-      head += std::string(" ") + c.title + " |";
-      rule += "---:|";
-    }
-    print_out("%s ended |\n%s---|\n", head.c_str(), rule.c_str());
+    struct Row {
+      std::string run;
+      nlohmann::json metrics;
+    };
     std::vector<std::string> problems;
-    std::vector<nlohmann::json> all;
+    std::vector<Row> rows;
+    std::vector<nlohmann::json> all;  // that have figures
     std::vector<std::string> skipped;
     for (const std::string& run : *runs) {
       if (const std::string what = no_run(run); !what.empty()) {
@@ -162,13 +172,24 @@ void add_table_command(CLI::App& app) {
       std::string problem;
       const nlohmann::json m = metrics_of(run, problem);
       if (!problem.empty()) problems.push_back(problem);
-      std::string line = "|";
-      for (const char* key : {"cave", "policy", "seed", "outcome"}) line += " " + text_of(m, key) + " |";
-      for (const Column& c : kColumns) line += " " + text_of(number_of(m, c), c) + " |";
-      print_out("%s %s |\n", line.c_str(), ending_cell(run).c_str());
       if (!m.contains("no_figures")) all.push_back(m);
+      rows.push_back({run, m});
     }
-    if (all.size() > 1) print_spread(all);
+    const std::vector<Column> columns = known_columns(all);
+    std::string head = "| cave | policy | seed | outcome |", rule = "|---|---|---|---|";
+    for (const Column& c : columns) {
+      head += std::string(" ") + c.title + " |";
+      rule += "---:|";
+    }
+    print_out("%s ended |\n%s---|\n", head.c_str(), rule.c_str());
+    for (const Row& row : rows) {
+      std::string line = "|";
+      for (const char* key : {"cave", "policy", "seed", "outcome"})
+        line += " " + text_of(row.metrics, key) + " |";
+      for (const Column& c : columns) line += " " + text_of(number_of(row.metrics, c), c) + " |";
+      print_out("%s %s |\n", line.c_str(), ending_cell(row.run).c_str());
+    }
+    if (all.size() > 1) print_spread(all, columns);
     std::fflush(stdout);
     for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
     for (const std::string& p : skipped) print_error("karst: passed over: %s\n", p.c_str());

@@ -68,6 +68,16 @@ TEST(TableCommand, KeepsItsColumnsWhateverAPolicySays) {
       << lines[2];
 }
 
+TEST(TableCommand, LeavesOutColumnsThatNoRunHas) {
+  TemporaryDirectory battery, coverage;
+  battery.write("metrics.json", kMetrics);
+  EXPECT_EQ(table({battery.path()})[0], "| cave | policy | seed | outcome | battery % | ended |");
+  coverage.write("metrics.json", R"({"cave": "small", "coverage": 0.5, "path_length_m": null})");
+  const auto lines = table({battery.path(), coverage.path()});
+  EXPECT_EQ(lines[0], "| cave | policy | seed | outcome | coverage % | battery % | ended |");
+  EXPECT_EQ(lines[2], "| small | - | - | landed | - | 62 |  |") << "another run has it";
+}
+
 TEST(TableCommand, OfATeamNamesTheRobotsThatDidNotDoAsMeant) {
   TemporaryDirectory team;
   team.write("metrics.json", R"({"cave": "small", "outcome": "landed"})");
