@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/time.h"
 #include "sdk/evaluation/decisions/clock.h"
 #include "sdk/evaluation/decisions/decision_text.h"
+#include "sdk/evaluation/decisions/recorded_answers.h"
 #include "sdk/evaluation/team/team_folders.h"
-#include "sdk/host/serialization/request_log.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 
@@ -21,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using evaluation::DecisionRecord;
 using evaluation::RecordedAnswer;
-using host::RequestLogReader;
 
 DecisionRecord decision_of(const std::string& run, const std::string& at) {
   if (evaluation::is_team(run))
@@ -41,21 +39,18 @@ DecisionRecord decision_of(const std::string& run, const std::string& at) {
 /// passages, none where the fallback decided.
 std::vector<RecordedAnswer> answers_of(const fs::path& requests, const DecisionRecord& decision) {
   std::vector<RecordedAnswer> answers;
-  RequestLogReader log(requests, host::RequestReader::Keeps::map);
-  for (auto kind = log.next(); kind != RequestLogReader::Kind::end; kind = log.next()) {
-    if (kind == RequestLogReader::Kind::event) continue;
-    const double stamp_s = core::seconds(log.request().stamp);
-    if (stamp_s > decision.t_s) break;
-    if (kind == RequestLogReader::Kind::answer && evaluation::was_asked_for(decision, stamp_s))
-      answers.push_back({log.request().sequence, stamp_s, log.answer()});
-  }
+  evaluation::for_each_answer(requests, [&](const RecordedAnswer& a) {
+    if (a.stamp_s > decision.t_s) return false;
+    if (evaluation::was_asked_for(decision, a.stamp_s)) answers.push_back(a);
+    return true;
+  });
   return answers;
 }
 
 void explain_decision(const std::string& run, const std::string& at) {
   const DecisionRecord decision = decision_of(run, at);
   print_out("%s", evaluation::decision_text(decision).c_str());
-  const fs::path requests = fs::path(run) / host::kRequestLogName;
+  const fs::path requests = evaluation::requests_file(run);
   if (!fs::exists(requests)) {
     print_out("\nGoals behind the accepted one are not recorded: fly with --record-requests to see all.\n");
     return;

@@ -1,8 +1,10 @@
 #include "sdk/evaluation/decisions/decision_record.h"
 
 #include <limits>
+#include <map>
+#include <utility>
 
-#include "sdk/evaluation/report/report_goals.h"
+#include "sdk/evaluation/decisions/goal_spans.h"
 
 namespace karst::evaluation {
 namespace {
@@ -35,8 +37,7 @@ FlownGoal flown_goal(const ordered_json& spans, std::size_t i) {
 }
 
 /// The goal accepted at this time, or else the one accepted last of those under way then.
-std::optional<FlownGoal> goal_flown_at(const RunRecord& run, double t_s) {
-  const ordered_json spans = goal_spans(run);
+std::optional<FlownGoal> goal_flown_at(const ordered_json& spans, double t_s) {
   for (std::size_t i = spans.size(); i-- > 0;) {
     const double from_s = spans[i].at("t").get<double>();
     const ordered_json& until = spans[i].at("until");
@@ -58,33 +59,41 @@ void take(const json& e, DecisionRecord& d) {
 
 }  // namespace
 
-std::optional<DecisionRecord> decision_at(const RunRecord& run, double t_s) {
-  std::optional<DecisionRecord> found;
-  std::size_t count = 0;
+std::vector<DecisionRecord> decisions_of(const RunRecord& run) {
+  std::vector<DecisionRecord> all;
+  std::multimap<double, std::size_t> at;  // time: place in the list
   double previous_s = -std::numeric_limits<double>::infinity();
   std::string phase;
   for (const json& e : run.events) {
     if (const auto entered = event::as<event::Phase>(e)) phase = core::name_of(entered->phase);
     const auto decision = event::as<event::Decision>(e);
     if (!decision) continue;
-    const double at_s = e["t"].get<double>();
-    ++count;
-    if (at_s <= t_s + kClockRounding_s) {
-      found.emplace();
-      found->number = count;
-      found->t_s = at_s;
-      found->previous_s = previous_s;
-      found->phase = phase;
-      found->decision = *decision;
-    }
-    previous_s = at_s;
+    at.emplace(e["t"].get<double>(), all.size());
+    DecisionRecord& d = all.emplace_back();
+    d.number = all.size();
+    d.t_s = e["t"].get<double>();
+    d.previous_s = previous_s;
+    d.phase = phase;
+    d.decision = *decision;
+    previous_s = d.t_s;
   }
-  if (!found) return found;
-  found->of = count;
-  for (const json& e : run.events)
-    if (e["t"].get<double>() == found->t_s) take(e, *found);
-  found->flown = goal_flown_at(run, found->t_s);
-  if (!run.estimate.empty()) found->vehicle = pose_at(run.estimate, found->t_s).position;
+  for (const json& e : run.events) {
+    const auto [first, last] = at.equal_range(e["t"].get<double>());
+    for (auto i = first; i != last; ++i) take(e, all[i->second]);
+  }
+  const ordered_json spans = goal_spans(run);
+  for (DecisionRecord& d : all) {
+    d.of = all.size();
+    d.flown = goal_flown_at(spans, d.t_s);
+    if (!run.estimate.empty()) d.vehicle = pose_at(run.estimate, d.t_s).position;
+  }
+  return all;
+}
+
+std::optional<DecisionRecord> decision_at(const RunRecord& run, double t_s) {
+  std::optional<DecisionRecord> found;
+  for (DecisionRecord& d : decisions_of(run))
+    if (d.t_s <= t_s + kClockRounding_s) found = std::move(d);
   return found;
 }
 

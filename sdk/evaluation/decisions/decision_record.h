@@ -35,6 +35,9 @@ struct DecisionRecord {
   std::optional<core::Vec3> vehicle;          // where it estimated to be
 };
 
+/// All decisions of a flight, in its order.
+std::vector<DecisionRecord> decisions_of(const RunRecord& run);
+
 /// The last decision at `t_s` or before it, give or take the half of a hundredth that a clock rounds away;
 /// nothing if there is none.
 std::optional<DecisionRecord> decision_at(const RunRecord& run, double t_s);

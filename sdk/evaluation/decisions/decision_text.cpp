@@ -1,11 +1,9 @@
 #include "sdk/evaluation/decisions/decision_text.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
-#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/decisions/clock.h"
 
 namespace karst::evaluation {
@@ -14,11 +12,7 @@ namespace {
 using core::counted;
 using core::format_text;
 using core::Vec3;
-using nlohmann::json;
 namespace event = core::event;
-
-constexpr double kSamePlace_m = 1e-6;  // as events and answers hold a goal
-constexpr double kUnderWay_m = 0.3;    // nearer than this the vehicle flies on to the goal that it has
 
 std::string number_text(double v, const char* format) {
   return std::isfinite(v) ? format_text(format, v) : "?";
@@ -67,30 +61,6 @@ std::string frontier_lines(const DecisionRecord& d) {
   return text;
 }
 
-Vec3 place_of(const json& goal) {
-  Vec3 p = Vec3::Constant(event::kUnknown);
-  const auto found = goal.find("position");
-  if (found == goal.end() || !found->is_array() || found->size() != 3) return p;
-  for (std::size_t i = 0; i < 3; ++i)
-    if ((*found)[i].is_number()) p[static_cast<Eigen::Index>(i)] = (*found)[i].get<double>();
-  return p;
-}
-
-std::uint32_t frontier_of(const json& goal) {
-  const auto found = goal.find("frontier");
-  return found != goal.end() && found->is_number_unsigned() ? found->get<std::uint32_t>() : 0;
-}
-
-std::string fate_in(const DecisionRecord& d, const Vec3& place) {
-  const auto is_here = [&](const event::Goal& g) { return (g.position - place).norm() < kSamePlace_m; };
-  if (d.accepted && is_here(*d.accepted)) return "accepted";
-  const auto refused = std::find_if(d.refused.begin(), d.refused.end(), is_here);
-  if (refused != d.refused.end()) return "refused: " + refused->reason;
-  const bool under_way =
-      !d.accepted && d.flown && d.flown->position && (*d.flown->position - place).norm() < kUnderWay_m;
-  return under_way ? "under way already" : "not tried";
-}
-
 }  // namespace
 
 std::string decision_text(const DecisionRecord& d) {
@@ -111,22 +81,17 @@ std::string decision_text(const DecisionRecord& d) {
 std::string answer_table(const RecordedAnswer& recorded, const DecisionRecord& d) {
   const std::string head =
       "Request " + std::to_string(recorded.request) + " at " + clock_text(recorded.stamp_s) + ": ";
-  const json answer = core::json_of(recorded.answer);
-  if (!answer.is_object()) return head + recorded.answer + "\n";
-  if (const std::string failure = event_text(answer, "failure"); !failure.empty())
-    return head + "the policy failed: " + failure + "\n";
-  const auto goals = answer.find("goals");
-  if (goals == answer.end() || !goals->is_array()) return head + recorded.answer + "\n";
-  std::string text = head + event_text(answer, "outcome") + after(", ", event_text(answer, "reason")) + ", " +
-                     counted(goals->size(), "goal") + (goals->empty() ? "\n" : ", best first:\n");
+  const auto answer = judged(recorded, d);
+  if (!answer) return head + recorded.answer + "\n";
+  if (!answer->failure.empty()) return head + "the policy failed: " + answer->failure + "\n";
+  std::string text = head + answer->outcome + after(", ", answer->reason) + ", " +
+                     counted(answer->goals.size(), "goal") +
+                     (answer->goals.empty() ? "\n" : ", best first:\n");
   std::size_t rank = 0;
-  for (const json& goal : *goals) {
-    const Vec3 place = place_of(goal);
-    text += format_text("%4zu  score ", ++rank) +
-            number_text(event_number(goal, "score").value_or(event::kUnknown), "%.3f") + "  " +
-            place_text(place) + " m, " + frontier_text(frontier_of(goal)) +
-            after(", ", event_text(goal, "why")) + "\n        " + fate_in(d, place) + "\n";
-  }
+  for (const RankedGoal& goal : answer->goals)
+    text += format_text("%4zu  score ", ++rank) + number_text(goal.score, "%.3f") + "  " +
+            place_text(goal.position) + " m, " + frontier_text(goal.frontier) + after(", ", goal.why) +
+            "\n        " + goal.fate + "\n";
   return text;
 }
 

@@ -1,19 +1,10 @@
 // A decision in words, for `karst explain`.
 #pragma once
-#include <cstdint>
 #include <string>
-#include <vector>
 
-#include "sdk/evaluation/decisions/decision_record.h"
+#include "sdk/evaluation/decisions/ranked_goals.h"
 
 namespace karst::evaluation {
-
-/// An answer of the policy as the host records it (sdk/host/serialization/request_log.h).
-struct RecordedAnswer {
-  std::uint32_t request = 0;  // its number: 1, 2, ...
-  double stamp_s = 0;         // when it was made
-  std::string answer;         // JSON
-};
 
 /// Several lines: the decision, its goals that have events, what became of the goal flown to, and the
 /// frontiers offered.

@@ -1,13 +1,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdk/evaluation/decisions/goal_spans.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/summary.h"
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/report_curve.h"
-#include "sdk/evaluation/report/report_goals.h"
+#include "sdk/evaluation/report/report_decisions.h"
 #include "sdk/evaluation/report/report_pictures.h"
 #include "sdk/evaluation/report/report_scene.h"
+#include "sdk/evaluation/report/report_units.h"
 
 namespace karst::evaluation {
 namespace {
@@ -72,6 +74,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   const Ending ending = ending_of(run);
   ordered_json d;
   d["metrics"] = metrics;
+  d["units"] = metric_units();
   d["summary"] = summary_of(metrics, ending);
   d["as_meant"] = ending.sentence.empty() ? ordered_json(nullptr) : ordered_json(ending.as_meant);
   d["duration_s"] = duration_s;
@@ -84,6 +87,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   d["curves"] = curves(run);
   d["errors"] = run.evaluation;
   d["goals"] = goal_spans(run);
+  d["choices"] = decision_choices(run, problems);
   d["events"] = event_rows(run);
   d["cloud"] = scene_cloud(run, duration_s, problems);
   d["track"] = scene_track(run.estimate.empty() ? run.truth : run.estimate);

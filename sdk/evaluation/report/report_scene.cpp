@@ -124,6 +124,7 @@ ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& pro
       if (!c.centroid.allFinite()) continue;
       clusters.push_back(rounded(c.centroid));
       clusters.back().push_back(c.unknown_cells);
+      clusters.back().push_back(c.id);
     }
     const std::size_t count = clusters.size();
     moments.push_back({e["t"], std::move(clusters), count});

@@ -26,7 +26,7 @@ nlohmann::ordered_json scene_cloud(const RunRecord& run, double duration_s,
                                    std::vector<std::string>& problems);
 /// Poses as base64 float32: times, positions and headings; null if there are none.
 nlohmann::ordered_json scene_track(const std::vector<StampedPose>& poses, std::size_t max_poses = 12000);
-/// Frontier clusters as [[t, [[x, y, z, cells], ...]], ...].
+/// Frontier clusters as [[t, [[x, y, z, cells, id], ...]], ...].
 nlohmann::ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& problems);
 /// Paths planned as [[t, [[x, y, z], ...]], ...].
 nlohmann::ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problems);

@@ -10,6 +10,7 @@
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/evaluation/report/report_curve.h"
 #include "sdk/evaluation/report/report_scene.h"
+#include "sdk/evaluation/report/report_units.h"
 
 namespace karst::evaluation {
 namespace {
@@ -136,6 +137,7 @@ ordered_json team_report_data(const TeamRecord& team, const ordered_json& metric
   const Ending joint = joint_ending(endings);
   ordered_json d;
   d["metrics"] = metrics;
+  d["units"] = metric_units();
   d["summary"] = summary_of(metrics, joint);
   d["as_meant"] = joint.sentence.empty() ? ordered_json(nullptr) : ordered_json(joint.as_meant);
   d["duration_s"] = duration_s;

@@ -8,7 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "sdk/evaluation/metrics/metrics.h"
-#include "sdk/evaluation/report/report_goals.h"
+#include "sdk/evaluation/decisions/goal_spans.h"
 #include "sdk/evaluation/report/team_report.h"
 #include "tests/unit/evaluation/fake_run.h"
 

@@ -1,4 +1,4 @@
-#include "sdk/evaluation/report/report_goals.h"
+#include "sdk/evaluation/decisions/goal_spans.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,16 @@
+#include "sdk/evaluation/report/report_units.h"
+
+#include <string>
+
+#include "sdk/evaluation/metrics/metric_definitions.h"
+
+namespace karst::evaluation {
+
+nlohmann::ordered_json metric_units() {
+  nlohmann::ordered_json units = nlohmann::ordered_json::object();
+  for (const MetricDefinition& m : metric_definitions())
+    if (!m.unit.empty()) units[std::string(m.name)] = std::string(m.unit);
+  return units;
+}
+
+}  // namespace karst::evaluation
