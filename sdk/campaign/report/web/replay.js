@@ -18,7 +18,7 @@ async function unpackCloud(c) {
   return { ...c, cells, normals, from: new Uint16Array(bytes, 6 * n, n), until: new Uint16Array(bytes, 8 * n, n) };
 }
 
-const flightOnly = { goals: [], plans: [], frontiers: [], drawings: [], objects: [], true_track: null };
+const flightOnly = { goals: [], plans: [], frontiers: [], choices: [], drawings: [], objects: [], true_track: null };
 const lookUniforms = { clip: 1e9, size: 1.2, mode: 0, inside: true };
 
 /** Two windows whose cameras stand at the same place; null without WebGL. */
@@ -161,6 +161,7 @@ async function startReplay(asked) {
   });
 
   startTimeline();
+  foldWhereNarrow(element("replay-choices"));
   connectSlider("clip", (v) => v >= 1 ? "off" : Math.round(100 * v) + " %", (v) => { lookUniforms.clip = v; applyLook(); });
   connectSlider("size", (v) => Math.round(v * 100) + " %", (v) => { lookUniforms.size = v; applyLook(); });
   whenChosen(["colour"], () => { lookUniforms.mode = choice("colour"); applyLook(); });

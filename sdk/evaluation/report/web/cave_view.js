@@ -3,16 +3,16 @@
 /** { setTime(t), setView(name) }; shows what there is, and says so where there is nothing. */
 function startCaveView(flight) {
   const empty = element("view-empty");
+  foldWhereNarrow(element("view-panel"));
   const refuse = (text) => {
     empty.textContent = text;
     empty.hidden = false;
-    element("view-controls").hidden = element("scale").hidden = true;
-    element("view-controls").style.display = "none";
+    for (const id of ["view-panel", "scales", "north"]) element(id).style.display = "none";
     return { setTime() {}, setView() {} };
   };
   if (!data.cloud && !flight.track) return refuse("This run recorded neither a map nor a trajectory.");
   const buttons = document.querySelectorAll("[data-view]");
-  const stage = makeStage(element("view"), element("labels"), () => element("view-controls").offsetWidth + 10, {
+  const stage = makeStage(element("view"), element("labels"), () => narrowWindow.matches ? 0 : element("view-panel").offsetWidth + 10, {
     viewed: (name) => { for (const b of buttons) b.classList.toggle("on", b.dataset.view === name); },
   });
   if (!stage) return refuse("This browser cannot draw in 3D (no WebGL). Plots and tables are below.");
@@ -20,5 +20,5 @@ function startCaveView(flight) {
   const { grid, step } = stage.show(cloud, flight, samplePoints(cloud, flight));
   for (const b of buttons) b.addEventListener("click", () => stage.setView(b.dataset.view));
   connectControls(cloud, flight, grid, step, stage.redraw);
-  return stage;
+  return { ...stage, setTime(t) { stage.setTime(t); showScoreScale(flight.scores || null); } };
 }

@@ -62,7 +62,8 @@ function startErrors() {
   const errors = data.errors;
   if (!errors || (!errors.trajectory && !errors.map)) return;
   element("errors").hidden = false;
-  const row = (name, text) => element("error-figures").append(make("div", { className: "figure" }, make("b", {}, text), make("span", {}, name)));
+  const unknown = [];
+  const row = (name, text) => text.startsWith("–") ? unknown.push(name) : element("error-figures").append(make("div", { className: "figure" }, make("b", {}, text), make("span", {}, name)));
   const t = errors.trajectory, m = errors.map, degrees = 180 / Math.PI;
   if (t) {
     row("absolute error, rms", numberText(t.ape.translation_m.rmse) + " m");
@@ -89,6 +90,7 @@ function startErrors() {
       data: { datasets: [{ data: counts.map((c, i) => ({ x: (i + 0.5) * bin_m, y: 100 * c / all })), backgroundColor: colours.plan, barPercentage: 1, categoryPercentage: 1 }] },
     }, "distance to the nearest point of the reference, m (the last bar holds all beyond)");
   }
+  element("errors-unknown").textContent = notKnown(unknown);
   const paint = () => {
     for (const chart of errorCharts) {
       for (const axis of ["x", "y"]) {

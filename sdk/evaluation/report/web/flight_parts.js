@@ -13,26 +13,28 @@ function thickLine(xyz, width, colour, segmentColours) {
   return line;
 }
 
-/** Round marks with sizes in pixels. */
+/** Round marks with sizes in pixels, of one colour where setMarks() names no others. */
 function roundMarks(colour) {
   const material = new THREE.ShaderMaterial({
-    uniforms: { colour: { value: new THREE.Color(colour) }, ratio: { value: window.devicePixelRatio } },
+    uniforms: { ratio: { value: window.devicePixelRatio } },
     transparent: true, depthTest: false,
-    vertexShader: `attribute float size; uniform float ratio;
-      void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    vertexShader: `attribute float size; attribute vec3 tint; uniform float ratio; varying vec3 colour;
+      void main() { colour = tint; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
                     gl_PointSize = size * ratio; }`,
-    fragmentShader: `uniform vec3 colour;
+    fragmentShader: `varying vec3 colour;
       void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
                     gl_FragColor = vec4(r > 0.4 ? colour * 0.45 : colour, 0.85); }` });
   const points = new THREE.Points(new THREE.BufferGeometry(), material);
   points.frustumCulled = false;
+  points.userData.tint = new THREE.Color(colour).toArray();
   return points;
 }
-function setMarks(points, xyz, sizes) {
+function setMarks(points, xyz, sizes, tints = sizes.map(() => points.userData.tint)) {
   points.geometry.dispose();
   points.geometry = new THREE.BufferGeometry();
   points.geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
   points.geometry.setAttribute("size", new THREE.Float32BufferAttribute(sizes, 1));
+  points.geometry.setAttribute("tint", new THREE.Float32BufferAttribute(tints.flat(), 3));
 }
 
 /** An icon of constant size on the screen, drawn by `draw(context)` on 64 x 64. */

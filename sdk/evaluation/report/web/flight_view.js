@@ -29,7 +29,7 @@ function makeDrawings(drawings) {
 }
 
 /** { object, layer: {name: object}, choices: names of layers to be shown or hidden, setTime(t), setResolution(w, h), labels, vehicles } of a run with phases, goals,
- *  plans, frontiers, drawings, and tracks or null. */
+ *  plans, frontiers, choices, drawings, and tracks or null. `scores` is what showScoreScale() shows. */
 function makeFlight(run) {
   const track = decodeTrack(run.track), truth = decodeTrack(run.true_track);
   const object = new THREE.Group(), lines = [];
@@ -63,7 +63,7 @@ function makeFlight(run) {
   const used = { plan: run.plans.length, goal: run.goals.length, frontiers: run.frontiers.length, objects: run.objects.length,
                  drawings: run.drawings.some((d) => d[1].length) };
   const choices = ["path", "true path", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
-  const view = { object, layer, choices, labels: [], vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
+  const view = { object, layer, choices, labels: [], scores: null, vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 
   view.setResolution = (w, h) => {
@@ -100,8 +100,10 @@ function makeFlight(run) {
     if (clusters !== shownFrontiers) {
       shownFrontiers = clusters;
       const list = clusters ? clusters[1] : [];
+      const { tints, range, unknown } = scoreTints(list, clusters && choiceAt(run.choices, clusters[0]));
       setMarks(frontiers, [].concat(...list.map((c) => c.slice(0, 3))),
-               list.map((c) => Math.min(11, 3.5 + 0.3 * Math.sqrt(c[3]))));
+               list.map((c) => Math.min(11, 3.5 + 0.3 * Math.sqrt(c[3]))), tints);
+      view.scores = list.length ? { range, unknown } : null;
     }
     const found = entryAt(run.objects, t);
     if (found !== shownObjects) {

@@ -3,29 +3,56 @@
 function goalPanel(t) {
   const goal = goalAt(data, t);
   if (!goal) return [make("div", { className: "quiet" }, "none")];
-  const place = goal.position ? goal.position.map((v) => v.toFixed(1)).join(", ") : "–";
-  const end = goal.until !== null && goal.fate ? `${goal.fate} at ${clockText(goal.until)}` : "–";
+  const end = goal.until !== null && goal.fate ? `${goal.fate} at ${clockText(goal.until)}` : null;
   return [
     make("div", { className: "why" }, goal.why || "(the policy gave no reason)"),
-    rows([["score", numberText(goal.score)], ["at", place], ["since", clockText(goal.t)], ["then", end],
+    rows([["score", typeof goal.score === "number" ? numberText(goal.score) : undefined],
+          ["at", placeText(goal.position) || undefined], ["since", clockText(goal.t)], ["then", end],
           ["because", goal.fate_reason || null]]),
   ];
+}
+
+/** A goal of a ranked list: its score, frontier, place and speed limit; the policy's reason; what became of it. */
+function rankedGoal(g) {
+  const facts = [typeof g.score === "number" ? "score " + numberText(g.score) : "", g.frontier ? "frontier " + g.frontier : "",
+                 placeText(g.position), g.max_speed ? `at most ${withUnit(g.max_speed, "m/s", 2)}` : ""].filter(Boolean);
+  return make("li", { className: /^refused/.test(g.fate) ? "refused" : g.fate === "accepted" ? "accepted" : "" },
+              make("div", {}, g.why || "(no reason given)"), make("div", { className: "quiet" }, facts.join(" · ")),
+              make("div", {}, g.fate));
+}
+
+function answerPanel(answer) {
+  const head = answer.request ? `request ${answer.request}` : "";
+  if (!answer.goals)
+    return [make("div", {}, `${head}: ${answer.failure ? "the policy failed: " + answer.failure : answer.text}`)];
+  const shown = answer.goals.map(rankedGoal), parts = [];
+  if (head) parts.push(make("div", { className: "quiet" }, `${head}: ${shown.length ? "best first" : answer.outcome || "no goals"}`));
+  if (shown.length) parts.push(make("ol", { className: "goals" }, ...shown));
+  if (answer.left_out) parts.push(make("div", { className: "quiet" }, `and ${answer.left_out} more`));
+  return parts;
+}
+
+/** All goals that were offered; without requests.bin those that were tried. */
+function choicePanel(t) {
+  const choice = choiceAt(data.choices, t);
+  if (!choice) return [];
+  const note = choice.recorded ? []
+    : [make("div", { className: "quiet" }, "Goals that were not tried are not recorded: fly with --record-requests to see all.")];
+  return [make("h3", {}, "Its goals, ranked"), ...choice.answers.flatMap(answerPanel), ...note];
 }
 
 function decisionPanel(t) {
   const i = lastAt(decisions.length, (k) => decisions[k].t, t);
   if (i < 0) return [make("div", { className: "quiet" }, "none yet")];
-  const d = decisions[i];
+  const d = decisions[i], count = (n) => n === undefined || n === null ? undefined : String(n);
   return [
     rows([["number", String(d.sequence ?? i + 1)], ["at", clockText(d.t)],
-          ["by", d.policy && d.policy !== data.metrics.policy ? d.policy : null], ["outcome", String(d.outcome ?? "–")],
-          ["goals offered", String(d.goals ?? "–")], ["frontiers", String(d.frontiers ?? "–")]]),
+          ["by", d.policy && d.policy !== data.metrics.policy ? d.policy : null], ["outcome", count(d.outcome)],
+          ["goals offered", count(d.goals)], ["frontiers", count(d.frontiers)]]),
     make("div", {}, d.reason || ""),
-    ...refusals.filter((e) => e.t === d.t).map((e) =>
-      make("div", { className: "refused" }, `refused: ${e.why || "a goal"}`, make("br"), e.reason || "")),
+    ...choicePanel(d.t),
   ];
 }
-const refusals = data.events.filter((e) => e.kind === "goal" && e.state === "rejected");
 const decisions = data.events.filter((e) => e.kind === "decision");
 
 function startMomentPanel() {
@@ -34,7 +61,7 @@ function startMomentPanel() {
     const c = data.curves;
     box.replaceChildren(
       make("h3", {}, "Now"),
-      make("div", { className: "phase" }, phaseAt(data, t) || "–"),
+      make("div", { className: "phase" }, phaseAt(data, t) || "no phase yet"),
       rows([["speed", withUnit(curveAt(c.speed, t), "m/s", 2)], ["explored", withUnit(curveAt(c.volume, t), "m³", 4)],
             ["battery", withUnit(curveAt(c.battery, t), "%", 2)],
             ["clearance", withUnit(curveAt(c.clearance, t), "m", 2)], ["from the start", withUnit(curveAt(c.distance, t), "m", 3)]]),

@@ -28,7 +28,7 @@ function startPictures(stage) {
     const p = shown[i];
     image.src = source(p);
     link.href = p.file;
-    caption.textContent = `${clockText(p.t)} · from ${p.position.map((v) => v.toFixed(1)).join(", ")} · ${p.file}`;
+    caption.textContent = `${clockText(p.t)} · from ${placeText(p.position)} · ${p.file}`;
     small[i].classList.add("on");
     strip.scrollLeft = small[i].offsetLeft - strip.offsetLeft - (strip.clientWidth - small[i].clientWidth) / 2;
   });

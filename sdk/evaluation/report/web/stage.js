@@ -9,8 +9,15 @@ function samplePoints(cloud, flight) {
   return points;
 }
 
+/** By how many degrees an arrow that points up turns, clockwise, to point north (+y) for this camera. */
+function northTurn(camera, target) {
+  const ahead = target.clone().sub(camera.position);
+  return Math.round(THREE.Math.radToDeg(Math.atan2(-ahead.x, ahead.y))) + 0;  // no -0
+}
+
 /** A window in `box`, of which the left `beside()` pixels lie under controls; null where the browser has no WebGL.
- *  `changed(stage)` hears of every turn of the camera, `viewed(name)` of every view taken. */
+ *  `changed(stage)` hears of every turn of the camera, `viewed(name)` of every view taken. The
+ *  north arrow in `box` turns with the camera. */
 function makeStage(box, labels, beside, { changed = () => {}, viewed = () => {} } = {}) {
   const renderer = makeRenderer(box);
   if (!renderer) return null;
@@ -38,7 +45,11 @@ function makeStage(box, labels, beside, { changed = () => {}, viewed = () => {} 
     renderer.render(scene, camera);
     placeLabels(labels, flight.labels, camera, ...size);
   };
-  const redraw = () => { if (!frame) frame = requestAnimationFrame(draw); };
+  const needle = box.querySelector(".north g");
+  const redraw = () => {
+    needle.setAttribute("transform", `rotate(${northTurn(camera, controls.target)})`);
+    if (!frame) frame = requestAnimationFrame(draw);
+  };
 
   const setView = (name) => {
     if (name !== "follow" && !directions[name]) return;

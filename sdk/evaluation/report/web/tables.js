@@ -11,17 +11,20 @@ function isTrouble(e) {
 
 /** What an event says, in a line. */
 function eventText(e) {
-  const place = (p) => Array.isArray(p) ? "(" + p.map((v) => Number(v).toFixed(1)).join(", ") + ")" : "";
   const because = (text) => text ? ": " + text : "";
   switch (e.kind) {
     case "phase": return e.phase + because(e.reason);
-    case "goal": return [`${e.state} ${place(e.position)}`, e.why, e.reason].filter(Boolean).join(" – ");
-    case "decision": return `${e.outcome}, ${e.goals ?? 0} goals, ${e.frontiers ?? "–"} frontiers${because(e.reason)}`;
-    case "plan": return `path of ${numberText(e.length)} m`;
-    case "homing": return `flies home${because(e.reason)} (${numberText(e.distance)} m, ${numberText(e.seconds_left)} s left)`;
-    case "frontier": return `${e.state} ${place(e.position)}${because(e.reason)}`;
+    case "goal": return [`${e.state} ${placeText(e.position)}`, e.why, e.reason].filter(Boolean).join(" – ");
+    case "decision":
+      return `${e.outcome}, ${e.goals ?? 0} goals${typeof e.frontiers === "number" ? `, ${e.frontiers} frontiers` : ""}${because(e.reason)}`;
+    case "plan": return "path" + (withUnit(e.length, "m") ? " of " + withUnit(e.length, "m") : "");
+    case "homing": {
+      const left = [withUnit(e.distance, "m"), withUnit(e.seconds_left, "s left")].filter(Boolean);
+      return `flies home${because(e.reason)}${left.length ? ` (${left.join(", ")})` : ""}`;
+    }
+    case "frontier": return `${e.state} ${placeText(e.position)}${because(e.reason)}`;
     case "safety": return `${e.action}${because(e.reason)}`;
-    case "object": case "object_known": return `${e.what || "object"} ${e.number} ${e.state || ""} ${place(e.position)}`;
+    case "object": case "object_known": return `${e.what || "object"} ${e.number} ${e.state || ""} ${placeText(e.position)}`;
     case "outcome": return `${e.outcome}${because(e.reason)}`;
     case "log": case "truth": return e.text || "";
     default: {
@@ -52,12 +55,17 @@ function showTitle(more = []) {
   element("summary").textContent = data.summary + (data.as_meant === null && m.reason ? "; " + m.reason : "");
 }
 
-/** [[name, [value, unit]], ...] as cards. */
+/** [[name, [value, unit] or null], ...] as cards; those without a value are named in one line below. */
 function showFigures(figures) {
-  for (const [name, [value, u]] of figures)
-    element("figures").append(make("div", { className: "figure" },
-      make("b", {}, value, u ? make("small", {}, " " + u) : ""), make("span", {}, name)));
+  for (const [name, known] of figures)
+    if (known)
+      element("figures").append(make("div", { className: "figure" },
+        make("b", {}, known[0], known[1] ? make("small", {}, " " + known[1]) : ""), make("span", {}, name)));
+  element("figures-unknown").textContent = notKnown(figures.filter(([, known]) => !known).map(([name]) => name));
 }
+/** [value, unit] of a figure for its card, or null. */
+function figure(v, unit, digits) { return typeof v === "number" ? [numberText(v, digits), unit] : null; }
+function figureShare(v) { return typeof v === "number" ? figure(100 * v, "%", 3) : null; }
 
 function showProblems() {
   if (!data.problems.length) return;
@@ -70,18 +78,16 @@ function showProblems() {
 function showHeader() {
   const m = data.metrics;
   showTitle();
-  const share = (v) => typeof v === "number" ? [numberText(100 * v, 3), "%"] : ["–", ""];
-  const unit = (v, u, digits) => typeof v === "number" ? [numberText(v, digits), u] : ["–", ""];
-  const figures = [
-    ["flight time", typeof m.flight_time_s === "number" ? [clockText(m.flight_time_s), "min"] : ["–", ""]],
-    ["explored", unit(m.explored_volume_m3, "m³", 4)], ["coverage", share(m.coverage)],
-    ["path length", unit(m.path_length_m, "m")], ["mean speed", unit(m.mean_speed_mps, "m/s")],
-    ["least clearance", unit(m.min_clearance_m, "m", 2)], ["contacts", unit(m.contacts, "", 3)],
-    ["landing error", unit(m.landing_error_m, "m", 2)], ["map error", unit(m.map_error_mean_m, "m", 2)],
-    ["battery left", share(m.battery_left)],
-    ["goals (refused)", [`${m.goals_accepted ?? "–"}`, `(${m.goals_rejected ?? "–"})`]],
-  ];
-  showFigures(figures);
+  const refused = typeof m.goals_rejected === "number" ? `(${m.goals_rejected})` : "";
+  showFigures([
+    ["flight time", typeof m.flight_time_s === "number" ? [clockText(m.flight_time_s), "min"] : null],
+    ["explored", figure(m.explored_volume_m3, "m³", 4)], ["coverage", figureShare(m.coverage)],
+    ["path length", figure(m.path_length_m, "m")], ["mean speed", figure(m.mean_speed_mps, "m/s")],
+    ["least clearance", figure(m.min_clearance_m, "m", 2)], ["contacts", figure(m.contacts, "", 3)],
+    ["landing error", figure(m.landing_error_m, "m", 2)], ["map error", figure(m.map_error_mean_m, "m", 2)],
+    ["battery left", figureShare(m.battery_left)],
+    ["goals (refused)", typeof m.goals_accepted === "number" ? [String(m.goals_accepted), refused] : null],
+  ]);
   showProblems();
 }
 
@@ -125,16 +131,27 @@ function showTiming() {
     box.append(make("p", {}, `${numberText(timing.simulated_s_per_wall_s)} simulated seconds per second`));
   const rows = make("table", {}, make("tr", {}, ...["job", "count", "p50 ms", "p99 ms", "max ms"].map((t) => make("th", {}, t))));
   for (const [name, j] of Object.entries(timing.jobs || {})) {
-    const cell = (v, digits) => make("td", { className: "number" }, numberText(v, digits));
-    rows.append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, String(j.count ?? "–")), cell(j.p50_ms), cell(j.p99_ms), cell(j.max_ms)));
+    const cell = (v) => make("td", { className: "number" }, typeof v === "number" ? numberText(v) : "");
+    rows.append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, String(j.count ?? "")), cell(j.p50_ms), cell(j.p99_ms), cell(j.max_ms)));
   }
   box.append(rows);
 }
 
+/** Name, value and unit of each figure that has a value; one line names the others. */
+function showMetrics() {
+  const figures = Object.entries(data.metrics).filter(([, v]) => typeof v !== "object" || v === null);
+  const unknown = figures.filter(([, v]) => v === null).map(([name]) => name);
+  const text = (v) => typeof v !== "number" ? String(v) : Number.isInteger(v) ? String(v) : numberText(v, 4);
+  for (const [name, v] of figures)
+    if (v !== null)
+      element("metrics").append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, text(v)),
+        make("td", { className: "unit quiet" }, (data.units[name] || "").replace("^3", "³"))));
+  element("metrics-unknown").textContent = notKnown(unknown);
+}
+
 function startTables() {
   showEvents();
-  table(element("metrics"), Object.entries(data.metrics).filter(([, v]) => typeof v !== "object" || v === null).map(([k, v]) =>
-    [k, v === null ? "–" : typeof v === "number" ? (Number.isInteger(v) ? String(v) : numberText(v, 4)) : String(v)]));
+  showMetrics();
   table(element("settings"), data.settings.length ? data.settings : [["not recorded", ""]]);
   showTiming();
 }

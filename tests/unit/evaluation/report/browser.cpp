@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -27,6 +29,81 @@ ShownPage show_page(const std::filesystem::path& page, const std::string& hash) 
   EXPECT_EQ(root.find("data-errors"), std::string::npos) << root;
   const std::size_t body = dom.find("<body>");
   return {dom, body == std::string::npos ? "" : dom.substr(body, dom.find("id=\"data\"") - body)};
+}
+
+namespace {
+
+/// The page in a frame of a phone's size, which chromium's own window cannot have, and a script that measures
+/// it. The frame's document stands in an attribute: a page from a file may not look into another one.
+std::string phone_frame(const std::string& page) {
+  std::string quoted;
+  for (const char c : page) {
+    if (c == '&') {
+      quoted += "&amp;";
+    } else if (c == '"') {
+      quoted += "&quot;";
+    } else {
+      quoted += c;
+    }
+  }
+  return R"(<!doctype html><html><head><meta charset="utf-8"><title>phone</title></head><body>
+<iframe id="frame" style="border: 0; width: 360px; height: 740px" srcdoc=")" +
+         quoted + R"("></iframe>
+<script>
+const frame = document.getElementById("frame");
+frame.addEventListener("load", () => {
+  const page = frame.contentDocument, root = page.documentElement;
+  const put = (id, texts) => {
+    const p = document.createElement("p");
+    p.id = id;
+    p.textContent = [...new Set(texts)].join("; ");
+    document.body.append(p);
+  };
+  const name = (e) => e.tagName.toLowerCase() + (e.id ? "#" + e.id : e.className ? "." + e.className : "");
+  const size = (e) => { const r = e.getBoundingClientRect(); return name(e) + " " + r.width + " x " + r.height; };
+  const wide = [], small = [];
+  const measure = () => {
+    if (root.scrollWidth > 360)
+      wide.push("page of " + root.scrollWidth, ...[...page.querySelectorAll("body *")]
+        .filter((e) => e.getBoundingClientRect().right > 360.5).slice(0, 12).map(size));
+    for (const e of page.querySelectorAll("button, select, summary, label, input[type=range]")) {
+      const r = e.getBoundingClientRect();
+      if (e.checkVisibility() && r.width && (r.width < 39.9 || r.height < 39.9)) small.push(size(e));
+    }
+  };
+  put("open", [[...page.querySelectorAll("details[open]")].map((d) => d.id).filter(Boolean).join(" ")]);
+  measure();
+  for (const d of page.querySelectorAll("details")) d.open = true;
+  measure();
+  put("wide", wide);
+  put("small", small);
+  if (root.dataset.errors) document.documentElement.dataset.errors = root.dataset.errors;
+  document.documentElement.dataset.ready = root.dataset.ready || "no";
+  frame.remove();
+});
+</script></body></html>
+)";
+}
+
+std::string text_of(const std::string& dom, const std::string& id) {
+  const std::string mark = "<p id=\"" + id + "\">";
+  const std::size_t at = dom.find(mark);
+  EXPECT_NE(at, std::string::npos) << "the page was not measured";
+  if (at == std::string::npos) return "not measured";
+  const std::size_t begin = at + mark.size();
+  return dom.substr(begin, dom.find("</p>", begin) - begin);
+}
+
+}  // namespace
+
+PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
+  std::ifstream in(page, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  const TemporaryDirectory dir;
+  dir.write("phone.html", phone_frame(text.str()));
+  const std::string dom = show_page(dir.path() / "phone.html").dom;
+  return {text_of(dom, "wide"), text_of(dom, "small"), text_of(dom, "open")};
 }
 
 }  // namespace karst::test

@@ -12,4 +12,13 @@ struct ShownPage {
 };
 ShownPage show_page(const std::filesystem::path& page, const std::string& hash = "");
 
+/// The same page in a window of 360 x 740 pixels, first as it opens, then with everything unfolded. The texts
+/// are empty if all is well: what is wider than the window (all that the reader would have to scroll sideways
+/// for), and what is touched but smaller than 40 pixels in a direction.
+struct PhoneLayout {
+  std::string too_wide, too_small;
+  std::string open;  // ids of the <details> that are open at first, separated by spaces
+};
+PhoneLayout lay_out_on_phone(const std::filesystem::path& page);
+
 }  // namespace karst::test

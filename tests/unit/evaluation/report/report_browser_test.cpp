@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
 
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/team_report.h"
@@ -51,6 +52,111 @@ TEST(ReportInBrowser, TellsInItsHeadHowTheFlightEndedAndIsGreenOnlyIfThatWasMean
   const std::string early = show_page(dir.path() / "report.html").body;
   EXPECT_NE(early.find("✕ landed, not as meant</span>"), std::string::npos);
   EXPECT_EQ(early.find("badge landed"), std::string::npos);
+}
+
+/// What turns the north arrow, in the page's markup: "rotate(12)".
+std::string north_of(const std::string& body) {
+  const std::size_t arrow = body.find("class=\"north\"");
+  const std::string mark = "transform=\"";
+  const std::size_t at = body.find(mark, arrow);
+  if (arrow == std::string::npos || at == std::string::npos) return "no arrow";
+  const std::size_t begin = at + mark.size();
+  return body.substr(begin, body.find('"', begin) - begin);
+}
+
+TEST(ReportInBrowser, HasANorthArrowThatTurnsWithTheCamera) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path());
+  const auto seen = [&](const char* view) {
+    return north_of(show_page(dir.path() / "report.html", std::string("t=15&view=") + view).body);
+  };
+  EXPECT_EQ(seen("top"), "rotate(0)") << "north up";
+  // From the south across a tunnel that bends to the north on its way east: the camera looks west of north.
+  const std::string side = seen("side");
+  EXPECT_EQ(side.find("rotate("), 0u) << side;
+  EXPECT_GT(std::stoi(side.substr(7)), 3) << side;
+  EXPECT_LT(std::stoi(side.substr(7)), 45) << side;
+}
+
+TEST(ReportInBrowser, ListsTheGoalsOfADecisionWithScoreReasonAndFate) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html", "t=15").body;  // of the fourth decision
+  const std::size_t list = body.find("<ol class=\"goals\">");
+  ASSERT_NE(list, std::string::npos);
+  const std::string goals = body.substr(list, body.find("</ol>", list) - list);
+  EXPECT_NE(goals.find("<li class=\"refused\"><div>largest opening</div>"), std::string::npos) << goals;
+  EXPECT_NE(goals.find("score 9.10 · frontier 103 · ("), std::string::npos) << goals;
+  EXPECT_NE(goals.find(") m</div><div>refused: not in known free space</div>"), std::string::npos) << goals;
+  EXPECT_NE(goals.find("<li class=\"accepted\">"), std::string::npos) << goals;
+  EXPECT_NE(goals.find("score 6.85 · frontier 100"), std::string::npos) << goals;
+  EXPECT_NE(body.find("fly with --record-requests to see all"), std::string::npos);
+}
+
+TEST(ReportInBrowser, ExplainsTheColoursOfTheFrontiersByTheScoresOfTheirGoals) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path());
+  const auto legend = [&](const char* moment) {
+    const std::string body = show_page(dir.path() / "report.html", moment).body;
+    const std::size_t at = body.find("id=\"score-scale\"");
+    return body.substr(at, body.find("id=\"scale\"", at) - at);
+  };
+  const std::string fourth = legend("t=15");
+  EXPECT_NE(fourth.find("<span>6.85</span><span>9.10</span>"), std::string::npos) << fourth;
+  EXPECT_NE(fourth.find("no score known"), std::string::npos) << "ten frontiers have no goal: " << fourth;
+  EXPECT_NE(legend("t=1").find("hidden"), std::string::npos) << "no frontiers yet";
+}
+
+TEST(ReportInBrowser, NamesWhatIsNotKnownInOneLineInsteadOfDashes) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  dir.write("metrics.json", R"({"policy": "lateral", "path_length_m": 60.5, "coverage": null,
+                                "explored_volume_m3": 120.25})");
+  write_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(body.find("not known: flight time, coverage, mean speed, least clearance"), std::string::npos);
+  EXPECT_EQ(body.find("<b>–"), std::string::npos) << "no card without a value";
+  EXPECT_NE(body.find("<p id=\"metrics-unknown\" class=\"quiet\">not known: coverage</p>"),
+            std::string::npos);
+  EXPECT_EQ(body.find("<td class=\"number\">–</td>"), std::string::npos);
+}
+
+TEST(ReportInBrowser, GivesTheUnitOfEachFigure) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  dir.write("metrics.json", R"({"path_length_m": 60.5, "explored_volume_m3": 120.25, "contacts": 0})");
+  write_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html").body;
+  for (const char* row :
+       {"<td>path_length_m</td><td class=\"number\">60.5</td><td class=\"unit quiet\">m</td>",
+        "<td>explored_volume_m3</td><td class=\"number\">120.3</td><td class=\"unit quiet\">m³</td>",
+        "<td>contacts</td><td class=\"number\">0</td><td class=\"unit quiet\"></td>"})
+    EXPECT_NE(body.find(row), std::string::npos) << row;
+}
+
+TEST(ReportInBrowser, FitsAPhone) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path());
+  const test::PhoneLayout phone = test::lay_out_on_phone(dir.path() / "report.html");
+  EXPECT_EQ(phone.too_wide, "");
+  EXPECT_EQ(phone.too_small, "");
+  EXPECT_EQ(phone.open, "") << "the view's controls are folded up";
+}
+
+TEST(ReportInBrowser, OfATeamFitsAPhoneAndHasANorthArrow) {
+  TemporaryDirectory dir;
+  for (const char* robot : {"robot_1", "robot_2"}) write_small_run(dir.path() / robot);
+  dir.write("team.jsonl",
+            "{\"t\":0,\"kind\":\"team\",\"robots\":2}\n{\"t\":0,\"kind\":\"start\",\"robot\":1}\n");
+  write_team_report(dir.path());
+  EXPECT_EQ(north_of(show_page(dir.path() / "report.html", "view=top").body), "rotate(0)");
+  const test::PhoneLayout phone = test::lay_out_on_phone(dir.path() / "report.html");
+  EXPECT_EQ(phone.too_wide, "");
+  EXPECT_EQ(phone.too_small, "");
 }
 
 TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {

@@ -35,8 +35,8 @@ function startTeamPanel() {
     const base = baseAt(t);
     const head = make("tr", {}, ...["robot", "", "battery", "at base"].map((h) => make("th", {}, h)));
     const list = data.robots.map((r, i) => make("tr", {}, make("td", {}, robotSwatch(i + 1), String(i + 1)), make("td", {}, robotPhase(i + 1, t)),
-      make("td", { className: "number" }, t < (r.battery ? r.battery[0][0] : 0) ? "100 %" : withUnit(curveAt(r.battery, t), "%", 2)),
-      make("td", { className: "number" }, base ? String(heldOf(base, i + 1)) : "–")));
+      make("td", { className: "number" }, t < (r.battery ? r.battery[0][0] : 0) ? "100 %" : withUnit(curveAt(r.battery, t), "%", 2) ?? ""),
+      make("td", { className: "number" }, base ? String(heldOf(base, i + 1)) : "")));
     element("moment").replaceChildren(make("h3", {}, "Now"), make("table", {}, head, ...list),
       make("h3", {}, "Team"), rows([["explored", withUnit(curveAt(data.volume, t), "m³", 4)],
         ...(happened("object") ? [["finds, robot by robot", String(objectsAt("object", t).size)], ["known at the base", String(objectsAt("object_known", t).size)]] : [])]),
@@ -45,7 +45,7 @@ function startTeamPanel() {
                    ["stand as relays", robotsOf(base.relays.map((r) => r[0])).join(", ") || "none"],
                    ...(happened("drop") ? [["dropped nodes that reach it", String(base.connected.filter((r) => r > data.robots.length).length)]] : []),
                    ["told dead", base.dead.join(", ") || "none"], ["links", String(base.links.length)],
-                   ["reach", data.base.position ? withUnit(reachOf(base), "m", 3) : null]])
+                   ["reach", data.base.position ? withUnit(reachOf(base), "m", 3) : undefined]])
         : make("div", { className: "quiet" }, "nothing yet"));
   });
 }

@@ -8,7 +8,7 @@ function robotColour(robot) { return robotColours[(robot - 1) % robotColours.len
 function robotPhase(robot, t) {
   const phases = data.robots[robot - 1].phases;
   const phase = phaseAt({ phases }, t), end = (data.metrics.robots || [])[robot - 1];
-  return !phases.length ? "–" : t < phases[0][1] ? "waiting" : phase === "done" && end ? end.outcome : phase;
+  return !phases.length ? "" : t < phases[0][1] ? "waiting" : phase === "done" && end ? end.outcome : phase;
 }
 /** What the base knew at t, or null. */
 function baseAt(t) { const moment = entryAt(data.base.moments, t); return moment && moment[1]; }
