@@ -49,6 +49,25 @@ TEST(CampaignReportInBrowser, DrawsEverySectionWithoutAnError) {
   EXPECT_EQ(shown.find("undefined"), std::string::npos);
 }
 
+TEST(CampaignReportInBrowser, HasANorthArrowInBothViewsAndFitsAPhone) {
+  TemporaryDirectory dir;
+  CampaignResults results = fake_campaign(2, 1, 2);
+  test::FakeRunOptions small;
+  small.length_m = 24;
+  small.map_resolution_m = 0.5;
+  for (TrialResult& t : results.trials) {
+    t.run_dir = (dir.path() / (std::to_string(t.contestant) + "-" + std::to_string(t.seed))).string();
+    test::write_fake_run(t.run_dir, small);
+  }
+  const std::string shown = show(results, dir.path(), "view=top");
+  EXPECT_EQ(count(shown, "class=\"north\""), 2u);
+  EXPECT_EQ(count(shown, "<g transform=\"rotate(0)\"><path d=\"M0 -11"), 2u) << "both turn alike";
+  const test::PhoneLayout phone = test::lay_out_on_phone(dir.path() / "report.html");
+  EXPECT_EQ(phone.too_wide, "");
+  EXPECT_EQ(phone.too_small, "");
+  EXPECT_EQ(phone.open.find("replay-choices"), std::string::npos);
+}
+
 TEST(CampaignReportInBrowser, OfNextToNothingSaysWhatThereIs) {
   for (const auto& [contestants, caves, seeds] : {std::tuple{0, 0, 0}, {2, 1, 0}, {1, 1, 1}, {2, 2, 1}}) {
     TemporaryDirectory dir;

@@ -10,14 +10,16 @@
 
 namespace karst::test {
 
-ShownPage show_page(const std::filesystem::path& page, const std::string& hash) {
+namespace {
+
+ShownPage shown(const std::filesystem::path& page, const std::string& hash, const std::string& options) {
   TemporaryDirectory profile;
   const std::string command =
       "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
       "--disable-background-networking --disable-component-update --use-angle=swiftshader "
-      "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 --user-data-dir=" +
-      profile.path().string() + " --dump-dom 'file://" + page.string() + (hash.empty() ? "" : "#" + hash) +
-      "' 2>/dev/null";
+      "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 " +
+      options + " --user-data-dir=" + profile.path().string() + " --dump-dom 'file://" + page.string() +
+      (hash.empty() ? "" : "#" + hash) + "' 2>/dev/null";
   std::FILE* pipe = popen(command.c_str(), "r");
   std::string dom;
   char buffer[65536];
@@ -30,8 +32,6 @@ ShownPage show_page(const std::filesystem::path& page, const std::string& hash) 
   const std::size_t body = dom.find("<body>");
   return {dom, body == std::string::npos ? "" : dom.substr(body, dom.find("id=\"data\"") - body)};
 }
-
-namespace {
 
 /// The page in a frame of a phone's size, which chromium's own window cannot have, and a script that measures
 /// it. The frame's document stands in an attribute: a page from a file may not look into another one.
@@ -47,12 +47,10 @@ std::string phone_frame(const std::string& page) {
     }
   }
   return R"(<!doctype html><html><head><meta charset="utf-8"><title>phone</title></head><body>
-<iframe id="frame" style="border: 0; width: 360px; height: 740px" srcdoc=")" +
-         quoted + R"("></iframe>
 <script>
-const frame = document.getElementById("frame");
-frame.addEventListener("load", () => {
+async function measureFrame(frame) {
   const page = frame.contentDocument, root = page.documentElement;
+  for (let i = 0; i < 100 && !root.dataset.ready; ++i) await new Promise((go) => setTimeout(go, 20));
   const put = (id, texts) => {
     const p = document.createElement("p");
     p.id = id;
@@ -80,8 +78,10 @@ frame.addEventListener("load", () => {
   if (root.dataset.errors) document.documentElement.dataset.errors = root.dataset.errors;
   document.documentElement.dataset.ready = root.dataset.ready || "no";
   frame.remove();
-});
-</script></body></html>
+}
+</script>
+<iframe onload="measureFrame(this)" style = "border: 0; width: 360px; height: 740px" srcdoc =
+             ")" + quoted + R"("></iframe></body></html>
 )";
 }
 
@@ -96,13 +96,17 @@ std::string text_of(const std::string& dom, const std::string& id) {
 
 }  // namespace
 
+ShownPage show_page(const std::filesystem::path& page, const std::string& hash) {
+  return shown(page, hash, "");
+}
+
 PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
   std::ifstream in(page, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
   const TemporaryDirectory dir;
   dir.write("phone.html", phone_frame(text.str()));
-  const std::string dom = show_page(dir.path() / "phone.html").dom;
+  const std::string dom = shown(dir.path() / "phone.html", "", "--allow-file-access-from-files").dom;
   return {text_of(dom, "wide"), text_of(dom, "small"), text_of(dom, "open")};
 }
 

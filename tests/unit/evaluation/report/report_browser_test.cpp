@@ -131,7 +131,7 @@ TEST(ReportInBrowser, GivesTheUnitOfEachFigure) {
   write_report(dir.path());
   const std::string body = show_page(dir.path() / "report.html").body;
   for (const char* row :
-       {"<td>path_length_m</td><td class=\"number\">60.5</td><td class=\"unit quiet\">m</td>",
+       {"<td>path_length_m</td><td class=\"number\">60.50</td><td class=\"unit quiet\">m</td>",
         "<td>explored_volume_m3</td><td class=\"number\">120.3</td><td class=\"unit quiet\">m³</td>",
         "<td>contacts</td><td class=\"number\">0</td><td class=\"unit quiet\"></td>"})
     EXPECT_NE(body.find(row), std::string::npos) << row;
