@@ -9,10 +9,9 @@
 #include "tests/unit/evaluation/fake_run.h"
 
 namespace karst::test {
-
 namespace {
 
-ShownPage shown(const std::filesystem::path& page, const std::string& hash, const std::string& options) {
+ShownPage dumped(const std::filesystem::path& page, const std::string& hash, const std::string& options) {
   TemporaryDirectory profile;
   const std::string command =
       "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
@@ -46,7 +45,7 @@ std::string phone_frame(const std::string& page) {
       quoted += c;
     }
   }
-  return R"(<!doctype html><html><head><meta charset="utf-8"><title>phone</title></head><body>
+  return R"html(<!doctype html><html><head><meta charset="utf-8"><title>phone</title></head><body>
 <script>
 async function measureFrame(frame) {
   const page = frame.contentDocument, root = page.documentElement;
@@ -80,9 +79,9 @@ async function measureFrame(frame) {
   frame.remove();
 }
 </script>
-<iframe onload="measureFrame(this)" style = "border: 0; width: 360px; height: 740px" srcdoc =
-             ")" + quoted + R"("></iframe></body></html>
-)";
+<iframe onload="measureFrame(this)" style="border: 0; width: 360px; height: 740px" srcdoc=")html" +
+         quoted + R"html("></iframe></body></html>
+)html";
 }
 
 std::string text_of(const std::string& dom, const std::string& id) {
@@ -97,7 +96,7 @@ std::string text_of(const std::string& dom, const std::string& id) {
 }  // namespace
 
 ShownPage show_page(const std::filesystem::path& page, const std::string& hash) {
-  return shown(page, hash, "");
+  return dumped(page, hash, "");
 }
 
 PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
@@ -106,7 +105,7 @@ PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
   text << in.rdbuf();
   const TemporaryDirectory dir;
   dir.write("phone.html", phone_frame(text.str()));
-  const std::string dom = shown(dir.path() / "phone.html", "", "--allow-file-access-from-files").dom;
+  const std::string dom = dumped(dir.path() / "phone.html", "", "--allow-file-access-from-files").dom;
   return {text_of(dom, "wide"), text_of(dom, "small"), text_of(dom, "open")};
 }
 
