@@ -63,7 +63,7 @@ function startErrors() {
   if (!errors || (!errors.trajectory && !errors.map)) return;
   element("errors").hidden = false;
   const unknown = [];
-  const row = (name, text) => text.startsWith("–") ? unknown.push(name) : element("error-figures").append(make("div", { className: "figure" }, make("b", {}, text), make("span", {}, name)));
+  const row = (name, text) => String(text).startsWith("–") ? unknown.push(name) : element("error-figures").append(make("div", { className: "figure" }, make("b", {}, text), make("span", {}, name)));
   const t = errors.trajectory, m = errors.map, degrees = 180 / Math.PI;
   if (t) {
     row("absolute error, rms", numberText(t.ape.translation_m.rmse) + " m");
