@@ -92,6 +92,9 @@ TEST(RecordRequests, ADecisionIsExplainedWithItsWholeList) {
   for (const char* part : {"Decision ", ", phase explore, by nearest_frontier: goals",
                            " offered:", "Request ", "best first:", "   1  score "})
     EXPECT_TRUE(whole.says(part)) << part << " in:\n" << whole.text;
+  EXPECT_EQ(run_karst("report " + run).code, 0);
+  EXPECT_NE(bytes_of(dir / "run/report.html").find("\"recorded\":true"), std::string::npos)
+      << "the report has the list, too";
   std::filesystem::remove(dir / "run/requests.bin");
   const Output events = run_karst("explain " + run + " --at " + t_s);
   EXPECT_EQ(events.code, 0) << events.text;
