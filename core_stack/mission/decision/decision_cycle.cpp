@@ -126,6 +126,9 @@ DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const Cy
   request.T_world_start = vehicle_.T_world_start;
   request.seconds_before_homing =
       home_->slack_s(input.seconds_left, home_->estimate(input.from, input.flown_length_m));
+  request.battery_fraction = input.battery_fraction;
+  request.battery_seconds_left = input.battery_seconds_left;
+  request.mission_seconds_left = input.mission_seconds_left;
   request.max_speed_mps = max_speed_mps_;
   request.clearance_m = roadmap.clearance_m();
   request.vehicle_radius_m = vehicle_.radius_m;

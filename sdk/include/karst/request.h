@@ -27,6 +27,11 @@ class Request {
         map(host, r.map),
         sensors(r.sensors, r.sensors + r.sensor_count),
         teammates(r.teammates, r.teammates + r.teammate_count),
+        battery_fraction(KARST_HAS(karst_request_t, &r, battery_fraction) ? r.battery_fraction : 0),
+        battery_seconds_left(KARST_HAS(karst_request_t, &r, battery_seconds_left) ? r.battery_seconds_left
+                                                                                  : 0),
+        mission_seconds_left(KARST_HAS(karst_request_t, &r, mission_seconds_left) ? r.mission_seconds_left
+                                                                                  : 0),
         host_(host) {
     frontiers.reserve(r.frontier_count);
     for (std::uint64_t i = 0; i < r.frontier_count; ++i) frontiers.push_back(from_abi(r.frontiers[i]));
@@ -45,6 +50,10 @@ class Request {
   std::vector<Frontier> frontiers;  // by id
   const std::vector<Sensor> sensors;
   const std::vector<Teammate> teammates;
+  // 0: not told.
+  const double battery_fraction;      // share of the battery's energy that is left, (0, 1]
+  const double battery_seconds_left;  // until the battery is empty, at the recent mean power
+  const double mission_seconds_left;  // of the mission's maximum flight time; +infinity: it has none
 
   Vec3 position() const { return state.position; }
 
