@@ -212,6 +212,7 @@ Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   out.put(r.battery_seconds_left);
   out.put(r.mission_seconds_left);
   out.put(r.max_speed_mps);
+  out.put(r.max_acceleration_mps2);
   out.put(r.clearance_m);
   out.put(r.vehicle_radius_m);
   out.put(static_cast<std::uint32_t>(r.last_fate));
@@ -251,6 +252,7 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     r.battery_seconds_left = in.number<double>();
     r.mission_seconds_left = in.number<double>();
     r.max_speed_mps = in.number<double>();
+    r.max_acceleration_mps2 = in.number<double>();
     r.clearance_m = in.number<double>();
     r.vehicle_radius_m = in.number<double>();
     r.last_fate = static_cast<core::GoalFate>(

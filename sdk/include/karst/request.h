@@ -70,6 +70,20 @@ class Request {
     return out;
   }
 
+  /// A path to each goal with its points, clearance and flight time. One search for each goal: ask for the
+  /// few that matter. Throws Error with KARST_ERROR_LIMIT if so many cannot be searched in a map so large.
+  std::vector<Path> paths(const Vec3& from, const std::vector<Vec3>& goals, double tolerance_m = 0.5) const {
+    const karst_path_service_t& path = offered(host_->path, "paths");
+    if (!KARST_HAS(karst_path_service_t, &path, paths))
+      throw Error("this host offers no points of paths", KARST_ERROR_UNAVAILABLE);
+    std::vector<Path> out;
+    out.reserve(goals.size());
+    for_chunks(goals.size(), KARST_MAX_PATHS, [&](std::size_t begin, std::size_t size) {
+      add_paths(path, from, goals.data() + begin, size, tolerance_m, out);
+    });
+    return out;
+  }
+
   /// Number of unknown cells that `sensor` would see, one for each viewpoint. A shorter range costs less.
   std::vector<std::uint64_t> newly_seen(const Sensor& sensor, const std::vector<Viewpoint>& from) const {
     std::vector<std::uint64_t> out(from.size());
@@ -114,6 +128,33 @@ class Request {
   static const Service& offered(const Service* service, const char* what) {
     if (service == nullptr) throw Error(std::string("this host offers no ") + what, KARST_ERROR_UNAVAILABLE);
     return *service;
+  }
+
+  /// To as many goals as one call takes.
+  void add_paths(const karst_path_service_t& path, const Vec3& from, const Vec3* goals, std::size_t count,
+                 double tolerance_m, std::vector<Path>& out) const {
+    std::vector<karst_path_t> found(count);
+    std::vector<Vec3> points(256 * count);
+    const auto ask = [&] {
+      karst_error_t e{};
+      check(
+          path.paths(host_, from, goals, count, tolerance_m, found.data(), points.data(), points.size(), &e),
+          e);
+      const std::uint64_t total = found.empty() ? 0 : found.back().points_end;
+      const bool all = total <= points.size();
+      points.resize(total);
+      return all;
+    };
+    if (!ask()) ask();
+    std::uint64_t begin = 0;
+    for (const karst_path_t& f : found) {
+      out.push_back({{points.begin() + static_cast<std::ptrdiff_t>(begin),
+                      points.begin() + static_cast<std::ptrdiff_t>(f.points_end)},
+                     f.length_m,
+                     f.clearance_m,
+                     f.time_s});
+      begin = f.points_end;
+    }
   }
 
   const karst_host_t* host_;

@@ -123,7 +123,7 @@ class Bench {
     r.battery_fraction = battery_fraction;
     r.battery_seconds_left = battery_seconds_left;
     r.mission_seconds_left = mission_seconds_left;
-    r.max_speed_mps = 2.0;
+    r.max_speed_mps = host_.max_speed_mps;
     r.clearance_m = 0.5;
     r.vehicle_radius_m = 0.3;
     r.last_goal = last_goal;
