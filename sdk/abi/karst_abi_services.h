@@ -27,6 +27,7 @@ typedef struct karst_map karst_map_t; /* opaque: a snapshot of the occupancy map
 #define KARST_MAX_PATHS 64u           /* goals of one call of paths */
 #define KARST_MAX_PATH_POINTS 500000u /* of all paths of one call */
 #define KARST_MAX_RAY_LENGTH_M 1000.0
+#define KARST_MAX_ROCK_DISTANCE_M 100.0
 #define KARST_MAX_GAIN_RANGE_M 60.0
 #define KARST_MAX_GAIN_RANGE_CELLS 300u /* max_range_m in cells of the map: 60 m at 0.2 m */
 #define KARST_MAX_GAIN_RAYS 2000000u    /* of one sensor; neighbours are at most a cell apart at its range */
@@ -88,6 +89,12 @@ typedef struct karst_map_service {
   const karst_map_t* (*retain)(const karst_host_t*, const karst_map_t*, karst_error_t*)KARST_NOEXCEPT;
   /* [any thread] {any state} Releases a snapshot that retain() returned; call it once. */
   void (*release)(const karst_host_t*, const karst_map_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} Distance from each point to the centre of the nearest occupied cell, in metres;
+     limit_m if none is nearer. Only occupied cells are rock: unknown ones are not. limit_m is in
+     (0, KARST_MAX_ROCK_DISTANCE_M]. Where no rock is near, the cost grows with the cube of limit_m in cells:
+     100,000,000 cells visited in one call are KARST_ERROR_LIMIT. */
+  int32_t (*distances_to_rock)(const karst_host_t*, const karst_map_t*, const karst_vec3_t* points,
+                               uint64_t count, double limit_m, double* out, karst_error_t*) KARST_NOEXCEPT;
 } karst_map_service_t;
 
 /* [frozen] A path, without its points. Without a known path length_m and time_s are +infinity, clearance_m is

@@ -80,6 +80,12 @@ struct Wrapped {
     arrive(watched(h));
     watched(h).inner_.map->release(&watched(h).inner_, m);
   }
+  static std::int32_t distances_to_rock(const karst_host_t* h, const karst_map_t* m,
+                                        const karst_vec3_t* points, std::uint64_t n, double limit_m,
+                                        double* out, karst_error_t* e) noexcept {
+    return pass<&karst_host_t::map, &karst_map_service_t::distances_to_rock>("map.distances_to_rock", h, e, m,
+                                                                             points, n, limit_m, out);
+  }
   static std::int32_t lengths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
                               std::uint64_t n, double tolerance_m, double* out, karst_error_t* e) noexcept {
     return pass<&karst_host_t::path, &karst_path_service_t::lengths>("path.lengths", h, e, from, goals, n,
@@ -137,7 +143,8 @@ WatchedHost::WatchedHost(const karst_host_t& inner, Offer offer) : inner_(inner)
           &Wrapped::count_in_boxes,
           &Wrapped::surface_cells,
           &Wrapped::retain,
-          &Wrapped::release};
+          &Wrapped::release,
+          &Wrapped::distances_to_rock};
   path_ = {sizeof path_, 0, &Wrapped::lengths, &Wrapped::paths};
   gain_ = {sizeof gain_, 0, &Wrapped::newly_seen};
   draw_ = {sizeof draw_, 0, &Wrapped::points, &Wrapped::lines, &Wrapped::text};

@@ -83,6 +83,28 @@ struct Services : Serving {
     });
   }
 
+  static std::int32_t distances_to_rock(const karst_host_t* h, const karst_map_t* m,
+                                        const karst_vec3_t* points, std::uint64_t count, double limit_m,
+                                        double* out, karst_error_t* e) noexcept {
+    return serve(h, e, [&](Session& s) {
+      require_batch(count, KARST_MAX_BATCH, points, out);
+      require(limit_m > 0 && limit_m <= KARST_MAX_ROCK_DISTANCE_M, "limit_m is not in (0, 100] m");
+      const core::VoxelMap& map = *snapshot(s, m).map;
+      core::WorkBudget work(kMaxRockWork);
+      for (std::uint64_t i = 0; i < count; ++i) {
+        check_not_abandoned(s);
+        require(finite(points[i]), "a point is not finite");
+        require(to_core(points[i]).norm() <= 1e5, "a point is more than 100 km away");
+        const std::optional<double> distance_m = distance_to_rock(map, to_core(points[i]), limit_m, work);
+        if (!distance_m)
+          throw Refusal{KARST_ERROR_LIMIT,
+                        "so many points cannot be searched so far around: ask for fewer at a time, or with a "
+                        "smaller limit_m"};
+        out[i] = *distance_m;
+      }
+    });
+  }
+
   static const karst_map_t* retain(const karst_host_t* h, const karst_map_t* m, karst_error_t* e) noexcept {
     const karst_map_t* kept = nullptr;
     serve(h, e, [&](Session& s) {
@@ -261,8 +283,9 @@ struct Services : Serving {
   }
 
   static void install(Session& s, karst_host_t& host) {
-    s.map_service_ = {sizeof s.map_service_, 0,       &info,   &cell_states, &cast_rays, &count_in_boxes,
-                      &surface_cells,        &retain, &release};
+    s.map_service_ = {
+        sizeof s.map_service_, 0,       &info,    &cell_states,      &cast_rays, &count_in_boxes,
+        &surface_cells,        &retain, &release, &distances_to_rock};
     s.path_service_ = {sizeof s.path_service_, 0, &lengths, &paths};
     s.gain_service_ = {sizeof s.gain_service_, 0, &newly_seen};
     s.draw_service_ = {sizeof s.draw_service_, 0, &points, &lines, &text};

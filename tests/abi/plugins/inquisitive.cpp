@@ -35,6 +35,8 @@ class Inquisitive : public karst::Policy {
     say(r.battery_fraction);
     say(r.battery_seconds_left);
     say(r.mission_seconds_left);
+    say(r.map.distances_to_rock({r.position()}, 3)[0]);
+    say(kept_.distances_to_rock({r.position()}, 20)[0]);
     const std::vector<karst::Path> paths =
         r.paths(r.position(), {{8.5, 5.5, 5.5}, {1.5, 1.5, 1.5}, {50, 50, 50}});
     for (const karst::Path& path : paths) {

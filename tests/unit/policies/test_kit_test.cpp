@@ -70,6 +70,18 @@ TEST(DrawnHost, PathsHavePointsLengthClearanceAndTime) {
   EXPECT_EQ(paths[2].length_m, 0);
 }
 
+TEST(DrawnHost, RockIsWhatIsOccupied) {
+  const DrawnHost host(DrawnMap(1.0, {"a...#???"}));
+  karst_request_t r{};
+  r.size = sizeof r;
+  r.map = host.map_handle();
+  const karst::Request request(host.host(), r);
+  const karst::Vec3 a = host.map().place('a');
+  EXPECT_EQ(request.map.distances_to_rock({a, {3.25, 0.5, 0.5}}, 10), (std::vector<double>{4, 1.25}));
+  EXPECT_EQ(request.map.distances_to_rock({a}, 3), std::vector<double>{3}) << "unknown cells are no rock";
+  EXPECT_THROW(request.map.distances_to_rock({a}, 0), karst::Error);
+}
+
 DrawnMap crossing() {
   return {1.0, {R"(
     ###?###

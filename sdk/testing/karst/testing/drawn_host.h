@@ -25,8 +25,8 @@ inline std::int32_t refuse(karst_error_t* error, std::int32_t code, std::string_
 class DrawnHost {
  public:
   explicit DrawnHost(DrawnMap map) : map_(std::move(map)) {
-    map_service_ = {sizeof map_service_, 0,       &info,   &cell_states, &cast_rays, &count_in_boxes,
-                    &surface_cells,      &retain, &release};
+    map_service_ = {sizeof map_service_, 0,       &info,    &cell_states,      &cast_rays, &count_in_boxes,
+                    &surface_cells,      &retain, &release, &distances_to_rock};
     path_service_ = {sizeof path_service_, 0, &lengths, &paths};
     gain_service_ = {sizeof gain_service_, 0, &newly_seen};
     draw_service_ = {sizeof draw_service_, 0, &draw_points, &draw_lines, &draw_text};
@@ -162,6 +162,16 @@ class DrawnHost {
     });
     *total = surface.size();
     for (std::size_t i = 0; i < surface.size() && i < capacity; ++i) out[i] = m.center_of(surface[i]);
+    return KARST_OK;
+  }
+  static std::int32_t distances_to_rock(const karst_host_t* h, const karst_map_t*, const karst_vec3_t* points,
+                                        std::uint64_t count, double limit_m, double* out,
+                                        karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
+    if (!(limit_m > 0 && limit_m <= KARST_MAX_ROCK_DISTANCE_M))
+      return refuse(e, KARST_ERROR_ARGUMENT, "limit_m is not in (0, 100] m");
+    for (std::uint64_t i = 0; i < count; ++i)
+      out[i] = distance_to_cell(self(h).map_, points[i], limit_m, [](Cell c) { return c == Cell::occupied; });
     return KARST_OK;
   }
   static const karst_map_t* retain(const karst_host_t*, const karst_map_t* map, karst_error_t*) noexcept {

@@ -81,11 +81,11 @@ TEST(Paths, LeadThroughTheHallWithLengthClearanceAndPoints) {
   EXPECT_NEAR(far.length_m, core::path_length_m(far.points), 1e-9);
   EXPECT_NEAR(far.length_m, std::hypot(17, 17), 0.15 * std::hypot(17, 17));
   EXPECT_GE(far.clearance_m, 0.5);
-  EXPECT_LE(far.clearance_m, 2.1) << "the floor is 2 m below, and its centre 0.1 m lower";
+  EXPECT_LE(far.clearance_m, 2.14) << "the floor is 2 m below, and the centres of its cells 0.1 m lower";
   EXPECT_EQ(answer.paths[1].points, (std::vector<core::Vec3>{{3, 3, 2}, {6, 3, 2}}))
       << "near: a straight line";
   EXPECT_DOUBLE_EQ(answer.paths[1].length_m, 3);
-  EXPECT_NEAR(answer.paths[1].clearance_m, 2.1, 1e-9);
+  EXPECT_NEAR(answer.paths[1].clearance_m, std::hypot(2.1, 0.1), 0.025) << "to an eighth of a cell";
   EXPECT_TRUE(answer.paths[2].points.empty()) << "nothing leads into a pocket";
   EXPECT_TRUE(std::isinf(answer.paths[2].length_m));
   EXPECT_EQ(answer.paths[2].clearance_m, 0);
