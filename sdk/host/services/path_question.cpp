@@ -14,6 +14,9 @@ constexpr double kDirect_m = 5.0;
 /// Steps of work for each node of the roadmap in one search, which may visit all of them.
 constexpr std::uint64_t kStepsPerNode = 4;
 
+/// Steps of work for each look at the clearance of a path, four of them for each cell of its length at most.
+constexpr double kStepsPerLook = 20;
+
 std::vector<core::Vec3> points_between(const core::VoxelMap& map, const core::Roadmap& roadmap,
                                        const core::Vec3& from, const core::Vec3& end) {
   const double clearance_m = core::search_clearance_m(roadmap.options(), map.resolution_m());
@@ -42,6 +45,8 @@ PathsAnswer find_paths(const core::VoxelMap& map, const core::Roadmap& roadmap, 
     points += found.points.size();
     if (points > KARST_MAX_PATH_POINTS) return too_much;
     found.length_m = core::path_length_m(found.points);
+    const double looks = 4 * found.length_m / map.resolution_m() + static_cast<double>(found.points.size());
+    if (!work.spend(static_cast<std::uint64_t>(kStepsPerLook * looks))) return too_much;
     found.clearance_m = roadmap.least_clearance_m(found.points);
   }
   return answer;
