@@ -17,6 +17,8 @@ constexpr std::uint64_t kStepsPerNode = 4;
 /// Steps of work for each look at the clearance of a path, four of them for each cell of its length at most.
 constexpr double kStepsPerLook = 20;
 
+PathsAnswer too_much() { return {PathAnswer::Status::too_much, {}}; }
+
 std::vector<core::Vec3> points_between(const core::VoxelMap& map, const core::Roadmap& roadmap,
                                        const core::Vec3& from, const core::Vec3& end) {
   const double clearance_m = core::search_clearance_m(roadmap.options(), map.resolution_m());
@@ -29,8 +31,7 @@ std::vector<core::Vec3> points_between(const core::VoxelMap& map, const core::Ro
 
 PathsAnswer find_paths(const core::VoxelMap& map, const core::Roadmap& roadmap, const core::Vec3& from,
                        std::span<const core::Vec3> goals, double tolerance_m) {
-  const PathsAnswer too_much{PathAnswer::Status::too_much, {}};
-  if (goals.size() > KARST_MAX_PATHS) return too_much;
+  if (goals.size() > KARST_MAX_PATHS) return too_much();
   core::WorkBudget work(kMaxPathWork);
   const std::uint64_t search_steps = kStepsPerNode * roadmap.node_count();
   std::size_t points = 0;
@@ -38,15 +39,15 @@ PathsAnswer find_paths(const core::VoxelMap& map, const core::Roadmap& roadmap, 
   for (const core::Vec3& goal : goals) {
     FoundPath& found = answer.paths.emplace_back();
     const std::optional<core::Vec3> end = roadmap.approach(map, goal, tolerance_m, &work);
-    if (work.exhausted() || !work.spend(search_steps)) return too_much;
+    if (work.exhausted() || !work.spend(search_steps)) return too_much();
     if (!end) continue;
     found.points = points_between(map, roadmap, from, *end);
     if (found.points.empty()) continue;
     points += found.points.size();
-    if (points > KARST_MAX_PATH_POINTS) return too_much;
+    if (points > KARST_MAX_PATH_POINTS) return too_much();
     found.length_m = core::path_length_m(found.points);
     const double looks = 4 * found.length_m / map.resolution_m() + static_cast<double>(found.points.size());
-    if (!work.spend(static_cast<std::uint64_t>(kStepsPerLook * looks))) return too_much;
+    if (!work.spend(static_cast<std::uint64_t>(kStepsPerLook * looks))) return too_much();
     found.clearance_m = roadmap.least_clearance_m(found.points);
   }
   return answer;

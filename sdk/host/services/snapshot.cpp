@@ -105,7 +105,7 @@ std::optional<double> distance_to_rock(const core::VoxelMap& map, const core::Ve
                                        core::WorkBudget& work) {
   const double resolution_m = map.resolution_m();
   const CellKey own = map.key_of(p);
-  const auto most = static_cast<std::int32_t>(limit_m / resolution_m + 0.5);
+  const auto most = static_cast<std::int32_t>(std::ceil(limit_m / resolution_m));
   double best_m = limit_m;
   const auto look = [&](const CellKey& d) {
     const CellKey k = own + d;

@@ -191,7 +191,7 @@ class DrawnHost {
   template <class Stops>
   static double distance_to_cell(const DrawnMap& m, const Vec3& p, double limit_m, Stops&& stops) {
     const Index own = m.index_of(p);
-    const int most = static_cast<int>(limit_m / m.resolution_m() + 0.5);
+    const int most = static_cast<int>(std::ceil(limit_m / m.resolution_m()));
     double best = limit_m;
     for (int r = 0; r <= most && best > (r - 0.5) * m.resolution_m(); ++r)
       for (int x = -r; x <= r; ++x)

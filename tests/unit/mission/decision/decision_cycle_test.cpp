@@ -77,6 +77,7 @@ TEST(DecisionCycle, TellsThePolicyOfBatteryAndMissionTime) {
   EXPECT_EQ(d.policy.asked[0].battery_fraction, 0.6);
   EXPECT_EQ(d.policy.asked[0].battery_seconds_left, 600);
   EXPECT_EQ(d.policy.asked[0].mission_seconds_left, 3500);
+  EXPECT_EQ(d.policy.asked[0].max_acceleration_mps2, CoreOptions{}.motion.max_acceleration_mps2);
 }
 
 TEST(DecisionCycle, AFrontierThatWasLookedAtRests) {
