@@ -79,7 +79,8 @@ TEST(Paths, LeadThroughTheHallWithLengthClearanceAndPoints) {
   EXPECT_EQ(far.points.front(), core::Vec3(3, 3, 2));
   EXPECT_EQ(far.points.back(), core::Vec3(20, 20, 2));
   EXPECT_NEAR(far.length_m, core::path_length_m(far.points), 1e-9);
-  EXPECT_NEAR(far.length_m, std::hypot(17, 17), 0.15 * std::hypot(17, 17));
+  EXPECT_GE(far.length_m, std::hypot(17, 17) - 1e-9);
+  EXPECT_LE(far.length_m, 1.2 * std::hypot(17, 17));
   EXPECT_GE(far.clearance_m, 0.5);
   EXPECT_LE(far.clearance_m, 2.14) << "the floor is 2 m below, and the centres of its cells 0.1 m lower";
   EXPECT_EQ(answer.paths[1].points, (std::vector<core::Vec3>{{3, 3, 2}, {6, 3, 2}}))

@@ -87,7 +87,7 @@ TEST(Roadmap, UpdatedFromChangesEqualsBuiltFromScratch) {
 }
 
 TEST(Roadmap, EquallyShortPathsAreChosenByPlaceInARebuiltRoadmapToo) {
-  const VoxelMap map = random_map(5, kHall, 0.01);
+  const VoxelMap map = random_map(5, kHall, 0.005);
   const std::vector<CellChange> cells = all_cells(map);
   Roadmap forwards{kOptions}, backwards{kOptions};
   forwards.update(map, cells);
@@ -97,7 +97,7 @@ TEST(Roadmap, EquallyShortPathsAreChosenByPlaceInARebuiltRoadmapToo) {
   backwards.update(map, std::vector<CellChange>(reversed.begin() + half, reversed.end()));
   Random random(5);
   int found = 0;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 60; ++i) {
     const Vec3 from = point_in(random), to = point_in(random);
     const Path a = forwards.find(map, from, to, EqualPaths::by_place),
                b = backwards.find(map, from, to, EqualPaths::by_place);
