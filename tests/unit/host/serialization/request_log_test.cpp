@@ -36,8 +36,10 @@ class Curious final : public core::PolicyPort {
     const std::vector<core::Vec3> goals = {g.position, {1.5, 1.5, 1.5}};
     const PathsAnswer found = find_paths(*r.map, *r.roadmap, r.state.position, goals, 0.5);
     for (const FoundPath& path : found.paths) {
-      g.why += ", " + std::to_string(path.clearance_m);
-      for (const core::Vec3& p : path.points) g.why += " " + std::to_string(p.x() + 10 * p.y() + 100 * p.z());
+      double sum = path.clearance_m;  // differs if any point does
+      for (std::size_t k = 0; k < path.points.size(); ++k)
+        sum += path.points[k].dot(core::Vec3(1, 10, 100)) * (1.0 + static_cast<double>(k));
+      g.why += ", " + std::to_string(sum);
     }
     g.why += ", " + std::to_string(r.battery_seconds_left) + " s";
     d.goals = {g};
