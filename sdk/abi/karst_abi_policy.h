@@ -79,6 +79,10 @@ typedef struct karst_request {
   uint64_t frontier_count;
   const karst_teammate_t* teammates;
   uint64_t teammate_count;
+  /* Of the last three 0 means "not told". They refer to stamp_ns. */
+  double battery_fraction;     /* share of the battery's energy that is left, (0, 1] */
+  double battery_seconds_left; /* flight time until the battery is empty, at the recent mean power */
+  double mission_seconds_left; /* of the mission's maximum flight time; +infinity: it has none */
 } karst_request_t;
 
 /* Bits of set_outcome's flags. A tour is a preference: the core flies to the first goal that passes its

@@ -24,7 +24,10 @@ typedef struct karst_map karst_map_t; /* opaque: a snapshot of the occupancy map
 #define KARST_MAX_BATCH 1000000u
 #define KARST_MAX_GAIN_VIEWPOINTS 4096u
 #define KARST_MAX_PATH_GOALS 4096u
+#define KARST_MAX_PATHS 64u           /* goals of one call of paths */
+#define KARST_MAX_PATH_POINTS 500000u /* of all paths of one call */
 #define KARST_MAX_RAY_LENGTH_M 1000.0
+#define KARST_MAX_ROCK_DISTANCE_M 100.0
 #define KARST_MAX_GAIN_RANGE_M 60.0
 #define KARST_MAX_GAIN_RANGE_CELLS 300u /* max_range_m in cells of the map: 60 m at 0.2 m */
 #define KARST_MAX_GAIN_RAYS 2000000u    /* of one sensor; neighbours are at most a cell apart at its range */
@@ -86,7 +89,23 @@ typedef struct karst_map_service {
   const karst_map_t* (*retain)(const karst_host_t*, const karst_map_t*, karst_error_t*)KARST_NOEXCEPT;
   /* [any thread] {any state} Releases a snapshot that retain() returned; call it once. */
   void (*release)(const karst_host_t*, const karst_map_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} Distance from each point to the centre of the nearest occupied cell, in metres;
+     limit_m if none is nearer. Only occupied cells are rock: unknown ones are not. limit_m is in
+     (0, KARST_MAX_ROCK_DISTANCE_M]. Where no rock is near, the cost grows with the cube of limit_m in cells:
+     100,000,000 cells visited in one call are KARST_ERROR_LIMIT. */
+  int32_t (*distances_to_rock)(const karst_host_t*, const karst_map_t*, const karst_vec3_t* points,
+                               uint64_t count, double limit_m, double* out, karst_error_t*) KARST_NOEXCEPT;
 } karst_map_service_t;
+
+/* [frozen] A path, without its points. Without a known path length_m and time_s are +infinity, clearance_m is
+   0, and there are no points. */
+typedef struct karst_path {
+  double length_m;    /* of the polyline through its points */
+  double clearance_m; /* least distance from it to the centre of a cell that is not free, occupied or unknown:
+                         to an eighth of a cell, and at most 15 cells of the map */
+  double time_s;      /* estimate of the flight from rest to rest, at the mission's speed limit */
+  uint64_t points_end; /* its points are those from the end of the path before it, 0 for the first, to here */
+} karst_path_t;
 
 /* [appendable] Paths through the map of this request. */
 typedef struct karst_path_service {
@@ -96,6 +115,15 @@ typedef struct karst_path_service {
      metres; +infinity if no path is known. (Too many goals far from clear cells: KARST_ERROR_LIMIT.) */
   int32_t (*lengths)(const karst_host_t*, karst_vec3_t from, const karst_vec3_t* goals, uint64_t count,
                      double tolerance_m, double* out, karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {deciding} A clear path from `from` to within `tolerance_m` of each goal, one in `out` for
+     each goal, and the points of all of them, in the world frame: first `from`, last the place where the path
+     ends. Writes at most `capacity` points; the last path's points_end is the number of all. The path flown
+     is smoother, a few per cent shorter, and keeps farther from rock where there is room. One search for each
+     goal: lengths() costs far less. At most KARST_MAX_PATHS goals; more points than KARST_MAX_PATH_POINTS, or
+     more goals than can be searched in a map so large, are KARST_ERROR_LIMIT. */
+  int32_t (*paths)(const karst_host_t*, karst_vec3_t from, const karst_vec3_t* goals, uint64_t count,
+                   double tolerance_m, karst_path_t* out, karst_vec3_t* points, uint64_t capacity,
+                   karst_error_t*) KARST_NOEXCEPT;
 } karst_path_service_t;
 
 /* [appendable] Information gain of viewpoints. */

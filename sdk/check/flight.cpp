@@ -62,6 +62,9 @@ Flight::Flight(std::uint64_t seed, const CaveShape& shape, double known_fraction
   r.stamp = 10 * core::kSecond;
   r.T_world_start.position = cave_.start();
   r.seconds_before_homing = 600;
+  r.battery_fraction = 0.8;
+  r.battery_seconds_left = 1200;
+  r.mission_seconds_left = 3600;
   r.max_speed_mps = 2;
   r.clearance_m = cave_.clearance_m();
   r.vehicle_radius_m = vehicle_.radius_m;
@@ -105,6 +108,8 @@ std::vector<karst_event_t> Flight::react(const Answer& answer) {
   const core::TimeNs pause = core::from_seconds(random_.uniform(0.5, 5));
   request_.stamp += pause;
   request_.seconds_before_homing -= core::seconds(pause);
+  request_.battery_seconds_left -= core::seconds(pause);
+  request_.mission_seconds_left -= core::seconds(pause);
   const core::Decision d = answer.good() ? answer.box.decision() : core::Decision{};
   if (d.goals.empty()) {  // it looks around while it waits
     fly_to(cave_.map().at(cave_.front()) == core::Cell::free ? cave_.front() : request_.state.position);

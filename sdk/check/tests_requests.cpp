@@ -91,6 +91,9 @@ void extremes(Context& c) {
       [](core::DecisionRequest& r) { r.seconds_before_homing = 0; },
       [](core::DecisionRequest& r) { r.seconds_before_homing = -1e6; },
       [](core::DecisionRequest& r) { r.seconds_before_homing = inf; },
+      [](core::DecisionRequest& r) { r.battery_fraction = r.battery_seconds_left = 0; },
+      [](core::DecisionRequest& r) { r.mission_seconds_left = -1e6; },
+      [](core::DecisionRequest& r) { r.mission_seconds_left = inf; },
       [](core::DecisionRequest& r) { r.max_speed_mps = 1e-6; },
       [](core::DecisionRequest& r) {
         r.max_speed_mps = 1e3;

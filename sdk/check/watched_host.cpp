@@ -80,10 +80,22 @@ struct Wrapped {
     arrive(watched(h));
     watched(h).inner_.map->release(&watched(h).inner_, m);
   }
+  static std::int32_t distances_to_rock(const karst_host_t* h, const karst_map_t* m,
+                                        const karst_vec3_t* points, std::uint64_t n, double limit_m,
+                                        double* out, karst_error_t* e) noexcept {
+    return pass<&karst_host_t::map, &karst_map_service_t::distances_to_rock>("map.distances_to_rock", h, e, m,
+                                                                             points, n, limit_m, out);
+  }
   static std::int32_t lengths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
                               std::uint64_t n, double tolerance_m, double* out, karst_error_t* e) noexcept {
     return pass<&karst_host_t::path, &karst_path_service_t::lengths>("path.lengths", h, e, from, goals, n,
                                                                      tolerance_m, out);
+  }
+  static std::int32_t paths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
+                            std::uint64_t n, double tolerance_m, karst_path_t* out, karst_vec3_t* points,
+                            std::uint64_t capacity, karst_error_t* e) noexcept {
+    return pass<&karst_host_t::path, &karst_path_service_t::paths>("path.paths", h, e, from, goals, n,
+                                                                   tolerance_m, out, points, capacity);
   }
   static std::int32_t newly_seen(const karst_host_t* h, const karst_map_t* m, const karst_sensor_t* sensors,
                                  std::uint64_t sensor_count, const karst_viewpoint_t* viewpoints,
@@ -131,8 +143,9 @@ WatchedHost::WatchedHost(const karst_host_t& inner, Offer offer) : inner_(inner)
           &Wrapped::count_in_boxes,
           &Wrapped::surface_cells,
           &Wrapped::retain,
-          &Wrapped::release};
-  path_ = {sizeof path_, 0, &Wrapped::lengths};
+          &Wrapped::release,
+          &Wrapped::distances_to_rock};
+  path_ = {sizeof path_, 0, &Wrapped::lengths, &Wrapped::paths};
   gain_ = {sizeof gain_, 0, &Wrapped::newly_seen};
   draw_ = {sizeof draw_, 0, &Wrapped::points, &Wrapped::lines, &Wrapped::text};
   host_ = {sizeof host_,

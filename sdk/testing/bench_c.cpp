@@ -69,7 +69,15 @@ karst_vec3_t karst_bench_place(const karst_bench_t* bench, char letter) noexcept
 
 karst_bench_state_t karst_bench_get_state(const karst_bench_t* bench) noexcept {
   const Bench& b = bench->bench;
-  return {b.position, b.start, b.direction_of_flight, b.heading_rad, b.time_s, b.seconds_before_homing};
+  return {b.position,
+          b.start,
+          b.direction_of_flight,
+          b.heading_rad,
+          b.time_s,
+          b.seconds_before_homing,
+          b.battery_fraction,
+          b.battery_seconds_left,
+          b.mission_seconds_left};
 }
 
 void karst_bench_set_state(karst_bench_t* bench, const karst_bench_state_t* state) noexcept {
@@ -80,6 +88,9 @@ void karst_bench_set_state(karst_bench_t* bench, const karst_bench_state_t* stat
   b.heading_rad = state->heading_rad;
   b.time_s = state->time_s;
   b.seconds_before_homing = state->seconds_before_homing;
+  b.battery_fraction = state->battery_fraction;
+  b.battery_seconds_left = state->battery_seconds_left;
+  b.mission_seconds_left = state->mission_seconds_left;
 }
 
 void karst_bench_set_sensors(karst_bench_t* bench, const karst_sensor_t* sensors,

@@ -32,7 +32,7 @@ if layout; then fail "the layout's asserts did not see that the request and the 
 says 'assertion failed: "size of karst_host"' layout.txt
 if grep -q 'offset of' layout.txt; then cat layout.txt; fail "a field that was there has moved"; fi
 if abi as_reviewed; then fail "abidiff did not see the new field"; fi
-says "'double battery_left', at offset 2624 (in bits)" abi.txt
+says "'double battery_left_wh', at offset 2816 (in bits)" abi.txt
 if grep -qE 'deletion|offset changed' abi.txt; then cat abi.txt; fail "abidiff sees more than additions at the end"; fi
 
 apply 2
@@ -62,9 +62,9 @@ for old in $olds; do
 done
 answer careful.so offers
 grep -q "built for 1.1" answer.txt
-says "battery 0.40, rock at 2.0 m" answer.txt
+says "battery 40.0 Wh, rock at 2.0 m" answer.txt
 answer careful.so bare
-says "battery 0.00, rock at 0.0 m" answer.txt
+says "battery 0.0 Wh, rock at 0.0 m" answer.txt
 grep -q "log: this karst has no clearance service" answer.txt || { cat answer.txt; fail "no line in the log"; }
 if "$binary/bin/karst" policy list --plugin careful.so > list.txt; then fail "a plugin that was asked for and cannot be flown is no error"; fi
 says "built for policy ABI 1.1, this karst offers 1.0: install a newer karst, or rebuild the plugin with this karst's SDK" list.txt

@@ -49,6 +49,9 @@ struct Room {
     request.sequence = 1;
     request.state.position = {5.5, 5.5, 5.5};
     request.seconds_before_homing = 300;
+    request.battery_fraction = 0.5;
+    request.battery_seconds_left = 400;
+    request.mission_seconds_left = 1800;
     request.max_speed_mps = 2;
     request.map = &map;
     request.roadmap = &roadmap;

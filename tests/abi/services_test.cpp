@@ -1,6 +1,7 @@
 // Every service through the border, from a plugin in C++.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -20,7 +21,7 @@ TEST(Services, AnswerAsTheRoomIsBuilt) {
   const auto policy = load("inquisitive", "inquisitive");
   const core::Decision d = policy->decide(room.request);
   const std::vector<double> said = answers(d);
-  ASSERT_EQ(said.size(), 11u);
+  ASSERT_EQ(said.size(), 28u);
   EXPECT_EQ(said[0], 1000) << "free cells: 10 x 10 x 10";
   EXPECT_EQ(said[1], 12 * 12 * 12 - 1000 - 4) << "occupied cells: the shell without the window";
   EXPECT_EQ(said[2], 1) << "the corner inside is free";
@@ -33,6 +34,23 @@ TEST(Services, AnswerAsTheRoomIsBuilt) {
   EXPECT_GE(said[9], 0);
   EXPECT_LT(said[9], 1);
   EXPECT_EQ(said[10], 1000) << "the copy";
+  EXPECT_EQ(said[11], 0.5) << "of the battery";
+  EXPECT_EQ(said[12], 400) << "seconds of battery";
+  EXPECT_EQ(said[13], 1800) << "seconds of the mission";
+  EXPECT_EQ(said[14], 3) << "no rock within the limit";
+  EXPECT_EQ(said[15], 5) << "to the walls";
+  EXPECT_EQ(said[16], 2) << "a straight line to the window";
+  EXPECT_EQ(said[17], 3);
+  EXPECT_EQ(said[18], 2) << "to the window's unknown cells";
+  EXPECT_NEAR(said[19], 3 / 1.6 + 1.6 / 2, 1e-5) << "cruising at 0.8 of 2 m/s";
+  EXPECT_GE(said[20], 2);
+  EXPECT_GE(said[21], std::sqrt(3 * 4 * 4) - 1e-4) << "into the corner";
+  EXPECT_LE(said[21], 1.3 * std::sqrt(3 * 4 * 4));
+  EXPECT_NEAR(said[22], 2, 1e-9) << "where it ends: two walls, a floor";
+  EXPECT_EQ(said[24], 0) << "no way out of the room";
+  EXPECT_TRUE(std::isinf(said[25]));
+  EXPECT_EQ(said[26], 0);
+  EXPECT_TRUE(std::isinf(said[27]));
   ASSERT_EQ(d.drawings.size(), 3u);
   EXPECT_EQ(d.drawings[0].rgb, 0x123456u);
   EXPECT_EQ(d.drawings[1].points.size(), 2u);

@@ -22,7 +22,7 @@ void read_and_write(std::span<const std::byte> bytes, Read read) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto bytes = std::as_bytes(std::span(data + 1, size - 1));
-  switch (data[0] % 6) {
+  switch (data[0] % 7) {
     case 0:
       read_and_write(bytes, read_ready_report);
       break;
@@ -37,6 +37,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     case 4:
       read_and_write(bytes, read_path_answer);
+      break;
+    case 5:
+      read_and_write(bytes, read_paths_answer);
       break;
     default:
       read_and_write(bytes, read_text);

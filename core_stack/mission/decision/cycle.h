@@ -16,7 +16,8 @@ struct CycleInput {
   State state;               // expected at the deadline
   Vec3 from = Vec3::Zero();  // where the new path begins: the end of the committed segment
   Vec3 direction = Vec3::UnitX();
-  double seconds_left = 0;       // of flight, limited by battery and mission time
+  double seconds_left = 0;  // of flight, limited by battery and mission time
+  double battery_fraction = 0, battery_seconds_left = 0, mission_seconds_left = 0;  // for the policy
   double flown_length_m = 0;     // stands for the path home where the map shows none
   std::vector<Vec3> flown_path;  // from take-off to `from`
   GoalFate last_fate = GoalFate::none;

@@ -46,6 +46,7 @@ DecisionCycle::DecisionCycle(const CoreOptions& options, const VehicleDescriptio
                              PolicyPort& policy, WorldModel& world, HomeEstimator& home)
     : vehicle_(vehicle),
       max_speed_mps_(options.motion.max_speed_mps),
+      max_acceleration_mps2_(options.motion.max_acceleration_mps2),
       world_(&world),
       home_(&home),
       offers_(options, vehicle, world, ledger_),
@@ -126,7 +127,11 @@ DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const Cy
   request.T_world_start = vehicle_.T_world_start;
   request.seconds_before_homing =
       home_->slack_s(input.seconds_left, home_->estimate(input.from, input.flown_length_m));
+  request.battery_fraction = input.battery_fraction;
+  request.battery_seconds_left = input.battery_seconds_left;
+  request.mission_seconds_left = input.mission_seconds_left;
   request.max_speed_mps = max_speed_mps_;
+  request.max_acceleration_mps2 = max_acceleration_mps2_;
   request.clearance_m = roadmap.clearance_m();
   request.vehicle_radius_m = vehicle_.radius_m;
   request.last_fate = input.last_fate;

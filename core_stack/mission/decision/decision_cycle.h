@@ -43,7 +43,7 @@ class DecisionCycle {
   void note_chosen(const Goal& goal, const CycleInput& input);
 
   VehicleDescription vehicle_;
-  double max_speed_mps_;
+  double max_speed_mps_, max_acceleration_mps2_;
   WorldModel* world_;
   HomeEstimator* home_;
   GoalLedger ledger_;

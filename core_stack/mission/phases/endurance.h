@@ -13,10 +13,10 @@ class Endurance {
   }
   void note(const BatteryStatus& battery) { battery_ = battery; }
   const BatteryStatus& battery() const { return battery_; }
+  /// Of the mission's maximum flight time.
+  double mission_seconds_left(TimeNs now) const { return max_flight_time_s_ - seconds(now); }
   /// Limited by the battery and by the mission's maximum flight time.
-  double seconds_left(TimeNs now) const {
-    return std::min(battery_.seconds_left, max_flight_time_s_ - seconds(now));
-  }
+  double seconds_left(TimeNs now) const { return std::min(battery_.seconds_left, mission_seconds_left(now)); }
 
  private:
   double max_flight_time_s_;

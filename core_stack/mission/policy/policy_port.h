@@ -44,6 +44,11 @@ struct DecisionRequest {
   Vec3 direction_of_flight = Vec3::UnitX();  // unit, world frame; the heading when at rest
   Pose T_world_start;
   double seconds_before_homing = 0;
+  // At `stamp`; 0: not told.
+  double battery_fraction = 0;       // of the battery's energy
+  double battery_seconds_left = 0;   // at the recent mean power
+  double mission_seconds_left = 0;   // of the maximum flight time; +inf: unlimited
+  double max_acceleration_mps2 = 2;  // for travel times; a policy does not see it
   double max_speed_mps = 0, clearance_m = 0, vehicle_radius_m = 0;
   GoalFate last_fate = GoalFate::none;
   Vec3 last_goal = Vec3::Zero();

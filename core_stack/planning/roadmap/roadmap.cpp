@@ -28,7 +28,8 @@ double blocks_within(double radius_m, double resolution_m) {
 /// One A* search over the graph from several joins; heuristic: straight-line distance to the target.
 class GraphSearch {
  public:
-  explicit GraphSearch(const RoadmapGraph& graph) : graph_(graph) {
+  explicit GraphSearch(const RoadmapGraph& graph, EqualPaths equal = EqualPaths::as_stored)
+      : graph_(graph), equal_(equal) {
     std::uint32_t count = 0;
     for (const RoadmapTile& t : graph.tiles) {
       base_.push_back(count);
@@ -50,7 +51,7 @@ class GraphSearch {
       push({j.length_m + rest(graph_.position_of(j.node)), i, j.node});
     }
     while (!heap_.empty()) {
-      std::pop_heap(heap_.begin(), heap_.end());
+      std::pop_heap(heap_.begin(), heap_.end(), later());
       const Entry top = heap_.back();
       heap_.pop_back();
       if (done_[top.index]) continue;
@@ -85,16 +86,24 @@ class GraphSearch {
     double estimate;
     std::uint32_t index;
     NodeRef node;
-    bool operator<(const Entry& o) const {
-      return estimate != o.estimate ? estimate > o.estimate : index > o.index;
+  };
+  /// The order of the heap, which has the least estimate on top.
+  struct Later {
+    const GraphSearch* search;
+    bool operator()(const Entry& a, const Entry& b) const {
+      if (a.estimate != b.estimate) return a.estimate > b.estimate;
+      if (search->equal_ == EqualPaths::as_stored) return a.index > b.index;
+      return search->graph_.cell_of(a.node) > search->graph_.cell_of(b.node);
     }
   };
+  Later later() const { return {this}; }
   void push(const Entry& e) {
     heap_.push_back(e);
-    std::push_heap(heap_.begin(), heap_.end());
+    std::push_heap(heap_.begin(), heap_.end(), later());
   }
 
   const RoadmapGraph& graph_;
+  EqualPaths equal_;
   std::vector<std::uint32_t> base_, parent_;
   std::vector<double> length_;
   std::vector<char> done_;
@@ -122,6 +131,30 @@ std::size_t Roadmap::node_count() const {
 
 bool Roadmap::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const {
   return graph_->rule && graph_->free.segment_clear(a, b, clearance_m);
+}
+
+double Roadmap::least_clearance_m(std::span<const Vec3> points) const {
+  if (!graph_->rule || points.empty()) return 0;
+  const FreeTiles& free = graph_->free;
+  double least_m = kInf;
+  const auto look = [&](const Vec3& p) {
+    const double distance_m = free.nearest(p, kInf).distance_m;
+    least_m = std::min(least_m, distance_m);
+    return distance_m;
+  };
+  look(points.front());
+  const double step_m = 0.25 * free.resolution_m();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vec3 along = points[i] - points[i - 1];
+    const double length_m = along.norm();
+    // The distance to an obstacle changes by no more than the way flown.
+    for (double at_m = step_m; at_m < length_m;) {
+      const double distance_m = look(points[i - 1] + along * (at_m / length_m));
+      at_m += std::max(step_m, distance_m - least_m);
+    }
+    look(points[i]);
+  }
+  return least_m;
 }
 
 std::vector<Vec3> Roadmap::places_near(const Vec3& p, double radius_m) const {
@@ -231,7 +264,7 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
   return out;
 }
 
-Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const {
+Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal, EqualPaths equal) const {
   const RoadmapGraph& g = *graph_;
   Path path;
   const auto fail = [&path](PlanStatus status, const char* reason) {
@@ -250,7 +283,7 @@ Path Roadmap::find(const VoxelMap& map, const Vec3& from, const Vec3& goal) cons
   path.escape_points = path.points.size() - 1;
   const Vec3 start = path.points.back();
 
-  GraphSearch search(g);
+  GraphSearch search(g, equal);
   const std::vector<Join> outs = g.joins(start), ins = g.joins(goal);
   const Join* in = nullptr;
   double best = kInf;

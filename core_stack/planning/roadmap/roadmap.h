@@ -21,6 +21,10 @@ namespace karst::core {
 
 struct RoadmapGraph;  // private to planning
 
+/// Which of several equally short paths a search finds. `as_stored` depends on the order in which space was
+/// seen; `by_place` depends on the map alone, and is the same on a roadmap rebuilt from a record.
+enum class EqualPaths { as_stored, by_place };
+
 class Roadmap {
  public:
   explicit Roadmap(const PlanningOptions& options);
@@ -42,7 +46,8 @@ class Roadmap {
                                 double max_m = std::numeric_limits<double>::infinity(),
                                 WorkBudget* work = nullptr) const;
   /// A path with the search clearance (search_clearance_m). It is raw: pass it to refine_path.
-  Path find(const VoxelMap& map, const Vec3& from, const Vec3& goal) const;
+  Path find(const VoxelMap& map, const Vec3& from, const Vec3& goal,
+            EqualPaths equal = EqualPaths::as_stored) const;
   /// `goal` if it is clear, else the nearest node within `tolerance_m` with line of sight to it.
   std::optional<Vec3> approach(const VoxelMap& map, const Vec3& goal, double tolerance_m,
                                WorkBudget* work = nullptr) const;
@@ -54,6 +59,9 @@ class Roadmap {
   /// Whether the straight line runs through free cells and nowhere nearer than `clearance_m` to an obstacle's
   /// centre, as of the last update. Takes microseconds.
   bool segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const;
+  /// Least distance from the polyline to the centre of any cell that is not free, as of the last update: to
+  /// an eighth of a cell, and at most 15 cells. 0 without points, or before the first update.
+  double least_clearance_m(std::span<const Vec3> points) const;
 
   std::size_t node_count() const;
   const PlanningOptions& options() const;

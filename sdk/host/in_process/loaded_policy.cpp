@@ -23,7 +23,7 @@ struct LoadedPolicy::Call {
 };
 
 LoadedPolicy::LoadedPolicy(const PluginFile& plugin, const karst_policy_t& table, const PolicyChoice& choice,
-                           const PolicyLegacy& former, PathLengths lengths)
+                           const PolicyLegacy& former, PathLengths lengths, PathSearch paths)
     : table_(table),
       name_(cleaned(table.descriptor->id, kLineLimit)),
       version_(cleaned(table.descriptor->version, kLineLimit)),
@@ -31,6 +31,7 @@ LoadedPolicy::LoadedPolicy(const PluginFile& plugin, const karst_policy_t& table
       choice_(choice),
       parameters_(*table.descriptor, choice.parameters, choice.source),
       lengths_(std::move(lengths)),
+      paths_(std::move(paths)),
       session_(std::make_shared<Session>(choice.seed, name_, former.numbers_drawn)) {
   session_->set_decision_thread(thread_.id());
   if (!plugin.process_change.empty()) warn_of_change(plugin.process_change, "when it was opened");
@@ -180,7 +181,7 @@ core::Decision LoadedPolicy::decide(const core::DecisionRequest& request) {
     DecisionBox box;
   };
   auto question = std::make_shared<Question>(request, session_->live_map());
-  session_->begin_deciding(request, lengths_);
+  session_->begin_deciding(request, lengths_, paths_);
   const std::string fault = call("decide", [question, table = &table_, self = self_](Call& c) {
     const karst_decision_sink_t sink = question->box.sink();
     return call_plugin(table->decide, self, &question->pack.request(), &sink, &c.error);

@@ -16,10 +16,11 @@ namespace karst::host {
 class LoadedPolicy final : public HostedPolicy {
  public:
   /// Creates, initializes and activates. Restores a former object's state, if given; on failure logs the
-  /// reason and starts without one. `lengths` answers the path service in place of a request's roadmap.
+  /// reason and starts without one. `lengths` and `paths` answer the path service in place of a request's
+  /// roadmap.
   /// Throws core::InputError.
   LoadedPolicy(const PluginFile& plugin, const karst_policy_t& table, const PolicyChoice& choice,
-               const PolicyLegacy& former = {}, PathLengths lengths = {});
+               const PolicyLegacy& former = {}, PathLengths lengths = {}, PathSearch paths = {});
   ~LoadedPolicy() override { end(); }
 
   std::string name() const override { return name_; }
@@ -57,6 +58,7 @@ class LoadedPolicy final : public HostedPolicy {
   PolicyChoice choice_;
   ResolvedParameters parameters_;
   PathLengths lengths_;
+  PathSearch paths_;
   std::shared_ptr<Session> session_;
   DecisionThread thread_;
   void* self_ = nullptr;

@@ -16,6 +16,12 @@ PathAnswer lengths(const core::DecisionRequest* request, const Bytes& body) {
   return path_lengths(*request->map, *request->roadmap, q.from, q.goals, q.tolerance_m);
 }
 
+PathsAnswer paths(const core::DecisionRequest* request, const Bytes& body) {
+  const LengthsQuestion q = read_lengths_question(body);
+  if (request == nullptr || request->map == nullptr || request->roadmap == nullptr) return {};
+  return find_paths(*request->map, *request->roadmap, q.from, q.goals, q.tolerance_m);
+}
+
 /// "file: place: reason", as thrown in the policy's process.
 core::InputError input_error(const std::string& text) {
   const std::size_t colon = text.find(": ");
@@ -78,12 +84,17 @@ RingMessage IsolatedPolicy::question(const char* call, Said kind, const Bytes& b
   process_->send(static_cast<std::uint32_t>(kind), body);
   for (;;) {
     RingMessage said = process_->receive(kMaxAnswerBytes);
-    if (said.kind != static_cast<std::uint32_t>(Said::asks_lengths)) {
+    const bool asks_lengths = said.kind == static_cast<std::uint32_t>(Said::asks_lengths);
+    if (!asks_lengths && said.kind != static_cast<std::uint32_t>(Said::asks_paths)) {
       process_->end_call();
       return said;
     }
     process_->check();  // repeated queries must not escape the limits
-    process_->send(static_cast<std::uint32_t>(Said::lengths), flatten(lengths(request, said.body)));
+    if (asks_lengths) {
+      process_->send(static_cast<std::uint32_t>(Said::lengths), flatten(lengths(request, said.body)));
+    } else {
+      process_->send(static_cast<std::uint32_t>(Said::paths), flatten(paths(request, said.body)));
+    }
   }
 }
 

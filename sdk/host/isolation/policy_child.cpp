@@ -60,6 +60,9 @@ class Server {
           found.plugin, *found.policy, choice, order.legacy,
           [this](const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
             return lengths(from, goals, tolerance_m);
+          },
+          [this](const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
+            return paths(from, goals, tolerance_m);
           });
     } catch (const std::exception& e) {
       say(Said::refused, flatten(std::string(e.what())));
@@ -86,6 +89,12 @@ class Server {
     const std::lock_guard lock(asking_);
     say(Said::asks_lengths, flatten(LengthsQuestion{from, {goals.begin(), goals.end()}, tolerance_m}));
     return read_path_answer(ring_.receive(kMaxAnswerBytes).body);
+  }
+
+  PathsAnswer paths(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
+    const std::lock_guard lock(asking_);
+    say(Said::asks_paths, flatten(LengthsQuestion{from, {goals.begin(), goals.end()}, tolerance_m}));
+    return read_paths_answer(ring_.receive(kMaxAnswerBytes).body);
   }
 
   RingEnd ring_;

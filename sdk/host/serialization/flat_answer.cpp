@@ -253,6 +253,37 @@ PathAnswer read_path_answer(std::span<const std::byte> bytes) {
   return answer;
 }
 
+Bytes flatten(const PathsAnswer& answer) {
+  FlatWriter out;
+  out.put(static_cast<std::uint32_t>(answer.status));
+  out.put<std::uint64_t>(answer.paths.size());
+  for (const FoundPath& path : answer.paths) {
+    out.put(path.length_m);
+    out.put(path.clearance_m);
+    out.put<std::uint64_t>(path.points.size());
+    for (const Vec3& p : path.points) out.put(p);
+  }
+  return out.take();
+}
+
+PathsAnswer read_paths_answer(std::span<const std::byte> bytes) {
+  FlatReader in(bytes);
+  PathsAnswer answer;
+  answer.status = static_cast<PathAnswer::Status>(
+      in.choice(0, static_cast<std::uint32_t>(PathAnswer::Status::too_much), "an answer about paths"));
+  answer.paths.resize(in.count(24, KARST_MAX_PATHS, "paths"));
+  std::uint64_t points_left = KARST_MAX_PATH_POINTS;
+  for (FoundPath& path : answer.paths) {
+    path.length_m = in.number<double>();
+    path.clearance_m = in.number<double>();
+    path.points.resize(in.count(sizeof(double) * 3, points_left, "points of paths"));
+    points_left -= path.points.size();
+    for (Vec3& p : path.points) p = in.vec3();
+  }
+  in.require_end();
+  return answer;
+}
+
 Bytes flatten(const std::string& text) {
   FlatWriter out;
   out.put(text);

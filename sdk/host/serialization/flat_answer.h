@@ -15,19 +15,21 @@
 namespace karst::host {
 
 /// Kinds of messages. Each host message except `end` is answered by one policy message; before it answers,
-/// the policy's process may ask for lengths.
+/// the policy's process may ask for lengths and paths.
 enum class Said : std::uint32_t {
-  start = 1,          // StartOrder -> ready, refused
-  decide = 2,         // a request (flat_request.h) -> decided, gave_up
-  event = 3,          // -> noted
-  lengths = 4,        // the answer to asks_lengths
-  end = 5,            // deactivate, destroy, exit
-  ready = 101,        // ReadyReport
-  refused = 102,      // a text: bad input
-  decided = 103,      // DecisionReport
-  gave_up = 104,      // a text: a PolicyFailure
-  noted = 105,        // nothing
-  asks_lengths = 106  // LengthsQuestion
+  start = 1,           // StartOrder -> ready, refused
+  decide = 2,          // a request (flat_request.h) -> decided, gave_up
+  event = 3,           // -> noted
+  lengths = 4,         // the answer to asks_lengths
+  end = 5,             // deactivate, destroy, exit
+  paths = 6,           // the answer to asks_paths
+  ready = 101,         // ReadyReport
+  refused = 102,       // a text: bad input
+  decided = 103,       // DecisionReport
+  gave_up = 104,       // a text: a PolicyFailure
+  noted = 105,         // nothing
+  asks_lengths = 106,  // LengthsQuestion
+  asks_paths = 107     // LengthsQuestion
 };
 
 constexpr std::size_t kMaxAnswerBytes = 32u << 20;  // a state of 16 MiB, drawings of 5 MB, texts
@@ -72,6 +74,8 @@ Bytes flatten(const LengthsQuestion& question);
 LengthsQuestion read_lengths_question(std::span<const std::byte> bytes);
 Bytes flatten(const PathAnswer& answer);
 PathAnswer read_path_answer(std::span<const std::byte> bytes);
+Bytes flatten(const PathsAnswer& answer);
+PathsAnswer read_paths_answer(std::span<const std::byte> bytes);
 Bytes flatten(const std::string& text);
 /// Cleaned: one line of UTF-8.
 std::string read_text(std::span<const std::byte> bytes);

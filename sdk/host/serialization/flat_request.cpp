@@ -9,7 +9,7 @@ namespace karst::host {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x747365757165726bull;  // "krequest"
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::size_t kHeader = 8 + 4 + 4 + 8 + 8;  // magic, version, reserved, length, sum of the body
 constexpr std::uint64_t kMaxClusters = 1'000'000, kMaxCells = 100'000'000, kMaxSensors = 64,
                         kMaxChannels = 4096, kLongestName = 1000, kMaxTeammates = 1000;
@@ -208,7 +208,11 @@ Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   out.put(r.direction_of_flight);
   out.put(r.T_world_start);
   out.put(r.seconds_before_homing);
+  out.put(r.battery_fraction);
+  out.put(r.battery_seconds_left);
+  out.put(r.mission_seconds_left);
   out.put(r.max_speed_mps);
+  out.put(r.max_acceleration_mps2);
   out.put(r.clearance_m);
   out.put(r.vehicle_radius_m);
   out.put(static_cast<std::uint32_t>(r.last_fate));
@@ -244,7 +248,11 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     r.direction_of_flight = in.vec3();
     r.T_world_start = in.pose();
     r.seconds_before_homing = in.number<double>();
+    r.battery_fraction = in.number<double>();
+    r.battery_seconds_left = in.number<double>();
+    r.mission_seconds_left = in.number<double>();
     r.max_speed_mps = in.number<double>();
+    r.max_acceleration_mps2 = in.number<double>();
     r.clearance_m = in.number<double>();
     r.vehicle_radius_m = in.number<double>();
     r.last_fate = static_cast<core::GoalFate>(

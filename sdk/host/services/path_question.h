@@ -36,4 +36,25 @@ inline PathAnswer path_lengths(const core::VoxelMap& map, const core::Roadmap& r
   return {PathAnswer::Status::answered, std::move(lengths_m)};
 }
 
+/// A path to one goal. Without a known path there are no points.
+struct FoundPath {
+  std::vector<core::Vec3> points;
+  double length_m = std::numeric_limits<double>::infinity();
+  double clearance_m = 0;
+};
+
+struct PathsAnswer {
+  PathAnswer::Status status = PathAnswer::Status::no_roadmap;
+  std::vector<FoundPath> paths;  // one for each goal, if answered
+};
+
+/// Paths through the request's map.
+using PathSearch =
+    std::function<PathsAnswer(const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m)>;
+
+/// As core::Roadmap::find gives them, with the ends of core::Roadmap::distances; or `too_much` beyond
+/// kMaxPathWork, KARST_MAX_PATHS or KARST_MAX_PATH_POINTS. The same in a replay.
+PathsAnswer find_paths(const core::VoxelMap& map, const core::Roadmap& roadmap, const core::Vec3& from,
+                       std::span<const core::Vec3> goals, double tolerance_m);
+
 }  // namespace karst::host

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core_stack/homing/path_home/home.h"
 #include "sdk/host/services/gain.h"
 #include "sdk/host/services/serving.h"
 
@@ -82,6 +83,28 @@ struct Services : Serving {
     });
   }
 
+  static std::int32_t distances_to_rock(const karst_host_t* h, const karst_map_t* m,
+                                        const karst_vec3_t* points, std::uint64_t count, double limit_m,
+                                        double* out, karst_error_t* e) noexcept {
+    return serve(h, e, [&](Session& s) {
+      require_batch(count, KARST_MAX_BATCH, points, out);
+      require(limit_m > 0 && limit_m <= KARST_MAX_ROCK_DISTANCE_M, "limit_m is not in (0, 100] m");
+      const core::VoxelMap& map = *snapshot(s, m).map;
+      core::WorkBudget work(kMaxRockWork);
+      for (std::uint64_t i = 0; i < count; ++i) {
+        check_not_abandoned(s);
+        require(finite(points[i]), "a point is not finite");
+        require(to_core(points[i]).norm() <= 1e5, "a point is more than 100 km away");
+        const std::optional<double> distance_m = distance_to_rock(map, to_core(points[i]), limit_m, work);
+        if (!distance_m)
+          throw Refusal{KARST_ERROR_LIMIT,
+                        "so many points cannot be searched so far around: ask for fewer at a time, or with a "
+                        "smaller limit_m"};
+        out[i] = *distance_m;
+      }
+    });
+  }
+
   static const karst_map_t* retain(const karst_host_t* h, const karst_map_t* m, karst_error_t* e) noexcept {
     const karst_map_t* kept = nullptr;
     serve(h, e, [&](Session& s) {
@@ -104,27 +127,61 @@ struct Services : Serving {
 
   // path
 
+  static std::vector<core::Vec3> places_of(karst_vec3_t from, const karst_vec3_t* goals, std::uint64_t count,
+                                           double tolerance_m) {
+    require(finite(from), "from is not finite");
+    require(tolerance_m >= 0 && tolerance_m <= 100, "tolerance_m is not in [0, 100] m");
+    std::vector<core::Vec3> places;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      require(finite(goals[i]), "a goal is not finite");
+      places.push_back(to_core(goals[i]));
+    }
+    return places;
+  }
+  static Refusal closed() { return {KARST_ERROR_STATE, "paths can be asked for during decide() only"}; }
+
   static std::int32_t lengths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
                               std::uint64_t count, double tolerance_m, double* out,
                               karst_error_t* e) noexcept {
     return serve(h, e, [&](Session& s) {
       require_batch(count, KARST_MAX_PATH_GOALS, goals, out);
-      require(finite(from), "from is not finite");
-      require(tolerance_m >= 0 && tolerance_m <= 100, "tolerance_m is not in [0, 100] m");
-      const Refusal closed{KARST_ERROR_STATE, "paths can be asked for during decide() only"};
-      if (s.live_.map == nullptr || !s.lengths_) throw closed;
-      std::vector<core::Vec3> places;
-      for (std::uint64_t i = 0; i < count; ++i) {
-        require(finite(goals[i]), "a goal is not finite");
-        places.push_back(to_core(goals[i]));
-      }
+      const std::vector<core::Vec3> places = places_of(from, goals, count, tolerance_m);
+      if (s.live_.map == nullptr || !s.lengths_) throw closed();
       const PathAnswer found = s.lengths_(to_core(from), places, tolerance_m);
       if (found.status == PathAnswer::Status::too_much)
         throw Refusal{KARST_ERROR_LIMIT,
                       "so many goals that are not clear cannot be searched so far around: ask for fewer at a "
                       "time, or with less tolerance"};
-      if (found.status != PathAnswer::Status::answered || found.lengths_m.size() != count) throw closed;
+      if (found.status != PathAnswer::Status::answered || found.lengths_m.size() != count) throw closed();
       std::copy(found.lengths_m.begin(), found.lengths_m.end(), out);
+    });
+  }
+
+  static std::int32_t paths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
+                            std::uint64_t count, double tolerance_m, karst_path_t* out, karst_vec3_t* points,
+                            std::uint64_t capacity, karst_error_t* e) noexcept {
+    return serve(h, e, [&](Session& s) {
+      require_batch(count, KARST_MAX_PATHS, goals, out);
+      require(capacity == 0 || points != nullptr, "an array is NULL");
+      const std::vector<core::Vec3> places = places_of(from, goals, count, tolerance_m);
+      if (s.live_.map == nullptr || !s.paths_) throw closed();
+      const PathsAnswer found = s.paths_(to_core(from), places, tolerance_m);
+      if (found.status == PathAnswer::Status::too_much)
+        throw Refusal{KARST_ERROR_LIMIT,
+                      "so many paths cannot be searched in a map so large: ask for fewer at a time, or with "
+                      "less tolerance"};
+      if (found.status != PathAnswer::Status::answered || found.paths.size() != count) throw closed();
+      std::uint64_t total = 0;
+      for (std::uint64_t i = 0; i < count; ++i) {
+        const FoundPath& path = found.paths[i];
+        for (const core::Vec3& p : path.points) {
+          if (total < capacity) points[total] = to_abi(p);
+          ++total;
+        }
+        const double time_s = path.points.empty() ? path.length_m  // no path: infinite, too
+                                                  : core::flight_time_s(path.length_m, s.motion_);
+        out[i] = {path.length_m, path.clearance_m, time_s, total};
+      }
     });
   }
 
@@ -226,9 +283,10 @@ struct Services : Serving {
   }
 
   static void install(Session& s, karst_host_t& host) {
-    s.map_service_ = {sizeof s.map_service_, 0,       &info,   &cell_states, &cast_rays, &count_in_boxes,
-                      &surface_cells,        &retain, &release};
-    s.path_service_ = {sizeof s.path_service_, 0, &lengths};
+    s.map_service_ = {
+        sizeof s.map_service_, 0,       &info,    &cell_states,      &cast_rays, &count_in_boxes,
+        &surface_cells,        &retain, &release, &distances_to_rock};
+    s.path_service_ = {sizeof s.path_service_, 0, &lengths, &paths};
     s.gain_service_ = {sizeof s.gain_service_, 0, &newly_seen};
     s.draw_service_ = {sizeof s.draw_service_, 0, &points, &lines, &text};
     host = {sizeof host,      KARST_ABI_MINOR,  &s,   &s.map_service_, &s.path_service_,

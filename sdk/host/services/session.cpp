@@ -15,7 +15,8 @@ Session::Session(std::uint64_t seed, const std::string& policy_id, std::uint64_t
   install_services(*this, host_);
 }
 
-void Session::begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths) {
+void Session::begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths,
+                             const PathSearch& paths) {
   const std::unique_lock lock(gate_);
   now_ = request.stamp;
   live_.map = request.map;
@@ -26,6 +27,14 @@ void Session::begin_deciding(const core::DecisionRequest& request, const PathLen
                    const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
       return path_lengths(map, roadmap, from, goals, tolerance_m);
     };
+  paths_ = paths;
+  if (!paths_ && request.map != nullptr && request.roadmap != nullptr)
+    paths_ = [&map = *request.map, &roadmap = *request.roadmap](
+                 const core::Vec3& from, std::span<const core::Vec3> goals, double tolerance_m) {
+      return find_paths(map, roadmap, from, goals, tolerance_m);
+    };
+  motion_.max_speed_mps = request.max_speed_mps;
+  motion_.max_acceleration_mps2 = request.max_acceleration_mps2;
   imaged_ = request.imaged;
   rgb_ = request.vehicle == nullptr ? nullptr : request.vehicle->rgb.get();
 }
@@ -34,6 +43,7 @@ void Session::end_deciding() {
   const std::unique_lock lock(gate_);
   live_.map = nullptr;
   lengths_ = {};
+  paths_ = {};
   imaged_ = nullptr;
   rgb_ = nullptr;
   unimaged_.reset();

@@ -16,6 +16,7 @@
 
 #include "core_stack/common/random.h"
 #include "core_stack/mission/policy/policy_port.h"
+#include "core_stack/planning/trajectory/trajectory.h"
 #include "sdk/abi/karst_abi_imaged.h"
 #include "sdk/host/services/path_question.h"
 #include "sdk/host/services/snapshot.h"
@@ -34,8 +35,10 @@ class Session {
   void set_decision_thread(std::thread::id id) { decision_thread_ = id; }
   void set_now(core::TimeNs now) { now_ = now; }
 
-  /// Between these two calls the policy may query map and paths; `lengths`, if given, replaces the roadmap.
-  void begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths = {});
+  /// Between these two calls the policy may query map and paths; `lengths` and `paths`, if given, replace the
+  /// roadmap.
+  void begin_deciding(const core::DecisionRequest& request, const PathLengths& lengths = {},
+                      const PathSearch& paths = {});
   void end_deciding();
   void abandon();
 
@@ -64,6 +67,8 @@ class Session {
   std::thread::id decision_thread_;
   Snapshot live_;
   PathLengths lengths_;
+  PathSearch paths_;
+  core::MotionLimits motion_;                    // of the request, for travel times
   const core::ImagedSurface* imaged_ = nullptr;  // null: no colour camera
   const core::RgbCameraModel* rgb_ = nullptr;
   std::optional<core::UnimagedSurface> unimaged_;  // of this request; computed on first use

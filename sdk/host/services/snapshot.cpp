@@ -101,4 +101,27 @@ std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_
   return out;
 }
 
+std::optional<double> distance_to_rock(const core::VoxelMap& map, const core::Vec3& p, double limit_m,
+                                       core::WorkBudget& work) {
+  const double resolution_m = map.resolution_m();
+  const CellKey own = map.key_of(p);
+  const auto most = static_cast<std::int32_t>(std::ceil(limit_m / resolution_m));
+  double best_m = limit_m;
+  const auto look = [&](const CellKey& d) {
+    const CellKey k = own + d;
+    if (map.at(k) == Cell::occupied) best_m = std::min(best_m, (map.center_of(k) - p).norm());
+  };
+  // Cubes of cells around p's own, from the inside out. A centre on cube r is at least r - 1/2 cells away.
+  for (std::int32_t r = 0; r <= most && best_m > (r - 0.5) * resolution_m; ++r) {
+    const auto edge = static_cast<std::uint64_t>(2 * r + 1);
+    if (!work.spend(r == 0 ? 1 : 6 * edge * edge)) return std::nullopt;
+    for (std::int32_t z = -r; z <= r; ++z)
+      for (std::int32_t y = -r; y <= r; ++y) {
+        const bool on_face = z == -r || z == r || y == -r || y == r;
+        for (std::int32_t x = -r; x <= r; x += on_face ? 1 : 2 * r) look({x, y, z});
+      }
+  }
+  return best_m;
+}
+
 }  // namespace karst::host

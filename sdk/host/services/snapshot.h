@@ -1,10 +1,12 @@
 // The map behind a policy's handle, and the queries on it.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/planning/roadmap/work_budget.h"
 #include "sdk/abi/karst_abi_services.h"
 
 namespace karst::host {
@@ -24,6 +26,13 @@ karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, 
 /// nullopt if the box holds 2^63 cells or more.
 std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const karst_box_t& box);
 std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box);
+
+/// Work of one query of distances to rock, in cells visited. About half a second.
+constexpr std::uint64_t kMaxRockWork = 100'000'000;
+/// Distance from p, which is within 100 km of the origin, to the centre of the nearest occupied cell;
+/// `limit_m` if none is nearer. nullopt once `work` is exhausted.
+std::optional<double> distance_to_rock(const core::VoxelMap& map, const core::Vec3& p, double limit_m,
+                                       core::WorkBudget& work);
 
 inline core::Vec3 to_core(const karst_vec3_t& v) { return {v.x, v.y, v.z}; }
 inline karst_vec3_t to_abi(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }

@@ -139,6 +139,9 @@ RequestPack::RequestPack(const core::DecisionRequest& r, const karst_map_t* map)
   request_.direction_of_flight = host::to_abi(r.direction_of_flight);
   request_.T_world_start = to_abi(r.T_world_start);
   request_.seconds_before_homing = r.seconds_before_homing;
+  request_.battery_fraction = r.battery_fraction;
+  request_.battery_seconds_left = r.battery_seconds_left;
+  request_.mission_seconds_left = r.mission_seconds_left;
   request_.max_speed_mps = r.max_speed_mps;
   request_.clearance_m = r.clearance_m;
   request_.vehicle_radius_m = r.vehicle_radius_m;

@@ -67,6 +67,21 @@ class MapView {
     return out;
   }
 
+  /// Metres from each point to the centre of the nearest occupied cell; `limit_m`, in (0, 100], if none is
+  /// nearer. Unknown cells are no rock. Far from rock the cost grows with the cube of `limit_m`.
+  std::vector<double> distances_to_rock(const std::vector<Vec3>& points, double limit_m) const {
+    if (!KARST_HAS(karst_map_service_t, host_->map, distances_to_rock))
+      throw Error("this host offers no distances to rock", KARST_ERROR_UNAVAILABLE);
+    std::vector<double> out(points.size());
+    for_chunks(points.size(), KARST_MAX_BATCH, [&](std::size_t begin, std::size_t size) {
+      karst_error_t e{};
+      check(host_->map->distances_to_rock(host_, map_, points.data() + begin, size, limit_m,
+                                          out.data() + begin, &e),
+            e);
+    });
+    return out;
+  }
+
   /// A copy that outlives the request, released with the last view of it. Costs tens of milliseconds for a
   /// large map; must not outlive the policy object.
   MapView retained() const {

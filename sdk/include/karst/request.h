@@ -27,6 +27,11 @@ class Request {
         map(host, r.map),
         sensors(r.sensors, r.sensors + r.sensor_count),
         teammates(r.teammates, r.teammates + r.teammate_count),
+        battery_fraction(KARST_HAS(karst_request_t, &r, battery_fraction) ? r.battery_fraction : 0),
+        battery_seconds_left(KARST_HAS(karst_request_t, &r, battery_seconds_left) ? r.battery_seconds_left
+                                                                                  : 0),
+        mission_seconds_left(KARST_HAS(karst_request_t, &r, mission_seconds_left) ? r.mission_seconds_left
+                                                                                  : 0),
         host_(host) {
     frontiers.reserve(r.frontier_count);
     for (std::uint64_t i = 0; i < r.frontier_count; ++i) frontiers.push_back(from_abi(r.frontiers[i]));
@@ -45,6 +50,10 @@ class Request {
   std::vector<Frontier> frontiers;  // by id
   const std::vector<Sensor> sensors;
   const std::vector<Teammate> teammates;
+  // 0: not told.
+  const double battery_fraction;      // share of the battery's energy that is left, (0, 1]
+  const double battery_seconds_left;  // until the battery is empty, at the recent mean power
+  const double mission_seconds_left;  // of the mission's maximum flight time; +infinity: it has none
 
   Vec3 position() const { return state.position; }
 
@@ -57,6 +66,20 @@ class Request {
     for_chunks(goals.size(), KARST_MAX_PATH_GOALS, [&](std::size_t begin, std::size_t size) {
       karst_error_t e{};
       check(path.lengths(host_, from, goals.data() + begin, size, tolerance_m, out.data() + begin, &e), e);
+    });
+    return out;
+  }
+
+  /// A path to each goal with its points, clearance and flight time. One search for each goal: ask for the
+  /// few that matter. Throws Error with KARST_ERROR_LIMIT if so many cannot be searched in a map so large.
+  std::vector<Path> paths(const Vec3& from, const std::vector<Vec3>& goals, double tolerance_m = 0.5) const {
+    const karst_path_service_t& path = offered(host_->path, "paths");
+    if (!KARST_HAS(karst_path_service_t, &path, paths))
+      throw Error("this host offers no points of paths", KARST_ERROR_UNAVAILABLE);
+    std::vector<Path> out;
+    out.reserve(goals.size());
+    for_chunks(goals.size(), KARST_MAX_PATHS, [&](std::size_t begin, std::size_t size) {
+      add_paths(path, from, goals.data() + begin, size, tolerance_m, out);
     });
     return out;
   }
@@ -105,6 +128,33 @@ class Request {
   static const Service& offered(const Service* service, const char* what) {
     if (service == nullptr) throw Error(std::string("this host offers no ") + what, KARST_ERROR_UNAVAILABLE);
     return *service;
+  }
+
+  /// To as many goals as one call takes.
+  void add_paths(const karst_path_service_t& path, const Vec3& from, const Vec3* goals, std::size_t count,
+                 double tolerance_m, std::vector<Path>& out) const {
+    std::vector<karst_path_t> found(count);
+    std::vector<Vec3> points(256 * count);
+    const auto ask = [&] {
+      karst_error_t e{};
+      check(
+          path.paths(host_, from, goals, count, tolerance_m, found.data(), points.data(), points.size(), &e),
+          e);
+      const std::uint64_t total = found.empty() ? 0 : found.back().points_end;
+      const bool all = total <= points.size();
+      points.resize(total);
+      return all;
+    };
+    if (!ask()) ask();
+    std::uint64_t begin = 0;
+    for (const karst_path_t& f : found) {
+      out.push_back({{points.begin() + static_cast<std::ptrdiff_t>(begin),
+                      points.begin() + static_cast<std::ptrdiff_t>(f.points_end)},
+                     f.length_m,
+                     f.clearance_m,
+                     f.time_s});
+      begin = f.points_end;
+    }
   }
 
   const karst_host_t* host_;

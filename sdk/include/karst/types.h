@@ -80,6 +80,16 @@ inline Frontier from_abi(const karst_frontier_cluster_t& c) {
           c.path_length_m};
 }
 
+/// A clear path through the map.
+struct Path {
+  std::vector<Vec3> points;  // first the start, last where it ends; none if no path is known
+  double length_m = std::numeric_limits<double>::infinity();
+  double clearance_m = 0;  // least distance to the centre of a cell that is not free, at most 15 cells
+  double time_s = std::numeric_limits<double>::infinity();  // from rest to rest, at the mission's speed
+
+  bool known() const { return !points.empty(); }
+};
+
 struct Goal {
   Vec3 position;
   double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: any

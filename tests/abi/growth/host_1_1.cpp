@@ -58,7 +58,7 @@ int ask(const karst_policy_t& policy, bool offers) {
   request.direction_of_flight.x = 1;
   request.frontiers = &frontier;
   request.frontier_count = 1;
-  request.battery_left = offers ? 0.4 : 0.0;
+  request.battery_left_wh = offers ? 40.0 : 0.0;
   karst_decision_sink_t sink{sizeof sink, 64, nullptr, nullptr, nullptr};
   sink.add_goals = [](const karst_decision_sink_t*, const karst_goal_t* goals, std::uint64_t count,
                       karst_error_t*) noexcept -> std::int32_t {

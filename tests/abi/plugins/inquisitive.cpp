@@ -32,6 +32,19 @@ class Inquisitive : public karst::Policy {
     r.log("asked everything");
     if (kept_.handle() == nullptr) kept_ = r.map.retained();
     say(kept_.info().free_cells);
+    say(r.battery_fraction);
+    say(r.battery_seconds_left);
+    say(r.mission_seconds_left);
+    say(r.map.distances_to_rock({r.position()}, 3)[0]);
+    say(kept_.distances_to_rock({r.position()}, 20)[0]);
+    const std::vector<karst::Path> paths =
+        r.paths(r.position(), {{8.5, 5.5, 5.5}, {1.5, 1.5, 1.5}, {50, 50, 50}});
+    for (const karst::Path& path : paths) {
+      say(path.points.size());
+      say(path.length_m);
+      say(path.clearance_m);
+      say(path.time_s);
+    }
     return karst::Decision::fly(goals);
   }
   karst::MapView kept_;

@@ -55,6 +55,9 @@ TEST(BenchC, AsksAsTheBenchInCppDoes) {
   cpp.position = cpp.start = map.place('c');
   karst_bench_state_t state = karst_bench_get_state(c.get());
   EXPECT_EQ(state.seconds_before_homing, cpp.seconds_before_homing);
+  EXPECT_EQ(state.battery_fraction, cpp.battery_fraction);
+  EXPECT_EQ(state.battery_seconds_left, cpp.battery_seconds_left);
+  EXPECT_EQ(state.mission_seconds_left, cpp.mission_seconds_left);
   state.position = state.start = karst_bench_place(c.get(), 'c');
   state.time_s = 3;
   karst_bench_set_state(c.get(), &state);

@@ -56,7 +56,7 @@ struct TwoCells {
 };
 
 const std::size_t kBatch = KARST_MAX_BATCH, kGoals = KARST_MAX_PATH_GOALS,
-                  kViewpoints = KARST_MAX_GAIN_VIEWPOINTS;
+                  kViewpoints = KARST_MAX_GAIN_VIEWPOINTS, kPaths = KARST_MAX_PATHS;
 
 TEST(Chunks, CellsRaysAndBoxesMayBeMoreThanOneCallTakes) {
   const TwoCells two;
@@ -87,6 +87,14 @@ TEST(Chunks, GoalsOfPathsAndViewpointsMayBeMoreThanOneCallTakes) {
     const auto lengths = request.path_lengths(two.free, TwoCells::in_turn(count, two.free, two.rock), 0.5);
     EXPECT_EQ(lengths, TwoCells::in_turn(count, 0.0, HUGE_VAL));
   }
+  for (const std::size_t count : {kPaths, kPaths + 2}) {
+    const auto paths = request.paths(two.free, TwoCells::in_turn(count, two.free, two.rock));
+    ASSERT_EQ(paths.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(paths[i].points.size(), i % 3 == 1 ? 0u : 2u) << i;
+      EXPECT_EQ(paths[i].length_m, i % 3 == 1 ? HUGE_VAL : 0.0) << i;
+    }
+  }
   for (const std::size_t count : {kViewpoints, kViewpoints + 2}) {
     karst::Sensor lidar = karst::testing::lidar(1.2);
     const karst::Viewpoint here{two.free, 0}, inside{two.rock, 0};
@@ -108,7 +116,9 @@ TEST(Chunks, TheTestKitRefusesWhatTheHostRefuses) {
   EXPECT_EQ(e.code, KARST_ERROR_LIMIT);
   EXPECT_EQ(h->map->cast_rays(h, m, nullptr, kBatch + 1, 0, nullptr, nullptr), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->map->count_in_boxes(h, m, nullptr, kBatch + 1, nullptr, &e), KARST_ERROR_LIMIT);
+  EXPECT_EQ(h->map->distances_to_rock(h, m, nullptr, kBatch + 1, 1, nullptr, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->path->lengths(h, two.free, nullptr, kGoals + 1, 1, nullptr, &e), KARST_ERROR_LIMIT);
+  EXPECT_EQ(h->path->paths(h, two.free, nullptr, kPaths + 1, 1, nullptr, nullptr, 0, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->gain->newly_seen(h, m, nullptr, 1, nullptr, kViewpoints + 1, nullptr, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->gain->newly_seen(h, m, nullptr, 17, nullptr, 1, nullptr, &e), KARST_ERROR_LIMIT);
 }

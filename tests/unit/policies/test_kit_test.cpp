@@ -46,6 +46,42 @@ TEST(DrawnMap, TubeIsOpenAtItsEndsAndClosedAtItsSides) {
   EXPECT_NEAR(ends[1].path_length_m, 4.0, 1e-9);
 }
 
+TEST(DrawnHost, PathsHavePointsLengthClearanceAndTime) {
+  const DrawnHost host(DrawnMap(1.0, {R"(
+    #######
+    #a...b#
+    #######
+    #c#####)"}));
+  karst_request_t r{};
+  r.size = sizeof r;
+  r.map = host.map_handle();
+  const karst::Request request(host.host(), r);
+  const auto place = [&](char letter) { return host.map().place(letter); };
+  const std::vector<karst::Path> paths = request.paths(place('a'), {place('b'), place('c'), place('a')});
+  ASSERT_EQ(paths.size(), 3u);
+  ASSERT_EQ(paths[0].points.size(), 5u);
+  EXPECT_EQ(paths[0].points.front().x, place('a').x);
+  EXPECT_EQ(paths[0].points.back().x, place('b').x);
+  EXPECT_NEAR(paths[0].length_m, 4, 1e-9);
+  EXPECT_NEAR(paths[0].clearance_m, 1, 1e-9) << "a passage of one cell";
+  EXPECT_NEAR(paths[0].time_s, 4 / 1.6 + 0.8, 1e-9);
+  EXPECT_FALSE(paths[1].known());
+  EXPECT_TRUE(std::isinf(paths[1].length_m));
+  EXPECT_EQ(paths[2].length_m, 0);
+}
+
+TEST(DrawnHost, RockIsWhatIsOccupied) {
+  const DrawnHost host(DrawnMap(1.0, {"a...#???"}));
+  karst_request_t r{};
+  r.size = sizeof r;
+  r.map = host.map_handle();
+  const karst::Request request(host.host(), r);
+  const karst::Vec3 a = host.map().place('a');
+  EXPECT_EQ(request.map.distances_to_rock({a, {3.25, 0.5, 0.5}}, 10), (std::vector<double>{4, 1.25}));
+  EXPECT_EQ(request.map.distances_to_rock({a}, 3), std::vector<double>{3}) << "unknown cells are no rock";
+  EXPECT_THROW(request.map.distances_to_rock({a}, 0), karst::Error);
+}
+
 DrawnMap crossing() {
   return {1.0, {R"(
     ###?###

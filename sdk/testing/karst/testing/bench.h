@@ -39,6 +39,7 @@ class Bench {
   Vec3 direction_of_flight{1, 0, 0};
   double heading_rad = 0;
   double time_s = 0, seconds_before_homing = 600;
+  double battery_fraction = 0.8, battery_seconds_left = 1200, mission_seconds_left = 3600;
   karst_goal_fate_t last_fate = KARST_FATE_NONE;
   Vec3 last_goal;
   std::vector<Sensor> sensors{lidar()};
@@ -119,7 +120,10 @@ class Bench {
     r.T_world_start.orientation.w = 1;
     r.direction_of_flight = direction_of_flight;
     r.seconds_before_homing = seconds_before_homing;
-    r.max_speed_mps = 2.0;
+    r.battery_fraction = battery_fraction;
+    r.battery_seconds_left = battery_seconds_left;
+    r.mission_seconds_left = mission_seconds_left;
+    r.max_speed_mps = host_.max_speed_mps;
     r.clearance_m = 0.5;
     r.vehicle_radius_m = 0.3;
     r.last_goal = last_goal;

@@ -31,6 +31,7 @@ typedef struct karst_bench_state {
   karst_vec3_t direction_of_flight;
   double heading_rad;
   double time_s, seconds_before_homing;
+  double battery_fraction, battery_seconds_left, mission_seconds_left;
 } karst_bench_state_t;
 
 /*

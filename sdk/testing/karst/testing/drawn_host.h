@@ -1,6 +1,10 @@
 // The host's services over a drawn map: slow, simple, and complete.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,9 +25,9 @@ inline std::int32_t refuse(karst_error_t* error, std::int32_t code, std::string_
 class DrawnHost {
  public:
   explicit DrawnHost(DrawnMap map) : map_(std::move(map)) {
-    map_service_ = {sizeof map_service_, 0,       &info,   &cell_states, &cast_rays, &count_in_boxes,
-                    &surface_cells,      &retain, &release};
-    path_service_ = {sizeof path_service_, 0, &lengths};
+    map_service_ = {sizeof map_service_, 0,       &info,    &cell_states,      &cast_rays, &count_in_boxes,
+                    &surface_cells,      &retain, &release, &distances_to_rock};
+    path_service_ = {sizeof path_service_, 0, &lengths, &paths};
     gain_service_ = {sizeof gain_service_, 0, &newly_seen};
     draw_service_ = {sizeof draw_service_, 0, &draw_points, &draw_lines, &draw_text};
     host_ = {sizeof host_,   KARST_ABI_MINOR, this, &map_service_, &path_service_,
@@ -37,6 +41,7 @@ class DrawnHost {
   const karst_map_t* map_handle() const { return reinterpret_cast<const karst_map_t*>(this); }
   const DrawnMap& map() const { return map_; }
   std::int64_t now_ns = 0;
+  double max_speed_mps = 2.0;  // for the flight times of paths
   std::vector<std::string> log_lines;
   std::size_t drawings = 0;
 
@@ -159,6 +164,16 @@ class DrawnHost {
     for (std::size_t i = 0; i < surface.size() && i < capacity; ++i) out[i] = m.center_of(surface[i]);
     return KARST_OK;
   }
+  static std::int32_t distances_to_rock(const karst_host_t* h, const karst_map_t*, const karst_vec3_t* points,
+                                        std::uint64_t count, double limit_m, double* out,
+                                        karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
+    if (!(limit_m > 0 && limit_m <= KARST_MAX_ROCK_DISTANCE_M))
+      return refuse(e, KARST_ERROR_ARGUMENT, "limit_m is not in (0, 100] m");
+    for (std::uint64_t i = 0; i < count; ++i)
+      out[i] = distance_to_cell(self(h).map_, points[i], limit_m, [](Cell c) { return c == Cell::occupied; });
+    return KARST_OK;
+  }
   static const karst_map_t* retain(const karst_host_t*, const karst_map_t* map, karst_error_t*) noexcept {
     return map;  // a drawn map never changes
   }
@@ -168,6 +183,59 @@ class DrawnHost {
                               std::uint64_t count, double, double* out, karst_error_t* e) noexcept {
     if (count > KARST_MAX_PATH_GOALS) return too_many(e);
     for (std::uint64_t i = 0; i < count; ++i) out[i] = self(h).map_.path_length_m(from, goals[i]);
+    return KARST_OK;
+  }
+
+  /// Distance from `p` to the nearest centre of a cell for which `stops(cell)` holds, at most `limit_m`.
+  /// Looks at cubes of cells around p's own, from the inside out.
+  template <class Stops>
+  static double distance_to_cell(const DrawnMap& m, const Vec3& p, double limit_m, Stops&& stops) {
+    const Index own = m.index_of(p);
+    const int most = static_cast<int>(std::ceil(limit_m / m.resolution_m()));
+    double best = limit_m;
+    for (int r = 0; r <= most && best > (r - 0.5) * m.resolution_m(); ++r)
+      for (int x = -r; x <= r; ++x)
+        for (int y = -r; y <= r; ++y)
+          for (int z = -r; z <= r; ++z) {
+            if (std::max({std::abs(x), std::abs(y), std::abs(z)}) != r) continue;
+            const Index k{own.x + x, own.y + y, own.z + z};
+            if (stops(m.at(k))) best = std::min(best, distance(p, m.center_of(k)));
+          }
+    return best;
+  }
+  static double least_clearance_m(const DrawnMap& m, const std::vector<Vec3>& points) {
+    double least = 15 * m.resolution_m();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 before = points[i == 0 ? 0 : i - 1], along = points[i] - before;
+      const int steps = 1 + static_cast<int>(norm(along) / (0.25 * m.resolution_m()));
+      for (int k = 1; k <= steps; ++k)
+        least = distance_to_cell(m, before + (static_cast<double>(k) / steps) * along, least,
+                                 [](Cell c) { return c != Cell::free; });
+    }
+    return least;
+  }
+  /// As the host estimates it: cruises at 0.8 of the maximum, and speeds up and brakes at 2 m/s^2.
+  static double flight_time_s(double length_m, double speed_mps) {
+    const double cruise = 0.8 * speed_mps, a = 2.0;
+    return length_m >= cruise * cruise / a ? length_m / cruise + cruise / a : 2 * std::sqrt(length_m / a);
+  }
+  static std::int32_t paths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
+                            std::uint64_t count, double, karst_path_t* out, karst_vec3_t* points,
+                            std::uint64_t capacity, karst_error_t* e) noexcept {
+    if (count > KARST_MAX_PATHS) return too_many(e);
+    const DrawnHost& drawn = self(h);
+    std::uint64_t total = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::vector<Vec3> found = drawn.map_.route(from, goals[i]).points;
+      double length_m = found.empty() ? std::numeric_limits<double>::infinity() : 0.0;
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        if (k > 0) length_m += distance(found[k - 1], found[k]);
+        if (total < capacity) points[total] = found[k];
+        ++total;
+      }
+      out[i] = {length_m, found.empty() ? 0.0 : least_clearance_m(drawn.map_, found),
+                found.empty() ? length_m : flight_time_s(length_m, drawn.max_speed_mps), total};
+    }
     return KARST_OK;
   }
 

@@ -123,19 +123,36 @@ class DrawnMap {
     return center_of(found->second);
   }
 
-  /// Length (m) of the shortest path through free cells that share a face, edge or corner; +infinity if none.
-  double path_length_m(const Vec3& from, const Vec3& to) const {
+  struct Route {
+    double length_m = std::numeric_limits<double>::infinity();  // from cell to cell
+    std::vector<Vec3> points;  // `from`, centres of the cells between, `to`; none without a path
+  };
+  /// The shortest path through free cells that share a face, edge or corner.
+  Route route(const Vec3& from, const Vec3& to) const {
     const Index start = index_of(from), goal = index_of(to);
-    if (at(start) != Cell::free || at(goal) != Cell::free) return std::numeric_limits<double>::infinity();
-    std::map<Index, double> best{{start, 0.0}};
+    if (at(start) != Cell::free || at(goal) != Cell::free) return {};
+    struct Reached {
+      double length;
+      Index before;
+    };
+    std::map<Index, Reached> best{{start, {0.0, start}}};
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
     open.push({0.0, start});
     while (!open.empty()) {
       const auto [length, i] = open.top();
       open.pop();
-      if (i == goal) return length * resolution_m_;
-      if (length > best.at(i)) continue;
+      if (i == goal) {
+        Route out{length * resolution_m_, {to}};
+        for (Index k = i; !(k == start);) {
+          k = best.at(k).before;
+          if (!(k == start)) out.points.push_back(center_of(k));
+        }
+        out.points.push_back(from);
+        std::reverse(out.points.begin(), out.points.end());
+        return out;
+      }
+      if (length > best.at(i).length) continue;
       for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
           for (int dz = -1; dz <= 1; ++dz) {
@@ -143,13 +160,15 @@ class DrawnMap {
             if (at(n) != Cell::free) continue;
             const double there = length + std::sqrt(static_cast<double>(dx * dx + dy * dy + dz * dz));
             const auto known_best = best.find(n);
-            if (known_best != best.end() && known_best->second <= there) continue;
-            best[n] = there;
+            if (known_best != best.end() && known_best->second.length <= there) continue;
+            best[n] = {there, i};
             open.push({there, n});
           }
     }
-    return std::numeric_limits<double>::infinity();
+    return {};
   }
+  /// Length (m) of the shortest path through free cells that share a face, edge or corner; +infinity if none.
+  double path_length_m(const Vec3& from, const Vec3& to) const { return route(from, to).length_m; }
 
  private:
   void draw(const std::string& layer, int z, const Legend& legend) {

@@ -28,6 +28,8 @@ inline std::string play(Bench& bench, const std::vector<Step>& steps) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     bench.time_s += steps[i].after_s;
     bench.seconds_before_homing -= steps[i].after_s;
+    bench.battery_seconds_left -= steps[i].after_s;
+    bench.mission_seconds_left -= steps[i].after_s;
     if (steps[i].before) steps[i].before(bench);
     const std::string fault = mismatch(bench.decide(), steps[i].expected);
     if (!fault.empty()) return "step " + std::to_string(i + 1) + ", " + steps[i].name + "\n" + fault;

@@ -132,5 +132,21 @@ TEST(FlatAnswer, AnswersAboutPathsComeThroughWhole) {
   }
 }
 
+TEST(FlatAnswer, PathsComeThroughWhole) {
+  const host::PathsAnswer answer{host::PathAnswer::Status::answered,
+                                 {{{{0, 0, 0}, {3, 4, 0}}, 5, 0.7}, host::FoundPath{}}};
+  const Bytes bytes = host::flatten(answer);
+  const host::PathsAnswer read = host::read_paths_answer(bytes);
+  EXPECT_EQ(read.status, answer.status);
+  ASSERT_EQ(read.paths.size(), 2u);
+  EXPECT_EQ(read.paths[0].points, answer.paths[0].points);
+  EXPECT_EQ(read.paths[0].length_m, 5);
+  EXPECT_EQ(read.paths[0].clearance_m, 0.7);
+  EXPECT_TRUE(read.paths[1].points.empty());
+  EXPECT_EQ(read.paths[1].length_m, std::numeric_limits<double>::infinity());
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    EXPECT_THROW(host::read_paths_answer({bytes.data(), n}), host::FlatError) << n;
+}
+
 }  // namespace
 }  // namespace karst::test

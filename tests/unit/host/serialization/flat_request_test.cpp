@@ -51,6 +51,10 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
   room.vehicle.rgb = std::make_shared<core::RgbCameraModel>(core::RgbCameraModel{camera, 1.1});
   const core::ImagedSurface imaged(std::vector<CellKey>{{3, -4, 5}, {0, 0, 1}});
   room.request.imaged = &imaged;
+  room.request.max_acceleration_mps2 = 3.5;
+  room.request.battery_fraction = 0.7;
+  room.request.battery_seconds_left = 812.5;
+  room.request.mission_seconds_left = std::numeric_limits<double>::infinity();
   room.request.last_fate = core::GoalFate::abandoned;
   room.request.last_goal = {1, 2, 3};
   room.request.state.orientation = core::Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
@@ -65,6 +69,10 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
 
   const host::RequestPack a(room.request, nullptr), b(read, nullptr);
   karst_request_t x = a.request(), y = b.request();
+  EXPECT_EQ(read.max_acceleration_mps2, 3.5) << "for the flight times of paths";
+  EXPECT_EQ(y.battery_fraction, 0.7);
+  EXPECT_EQ(y.battery_seconds_left, 812.5);
+  EXPECT_EQ(y.mission_seconds_left, std::numeric_limits<double>::infinity());
   ASSERT_NE(read.imaged, nullptr);
   EXPECT_EQ(read.imaged->cells(), imaged.cells());
   EXPECT_EQ(read.vehicle->rgb->max_incidence_rad, 1.1);
@@ -183,7 +191,7 @@ TEST(FlatRequest, OtherVersionIsNamed) {
   Room room;
   host::Bytes bytes = flatten(room.request);
   bytes[8] = std::byte{7};
-  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 3"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 4"));
 }
 
 TEST(FlatRequest, BlocksAreSoundOnlyInTheWorldAndInPlace) {

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/services/path_question.h"
 #include "tests/abi/room.h"
 
 namespace karst::host {
@@ -32,6 +33,15 @@ class Curious final : public core::PolicyPort {
     g.heading_rad = std::nan("");
     g.score = r.roadmap->distances(*r.map, r.state.position, std::vector<core::Vec3>{g.position}, 0.5)[0];
     g.why = std::to_string(r.map->free_cells()) + " \"free\"";
+    const std::vector<core::Vec3> goals = {g.position, {1.5, 1.5, 1.5}};
+    const PathsAnswer found = find_paths(*r.map, *r.roadmap, r.state.position, goals, 0.5);
+    for (const FoundPath& path : found.paths) {
+      double sum = path.clearance_m;  // differs if any point does
+      for (std::size_t k = 0; k < path.points.size(); ++k)
+        sum += path.points[k].dot(core::Vec3(1, 10, 100)) * (1.0 + static_cast<double>(k));
+      g.why += ", " + std::to_string(sum);
+    }
+    g.why += ", " + std::to_string(r.battery_seconds_left) + " s";
     d.goals = {g};
     return d;
   }

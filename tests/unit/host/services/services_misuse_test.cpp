@@ -73,6 +73,28 @@ TEST_F(Asked, BoxOfMoreCellsThanCanBeCountedIsRefused) {
   EXPECT_EQ(total, 0u);
 }
 
+TEST_F(Asked, DistancesToRockBeyondTheirLimitsAreRefused) {
+  const karst_vec3_t p{}, nowhere{NAN, 0, 0}, far{2e5, 0, 0};
+  double out = -1;
+  const auto ask = [&](const karst_vec3_t& point, double limit_m) {
+    return h->map->distances_to_rock(h, session.live_map(), &point, 1, limit_m, &out, &e);
+  };
+  EXPECT_EQ(ask(p, 2), KARST_OK);
+  EXPECT_EQ(out, 2) << "nothing is known";
+  EXPECT_EQ(ask(p, 0), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(ask(p, NAN), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(ask(p, 100.5), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(ask(nowhere, 2), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(ask(far, 2), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(ask(p, 100), KARST_ERROR_LIMIT) << "a thousand cells in each axis";
+  const std::vector<karst_vec3_t> many(4000);
+  std::vector<double> distances(many.size());
+  EXPECT_EQ(
+      h->map->distances_to_rock(h, session.live_map(), many.data(), many.size(), 3, distances.data(), &e),
+      KARST_ERROR_LIMIT);
+  EXPECT_NE(std::string(e.text).find("fewer at a time"), std::string::npos) << e.text;
+}
+
 TEST_F(Asked, SensorFarFromTheBodyOrOfTooLongRangeForTheMapIsRefused) {
   const core::VoxelMap fine{core::MapOptions{.resolution_m = 0.05}};
   core::DecisionRequest request;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "tests/unit/host/services/drawn.h"
@@ -45,6 +47,32 @@ TEST(Snapshot, CountsInABoxAreThoseCountedCellByCell) {
     RC_ASSERT(counts.occupied == expected.occupied);
     RC_ASSERT(counts.unknown == expected.unknown);
   }));
+}
+
+TEST(Snapshot, DistanceToRockIsTheLeastToAnyOccupiedCell) {
+  const core::VoxelMap map = to_core_map(drawn().map());
+  EXPECT_TRUE(rc::check([&] {
+    const karst_vec3_t p = *point();
+    const double limit_m = 0.1 * *rc::gen::inRange(1, 60);
+    double expected_m = limit_m;
+    map.for_each_known([&](const core::CellKey& k, core::Cell cell, float) {
+      if (cell == core::Cell::occupied)
+        expected_m = std::min(expected_m, (map.center_of(k) - host::to_core(p)).norm());
+    });
+    core::WorkBudget work(host::kMaxRockWork);
+    RC_ASSERT(host::distance_to_rock(map, host::to_core(p), limit_m, work) == expected_m);
+    double drawn_m = -1;
+    drawn().host()->map->distances_to_rock(drawn().host(), drawn().map_handle(), &p, 1, limit_m, &drawn_m,
+                                           nullptr);
+    RC_ASSERT(std::abs(drawn_m - expected_m) < 1e-9);
+  }));
+}
+
+TEST(Snapshot, DistanceToRockEndsWithTheWorkAllowed) {
+  const core::VoxelMap nothing{core::MapOptions{}};
+  core::WorkBudget work(1000);
+  EXPECT_EQ(host::distance_to_rock(nothing, {0.1, 0.1, 0.1}, 0.5, work), 0.5);
+  EXPECT_FALSE(host::distance_to_rock(nothing, {0.1, 0.1, 0.1}, 5, work));
 }
 
 TEST(Snapshot, CountsInABoxOfAnySizeAreExactOrRefused) {

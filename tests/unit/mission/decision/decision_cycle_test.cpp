@@ -67,6 +67,19 @@ TEST(DecisionCycle, AsksForAGoalAmongTheFrontiersAndPlansToIt) {
     EXPECT_EQ(first.frontiers[i].id, d.policy.asked[0].frontiers[i].cluster->id);
 }
 
+TEST(DecisionCycle, TellsThePolicyOfBatteryAndMissionTime) {
+  Deciding d;
+  d.input.battery_fraction = 0.6;
+  d.input.battery_seconds_left = 600;
+  d.input.mission_seconds_left = 3500;
+  d.cycle.decide(d.input, {});
+  ASSERT_EQ(d.policy.asked.size(), 1u);
+  EXPECT_EQ(d.policy.asked[0].battery_fraction, 0.6);
+  EXPECT_EQ(d.policy.asked[0].battery_seconds_left, 600);
+  EXPECT_EQ(d.policy.asked[0].mission_seconds_left, 3500);
+  EXPECT_EQ(d.policy.asked[0].max_acceleration_mps2, CoreOptions{}.motion.max_acceleration_mps2);
+}
+
 TEST(DecisionCycle, AFrontierThatWasLookedAtRests) {
   Deciding d;
   const CycleResult first = d.cycle.decide(d.input, {});

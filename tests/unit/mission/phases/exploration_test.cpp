@@ -169,6 +169,26 @@ TEST_F(ExplorationTest, WithoutBatteryForAnyGoalItGoesHomeAtOnce) {
   EXPECT_EQ(went_home, "what is left is too far for the battery, or for the time allowed");
 }
 
+TEST_F(ExplorationTest, ThePolicyIsToldWhatIsLeftOfBatteryAndMission) {
+  begin();
+  BatteryStatus battery;
+  battery.stamp = now();
+  battery.fraction_left = 0.5;
+  battery.seconds_left = 1000;
+  endurance.note(battery);
+  DecisionRequest seen;
+  answer = [&](const DecisionRequest& r) {
+    seen = r;
+    return Decision{};
+  };
+  for (int i = 0; i < 30 && asked == 0; ++i) steps(0.1);
+  ASSERT_EQ(asked, 1);
+  EXPECT_EQ(seen.battery_fraction, 0.5);
+  EXPECT_EQ(seen.battery_seconds_left, 1000);
+  EXPECT_EQ(seen.mission_seconds_left, endurance.mission_seconds_left(seen.stamp));
+  EXPECT_GT(seen.mission_seconds_left, 0);
+}
+
 TEST_F(ExplorationTest, WhileTheSupervisorHoldsItNoPatienceRunsOut) {
   begin();
   answer = [](const DecisionRequest&) { return explored(); };

@@ -49,6 +49,8 @@ TEST(Endurance, IsTheBatterysOrTheMissionsWhicheverEndsFirst) {
   e.note({.fraction_left = 0.5, .seconds_left = 60});
   EXPECT_EQ(e.seconds_left(10 * kSecond), 60);
   EXPECT_EQ(e.seconds_left(70 * kSecond), 30);
+  EXPECT_EQ(e.mission_seconds_left(10 * kSecond), 90);
+  EXPECT_EQ(e.mission_seconds_left(70 * kSecond), 30);
 }
 
 }  // namespace

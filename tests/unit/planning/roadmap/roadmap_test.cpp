@@ -86,6 +86,50 @@ TEST(Roadmap, UpdatedFromChangesEqualsBuiltFromScratch) {
   }
 }
 
+TEST(Roadmap, EquallyShortPathsAreChosenByPlaceInARebuiltRoadmapToo) {
+  const VoxelMap map = random_map(5, kHall, 0.005);
+  const std::vector<CellChange> cells = all_cells(map);
+  Roadmap forwards{kOptions}, backwards{kOptions};
+  forwards.update(map, cells);
+  const std::vector<CellChange> reversed(cells.rbegin(), cells.rend());
+  const auto half = static_cast<std::ptrdiff_t>(reversed.size() / 2);
+  backwards.update(map, std::vector<CellChange>(reversed.begin(), reversed.begin() + half));
+  backwards.update(map, std::vector<CellChange>(reversed.begin() + half, reversed.end()));
+  Random random(5);
+  int found = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 from = point_in(random), to = point_in(random);
+    const Path a = forwards.find(map, from, to, EqualPaths::by_place),
+               b = backwards.find(map, from, to, EqualPaths::by_place);
+    ASSERT_EQ(a.status, b.status);
+    EXPECT_EQ(a.points, b.points);
+    found += a.found();
+  }
+  EXPECT_GT(found, 5);
+}
+
+TEST(Roadmap, LeastClearanceIsTheDistanceToTheNearestObstacleAlongTheLine) {
+  const VoxelMap map = random_map(3, kHall, 0.005);
+  const Obstacles obstacles(map);
+  Roadmap roadmap{kOptions};
+  EXPECT_EQ(roadmap.least_clearance_m(std::vector<Vec3>{{1, 1, 1}}), 0) << "nothing is known";
+  roadmap.update(map, all_cells(map));
+  EXPECT_EQ(roadmap.least_clearance_m({}), 0);
+  const double eighth_m = 0.125 * map.resolution_m();
+  Random random(3);
+  int compared = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 a = point_in(random), b = point_in(random);
+    const double expected_m = obstacles.distance(a, b);
+    if (expected_m < 0) continue;  // it leads through rock
+    ++compared;
+    const double least_m = roadmap.least_clearance_m(std::vector<Vec3>{a, b});
+    EXPECT_GE(least_m, expected_m - 1e-9);
+    EXPECT_LE(least_m, expected_m + eighth_m + 1e-9);
+  }
+  EXPECT_GT(compared, 10);
+}
+
 TEST(Roadmap, LengthsAreNearTheGridsShortest) {
   const WindingCave cave = WindingCave::of_length(25, 3, 1.5);
   std::vector<CellChange> changes;
