@@ -16,10 +16,10 @@
 namespace karst::preflight {
 
 /// What a finding is about.
-enum class Subject { mesh, start, hole, passages, climbs, time, policy, confidence, coverage };
+enum class Subject { cave, start, hole, passages, climbs, time, policy, confidence, coverage };
 constexpr auto names_of(Subject) {
   using enum Subject;
-  return std::to_array<core::Named<Subject>>({{mesh, "mesh"},
+  return std::to_array<core::Named<Subject>>({{cave, "cave"},
                                               {start, "start"},
                                               {hole, "hole"},
                                               {passages, "passages"},
@@ -32,7 +32,7 @@ constexpr auto names_of(Subject) {
 
 /// Why a check that `karst fly` makes as well refuses the mission.
 struct Refusal {
-  Subject subject = Subject::mesh;
+  Subject subject = Subject::cave;
   std::string reason;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
@@ -104,7 +105,7 @@ std::vector<Finding> findings_of(const Preflight& p) {
   Findings found;
   for (const Refusal& r : p.refusals) found.push_back({Severity::no_go, r.subject, r.reason});
   if (p.time) judge_time(*p.time, found);
-  for (const std::string& note : p.mesh_notes) watch(found, Subject::mesh, note);
+  for (const std::string& note : p.mesh_notes) watch(found, Subject::cave, note);
   if (p.cave && p.vehicle) judge_cave(*p.cave, *p.vehicle, found);
   if (p.policy) judge_policy(*p.policy, found);
   if (p.policy && p.time) judge_horizon(*p.policy, *p.time, found);

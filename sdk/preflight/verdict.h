@@ -15,7 +15,7 @@ constexpr auto names_of(Severity) {
 
 struct Finding {
   Severity severity = Severity::watch;
-  Subject subject = Subject::mesh;
+  Subject subject = Subject::cave;
   std::string text;  // without a full stop
 };
 
