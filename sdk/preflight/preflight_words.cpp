@@ -1,5 +1,6 @@
 #include "sdk/preflight/preflight_words.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -130,13 +131,20 @@ std::vector<Section> sections_of(const Preflight& p) {
   return all;
 }
 
-std::string to_text(const Preflight& preflight, const std::vector<Finding>& findings) {
-  std::string out = verdict_text(findings) + ": " + preflight.cave_file + "\n";
-  out += list_of(findings, Severity::no_go, "Reasons:\n");
-  out += list_of(findings, Severity::watch, "Watch for:\n");
+std::string findings_text(const Preflight& preflight, const std::vector<Finding>& findings) {
+  return verdict_text(findings) + ": " + preflight.cave_file + "\n" +
+         list_of(findings, Severity::no_go, "Reasons:\n") +
+         list_of(findings, Severity::watch, "Watch for:\n");
+}
+
+std::string facts_text(const Preflight& preflight) {
+  std::string out;
   for (const Section& s : sections_of(preflight)) {
     out += s.title + ":\n";
-    for (const Row& r : s.rows) out += format_text("  %-20s ", r.name.c_str()) + r.text + "\n";
+    for (const Row& r : s.rows) {
+      const std::string name = "  " + r.name + " ";
+      out += name + std::string(kNameColumns - std::min(name.size(), kNameColumns), ' ') + r.text + "\n";
+    }
   }
   return out;
 }

@@ -1,5 +1,6 @@
 // The summary in words: rows of a name and a text, which the terminal and the page show alike.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,12 @@ std::string verdict_text(const std::vector<Finding>& findings);
 /// What is known; what is not is left out.
 std::vector<Section> sections_of(const Preflight& preflight);
 
-/// The whole summary as the terminal shows it.
-std::string to_text(const Preflight& preflight, const std::vector<Finding>& findings);
+/// The verdict with the findings, as the terminal shows them.
+std::string findings_text(const Preflight& preflight, const std::vector<Finding>& findings);
+
+/// Characters before the text of each row in facts_text().
+constexpr std::size_t kNameColumns = 23;
+/// The sections, likewise.
+std::string facts_text(const Preflight& preflight);
 
 }  // namespace karst::preflight
