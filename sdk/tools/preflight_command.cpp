@@ -57,15 +57,14 @@ int run(const PreflightArguments& args) {
   preflight::LookOptions look = args.look;
   if (!args.quiet && !args.json)
     look.tell = [](const std::string& message) { print_wrapped(stderr, 2, "%s\n", message.c_str()); };
-  const preflight::Preflight preflight = preflight::look_at(mission, look);
-  const std::vector<preflight::Finding> findings = preflight::findings_of(preflight);
-  if (!args.page.empty())
-    evaluation::write_whole_file(args.page, preflight::preflight_page(preflight, findings));
+  const preflight::Preflight known = preflight::look_at(mission, look);
+  const std::vector<preflight::Finding> findings = preflight::findings_of(known);
+  if (!args.page.empty()) evaluation::write_whole_file(args.page, preflight::preflight_page(known, findings));
   if (args.json) {
-    print_json(preflight::to_json(preflight, findings));
+    print_json(preflight::to_json(known, findings));
   } else {
-    print_wrapped(stdout, 4, "%s", preflight::findings_text(preflight, findings).c_str());
-    print_wrapped(stdout, preflight::kNameColumns, "%s", preflight::facts_text(preflight).c_str());
+    print_wrapped(stdout, 4, "%s", preflight::findings_text(known, findings).c_str());
+    print_wrapped(stdout, preflight::kNameColumns, "%s", preflight::facts_text(known).c_str());
   }
   return preflight::is_go(findings) ? 0 : kNoGo;
 }
