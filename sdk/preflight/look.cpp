@@ -30,6 +30,8 @@ using core::InputError;
 using flight::Mission;
 using selection::Experience;
 
+constexpr double kLeastHole_m2 = 0.01;  // smaller ones are slits between triangles
+
 bool is_auto(const Mission& m) { return m.policy == flight::kAutoPolicy; }
 
 /// Throws what `karst fly` would: an unknown policy, or a parameter that it does not have.
@@ -63,9 +65,11 @@ VehicleFacts facts_of(const core::VehicleDescription& vehicle, const core::CoreO
 
 std::vector<Hole> holes_of(const cave::RayScene& scene, const core::Vec3& start) {
   std::vector<Hole> holes;
-  for (const cave::BoundaryLoop& loop : cave::boundary_loops(scene.mesh()))
-    holes.push_back(
-        {loop.centre, loop.diameter_m, std::max(0.0, (loop.centre - start).norm() - loop.diameter_m / 2)});
+  for (const cave::BoundaryLoop& loop : cave::boundary_loops(scene.mesh())) {
+    if (loop.area_m2 < kLeastHole_m2) continue;
+    const double edge_m = (loop.centre - start).norm() - loop.diameter_m / 2;
+    holes.push_back({loop.centre, loop.diameter_m, std::max(0.0, edge_m)});
+  }
   std::stable_sort(holes.begin(), holes.end(),
                    [](const Hole& a, const Hole& b) { return a.distance_m < b.distance_m; });
   return holes;

@@ -43,7 +43,7 @@ struct VehicleFacts {
   double looks_up_rad = 0, looks_down_rad = 0;  // the steepest directions that its sensors see
 };
 
-/// A loop of open edges of the mesh.
+/// A loop of open edges of the mesh that encloses more than a slit.
 struct Hole {
   core::Vec3 centre = core::Vec3::Zero();
   double diameter_m = 0;
