@@ -22,21 +22,25 @@ Section vehicle_section(const VehicleFacts& v) {
                                     v.looks_down_rad / kDegree_rad)}}};
 }
 
+/// A short cave has no verticality.
+std::string shape_text(const selection::CaveFigures& f) {
+  return format_text("%.0f m from the lowest to the highest place", f.drop_m) +
+         (std::isnan(f.verticality) ? "" : format_text(", verticality %.2f", f.verticality)) +
+         format_text("; %.1f junctions and %.1f loops in 100 m", f.branching, f.loops);
+}
+
 Section cave_section(const CaveFacts& c) {
   const selection::CaveFigures& f = c.figures;
   const selection::PassageFacts& p = c.passages;
-  Section s{
-      "Cave",
-      {{"volume",
-        format_text("%.0f m^3 that a vehicle can reach or see, %.0f m of passages", f.volume_m3, f.length_m)},
-       {"passages", format_text("%.1f m wide, %.1f m high (median); one in ten places is narrower than "
-                                "%.1f m or lower than %.1f m",
-                                p.width_m[1], p.height_m[1], p.width_m[0], p.height_m[0])},
-       {"shape", format_text("%.0f m from the lowest to the highest place, verticality %.2f; %.1f junctions "
-                             "and %.1f loops in 100 m",
-                             f.drop_m, f.verticality, f.branching, f.loops)},
-       {"start", format_text("%.2f %.2f %.2f, %.1f m from rock", c.start.x(), c.start.y(), c.start.z(),
-                             c.start_clearance_m)}}};
+  Section s{"Cave",
+            {{"volume", format_text("%.0f m^3 that a vehicle can reach or see, %.0f m of passages",
+                                    f.volume_m3, f.length_m)},
+             {"passages", format_text("%.1f m wide, %.1f m high (median); one in ten places is narrower than "
+                                      "%.1f m or lower than %.1f m",
+                                      p.width_m[1], p.height_m[1], p.width_m[0], p.height_m[0])},
+             {"shape", shape_text(f)},
+             {"start", format_text("%.2f %.2f %.2f, %.1f m from rock", c.start.x(), c.start.y(), c.start.z(),
+                                   c.start_clearance_m)}}};
   return s;
 }
 
@@ -48,10 +52,10 @@ std::string interval_text(const RankedPolicy& r, double level) {
 /// The figures that tell most beforehand, in this order.
 std::string expected_text(const PolicyFacts& p) {
   std::string out;
-  const auto add = [&](const char* metric, const char* format_of_unit, double factor) {
+  const auto add = [&](const char* metric, const char* unit, double factor) {
     const double v = expected_value(p, metric);
     if (std::isnan(v)) return;
-    out += (out.empty() ? "" : ", ") + format_text("%.0f", factor * v) + format_of_unit;
+    out += (out.empty() ? "" : ", ") + format_text("%.0f", factor * v) + unit;
   };
   add("coverage", " % of the cave", 100);
   add("explored_volume_m3", " m^3", 1);

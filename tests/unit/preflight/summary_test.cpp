@@ -69,6 +69,13 @@ TEST(PreflightWords, OfANamedPolicyTheBestIsNamedToo) {
   EXPECT_EQ(text.find("confidence"), std::string::npos) << "it is that of the first";
 }
 
+TEST(PreflightWords, OfAShortCaveThereIsNoVerticality) {
+  Preflight p = test::known_mission();
+  expect_parts(facts_text(p), {"12 m from the lowest to the highest place, verticality 0.10; 3.0 junctions"});
+  p.cave->figures.verticality = selection::kUnknown;
+  expect_parts(facts_text(p), {"12 m from the lowest to the highest place; 3.0 junctions"});
+}
+
 TEST(PreflightWords, WhatIsNotKnownIsLeftOut) {
   Preflight p;
   p.cave_file = "x.ply";
