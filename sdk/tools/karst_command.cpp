@@ -13,6 +13,7 @@
 #include "sdk/tools/help_commands.h"
 #include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
+#include "sdk/tools/preflight_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/select_command.h"
@@ -40,6 +41,7 @@ std::shared_ptr<CLI::App> karst_command() {
   auto app = std::make_shared<CLI::App>(
       "karst: fly exploration policies through caves.\n\n"
       "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
+      "  karst preflight caves/demo.info --battery \"8 min\"             say go or no-go before a mission\n"
       "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
       "  karst compare CAMPAIGN.info                                    say which of several policies is "
       "better\n"
@@ -53,6 +55,7 @@ std::shared_ptr<CLI::App> karst_command() {
   app->formatter(std::make_shared<ListingFormatter>());
   app->set_version_flag("--version", KARST_VERSION);
   app->require_subcommand(1);
+  add_preflight_command(*app);
   add_fly_command(*app);
   add_compare_command(*app);
   add_trials_command(*app);

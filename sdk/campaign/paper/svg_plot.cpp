@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core_stack/common/character_count.h"
-#include "core_stack/common/printable.h"
+#include "core_stack/common/xml_text.h"
 #include "sdk/campaign/verdict/figure_words.h"
 
 namespace karst::campaign {
@@ -15,28 +15,7 @@ constexpr double kColumn_pt = 252, kMinFrame_pt = 130, kEdge_pt = 6;
 constexpr double kText_pt = 8, kTickText_pt = 7, kCharacter = 0.56;  // of a text's size: Helvetica's mean
 constexpr double kLegendRow_pt = 11, kSample_pt = 20;
 
-std::string xml_text(const std::string& plain) {
-  std::string out;
-  for (const char c : core::printable(plain)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
+using core::xml_text;
 
 std::string pt(double v) { return fixed_text(v, 2); }
 

@@ -84,6 +84,11 @@ TEST(IncludeDirection, TheFlightKnowsNoCommandAndNobodyBelowKnowsTheFlight) {
     expect_none(below, {"sdk/flight", "sdk/tools", "CLI/"});
   expect_none("sdk/terminal", {"sdk/tools", "sdk/flight", "sdk/host", "plugins/", "CLI/"});
 }
+TEST(IncludeDirection, ThePreflightKnowsNoCommandAndNobodyBelowKnowsThePreflight) {
+  expect_none("sdk/preflight", {"sdk/tools", "sdk/tuning", "sdk/check", "policies/", "CLI/"});
+  for (const char* below : {"sdk/host", "sdk/evaluation", "sdk/campaign", "sdk/selection", "sdk/flight"})
+    expect_none(below, {"sdk/preflight"});
+}
 // Of the simulator the flight knows the world's interface and the cave: what flies it loads by name.
 TEST(IncludeDirection, TheFlightKnowsOfTheSimulatorOnlyItsInterface) {
   for (const Include& i : includes_below("sdk/flight"))

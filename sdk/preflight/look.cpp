@@ -1,0 +1,245 @@
+#include "sdk/preflight/look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
+#include "core_stack/mission/decision/visibility.h"
+#include "plugins/simulator/cave/boundary_loops.h"
+#include "plugins/simulator/cave/cave.h"
+#include "sdk/campaign/plan/mesh_hash.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
+#include "sdk/evaluation/reachable/reachable.h"
+#include "sdk/flight/auto_policy.h"
+#include "sdk/flight/cave_check.h"
+#include "sdk/flight/flight_setup.h"
+#include "sdk/host/load_policy.h"
+#include "sdk/preflight/far_places.h"
+#include "sdk/selection/describe.h"
+#include "sdk/selection/experience.h"
+#include "sdk/selection/load_experience.h"
+
+namespace karst::preflight {
+namespace {
+
+using core::InputError;
+using flight::Mission;
+using selection::Experience;
+
+constexpr double kLeastHole_m2 = 0.01;  // smaller ones are slits between triangles
+
+bool is_auto(const Mission& m) { return m.policy == flight::kAutoPolicy; }
+
+/// Throws what `karst fly` would: an unknown policy, or a parameter that it does not have.
+void refuse_bad_policy(const Mission& mission, const LookOptions& options) {
+  flight::FlightRequest request;
+  request.plugins = options.plugins;
+  host::load_policy(flight::policy_choice(mission, request));
+}
+
+std::optional<core::VehicleDescription> vehicle_of(const Mission& m, Preflight& p) {
+  try {
+    const flight::Vehicles vehicles = flight::make_vehicles(m, flight::missions_of_members(m), "");
+    return vehicles[0].description();
+  } catch (const InputError& e) {
+    p.refusals.push_back({Subject::start, e.what()});
+    return std::nullopt;
+  }
+}
+
+VehicleFacts facts_of(const core::VehicleDescription& vehicle, const core::CoreOptions& o) {
+  const core::SteepestView view = core::steepest_view(vehicle);
+  VehicleFacts v;
+  v.name = vehicle.name;
+  v.radius_m = vehicle.radius_m;
+  v.clearance_m = o.planning.narrow_margin_m > 0 ? vehicle.radius_m + o.planning.narrow_margin_m
+                                                 : core::min_clearance_m(o.planning, o.map.resolution_m);
+  v.looks_up_rad = view.up_rad;
+  v.looks_down_rad = view.down_rad;
+  return v;
+}
+
+std::vector<Hole> holes_of(const cave::RayScene& scene, const core::Vec3& start) {
+  std::vector<Hole> holes;
+  for (const cave::BoundaryLoop& loop : cave::boundary_loops(scene.mesh())) {
+    if (loop.area_m2 < kLeastHole_m2) continue;
+    const double edge_m = (loop.centre - start).norm() - loop.diameter_m / 2;
+    holes.push_back({loop.centre, loop.diameter_m, std::max(0.0, edge_m)});
+  }
+  std::stable_sort(holes.begin(), holes.end(),
+                   [](const Hole& a, const Hole& b) { return a.distance_m < b.distance_m; });
+  return holes;
+}
+
+/// The cave as this vehicle finds it. Throws InputError if nothing can be flown in.
+CaveFacts cave_facts(const cave::Cave& rock, const selection::FreeSpace& space, const VehicleFacts& vehicle,
+                     double hull_clearance_m, const FarPlaces& far) {
+  const core::Vec3& start = rock.description.start.position;
+  const auto reachable = [&](double clearance_m) {
+    evaluation::ReachableOptions options;
+    options.clearance_m = clearance_m;
+    return evaluation::find_reachable(rock.scene.mesh(), start, options, rock.description.mesh_path);
+  };
+  const evaluation::Reachable own = reachable(vehicle.clearance_m);
+  CaveFacts c;
+  c.figures = selection::describe(space);
+  c.passages = selection::passage_facts(rock.scene, own);
+  c.start = start;
+  c.start_clearance_m = rock.scene.distance_to_rock(start, 100);
+  c.reachable_m3 = own.volume_m3();
+  c.hull_reachable_m3 = hull_clearance_m < vehicle.clearance_m
+                            ? std::max(c.reachable_m3, reachable(hull_clearance_m).volume_m3())
+                            : c.reachable_m3;
+  c.blind_climb_fraction = far.blind_fraction;
+  c.blind_climb = far.blind_climb;
+  c.holes = holes_of(rock.scene, start);
+  c.plan = plan_view(own.reachable, own.options.resolution_m, start);
+  return c;
+}
+
+/// The hovering time of a full battery, which vehicles state as an option of their own.
+std::optional<double> battery_s(const Mission& m) {
+  const std::string key = m.vehicle + ".battery_minutes";
+  const auto text = m.resolved.get_optional<std::string>(key);
+  if (!text) return std::nullopt;
+  double s = 0;
+  core::OptionTable table;
+  table.add(key, s, "s", 0, 1e9, "");
+  table.set(m.file, key, *text);
+  return s;
+}
+
+TimeLimits time_limits(const Mission& m) {
+  const core::MissionOptions& o = m.core.mission;
+  TimeLimits l;
+  l.battery_s = battery_s(m);
+  l.max_flight_time_s = o.max_flight_time_s;
+  l.home_margin = o.home_margin;
+  l.home_reserve_s = o.home_reserve_s;
+  l.takeoff_height_m = o.takeoff_height_m;
+  l.landing_speed_mps = o.landing_speed_mps;
+  l.motion = m.core.motion;
+  return l;
+}
+
+std::optional<Experience> experience_of(const LookOptions& options) {
+  std::vector<std::string> files = options.results;
+  if (files.empty() && !selection::installed_experience().empty())
+    files = {selection::installed_experience()};
+  if (files.empty()) return std::nullopt;
+  return selection::load_experience(files, options.tell);
+}
+
+void add_ranking(const Experience& e, const selection::Selected& s, PolicyFacts& f) {
+  for (const selection::Expected& x : s.ranking) {
+    const selection::Preset& preset = e.contestants[x.contestant];
+    f.ranking.push_back({preset.name, x.value, x.low, x.high});
+    const bool is_own = f.selected ? f.ranking.size() == 1 : preset.policy == f.policy;
+    if (is_own && !f.own) f.own = f.ranking.size() - 1;
+  }
+  f.confidence = s.confidence;
+  f.horizon_s = e.flown.horizon_s;
+}
+
+void add_expected(const Experience& e, const selection::CaveFigures& figures, const selection::Selected& s,
+                  PolicyFacts& f) {
+  const std::vector<double> values = selection::expected_figures(e, figures, s, s.ranking[*f.own].contestant);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    const int metric = evaluation::metric_index(e.metrics[i]);
+    const std::string_view unit =
+        metric < 0 ? "" : evaluation::metric_definitions()[static_cast<std::size_t>(metric)].unit;
+    f.expected.push_back({e.metrics[i], std::string(unit), values[i]});
+  }
+}
+
+/// Nothing if `auto` finds no policy, which is then a refusal.
+std::optional<PolicyFacts> policy_facts(const Mission& m, const LookOptions& options,
+                                        const selection::CaveFigures& figures, const std::string& mesh_hash,
+                                        Preflight& p) {
+  const std::optional<Experience> e = experience_of(options);
+  selection::Selected s;
+  s.refused = true;
+  s.reason = "no experience is installed, and --results gives none";
+  if (e) s = selection::select(*e, figures, options.select, m.cave, mesh_hash);
+  if (s.refused && is_auto(m)) {
+    p.refusals.push_back({Subject::policy, s.reason + "; --policy can name one"});
+    return std::nullopt;
+  }
+  PolicyFacts f;
+  f.policy = m.policy;
+  f.selected = is_auto(m);
+  f.reason = s.reason;
+  f.metric = options.select.metric;
+  f.level = options.select.level;
+  boost::property_tree::ptree parameters = m.policy_parameters;
+  if (e && !s.refused) {
+    if (f.selected) {
+      const selection::Preset& first = e->contestants[s.ranking.front().contestant];
+      f.policy = first.policy;
+      for (const auto& [key, value] : first.parameters)  // the mission's own parameters take precedence
+        if (parameters.count(key) == 0) parameters.push_back({key, value});
+    }
+    add_ranking(*e, s, f);
+    if (f.own) add_expected(*e, figures, s, f);
+  }
+  for (const auto& [key, value] : parameters) f.parameters.emplace_back(key, value.data());
+  if (f.selected) {
+    Mission flown = m;
+    flown.policy = f.policy;
+    flown.policy_parameters = parameters;
+    refuse_bad_policy(flown, options);
+  }
+  return f;
+}
+
+/// Throws what keeps the mission from being judged at all.
+void refuse_unclear(const Mission& m) {
+  if (flight::is_team(m))
+    throw InputError(m.file, "team.robots", "a preflight is for one vehicle, not for a team");
+  if (!m.auto_policy.empty())
+    throw InputError(m.file, "policy.auto", "has no effect here: the cave itself is what is known of it");
+  if (m.start.empty() && !cave::has_start(m.cave))
+    flight::check_cave(m.cave, m.start, m.mesh);  // throws, with a start that suits
+}
+
+}  // namespace
+
+Preflight look_at(const Mission& m, const LookOptions& options) {
+  refuse_unclear(m);
+  if (!is_auto(m)) refuse_bad_policy(m, options);
+  const cave::Cave rock = cave::load_cave(m.cave, m.start, m.mesh);
+  Preflight p;
+  p.cave_file = m.cave;
+  options.tell("checking the cave");
+  try {
+    p.mesh_notes = flight::check_cave(m.cave, m.start, m.mesh);
+  } catch (const InputError& e) {
+    p.refusals.push_back({Subject::cave, e.what()});
+    return p;
+  }
+  const std::optional<core::VehicleDescription> vehicle = vehicle_of(m, p);
+  if (!vehicle) return p;
+  p.vehicle = facts_of(*vehicle, m.core);
+  options.tell("describing the cave");
+  const core::Vec3& start = rock.description.start.position;
+  const selection::FreeSpace space = selection::free_space_of(rock.scene, start, {}, m.cave);
+  const FarPlaces far = far_places(space, start, core::steepest_view(*vehicle));
+  p.time = time_budget(time_limits(m), far.farthest_m);
+  try {
+    p.cave = cave_facts(rock, space, *p.vehicle, vehicle->radius_m + m.core.map.resolution_m / 2, far);
+  } catch (const InputError& e) {
+    p.refusals.push_back({Subject::passages, e.what()});
+    return p;
+  }
+  options.tell("choosing the policy");
+  p.policy =
+      policy_facts(m, options, p.cave->figures, campaign::mesh_hash(cave::mesh_of(rock.description)), p);
+  return p;
+}
+
+}  // namespace karst::preflight

@@ -1,0 +1,128 @@
+#include "sdk/tools/preflight_command.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/install_location.h"
+#include "sdk/evaluation/record/whole_file.h"
+#include "sdk/flight/auto_policy.h"
+#include "sdk/flight/mission_file.h"
+#include "sdk/preflight/look.h"
+#include "sdk/preflight/preflight_json.h"
+#include "sdk/preflight/preflight_page.h"
+#include "sdk/preflight/preflight_words.h"
+#include "sdk/terminal/terminal.h"
+#include "sdk/tools/arguments.h"
+#include "sdk/tools/mesh_options.h"
+
+namespace karst::tools {
+namespace {
+
+using core::InputError;
+
+constexpr int kNoGo = 3;  // exit code
+
+struct PreflightArguments {
+  flight::MissionOverrides overrides;
+  std::string vehicle, battery, page;
+  preflight::LookOptions look;
+  MeshOptions mesh;
+  bool json = false, quiet = false;
+};
+
+/// Adds a setting for which there is an option of its own.
+void add_setting(flight::MissionOverrides& overrides, const char* option, const std::string& key,
+                 const std::string& value) {
+  if (value.empty()) return;
+  for (const std::string& s : overrides.settings)
+    if (s.starts_with(key + "="))
+      throw InputError("--set", key, std::string("is given by ") + option + " as well");
+  overrides.values.emplace_back(key, value);
+}
+
+flight::Mission mission_of(const PreflightArguments& args) {
+  flight::MissionOverrides overrides = args.overrides;
+  add_setting(overrides, "--vehicle", "simulator.vehicle", args.vehicle);
+  add_setting(overrides, "--battery", "simulator.battery_minutes", args.battery);
+  for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
+  return flight::read_mission("", overrides);
+}
+
+int run(const PreflightArguments& args) {
+  const flight::Mission mission = mission_of(args);
+  preflight::LookOptions look = args.look;
+  if (!args.quiet && !args.json)
+    look.tell = [](const std::string& message) { print_wrapped(stderr, 2, "%s\n", message.c_str()); };
+  const preflight::Preflight known = preflight::look_at(mission, look);
+  const std::vector<preflight::Finding> findings = preflight::findings_of(known);
+  if (!args.page.empty()) evaluation::write_whole_file(args.page, preflight::preflight_page(known, findings));
+  if (args.json) {
+    print_json(preflight::to_json(known, findings));
+  } else {
+    print_wrapped(stdout, 4, "%s", preflight::findings_text(known, findings).c_str());
+    print_wrapped(stdout, preflight::kNameColumns, "%s", preflight::facts_text(known).c_str());
+  }
+  return preflight::is_go(findings) ? 0 : kNoGo;
+}
+
+}  // namespace
+
+void add_preflight_command(CLI::App& app) {
+  auto args = std::make_shared<PreflightArguments>();
+  args->overrides.policy = flight::kAutoPolicy;
+  CLI::App* preflight_app = app.add_subcommand(
+      "preflight",
+      "Go or no-go for a mission: cave, battery, vehicle, policy, time of return\n\n"
+      "  karst preflight caves/demo.info --battery \"8 min\"\n"
+      "  karst preflight scan.ply --start \"1 2 1.5\" --policy nearest_frontier --page preflight.html\n\n"
+      "Nothing is flown. What is said, and by which rules: " +
+          core::doc_path("docs/preflight.md") + ".\n\nExit code: 0 go, 3 no-go, 1 an error.");
+  preflight_app->add_option("cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
+      ->type_name(kFile)
+      ->required()
+      ->check(not_empty());
+  preflight_app
+      ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
+      ->check(not_empty());
+  add_mesh_options(*preflight_app, args->mesh);
+  preflight_app
+      ->add_option("--vehicle", args->vehicle,
+                   "what the vehicle carries: lidar_uav, lidar_only_uav or camera_uav (simulator.vehicle)")
+      ->check(not_empty());
+  preflight_app
+      ->add_option("--battery", args->battery,
+                   "hovering time of a full battery, such as \"8 min\" (simulator.battery_minutes)")
+      ->check(not_empty());
+  preflight_app
+      ->add_option("--policy", args->overrides.policy,
+                   "exploration policy; see karst policy list; auto: selected for the cave")
+      ->type_name(kPolicy)
+      ->check(not_empty())
+      ->capture_default_str();
+  preflight_app->add_option("--plugin", args->look.plugins, "policy plugin file (.so) to look in first")
+      ->type_name(kFile)
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  preflight_app
+      ->add_option("--results", args->look.results,
+                   "stores of campaigns, experiences; default: what is installed")
+      ->type_name(kFile)
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  preflight_app->add_option("--set", args->overrides.settings, "key=value of a mission; see karst fly --keys")
+      ->allow_extra_args(false);
+  preflight_app->add_option("--page", args->page, "write the summary as a page to print, an HTML file")
+      ->type_name(kFile)
+      ->check(not_empty());
+  preflight_app->add_flag("--json", args->json, "Write JSON");
+  preflight_app->add_flag("--quiet", args->quiet, "no progress on standard error");
+  preflight_app->callback([args] {
+    if (const int code = run(*args); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace karst::tools
