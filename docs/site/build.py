@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Builds the documentation as a site: docs/site/build.py OUT.
 
 Writes OUT/html: every page with search (mkdocs), and the reference of the headers for policies (Doxygen). Afterwards
