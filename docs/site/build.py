@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Builds the documentation as a site: docs/site/build.py OUT.
 
 Writes OUT/html: every page with search (mkdocs), and the reference of the headers for policies (Doxygen). Afterwards
@@ -13,10 +13,11 @@ import subprocess
 import sys
 import urllib.parse
 
+MISSING = "docs/site/build.py needs mkdocs, mkdocs-material and doxygen: make docs installs them"
 try:
     import yaml
 except ImportError:
-    sys.exit("docs/site/build.py needs mkdocs, mkdocs-material and doxygen: make docs installs them")
+    sys.exit(MISSING)
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = ["sdk/abi", "sdk/include", "sdk/testing"]
@@ -51,7 +52,8 @@ def navigation():
 def stage(out):
     """The pages where mkdocs finds them: links between them stay as they are in the repository."""
     pages = out / "pages"
-    shutil.rmtree(out, ignore_errors=True)
+    for made in (pages, out / "html"):  # nothing else of the folder is ours
+        shutil.rmtree(made, ignore_errors=True)
     pages.mkdir(parents=True)
     for name in FRONT:
         shutil.copy(ROOT / name, pages)
@@ -103,6 +105,8 @@ def dead_links(site):
 def main():
     if len(sys.argv) != 2:
         sys.exit("usage: docs/site/build.py OUT")
+    if not (shutil.which("mkdocs") and shutil.which("doxygen")):
+        sys.exit(MISSING)
     out = pathlib.Path(sys.argv[1]).resolve()
     stage(out)
     reference(out)

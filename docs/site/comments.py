@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Doxygen's filter: turns the plain comments of karst's headers into comments that Doxygen reads.
 
 The block at the top of a header describes the file. A comment after a declaration belongs to that declaration,
