@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sdk/campaign/report/report_parts.h"
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "tests/unit/campaign/fake_campaign.h"
 #include "tests/unit/campaign/paper/quick_verdict.h"
 
@@ -92,7 +93,9 @@ TEST(CoveragePlot, HasOneCurveForEachContestantWithinTheAxes) {
     EXPECT_NEAR(points.front().first, frame.left, 0.01);
     for (std::size_t i = 0; i < points.size(); ++i) {
       frame.expect_inside(points[i].first, points[i].second);
-      if (i > 0) EXPECT_GT(points[i].first, points[i - 1].first) << "time goes on";
+      if (i > 0) {
+        EXPECT_GT(points[i].first, points[i - 1].first) << "time goes on";
+      }
     }
     colours.insert(said(curve, "stroke"));
     dashes.insert(said(curve, "stroke-dasharray"));
@@ -169,8 +172,9 @@ TEST(DifferencesPlot, HasAMarkAndAnIntervalForEachPairAroundZeroOrNot) {
   for (std::size_t i = 0; i < 3; ++i) {
     frame.expect_inside(measure(intervals[i], "x1"), measure(intervals[i], "y1"));
     frame.expect_inside(measure(intervals[i], "x2"), measure(intervals[i], "y2"));
-    if (i > 0)
+    if (i > 0) {
       EXPECT_GT(measure(intervals[i], "y1"), measure(intervals[i - 1], "y1")) << "one below the other";
+    }
     const evaluation::Interval& interval = pairs[i]->interval;
     EXPECT_EQ(measure(intervals[i], "x1") > zero, interval.low > 0);
     EXPECT_EQ(measure(intervals[i], "x2") > zero, interval.high > 0);

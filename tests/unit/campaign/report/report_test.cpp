@@ -131,7 +131,9 @@ TEST(CampaignReport, NoIntervalOfAMeanLeavesWhatTheFigureCanBe) {
         EXPECT_GE(band["low"][k].get<double>(), 0);
         EXPECT_LE(band["low"][k], band["mean"][k]);
         EXPECT_GE(band["high"][k], band["mean"][k]);
-        if (quantity == std::string("coverage")) EXPECT_LE(band["high"][k].get<double>(), 1);
+        if (quantity == std::string("coverage")) {
+          EXPECT_LE(band["high"][k].get<double>(), 1);
+        }
       }
   const json& shares = page["summaries"][evaluation::metric_index("coverage")][0]["caves"][0]["interval"];
   EXPECT_EQ(shares[1], 1);  // it was cut

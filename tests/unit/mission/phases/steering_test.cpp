@@ -118,7 +118,9 @@ TEST_F(SteeringTest, APlanIsNotFlownFasterThanIsAllowedByThen) {
   advance(0.2);
   for (int i = 0; i < 40; ++i) {
     steps(0.1);
-    if (i > 10) EXPECT_LT(onboard.flight.reference().velocity_mps.norm(), 0.6) << i;
+    if (i > 10) {
+      EXPECT_LT(onboard.flight.reference().velocity_mps.norm(), 0.6) << i;
+    }
   }
 }
 
