@@ -61,9 +61,10 @@ TEST(Wrapped, LosesNoWordAndKeepsTheWidth) {
     const std::vector<std::string> lines = lines_of(out);
     for (std::size_t n = 0; n < lines.size(); ++n) {
       EXPECT_TRUE(lines[n].size() <= columns || words_of(lines[n]).size() == 1) << lines[n];
-      if (n + 1 < lines.size())
+      if (n + 1 < lines.size()) {
         EXPECT_GT(lines[n].size() + 1 + words_of(lines[n + 1]).front().size(), columns)
             << "a line ends before it must";
+      }
     }
   }
 }

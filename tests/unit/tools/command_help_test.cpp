@@ -139,7 +139,9 @@ TEST(BashCompletion, OffersEveryCommandAndEveryOption) {
   const auto app = karst_command();
   const Bash bash("all");
   for_each_command(*app, "karst", [&](const CLI::App& c, const std::string& words) {
-    if (!commands_below(c).empty()) EXPECT_EQ(bash.proposed(words + " ''"), commands_below(c)) << words;
+    if (!commands_below(c).empty()) {
+      EXPECT_EQ(bash.proposed(words + " ''"), commands_below(c)) << words;
+    }
     EXPECT_EQ(bash.proposed(words + " -"), options_of(c)) << words;
   });
 }
@@ -246,11 +248,12 @@ TEST(ManPages, ThereIsOneOfEachCommandWithItsOptions) {
       EXPECT_NE(page.find("\\fB" + in_roff(option) + "\\fR"), std::string::npos) << name << " " << option;
     for (const std::string& below : commands_below(c))
       EXPECT_NE(page.find("\\fB" + in_roff(name + "-" + below) + "\\fR(1)"), std::string::npos) << name;
-    if (words != "karst")
+    if (words != "karst") {
       EXPECT_NE(
           page.find("\\fB" + in_roff(name.substr(0, name.size() - c.get_name().size() - 1)) + "\\fR(1)"),
           std::string::npos)
           << name << " does not refer to its group";
+    }
   });
   EXPECT_EQ(pages.size(), shown);
 }

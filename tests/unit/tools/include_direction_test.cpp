@@ -92,10 +92,11 @@ TEST(IncludeDirection, ThePreflightKnowsNoCommandAndNobodyBelowKnowsThePreflight
 // Of the simulator the flight knows the world's interface and the cave: what flies it loads by name.
 TEST(IncludeDirection, TheFlightKnowsOfTheSimulatorOnlyItsInterface) {
   for (const Include& i : includes_below("sdk/flight"))
-    if (i.target.starts_with("plugins/"))
+    if (i.target.starts_with("plugins/")) {
       EXPECT_TRUE(i.target == "plugins/simulator/simulated_world.h" ||
                   i.target.starts_with("plugins/simulator/cave/"))
           << i.file << " includes " << i.target;
+    }
 }
 TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
   expect_none("plugins",
