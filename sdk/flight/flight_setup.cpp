@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <boost/property_tree/info_parser.hpp>
 #include <cmath>
-#include <cstdio>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
-#include "sdk/host/isolation/file_access.h"
 
 namespace karst::flight {
 namespace {
@@ -80,24 +78,22 @@ Vehicles make_vehicles(const Mission& mission, const std::vector<Mission>& membe
   return vehicles;
 }
 
-host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& request) {
+host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& request,
+                                 host::Isolation isolation) {
   host::PolicyChoice choice;
   choice.name = mission.policy;
   choice.plugin_files = request.plugins;
   choice.parameters = mission.policy_parameters;
   choice.source = mission.file;
   choice.seed = policy_seed(mission);
-  choice.isolation = mission.policy_isolation;
-  const bool own_process = choice.isolation == host::Isolation::process;
-  if (own_process && host::landlock_version() == 0)
-    std::fputs("warning: this kernel has no Landlock: the policy's process can read what this user can\n",
-               stderr);
+  choice.isolation = isolation;
+  const bool own_process = isolation == host::Isolation::process;
   choice.memory_limit_mib = mission.policy_memory_limit_mib;
   choice.cpu_limit_s = mission.policy_cpu_limit_s;
   // In lockstep the vehicle's clock stands still during a decision: a loaded machine must not end a policy.
   // On a real vehicle a policy in its own process, which can be restarted, is waited for only until the next
   // decision is due.
-  choice.hang_limit_s = mission.policy_hang_limit_s;
+  choice.start_hang_limit_s = choice.hang_limit_s = mission.policy_hang_limit_s;
   if (request.clock == core::Clock::real_time)
     choice.hang_limit_s = std::min(choice.hang_limit_s, own_process ? mission.core.mission.decision_period_s
                                                                     : mission.policy_cpu_limit_s);

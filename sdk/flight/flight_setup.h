@@ -34,8 +34,9 @@ std::vector<Mission> missions_of_members(const Mission& mission);
 std::filesystem::path member_run_dir(const std::filesystem::path& run_dir, const Mission& mission,
                                      std::size_t member);
 
-/// The policy to load, with its limits and isolation.
-host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& request);
+/// The policy to load, with its limits.
+host::PolicyChoice policy_choice(const Mission& mission, const FlightRequest& request,
+                                 host::Isolation isolation);
 
 /// The key that authenticates a team's radio frames.
 core::MissionKey radio_key(const Mission& mission);

@@ -69,20 +69,27 @@ struct MissionFlight::Running {
 MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& request)
     : mission_(mission), request_(request), members_(missions_of_members(mission)) {
   if (is_team(mission_)) refuse_for_team(request_);
-  for (const Mission& member : members_)
-    policies_.push_back(host::load_policy(policy_choice(member, request_)));
+  loaded_ = load_policies(members_, request_);
   if (is_team(mission_)) key_ = radio_key(mission_);
 }
 
 MissionFlight::~MissionFlight() = default;
 
+boost::property_tree::ptree MissionFlight::as_asked(const Mission& mission) const {
+  const host::HostedPolicy& policy = *loaded_.policies.front();
+  return recorded_mission(mission, policy.parameters(), policy.version());
+}
+
+/// As asked, and with the isolation that the policy has on this machine.
 boost::property_tree::ptree MissionFlight::as_flown(const Mission& mission) const {
-  return recorded_mission(mission, policies_.front()->parameters(), policies_.front()->version());
+  boost::property_tree::ptree tree = as_asked(mission);
+  tree.put("policy.isolation", core::name_of(loaded_.isolation));
+  return tree;
 }
 
 void MissionFlight::check(const fs::path& mission_file) const {
   make_vehicles(mission_, members_, "");  // checks the cave and the starts
-  write_mission(mission_file, as_flown(mission_));
+  write_mission(mission_file, as_asked(mission_));
 }
 
 /// All errors before take-off occur here; the files written so far are then removed.
@@ -108,13 +115,15 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   }
   r.claim->keep();
   for (const auto& own : r.own_claims) own->keep();
+  for (std::size_t i = 0; i < loaded_.outputs.size(); ++i)
+    loaded_.outputs[i]->write_to(member_run_dir(run_dir, mission_, i) / host::kPolicyOutputName);
 }
 
 std::vector<Seat> MissionFlight::seats() const {
   Running& r = *running_;
   std::vector<Seat> seats;
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    Seat seat{&r.vehicles[i], policies_[i].get(), r.recorders[i].get()};
+    Seat seat{&r.vehicles[i], loaded_.policies[i].get(), r.recorders[i].get()};
     if (r.recording) seat.policy = &*r.recording;
     if (r.team) {
       seat.teamwork = &r.team->teamwork(i);
@@ -137,7 +146,7 @@ void MissionFlight::assemble() {
   } else {
     if (!mission_.policy_selection.empty())
       r.recorders.front()->write(0, core::event::Selection{mission_.policy, mission_.policy_selection});
-    host::HostedPolicy& policy = *policies_.front();
+    host::HostedPolicy& policy = *loaded_.policies.front();
     if (request_.record_requests)
       r.recording.emplace(policy, request_.run_dir / host::kRequestLogName,
                           host::RequestLogHeader{policy.name(), policy.version(), policy_seed(mission_),
@@ -195,6 +204,18 @@ nlohmann::ordered_json MissionFlight::finish_members(FlightOutcome& outcome, dou
   return metrics;
 }
 
+std::vector<PolicyPrinted> MissionFlight::printed() const {
+  std::vector<PolicyPrinted> all;
+  for (std::size_t i = 0; i < loaded_.outputs.size(); ++i) {
+    const host::PolicyOutput& output = *loaded_.outputs[i];
+    if (!output.empty())
+      all.push_back({loaded_.policies[i]->name(),
+                     member_run_dir(request_.run_dir, mission_, i) / host::kPolicyOutputName,
+                     output.before_break(), output.problem()});
+  }
+  return all;
+}
+
 FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
   if (is_team(mission_) && request_.notes) compare_radio_with_belief(mission_);
   prepare(interrupted);
@@ -212,11 +233,13 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
   }
   outcome.as_meant = outcome.record_problem.empty() && !outcome.endings.empty() &&
                      evaluation::joint_ending(outcome.endings).as_meant;
+  outcome.printed = printed();
   return outcome;
 }
 
 bool MissionFlight::hangs() const {
-  return std::any_of(policies_.begin(), policies_.end(), [](const auto& p) { return p->abandoned(); });
+  return std::any_of(loaded_.policies.begin(), loaded_.policies.end(),
+                     [](const auto& p) { return p->abandoned(); });
 }
 
 }  // namespace karst::flight

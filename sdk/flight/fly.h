@@ -12,6 +12,7 @@
 
 #include "sdk/evaluation/metrics/ending.h"
 #include "sdk/flight/flight_setup.h"
+#include "sdk/flight/loaded_policies.h"
 #include "sdk/flight/team_flight.h"
 
 namespace karst::flight {
@@ -23,6 +24,7 @@ struct FlightOutcome {
   std::vector<evaluation::Ending> endings;  // of each vehicle; empty if they are not known
   nlohmann::ordered_json metrics;           // null if they could not be computed
   std::optional<TeamResult> team;           // for a team's flight
+  std::vector<PolicyPrinted> printed;       // of each vehicle whose policy's process printed something
   std::string record_problem;               // why the record is incomplete; "" if it is not
 };
 
@@ -42,6 +44,7 @@ class MissionFlight {
 
  private:
   struct Running;
+  boost::property_tree::ptree as_asked(const Mission& mission) const;
   boost::property_tree::ptree as_flown(const Mission& mission) const;
   void prepare(const std::atomic<bool>& interrupted);
   void assemble();
@@ -49,11 +52,12 @@ class MissionFlight {
   core::TimeNs run(const std::atomic<bool>& interrupted) const;
   nlohmann::ordered_json finish_alone(FlightOutcome& outcome, double wall_s) const;
   nlohmann::ordered_json finish_members(FlightOutcome& outcome, double wall_s) const;
+  std::vector<PolicyPrinted> printed() const;
 
   Mission mission_;
   FlightRequest request_;
   std::vector<Mission> members_;
-  std::vector<std::unique_ptr<host::HostedPolicy>> policies_;
+  LoadedPolicies loaded_;
   std::optional<core::MissionKey> key_;  // of a team
   std::unique_ptr<Running> running_;     // kept after the flight: see hangs()
 };

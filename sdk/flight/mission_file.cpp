@@ -41,7 +41,7 @@ void describe_mission(OptionTable& t, Mission& m) {
           "gives the policy other random numbers, and nothing else: for comparing a policy with itself");
     p.add("isolation", m.policy_isolation,
           "process: the policy runs in a process of its own, where a crash costs the policy and not the "
-          "vehicle");
+          "vehicle; where_possible: the same, or in_process where this machine cannot confine a process");
     p.add("cpu_limit", m.policy_cpu_limit_s, "s", 0.1, 3600,
           "processor time a call may take: of its thread, or of all threads of the policy's own process");
     p.add("hang_limit", m.policy_hang_limit_s, "s", 0.1, 3600,

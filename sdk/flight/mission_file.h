@@ -5,18 +5,28 @@
 //   policy { name nearest_frontier  parameters { horizon "60 m" } }
 //   motion { max_speed "1.5 m/s" }
 #pragma once
+#include <array>
 #include <boost/property_tree/ptree.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core_stack/common/enum_names.h"
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/vehicle.h"
 #include "sdk/flight/team_faults.h"
-#include "sdk/host/plugin/hosted_policy.h"
 
 namespace karst::flight {
+
+/// Where the policy runs (docs/isolation.md): in a process of its own, in one if this machine can confine a
+/// process, or in karst's.
+enum class PolicyIsolation { where_possible, process, in_process };
+constexpr auto names_of(PolicyIsolation) {
+  using enum PolicyIsolation;
+  return std::to_array<core::Named<PolicyIsolation>>(
+      {{where_possible, "where_possible"}, {process, "process"}, {in_process, "in_process"}});
+}
 
 /// Settings of the command line that add to a mission file or override it.
 struct MissionOverrides {
@@ -30,7 +40,7 @@ struct Mission {
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   core::MeshKeys mesh;  // of a cave that is a bare mesh
   std::int64_t seed = 1, policy_stream = 0;
-  host::Isolation policy_isolation = host::Isolation::in_process;  // docs/isolation.md
+  PolicyIsolation policy_isolation = PolicyIsolation::where_possible;
   double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;
   std::int64_t policy_memory_limit_mib = 2048;
   core::CoreOptions core;

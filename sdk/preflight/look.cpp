@@ -17,7 +17,7 @@
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/cave_check.h"
 #include "sdk/flight/flight_setup.h"
-#include "sdk/host/load_policy.h"
+#include "sdk/flight/loaded_policies.h"
 #include "sdk/preflight/far_places.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/experience.h"
@@ -38,7 +38,8 @@ bool is_auto(const Mission& m) { return m.policy == flight::kAutoPolicy; }
 void refuse_bad_policy(const Mission& mission, const LookOptions& options) {
   flight::FlightRequest request;
   request.plugins = options.plugins;
-  host::load_policy(flight::policy_choice(mission, request));
+  request.notes = false;
+  flight::load_policies({mission}, request);
 }
 
 std::optional<core::VehicleDescription> vehicle_of(const Mission& m, Preflight& p) {

@@ -36,7 +36,7 @@ struct FlyArguments {
   MeshOptions mesh;
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool keys = false, json = false, quiet = false, no_report = false, real_time = false,
-       record_requests = false;
+       record_requests = false, in_process = false;
 };
 
 /// runs/POLICY-CAVE-SEED, with a number appended if that exists.
@@ -80,6 +80,19 @@ void print_failed_policies(const std::vector<evaluation::Ending>& endings) {
   }
 }
 
+/// On standard error as well: a crash that the vehicle survived is the author's to look into.
+void print_last_output(const std::vector<flight::PolicyPrinted>& printed) {
+  for (const flight::PolicyPrinted& p : printed) {
+    flight::show_last_lines(p.policy, p.before_break);
+    if (!p.problem.empty()) print_error("karst: %s\n", p.problem.c_str());
+  }
+}
+
+void print_output_files(const std::vector<flight::PolicyPrinted>& printed) {
+  for (const flight::PolicyPrinted& p : printed)
+    print_out("  %s   what the policy printed\n", p.file.c_str());
+}
+
 void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequest& request) {
   const nlohmann::ordered_json& metrics = outcome.metrics;
   const auto number = [&](const char* key, const char* format) {
@@ -102,6 +115,7 @@ void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequ
     print_out("  %s   the flight in 3D with plots; open it in a browser\n",
               (request.run_dir / "report.html").c_str());
   print_out("  %s   all figures\n", (request.run_dir / "metrics.json").c_str());
+  print_output_files(outcome.printed);
 }
 
 void print_team(const flight::FlightOutcome& outcome, const flight::FlightRequest& request) {
@@ -124,6 +138,7 @@ void print_team(const flight::FlightOutcome& outcome, const flight::FlightReques
   print_out(
       "  %s   what became of the team, and what the base knew when\n  %s   the first robot's own flight\n",
       (request.run_dir / "team.jsonl").c_str(), (request.run_dir / "robot_1").c_str());
+  print_output_files(outcome.printed);
 }
 
 /// Reports errors early: without the cache only time would be lost, which nobody would notice.
@@ -149,6 +164,7 @@ void print_choice(const flight::Mission& mission) {
 flight::Mission mission_of(const FlyArguments& args) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
+  if (args.in_process) overrides.values.emplace_back("policy.isolation", "in_process");
   for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
   const bool is_auto = mission.policy == flight::kAutoPolicy;
@@ -204,6 +220,7 @@ int fly(const FlyArguments& args) {
       print_flight(outcome, request);
   }
   print_failed_policies(outcome.endings);
+  print_last_output(outcome.printed);
   if (!outcome.record_problem.empty())
     print_wrapped(stderr, 7, "karst: %s\nkarst: the %s record is incomplete: %s\n",
                   outcome.record_problem.c_str(), flight::is_team(mission) ? "flights'" : "flight's",
@@ -291,6 +308,10 @@ void add_fly_command(CLI::App& app) {
   fly_app->add_flag(
       "--record-requests", args->record_requests,
       "write what the policy is asked, and its answers, into requests.bin; see karst policy replay");
+  fly_app->add_flag("--in-process", args->in_process,
+                    "run the policy in karst's own process, for debuggers and sanitizers; a crash then ends "
+                    "the flight: " +
+                        core::doc_path("docs/isolation.md"));
   fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
   fly_app->callback([args] {
     if (const int code = fly(*args); code != 0) throw CLI::RuntimeError(code);

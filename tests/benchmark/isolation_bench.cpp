@@ -1,5 +1,6 @@
 // The round trip of a decision with a map of 20,000 m^3, for a policy that answers at once: a call of the C++
-// function itself, through the ABI in this process, and in a process of its own. And what the snapshot costs.
+// function itself, through the ABI in this process, and in a process of its own. And what the snapshot costs,
+// what the start of a process, and how much memory it takes.
 //
 // The map is a straight gallery, seen from a vehicle that flies through it: between two requests some ten
 // scans change a few hundred blocks, as in four seconds of flight.
@@ -7,10 +8,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <numbers>
+#include <string>
 
 #include "core_stack/mapping/occupancy/voxel_classes.h"
 #include "sdk/host/boundary/decision_box.h"
+#include "sdk/host/isolation/isolated_policy.h"
 #include "sdk/host/load_policy.h"
 #include "sdk/host/serialization/flat_request.h"
 #include "tests/benchmark/times.h"
@@ -54,6 +58,14 @@ core::Decision direct(const core::DecisionRequest& r) {
   return d;
 }
 
+/// The most memory that a process has had in use.
+double peak_memory_mib(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024;
+  return 0;
+}
+
 struct Cycles {
   core::bench::Times standing, moving;  // nothing changed in the map; ten scans between two requests
 };
@@ -66,10 +78,21 @@ int main() {
   host::PolicyChoice choice;
   choice.name = "plain";
   const host::SearchPath path{{std::string(KARST_BINARY_DIR) + "/tests/plugins/plain.so"}, {}, 60.0};
-  const auto in_process = host::load_policy(choice, path);
+  core::bench::Times start_here, start_there;
+  const auto time_start = [&](core::bench::Times& times) {
+    const auto begin = Clock::now();
+    auto policy = host::load_policy(choice, path);
+    times.ms.push_back(elapsed_ms(begin));
+    return policy;
+  };
+  for (int i = 0; i < 20; ++i) time_start(start_here);
+  const auto in_process = time_start(start_here);
   choice.isolation = host::Isolation::process;
   choice.hang_limit_s = 60;
-  const auto in_child = host::load_policy(choice, path);
+  for (int i = 0; i < 20; ++i) time_start(start_there);
+  const auto in_child = time_start(start_there);
+  const pid_t child = dynamic_cast<const host::IsolatedPolicy&>(*in_child).process_id();
+  const double at_start_mib = peak_memory_mib(child);
 
   std::vector<core::FrontierCluster> clusters(100);
   core::DecisionRequest request;
@@ -127,5 +150,10 @@ int main() {
   snapshot.print("what changed, to bytes");
   whole_snapshot.print("the whole map, to bytes");
   restart.print("first request: the whole map, and the answer");
+  std::printf("from the policy's name to its first request\n");
+  start_here.print("in process");
+  start_there.print("in a process of its own");
+  std::printf("memory of that process: %.1f MiB at the start, %.1f MiB with the map at its largest\n",
+              at_start_mib, peak_memory_mib(child));
   return checksum == 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -121,6 +121,26 @@ TEST(Compare, ATrialOfTheCampaignIsTheFlightThatFlyFlies) {
             bytes_of(dir / "f/metrics.json"));
   EXPECT_EQ(bytes_of(dir / "c/trials/nearest_frontier/small3/1/trajectory.tum"),
             bytes_of(dir / "f/trajectory.tum"));
+  // Though it crashes where the other would fly on: in a campaign a crash is the policy's failure.
+  EXPECT_NE(bytes_of(dir / "c/missions/nearest_frontier/small3.info").find("isolation in_process"),
+            std::string::npos);
+  EXPECT_NE(bytes_of(dir / "f/mission.info").find("isolation process"), std::string::npos);
+}
+
+TEST(Compare, PoliciesHaveProcessesOfTheirOwnIfTheCampaignOrItsMissionSaysSo) {
+  const fs::path dir = fresh_folder("compare_isolated");
+  std::ofstream(dir / "base.info") << "policy { isolation process }\n";
+  std::ofstream(dir / "c.info") << "mission base.info\nflight_time 12s\nseeds 1\ncave { file "
+                                << generated_cave("small", 3)
+                                << " }\ncontestant { policy nearest_frontier }\n";
+  const std::string compare = "compare " + (dir / "c.info").string() + " --out ";
+  ASSERT_EQ(run_karst(compare + (dir / "c").string()).code, 0);
+  ASSERT_EQ(run_karst(compare + (dir / "d").string() + " --set policy.isolation=in_process").code, 0);
+  const auto says = [&](const char* campaign, const char* what) {
+    return bytes_of(dir / campaign / "missions/nearest_frontier/small3.info").find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(says("c", "isolation process"));
+  EXPECT_TRUE(says("d", "isolation in_process"));
 }
 
 TEST(Compare, CtrlCStopsCleanlyAndSaysHowToGoOn) {

@@ -118,17 +118,17 @@ TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
   EXPECT_GE(m["coverage"].get<double>(), 0.9);
 }
 
-/// Whatever the policy does, the core's fallback explores and the vehicle comes home.
+/// Whatever the policy does in karst's own process, the core's fallback explores and the vehicle comes home.
 class MisbehavingPolicy : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
   const std::string plugin = std::string(KARST_BINARY_DIR) + "/tests/plugins/" + GetParam() + ".so";
   ASSERT_TRUE(std::filesystem::exists(plugin)) << plugin;
   const auto run = fresh_folder(std::string("flight_bad_") + GetParam()) / "run";
-  const Output out =
-      run_karst("fly --cave " + generated_cave("small", 7) + " --policy plain --plugin " + plugin +
-                " --set policy.hang_limit=10s --set mission.max_flight_time=90s --quiet --no-report --out " +
-                run.string());
+  const Output out = run_karst(
+      "fly --in-process --cave " + generated_cave("small", 7) + " --policy plain --plugin " + plugin +
+      " --set policy.hang_limit=10s --set mission.max_flight_time=90s --quiet --no-report --out " +
+      run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(metrics_of(run)["outcome"], "landed") << out.text;
   EXPECT_GT(metrics_of(run)["path_length_m"].get<double>(), 20.0) << "the fallback did not explore";

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_reader.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/plan/hash.h"
 #include "sdk/campaign/plan/profile.h"
@@ -27,6 +28,7 @@ using nlohmann::json;
 
 constexpr double kCheckLimit_s = 600;  // for loading a policy and a cave, on a busy machine
 constexpr std::size_t kShortHash = 12;
+constexpr const char* kIsolation = "policy.isolation";
 
 /// A temporary file, removed on destruction.
 struct ScratchFile {
@@ -52,6 +54,18 @@ std::string last_line(const std::string& text) {
 
 bool has(const Settings& settings, const std::string& key) {
   return std::any_of(settings.begin(), settings.end(), [&](const auto& s) { return s.first == key; });
+}
+
+/// Whether the campaign says where its policies run. What is wrong in its mission file is for karst to say.
+bool says_where_policies_run(const Campaign& c, const ContestantSpec& who) {
+  for (const Settings* some : {&c.settings, &c.overrides, &who.settings})
+    if (has(*some, kIsolation)) return true;
+  if (c.mission.empty()) return false;
+  try {
+    return core::read_including_info(c.mission).get_optional<std::string>(kIsolation).has_value();
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 std::string without(std::string text, const std::string& part) {
@@ -92,6 +106,9 @@ pt::ptree resolve(const Campaign& c, const ContestantSpec& who, const CaveSpec& 
   };
   for (const Settings* some : {&profile(c.profile).settings, &c.settings, &c.overrides, &who.settings})
     for (const auto& [key, value] : *some) set(key, value);
+  // Each trial is a process of its own already, and a policy that crashes in it has failed. With isolation
+  // the fallback policy would fly on in its name.
+  if (!says_where_policies_run(c, who)) set(kIsolation, "in_process");
   set("mission.max_flight_time", json(c.flight_time_s).dump() + " s");
   for (const auto& [key, value] : who.parameters) set("policy.parameters." + key, value);
   const ProcessOutput checked = run_process(argv, kCheckLimit_s);

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/isolation/descriptor.h"
 
 namespace karst::host {
 namespace {
@@ -36,16 +37,6 @@ constexpr const char* kOfTheSystem[] = {
   throw core::InputError("a policy's process", "",
                          std::string("reading cannot be confined: ") + what + ": " + std::strerror(errno));
 }
-
-struct Descriptor {
-  int value;
-  explicit Descriptor(int d) : value(d) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (value >= 0) close(value);
-  }
-};
 
 void allow_reading(int rules, const std::filesystem::path& place) {
   const Descriptor at(open(place.c_str(), O_PATH | O_CLOEXEC));

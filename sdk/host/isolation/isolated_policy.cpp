@@ -50,7 +50,7 @@ IsolatedPolicy::~IsolatedPolicy() {
   }
 }
 
-void IsolatedPolicy::start() {
+void IsolatedPolicy::start_confined(CallLimits limits) {
   StartOrder order;
   order.file = file_;
   order.policy = choice_.name;
@@ -63,10 +63,30 @@ void IsolatedPolicy::start() {
   process_.reset();
   map_sent_ = nullptr;
   revision_sent_ = 0;
-  process_ = std::make_unique<PolicyProcess>(policy_child_program(),
-                                             CallLimits{choice_.hang_limit_s, choice_.cpu_limit_s});
+  std::string why;
   try {
-    const RingMessage said = question("create", Said::start, flatten(order), nullptr);
+    process_ = std::make_unique<PolicyProcess>(policy_child_program(), limits, choice_.output);
+    process_->begin_call("start");
+    process_->send(static_cast<std::uint32_t>(Said::start), flatten(order));
+    const RingMessage said = process_->receive(kMaxAnswerBytes);
+    process_->end_call();
+    if (said.kind == static_cast<std::uint32_t>(Said::confined)) return;
+    const bool tells = said.kind == static_cast<std::uint32_t>(Said::unconfined);
+    why = tells ? read_text(said.body) : "it answered something else in start()";
+  } catch (const std::exception& e) {  // such as no memory to share, no program to run, an end in it
+    why = e.what();
+  }
+  process_.reset();
+  throw CannotConfine(why);
+}
+
+void IsolatedPolicy::start() {
+  const CallLimits limits{choice_.hang_limit_s, choice_.cpu_limit_s};
+  start_confined({restarted_ ? limits.wall_s : choice_.start_hang_limit_s, limits.cpu_s});
+  try {
+    process_->begin_cycle();
+    process_->begin_call("create");
+    const RingMessage said = answer(nullptr);
     if (said.kind == static_cast<std::uint32_t>(Said::refused)) throw input_error(read_text(said.body));
     if (said.kind != static_cast<std::uint32_t>(Said::ready))
       throw ProcessBroken("it did not say it is ready");
@@ -74,6 +94,7 @@ void IsolatedPolicy::start() {
   } catch (const FlatError& e) {
     throw ProcessBroken(std::string("garbage came from its process in create(): ") + e.what());
   }
+  process_->set_limits(limits);
 }
 
 RingMessage IsolatedPolicy::question(const char* call, Said kind, const Bytes& body,
@@ -82,6 +103,10 @@ RingMessage IsolatedPolicy::question(const char* call, Said kind, const Bytes& b
   if (kind != Said::event) process_->begin_cycle();
   process_->begin_call(call);
   process_->send(static_cast<std::uint32_t>(kind), body);
+  return answer(request);
+}
+
+RingMessage IsolatedPolicy::answer(const core::DecisionRequest* request) {
   for (;;) {
     RingMessage said = process_->receive(kMaxAnswerBytes);
     const bool asks_lengths = said.kind == static_cast<std::uint32_t>(Said::asks_lengths);
@@ -140,6 +165,7 @@ core::Decision IsolatedPolicy::hold(const std::string& why) {
 
 void IsolatedPolicy::recover(const std::string& why) {
   process_.reset();
+  if (choice_.output) choice_.output->note_break();
   std::string failure = choice_.name + ": " + why;
   if (!std::exchange(restarted_, true)) {
     try {

@@ -14,7 +14,7 @@ namespace karst::host {
 
 class IsolatedPolicy final : public HostedPolicy {
  public:
-  /// Starts the policy of `file`. Throws core::InputError, like a policy in this process.
+  /// Starts the policy of `file`. Throws core::InputError, like a policy in this process, and CannotConfine.
   IsolatedPolicy(const std::string& file, const PolicyChoice& choice);
   ~IsolatedPolicy() override;
 
@@ -32,8 +32,12 @@ class IsolatedPolicy final : public HostedPolicy {
 
  private:
   void start();
+  /// Starts the process and waits until it has confined itself: nothing of the plugin runs in it yet.
+  void start_confined(CallLimits limits);
   core::Decision ask(const core::DecisionRequest& request);
   RingMessage question(const char* call, Said kind, const Bytes& body, const core::DecisionRequest* request);
+  /// Waits for the answer, and answers what the process asks meanwhile.
+  RingMessage answer(const core::DecisionRequest* request);
   /// Restarts the process the first time. Throws PolicyFailure the second time.
   void recover(const std::string& why);
   core::Decision hold(const std::string& why);

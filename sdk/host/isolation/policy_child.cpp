@@ -55,6 +55,12 @@ class Server {
     choice.hang_limit_s = choice.cpu_limit_s = 1e9;  // the host enforces them: it can end this process
     try {
       confine_this_process(order.memory_limit_bytes, places_to_read(order.file));
+    } catch (const std::exception& e) {
+      say(Said::unconfined, flatten(std::string(e.what())));
+      return;
+    }
+    say(Said::confined, {});
+    try {
       const Selection found = open_policy(order.file, order.policy);
       policy_ = std::make_unique<LoadedPolicy>(
           found.plugin, *found.policy, choice, order.legacy,

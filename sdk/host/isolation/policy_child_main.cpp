@@ -17,10 +17,14 @@ int main(int argc, char** argv) {
     std::fputs("karst-policy-child is started by karst, for policy.isolation = process\n", stderr);
     return 1;
   }
+  // A line that the policy prints goes out at once, as on a terminal: what comes before a crash must not be
+  // lost.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   int code = 1;
   try {
     code = karst::host::serve_policy();
   } catch (const std::exception&) {  // the host sees that this process has ended
   }
+  std::fflush(stdout);
   _exit(code);  // threads of the policy may still run, so nothing is destroyed
 }

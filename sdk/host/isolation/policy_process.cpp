@@ -9,12 +9,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <utility>
 
 #include "core_stack/common/error.h"
+#include "sdk/host/isolation/descriptor.h"
 #include "sdk/host/isolation/file_access.h"
 #include "sdk/host/isolation/policy_child.h"
 #include "sdk/host/isolation/process.h"
@@ -24,25 +27,35 @@ namespace {
 
 constexpr std::size_t kMaxThreads = 64;
 
-/// Closed when it goes out of scope.
-struct Descriptor {
-  int value;
-  explicit Descriptor(int d) : value(d) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(value); }
+/// A duplicate with a number far above those that the child gets.
+int raised(int descriptor) {
+  const int duplicate = fcntl(descriptor, F_DUPFD_CLOEXEC, 100);
+  if (duplicate < 0)
+    throw core::InputError("a policy's process", "",
+                           std::string("no descriptor can be had for it: ") + std::strerror(errno));
+  return duplicate;
+}
+
+/// What the process gets of the host: the ends of the rings, and where it prints (-1: nowhere).
+struct Inherited {
+  int requests, answers, output;
 };
 
-/// A duplicate with a number far above those that the child gets.
-int raised(int descriptor) { return fcntl(descriptor, F_DUPFD_CLOEXEC, 100); }
+void print_to(posix_spawn_file_actions_t& files, int output) {
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+    if (output < 0)
+      posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_WRONLY, 0);
+    else
+      posix_spawn_file_actions_adddup2(&files, output, stream);
+}
 
-pid_t spawn(const std::string& program, int requests, int answers) {
-  const Descriptor read_end(raised(requests)), write_end(raised(answers));
+pid_t spawn(const std::string& program, const Inherited& given) {
+  const Descriptor read_end(raised(given.requests)), write_end(raised(given.answers)),
+      output(given.output < 0 ? -1 : raised(given.output));
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  print_to(files, output.value);
   posix_spawn_file_actions_adddup2(&files, read_end.value, kRequestsDescriptor);
   posix_spawn_file_actions_adddup2(&files, write_end.value, kAnswersDescriptor);
   posix_spawn_file_actions_addclosefrom_np(&files, kAnswersDescriptor + 1);
@@ -108,12 +121,16 @@ void StartingThread::end() {
   thread_.join();
 }
 
-PolicyProcess::PolicyProcess(const std::string& program, CallLimits limits)
+PolicyProcess::PolicyProcess(const std::string& program, CallLimits limits,
+                             std::shared_ptr<PolicyOutput> output)
     : limits_(limits), ring_(ours_, theirs_, [this] { watch(); }) {
   const Descriptor requests(ours_.read_only_descriptor());
+  if (output) drain_.emplace(std::move(output));
   if (landlock_version() == 0) hide_this_process();
-  started_by_.emplace([&] { return spawn(program, requests.value, theirs_.descriptor()); });
+  const Inherited given{requests.value, theirs_.descriptor(), drain_ ? drain_->write_end() : -1};
+  started_by_.emplace([&] { return spawn(program, given); });
   id_ = started_by_->process();
+  if (drain_) drain_->close_write_end();
   ours_.close_descriptor();
   theirs_.close_descriptor();
 }

@@ -5,11 +5,13 @@
 #include <chrono>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "sdk/host/in_process/call_limits.h"
+#include "sdk/host/isolation/output_drain.h"
 #include "sdk/host/isolation/shared_ring.h"
 
 namespace karst::host {
@@ -44,8 +46,10 @@ class StartingThread {
 
 class PolicyProcess {
  public:
-  /// Starts the program with only its two ends of the rings. Throws core::InputError if it cannot be run.
-  PolicyProcess(const std::string& program, CallLimits limits);
+  /// Starts the program with its two ends of the rings, and a pipe for what it prints if somebody takes that
+  /// (`output`). Throws core::InputError if it cannot be run.
+  PolicyProcess(const std::string& program, CallLimits limits,
+                std::shared_ptr<PolicyOutput> output = nullptr);
   /// Ends it, with a signal that cannot be caught.
   ~PolicyProcess();
   PolicyProcess(const PolicyProcess&) = delete;
@@ -56,6 +60,7 @@ class PolicyProcess {
   void begin_call(const char* name);
   void end_call();
   void begin_cycle() { spent_wall_s_ = spent_cpu_s_ = 0; }
+  void set_limits(CallLimits limits) { limits_ = limits; }
   /// Both throw ProcessBroken.
   void send(std::uint32_t kind, std::span<const std::byte> body);
   RingMessage receive(std::size_t max_bytes);
@@ -73,6 +78,7 @@ class PolicyProcess {
 
   CallLimits limits_;
   RingMemory ours_, theirs_;
+  std::optional<OutputDrain> drain_;
   std::optional<StartingThread> started_by_;
   pid_t id_ = -1;  // -1: ended, and waited for
   RingEnd ring_;

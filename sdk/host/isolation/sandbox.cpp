@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -24,6 +25,9 @@ namespace {
 }
 
 void limit(__rlimit_resource resource, rlim_t value, const char* what) {
+  rlimit now{};
+  // A lower limit of the user's own (ulimit) stays: nobody but root may raise it.
+  if (getrlimit(resource, &now) == 0) value = std::min(value, now.rlim_max);
   const rlimit both{value, value};
   if (setrlimit(resource, &both) != 0) cannot(std::string(what) + " cannot be limited", errno);
 }

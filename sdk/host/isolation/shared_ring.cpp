@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <linux/futex.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -44,6 +45,13 @@ void sleep_on(std::atomic<std::uint32_t>& word, std::uint32_t seen) {
 
 RingMemory::RingMemory() : descriptor_(memfd_create("karst-policy", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
   if (descriptor_ < 0) no_memory("no shared memory can be had");
+  // A file beyond the user's limit (ulimit -f) comes with a signal that ends the process: never tried.
+  rlimit files{};
+  if (getrlimit(RLIMIT_FSIZE, &files) == 0 && files.rlim_cur < kSize) {
+    close(descriptor_);
+    errno = EFBIG;
+    no_memory("no shared memory can be had");
+  }
   // Sealed, because reading memory that the other end has truncated would end this process.
   if (ftruncate(descriptor_, kSize) != 0 ||
       fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {

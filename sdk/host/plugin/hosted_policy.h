@@ -11,18 +11,29 @@
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core_stack/common/error.h"
 #include "core_stack/mission/policy/policy_port.h"
 
 namespace karst::host {
+
+class PolicyOutput;
 
 enum class Isolation { in_process, process };
 constexpr auto names_of(Isolation) {
   using enum Isolation;
   return std::to_array<core::Named<Isolation>>({{in_process, "in_process"}, {process, "process"}});
 }
+
+/// Thrown in place of starting a policy with Isolation::process, where the policy has no part in it: this
+/// machine lacks what confines a process.
+struct CannotConfine : core::InputError {
+  explicit CannotConfine(const std::string& reason)
+      : InputError("policy.isolation", "process", "this machine cannot confine a policy: " + reason) {}
+};
 
 /// The policy settings of a mission file or a command line.
 struct PolicyChoice {
@@ -31,10 +42,12 @@ struct PolicyChoice {
   boost::property_tree::ptree parameters;  // values as text with units, such as "2 m"
   std::string source = "policy";           // the file the parameters come from, for messages
   std::uint64_t seed = 1;
-  double hang_limit_s = 60.0;  // for a call, by the wall clock
+  double hang_limit_s = 60.0;        // for a call, by the wall clock
+  double start_hang_limit_s = 60.0;  // the same for the first start of a policy's own process
   Isolation isolation = Isolation::in_process;
   double cpu_limit_s = 10.0;  // for a call: of its thread, or of all threads of the policy's own process
   std::int64_t memory_limit_mib = 2048;  // of a policy's own process
+  std::shared_ptr<PolicyOutput> output;  // takes what that prints; null: dropped
   int failures_allowed = 2;              // consecutive; one more is a PolicyFailure
 };
 

@@ -14,10 +14,10 @@
 
 namespace karst::host {
 
-/// Kinds of messages. Each host message except `end` is answered by one policy message; before it answers,
-/// the policy's process may ask for lengths and paths.
+/// Kinds of messages. Each host message except `end` is answered by one policy message, `start` by up to two;
+/// before it answers, the policy's process may ask for lengths and paths.
 enum class Said : std::uint32_t {
-  start = 1,           // StartOrder -> ready, refused
+  start = 1,           // StartOrder -> unconfined; or confined, and then ready, refused
   decide = 2,          // a request (flat_request.h) -> decided, gave_up
   event = 3,           // -> noted
   lengths = 4,         // the answer to asks_lengths
@@ -29,7 +29,9 @@ enum class Said : std::uint32_t {
   gave_up = 104,       // a text: a PolicyFailure
   noted = 105,         // nothing
   asks_lengths = 106,  // LengthsQuestion
-  asks_paths = 107     // LengthsQuestion
+  asks_paths = 107,    // LengthsQuestion
+  confined = 108,      // nothing: the plugin is opened next
+  unconfined = 109     // a text: why this machine cannot confine a process
 };
 
 constexpr std::size_t kMaxAnswerBytes = 32u << 20;  // a state of 16 MiB, drawings of 5 MB, texts

@@ -57,6 +57,20 @@ TEST(MissionFile, APolicysStreamGivesItAnotherSeedAndLeavesTheMissions) {
   EXPECT_NE(policy_seed(other), policy_seed(third));
 }
 
+TEST(MissionFile, WhereThePolicyRunsIsLeftToTheMachineUnlessItIsSaid) {
+  EXPECT_EQ(read_mission(written("home0.info", "seed 9\n"), {}).policy_isolation,
+            PolicyIsolation::where_possible);
+  EXPECT_EQ(read_mission(written("home1.info", "policy { isolation process }\n"), {}).policy_isolation,
+            PolicyIsolation::process);
+  MissionOverrides o;
+  o.values = {{"policy.isolation", "in_process"}};
+  const Mission m = read_mission(written("home2.info", "policy { isolation process }\n"), o);
+  EXPECT_EQ(m.policy_isolation, PolicyIsolation::in_process);
+  EXPECT_EQ(recorded_mission(m, {}, "").get<std::string>("policy.isolation"), "in_process");
+  const std::string e = error_of("home3.info", "policy { isolation thread }\n");
+  EXPECT_TRUE(holds(e, "one of where_possible process in_process")) << e;
+}
+
 TEST(MissionFile, AnUnknownKeyNamesFileKeyAndTheNearestOne) {
   const std::string e = error_of("unknown_key.info", "motion { max_sped \"1 m/s\" }\n");
   EXPECT_TRUE(holds(e, "unknown_key.info") && holds(e, "motion.max_sped") &&
