@@ -20,8 +20,9 @@ void* operator new(std::size_t size) {
   void* const p = out_of_memory ? nullptr : std::malloc(size);
   return p ? p : throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+// Inlined, g++ sees only that free() ends what new began (-Wmismatched-new-delete).
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace karst::core {
 namespace {

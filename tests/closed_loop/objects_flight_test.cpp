@@ -112,7 +112,9 @@ TEST(Objects, OfATeamAreKnownAtTheBaseInTheEnd) {
     EXPECT_TRUE(std::filesystem::exists(run / robot / "objects.json")) << robot;
     std::map<int, int> reported;  // it was told again with every revision
     for (const json& e : lines_of(run / robot / "events.jsonl"))
-      if (e["kind"] == "object" && e["state"] == "reported") EXPECT_EQ(++reported[e["number"]], 1) << robot;
+      if (e["kind"] == "object" && e["state"] == "reported") {
+        EXPECT_EQ(++reported[e["number"]], 1) << robot;
+      }
   }
 }
 

@@ -12,11 +12,6 @@ double elapsed_ms(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
 }
 
-bool any_reachable(const std::vector<FrontierOffer>& offers) {
-  return std::any_of(offers.begin(), offers.end(),
-                     [](const FrontierOffer& o) { return std::isfinite(o.path_length_m); });
-}
-
 /// Copies for the report, which does not show their cells.
 std::vector<FrontierCluster> without_cells(const std::vector<FrontierOffer>& offers) {
   std::vector<FrontierCluster> out;

@@ -1,5 +1,6 @@
 #include "core_stack/mission/decision/frontier_offers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,20 +25,24 @@ ClosureRules last_resort_rules(Passages passages, TimeNs now) {
 
 }  // namespace
 
+bool any_reachable(const std::vector<FrontierOffer>& offers) {
+  return std::any_of(offers.begin(), offers.end(),
+                     [](const FrontierOffer& o) { return std::isfinite(o.path_length_m); });
+}
+
 FrontierOffers::FrontierOffers(const CoreOptions& options, const VehicleDescription& vehicle,
                                const WorldModel& world, const GoalLedger& ledger)
     : min_open_cells_(options.mission.min_open_cells), vehicle_(vehicle), world_(&world), ledger_(&ledger) {}
 
 Offers FrontierOffers::find(const OfferQuery& query) {
-  Offers open;
-  open.rules = {.at = query.now};
-  open.frontiers = find_by(open.rules, query.claims, query);
+  const ClosureRules now{.at = query.now}, waived = last_resort_rules(query.roadmap->passages(), query.now);
+  Offers open{find_by(now, query.claims, query), now};
+  if (any_reachable(open.frontiers)) return open;
   // A frontier that another vehicle is about to explore is better than none.
-  if (open.frontiers.empty() && !query.claims.goals.empty()) open.frontiers = find_by(open.rules, {}, query);
-  if (open.frontiers.empty()) {
-    open.rules = last_resort_rules(query.roadmap->passages(), query.now);
-    open.frontiers = find_by(open.rules, {}, query);
-  }
+  if (!query.claims.goals.empty())
+    if (Offers claimed{find_by(now, {}, query), now}; any_reachable(claimed.frontiers)) return claimed;
+  if (Offers closed{find_by(waived, {}, query), waived}; any_reachable(closed.frontiers)) return closed;
+  if (Offers distant{find_distant(now, query), now}; any_reachable(distant.frontiers)) return distant;
   return open;
 }
 
@@ -47,7 +52,6 @@ std::vector<FrontierOffer> FrontierOffers::find_by(const ClosureRules& rules, co
                                                    const OfferQuery& query) {
   const VoxelMap& map = world_->map();
   std::vector<FrontierOffer> open;
-  std::vector<Vec3> viewpoints;
   Viewpoints kept;
   for (const auto& [id, cluster] : world_->frontiers().clusters()) {
     if (query.leave_out == id || claims.hold(cluster.centroid) ||
@@ -60,14 +64,42 @@ std::vector<FrontierOffer> FrontierOffers::find_by(const ClosureRules& rules, co
     offer.viewpoint = entry.viewpoint->position;
     offer.viewpoint_heading_rad = entry.viewpoint->heading_rad;
     open.push_back(offer);
-    viewpoints.push_back(offer.viewpoint);
   }
   known(query.roadmap->passages()) = std::move(kept);
+  measure_paths(open, query);
+  return open;
+}
 
+/// Seen from afar through a gap, a passage is known along a cone: wide enough to be worth a look, and nowhere
+/// wide enough to fly in. The look from the nearest place that can be flown to widens the cone.
+std::vector<FrontierOffer> FrontierOffers::find_distant(const ClosureRules& rules,
+                                                        const OfferQuery& query) const {
+  const VoxelMap& map = world_->map();
+  std::vector<FrontierOffer> out;
+  for (const auto& [id, cluster] : world_->frontiers().clusters()) {
+    if (query.leave_out == id || open_cells(map, cluster) < min_open_cells_ ||
+        ledger_->closed(map, cluster.centroid, rules) ||
+        !fits_through(map, cluster, query.roadmap->clearance_m()))
+      continue;
+    const auto viewpoint = find_distant_viewpoint(map, cluster, vehicle_, *query.roadmap);
+    if (!viewpoint || ledger_->closed(map, viewpoint->position, rules)) continue;
+    FrontierOffer offer;
+    offer.cluster = &cluster;
+    offer.viewpoint = viewpoint->position;
+    offer.viewpoint_heading_rad = viewpoint->heading_rad;
+    out.push_back(offer);
+  }
+  measure_paths(out, query);
+  return out;
+}
+
+void FrontierOffers::measure_paths(std::vector<FrontierOffer>& offers, const OfferQuery& query) const {
+  const VoxelMap& map = world_->map();
+  std::vector<Vec3> viewpoints;
+  for (const FrontierOffer& offer : offers) viewpoints.push_back(offer.viewpoint);
   const std::vector<double> lengths =
       query.roadmap->roadmap().distances(map, query.from, viewpoints, map.resolution_m());
-  for (std::size_t i = 0; i < open.size(); ++i) open[i].path_length_m = lengths[i];
-  return open;
+  for (std::size_t i = 0; i < offers.size(); ++i) offers[i].path_length_m = lengths[i];
 }
 
 /// Returns the cached viewpoint if nothing has changed near the cluster.

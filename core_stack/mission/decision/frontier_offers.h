@@ -36,14 +36,17 @@ struct Offers {
   ClosureRules rules;                    // for checking the policy's goals
 };
 
+bool any_reachable(const std::vector<FrontierOffer>& offers);
+
 class FrontierOffers {
  public:
   /// `world` and `ledger` must outlive it.
   FrontierOffers(const CoreOptions& options, const VehicleDescription& vehicle, const WorldModel& world,
                  const GoalLedger& ledger);
 
-  /// The open frontiers with an open viewpoint. If there are none, those claimed by other vehicles; failing
-  /// that, also those whose closure has not expired.
+  /// The open frontiers with an open viewpoint. If none of them can be reached, those claimed by other
+  /// vehicles, too; failing that, those whose closure has not expired; failing that, those that can only be
+  /// looked at from a distance, because space not yet seen blocks the way to them.
   Offers find(const OfferQuery& query);
 
   /// The frontiers that find() left out because no sensor of the vehicle sees them. Each is returned once in
@@ -60,6 +63,8 @@ class FrontierOffers {
 
   std::vector<FrontierOffer> find_by(const ClosureRules& rules, const Claims& claims,
                                      const OfferQuery& query);
+  std::vector<FrontierOffer> find_distant(const ClosureRules& rules, const OfferQuery& query) const;
+  void measure_paths(std::vector<FrontierOffer>& offers, const OfferQuery& query) const;
   KnownViewpoint viewpoint_for(const FrontierCluster& cluster, const ClearanceRoadmap& roadmap);
   Viewpoints& known(Passages passages) {
     return passages == Passages::narrow ? narrow_viewpoints_ : usual_viewpoints_;

@@ -1,7 +1,9 @@
 #include "core_stack/mission/decision/viewpoints.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "core_stack/planning/search/grid_planner.h"
 
@@ -47,6 +49,37 @@ std::optional<Vec3> clear_near(const VoxelMap& map, const Vec3& p, double cleara
   return best;
 }
 
+/// The frontier cell nearest to the centroid represents the cluster: the centroid itself may lie in rock.
+Vec3 cell_at_centroid(const VoxelMap& map, const FrontierCluster& cluster) {
+  Vec3 target = cluster.centroid;
+  double least = 1e9;
+  for (const CellKey& k : cluster.cells) {
+    const double d = (map.center_of(k) - cluster.centroid).squaredNorm();
+    if (d < least) {
+      least = d;
+      target = map.center_of(k);
+    }
+  }
+  return target;
+}
+
+double heading_towards(const Vec3& from, const Vec3& target) {
+  return std::atan2(target.y() - from.y(), target.x() - from.x());
+}
+
+/// Whether the centre of an occupied cell lies within `radius_m` of `p`.
+bool rock_within(const VoxelMap& map, const Vec3& p, double radius_m) {
+  const CellKey low = map.key_of(p - Vec3::Constant(radius_m)),
+                high = map.key_of(p + Vec3::Constant(radius_m));
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x)
+        if (map.at(CellKey{x, y, z}) == Cell::occupied &&
+            (map.center_of(CellKey{x, y, z}) - p).squaredNorm() < radius_m * radius_m)
+          return true;
+  return false;
+}
+
 }  // namespace
 
 bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec3& target,
@@ -84,16 +117,7 @@ int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
                                         const VehicleDescription& vehicle, double clearance_m,
                                         const Roadmap* roadmap) {
-  // The frontier cell nearest to the centroid represents the cluster: the centroid itself may lie in rock.
-  Vec3 target = cluster.centroid;
-  double least = 1e9;
-  for (const CellKey& k : cluster.cells) {
-    const double d = (map.center_of(k) - cluster.centroid).squaredNorm();
-    if (d < least) {
-      least = d;
-      target = map.center_of(k);
-    }
-  }
+  const Vec3 target = cell_at_centroid(map, cluster);
   std::optional<Viewpoint> best;
   double best_value = 0;
   const auto consider = [&](const Vec3& position, double azimuth) {
@@ -132,8 +156,30 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
   if (roadmap == nullptr) return best;
   for (const Vec3& place : roadmap->places_near(target, kShells[3]))
     if (const auto clear = clear_near(map, place, clearance_m))
-      consider(*clear, std::atan2(target.y() - clear->y(), target.x() - clear->x()));
+      consider(*clear, heading_towards(*clear, target));
   return best;
+}
+
+bool fits_through(const VoxelMap& map, const FrontierCluster& cluster, double radius_m) {
+  return std::any_of(cluster.cells.begin(), cluster.cells.end(),
+                     [&](const CellKey& k) { return !rock_within(map, map.center_of(k), radius_m); });
+}
+
+std::optional<Viewpoint> find_distant_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
+                                                const VehicleDescription& vehicle,
+                                                const ClearanceRoadmap& reachable) {
+  const Vec3 target = cell_at_centroid(map, cluster);
+  std::vector<Vec3> places = reachable.roadmap().places_near(target, kLidarViewRange_m);
+  std::stable_sort(places.begin(), places.end(), [&](const Vec3& a, const Vec3& b) {
+    return (a - target).squaredNorm() < (b - target).squaredNorm();
+  });
+  for (const Vec3& place : places) {
+    const Viewpoint v{place, heading_towards(place, target)};
+    if (cells_seen(map, cluster, vehicle, v) == 0) continue;
+    const auto clear = clear_near(map, place, reachable.clearance_m());
+    if (clear && reachable.home_length_m(map, *clear)) return Viewpoint{*clear, v.heading_rad};
+  }
+  return std::nullopt;
 }
 
 }  // namespace karst::core

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/unit/mission/mapped_world.h"
 
@@ -119,6 +120,50 @@ TEST(FrontierOffers, InNarrowPassagesPausesAreWaivedIfNothingElseIsLeft) {
   o.query.roadmap = &o.world.usual();
   o.query.now += 10000 * kSecond;
   EXPECT_TRUE(o.find().empty()) << "elsewhere the map must have changed as well";
+}
+
+/// A closed room from which a passage was seen through a tube of rock, 0.6 m wide and 4 m long: as a beam of
+/// free cells beyond its end, too far for the viewpoints around a frontier. `crack`: with rock above and
+/// below the beam.
+VoxelMap room_with_a_tube(bool crack) {
+  VoxelMap map{MapOptions{}};
+  carve_box(map, Vec3(0, 0, 0), Vec3(8, 6, 4));
+  const CellKey gap = map.key_of(Vec3(7.9, 3.1, 2.1));
+  for (int x = 0; x < 36; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = -2; z <= 2; ++z) {
+        const bool inside = std::abs(y) < 2 && std::abs(z) < 2;
+        if (inside || x < 20 || (crack && std::abs(z) == 2))
+          map.assign(gap + CellKey{x, y, z}, 1, inside ? -1.0f : 1.0f);
+      }
+  return map;
+}
+
+/// Looks at all that is offered until nothing is: the greatest x at which a frontier was offered.
+double look_at_all(Offering& o) {
+  double furthest_m = 0;
+  for (int round = 0; round < 20; ++round) {
+    const Offers found = o.offers.find(o.query);
+    if (!any_reachable(found.frontiers)) return furthest_m;
+    for (const FrontierOffer& offer : found.frontiers) {
+      EXPECT_LT(offer.viewpoint.x(), 8) << "in the room";
+      furthest_m = std::max(furthest_m, offer.cluster->centroid.x());
+      o.ledger.close(o.world.map(), offer.viewpoint, o.query.now, "seen");
+    }
+  }
+  ADD_FAILURE() << "it never ends";
+  return furthest_m;
+}
+
+TEST(FrontierOffers, APassageSeenThroughAGapIsLookedAtFromTheNearestPlaceThatCanBeReached) {
+  Offering o(room_with_a_tube(false));
+  EXPECT_GT(look_at_all(o), 12);
+}
+
+TEST(FrontierOffers, ACrackIsNotLookedAtFromADistance) {
+  Offering o(room_with_a_tube(true));
+  EXPECT_FALSE(o.clusters().empty());
+  EXPECT_EQ(look_at_all(o), 0);
 }
 
 TEST(FrontierOffers, AFrontierThatNoSensorLooksIntoIsExplainedOnce) {
