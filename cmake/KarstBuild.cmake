@@ -27,7 +27,7 @@ add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=40
 find_program(CCACHE ccache)
 if(CCACHE)
   # By the compiler's own list of headers: preprocessing everything first would cost a tenth of a cold build. Hashes of
-  # files are remembered, as a precompiled header has 270 MB. The sloppiness is what ccache's manual asks for with
+  # files are remembered, as a precompiled header has 220 MB. The sloppiness is what ccache's manual asks for with
   # precompiled headers; its -fpch-preprocess is not needed, as CMake includes them by -include.
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_DEPEND=1 CCACHE_INODECACHE=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
@@ -50,8 +50,8 @@ endmacro()
 
 # Precompiled headers: those of the standard library, Eigen and Boost that most sources include. Not nlohmann/json.hpp,
 # which then costs 0.4 s in each source that has no use for it, nor CLI11, whose global validators would be compiled
-# with each source. One for libraries and one for tests: programs are compiled with -fPIE. With g++ only,
-# and not under sanitizers: what is compiled with clang, or by clang-tidy, shows which include a source lacks.
+# with each source. One for libraries and one for tests: programs are compiled with -fPIE. With g++ only, and not under
+# sanitizers: what is compiled there, or read by clang-tidy, shows which include a source lacks.
 set(KARST_PCH_HEADERS
     <algorithm> <array> <bit> <charconv> <chrono> <cmath> <cstdint> <cstdio> <cstdlib> <cstring> <deque> <filesystem>
     <fstream> <functional> <iterator> <limits> <map> <memory> <mutex> <numbers> <numeric> <optional> <set> <span>
@@ -68,7 +68,7 @@ function(karst_pch name)
   if(NOT KARST_USES_PCH)
     return()
   endif()
-  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp "// Holds precompiled headers.\n")
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "// Holds precompiled headers.\n")
   add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE Eigen3::Eigen)
   target_precompile_headers(${name} PRIVATE ${ARGN})

@@ -22,7 +22,7 @@ done
 contents() { dpkg-deb --contents "$work/packages"/$1.deb | awk '{print $6}'; }
 has() { contents "$1" | grep -qx "$2" || { echo "$1 lacks $2"; exit 1; }; }
 has 'karst_*' ./usr/bin/karst
-has 'karst_*' ./usr/lib/karst/vehicles/simulator.so
+has 'karst_*' ./usr/lib/karst/vehicles/libkarst_vehicle_simulator.so
 has 'karst_*' ./usr/lib/karst/policies/nearest_frontier.so
 has 'karst_*' ./usr/lib/karst/karst-policy-child
 has 'karst_*' ./usr/share/man/man1/karst.1
@@ -31,7 +31,9 @@ has 'karst-sdk_*' ./usr/lib/cmake/karst/karstConfig.cmake
 has 'karst-doc_*' ./usr/share/doc/karst/docs/README.md
 has 'karst-doc_*' ./usr/share/doc/karst/examples/missions/demo.info
 for package in karst karst-sdk karst-doc; do has "${package}_*" "./usr/share/doc/$package/copyright"; done
-if contents 'karst*' | grep -vE '^\./(usr/.*)?$'; then echo "these files are not below /usr"; exit 1; fi
+for package in 'karst_*' 'karst-sdk_*' 'karst-doc_*'; do
+  if contents "$package" | grep -vE '^\./(usr/.*)?$'; then echo "these files are not below /usr"; exit 1; fi
+done
 depends=$(dpkg-deb --field "$work/packages"/karst_*.deb Depends)
 echo "karst depends on $depends"
 for library in libompl libembree libassimp libsodium; do
