@@ -1,24 +1,29 @@
-// JSON as text, whatever bytes the texts in it hold, and out of text, however deep.
+// JSON as text, whatever bytes the texts in it hold, and out of text, however deep. Functions rather than
+// templates: the library's parser and printer are compiled here once, and not in every source that reads or
+// writes.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
+#include <string_view>
 
 namespace karst::core {
 
+enum class JsonCharacters { utf8, ascii };
+
 /// What is no UTF-8 becomes U+FFFD: names of files may be any bytes, and dump() throws at them. `indent` -1:
 /// one line.
-template <class Json>
-std::string json_text(const Json& j, int indent = -1) {
-  return j.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
+std::string json_text(const nlohmann::json& j, int indent = -1,
+                      JsonCharacters characters = JsonCharacters::utf8);
+std::string json_text(const nlohmann::ordered_json& j, int indent = -1,
+                      JsonCharacters characters = JsonCharacters::utf8);
 
-/// The JSON in a string or a stream; discarded (`is_discarded()`) if it is none. What lies more than 100
-/// levels deep is left out: dump() and others call themselves for each level.
-template <class Json = nlohmann::json, class Text>
-Json json_of(Text&& text) {
-  const auto shallow = [](int depth, typename Json::parse_event_t, Json&) { return depth <= 100; };
-  return Json::parse(std::forward<Text>(text), shallow, false);
-}
+/// The JSON in a string; discarded (`is_discarded()`) if it is none. What lies more than 100 levels deep is
+/// left out: dump() and others call themselves for each level.
+template <class Json = nlohmann::json>
+Json json_of(std::string_view text);
+template <>
+nlohmann::json json_of<nlohmann::json>(std::string_view text);
+template <>
+nlohmann::ordered_json json_of<nlohmann::ordered_json>(std::string_view text);
 
 }  // namespace karst::core

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMatchesPerChunk = 256;
 constexpr double kFreeDeviation = 100;  // m, along directions that no match constrains
 constexpr double kSmallStep = 1e-4;     // m: below this Gauss-Newton has converged
-constexpr double kSettled = 0.2;        // voxels: after a smaller move the matches are reused
+constexpr double kSettledMove = 0.2;    // voxels: after a smaller move the matches are reused
 
 /// Distance by which a change of the pose moves a point at distance L.
 double moved_m(const Vector6& change, double distance_m) {
@@ -131,7 +131,7 @@ Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, 
       width_m = std::min(width_m, 3 * equations.absolute / equations.robust);
       if (step_m < kSmallStep) break;
     }
-    if (level == 0 && moved < kSettled * voxel_m) break;
+    if (level == 0 && moved < kSettledMove * voxel_m) break;
   }
   return fit;
 }

@@ -10,7 +10,6 @@
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
 #include "plugins/simulator/simulated_world.h"
-#include "sdk/flight/auto_policy.h"
 #include "sdk/selection/preset.h"
 
 namespace karst::flight {

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_point.h"
+#include "core_stack/common/json_text.h"
 
 namespace karst::flight {
 
@@ -16,7 +17,7 @@ TeamLog::TeamLog(const std::filesystem::path& run_dir) : file_(run_dir / "team.j
 void TeamLog::event(core::TimeNs t, const std::string& kind, const nlohmann::json& fields) {
   nlohmann::ordered_json line{{"t", core::to_thousandths(core::seconds(t))}, {"kind", kind}};
   for (const auto& [key, value] : fields.items()) line[key] = value;
-  file_ << line.dump() << '\n';
+  file_ << core::json_text(line) << '\n';
 }
 
 void TeamLog::base(core::TimeNs t, const core::TeamNode& base) {

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "core_stack/common/json_text.h"
+
 namespace karst::flight {
 
 void write_timing(const std::filesystem::path& run_dir, const core::Executive& executive, double wall_s) {
@@ -31,7 +33,7 @@ void write_timing(const std::filesystem::path& run_dir, const core::Executive& e
                                 {"simulated_s_per_wall_s", simulated_s / wall_s},
                                 {"threads", executive.threads()},
                                 {"jobs", jobs}};
-  std::ofstream(run_dir / "timing.json") << timing.dump(2) << '\n';
+  std::ofstream(run_dir / "timing.json") << core::json_text(timing, 2) << '\n';
 }
 
 void write_team_timing(const std::filesystem::path& run_dir, const TeamTiming& t) {
@@ -40,7 +42,7 @@ void write_team_timing(const std::filesystem::path& run_dir, const TeamTiming& t
                                       {"simulated_s_per_wall_s", t.simulated_s / t.wall_s},
                                       {"threads", t.threads},
                                       {"jobs", nlohmann::ordered_json::object()}};
-  std::ofstream(run_dir / "timing.json") << timing.dump(2) << '\n';
+  std::ofstream(run_dir / "timing.json") << core::json_text(timing, 2) << '\n';
 }
 
 }  // namespace karst::flight

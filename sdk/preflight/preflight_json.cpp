@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core_stack/common/json_point.h"
+#include "core_stack/common/json_text.h"
 
 namespace karst::preflight {
 namespace {
@@ -36,7 +37,7 @@ ordered_json json_of(const VehicleFacts& v) {
 }
 
 ordered_json json_of(const CaveFacts& c) {
-  ordered_json j{{"figures", ordered_json::parse(selection::to_json(c.figures))},
+  ordered_json j{{"figures", core::json_of<ordered_json>(selection::to_json(c.figures))},
                  {"width_m_p10_p50_p90", c.passages.width_m},
                  {"height_m_p10_p50_p90", c.passages.height_m},
                  {"start", core::list(c.start)},

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 
 namespace karst::selection {
@@ -54,20 +55,21 @@ std::string to_json(const CaveFigures& figures) {
       std::snprintf(text.data(), text.size(), "%.6g", v);
       j[std::string(f.name)] = std::strtod(text.data(), nullptr);
     }
-  return j.dump();
+  return core::json_text(j);
 }
 
 CaveFigures figures_from_json(const std::string& text, const std::string& source) {
   CaveFigures figures;
   if (text.empty()) return figures;
-  const nlohmann::json j = nlohmann::json::parse(text, nullptr, false);
+  const nlohmann::json j = core::json_of(text);
   if (!j.is_object()) throw core::InputError(source, "description", "expected a JSON object, got " + text);
   for (const FigureDefinition& f : kFigures) {
     const auto found = j.find(f.name);
     if (found == j.end() || found->is_null()) continue;
     const double v = found->is_number() ? found->get<double>() : kUnknown;
     if (!(v >= f.low && v <= f.high))
-      throw core::InputError(source, "description." + std::string(f.name), "out of range: " + found->dump());
+      throw core::InputError(source, "description." + std::string(f.name),
+                             "out of range: " + core::json_text(*found));
     figures.*f.value = v;
   }
   return figures;

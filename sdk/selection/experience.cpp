@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/campaign/verdict/verdict.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
@@ -20,17 +21,16 @@ constexpr std::size_t kSettingsNamed = 4;
 boost::property_tree::ptree parameters_of(const std::string& json, const std::string& source,
                                           const std::string& name) {
   boost::property_tree::ptree tree;
-  const nlohmann::json j =
-      json.empty() ? nlohmann::json::object() : nlohmann::json::parse(json, nullptr, false);
+  const nlohmann::json j = json.empty() ? nlohmann::json::object() : core::json_of(json);
   if (!j.is_object()) throw InputError(source, name, "its parameters are no JSON object");
   for (const auto& [key, value] : j.items())
-    tree.push_back(
-        {key, boost::property_tree::ptree(value.is_string() ? value.get<std::string>() : value.dump())});
+    tree.push_back({key, boost::property_tree::ptree(value.is_string() ? value.get<std::string>()
+                                                                       : core::json_text(value))});
   return tree;
 }
 
 bool has_settings(const campaign::ContestantEntry& c) {
-  return !c.settings.empty() && nlohmann::json::parse(c.settings, nullptr, false) != nlohmann::json::object();
+  return !c.settings.empty() && core::json_of(c.settings) != nlohmann::json::object();
 }
 
 Fared fared_of(const std::vector<double>& figures) {
@@ -82,7 +82,8 @@ std::string difference(const Conditions& a, const Conditions& b) {
     text += (text.empty() ? "" : "; ") + what + " " + here + " here, " + there + " there";
   };
   if (a.horizon_s != b.horizon_s)
-    differ("horizon", nlohmann::json(a.horizon_s).dump() + " s", nlohmann::json(b.horizon_s).dump() + " s");
+    differ("horizon", core::json_text(nlohmann::json(a.horizon_s)) + " s",
+           core::json_text(nlohmann::json(b.horizon_s)) + " s");
   if (a.profile != b.profile) differ("profile", a.profile, b.profile);
   std::size_t settings = 0;
   const std::map<std::string, std::string> here = by_key(b.mission);

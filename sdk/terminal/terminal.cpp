@@ -10,6 +10,7 @@
 
 #include "core_stack/common/character_count.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/printable.h"
 
 namespace karst {
@@ -68,6 +69,14 @@ std::string wrapped(std::string_view text, std::size_t columns, std::size_t inde
     out += '\n';
     text.remove_prefix(end + 1);
   }
+}
+
+void print_json(const nlohmann::json& j) {
+  put(stdout, core::json_text(j, 2, core::JsonCharacters::ascii) + "\n");
+}
+
+void print_json(const nlohmann::ordered_json& j) {
+  put(stdout, core::json_text(j, 2, core::JsonCharacters::ascii) + "\n");
 }
 
 void print_out(const char* format, ...) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdio>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -24,9 +25,7 @@ std::size_t terminal_columns(std::FILE* to);
 std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent);
 
 /// Prints JSON in pure ASCII: any terminal prints it unchanged, and any JSON parser reads the same texts.
-template <class Json>
-void print_json(const Json& j) {
-  std::fputs((j.dump(2, ' ', true, Json::error_handler_t::replace) + "\n").c_str(), stdout);
-}
+void print_json(const nlohmann::json& j);
+void print_json(const nlohmann::ordered_json& j);
 
 }  // namespace karst

@@ -13,7 +13,6 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
-#include "core_stack/common/install_location.h"
 #include "core_stack/common/json_point.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/boundary_loops.h"
@@ -23,7 +22,6 @@
 #include "plugins/simulator/cave/remedies.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "sdk/selection/cave_facts.h"
-#include "sdk/selection/describe.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/cave_cap.h"
@@ -266,19 +264,6 @@ void info(const InfoArguments& args) {
             passages.height_m[2]);
 }
 
-struct DescribeArguments {
-  std::string file, start;
-  bool json = false;
-};
-
-void describe(const DescribeArguments& args) {
-  const selection::CaveFigures figures = selection::describe_file(args.file, args.start).figures;
-  if (args.json)
-    print_json(ordered_json::parse(selection::to_json(figures)));
-  else
-    print_out("%s\n%s", args.file.c_str(), selection::to_text(figures).c_str());
-}
-
 std::string generate_footer() {
   cave::CaveRecipe recipe;
   core::OptionTable table;
@@ -302,7 +287,7 @@ std::string generate_footer() {
 
 }  // namespace
 
-void add_cave_command(CLI::App& app) {
+CLI::App& add_cave_command(CLI::App& app) {
   CLI::App* cave = app.add_subcommand("cave", "Make caves, and say what a cave is like");
   cave->require_subcommand(1);
 
@@ -350,19 +335,7 @@ void add_cave_command(CLI::App& app) {
       "  karst cave info scan.obj --unit mm --up y\n"
       "  karst cave info tunnel.stl --cap closed.ply");
   tell->callback([i] { info(*i); });
-
-  auto d = std::make_shared<DescribeArguments>();
-  CLI::App* like = cave->add_subcommand(
-      "describe",
-      "What a cave is like: the figures by which karst select compares caves\n\nThey are explained in " +
-          core::doc_path("docs/select.md") + ".");
-  like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
-      ->type_name(kFile)
-      ->required();
-  like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")
-      ->check(not_empty());
-  like->add_flag("--json", d->json, "Write JSON");
-  like->callback([d] { describe(*d); });
+  return *cave;
 }
 
 }  // namespace karst::tools

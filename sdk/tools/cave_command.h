@@ -1,4 +1,4 @@
-// `karst cave generate`, `karst cave info` and `karst cave describe`.
+// `karst cave generate` and `karst cave info`.
 #pragma once
 
 namespace CLI {
@@ -7,7 +7,8 @@ class App;
 
 namespace karst::tools {
 
-/// Adds them to the application. `parse` throws errors as exceptions with file, place and reason.
-void add_cave_command(CLI::App& app);
+/// Adds them to the application, and returns `cave` for others that tell of caves. `parse` throws errors as
+/// exceptions with file, place and reason.
+CLI::App& add_cave_command(CLI::App& app);
 
 }  // namespace karst::tools

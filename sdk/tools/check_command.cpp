@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/output_file.h"
 #include "sdk/check/run_check.h"
 #include "sdk/terminal/terminal.h"
@@ -55,7 +56,7 @@ int list_tests(bool json) {
 std::string figures_text(const ordered_json& figures) {
   std::string out;
   for (const auto& [key, value] : figures.items())
-    out += (out.empty() ? "" : ", ") + key + " " + value.dump();
+    out += (out.empty() ? "" : ", ") + key + " " + core::json_text(value);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
@@ -161,14 +162,14 @@ void print_choice(const flight::Mission& mission) {
   std::fflush(stdout);  // the status line is another stream
 }
 
-flight::Mission mission_of(const FlyArguments& args) {
+flight::Mission mission_of(const FlyArguments& args, const PolicyChooser& choose_policy) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
   if (args.in_process) overrides.values.emplace_back("policy.isolation", "in_process");
   for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
   const bool is_auto = mission.policy == flight::kAutoPolicy;
-  flight::choose_policy(mission);
+  choose_policy(mission);
   if (is_auto && !args.quiet && !args.json) print_choice(mission);
   flight::check(mission.faults, mission.core.team.robots, mission.file);
   core::check(mission.core.team, mission.core.homing, mission.file);
@@ -192,14 +193,14 @@ flight::FlightRequest request_of(const FlyArguments& args, const flight::Mission
   return request;
 }
 
-int fly(const FlyArguments& args) {
+int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
   if (args.keys) {
     std::fputs(flight::mission_help("simulator").c_str(), stdout);
     return 0;
   }
   if (args.mission_file.empty() && args.overrides.cave.empty())
     throw core::InputError("karst fly", "", "needs a MISSION file or --cave FILE; see karst fly --help");
-  const flight::Mission mission = mission_of(args);
+  const flight::Mission mission = mission_of(args, choose_policy);
   make_cave_cache(args.cave_cache);
   const flight::FlightRequest request = request_of(args, mission);
 
@@ -236,7 +237,7 @@ int fly(const FlyArguments& args) {
 
 }  // namespace
 
-void add_fly_command(CLI::App& app) {
+void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
   auto args = std::make_shared<FlyArguments>();
   CLI::App* fly_app = app.add_subcommand(
       "fly",
@@ -313,8 +314,8 @@ void add_fly_command(CLI::App& app) {
                     "the flight: " +
                         core::doc_path("docs/isolation.md"));
   fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
-  fly_app->callback([args] {
-    if (const int code = fly(*args); code != 0) throw CLI::RuntimeError(code);
+  fly_app->callback([args, choose = std::move(choose_policy)] {
+    if (const int code = fly(*args, choose); code != 0) throw CLI::RuntimeError(code);
   });
 }
 

@@ -1,10 +1,15 @@
 #include "sdk/tools/karst_command.h"
 
 #include <CLI/CLI.hpp>
-#include <sstream>
+#include <filesystem>
+#include <optional>
 #include <string>
 
+#include "sdk/campaign/report/campaign_page.h"
+#include "sdk/flight/auto_policy.h"
 #include "sdk/tools/cave_command.h"
+#include "sdk/tools/cave_describe_command.h"
+#include "sdk/tools/check_command.h"
 #include "sdk/tools/compare_command.h"
 #include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/explain_command.h"
@@ -16,6 +21,8 @@
 #include "sdk/tools/preflight_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
+#include "sdk/tools/request_replay_command.h"
+#include "sdk/tools/root_command.h"
 #include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
 #include "sdk/tools/tune_command.h"
@@ -23,46 +30,27 @@
 namespace karst::tools {
 namespace {
 
-/// Lists commands by the first line of their description: the rest is the help of each.
-class ListingFormatter : public CLI::Formatter {
- public:
-  std::string make_subcommand(const CLI::App* command) const override {
-    const std::string description = command->get_description();
-    std::ostringstream out;
-    CLI::detail::format_help(out, command->get_display_name(true),
-                             description.substr(0, description.find('\n')), column_width_);
-    return out.str();
-  }
-};
+/// The page of a campaign; nothing of a run directory.
+std::optional<std::filesystem::path> campaign_page(const std::filesystem::path& run,
+                                                   const std::string& metric, bool with_worst_trials) {
+  if (!campaign::is_campaign(run)) return std::nullopt;
+  return campaign::write_campaign_page(run, metric, with_worst_trials);
+}
 
 }  // namespace
 
 std::shared_ptr<CLI::App> karst_command() {
-  auto app = std::make_shared<CLI::App>(
-      "karst: fly exploration policies through caves.\n\n"
-      "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
-      "  karst preflight caves/demo.info --battery \"8 min\"             say go or no-go before a mission\n"
-      "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
-      "  karst compare CAMPAIGN.info                                    say which of several policies is "
-      "better\n"
-      "  karst policy list                                              see what can be flown\n"
-      "  karst policy new NAME                                          begin a policy of your own\n"
-      "  karst replay scans --out runs/replayed                         localize and map from recorded "
-      "scans\n"
-      "  karst evaluate runs/demo                                       errors of trajectory and map\n"
-      "  karst map merge runs/a runs/b --out maps/both                  maps of several flights in one",
-      "karst");
-  app->formatter(std::make_shared<ListingFormatter>());
-  app->set_version_flag("--version", KARST_VERSION);
-  app->require_subcommand(1);
+  const std::shared_ptr<CLI::App> app = root_command();
   add_preflight_command(*app);
-  add_fly_command(*app);
+  add_fly_command(*app, flight::choose_policy);
   add_compare_command(*app);
   add_trials_command(*app);
   add_results_command(*app);
-  add_policy_command(*app);
-  add_cave_command(*app);
-  add_report_command(*app);
+  CLI::App& policy = add_policy_command(*app);
+  add_check_command(policy);
+  add_request_replay_command(policy);
+  add_cave_describe(add_cave_command(*app));
+  add_report_command(*app, campaign_page);
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);
@@ -72,8 +60,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_select_command(*app);
   add_tune_command(*app);
   add_help_commands(*app);
-  // Set last: commands inherit what is there when they are added, and need none of their own.
-  app->set_help_all_flag("--help-all", "Print the help of every command and exit");
+  add_help_of_all(*app);
   return app;
 }
 

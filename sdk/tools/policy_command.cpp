@@ -8,9 +8,7 @@
 #include "sdk/host/plugin/discovery.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
-#include "sdk/tools/check_command.h"
 #include "sdk/tools/policy_new.h"
-#include "sdk/tools/request_replay_command.h"
 
 namespace karst::tools {
 namespace {
@@ -84,7 +82,7 @@ void print_text(const std::vector<PolicyListing>& all, const host::SearchPath& p
 
 }  // namespace
 
-void add_policy_command(CLI::App& app) {
+CLI::App& add_policy_command(CLI::App& app) {
   auto args = std::make_shared<PolicyArguments>();
   CLI::App* policy = app.add_subcommand("policy", "Exploration policies this installation can fly");
   policy->require_subcommand(1);
@@ -111,8 +109,7 @@ void add_policy_command(CLI::App& app) {
     });
     if (asked_for_broken) throw CLI::RuntimeError(1);
   });
-  add_check_command(*policy);
-  add_request_replay_command(*policy);
+  return *policy;
 }
 
 }  // namespace karst::tools

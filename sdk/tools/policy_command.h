@@ -7,7 +7,7 @@ class App;
 
 namespace karst::tools {
 
-/// Adds `policy` with its subcommands to the application.
-void add_policy_command(CLI::App& app);
+/// Adds `policy` with `new` and `list`, and returns it for others that work with policies.
+CLI::App& add_policy_command(CLI::App& app);
 
 }  // namespace karst::tools

@@ -4,12 +4,12 @@
 #include <boost/property_tree/ptree.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_file.h"
 #include "core_stack/common/options.h"
 #include "core_stack/vehicle/mesh_keys.h"
-#include "sdk/campaign/report/campaign_page.h"
 #include "sdk/evaluation/team/team_folders.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/team_metrics.h"
@@ -66,7 +66,7 @@ core::MeshKeys recorded_mesh_keys(const fs::path& file, const boost::property_tr
 
 }  // namespace
 
-void add_report_command(CLI::App& app) {
+void add_report_command(CLI::App& app, CampaignPage campaign_page) {
   struct Arguments {
     std::string run, metric;
     bool no_report = false, worst = false;
@@ -85,10 +85,10 @@ void add_report_command(CLI::App& app) {
                      "of a campaign: the figure that its verdict is about; default: as it declared");
   report->add_flag("--worst", args->worst,
                    "of a campaign: write the mission reports of its worst trials, too");
-  report->callback([args] {
+  report->callback([args, page_of = std::move(campaign_page)] {
     const fs::path run = args->run;
-    if (campaign::is_campaign(run)) {
-      print_out("%s\n", campaign::write_campaign_page(run, args->metric, args->worst).c_str());
+    if (const std::optional<fs::path> page = page_of(run, args->metric, args->worst)) {
+      print_out("%s\n", page->c_str());
       return;
     }
     if (!fs::exists(run / "mission.info"))

@@ -89,8 +89,8 @@ int replay(const ReplayArguments& args) {
       decisions.push_back({{"sequence", log.request().sequence},
                            {"t", core::seconds(log.request().stamp)},
                            {"same", now == log.answer()},
-                           {"recorded", ordered_json::parse(log.answer(), nullptr, false)},
-                           {"now", ordered_json::parse(now, nullptr, false)}});
+                           {"recorded", core::json_of<ordered_json>(log.answer())},
+                           {"now", core::json_of<ordered_json>(now)}});
     else
       print(log.request(), log.answer(), now);
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/leave_one_out.h"
@@ -96,7 +97,7 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
                  {"flown", s.flown},
                  {"reason", s.reason},
                  {"metric", args.options.metric},
-                 {"cave", ordered_json::parse(selection::to_json(cave))}};
+                 {"cave", core::json_of<ordered_json>(selection::to_json(cave))}};
   j["limit"] = s.limit;
   j["bandwidth"] = known(s.bandwidth);
   j["near"] = ordered_json::array();

@@ -1,16 +1,19 @@
 #!/bin/sh
 # A new author with nothing but what `cmake --install` puts down, in a root of its own where no source tree is to be seen: from
 # `karst policy new` to a flown mission. Prints each command and the seconds it took.
-# usage: clean_root_test.sh BINARY_DIR WORK_DIR [ROOT]
+# usage: clean_root_test.sh BINARY_DIR|- WORK_DIR [ROOT]
+#   -: nothing is put down; ROOT has karst, from Debian packages for example
 #   ROOT: a root file system with a compiler, CMake and karst's run-time libraries, such as debootstrap makes; it
 #   stays as it is. Without it, this machine's /usr and /etc serve, and nothing else of it.
 set -eu
 if [ "${1:-}" != --inside ]; then
-  binary=$(cd "$1" && pwd) work=$2 base=${3:-}
+  binary=$1 work=$2 base=${3:-}
   rm -rf "$work" && mkdir -p "$work/root" "$work/prefix"
-  for component in sdk karst; do
-    cmake --install "$binary" --component $component --prefix "$work/prefix" > "$work/install.log"
-  done
+  if [ "$binary" != - ]; then
+    for component in sdk karst; do
+      cmake --install "$binary" --component $component --prefix "$work/prefix" > "$work/install.log"
+    done
+  fi
   cp "$0" "$work/clean_root_test.sh"
   user=""
   [ "$(id -u)" = 0 ] || user=--map-root-user

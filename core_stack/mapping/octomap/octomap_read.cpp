@@ -15,7 +15,7 @@ namespace karst::core {
 namespace {
 
 constexpr std::int32_t kWorldEdge = 65536;  // cells; OctoMap's trees have 16 levels
-constexpr double kMaxCells = 3e8;           // 600 MB; a file with more is damaged
+constexpr double kMaxKnownCells = 3e8;      // 600 MB; a file with more is damaged
 
 struct Header {
   bool binary = false;  // a .bt file: classes only
@@ -96,7 +96,7 @@ class Reader {
 
   void leaf(const CellKey& low, std::int32_t edge, float log_odds) {
     cells_ += std::pow(static_cast<double>(edge), 3);
-    if (cells_ > kMaxCells) fail(place(), "says more than 300 million cells are known");
+    if (cells_ > kMaxKnownCells) fail(place(), "says more than 300 million cells are known");
     leaves_.push_back({low, edge, log_odds});
   }
 

@@ -5,7 +5,7 @@
 namespace karst::core {
 namespace {
 
-constexpr TimeNs kPeriod = 300 * kMillisecond, kBudget = 100 * kMillisecond;
+constexpr TimeNs kSteeringPeriod = 300 * kMillisecond, kBudget = 100 * kMillisecond;
 constexpr double kSame_m = 0.01;
 /// A plan that begins farther from where the vehicle is by then is not flown: it would cut a corner.
 constexpr double kOff_m = 0.05, kOff_mps = 0.25;
@@ -34,7 +34,8 @@ bool Steering::applies() const {
 void Steering::step() {
   const TimeNs now = onboard_.now();
   note_goal();
-  if (!applies() || planning_ || now - last_ < kPeriod || onboard_.flight.at_rest(now + kBudget)) return;
+  if (!applies() || planning_ || now - last_ < kSteeringPeriod || onboard_.flight.at_rest(now + kBudget))
+    return;
   planning_ = true;
   last_ = now;
   const std::optional<double> exploring_s =

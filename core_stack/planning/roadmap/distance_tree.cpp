@@ -11,7 +11,7 @@ namespace {
 constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
 /// Special values of the next cell that are not the cell of any node.
 constexpr CellKey kNothing{std::numeric_limits<std::int32_t>::max(), 0, 0};
-constexpr CellKey kRoot{std::numeric_limits<std::int32_t>::min(), 0, 0};
+constexpr CellKey kRootCell{std::numeric_limits<std::int32_t>::min(), 0, 0};
 
 struct PastNode {
   std::uint32_t tile;
@@ -103,7 +103,7 @@ void DistanceTree::Tree::check_joins(const RoadmapGraph& g, std::vector<PastNode
       stands |= joined[k] == old_joined[i] && joins[k].length_m == old_joins[i].length_m;
     if (stands) continue;
     g.for_each_node_in_block(old_joined[i], [&](const NodeRef& n, const RoadmapNode& node) {
-      if (node.place == old_joined[i] && next(n) == kRoot) forget(n, gone, lost);
+      if (node.place == old_joined[i] && next(n) == kRootCell) forget(n, gone, lost);
     });
   }
 }
@@ -131,7 +131,7 @@ void DistanceTree::Tree::relax(const RoadmapGraph& g, const std::vector<NodeRef>
     heap.push_back({length_m, n});
     std::push_heap(heap.begin(), heap.end());
   };
-  for (std::size_t i = 0; i < joins.size(); ++i) offer(joins[i].node, joins[i].length_m, kRoot);
+  for (std::size_t i = 0; i < joins.size(); ++i) offer(joins[i].node, joins[i].length_m, kRootCell);
   // Collect the neighbours' offers first. An offer based on another lost node would be correct, but push
   // entries that become stale.
   std::vector<std::pair<double, CellKey>> offers(lost.size(), {kUnreached_m, kNothing});
@@ -226,7 +226,7 @@ Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3&
   if (!out) return fail(PlanStatus::no_path, "no way through known free space leads home");
 
   std::vector<NodeRef> nodes{out->node};
-  for (CellKey next = tree_->next(out->node); next != kRoot; next = tree_->next(nodes.back())) {
+  for (CellKey next = tree_->next(out->node); next != kRootCell; next = tree_->next(nodes.back())) {
     const std::size_t before = nodes.size();
     g.for_each_node_in_block(next, [&](const NodeRef& n, const RoadmapNode& node) {
       if (node.place == next) nodes.push_back(n);

@@ -11,6 +11,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_reader.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/plan/hash.h"
 #include "sdk/campaign/plan/profile.h"
@@ -109,7 +110,7 @@ pt::ptree resolve(const Campaign& c, const ContestantSpec& who, const CaveSpec& 
   // Each trial is a process of its own already, and a policy that crashes in it has failed. With isolation
   // the fallback policy would fly on in its name.
   if (!says_where_policies_run(c, who)) set(kIsolation, "in_process");
-  set("mission.max_flight_time", json(c.flight_time_s).dump() + " s");
+  set("mission.max_flight_time", core::json_text(json(c.flight_time_s)) + " s");
   for (const auto& [key, value] : who.parameters) set("policy.parameters." + key, value);
   const ProcessOutput checked = run_process(argv, kCheckLimit_s);
   if (checked.end.hung || checked.end.signal || checked.end.exit_code)
@@ -134,7 +135,7 @@ std::string binary_version(const fs::path& karst, const std::string& vehicle, co
 std::string plugin_file(const std::string& policy, const std::string& plugin, const fs::path& karst) {
   std::vector<std::string> argv = {karst.string(), "policy", "list", "--json"};
   if (!plugin.empty()) argv.insert(argv.end(), {"--plugin", plugin});
-  const json all = json::parse(run_process(argv, kCheckLimit_s).out, nullptr, false);
+  const json all = core::json_of(run_process(argv, kCheckLimit_s).out);
   if (all.is_object() && all.contains("policies"))
     for (const json& p : all["policies"])
       if (p.value("id", "") == policy && !p.contains("shadowed_by")) return p.value("file", "");

@@ -130,8 +130,8 @@ double horizon_of(const std::vector<PlannedContestant>& contestants, const std::
   for (const PlannedContestant& c : contestants)
     if (const double other_s = horizon_of(c); other_s != horizon_s)
       throw InputError(source, "contestant " + c.name,
-                       "may explore for " + nlohmann::json(other_s).dump() + " s, " +
-                           contestants.front().name + " for " + nlohmann::json(horizon_s).dump() +
+                       "may explore for " + core::json_text(nlohmann::json(other_s)) + " s, " +
+                           contestants.front().name + " for " + core::json_text(nlohmann::json(horizon_s)) +
                            " s (mission.max_flight_time, simulator.battery_minutes, team.robots, "
                            "team.stagger): figures of such "
                            "flights do not compare; give both the same, or fly a campaign of each");

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_reader.h"
+#include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
 #include "sdk/campaign/plan/plan.h"
 
@@ -39,8 +40,8 @@ std::string definition_of(const Plan& plan) {
   pt::ptree tree;
   tree.put("name", plan.name);
   tree.put("profile", plan.profile);
-  tree.put("horizon_s", json(plan.horizon_s).dump());
-  tree.put("trial_timeout_s", json(plan.trial_timeout_s).dump());
+  tree.put("horizon_s", core::json_text(json(plan.horizon_s)));
+  tree.put("trial_timeout_s", core::json_text(json(plan.trial_timeout_s)));
   tree.put("seeds", seeds_text(plan.seeds));
   tree.put("metric", plan.metric);
   for (const PlannedCave& c : plan.caves) {

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/campaign/report/report.h"
 #include "sdk/campaign/report/report_parts.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
@@ -35,7 +36,7 @@ ordered_json definitions() {
 /// Parses JSON text from the store; text that is not JSON becomes a string.
 ordered_json parsed(const std::string& text) {
   if (text.empty()) return ordered_json::object();
-  ordered_json value = ordered_json::parse(text, nullptr, false);
+  ordered_json value = core::json_of<ordered_json>(text);
   return value.is_discarded() ? ordered_json(text) : value;
 }
 

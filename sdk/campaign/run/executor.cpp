@@ -163,7 +163,7 @@ void write_note(const fs::path& run_dir, const TrialNote& note) {
                                     {"signal", note.end.signal}, {"hung", note.end.hung},
                                     {"wall_s", note.end.wall_s}, {"machine", note.machine},
                                     {"identity", note.identity}};
-  evaluation::write_whole_file(run_dir / kNoteFile, json.dump(2) + "\n");
+  evaluation::write_whole_file(run_dir / kNoteFile, core::json_text(json, 2) + "\n");
 }
 
 TrialNote read_note(const fs::path& run_dir) {

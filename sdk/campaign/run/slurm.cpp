@@ -101,7 +101,7 @@ std::string submit(const std::vector<TrialJob>& jobs, std::size_t batch, const S
     const auto begin = jobs.begin() + static_cast<std::ptrdiff_t>(at);
     const auto end = jobs.begin() + static_cast<std::ptrdiff_t>(std::min(at + batch, jobs.size()));
     evaluation::write_whole_file(dir / (std::to_string(tasks) + ".json"),
-                                 batch_json({begin, end}, o).dump(1));
+                                 core::json_text(batch_json({begin, end}, o), 1));
   }
   evaluation::write_whole_file(dir / "task.sh",
                                "#!/bin/sh\nexec \"$1\" trials \"$2/$SLURM_ARRAY_TASK_ID.json\"\n");

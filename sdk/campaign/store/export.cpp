@@ -36,7 +36,7 @@ std::string number_cell(double v) { return std::isfinite(v) ? core::shortest_tex
 ordered_json value(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
 
 ordered_json parsed(const std::string& text) {
-  auto read = ordered_json::parse(text, nullptr, false);
+  auto read = core::json_of<ordered_json>(text);
   return read.is_discarded() ? ordered_json(nullptr) : read;
 }
 

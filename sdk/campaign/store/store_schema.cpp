@@ -5,6 +5,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
+#include "core_stack/common/json_text.h"
 #include "sdk/campaign/store/sqlite.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
@@ -134,8 +135,8 @@ void write_head(const fs::path& file, sqlite3* db, const StoreHead& head) {
   set_value(file, db, "schema", kSchema);
   set_value(file, db, "name", head.name);
   set_value(file, db, "definition", head.definition);
-  set_value(file, db, "horizon_s", nlohmann::json(head.horizon_s).dump());
-  set_value(file, db, "seeds", seeds.dump());
+  set_value(file, db, "horizon_s", core::json_text(nlohmann::json(head.horizon_s)));
+  set_value(file, db, "seeds", core::json_text(seeds));
   Statement contestant(file, db, "INSERT OR REPLACE INTO contestant VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   for (std::size_t i = 0; i < head.contestants.size(); ++i) {
     const ContestantEntry& c = head.contestants[i];
@@ -152,7 +153,7 @@ void write_head(const fs::path& file, sqlite3* db, const StoreHead& head) {
 
 StoreHead read_head(const fs::path& file, sqlite3* db) {
   const auto json_of = [&](const char* key) {
-    auto parsed = nlohmann::json::parse(value_of(file, db, key), nullptr, false);
+    auto parsed = core::json_of(value_of(file, db, key));
     if (parsed.is_discarded())
       throw InputError(file.string(), std::string("campaign.") + key, "cannot be read");
     return parsed;

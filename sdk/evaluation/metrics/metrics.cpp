@@ -151,7 +151,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["cave"] = text_or_null(std::filesystem::path(cave).stem().string());
   m["seed"] = nullptr;
   if (!seed.empty()) {
-    const json number = json::parse(seed, nullptr, false);
+    const json number = core::json_of(seed);
     if (number.is_number_integer()) m["seed"] = number;
   }
   m["outcome"] = core::name_of(outcome);

@@ -60,7 +60,7 @@ std::string answer(const std::string& file) {
     for (const karst_policy_t* p : plugin.policies) out.push_back(policy_json(*p->descriptor));
     const std::string abi =
         std::to_string(plugin.plugin->abi_major) + "." + std::to_string(plugin.plugin->abi_minor);
-    return json{{"abi", abi}, {"policies", out}}.dump();
+    return core::json_text(json{{"abi", abi}, {"policies", out}});
   } catch (const std::exception& e) {
     std::string reason = e.what();
     if (reason.rfind(file + ": ", 0) == 0) reason.erase(0, file.size() + 2);
@@ -150,7 +150,7 @@ std::vector<PolicyListing> probe(const std::string& file, double limit_s) {
   if (!in_time) return broken(file, "did not say what it is in time: opening it hangs");
   if (WIFSIGNALED(status))
     return broken(file, std::string("crashes when opened: ") + strsignal(WTERMSIG(status)));
-  const json said = json::parse(text, nullptr, false);
+  const json said = core::json_of(text);
   if (!said.is_object()) return broken(file, "ended the process when opened");
   try {  // the plugin may have written it
     if (said.contains("broken")) return broken(file, said.at("broken"));

@@ -75,6 +75,16 @@ core::PolicyEvent event_of(const ordered_json& j) {
   return e;
 }
 
+std::string_view text_in(std::span<const std::byte> payload) {
+  return {reinterpret_cast<const char*>(payload.data()), payload.size()};
+}
+
+ordered_json json_in(std::span<const std::byte> payload) {
+  ordered_json j = core::json_of<ordered_json>(text_in(payload));
+  if (j.is_discarded()) throw std::runtime_error("it is no JSON");
+  return j;
+}
+
 }  // namespace
 
 RecordFrame frame_of(std::uint32_t kind, std::span<const std::byte> payload) {
@@ -89,7 +99,7 @@ std::string answer_text(const core::Decision& d) {
 }
 
 std::string answer_line(const std::string& text) try {
-  const ordered_json j = ordered_json::parse(text);
+  const ordered_json j = core::json_of<ordered_json>(text);
   if (j.contains("failure")) return "failed: " + j.at("failure").get<std::string>();
   std::string out = j.at("outcome");
   if (const std::string reason = j.at("reason"); !reason.empty()) out += ": " + reason;
@@ -156,8 +166,7 @@ RequestLogReader::RequestLogReader(const std::filesystem::path& file, RequestRea
   const std::optional<Record> first = read();
   if (!first || first->kind != kHeader) fail("a record of requests begins with whom they were put to");
   try {
-    const char* text = reinterpret_cast<const char*>(first->payload.data());
-    header_ = header_of(ordered_json::parse(text, text + first->payload.size()));
+    header_ = header_of(json_in(first->payload));
   } catch (const std::exception& e) {
     fail(e.what());
   }
@@ -196,16 +205,15 @@ RequestLogReader::Kind RequestLogReader::next() {
   const std::optional<Record> record = read();
   if (!record) return Kind::end;
   try {
-    const char* text = reinterpret_cast<const char*>(record->payload.data());
     switch (record->kind) {
       case kRequest:
         requests_.read(record->payload);
         return Kind::request;
       case kAnswer:
-        answer_.assign(text, record->payload.size());
+        answer_ = text_in(record->payload);
         return Kind::answer;
       case kEvent:
-        event_ = event_of(ordered_json::parse(text, text + record->payload.size()));
+        event_ = event_of(json_in(record->payload));
         return Kind::event;
       default:
         fail("it is of a kind that this karst does not know");
