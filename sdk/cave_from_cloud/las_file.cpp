@@ -55,9 +55,9 @@ std::string header_bytes(const std::string& path, std::ifstream& in, std::uint64
                      "the file is truncated: the header of a LAS file has at least 227 bytes");
   const std::uint64_t major = whole_at(head, 24, 1), minor = whole_at(head, 25, 1);
   if (major != 1 || minor > 4)
-    throw InputError(path, byte(24),
-                     "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
-                         "; versions 1.0 to 1.4 are read");
+    throw InputError(
+        path, byte(24),
+        "is LAS " + std::to_string(major) + "." + std::to_string(minor) + "; versions 1.0 to 1.4 are read");
   if (minor == 4 && head.size() < kHeaderBytes14)
     throw InputError(path, byte(head.size()),
                      "the file is truncated: the header of a LAS 1.4 file has 375 bytes");
@@ -137,7 +137,8 @@ std::size_t read_las(const std::string& path, replay::PointSink& sink) {
   std::size_t withheld = 0;
   std::string records;
   for (std::uint64_t left = h.points; left > 0;) {
-    const std::uint64_t n = std::min<std::uint64_t>(left, std::max<std::size_t>(1, kPieceBytes / h.record_bytes));
+    const std::uint64_t n =
+        std::min<std::uint64_t>(left, std::max<std::size_t>(1, kPieceBytes / h.record_bytes));
     records.resize(static_cast<std::size_t>(n) * h.record_bytes);
     in.read(records.data(), static_cast<std::streamsize>(records.size()));
     if (static_cast<std::size_t>(in.gcount()) != records.size())

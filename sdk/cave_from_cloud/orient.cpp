@@ -20,7 +20,8 @@ constexpr double kOwnWall_cells = 3;  // along a ray, the wall that a point lies
 /// The places in the air from which points were measured.
 class Views {
  public:
-  Views(const std::vector<Vec3>& places, const OccupiedCells& cells) : cells_(cells), tree_(floats_of(places)) {}
+  Views(const std::vector<Vec3>& places, const OccupiedCells& cells)
+      : cells_(cells), tree_(floats_of(places)) {}
 
   /// 1 if the normal points to a view that sees the point, -1 if it points away, 0 if no view sees it or if
   /// it is seen at a grazing angle.

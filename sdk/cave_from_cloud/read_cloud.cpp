@@ -62,15 +62,17 @@ class CloudBuilder final : public replay::PointSink {
   CloudFile take(const std::string& path) {
     if (file_.points == 0) throw InputError(path, "", "holds no point");
     if (box_.isEmpty())
-      throw InputError(path, "", "holds no point with finite coordinates, of " + std::to_string(file_.points));
+      throw InputError(path, "",
+                       "holds no point with finite coordinates, of " + std::to_string(file_.points));
     if (const std::string problem = cave::reach_problem(box_, frame_); !problem.empty())
       throw InputError(path, "", problem);
     if (is_single_ && farthest_ * frame_.metres_per_unit > cave::kFarthestVertex_m)
-      throw InputError(path, "",
-                       core::format_text("holds its coordinates in single precision: at %.0f they are rounded "
-                                         "to %.2g, and no offset brings that back; export it near its "
-                                         "origin, in double precision, or as LAS",
-                                         farthest_, cave::float_spacing(farthest_)));
+      throw InputError(
+          path, "",
+          core::format_text("holds its coordinates in single precision: at %.0f they are rounded "
+                            "to %.2g, and no offset brings that back; export it near its "
+                            "origin, in double precision, or as LAS",
+                            farthest_, cave::float_spacing(farthest_)));
     drop_missing_normals();
     return std::move(file_);
   }

@@ -19,7 +19,8 @@ PointCloud thinned(const PointCloud& cloud, double voxel_m) {
   thin.origin = cloud.origin;
   thin.points.reserve(grid.voxels().size());
   for (const core::VoxelGrid::Voxel& v : grid.voxels())
-    thin.points.push_back((grid.centre_of(v.key) + (v.sums.sum / v.sums.points).cast<double>()).cast<float>());
+    thin.points.push_back(
+        (grid.centre_of(v.key) + (v.sums.sum / v.sums.points).cast<double>()).cast<float>());
   if (!cloud.has_normals()) return thin;
   thin.normals.assign(thin.points.size(), Vec3f::Zero());
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {

@@ -1,4 +1,4 @@
-// `karst cave generate`, `karst cave info` and `karst cave describe`.
+// `karst cave`: generate, from-cloud, info and describe.
 #pragma once
 
 namespace CLI {
