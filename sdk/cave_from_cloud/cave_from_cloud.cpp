@@ -6,6 +6,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
+#include "plugins/simulator/cave/cap_holes.h"
 #include "plugins/simulator/cave/import_child.h"
 #include "plugins/simulator/cave/mesh_advice.h"
 #include "plugins/simulator/cave/mesh_volume.h"
@@ -50,7 +51,7 @@ void complete_normals(PointCloud& cloud, const std::vector<Vec3>& views, CloudRe
   report.normals = cloud.has_normals() ? NormalsFrom::file : NormalsFrom::points;
   if (!cloud.has_normals()) cloud.normals = plane_normals(cloud.points, neighbours);
   if (report.normals == NormalsFrom::points || !views.empty())
-    report.orientation = orient(cloud.points, neighbours, views, report.resolution_m, cloud.normals);
+    report.orientation = orient(tree, neighbours, views, report.resolution_m, cloud.normals);
   report.agreement = agreement(cloud.normals, neighbours);
 }
 
@@ -97,19 +98,18 @@ void face_air(TriangleMesh& mesh) {
 }
 
 /// Closes what the reconstruction left open.
-cave::RayScene closed_cave(const std::string& path, TriangleMesh mesh, double cap_limit_m,
-                           CloudReport& report) {
-  if (cave::boundary_loops(mesh).empty()) return cave::RayScene(std::move(mesh));
-  cave::Capped capped = cave::cap_holes(cave::RayScene(std::move(mesh)), cap_limit_m);
-  report.holes = std::move(capped.loops);
-  const std::vector<cave::BoundaryLoop> left = cave::boundary_loops(capped.mesh);
-  if (!left.empty())
-    throw InputError(path, "",
-                     format_text("its surface stays open: a hole of %.1f m across around %.1f %.1f %.1f; "
-                                 "--cap-limit closes wider holes",
-                                 left.front().diameter_m, left.front().centre.x(), left.front().centre.y(),
-                                 left.front().centre.z()));
-  return cave::RayScene(std::move(capped.mesh));
+void close_holes(const std::string& path, TriangleMesh& mesh, double cap_limit_m, CloudReport& report) {
+  report.holes = cave::boundary_loops(mesh);
+  for (const cave::BoundaryLoop& hole : report.holes) {
+    if (hole.diameter_m > cap_limit_m)
+      throw InputError(path, "",
+                       format_text("its surface stays open: a hole %.1f m across around %.1f %.1f %.1f; "
+                                   "--cap-limit closes wider holes",
+                                   hole.diameter_m, hole.centre.x(), hole.centre.y(), hole.centre.z()));
+    const auto cap = cave::cap_of(hole, mesh);
+    mesh.triangles.insert(mesh.triangles.end(), cap.begin(), cap.end());
+  }
+  if (!cave::boundary_loops(mesh).empty()) throw InputError(path, "", "its surface cannot be closed");
 }
 
 std::size_t points_off(const cave::RayScene& scene, const core::PointTree& measured, double beyond_m) {
@@ -129,7 +129,7 @@ std::vector<core::Vec3f> moved(const std::vector<core::Vec3f>& points, const Vec
 
 void add_findings(const std::string& path, const cave::RayScene& scene, const cave::MeshFrame& frame,
                   const std::optional<cave::StartPose>& start, CloudReport& report) {
-  constexpr double kMostGuessed = 0.2, kMostOff = 0.05, kLeastAgreement = 0.9, kSure = 0.75;
+  constexpr double kMostGuessed = 0.2, kMostOff = 0.05, kLeastAgreement = 0.9, kSure = 0.9;
   for (const cave::MeshAdvice& a : cave::mesh_advice(cave::shape_of(scene), frame))
     report.findings.push_back(cave::to_text(a));
   const auto used = static_cast<double>(report.thinned - report.lonely);
@@ -139,7 +139,8 @@ void add_findings(const std::string& path, const cave::RayScene& scene, const ca
                     report.normals == NormalsFrom::file ? " (--estimate-normals)" : ""));
   if (const auto& o = report.orientation;
       o && o->rays > 0 && static_cast<double>(o->agreed) < kSure * static_cast<double>(o->rays))
-    report.findings.emplace_back("which side of the walls is air is not sure (--scanner, --path)");
+    report.findings.emplace_back(
+        "which side of the walls is air is not sure (--scanner, --path, or a finer --resolution)");
   if (report.guessed.area_m2 > kMostGuessed * report.guessed.whole_m2)
     report.findings.emplace_back("much of the surface is guessed: the points leave large gaps");
   if (static_cast<double>(report.off_surface) > kMostOff * used)
@@ -189,11 +190,12 @@ CaveFromCloud cave_from_cloud(const std::string& path, const cave::MeshFrame& fr
                      options.start ? std::optional(options.start->position) : std::nullopt);
   count_other_parts(mesh, parts, kept, report);
   TriangleMesh part = part_of(mesh, parts, kept);
-  face_air(part);
   const std::size_t reconstructed = part.triangles.size();
 
   step("closing", 0.85);
-  const cave::RayScene scene = closed_cave(path, std::move(part), options.cap_limit_m, report);
+  close_holes(path, part, options.cap_limit_m, report);
+  face_air(part);
+  const cave::RayScene scene(std::move(part));
   std::vector<bool> guessed = guessed_triangles(scene.mesh(), measured, report.guessed_beyond_m);
   std::fill(guessed.begin() + static_cast<std::ptrdiff_t>(reconstructed), guessed.end(), true);  // caps
   report.guessed = guessed_surface(scene.mesh(), guessed);

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "plugins/simulator/cave/cap_holes.h"
+#include "core_stack/common/enum_names.h"
+#include "plugins/simulator/cave/boundary_loops.h"
 #include "sdk/cave_from_cloud/guessed_surface.h"
 #include "sdk/cave_from_cloud/orient.h"
 
@@ -29,7 +30,7 @@ struct CloudReport {
   double agreement = 0;                    // see agreement()
   std::size_t other_parts = 0;             // of the surface, left out
   double other_parts_m2 = 0;
-  std::vector<cave::CapOfLoop> holes;  // that the reconstruction left open
+  std::vector<cave::BoundaryLoop> holes;  // that the reconstruction left open, closed since
   GuessedSurface guessed;
   double volume_m3 = 0;
   std::vector<std::string> findings;  // what may be wrong, and what mends it

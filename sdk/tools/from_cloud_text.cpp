@@ -75,8 +75,7 @@ std::vector<std::string> report_lines(const from_cloud::CaveFromCloud& made, std
   if (!r.holes.empty())
     lines.push_back("holes closed       " + counted(r.holes.size(), "hole") +
                     " that the reconstruction left open");
-  for (const cave::CapOfLoop& h : r.holes)
-    lines.push_back(place_text(h.loop.area_m2, h.loop.diameter_m, h.loop.centre));
+  for (const cave::BoundaryLoop& h : r.holes) lines.push_back(place_text(h.area_m2, h.diameter_m, h.centre));
   for (const std::string& f : r.findings) lines.push_back("check              " + f);
   lines.push_back("start              " + (made.start ? cave::start_text(*made.start)
                                                       : std::string("none found that suits: give --start")));
@@ -109,8 +108,8 @@ ordered_json report_json(const from_cloud::CaveFromCloud& made, std::uintmax_t m
   for (const GuessedPatch& p : r.guessed.patches)
     j["guessed"].push_back(place_json(p.area_m2, p.diameter_m, p.centre));
   j["holes_closed"] = ordered_json::array();
-  for (const cave::CapOfLoop& h : r.holes)
-    j["holes_closed"].push_back(place_json(h.loop.area_m2, h.loop.diameter_m, h.loop.centre));
+  for (const cave::BoundaryLoop& h : r.holes)
+    j["holes_closed"].push_back(place_json(h.area_m2, h.diameter_m, h.centre));
   j["findings"] = r.findings;
   j["start"] = made.start ? ordered_json(cave::start_text(*made.start)) : ordered_json();
   return j;
