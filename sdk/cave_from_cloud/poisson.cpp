@@ -15,18 +15,12 @@ namespace {
 
 using PclCloud = pcl::PointCloud<pcl::PointNormal>;
 
-/// PCL's solver stops where the squared residual is below 1e-6, which in a long thin cave it is from the
-/// beginning. The solution is linear in the normals: with longer ones it is the same, and the residual is not
-/// small. PCL keeps their length only if it is told to take it for the confidence, and then counts the points
-/// of a node by it.
-constexpr float kNormalLength = 65536;
-
 PclCloud::Ptr pcl_cloud(const PointCloud& cloud) {
   auto out = std::make_shared<PclCloud>();
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     pcl::PointNormal p;
     p.getVector3fMap() = cloud.points[i];
-    p.getNormalVector3fMap() = kNormalLength * cloud.normals[i];
+    p.getNormalVector3fMap() = cloud.normals[i];
     out->push_back(p);
   }
   return out;
@@ -54,8 +48,7 @@ cave::TriangleMesh poisson_surface(const PointCloud& cloud, double cell_m) {
   poisson.setDepth(depth);
   poisson.setMinDepth(kFullDepth);
   poisson.setScale(static_cast<float>(std::max(kMargin, (1 << depth) * cell_m / side_m)));
-  poisson.setConfidence(true);
-  poisson.setSamplesPerNode(kPointsPerNode * kNormalLength);
+  poisson.setSamplesPerNode(kPointsPerNode);
   poisson.setInputCloud(pcl_cloud(cloud));
   PclCloud vertices;
   std::vector<pcl::Vertices> polygons;
