@@ -24,8 +24,8 @@ enum class Role { none, x, y, z, intensity, time, ring, normal_x, normal_y, norm
 struct FieldNames {
   std::string intensity, time, ring;
 };
-/// Usual names: x y z; intensity, i, reflectivity; t, time, timestamp, ...; ring, channel, laser; nx, normal_x
-/// (any case, also with CloudCompare's "scalar_" before them).
+/// Usual names: x y z; intensity, i, reflectivity; t, time, timestamp, ...; ring, channel, laser; nx,
+/// normal_x (any case, also with CloudCompare's "scalar_" before them).
 Role role_of(const std::string& name, const FieldNames& names);
 
 /// The location of a field: in record i it starts at byte `offset + i * stride`.

@@ -7,8 +7,6 @@
 
 namespace karst::from_cloud {
 
-using core::Vec3;
-
 std::vector<bool> guessed_triangles(const cave::TriangleMesh& mesh, const core::PointTree& measured,
                                     double beyond_m) {
   std::vector<bool> far(mesh.vertices.size()), guessed(mesh.triangles.size());

@@ -15,7 +15,6 @@
 namespace karst::tools {
 namespace {
 
-using core::Vec3;
 using test::error_of;
 
 /// What the command writes to standard output.
