@@ -95,6 +95,9 @@ Role role_of(const std::string& name, const FieldNames& names) {
   if (is(names.time, {"t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "gpstime"}))
     return Role::time;
   if (is(names.ring, {"ring", "channel", "laser", "line", "laserid", "scanline"})) return Role::ring;
+  if (is_one_of(n, {"nx", "normal_x"})) return Role::normal_x;
+  if (is_one_of(n, {"ny", "normal_y"})) return Role::normal_y;
+  if (is_one_of(n, {"nz", "normal_z"})) return Role::normal_z;
   return Role::none;
 }
 
@@ -106,7 +109,7 @@ void check_roles(std::vector<Role>& roles, const std::string& file, const std::s
     if (!seen.contains(role)) throw core::InputError(file, place, std::string("has no field ") + name);
 }
 
-ScanBuilder::ScanBuilder(std::span<const Field> fields) {
+void ScanBuilder::begin(std::span<const Field> fields) {
   for (const Field& f : fields) {
     scan_.has_intensity = scan_.has_intensity || f.role == Role::intensity;
     scan_.has_time = scan_.has_time || f.role == Role::time;
@@ -138,6 +141,9 @@ void ScanBuilder::set(Role role, double value) {
       point_.ring = static_cast<std::uint16_t>(finite_ ? value : 0);
       break;
     case Role::none:
+    case Role::normal_x:
+    case Role::normal_y:
+    case Role::normal_z:
       break;
   }
 }
@@ -151,18 +157,24 @@ void ScanBuilder::end_point() {
   finite_ = true;
 }
 
-Scan decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields,
-            std::endian order) {
+void decode(std::span<const char> bytes, std::size_t count, const std::vector<Field>& fields,
+            std::endian order, PointSink& sink) {
   std::vector<Field> used;
   std::copy_if(fields.begin(), fields.end(), std::back_inserter(used),
                [](const Field& f) { return f.role != Role::none; });
-  ScanBuilder builder(used);
+  sink.begin(used);
   for (std::size_t i = 0; i < count; ++i) {
     for (const Field& f : used)
-      builder.set(f.role, value_at(bytes.data() + f.offset + i * f.stride, f.type, order));
-    builder.end_point();
+      sink.set(f.role, value_at(bytes.data() + f.offset + i * f.stride, f.type, order));
+    sink.end_point();
   }
-  return builder.take();
+}
+
+std::vector<Field> text_fields(std::span<const Role> roles, std::span<const ValueType> types) {
+  std::vector<Field> fields;
+  for (std::size_t i = 0; i < roles.size(); ++i)
+    fields.push_back({roles[i], types[i] == ValueType::float32 ? ValueType::float64 : types[i], 0, 0});
+  return fields;
 }
 
 }  // namespace karst::replay

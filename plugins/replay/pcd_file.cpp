@@ -114,7 +114,7 @@ std::size_t record_size(const PcdHeader& h) {
   return size;
 }
 
-Scan read_binary(const std::string& path, const PcdHeader& h, std::string_view data) {
+void read_binary(const std::string& path, const PcdHeader& h, std::string_view data, PointSink& sink) {
   const std::size_t record = record_size(h);
   check_size(path, h, record, data.size());
   std::vector<Field> fields;
@@ -123,11 +123,11 @@ Scan read_binary(const std::string& path, const PcdHeader& h, std::string_view d
     fields.push_back({h.roles[i], h.types[i], offset, record});
     offset += size_of(h.types[i]) * h.counts[i];
   }
-  return decode(data, h.points, fields, std::endian::little);
+  decode(data, h.points, fields, std::endian::little, sink);
 }
 
 /// Two sizes, then LZF-compressed data: all values of the first field, all of the second, and so on.
-Scan read_compressed(const std::string& path, const PcdHeader& h, std::string_view data) {
+void read_compressed(const std::string& path, const PcdHeader& h, std::string_view data, PointSink& sink) {
   const std::string place = "byte " + std::to_string(h.data_at);
   std::uint32_t packed = 0, unpacked = 0;
   if (data.size() < 8)
@@ -154,13 +154,11 @@ Scan read_compressed(const std::string& path, const PcdHeader& h, std::string_vi
     fields.push_back({h.roles[i], h.types[i], offset, stride});
     offset += stride * h.points;
   }
-  return decode(*bytes, h.points, fields, std::endian::little);
+  decode(*bytes, h.points, fields, std::endian::little, sink);
 }
 
-Scan read_ascii(const std::string& path, const PcdHeader& h, std::string_view data) {
-  std::vector<Field> fields;
-  for (std::size_t i = 0; i < h.types.size(); ++i) fields.push_back({h.roles[i], h.types[i], 0, 0});
-  ScanBuilder builder(fields);
+void read_ascii(const std::string& path, const PcdHeader& h, std::string_view data, PointSink& sink) {
+  sink.begin(text_fields(h.roles, h.types));
   TextReader reader(data, h.line + 1);
   std::size_t count = 0;
   for (std::string_view text; count < h.points && reader.line(text);) {
@@ -171,27 +169,26 @@ Scan read_ascii(const std::string& path, const PcdHeader& h, std::string_view da
         if (!to_number(next_word(text), value))
           throw InputError(path, "line " + std::to_string(reader.number()),
                            "is not the numbers that its header's fields ask for");
-        if (k == 0) builder.set(h.roles[i], value);
+        if (k == 0) sink.set(h.roles[i], value);
       }
-    builder.end_point();
+    sink.end_point();
     ++count;
   }
   if (count < h.points)
     throw InputError(path, "line " + std::to_string(reader.number()),
                      "the file is truncated: its header declares " + std::to_string(h.points) +
                          " points, it has " + std::to_string(count));
-  return builder.take();
 }
 
 }  // namespace
 
-Scan read_pcd(const std::string& path, const FieldNames& names) {
+void read_pcd(const std::string& path, const FieldNames& names, PointSink& sink) {
   const std::string bytes = file_bytes(path);
   const PcdHeader header = read_header(path, bytes, names);
   const std::string_view data = std::string_view(bytes).substr(header.data_at);
-  if (header.data == "binary") return read_binary(path, header, data);
-  if (header.data == "binary_compressed") return read_compressed(path, header, data);
-  if (header.data == "ascii") return read_ascii(path, header, data);
+  if (header.data == "binary") return read_binary(path, header, data, sink);
+  if (header.data == "binary_compressed") return read_compressed(path, header, data, sink);
+  if (header.data == "ascii") return read_ascii(path, header, data, sink);
   throw InputError(path, "line " + std::to_string(header.line),
                    "DATA must be ascii, binary or binary_compressed, got \"" + header.data + "\"");
 }

@@ -70,9 +70,9 @@ PlyHeader read_header(const std::string& path, std::string_view bytes) {
   throw InputError(path, "line " + std::to_string(reader.number()), "the header does not end");
 }
 
-Scan read_ascii(const std::string& path, const PlyHeader& h, std::size_t skipped_lines, const Element& e,
-                const std::vector<Field>& fields, std::string_view data) {
-  ScanBuilder builder(fields);
+void read_ascii(const std::string& path, const PlyHeader& h, std::size_t skipped_lines, const Element& e,
+                std::span<const Role> roles, std::string_view data, PointSink& sink) {
+  sink.begin(text_fields(roles, e.types));
   TextReader reader(data, h.line + 1);
   std::string_view text;
   for (std::size_t i = 0; i < skipped_lines; ++i) reader.line(text);
@@ -81,21 +81,20 @@ Scan read_ascii(const std::string& path, const PlyHeader& h, std::size_t skipped
       throw InputError(path, "line " + std::to_string(reader.number()),
                        "the file is truncated: its header declares " + std::to_string(e.count) +
                            " vertices, it has " + std::to_string(i));
-    for (const Field& f : fields) {
+    for (const Role role : roles) {
       double value = 0;
       if (!to_number(next_word(text), value))
         throw InputError(path, "line " + std::to_string(reader.number()),
                          "is not the numbers that its header's properties ask for");
-      builder.set(f.role, value);
+      sink.set(role, value);
     }
-    builder.end_point();
+    sink.end_point();
   }
-  return builder.take();
 }
 
 }  // namespace
 
-Scan read_ply(const std::string& path, const FieldNames& names) {
+void read_ply(const std::string& path, const FieldNames& names, PointSink& sink) {
   const std::string bytes = file_bytes(path);
   const PlyHeader header = read_header(path, bytes);
   std::size_t skipped_bytes = 0, skipped_lines = 0;
@@ -123,7 +122,7 @@ Scan read_ply(const std::string& path, const FieldNames& names) {
     offset += size_of(vertex->types[i]);
   }
   const std::string_view data = std::string_view(bytes).substr(header.data_at);
-  if (header.format == "ascii") return read_ascii(path, header, skipped_lines, *vertex, fields, data);
+  if (header.format == "ascii") return read_ascii(path, header, skipped_lines, *vertex, roles, data, sink);
   const bool little = header.format == "binary_little_endian";
   if (!little && header.format != "binary_big_endian")
     throw InputError(path, "header", "unknown format \"" + header.format + "\"");
@@ -133,8 +132,8 @@ Scan read_ply(const std::string& path, const FieldNames& names) {
                      "the file is truncated: its header declares " + std::to_string(vertex->count) +
                          " vertices of " + std::to_string(vertex->record()) + " bytes, of which " +
                          std::to_string(have / vertex->record()) + " are there");
-  return decode(data.substr(std::min(skipped_bytes, data.size())), vertex->count, fields,
-                little ? std::endian::little : std::endian::big);
+  decode(data.substr(std::min(skipped_bytes, data.size())), vertex->count, fields,
+         little ? std::endian::little : std::endian::big, sink);
 }
 
 std::size_t ply_faces(const std::string& path) {

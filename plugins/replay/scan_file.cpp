@@ -18,13 +18,19 @@ bool is_scan_file(const std::string& path) {
 
 Scan read_scan(const std::string& path, const FieldNames& names, const BinLayout& layout) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".pcd") return read_pcd(path, names);
-  if (ending == ".ply") return read_ply(path, names);
-  if (ending == ".bin") return read_bin(path, names, layout);
-  throw InputError(path, "", "a point cloud must be a .pcd, .ply or .bin file");
+  ScanBuilder builder;
+  if (ending == ".pcd")
+    read_pcd(path, names, builder);
+  else if (ending == ".ply")
+    read_ply(path, names, builder);
+  else if (ending == ".bin")
+    read_bin(path, names, layout, builder);
+  else
+    throw InputError(path, "", "a point cloud must be a .pcd, .ply or .bin file");
+  return builder.take();
 }
 
-Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout) {
+void read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout, PointSink& sink) {
   const std::string bytes = file_bytes(path);
   std::vector<Role> roles;
   for (const std::string& n : layout.names) roles.push_back(role_of(n, names));
@@ -40,7 +46,7 @@ Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout&
     throw InputError(path, "byte " + std::to_string(bytes.size() - bytes.size() % record),
                      "ends within a record: its " + std::to_string(bytes.size()) +
                          " bytes are no multiple of the " + std::to_string(record) + " of a point");
-  return decode(bytes, bytes.size() / record, fields, std::endian::little);
+  decode(bytes, bytes.size() / record, fields, std::endian::little, sink);
 }
 
 }  // namespace karst::replay

@@ -20,10 +20,11 @@ bool is_scan_file(const std::string& path);
 
 Scan read_scan(const std::string& path, const FieldNames& names = {}, const BinLayout& layout = {});
 
-Scan read_pcd(const std::string& path, const FieldNames& names);
+/// These give the points to `sink`, those that are not finite too.
+void read_pcd(const std::string& path, const FieldNames& names, PointSink& sink);
 /// Reads the element "vertex"; ignores later elements such as faces.
-Scan read_ply(const std::string& path, const FieldNames& names);
-Scan read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout);
+void read_ply(const std::string& path, const FieldNames& names, PointSink& sink);
+void read_bin(const std::string& path, const FieldNames& names, const BinLayout& layout, PointSink& sink);
 
 /// Number of faces that a .ply file's header declares; 0 for a point cloud.
 std::size_t ply_faces(const std::string& path);

@@ -1,9 +1,9 @@
 #include "sdk/map_merge/map_piece.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <stdexcept>
 
+#include "core_stack/mapping/obstacles/plane_normal.h"
 #include "core_stack/mapping/occupancy/packed_cell.h"
 
 namespace karst::map_merge {
@@ -17,21 +17,6 @@ using core::Vec3f;
 using core::VoxelMap;
 
 constexpr double kNormalRadiusCells = 4;
-
-Vec3f normal_at(const PointTree& tree, const Vec3f& p, double radius_m) {
-  Vec3 sum = Vec3::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  double n = 0;
-  for (const std::uint32_t i : tree.within(p.cast<double>(), radius_m)) {
-    const Vec3 d = (tree.points()[i] - p).cast<double>();
-    sum += d;
-    squares += d * d.transpose();
-    n += 1;
-  }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(squares / n - (sum / n) * (sum / n).transpose());
-  return solver.eigenvectors().col(0).cast<float>();
-}
 
 /// Whether more of the cells two and three steps away are free in this direction than in the opposite one.
 bool points_to_free(const VoxelMap& map, const Vec3f& p, const Vec3f& normal) {
@@ -48,7 +33,9 @@ void complete(MapPiece& piece) {
   piece.tree = std::make_shared<PointTree>(piece.surface);
   piece.normals.reserve(piece.surface.size());
   for (const Vec3f& p : piece.surface) {
-    Vec3f n = normal_at(*piece.tree, p, kNormalRadiusCells * piece.resolution_m);
+    Vec3f n =
+        core::plane_normal(piece.tree->points(),
+                           piece.tree->within(p.cast<double>(), kNormalRadiusCells * piece.resolution_m), p);
     if (piece.cells && !points_to_free(*piece.cells, p, n)) n = -n;
     piece.normals.push_back(n);
   }

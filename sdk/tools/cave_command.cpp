@@ -1,10 +1,7 @@
 #include "sdk/tools/cave_command.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -25,7 +22,9 @@
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/cave_cap.h"
+#include "sdk/tools/cave_files.h"
 #include "sdk/tools/mesh_options.h"
+#include "sdk/tools/step_progress.h"
 
 namespace karst::tools {
 namespace {
@@ -47,26 +46,6 @@ struct InfoArguments {
   CapArguments cap;
   bool json = false;
   evaluation::ReachableOptions options;
-};
-
-/// One line that is rewritten on a terminal, otherwise one line for each new step.
-class Progress {
- public:
-  void operator()(const char* step, double fraction) {
-    const bool fresh = last_ != step;
-    last_ = step;
-    if (terminal_)
-      std::fprintf(stderr, "\r%-24s %3.0f %%", step, 100 * fraction);
-    else if (fresh)
-      print_error("%s\n", step);
-  }
-  void end() const {
-    if (terminal_) std::fprintf(stderr, "\r%30s\r", "");
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) == 1;
-  std::string last_;
 };
 
 cave::CaveRecipe recipe_of(const GenerateArguments& args) {
@@ -101,26 +80,15 @@ void write_info(const std::string& path, const std::string& mesh, const cave::Ge
 }
 
 void generate(const GenerateArguments& args) {
-  namespace fs = std::filesystem;
   const cave::CaveRecipe recipe = recipe_of(args);
-  const fs::path stem(args.out);
-  if (stem.filename().empty())
-    throw InputError("--out", args.out, "expected a file name without ending, such as caves/demo");
-  if (std::error_code failed;
-      stem.has_parent_path() && (fs::create_directories(stem.parent_path(), failed), failed))
-    throw InputError(stem.parent_path().string(), "", "cannot be made: " + failed.message());
-  const std::string mesh_path = args.out + "." + args.format, info_path = args.out + ".info";
-  for (const std::string& path : {mesh_path, info_path})
-    if (fs::exists(path) && !args.force)
-      throw InputError(path, "", "is there already; choose another --out, or give --force to overwrite it");
-
-  Progress progress;
+  const CaveFiles files = new_cave_files(args.out, args.format, args.force);
+  StepProgress progress;
   const cave::GeneratedCave cave = cave::generate_cave(
       recipe, args.seed, [&](const char* step, double fraction) { progress(step, fraction); });
-  cave::write_mesh(mesh_path, cave.mesh);
-  write_info(info_path, stem.filename().string() + "." + args.format, cave, recipe, args);
+  cave::write_mesh(files.mesh, cave.mesh);
+  write_info(files.info, files.mesh_name, cave, recipe, args);
   progress("measuring", 0.9);
-  const evaluation::Reachable r = evaluation::find_reachable(cave.mesh, cave.start.position, {}, mesh_path);
+  const evaluation::Reachable r = evaluation::find_reachable(cave.mesh, cave.start.position, {}, files.mesh);
   progress.end();
 
   double length_m = 0;
@@ -128,14 +96,14 @@ void generate(const GenerateArguments& args) {
     for (std::size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
   const selection::MeshFacts facts = selection::mesh_facts(cave.mesh);
   const Vec3 extent = facts.high - facts.low;
-  print_out("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", info_path.c_str(),
+  print_out("%s: %.0f m3, %.0f x %.0f x %.0f m, %zu passages of %.0f m together\n", files.info.c_str(),
             cave.volume_m3, extent.x(), extent.y(), extent.z(), cave.axes.size(), length_m);
   print_out("  %zu triangles; %zu fallen blocks, %zu speleothems\n", facts.triangles, cave.boulders,
             cave.speleothems);
   print_out("  on the map's grid: %.0f m3 to explore, %.0f m3 of it at least %.1f m from rock\n",
             r.volume_m3(), r.flyable_volume_m3(), r.options.clearance_m);
   print_out("next:\n  karst fly --cave %s --policy nearest_frontier\n  karst cave info %s\n",
-            info_path.c_str(), info_path.c_str());
+            files.info.c_str(), files.info.c_str());
 }
 
 /// Facts that need no start.

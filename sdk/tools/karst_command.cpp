@@ -15,6 +15,7 @@
 #include "sdk/tools/explain_command.h"
 #include "sdk/tools/explain_time_command.h"
 #include "sdk/tools/fly_command.h"
+#include "sdk/tools/from_cloud_command.h"
 #include "sdk/tools/help_commands.h"
 #include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
@@ -49,7 +50,9 @@ std::shared_ptr<CLI::App> karst_command() {
   CLI::App& policy = add_policy_command(*app);
   add_check_command(policy);
   add_request_replay_command(policy);
-  add_cave_describe(add_cave_command(*app));
+  CLI::App& cave = add_cave_command(*app);
+  add_cave_describe(cave);
+  add_from_cloud_command(cave);
   add_report_command(*app, campaign_page);
   add_table_command(*app);
   add_explain_command(*app);

@@ -29,6 +29,15 @@ std::optional<PointTree::Nearest> PointTree::nearest(const Vec3& p) const {
   return found;
 }
 
+std::vector<std::uint32_t> PointTree::nearest_few(const Vec3& p, std::size_t count) const {
+  const Vec3f query = p.cast<float>();
+  if (count == 0 || points().empty() || !query.allFinite()) return {};
+  std::vector<std::uint32_t> found(count);
+  std::vector<float> squared(count);
+  found.resize(storage_->index.knnSearch(query.data(), count, found.data(), squared.data()));
+  return found;
+}
+
 std::vector<std::uint32_t> PointTree::within(const Vec3& p, double radius_m) const {
   const Vec3f query = p.cast<float>();
   std::vector<std::uint32_t> found;

@@ -17,6 +17,7 @@
 #include <fstream>
 #include <new>
 #include <optional>
+#include <string>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/sanitized.h"
@@ -28,8 +29,7 @@ using core::InputError;
 
 constexpr std::uint64_t kMinMemory = std::uint64_t{2} << 30, kMemoryPerByte = 100;
 constexpr std::uint64_t kMaxReason = 4000;
-constexpr int kLongestSilence_ms = 900'000;  // of the child, wall clock; beyond it the child hangs
-constexpr int kOutOfMemory = 3;              // the child's exit code
+constexpr int kOutOfMemory = 3;  // the child's exit code
 
 enum class Answer : std::uint64_t { mesh = 1, refused = 2 };
 struct AnswerHead {
@@ -71,14 +71,19 @@ bool write_all(int to, const void* data, std::size_t size) {
   return true;
 }
 
-bool read_all(int from, void* data, std::size_t size) {
+/// The end of the pipe from the child.
+struct FromChild {
+  int pipe, silence_ms;
+};
+
+bool read_all(const FromChild& from, void* data, std::size_t size) {
   char* at = static_cast<char*>(data);
   while (size > 0) {
-    pollfd ready{from, POLLIN, 0};
-    const int polled = poll(&ready, 1, kLongestSilence_ms);
+    pollfd ready{from.pipe, POLLIN, 0};
+    const int polled = poll(&ready, 1, from.silence_ms);
     if (polled < 0 && errno == EINTR) continue;
     if (polled <= 0) return false;
-    const ssize_t n = read(from, at, size);
+    const ssize_t n = read(from.pipe, at, size);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     at += n;
@@ -94,7 +99,7 @@ bool write_array(int to, const std::vector<T>& items) {
 
 /// Reads in pieces, so that a child that announces too many items costs no more memory than it sends.
 template <class T>
-bool read_array(int from, std::uint64_t count, std::vector<T>& items) {
+bool read_array(const FromChild& from, std::uint64_t count, std::vector<T>& items) {
   constexpr std::uint64_t kPiece = 1 << 16;
   while (items.size() < count) {
     const std::size_t before = items.size();
@@ -131,7 +136,7 @@ struct Told {
   std::string refusal;  // a whole message, with the file's name
 };
 
-std::optional<Told> read_answer(int from) {
+std::optional<Told> read_answer(const FromChild& from) {
   AnswerHead head{};
   Told told;
   if (!read_all(from, &head, sizeof head)) return std::nullopt;
@@ -156,21 +161,20 @@ bool is_sound(const TriangleMesh& mesh) {
          std::all_of(mesh.triangles.begin(), mesh.triangles.end(), named);
 }
 
-std::string end_of(pid_t child) {
+std::string end_of(pid_t child, const char* worker) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     return "it takes more processor time than any cave should";
-  if (WIFSIGNALED(status))
-    return std::string("the importer broke on it (") + strsignal(WTERMSIG(status)) + ")";
+  if (WIFSIGNALED(status)) return worker + std::string(" broke on it (") + strsignal(WTERMSIG(status)) + ")";
   if (WEXITSTATUS(status) == kOutOfMemory) return "it takes more memory than any cave should";
-  return WEXITSTATUS(status) == 0 ? "" : "the importer gave no answer";
+  return WEXITSTATUS(status) == 0 ? "" : worker + std::string(" gave no answer");
 }
 
 }  // namespace
 
 TriangleMesh import_in_child(const std::string& path, const std::function<TriangleMesh()>& import,
-                             ImportLimits limits) {
+                             ImportLimits limits, const ImportWords& words) {
   if (limits.memory_bytes == 0)
     limits.memory_bytes = std::max(kMinMemory, kMemoryPerByte * std::filesystem::file_size(path));
   std::array<int, 2> ends{};
@@ -179,22 +183,22 @@ TriangleMesh import_in_child(const std::string& path, const std::function<Triang
   if (child == 0) serve(ends[1], import, limits, parent);
   close(ends[1]);
   std::optional<Told> told;
-  if (child > 0) told = read_answer(ends[0]);
+  if (child > 0) told = read_answer({ends[0], 1000 * limits.silence_s});
   if (child > 0 && !told) kill(child, SIGKILL);  // if it has not ended by now, it never would
   close(ends[0]);
   if (child < 0) throw InputError(path, "", "no process can be started to read it");
-  const std::string end = end_of(child);
+  const std::string end = end_of(child, words.worker);
   const auto refuse = [&](const std::string& why) {
-    throw InputError(path, "", "is no mesh that can be read: " + why);
+    throw InputError(path, "", words.failed + (": " + why));
   };
   if (!end.empty()) refuse(end);
-  if (!told) refuse("the importer gave no answer");
+  if (!told) refuse(words.worker + std::string(" gave no answer"));
   if (!told->refusal.empty()) {
     const std::string own = path + ": ";  // the child named the file already
     throw InputError(path, "",
                      told->refusal.starts_with(own) ? told->refusal.substr(own.size()) : told->refusal);
   }
-  if (!is_sound(told->mesh)) refuse("the importer's answer makes no sense");
+  if (!is_sound(told->mesh)) refuse(words.worker + std::string("'s answer makes no sense"));
   return std::move(told->mesh);
 }
 

@@ -142,4 +142,16 @@ std::vector<MeshAdvice> mesh_advice(const MeshShape& shape, const MeshFrame& fra
 
 std::string to_text(const MeshAdvice& advice) { return advice.finding + " (" + advice.remedy + ")"; }
 
+std::string reach_problem(const Eigen::AlignedBox3d& box, const MeshFrame& frame) {
+  if (box.isEmpty()) return "";
+  const Vec3 &low = box.min(), &high = box.max();
+  if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() <= kFarthestVertex_m) return "";
+  std::string why = kReachRule + format_text("; these reach from %.0f %.0f %.0f to %.0f %.0f %.0f m", low.x(),
+                                             low.y(), low.z(), high.x(), high.y(), high.z());
+  MeshShape shape;
+  shape.box = box;
+  for (const MeshAdvice& a : mesh_advice(shape, frame)) why += "; " + to_text(a);
+  return why;
+}
+
 }  // namespace karst::cave

@@ -42,4 +42,9 @@ std::vector<MeshAdvice> mesh_advice(const MeshShape& shape, const MeshFrame& fra
 
 std::string to_text(const MeshAdvice& advice);
 
+constexpr const char* kReachRule = "coordinates must be finite and within 100 km of the origin";
+/// Why a mesh or a cloud of this box is refused: it breaks the rule. Says how far it reaches, and the
+/// findings. "" if it keeps the rule.
+std::string reach_problem(const Eigen::AlignedBox3d& box, const MeshFrame& frame);
+
 }  // namespace karst::cave

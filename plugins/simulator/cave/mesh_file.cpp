@@ -86,25 +86,20 @@ struct MeshPart {
 
 /// Refuses coordinates that floats do not resolve, and says what helps: other units, or an offset.
 void check_reach(const std::string& path, const std::vector<MeshPart>& parts, const MeshFrame& frame) {
-  constexpr const char* kRule = "coordinates must be finite and within 100 km of the origin";
   Eigen::AlignedBox3d box;
   for (const MeshPart& part : parts)
     for (unsigned i = 0; i < part.mesh.mNumVertices; ++i) {
       const Vec3 v = part.vertex(i);
-      if (!v.allFinite()) throw InputError(path, "vertex " + std::to_string(i), kRule);
+      if (!v.allFinite()) throw InputError(path, "vertex " + std::to_string(i), kReachRule);
       box.extend(v);
     }
-  if (box.isEmpty() || box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() <= kFarthestVertex_m)
-    return;
-  const Vec3 &low = box.min(), &high = box.max();
-  std::string why = kRule + core::format_text("; these reach from %.0f %.0f %.0f to %.0f %.0f %.0f m",
-                                              low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
-  for (const MeshAdvice& a : mesh_advice({box}, frame)) why += "; " + to_text(a);
+  std::string why = reach_problem(box, frame);
+  if (why.empty()) return;
   if (box.sizes().maxCoeff() <= kFarthestVertex_m && !holds_double_precision(path))
     why += core::format_text(
         "; but the file holds single precision, which there is rounded to %.2g: export it near its "
         "origin, or as OBJ",
-        float_spacing((to_file(frame, low) - frame.offset).cwiseAbs().maxCoeff()));
+        float_spacing((to_file(frame, box.min()) - frame.offset).cwiseAbs().maxCoeff()));
   throw InputError(path, "", why);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "plugins/simulator/cave/mesh_volume.h"
 #include "plugins/simulator/cave_generator/plan.h"
 #include "plugins/simulator/cave_generator/surface_net.h"
 

@@ -74,14 +74,4 @@ TriangleMesh surface_net(const Samples& s) {
   return mesh;
 }
 
-double enclosed_volume_m3(const TriangleMesh& mesh) {
-  double six_volumes = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]].cast<double>(), b = mesh.vertices[t[1]].cast<double>(),
-               c = mesh.vertices[t[2]].cast<double>();
-    six_volumes -= a.dot(b.cross(c));
-  }
-  return six_volumes / 6;
-}
-
 }  // namespace karst::cave

@@ -11,7 +11,4 @@ namespace karst::cave {
 /// belongs to two triangles that run along it in opposite directions.
 TriangleMesh surface_net(const Samples& s);
 
-/// Volume enclosed by a closed mesh whose normals point inwards (divergence theorem).
-double enclosed_volume_m3(const TriangleMesh& mesh);
-
 }  // namespace karst::cave

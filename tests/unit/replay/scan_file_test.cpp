@@ -209,6 +209,48 @@ TEST(ScanFile, KittiRecordsAndLayoutsOfOnesOwn) {
   expect_rows(read_scan(dir.write("own.bin", records(kRows)), {}, layout), kRows);
 }
 
+/// What a file gives, value by value.
+class Values final : public PointSink {
+ public:
+  std::vector<Role> roles;
+  std::vector<ValueType> types;
+  std::vector<double> all;
+  std::size_t points = 0;
+  void begin(std::span<const Field> fields) override {
+    for (const Field& f : fields) {
+      roles.push_back(f.role);
+      types.push_back(f.type);
+    }
+  }
+  void set(Role, double value) override { all.push_back(value); }
+  void end_point() override { ++points; }
+};
+
+TEST(ScanFile, ASinkGetsNormalsAndAllDigits) {
+  Folder dir;
+  const std::string fields =
+      "FIELDS x y z nx Normal_Y nz\nSIZE 8 8 8 4 4 4\nTYPE F F F F F F\nPOINTS 1\nDATA ";
+  const std::vector<double> place{672001.0001, 5200000.0002, 3.25}, normal{0, 0.5, -1};
+  std::string bytes;
+  for (const double v : place) put(bytes, v);
+  for (const double v : normal) put(bytes, static_cast<float>(v));
+  std::vector<double> expected = place;
+  expected.insert(expected.end(), normal.begin(), normal.end());
+  for (const auto& [file, type] :
+       {std::pair{dir.write("b.pcd", fields + "binary\n" + bytes), ValueType::float32},
+        {dir.write("a.pcd", fields + "ascii\n672001.0001 5200000.0002 3.25 0 0.5 -1\n"),
+         ValueType::float64}}) {
+    Values values;
+    read_pcd(file, {}, values);
+    EXPECT_EQ(values.points, 1u);
+    EXPECT_EQ(values.all, expected) << file;
+    EXPECT_EQ(values.roles,
+              (std::vector<Role>{Role::x, Role::y, Role::z, Role::normal_x, Role::normal_y, Role::normal_z}));
+    EXPECT_EQ(values.types.front(), ValueType::float64);
+    EXPECT_EQ(values.types.back(), type) << "text is never rounded to single precision";
+  }
+}
+
 TEST(ScanFile, PointsThatAreNotFiniteAreLeftOutAndCounted) {
   Folder dir;
   std::vector<Row> rows = kRows;

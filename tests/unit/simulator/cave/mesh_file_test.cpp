@@ -135,12 +135,15 @@ TEST_F(MeshFiles, AnImportThatBreaksOrAsksForTooMuchIsAnError) {
     return error_of([&] { cave::import_in_child(path("a.ply"), import, limits); });
   };
   const auto says = [](const std::string& e, const char* part) { return e.find(part) != std::string::npos; };
-  const std::string broken = fault([]() -> TriangleMesh {
+  const auto killed = []() -> TriangleMesh {
     std::raise(SIGKILL);
     return {};
+  };
+  EXPECT_TRUE(says(fault(killed), "a.ply: is no mesh that can be read: the importer broke on it (Killed)"));
+  const std::string in_own_words = error_of([&] {
+    cave::import_in_child(path("a.ply"), killed, {}, {"gives no surface", "PCL"});
   });
-  EXPECT_TRUE(says(broken, "a.ply: is no mesh that can be read: the importer broke on it (Killed)"))
-      << broken;
+  EXPECT_TRUE(says(in_own_words, "a.ply: gives no surface: PCL broke on it (Killed)")) << in_own_words;
   const std::string slow = fault(
       []() -> TriangleMesh {
         while (std::clock() >= 0) continue;

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "core_stack/common/error.h"
+#include "plugins/simulator/cave/mesh_volume.h"
 #include "plugins/simulator/cave_generator/plan.h"
-#include "plugins/simulator/cave_generator/surface_net.h"
 #include "sdk/evaluation/reachable/reachable.h"
 
 namespace {

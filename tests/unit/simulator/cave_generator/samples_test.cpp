@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core_stack/common/random.h"
+#include "plugins/simulator/cave/mesh_volume.h"
 #include "plugins/simulator/cave_generator/surface_net.h"
 
 namespace {
