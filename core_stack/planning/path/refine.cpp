@@ -4,6 +4,7 @@
 
 #include "core_stack/planning/free_space/free_tiles.h"
 #include "core_stack/planning/path/elastic_band.h"
+#include "core_stack/planning/path/round_corners.h"
 
 namespace karst::core {
 namespace {
@@ -123,6 +124,7 @@ std::vector<Vec3> refine_path(const FreeTiles& free, const std::vector<Vec3>& po
         break;
       }
     }
+    best = round_corners(free, clearance, densified(best, kFineSpacing_m));
   }
   std::vector<Vec3> out(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(kept));
   out.insert(out.end(), best.begin(), best.end());

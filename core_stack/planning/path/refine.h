@@ -1,5 +1,6 @@
-// Path post-processing: shortens the path to a taut string, then moves it away from obstacles towards the
-// preferred clearance. It never enters unknown space and never falls below the clearance of the given path.
+// Path post-processing: shortens the path to a taut string, moves it away from obstacles towards the
+// preferred clearance, and rounds its corners. It never enters unknown space and never falls below the
+// clearance of the given path.
 #pragma once
 #include "core_stack/mapping/occupancy/voxel_map.h"
 #include "core_stack/planning/free_space/free_tiles.h"
