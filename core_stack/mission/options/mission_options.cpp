@@ -18,7 +18,7 @@ void describe(OptionTable& t, MissionOptions& o) {
         "the next goal is asked for this long before the present one is reached");
   t.add("goal_timeout", o.goal_timeout_s, "s", 2, 60, "a goal without progress for this long is abandoned");
   t.add("explored_patience", o.explored_patience_s, "s", 0, 60,
-        "a hovering vehicle flies home when every answer for this long was that the cave is explored");
+        "a vehicle that has hovered without a goal for this long flies home once the policy says explored");
   t.add("home_margin", o.home_margin, "", 0, 2, "share added to the time estimated for flying home");
   t.add("home_reserve", o.home_reserve_s, "s", 5, 600, "battery time kept for after the way home");
   t.add("landing_speed", o.landing_speed_mps, "m/s", 0.1, 0.7, "vertical speed of the landing");

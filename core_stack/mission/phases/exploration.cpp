@@ -50,12 +50,12 @@ Cycle decide(Explorer& explorer, const CycleInput& input, const RouteStart& star
 
 void Exploration::begin() {
   still_.restart(onboard_.flight.reference().position, onboard_.now());
-  explored_since_.reset();
+  idle_since_.reset();
 }
 
 void Exploration::step() {
   pass_goal();
-  if (parts_.path.yields() || parts_.path.held()) explored_since_.reset();  // nobody is asked
+  if (parts_.path.yields() || parts_.path.held()) idle_since_.reset();  // nobody is asked
   if (parts_.path.yields()) return;
   watch_progress();
   if (cycle_running_ || parts_.path.held()) return;
@@ -158,11 +158,14 @@ void Exploration::on_cycle(const CycleInput& input, const CycleResult& result, c
   const bool at_rest = onboard_.flight.at_rest(now);
   PathExecution& path = parts_.path;
   if (!parts_.phases.in(Phase::explore) || (path.blocked() && !at_rest) || path.outdated(input.now)) return;
-  const bool explored = result.outcome == Outcome::explored && at_rest;
-  if (!explored) explored_since_.reset();
+  if (result.goal || !at_rest) {
+    idle_since_.reset();
+  } else if (!idle_since_) {
+    idle_since_ = now;
+  }
   if (result.goal) return fly_to(input, result, route);
   if (input.appending) return;  // the policy is asked again on arrival
-  if (explored && is_over(result)) {
+  if (result.outcome == Outcome::explored && at_rest && is_over(result)) {
     wiring_.go_home((result.out_of_time ? "" : "explored: ") + result.reason);
   } else if (result.outcome == Outcome::go_home) {
     wiring_.go_home("the policy asked for it: " + result.reason);
@@ -175,11 +178,9 @@ void Exploration::on_cycle(const CycleInput& input, const CycleResult& result, c
 }
 
 /// While the map settles, there may be no goal for a moment. No waiting brings battery or time back.
-bool Exploration::is_over(const CycleResult& result) {
-  const TimeNs now = onboard_.now();
-  if (!explored_since_) explored_since_ = now;
+bool Exploration::is_over(const CycleResult& result) const {
   const TimeNs patience = from_seconds(onboard_.options.mission.explored_patience_s);
-  return result.out_of_time || now - *explored_since_ >= patience;
+  return result.out_of_time || onboard_.now() - *idle_since_ >= patience;
 }
 
 void Exploration::fly_to(const CycleInput& input, const CycleResult& result, const Route& route) {

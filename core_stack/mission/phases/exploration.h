@@ -48,7 +48,7 @@ class Exploration {
   void watch_progress();
   void reach_goal(TimeNs now);
   /// Whether `explored`, the answer to a vehicle at rest, is believed.
-  bool is_over(const CycleResult& result);
+  bool is_over(const CycleResult& result) const;
 
   Onboard& onboard_;
   Parts parts_;
@@ -57,7 +57,7 @@ class Exploration {
   bool cycle_running_ = false;
   bool append_tried_ = false;  // to the current goal
   TimeNs last_cycle_ = 0;
-  std::optional<TimeNs> explored_since_;  // all answers since then have been `explored`, the vehicle at rest
+  std::optional<TimeNs> idle_since_;  // at rest, and no answer since then has had a goal
 };
 
 }  // namespace karst::core

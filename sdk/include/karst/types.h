@@ -123,8 +123,8 @@ struct Decision {
   /// Goals to visit one after the other. The core may ask again before the last one is reached.
   static Decision tour(std::vector<Goal> goals) { return {KARST_OUTCOME_GOALS, true, std::move(goals), ""}; }
   static Decision hold(std::string reason) { return {KARST_OUTCOME_HOLD, false, {}, std::move(reason)}; }
-  /// Nothing is left to fly to now. The core asks again, and flies home once every answer for the time
-  /// mission.explored_patience was this one.
+  /// Nothing is left to fly to now. The core asks again, and believes it once the vehicle has hovered without
+  /// a goal for the time mission.explored_patience.
   static Decision explored(std::string reason) {
     return {KARST_OUTCOME_EXPLORED, false, {}, std::move(reason)};
   }
