@@ -147,9 +147,10 @@ typedef struct karst_map_service {
      with room around them, as far as they are mapped, and their ends; both by distance from the start. None
      if there is no such cell within 5 m of the start. Writes as many as there is room for; the totals are the
      numbers found. The host finds them once for each map, at the first question: a twentieth of a second for
-     a million known cells. In a map that needs 50,000,000 steps of work, one for each known cell and 60 for
-     each cube of space (0.8 m at 0.2 m), it is KARST_ERROR_LIMIT. Indices hold for this map only. Branches
-     not longer than they are wide are left out, and passages narrower than five cells may be. */
+     a million known cells. 50,000,000 steps of work are KARST_ERROR_LIMIT: one for each known cell, 60 for
+     each cube of space (0.8 m at 0.2 m), 1000 for each slice of passage (two cubes thick). Indices hold for
+     this map only. Branches not longer than they are wide are left out, and passages narrower than five
+     cells may be. */
   int32_t (*passages)(const karst_host_t*, const karst_map_t*, karst_passage_t* passages,
                       uint64_t passage_capacity, uint64_t* passage_total, karst_passage_end_t* ends,
                       uint64_t end_capacity, uint64_t* end_total, karst_error_t*) KARST_NOEXCEPT;

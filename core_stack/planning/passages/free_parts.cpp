@@ -148,7 +148,7 @@ PassageGrid passage_grid(double resolution_m) {
 
 std::uint32_t FreeParts::nearest(const Vec3& p) const {
   constexpr std::int32_t kAround = 2;
-  if (parts.empty() || !(p.cwiseAbs().maxCoeff() < 1e6)) return kNoPart;
+  if (parts.empty() || !(p.array().abs() < 1e6).all()) return kNoPart;  // NaN as well
   const auto key = [&](double v) { return static_cast<std::int32_t>(std::floor(v / grid.cube_m())); };
   const CellKey own{key(p.x()), key(p.y()), key(p.z())};
   std::uint32_t nearest = kNoPart;

@@ -67,9 +67,9 @@ struct FreeParts {
   std::uint32_t nearest(const Vec3& p) const;
 };
 
-/// Work of one question about passages: a known cell of the map counts 1, a part kPartWork. About a second.
+/// Work of one question about passages: a known cell of the map counts 1. About a second.
 constexpr std::uint64_t kMaxPassageWork = 50'000'000;
-constexpr std::uint64_t kPartWork = 60;
+constexpr std::uint64_t kPartWork = 60, kSliceWork = 1000;
 
 /// The parts connected to the one nearest to `start`; none if there is none within 5 m of it. nullopt once
 /// `work` is exhausted.

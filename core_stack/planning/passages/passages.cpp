@@ -20,11 +20,12 @@ struct Shares {
 
 class PassageMapBuilder {
  public:
-  PassageMapBuilder(const VoxelMap& map, FreeParts space)
-      : cell_m_(space.grid.cell_m), band_m_(kBandCubes * space.grid.cube_m()), slices_(sliced(space)) {
+  PassageMapBuilder(const VoxelMap& map, FreeParts space, Slices slices)
+      : cell_m_(space.grid.cell_m), band_m_(kBandCubes * space.grid.cube_m()), slices_(std::move(slices)) {
     for (const Slice& s : slices_.slices)
       sections_.push_back(cross_section(map, space.parts[s.middle].middle, 0.5 * band_m_));
     groups_ = simplified(slices_.slices, sections_, band_m_);
+    space.links = {};  // at() needs none
     out_.space_ = std::move(space);
   }
 
@@ -210,7 +211,9 @@ std::optional<PassageMap> find_passages(const VoxelMap& map, const Vec3& start, 
   std::optional<FreeParts> space = free_parts_around(map, start, work);
   if (!space) return std::nullopt;
   if (space->parts.empty()) return PassageMap{};
-  return PassageMapBuilder(map, std::move(*space)).build();
+  Slices slices = sliced(*space);
+  if (!work.spend(kSliceWork * slices.slices.size())) return std::nullopt;
+  return PassageMapBuilder(map, std::move(*space), std::move(slices)).build();
 }
 
 }  // namespace karst::core

@@ -258,8 +258,13 @@ TEST(Passages, AreNoneWhereNothingIsFreeAndNoAnswerBeyondTheWorkAllowed) {
   EXPECT_TRUE(none.ends.empty());
   EXPECT_EQ(none.at({0, 0, 0}).passage, kNoPassage);
   EXPECT_TRUE(passages_of(map_of_level_tube(), {0, 100, 0}).passages.empty());
-  WorkBudget little(1000);
-  EXPECT_FALSE(find_passages(map_of_level_tube(), {0, 0, 0}, little).has_value());
+  const VoxelMap map = map_of_level_tube();
+  const std::size_t parts = testing::parts_of(map, {0, 0, 0}).parts.size();
+  const std::uint64_t without_slices = map.free_cells() + map.occupied_cells() + kPartWork * (parts + 10);
+  for (const std::uint64_t steps : {std::uint64_t{1000}, without_slices}) {
+    WorkBudget work(steps);
+    EXPECT_FALSE(find_passages(map, {0, 0, 0}, work).has_value()) << steps;
+  }
 }
 
 void expect_same(const PassageMap& a, const PassageMap& b) {
