@@ -33,10 +33,9 @@ std::vector<SliceChain> chains_of(const std::vector<SliceGroup>& groups);
 /// Merges slices into groups until no chain is left that is short:
 /// - one that ends somewhere, if no piece of it at that end is longer than it is wide; it becomes part of its
 ///   junction;
-/// - one that leads from a junction to a junction, if it is shorter than its mean width or the width of one
-/// of
-///   them; both and the chain become one group. The same for one that leads back to where it began, if it is
-///   shorter than twice that.
+/// - one that leads from a junction to a junction, if it is shorter than its mean width, or than one of them
+///   is wide; both and the chain become one group. The same for one that leads back to where it began, if it
+///   is shorter than twice that.
 /// Up to two bands everything is short. `sections`: one for each slice; lengths are measured along their
 /// centres.
 /// Then the core of each junction is its widest slice, and the groups beside it whose core is within half of
