@@ -59,6 +59,54 @@ typedef struct karst_cell_counts {
   uint64_t unknown, free, occupied;
 } karst_cell_counts_t;
 
+/* What is at the end of a passage. */
+typedef uint32_t karst_passage_end_kind_t;
+enum {
+  KARST_PASSAGE_JUNCTION = 1, /* other passages: three or more ends meet */
+  KARST_PASSAGE_DEAD_END = 2, /* rock */
+  KARST_PASSAGE_OPEN_END = 3, /* unknown space, on a quarter of its cross-section or more */
+  KARST_PASSAGE_RING = 4      /* its own beginning: a passage without a junction comes back */
+  /* Minor versions add kinds: ignore those you do not know. */
+};
+
+/*
+ * Widths and heights are those of free cells: the shortest of ten horizontal lines through a place, and the
+ * vertical line through it; at most 100 m. They grow while the walls are not known yet.
+ */
+
+/* [frozen] A place where passages meet, or where one ends. */
+typedef struct karst_passage_end {
+  karst_vec3_t position;    /* in the middle of the free space */
+  double from_start_m;      /* along the passages */
+  double width_m, height_m; /* at the position */
+  double volume_m3;   /* of the free cells of the junction; of another end, of the last metres before it */
+  double frontier_m2; /* in the same space: free cells with an unknown face neighbour, times a cell's face */
+  karst_passage_end_kind_t kind;
+  uint32_t ways; /* ends of passages here */
+  uint64_t reserved[2];
+} karst_passage_end_t;
+
+/* [frozen] A passage from one end to the other. */
+typedef struct karst_passage {
+  uint32_t ends[2]; /* indices of its ends, that nearer to the start first; equal for a loop */
+  double length_m;  /* between the positions of its ends, along its middle */
+  double mean_width_m, least_width_m, mean_height_m, least_height_m;
+  double volume_m3;    /* of its free cells, without the junctions */
+  double frontier_m2;  /* in the same space, as that of an end */
+  karst_vec3_t middle; /* a place on its middle line, about half way */
+  uint64_t reserved[2];
+} karst_passage_t;
+
+#define KARST_NO_PASSAGE 0xffffffffu
+
+/* [frozen] What is around a point: the index of its passage or that of its junction. The other is
+   KARST_NO_PASSAGE. So are both, and the rest is 0, if the point is not in the space of the passages. */
+typedef struct karst_passage_place {
+  uint32_t passage, end;
+  double from_start_m;      /* along the passages */
+  double width_m, height_m; /* of the slice of passage that holds the point */
+} karst_passage_place_t;
+
 /*
  * [appendable] The occupancy map.
  *
@@ -95,6 +143,21 @@ typedef struct karst_map_service {
      100,000,000 cells visited in one call are KARST_ERROR_LIMIT. */
   int32_t (*distances_to_rock)(const karst_host_t*, const karst_map_t*, const karst_vec3_t* points,
                                uint64_t count, double limit_m, double* out, karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} The passages that are connected to the start of the mission through free cells
+     with room around them, as far as they are mapped, and their ends; both by distance from the start. None
+     if there is no such cell within 5 m of the start. Writes as many as there is room for; the totals are the
+     numbers found. The host finds them once for each map, at the first question: a twentieth of a second for
+     a million known cells. 50,000,000 steps of work are KARST_ERROR_LIMIT: one for each known cell, 60 for
+     each cube of space (0.8 m at 0.2 m), 1000 for each slice of passage (two cubes thick). Indices hold for
+     this map only. Branches not longer than they are wide are left out, and passages narrower than five
+     cells may be. */
+  int32_t (*passages)(const karst_host_t*, const karst_map_t*, karst_passage_t* passages,
+                      uint64_t passage_capacity, uint64_t* passage_total, karst_passage_end_t* ends,
+                      uint64_t end_capacity, uint64_t* end_total, karst_error_t*) KARST_NOEXCEPT;
+  /* [any thread] {any state} What is around each point; points and out hold `count`. A point in rock or in
+     the unknown is in the space of the passages if that is within about a metre and a half. */
+  int32_t (*passages_at)(const karst_host_t*, const karst_map_t*, const karst_vec3_t* points, uint64_t count,
+                         karst_passage_place_t* out, karst_error_t*) KARST_NOEXCEPT;
 } karst_map_service_t;
 
 /* [frozen] A path, without its points. Without a known path length_m and time_s are +infinity, clearance_m is

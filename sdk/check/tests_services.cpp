@@ -12,10 +12,9 @@ namespace {
 using Of = Test::Of;
 
 constexpr const char* kServices[] = {
-    "map.info",          "map.cell_states", "map.cast_rays",         "map.count_in_boxes",
-    "map.surface_cells", "map.retain",      "map.distances_to_rock", "path.lengths",
-    "path.paths",        "gain.newly_seen", "draw.points",           "draw.lines",
-    "draw.text"};
+    "map.info",   "map.cell_states",       "map.cast_rays", "map.count_in_boxes", "map.surface_cells",
+    "map.retain", "map.distances_to_rock", "map.passages",  "map.passages_at",    "path.lengths",
+    "path.paths", "gain.newly_seen",       "draw.points",   "draw.lines",         "draw.text"};
 
 void rules(Context& c) {
   const auto session = new_session(c);

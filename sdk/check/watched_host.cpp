@@ -86,6 +86,18 @@ struct Wrapped {
     return pass<&karst_host_t::map, &karst_map_service_t::distances_to_rock>("map.distances_to_rock", h, e, m,
                                                                              points, n, limit_m, out);
   }
+  static std::int32_t passages(const karst_host_t* h, const karst_map_t* m, karst_passage_t* passages,
+                               std::uint64_t passage_capacity, std::uint64_t* passage_total,
+                               karst_passage_end_t* ends, std::uint64_t end_capacity,
+                               std::uint64_t* end_total, karst_error_t* e) noexcept {
+    return pass<&karst_host_t::map, &karst_map_service_t::passages>(
+        "map.passages", h, e, m, passages, passage_capacity, passage_total, ends, end_capacity, end_total);
+  }
+  static std::int32_t passages_at(const karst_host_t* h, const karst_map_t* m, const karst_vec3_t* points,
+                                  std::uint64_t n, karst_passage_place_t* out, karst_error_t* e) noexcept {
+    return pass<&karst_host_t::map, &karst_map_service_t::passages_at>("map.passages_at", h, e, m, points, n,
+                                                                       out);
+  }
   static std::int32_t lengths(const karst_host_t* h, karst_vec3_t from, const karst_vec3_t* goals,
                               std::uint64_t n, double tolerance_m, double* out, karst_error_t* e) noexcept {
     return pass<&karst_host_t::path, &karst_path_service_t::lengths>("path.lengths", h, e, from, goals, n,
@@ -144,7 +156,9 @@ WatchedHost::WatchedHost(const karst_host_t& inner, Offer offer) : inner_(inner)
           &Wrapped::surface_cells,
           &Wrapped::retain,
           &Wrapped::release,
-          &Wrapped::distances_to_rock};
+          &Wrapped::distances_to_rock,
+          &Wrapped::passages,
+          &Wrapped::passages_at};
   path_ = {sizeof path_, 0, &Wrapped::lengths, &Wrapped::paths};
   gain_ = {sizeof gain_, 0, &Wrapped::newly_seen};
   draw_ = {sizeof draw_, 0, &Wrapped::points, &Wrapped::lines, &Wrapped::text};

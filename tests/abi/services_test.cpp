@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "sdk/abi/karst_abi.h"
 #include "tests/abi/room.h"
 
 namespace karst::test {
@@ -21,7 +22,7 @@ TEST(Services, AnswerAsTheRoomIsBuilt) {
   const auto policy = load("inquisitive", "inquisitive");
   const core::Decision d = policy->decide(room.request);
   const std::vector<double> said = answers(d);
-  ASSERT_EQ(said.size(), 28u);
+  ASSERT_EQ(said.size(), 38u);
   EXPECT_EQ(said[0], 1000) << "free cells: 10 x 10 x 10";
   EXPECT_EQ(said[1], 12 * 12 * 12 - 1000 - 4) << "occupied cells: the shell without the window";
   EXPECT_EQ(said[2], 1) << "the corner inside is free";
@@ -51,6 +52,16 @@ TEST(Services, AnswerAsTheRoomIsBuilt) {
   EXPECT_TRUE(std::isinf(said[25]));
   EXPECT_EQ(said[26], 0);
   EXPECT_TRUE(std::isinf(said[27]));
+  EXPECT_EQ(said[28], 1) << "the room is one passage";
+  EXPECT_NEAR(said[29], 15, 2) << "across it";
+  EXPECT_NEAR(said[30], 8, 1);
+  EXPECT_EQ(said[31], 1000) << "m^3";
+  EXPECT_EQ(said[32], KARST_PASSAGE_DEAD_END);
+  EXPECT_EQ(said[33], KARST_PASSAGE_DEAD_END) << "the window is in its side";
+  EXPECT_EQ(said[34], 0) << "the vehicle is in that passage";
+  EXPECT_NEAR(said[35], 10, 0.1) << "from wall to wall";
+  EXPECT_EQ(said[36], 1) << "nothing is known there";
+  EXPECT_EQ(said[37], 1000) << "of the copy";
   ASSERT_EQ(d.drawings.size(), 3u);
   EXPECT_EQ(d.drawings[0].rgb, 0x123456u);
   EXPECT_EQ(d.drawings[1].points.size(), 2u);
@@ -66,6 +77,7 @@ TEST(Services, RetainedMapDoesNotChangeWithTheCoresMap) {
   const std::vector<double> said = answers(policy->decide(room.request));
   EXPECT_EQ(said[0], 1064);
   EXPECT_EQ(said[10], 1000);
+  EXPECT_EQ(said[37], 1000) << "and its passages stay";
 }
 
 TEST(Services, ChanceDependsOnTheMissionsSeedOnly) {

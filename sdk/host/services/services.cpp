@@ -1,4 +1,5 @@
 // The functions behind the service tables. Each checks its arguments, then works through the session's gate.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -101,6 +102,45 @@ struct Services : Serving {
                         "so many points cannot be searched so far around: ask for fewer at a time, or with a "
                         "smaller limit_m"};
         out[i] = *distance_m;
+      }
+    });
+  }
+
+  static const core::PassageMap& passages_of(const Snapshot& snapshot) {
+    const core::PassageMap* found = snapshot.passages->answer(*snapshot.map, snapshot.start);
+    if (found == nullptr)
+      throw Refusal{KARST_ERROR_LIMIT,
+                    "the map is too large: its passages cannot be found in about a second"};
+    return *found;
+  }
+
+  static std::int32_t passages(const karst_host_t* h, const karst_map_t* m, karst_passage_t* passages,
+                               std::uint64_t passage_capacity, std::uint64_t* passage_total,
+                               karst_passage_end_t* ends, std::uint64_t end_capacity,
+                               std::uint64_t* end_total, karst_error_t* e) noexcept {
+    return serve(h, e, [&](Session& s) {
+      require(passage_total != nullptr && end_total != nullptr, "a total is NULL");
+      require((passage_capacity == 0 || passages != nullptr) && (end_capacity == 0 || ends != nullptr),
+              "an array is NULL");
+      const core::PassageMap& found = passages_of(snapshot(s, m));
+      *passage_total = found.passages.size();
+      *end_total = found.ends.size();
+      for (std::uint64_t i = 0; i < std::min(passage_capacity, *passage_total); ++i)
+        passages[i] = to_abi(found.passages[i]);
+      for (std::uint64_t i = 0; i < std::min(end_capacity, *end_total); ++i) ends[i] = to_abi(found.ends[i]);
+    });
+  }
+
+  static std::int32_t passages_at(const karst_host_t* h, const karst_map_t* m, const karst_vec3_t* points,
+                                  std::uint64_t count, karst_passage_place_t* out,
+                                  karst_error_t* e) noexcept {
+    return serve(h, e, [&](Session& s) {
+      require_batch(count, KARST_MAX_BATCH, points, out);
+      const core::PassageMap& found = passages_of(snapshot(s, m));
+      for (std::uint64_t i = 0; i < count; ++i) {
+        check_not_abandoned(s);
+        require(finite(points[i]), "a point is not finite");
+        out[i] = to_abi(found.at(to_core(points[i])));
       }
     });
   }
@@ -284,8 +324,8 @@ struct Services : Serving {
 
   static void install(Session& s, karst_host_t& host) {
     s.map_service_ = {
-        sizeof s.map_service_, 0,       &info,    &cell_states,      &cast_rays, &count_in_boxes,
-        &surface_cells,        &retain, &release, &distances_to_rock};
+        sizeof s.map_service_, 0,       &info,    &cell_states,       &cast_rays, &count_in_boxes,
+        &surface_cells,        &retain, &release, &distances_to_rock, &passages,  &passages_at};
     s.path_service_ = {sizeof s.path_service_, 0, &lengths, &paths};
     s.gain_service_ = {sizeof s.gain_service_, 0, &newly_seen};
     s.draw_service_ = {sizeof s.draw_service_, 0, &points, &lines, &text};

@@ -1,5 +1,6 @@
 #include "sdk/host/services/session.h"
 
+#include <memory>
 #include <utility>
 
 namespace karst::host {
@@ -21,6 +22,8 @@ void Session::begin_deciding(const core::DecisionRequest& request, const PathLen
   now_ = request.stamp;
   live_.map = request.map;
   live_.revision = request.map == nullptr ? 0 : request.map->revision();
+  live_.start = request.T_world_start.position;
+  live_.passages = std::make_shared<PassageQuestion>();
   lengths_ = lengths;
   if (!lengths_ && request.map != nullptr && request.roadmap != nullptr)
     lengths_ = [&map = *request.map, &roadmap = *request.roadmap](
@@ -42,6 +45,7 @@ void Session::begin_deciding(const core::DecisionRequest& request, const PathLen
 void Session::end_deciding() {
   const std::unique_lock lock(gate_);
   live_.map = nullptr;
+  live_.passages = std::make_shared<PassageQuestion>();
   lengths_ = {};
   paths_ = {};
   imaged_ = nullptr;

@@ -44,6 +44,8 @@ std::unique_ptr<Snapshot> copy_of(const Snapshot& original) {
   s->map = copy.get();
   s->revision = original.revision;
   s->copy = std::move(copy);
+  s->start = original.start;
+  s->passages = original.passages;
   return s;
 }
 

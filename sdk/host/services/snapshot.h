@@ -8,6 +8,7 @@
 #include "core_stack/mapping/occupancy/voxel_map.h"
 #include "core_stack/planning/roadmap/work_budget.h"
 #include "sdk/abi/karst_abi_services.h"
+#include "sdk/host/services/passage_question.h"
 
 namespace karst::host {
 
@@ -16,6 +17,9 @@ struct Snapshot {
   const core::VoxelMap* map = nullptr;
   std::uint64_t revision = 0;  // of the core's map, also for a copy
   std::unique_ptr<const core::VoxelMap> copy;
+  core::Vec3 start = core::Vec3::Zero();  // of the mission
+  // Shared with copies, which hold the same cells.
+  std::shared_ptr<PassageQuestion> passages = std::make_shared<PassageQuestion>();
 };
 
 /// An independent map with the same classes and log-odds.

@@ -3,6 +3,7 @@
 #include <karst_abi.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
@@ -89,6 +90,53 @@ struct Path {
 
   bool known() const { return !points.empty(); }
 };
+
+/// A place where passages meet, or where one ends. World frame, metres.
+struct PassageEnd {
+  Vec3 position;            // in the middle of the free space
+  double from_start_m = 0;  // along the passages
+  double width_m = 0, height_m = 0;
+  double volume_m3 = 0;               // of the junction; of another end, of the last metres before it
+  double frontier_m2 = 0;             // in the same space
+  karst_passage_end_kind_t kind = 0;  // KARST_PASSAGE_*
+  std::uint32_t ways = 0;             // ends of passages here
+
+  bool is_junction() const { return kind == KARST_PASSAGE_JUNCTION; }
+  bool is_open() const { return kind == KARST_PASSAGE_OPEN_END; }
+};
+
+struct Passage {
+  std::size_t from = 0, to = 0;  // indices of its ends, that nearer to the start first; equal for a loop
+  double length_m = 0;           // between the positions of its ends
+  double mean_width_m = 0, least_width_m = 0, mean_height_m = 0, least_height_m = 0;
+  double volume_m3 = 0, frontier_m2 = 0;  // without the junctions
+  Vec3 middle;                            // on its middle line, about half way
+};
+
+/// The graph of the passages; both lists by distance from the start. Indices hold for one map only.
+struct Passages {
+  std::vector<Passage> passages;
+  std::vector<PassageEnd> ends;
+};
+
+/// What is around a point.
+struct PassagePlace {
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::size_t passage = none, junction = none;  // indices; both `none`: it is not in a passage
+  double from_start_m = 0, width_m = 0, height_m = 0;
+};
+
+inline Passage from_abi(const karst_passage_t& p) {
+  return {p.ends[0],       p.ends[1],        p.length_m,  p.mean_width_m, p.least_width_m,
+          p.mean_height_m, p.least_height_m, p.volume_m3, p.frontier_m2,  p.middle};
+}
+inline PassageEnd from_abi(const karst_passage_end_t& e) {
+  return {e.position, e.from_start_m, e.width_m, e.height_m, e.volume_m3, e.frontier_m2, e.kind, e.ways};
+}
+inline PassagePlace from_abi(const karst_passage_place_t& p) {
+  const auto index = [](std::uint32_t i) { return i == KARST_NO_PASSAGE ? PassagePlace::none : i; };
+  return {index(p.passage), index(p.end), p.from_start_m, p.width_m, p.height_m};
+}
 
 struct Goal {
   Vec3 position;

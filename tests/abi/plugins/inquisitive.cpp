@@ -45,6 +45,19 @@ class Inquisitive : public karst::Policy {
       say(path.clearance_m);
       say(path.time_s);
     }
+    const karst::Passages found = r.map.passages();
+    say(found.passages.size());
+    for (const karst::Passage& p : found.passages) {
+      say(p.length_m);
+      say(p.mean_width_m);
+      say(p.volume_m3);
+    }
+    for (const karst::PassageEnd& e : found.ends) say(e.kind);
+    const std::vector<karst::PassagePlace> places = r.map.passages_at({r.position(), {50, 50, 50}});
+    say(places[0].passage);
+    say(places[0].width_m);
+    say(places[1].passage == karst::PassagePlace::none);
+    say(kept_.passages().passages.at(0).volume_m3);
     return karst::Decision::fly(goals);
   }
   karst::MapView kept_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <karst/policy.h>
 #include <karst/testing/bench.h>
 
 #include <cmath>
@@ -105,6 +106,31 @@ TEST(BenchC, OffersWhatTheDrawingShows) {
   ASSERT_EQ(karst_bench_decide(c.get(), nullptr), KARST_OK);
   EXPECT_EQ(karst_bench_outcome(c.get()), karst_outcome_t{KARST_OUTCOME_EXPLORED});
   EXPECT_STREQ(karst_bench_reason(c.get()), "no frontier can be reached");
+}
+
+/// Says how many passages it sees.
+class PassageCounter : public karst::Policy {
+  karst::Decision decide(const karst::Request& r) override {
+    return karst::Decision::hold(std::to_string(r.map.passages().passages.size()));
+  }
+};
+
+TEST(BenchC, PassagesAreThoseOfTheDrawingFromTheStart) {
+  static const auto policy = [](std::uint32_t) noexcept {
+    return karst::border::entry<PassageCounter>("counter", "1.0.0", "Counts passages.");
+  };
+  static const karst_plugin_t plugin{sizeof plugin, KARST_ABI_MAJOR, KARST_ABI_MINOR, 1, policy};
+  const BenchC c(karst_bench_create(&plugin, "#######\n#s...a?\n#######\n", 1, nullptr, nullptr));
+  ASSERT_TRUE(c != nullptr);
+  karst_bench_state_t state = karst_bench_get_state(c.get());
+  state.start = state.position = karst_bench_place(c.get(), 's');
+  karst_bench_set_state(c.get(), &state);
+  ASSERT_EQ(karst_bench_decide(c.get(), nullptr), KARST_OK);
+  EXPECT_STREQ(karst_bench_reason(c.get()), "1");
+  state.start.x = 1000;
+  karst_bench_set_state(c.get(), &state);
+  ASSERT_EQ(karst_bench_decide(c.get(), nullptr), KARST_OK);
+  EXPECT_STREQ(karst_bench_reason(c.get()), "0") << "no free cell is near the start";
 }
 
 TEST(BenchC, WhatIsNotThereIsEmpty) {

@@ -69,12 +69,15 @@ TEST(Chunks, CellsRaysAndBoxesMayBeMoreThanOneCallTakes) {
         false);
     const auto counts =
         map.counts(TwoCells::in_turn(count, karst::Box{two.free, two.free}, karst::Box{two.rock, two.rock}));
+    const auto places = map.passages_at(TwoCells::in_turn(count, two.free, {50, 50, 50}));
     ASSERT_EQ(ends.size(), count);
     ASSERT_EQ(counts.size(), count);
+    ASSERT_EQ(places.size(), count);
     for (std::size_t i = 0; i < count; ++i) {
       const bool is_rock = i % 3 == 1;
       ASSERT_EQ(ends[i].state == karst_cell_t{KARST_CELL_OCCUPIED}, is_rock) << i;
       ASSERT_EQ(counts[i].occupied, is_rock ? 1u : 0u) << i;
+      ASSERT_EQ(places[i].passage, is_rock ? karst::PassagePlace::none : 0u) << i;
     }
   }
   EXPECT_TRUE(map.cells({}).empty());
@@ -117,6 +120,7 @@ TEST(Chunks, TheTestKitRefusesWhatTheHostRefuses) {
   EXPECT_EQ(h->map->cast_rays(h, m, nullptr, kBatch + 1, 0, nullptr, nullptr), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->map->count_in_boxes(h, m, nullptr, kBatch + 1, nullptr, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->map->distances_to_rock(h, m, nullptr, kBatch + 1, 1, nullptr, &e), KARST_ERROR_LIMIT);
+  EXPECT_EQ(h->map->passages_at(h, m, nullptr, kBatch + 1, nullptr, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->path->lengths(h, two.free, nullptr, kGoals + 1, 1, nullptr, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->path->paths(h, two.free, nullptr, kPaths + 1, 1, nullptr, nullptr, 0, &e), KARST_ERROR_LIMIT);
   EXPECT_EQ(h->gain->newly_seen(h, m, nullptr, 1, nullptr, kViewpoints + 1, nullptr, &e), KARST_ERROR_LIMIT);

@@ -82,6 +82,104 @@ TEST(DrawnHost, RockIsWhatIsOccupied) {
   EXPECT_THROW(request.map.distances_to_rock({a}, 0), karst::Error);
 }
 
+DrawnMap forked_plan() {
+  return {1.0, {R"(
+    #########################
+    #############.###########
+    #############.###########
+    #############.###########
+    #############.###########
+    #############.###########
+    #############.###########
+    #############.###########
+    #############b###########
+    #############.###########
+    #############.###########
+    #s....a.................?
+    #########################)"}};
+}
+
+TEST(DrawnHost, PassagesAreThoseOfTheDrawing) {
+  DrawnHost host(forked_plan());
+  host.start = host.map().place('s');
+  karst_request_t r{};
+  r.size = sizeof r;
+  r.map = host.map_handle();
+  const karst::Request request(host.host(), r);
+  const karst::Passages found = request.map.passages();
+  ASSERT_EQ(found.ends.size(), 4u);
+  ASSERT_EQ(found.passages.size(), 3u);
+  EXPECT_EQ(found.ends[0].kind, karst_passage_end_kind_t{KARST_PASSAGE_DEAD_END});
+  EXPECT_EQ(distance(found.ends[0].position, host.map().place('s')), 0)
+      << "the nearest to the start is first";
+  EXPECT_TRUE(found.ends[1].is_junction());
+  EXPECT_EQ(found.ends[1].ways, 3u);
+  EXPECT_NEAR(found.ends[1].position.x, 13.5, 1);
+  EXPECT_EQ(found.ends[2].kind, karst_passage_end_kind_t{KARST_PASSAGE_DEAD_END});
+  EXPECT_TRUE(found.ends[3].is_open());
+  EXPECT_EQ(found.ends[3].frontier_m2, 1) << "one cell, seen from the side: it is a plan";
+  for (const karst::Passage& p : found.passages) {
+    EXPECT_TRUE(p.from == 1 || p.to == 1) << "all lead to the junction";
+    EXPECT_NEAR(p.least_width_m, 1, 1e-6);
+    EXPECT_NEAR(p.mean_height_m, 1, 1e-6);
+  }
+  const auto places = request.map.passages_at({host.map().place('a'), host.map().place('b'), {50, 50, 50}});
+  EXPECT_EQ(places[0].passage, 0u);
+  EXPECT_NEAR(places[0].from_start_m, 5, 1);
+  EXPECT_EQ(places[0].junction, karst::PassagePlace::none);
+  EXPECT_EQ(places[1].passage, 1u);
+  EXPECT_EQ(places[2].passage, karst::PassagePlace::none);
+  EXPECT_EQ(places[2].junction, karst::PassagePlace::none);
+  host.start = {100, 100, 0};
+  EXPECT_TRUE(request.map.passages().passages.empty()) << "no free cell is near the start";
+}
+
+/// Flies to the open end of a passage that is nearest along the passages, and says how wide the way to it is.
+class Speleologist : public karst::Policy {
+  Decision decide(const karst::Request& r) override {
+    const karst::Passages found = r.map.passages();
+    for (const karst::Passage& p : found.passages)
+      if (found.ends[p.to].is_open()) {
+        karst::Goal g;
+        g.position = found.ends[p.to].position;
+        g.why = std::to_string(p.least_width_m);
+        return Decision::fly({g});
+      }
+    return Decision::explored("no passage leads on");
+  }
+};
+
+TEST(Bench, PassagesAreFoundFromTheBenchesStart) {
+  static const auto policy = [](std::uint32_t) noexcept {
+    return karst::border::entry<Speleologist>("speleologist", "1.0.0", "Follows passages.");
+  };
+  static const karst_plugin_t plugin{sizeof plugin, KARST_ABI_MAJOR, KARST_ABI_MINOR, 1, policy};
+  Bench bench(&plugin, forked_plan());
+  bench.start = bench.position = bench.host().map().place('s');
+  const Decision d = bench.decide();
+  ASSERT_EQ(d.goals.size(), 1u);
+  EXPECT_NEAR(d.goals[0].position.x, 23, 1.6);
+  EXPECT_EQ(std::stod(d.goals[0].why), 1);
+  bench.start = {100, 100, 0};
+  EXPECT_EQ(bench.decide().outcome, karst_outcome_t{KARST_OUTCOME_EXPLORED});
+}
+
+TEST(MapView, OfAHostWithoutPassagesThrows) {
+  const DrawnHost host(forked_plan());
+  karst_host_t older = *host.host();
+  karst_map_service_t map = *older.map;
+  map.size = offsetof(karst_map_service_t, passages);
+  older.map = &map;
+  const karst::MapView view(&older, host.map_handle());
+  EXPECT_THROW(view.passages(), karst::Error);
+  try {
+    view.passages_at({{0, 0, 0}});
+    ADD_FAILURE() << "answered";
+  } catch (const karst::Error& e) {
+    EXPECT_EQ(e.code(), KARST_ERROR_UNAVAILABLE);
+  }
+}
+
 DrawnMap crossing() {
   return {1.0, {R"(
     ###?###

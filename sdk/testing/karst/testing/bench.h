@@ -110,6 +110,7 @@ class Bench {
                           f.path_length_m,
                           {0, 0}});
     host_.now_ns = static_cast<std::int64_t>(time_s * 1e9);
+    host_.start = start;
     karst_request_t r{};
     r.size = sizeof r;
     r.sequence = ++sequence_;

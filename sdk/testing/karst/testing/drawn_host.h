@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <karst/testing/drawn_map.h>
+#include <karst/testing/drawn_passages.h>
 
 namespace karst::testing {
 
@@ -25,8 +26,8 @@ inline std::int32_t refuse(karst_error_t* error, std::int32_t code, std::string_
 class DrawnHost {
  public:
   explicit DrawnHost(DrawnMap map) : map_(std::move(map)) {
-    map_service_ = {sizeof map_service_, 0,       &info,    &cell_states,      &cast_rays, &count_in_boxes,
-                    &surface_cells,      &retain, &release, &distances_to_rock};
+    map_service_ = {sizeof map_service_, 0,       &info,    &cell_states,       &cast_rays, &count_in_boxes,
+                    &surface_cells,      &retain, &release, &distances_to_rock, &passages,  &passages_at};
     path_service_ = {sizeof path_service_, 0, &lengths, &paths};
     gain_service_ = {sizeof gain_service_, 0, &newly_seen};
     draw_service_ = {sizeof draw_service_, 0, &draw_points, &draw_lines, &draw_text};
@@ -41,6 +42,7 @@ class DrawnHost {
   const karst_map_t* map_handle() const { return reinterpret_cast<const karst_map_t*>(this); }
   const DrawnMap& map() const { return map_; }
   std::int64_t now_ns = 0;
+  Vec3 start;                  // of the mission: from where passages are found
   double max_speed_mps = 2.0;  // for the flight times of paths
   std::vector<std::string> log_lines;
   std::size_t drawings = 0;
@@ -172,6 +174,26 @@ class DrawnHost {
       return refuse(e, KARST_ERROR_ARGUMENT, "limit_m is not in (0, 100] m");
     for (std::uint64_t i = 0; i < count; ++i)
       out[i] = distance_to_cell(self(h).map_, points[i], limit_m, [](Cell c) { return c == Cell::occupied; });
+    return KARST_OK;
+  }
+  static std::int32_t passages(const karst_host_t* h, const karst_map_t*, karst_passage_t* passages,
+                               std::uint64_t passage_capacity, std::uint64_t* passage_total,
+                               karst_passage_end_t* ends, std::uint64_t end_capacity,
+                               std::uint64_t* end_total, karst_error_t*) noexcept {
+    const DrawnPassages found = find_passages(self(h).map_, self(h).start);
+    *passage_total = found.passages.size();
+    *end_total = found.ends.size();
+    for (std::size_t i = 0; i < found.passages.size() && i < passage_capacity; ++i)
+      passages[i] = found.passages[i];
+    for (std::size_t i = 0; i < found.ends.size() && i < end_capacity; ++i) ends[i] = found.ends[i];
+    return KARST_OK;
+  }
+  static std::int32_t passages_at(const karst_host_t* h, const karst_map_t*, const karst_vec3_t* points,
+                                  std::uint64_t count, karst_passage_place_t* out,
+                                  karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
+    const DrawnPassages found = find_passages(self(h).map_, self(h).start);
+    for (std::uint64_t i = 0; i < count; ++i) out[i] = passage_at(self(h).map_, found, points[i]);
     return KARST_OK;
   }
   static const karst_map_t* retain(const karst_host_t*, const karst_map_t* map, karst_error_t*) noexcept {

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "core_stack/common/error.h"
+#include "core_stack/planning/passages/passages.h"
 #include "sdk/host/services/path_question.h"
 #include "tests/abi/room.h"
 
@@ -41,6 +42,10 @@ class Curious final : public core::PolicyPort {
         sum += path.points[k].dot(core::Vec3(1, 10, 100)) * (1.0 + static_cast<double>(k));
       g.why += ", " + std::to_string(sum);
     }
+    core::WorkBudget work(core::kMaxPassageWork);
+    const core::PassageMap passages = core::find_passages(*r.map, r.T_world_start.position, work).value();
+    for (const core::Passage& p : passages.passages)
+      g.why += ", " + std::to_string(p.length_m) + " m " + std::to_string(p.middle.sum());
     g.why += ", " + std::to_string(r.battery_seconds_left) + " s";
     d.goals = {g};
     return d;

@@ -95,6 +95,46 @@ TEST_F(Asked, DistancesToRockBeyondTheirLimitsAreRefused) {
   EXPECT_NE(std::string(e.text).find("fewer at a time"), std::string::npos) << e.text;
 }
 
+TEST_F(Asked, PassagesWithoutAPlaceForThemAreRefused) {
+  std::uint64_t passages = 7, ends = 7;
+  const karst_map_t* m = session.live_map();
+  EXPECT_EQ(h->map->passages(h, m, nullptr, 0, nullptr, nullptr, 0, &ends, &e), KARST_ERROR_ARGUMENT);
+  EXPECT_STREQ(e.text, "a total is NULL");
+  EXPECT_EQ(h->map->passages(h, m, nullptr, 0, &passages, nullptr, 0, nullptr, &e), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(h->map->passages(h, m, nullptr, 1, &passages, nullptr, 0, &ends, &e), KARST_ERROR_ARGUMENT);
+  EXPECT_STREQ(e.text, "an array is NULL");
+  EXPECT_EQ(h->map->passages(h, m, nullptr, 0, &passages, nullptr, 1, &ends, nullptr), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(h->map->passages(h, m, nullptr, 0, &passages, nullptr, 0, &ends, &e), KARST_OK);
+  EXPECT_EQ(passages + ends, 0u) << "nothing is known";
+  EXPECT_EQ(h->map->passages(h, nullptr, nullptr, 0, &passages, nullptr, 0, &ends, &e), KARST_ERROR_STATE);
+
+  const karst_vec3_t p{}, nowhere{NAN, 0, 0}, far{1e300, 0, 0};
+  karst_passage_place_t place{};
+  EXPECT_EQ(h->map->passages_at(h, m, nullptr, 1, &place, &e), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(h->map->passages_at(h, m, &p, 1, nullptr, &e), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(h->map->passages_at(h, m, &p, KARST_MAX_BATCH + 1, &place, &e), KARST_ERROR_LIMIT);
+  EXPECT_EQ(h->map->passages_at(h, m, &nowhere, 1, &place, &e), KARST_ERROR_ARGUMENT);
+  EXPECT_EQ(h->map->passages_at(h, m, &far, 1, &place, &e), KARST_OK);
+  EXPECT_EQ(place.passage, KARST_NO_PASSAGE);
+  EXPECT_EQ(place.end, KARST_NO_PASSAGE);
+  session.end_deciding();
+  EXPECT_EQ(h->map->passages(h, m, nullptr, 0, &passages, nullptr, 0, &ends, &e), KARST_ERROR_STATE);
+}
+
+TEST_F(Asked, PassagesOfATooLargeMapAreRefusedEveryTime) {
+  core::VoxelMap large{core::MapOptions{.resolution_m = 1.0}};
+  large.assign({0, 0, 0}, 95, -2.0f);  // each of its 857,375 cells is 61 steps of work
+  core::DecisionRequest request;
+  request.map = &large;
+  session.begin_deciding(request);
+  std::uint64_t passages = 0, ends = 0;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(h->map->passages(h, session.live_map(), nullptr, 0, &passages, nullptr, 0, &ends, &e),
+              KARST_ERROR_LIMIT);
+    EXPECT_NE(std::string(e.text).find("the map is too large"), std::string::npos) << e.text;
+  }
+}
+
 TEST_F(Asked, SensorFarFromTheBodyOrOfTooLongRangeForTheMapIsRefused) {
   const core::VoxelMap fine{core::MapOptions{.resolution_m = 0.05}};
   core::DecisionRequest request;
