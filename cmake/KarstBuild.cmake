@@ -104,8 +104,9 @@ function(karst_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   # Tests name their helpers alike: not more than eight at a time.
   set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
-  # Compiled a quarter sooner than with -O2; what is tested is in libraries that have it.
-  target_compile_options(${name} PRIVATE ${KARST_WARNINGS} $<$<CONFIG:Release>:-O1>)
+  # Compiled a quarter sooner than with -O2; what is tested is in libraries that have it. With -O1, g++ 12 warns of
+  # std::string where nothing is wrong (GCC PR 105651).
+  target_compile_options(${name} PRIVATE ${KARST_WARNINGS} -Wno-array-bounds $<$<CONFIG:Release>:-O1>)
   target_compile_definitions(${name} PRIVATE KARST_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KARST_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest_main)

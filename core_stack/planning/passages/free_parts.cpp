@@ -115,8 +115,8 @@ std::vector<char> connected_to(std::uint32_t first, const KnownCubes& known, con
 /// The part to which the cells of each known cube count: the first of its own, or that of the cube across the
 /// face with most free cells on both sides. kNoPart if there is none.
 std::vector<std::uint32_t> owners(const KnownCubes& known, std::vector<std::uint32_t> first_in) {
-  constexpr int kRounds = 3;  // across a face, an edge and a corner
-  for (int round = 0; round < kRounds; ++round) {
+  constexpr int kNeighbourRounds = 3;  // across a face, an edge and a corner
+  for (int round = 0; round < kNeighbourRounds; ++round) {
     const std::vector<std::uint32_t> before = first_in;
     for (std::uint32_t c = 0; c < known.size(); ++c) {
       int most = 0;

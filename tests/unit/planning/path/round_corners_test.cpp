@@ -25,7 +25,9 @@ std::vector<Vec3> right_angle(double corner_m) {
 }
 
 double flown_in_s(const std::vector<Vec3>& points) {
-  return seconds(sample_trajectory(points, 0, 0, MotionLimits{}, {.along_path = false}).end());
+  HeadingPlan heading;
+  heading.along_path = false;
+  return seconds(sample_trajectory(points, 0, 0, MotionLimits{}, heading).end());
 }
 
 TEST(RoundCorners, ACornerBecomesAnArcOfTheSameEnds) {
