@@ -12,7 +12,7 @@ namespace karst::cave {
 
 struct ImportLimits {
   std::uint64_t memory_bytes = 0;  // beyond what this process has; 0: 2 GiB, or more for a large file
-  unsigned cpu_s = 600;
+  std::uint64_t cpu_s = 0;         // 0: 5 s, and 10 s for each megabyte of the file
 };
 
 /// Runs `import` in a child process and returns its mesh or throws its InputError; a child that crashes or
