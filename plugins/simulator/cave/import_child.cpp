@@ -28,6 +28,8 @@ namespace {
 using core::InputError;
 
 constexpr std::uint64_t kMinMemory = std::uint64_t{2} << 30, kMemoryPerByte = 100;
+/// Importers take less than a second for a megabyte; a few bytes can send them into an endless loop.
+constexpr std::uint64_t kMinCpu_s = 5, kBytesPerCpu_s = 100'000;
 constexpr std::uint64_t kMaxReason = 4000;
 constexpr int kOutOfMemory = 3;  // the child's exit code
 
@@ -175,8 +177,9 @@ std::string end_of(pid_t child, const char* worker) {
 
 TriangleMesh import_in_child(const std::string& path, const std::function<TriangleMesh()>& import,
                              ImportLimits limits, const ImportWords& words) {
-  if (limits.memory_bytes == 0)
-    limits.memory_bytes = std::max(kMinMemory, kMemoryPerByte * std::filesystem::file_size(path));
+  const std::uint64_t file_bytes = std::filesystem::file_size(path);
+  if (limits.memory_bytes == 0) limits.memory_bytes = std::max(kMinMemory, kMemoryPerByte * file_bytes);
+  if (limits.cpu_s == 0) limits.cpu_s = kMinCpu_s + file_bytes / kBytesPerCpu_s;
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw InputError(path, "", std::strerror(errno));
   const pid_t parent = getpid(), child = fork();

@@ -12,8 +12,8 @@ namespace karst::cave {
 
 struct ImportLimits {
   std::uint64_t memory_bytes = 0;  // beyond what this process has; 0: 2 GiB, or more for a large file
-  unsigned cpu_s = 600;
-  int silence_s = 900;  // of the child, wall clock; beyond it the child hangs
+  std::uint64_t cpu_s = 0;         // 0: 5 s, and 10 s for each megabyte of the file
+  int silence_s = 900;             // of the child, wall clock; beyond it the child hangs
 };
 
 /// How a refusal names what the child does, and the child.

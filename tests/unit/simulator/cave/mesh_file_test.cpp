@@ -169,6 +169,14 @@ TEST_F(MeshFiles, APlyHeaderThatPromisesTooMuchIsRefusedAtOnce) {
       "truncated");
 }
 
+// It was refused after ten minutes of processor time.
+TEST_F(MeshFiles, AFewBytesThatSendTheImporterIntoAnEndlessLoopAreRefusedSoon) {
+  const std::string text = "ply\nformat ascii .10\nenleemt vertex 3\nproperty float x\nproper\x12" +
+                           std::string(1, '\0') + "0__cxxaindices\nend_header\x0b" + std::string(1, '\0') +
+                           std::string(34, '\xfd');
+  expect_refused("loop.ply", text, "processor time");
+}
+
 TEST_F(MeshFiles, AFifoIsNoMesh) {
   ASSERT_EQ(mkfifo(path("f.ply").c_str(), 0600), 0);
   alarm(20);  // instead of a test that waits for ever
