@@ -15,12 +15,13 @@ namespace {
 thread_local bool out_of_memory = false;
 }
 
-// The other forms of new and delete come to these.
-void* operator new(std::size_t size) {
+// The other forms of new and delete come to these. Inlined, g++ sees only that free() ends what new began,
+// and warns
+// (-Wmismatched-new-delete).
+[[gnu::noinline]] void* operator new(std::size_t size) {
   void* const p = out_of_memory ? nullptr : std::malloc(size);
   return p ? p : throw std::bad_alloc();
 }
-// Inlined, g++ sees only that free() ends what new began (-Wmismatched-new-delete).
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 

@@ -13,15 +13,16 @@ long allocations = 0;
 long left = -1;  // that succeed from now on; negative: all
 }  // namespace
 
-// The other forms of new and delete come to these.
-void* operator new(std::size_t size) {
+// The other forms of new and delete come to these. Inlined, g++ sees only that free() ends what new began,
+// and warns
+// (-Wmismatched-new-delete).
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (left == 0) throw std::bad_alloc();
   if (left > 0) --left;
   if (void* p = std::malloc(size)) return p;
   throw std::bad_alloc();
 }
-// Inlined, g++ sees only that free() ends what new began (-Wmismatched-new-delete).
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
