@@ -283,6 +283,16 @@ TEST(ScanFile, CutAnywhereItIsAnErrorThatNamesTheFileOrTheWholeCloud) {
     }
 }
 
+// Lines were passed over long after the file's end.
+TEST(ScanFile, APlyElementOfNothingWithACountWithoutEndIsPassedOverAtOnce) {
+  Folder dir;
+  EXPECT_NE(error_of(dir.write("n.ply",
+                               "ply\nformat ascii 1.0\nelement empty 18446744073709551615\nelement vertex 1\n"
+                               "property float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"))
+                .find("the file is truncated"),
+            std::string::npos);
+}
+
 TEST(ScanFile, HugeClaimsAreRefusedBeforeAnyMemoryIsGiven) {
   Folder dir;
   const std::string huge = "18446744073709551615";
