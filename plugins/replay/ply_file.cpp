@@ -75,8 +75,8 @@ void read_ascii(const std::string& path, const PlyHeader& h, std::size_t skipped
   sink.begin(text_fields(roles, e.types));
   TextReader reader(data, h.line + 1);
   std::string_view text;
-  for (std::size_t i = 0; i < skipped_lines && reader.line(text); ++i) {
-  }
+  std::size_t skipped = 0;
+  while (skipped < skipped_lines && reader.line(text)) ++skipped;
   for (std::size_t i = 0; i < e.count; ++i) {
     if (!reader.line(text))
       throw InputError(path, "line " + std::to_string(reader.number()),

@@ -1,6 +1,6 @@
-// Named sets of mission settings with which a campaign is flown. A profile sets options that cost time but,
-// as measured, do not change which policy is better (docs/compare.md); settings of the campaign or of a
-// contestant take precedence.
+// Named sets of mission settings with which a campaign is flown. A profile sets options that cost time.
+// Policies that lie close together may change places between profiles (docs/compare.md). Settings of the
+// campaign or of a contestant take precedence.
 #pragma once
 #include <string>
 #include <vector>

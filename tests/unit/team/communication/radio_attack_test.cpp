@@ -116,7 +116,7 @@ struct Victim {
   }
 };
 
-/// A fiftieth of the million, unless KARST_ATTACK_FRAMES asks for more: `team_messages_test
+/// A fiftieth of the million, unless KARST_ATTACK_FRAMES asks for more: `team_test
 /// --gtest_filter='RadioAttack.*'` then takes some seconds.
 std::uint64_t attacks() {
   const char* asked = std::getenv("KARST_ATTACK_FRAMES");
