@@ -180,7 +180,7 @@ void add_check_command(CLI::App& policy) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* check_app = policy.add_subcommand(
       "check",
-      "Test a policy plugin from outside, each test in a process of its own.\n\n"
+      "Test a policy plugin from outside, each test in a process of its own\n\n"
       "  karst policy check build/lib/karst/policies/mine.so\n"
       "  karst policy check mine.so --level pedantic --seed 7 --json\n"
       "  karst policy check mine.so --test goals --test determinism.repeat\n\n"

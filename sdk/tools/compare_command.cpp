@@ -207,7 +207,7 @@ void add_compare_command(CLI::App& app) {
   CLI::App* compare_app = app.add_subcommand(
       "compare",
       "Fly policies through the same caves with the same seeds and say which is better, and how sure that "
-      "is.\n\n"
+      "is\n\n"
       "  karst compare CAMPAIGN.info\n"
       "  karst compare nearest_frontier highest_frontier --caves caves/*.info --seeds 30\n"
       "  karst compare nearest_frontier nearest_frontier:horizon=15m --caves maze.info --seeds 10\n"
@@ -283,8 +283,8 @@ void add_results_command(CLI::App& app) {
   auto args = std::make_shared<Arguments>();
   CLI::App* results_app = app.add_subcommand(
       "results",
-      "What a campaign found, also while it flies: verdicts, every trial as CSV or JSON, or what a paper "
-      "needs.\n\n"
+      "Say what a campaign found, also while it flies: verdicts, every trial as CSV or JSON, or what a paper "
+      "needs\n\n"
       "  karst results runs/CAMPAIGN\n  karst results runs/CAMPAIGN --csv trials.csv --json trials.json\n"
       "  karst results runs/CAMPAIGN --paper paper             tables, figures and methods");
   results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")

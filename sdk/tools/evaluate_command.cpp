@@ -163,7 +163,7 @@ void add_evaluate_command(CLI::App& app) {
   auto args = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand(
       "evaluate",
-      "Measure a run: errors of its trajectory against the truth, and of its map against a reference.\n\n"
+      "Measure a run: errors of its trajectory against the truth, and of its map against a reference\n\n"
       "  karst evaluate runs/demo                                    a simulated flight: truth and cave are "
       "known\n"
       "  karst evaluate runs/kitti00 --truth poses.txt               TUM, or KITTI's 3x4 matrices\n"

@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core_stack/common/error.h"
@@ -21,7 +23,13 @@ namespace fs = std::filesystem;
 using evaluation::DecisionRecord;
 using evaluation::RecordedAnswer;
 
-DecisionRecord decision_of(const std::string& run, const std::string& at) {
+struct Explained {
+  DecisionRecord decision;
+  /// The flight was over by then, at this time.
+  std::optional<double> over_s;
+};
+
+Explained decision_of(const std::string& run, const std::string& at) {
   if (evaluation::is_team(run))
     throw core::InputError(
         run, "",
@@ -29,7 +37,10 @@ DecisionRecord decision_of(const std::string& run, const std::string& at) {
   const auto at_s = evaluation::seconds_of_clock(at);
   if (!at_s) throw core::InputError("--at", at, "expected a time such as 1:34, or 94 for seconds");
   const evaluation::RunRecord record = evaluation::read_run(run);
-  if (auto decision = evaluation::decision_at(record, *at_s)) return *decision;
+  if (auto decision = evaluation::decision_at(record, *at_s)) {
+    const bool over = !record.phases.empty() && *at_s > record.phases.back().end_s;
+    return {*std::move(decision), over ? std::optional(record.phases.back().end_s) : std::nullopt};
+  }
   const auto last = evaluation::decision_at(record, evaluation::kLongestRun_s);
   throw core::InputError(run, last ? "--at " + at : "events.jsonl",
                          last ? "no decision had been made by then" : "holds no decision");
@@ -48,7 +59,9 @@ std::vector<RecordedAnswer> answers_of(const fs::path& requests, const DecisionR
 }
 
 void explain_decision(const std::string& run, const std::string& at) {
-  const DecisionRecord decision = decision_of(run, at);
+  const auto [decision, over_s] = decision_of(run, at);
+  if (over_s)
+    print_out("The flight ended at %s. Its last decision:\n", evaluation::clock_text(*over_s).c_str());
   print_out("%s", evaluation::decision_text(decision).c_str());
   const fs::path requests = evaluation::requests_file(run);
   if (!fs::exists(requests)) {
@@ -70,7 +83,7 @@ void add_explain_command(CLI::App& app) {
   auto args = std::make_shared<Arguments>();
   CLI::App* explain = app.add_subcommand(
       "explain",
-      "Say why the vehicle flew to a goal.\n\n"
+      "Say why the vehicle flew to a goal\n\n"
       "Prints the decision at a time of the flight, or the last one before it: its goals, what became of "
       "them, and the frontiers offered.\n\n"
       "  karst explain runs/demo --at 1:34\n"

@@ -72,7 +72,13 @@ void add_explain_time_command(CLI::App& app) {
     std::vector<std::string> runs;
     double until_s = std::numeric_limits<double>::infinity();
   };
-  CLI::App& command = *app.add_subcommand("explain-time", "what a flight lost time for while it explored");
+  CLI::App& command = *app.add_subcommand(
+      "explain-time",
+      "Say what a flight lost time for while it explored\n\n"
+      "Prints the seconds lost against full speed by cause: bends, the heading rate, stops, with the braking "
+      "before them and the speeding up after them.\n\n"
+      "  karst explain-time runs/demo\n"
+      "  karst explain-time runs/* --until 120");
   auto arguments = std::make_shared<Arguments>();
   command.add_option("RUN", arguments->runs, "run directories, as `karst fly --out` writes them")
       ->type_name(kFolder)

@@ -241,7 +241,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
   auto args = std::make_shared<FlyArguments>();
   CLI::App* fly_app = app.add_subcommand(
       "fly",
-      "Fly one mission and write its run directory and report.\n\n"
+      "Fly one mission and write its run directory and report\n\n"
       "  karst fly mission.info\n"
       "  karst fly --cave caves/tunnel.stl --start \"1 2 1.5 90\" --policy highest_frontier\n"
       "  karst fly mission.info --set motion.max_speed=\"1 m/s\" --set simulator.gust=\"2 m/s\" --seed 4\n\n"

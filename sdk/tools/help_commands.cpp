@@ -33,7 +33,7 @@ void add_help_commands(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* completion = app.add_subcommand(
       "completion",
-      "Print what completes this command's line in a shell.\n\n"
+      "Print what completes this command's line in a shell\n\n"
       "  source <(karst completion bash)                              in ~/.bashrc\n"
       "  karst completion zsh > ~/.zfunc/_karst                       in a folder of zsh's fpath\n\n"
       "An installed karst puts both where the shells look for them.");

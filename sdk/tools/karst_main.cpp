@@ -1,6 +1,7 @@
 #include "sdk/tools/root_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -35,7 +36,24 @@ std::string wrong_command(const CLI::App& app) {
   for (const CLI::App* command : at.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
   const std::string near = core::nearest_name(rest.front(), names);
-  return "\"" + rest.front() + "\" is no command" + (near.empty() ? "" : "; did you mean " + near + "?");
+  return "\"" + rest.front() + "\" is no command" +
+         (near.empty() ? "; --help lists them" : "; did you mean " + near + "?");
+}
+
+/// The first word that is an option of no command; "" if there is none.
+std::string wrong_option(const CLI::App& app) {
+  const CLI::App& at = reached(app);
+  const std::vector<std::string> rest = at.remaining();
+  const auto wrong =
+      std::find_if(rest.begin(), rest.end(), [](const std::string& word) { return word.starts_with("--"); });
+  if (wrong == rest.end()) return "";
+  std::vector<std::string> names;
+  for (const CLI::Option* option : at.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  const std::string given = wrong->substr(0, wrong->find('='));
+  const std::string near = core::nearest_name(given, names);
+  return "\"" + given + "\" is no option of " + at.get_name() +
+         (near.empty() ? "; --help lists them" : "; did you mean " + near + "?");
 }
 
 /// The help of a command, to which `words` lead, and of all below it.
@@ -59,9 +77,15 @@ int exit_code(const CLI::App& app, const CLI::ParseError& e) {
     std::fputs(app.help().c_str(), stdout);
     return 0;
   }
-  const std::string wrong = e.get_exit_code() == 0 ? "" : wrong_command(app);
-  if (!wrong.empty()) print_error("karst: %s\n", wrong.c_str());
-  return app.exit(e) == 0 ? 0 : 1;
+  if (e.get_exit_code() == 0) return app.exit(e);
+  std::string wrong = wrong_command(app);
+  if (wrong.empty() && e.get_name() == "ExtrasError") wrong = wrong_option(app);
+  if (wrong.empty()) {
+    app.exit(e);
+  } else {
+    print_error("karst: %s\n", wrong.c_str());
+  }
+  return 1;
 }
 
 }  // namespace

@@ -189,12 +189,12 @@ int merge(const MergeArguments& args) {
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App* map = app.add_subcommand("map", "Maps of several flights.");
+  CLI::App* map = app.add_subcommand("map", "Put maps of several flights together");
   map->require_subcommand(1);
   auto args = std::make_shared<MergeArguments>();
   CLI::App* command = map->add_subcommand(
       "merge",
-      "Put maps of several flights together, in the frame of the first.\n\n"
+      "Put maps of several flights together, in the frame of the first\n\n"
       "  karst map merge runs/monday runs/tuesday --out maps/cave\n"
       "  karst map merge a.bt b.ot c.ot --out all --json\n"
       "  karst map merge scan1.ply scan2.pcd --six --out both\n\n"

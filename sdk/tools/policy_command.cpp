@@ -84,7 +84,7 @@ void print_text(const std::vector<PolicyListing>& all, const host::SearchPath& p
 
 CLI::App& add_policy_command(CLI::App& app) {
   auto args = std::make_shared<PolicyArguments>();
-  CLI::App* policy = app.add_subcommand("policy", "Exploration policies this installation can fly");
+  CLI::App* policy = app.add_subcommand("policy", "List, write, test and replay exploration policies");
   policy->require_subcommand(1);
   add_policy_new(*policy);
   CLI::App* list =

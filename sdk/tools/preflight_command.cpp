@@ -76,7 +76,7 @@ void add_preflight_command(CLI::App& app) {
   args->overrides.policy = flight::kAutoPolicy;
   CLI::App* preflight_app = app.add_subcommand(
       "preflight",
-      "Go or no-go for a mission: cave, battery, vehicle, policy, time of return\n\n"
+      "Say go or no-go for a mission: cave, battery, vehicle, policy, time of return\n\n"
       "  karst preflight caves/demo.info --battery \"8 min\"\n"
       "  karst preflight scan.ply --start \"1 2 1.5\" --policy nearest_frontier --page preflight.html\n\n"
       "Nothing is flown. What is said, and by which rules: " +

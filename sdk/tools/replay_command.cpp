@@ -176,7 +176,7 @@ void add_replay_command(CLI::App& app) {
   auto args = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand(
       "replay",
-      "Localize and map from recorded scans (PCD, PLY, bare .bin), with an IMU where there is one.\n\n"
+      "Localize and map from recorded scans (PCD, PLY, bare .bin), with an IMU where there is one\n\n"
       "  karst replay scans/kitti00 --info kitti.info --out runs/kitti00\n"
       "  karst replay flight7 --out runs/flight7 --set map.resolution=\"0.3 m\"\n"
       "  karst replay --keys\n\n"

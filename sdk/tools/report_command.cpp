@@ -74,8 +74,9 @@ void add_report_command(CLI::App& app, CampaignPage campaign_page) {
   auto args = std::make_shared<Arguments>();
   CLI::App* report = app.add_subcommand(
       "report",
-      "Evaluate a run directory again and rewrite its metrics.json and report.html; also for a run that was "
-      "cut short. Or write the report of a campaign, also while it flies.\n\n"
+      "Write the report of a run, or of a campaign\n\n"
+      "Evaluates a run directory again and rewrites its metrics.json and report.html, also for a run that "
+      "was cut short. The report of a campaign can be written while it flies.\n\n"
       "  karst report runs/demo\n  karst report runs/CAMPAIGN --worst");
   report->add_option("run", args->run, "run directory, or a campaign's folder or store")
       ->type_name(kFile)

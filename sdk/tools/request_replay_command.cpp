@@ -117,7 +117,7 @@ void add_request_replay_command(CLI::App& policy) {
   auto args = std::make_shared<ReplayArguments>();
   CLI::App* app = policy.add_subcommand(
       "replay",
-      "Put the requests of a flight to a policy once more, without a vehicle.\n\n"
+      "Put the requests of a flight to a policy once more, without a vehicle\n\n"
       "  karst fly demo.info --record-requests --out runs/demo\n"
       "  karst policy replay runs/demo                         the same policy, the same parameters\n"
       "  karst policy replay runs/demo --set path_weight=2     what it would have said with another value\n"

@@ -152,7 +152,7 @@ void print_spread(const std::vector<nlohmann::json>& runs, const std::vector<Col
 void add_table_command(CLI::App& app) {
   CLI::App* table = app.add_subcommand("table",
                                        "Print the figures of finished runs, and how they spread, as a "
-                                       "Markdown table.\n\n  karst table runs/*/");
+                                       "Markdown table\n\n  karst table runs/*/");
   auto runs = std::make_shared<std::vector<std::string>>();
   table->add_option("runs", *runs, "run directories")->type_name(kFolder)->required();
   table->callback([runs] {

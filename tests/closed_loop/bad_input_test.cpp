@@ -279,7 +279,9 @@ TEST(BadInput, AReportWithoutItsCaveKeepsWhatIsKnown) {
 TEST(BadInput, UsageErrorsNameTheWord) {
   expect_refused(run_karst("reprt x"), {"\"reprt\" is no command", "did you mean report"});
   expect_refused(run_karst("cave genrate --out x"), {"\"genrate\" is no command", "did you mean generate"});
-  expect_refused(run_karst("fly --polcy x"), {"--polcy"});
+  EXPECT_FALSE(run_karst("reprt x").says("subcommand is required")) << "it was said twice";
+  expect_refused(run_karst("fly --polcy x"), {"\"--polcy\" is no option of fly", "did you mean --policy?"});
+  expect_refused(run_karst("cave info --zzzzz"), {"\"--zzzzz\" is no option of info", "--help lists them"});
   expect_refused(run_karst("fly --threads many"), {"--threads", "many"});
 }
 

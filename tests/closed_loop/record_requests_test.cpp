@@ -101,7 +101,11 @@ TEST(RecordRequests, ADecisionIsExplainedWithItsWholeList) {
   EXPECT_TRUE(events.says("fly with --record-requests")) << events.text;
 
   const Output early = run_karst("explain " + run + " --at 0"),
+               late = run_karst("explain " + run + " --at 59:00"),
                wrong = run_karst("explain " + run + " --at soon");
+  EXPECT_EQ(late.code, 0) << late.text;
+  EXPECT_TRUE(late.says("The flight ended at ") && late.says("Its last decision:")) << late.text;
+  EXPECT_FALSE(events.says("The flight ended at")) << events.text;
   EXPECT_EQ(early.code, 1);
   EXPECT_TRUE(early.says("--at 0: no decision had been made by then")) << early.text;
   EXPECT_EQ(wrong.code, 1);

@@ -255,7 +255,9 @@ TEST(Team, RetreatsBeforeOneThatComesHomeWhereNoneGetsBy) {
       draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -0.9, 0}, {60, 0.9, 1.9}}}, {0, 0, 1});
   const Flown f =
       fly(cave, folder / "run",
-          team_of(2, "return_to_base", "--set radio.range=30m --set homing.landing.link.range=30m"));
+          team_of(2, "return_to_base",
+                  "--set radio.range=30m --set homing.landing.link.range=30m"
+                  " --set simulator.battery_minutes=2.2min"));  // enough to go in a second time
   expect_all_well(f, 2);
   std::vector<double> x;  // of robot 2, every five seconds
   for (const json& e : f.truth)
@@ -334,7 +336,8 @@ TEST(Team, TellsOfARelayThatFailsAndTheNextDoNotCountOnIt) {
   const Flown f =
       fly(passage_cave(folder), folder / "run",
           team_of(3, "relay_chain",
-                  "--set team.stagger=60s --set team.silent_relay=1 --set team.silent_after=20s"));
+                  "--set team.stagger=60s --set team.silent_relay=1 --set team.silent_after=20s"
+                  " --set simulator.battery_minutes=2.6min"));  // enough to explore all and come home
   ASSERT_EQ(f.robots.size(), 3u);
   EXPECT_EQ(f.count(f.log, "silent"), 1);
   EXPECT_EQ(f.last("base")["dead"], json::array({1})) << "who stood by told that it is dead";
