@@ -17,7 +17,9 @@ namespace {
 /// The command to which the words lead as far as they are valid.
 const CLI::App& reached(const CLI::App& app) {
   const CLI::App* at = &app;
-  while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
+  // An option group is a subcommand without a name.
+  while (!at->get_subcommands().empty() && !at->get_subcommands().front()->get_name().empty())
+    at = at->get_subcommands().front();
   return *at;
 }
 
@@ -79,7 +81,7 @@ int exit_code(const CLI::App& app, const CLI::ParseError& e) {
   }
   if (e.get_exit_code() == 0) return app.exit(e);
   std::string wrong = wrong_command(app);
-  if (wrong.empty() && e.get_name() == "ExtrasError") wrong = wrong_option(app);
+  if (wrong.empty()) wrong = wrong_option(app);
   if (wrong.empty()) {
     app.exit(e);
   } else {
