@@ -143,7 +143,10 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
   }
   if (!row->choices.empty() &&
       std::find(row->choices.begin(), row->choices.end(), text) == row->choices.end()) {
-    const std::string near = nearest_name(text, row->choices);
+    // Names as short as those of units are all near to each other: "km" is no slip for "m".
+    const bool short_names = std::all_of(row->choices.begin(), row->choices.end(),
+                                         [](const std::string& c) { return c.size() <= 2; });
+    const std::string near = short_names ? "" : nearest_name(text, row->choices);
     bad(near.empty() ? "" : "; did you mean " + near + "?");
   }
   if (auto* const* words = std::get_if<std::string*>(&row->target)) {

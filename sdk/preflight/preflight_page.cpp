@@ -29,11 +29,14 @@ td { vertical-align: top; padding: .4mm 0; }
 .plan .bar { stroke: #111; fill: none; }
 .plan text { fill: #111; font-family: system-ui, "DejaVu Sans", sans-serif; }
 .note { font-size: 8pt; margin: 0; text-align: center; }
+/* One page: the picture takes the room that the text leaves of 297 - 2 x 12 mm, less 1 mm for rounding. */
 @media print {
-  body { padding: 0; max-width: none; }
-  h2 { break-after: avoid; }
-  table, ul, .plan { break-inside: avoid; }
-  .plan { max-height: 95mm; width: auto; }
+  body { padding: 0; max-width: none; font-size: 8.5pt; line-height: 1.25; height: 272mm; display: flex;
+    flex-direction: column; }
+  h2 { break-after: avoid; margin-top: 2mm; }
+  table, ul { break-inside: avoid; }
+  body > * { flex: none; }
+  body > .plan { flex: 0 1 auto; min-height: 30mm; width: auto; margin: 1.5mm auto; }
 }
 )css";
 

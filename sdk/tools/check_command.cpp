@@ -185,7 +185,7 @@ void add_check_command(CLI::App& policy) {
       "  karst policy check mine.so --level pedantic --seed 7 --json\n"
       "  karst policy check mine.so --test goals --test determinism.repeat\n\n"
       "Levels: basic is what a flight needs, strict what a policy given to others should hold, pedantic adds "
-      "hygiene.\nExit code: 0 all passed, 2 a test failed, 1 not checked: a wrong argument, or no such "
+      "tidiness.\nExit code: 0 all passed, 2 a test failed, 1 not checked: a wrong argument, or no such "
       "file.");
   add_common(*check_app, *args);
   check_app

@@ -106,7 +106,7 @@ void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequ
   print_out("  flight time      %s\n  path length      %s\n  mean speed       %s\n",
             number("flight_time_s", "%.0f s").c_str(), number("path_length_m", "%.0f m").c_str(),
             number("mean_speed_mps", "%.2f m/s").c_str());
-  print_out("  explored volume  %s", number("explored_volume_m3", "%.0f m^3").c_str());
+  print_out("  explored volume  %s", number("explored_volume_m3", "%.0f m³").c_str());
   if (!metrics["coverage"].is_null())
     print_out(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
   print_out("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
@@ -248,7 +248,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
       "Missions to start from: " +
           core::doc_path("examples/missions") +
           "\n\n"
-          "Exit code: 0 the mission went as meant: explored until nothing was left, or the time or the "
+          "Exit code: 0 the mission went as planned: explored until nothing was left, or the time or the "
           "battery, and landed at the start or as a relay (of a team: all did). 2 it did not: sent home or "
           "down early, landed elsewhere, or the record is incomplete. 1 not flown, or nothing could be "
           "printed.");

@@ -34,6 +34,13 @@ struct PreflightArguments {
   bool json = false, quiet = false;
 };
 
+/// Of a terminal; a file or a pipe gets lines of a length that can be read, too.
+std::size_t text_columns() {
+  constexpr std::size_t kColumnsOfAFile = 100;
+  const std::size_t columns = terminal_columns(stdout);
+  return columns > 0 ? columns : kColumnsOfAFile;
+}
+
 /// Adds a setting for which there is an option of its own.
 void add_setting(flight::MissionOverrides& overrides, const char* option, const std::string& key,
                  const std::string& value) {
@@ -63,8 +70,9 @@ int run(const PreflightArguments& args) {
   if (args.json) {
     print_json(preflight::to_json(known, findings));
   } else {
-    print_wrapped(stdout, 4, "%s", preflight::findings_text(known, findings).c_str());
-    print_wrapped(stdout, preflight::kNameColumns, "%s", preflight::facts_text(known).c_str());
+    const std::size_t columns = text_columns();
+    print_out("%s", wrapped(preflight::findings_text(known, findings), columns, 4).c_str());
+    print_out("%s", wrapped(preflight::facts_text(known), columns, preflight::kNameColumns).c_str());
   }
   return preflight::is_go(findings) ? 0 : kNoGo;
 }

@@ -280,9 +280,38 @@ TEST(BadInput, UsageErrorsNameTheWord) {
   expect_refused(run_karst("reprt x"), {"\"reprt\" is no command", "did you mean report"});
   expect_refused(run_karst("cave genrate --out x"), {"\"genrate\" is no command", "did you mean generate"});
   EXPECT_FALSE(run_karst("reprt x").says("subcommand is required")) << "it was said twice";
-  expect_refused(run_karst("fly --polcy x"), {"\"--polcy\" is no option of fly", "did you mean --policy?"});
-  expect_refused(run_karst("cave info --zzzzz"), {"\"--zzzzz\" is no option of info", "--help lists them"});
+  expect_refused(run_karst("fly --polcy x"),
+                 {"karst: \"--polcy\" is no option of karst fly; did you mean --policy?"});
+  expect_refused(
+      run_karst("cave info --zzzzz"),
+      {"karst: \"--zzzzz\" is no option of karst cave info; `karst cave info --help` says more\n"});
   expect_refused(run_karst("fly --threads many"), {"--threads", "many"});
+}
+
+// "cave is required", "--paper: 1 required FOLDER missing", "shell: fish not in {bash,zsh}", and "Run with
+// --help or --help-all for more information".
+TEST(BadInput, UsageErrorsNameTheCommandAndWhereToReadMore) {
+  for (const auto& [arguments, said] :
+       {std::pair{"preflight",
+                  "karst: karst preflight: argument cave is missing; `karst preflight --help` says more\n"},
+        std::pair{"fly a b c",
+                  "karst: karst fly: \"b\" is more than it takes; `karst fly --help` says more\n"},
+        std::pair{"fly --out",
+                  "karst: karst fly: --out: needs a value, FOLDER; `karst fly --help` says more\n"},
+        std::pair{"completion fish",
+                  "karst: karst completion: shell: expected bash or zsh, got \"fish\"; "
+                  "`karst completion --help` says more\n"},
+        std::pair{"fly --threads many",
+                  "karst: karst fly: --threads: expected a number from 1 to 256, got "
+                  "\"many\"; `karst fly --help` says more\n"},
+        std::pair{"reprt", "karst: \"reprt\" is no command; did you mean report? `karst --help` says more\n"},
+        std::pair{"fly --seed x",
+                  "karst: karst fly: --seed: expected another kind of value, got \"x\"; "
+                  "`karst fly --help` says more\n"}}) {
+    const Output out = run_karst(arguments);
+    EXPECT_EQ(out.code, 1) << arguments;
+    EXPECT_EQ(out.text, said) << arguments;
+  }
 }
 
 // It was an error: "A subcommand is required".

@@ -92,6 +92,10 @@ TEST(RecordRequests, ADecisionIsExplainedWithItsWholeList) {
   for (const char* part : {"Decision ", ", phase explore, by nearest_frontier: goals",
                            " offered:", "Request ", "best first:", "   1  score "})
     EXPECT_TRUE(whole.says(part)) << part << " in:\n" << whole.text;
+  EXPECT_FALSE(whole.says("that were tried")) << "they stand in the whole list\n" << whole.text;
+  const Output list = run_karst("explain " + run);
+  EXPECT_EQ(list.code, 0) << list.text;
+  EXPECT_TRUE(list.says(" decisions") && list.says("`karst explain " + run + " --at ")) << list.text;
   EXPECT_EQ(run_karst("report " + run).code, 0);
   EXPECT_NE(bytes_of(dir / "run/report.html").find("\"recorded\":true"), std::string::npos)
       << "the report has the list, too";

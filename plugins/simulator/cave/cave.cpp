@@ -73,6 +73,7 @@ CaveOfFile read_cave(const std::string& path, const core::MeshKeys& keys) {
   CaveOfFile bare;
   bare.cave.file = bare.cave.mesh_path = path;
   bare.cave.mesh_frame = mesh_frame(path, path, keys);
+  bare.cave.mesh_frame.given_as_options = true;
   return bare;
 }
 

@@ -231,6 +231,9 @@ Campaign read_campaign(const std::string& file) {
   table.add("seeds", seeds, 1, kMaxSeeds, "how many: 1, 2, 3 ...");
   table.add("seed_list", seed_list, {}, "the seeds themselves");
   table.add("metric", c.metric, metric_names(), "the figure that the verdict is about");
+  for (const auto& [key, value] : core::leaves_of(tree))
+    if (key.find('.') != std::string::npos)
+      throw InputError(file, key, "is no key of a campaign; settings of the missions go into settings { }");
   table.read(file, tree);
   c.seeds = parse_seeds(file, seeds, seed_list);
   c.mission = core::beside(file, c.mission);

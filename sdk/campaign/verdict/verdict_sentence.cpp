@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/format_text.h"
 #include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/campaign/verdict/verdict_parts.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
@@ -22,7 +23,8 @@ const MetricDefinition& definition(int metric) {
 }
 
 std::string unit_of(const MetricDefinition& d) {
-  return is_fraction(d) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
+  if (is_fraction(d)) return " points";
+  return d.unit == "m^3" ? " m\u00B3" : d.unit.empty() ? "" : " " + std::string(d.unit);
 }
 
 /// Uses as many decimals as two significant digits of `scale` need.
@@ -34,6 +36,9 @@ std::string p_text(double p) {
   std::snprintf(text.data(), text.size(), p < 0.1 ? "p = %.3f" : "p = %.2f", p);
   return text.data();
 }
+
+/// The comparisons of two contestants in one figure, for which p is corrected.
+std::size_t comparisons_of(std::size_t contestants) { return contestants * (contestants - 1) / 2; }
 
 /// "6 caves x 10 seeds", or "57 pairs in 6 caves" if caves differ in their number of pairs.
 std::string sample(const Comparison& c) {
@@ -59,24 +64,33 @@ std::string size_of(const Comparison& c, const CampaignResults& results, const V
   double low = sign * c.interval.low, high = sign * c.interval.high;
   if (low > high) std::swap(low, high);
   const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
-  const bool corrected = results.contestants.size() > 2;
+  const std::size_t compared = comparisons_of(results.contestants.size());
   std::string text = number(sign * c.difference, scale) + unit_of(d) + " (";
   if (!std::isnan(low))
     text += number(100 * (1 - options.alpha), 10) + " % CI " + number(low, scale) + " to " +
             number(high, scale) + unit_of(d) + (c.few_seeds ? " over caves; " : "; ");
-  return text + sample(c) + ", " + p_text(c.p_corrected) + (corrected ? " after correction" : "") +
+  return text + sample(c) + ", " + p_text(c.p_corrected) +
+         (compared > 1 ? " after correction for " + std::to_string(compared) + " comparisons" : "") +
          failures(c, results) + ")";
 }
 
-/// The reason for no shown difference, if the interval alone does not tell.
+/// The reason for no shown difference, if the interval alone does not tell. The interval is of the mean and
+/// is not corrected; p is of the pairs' signed ranks and is. So one may show what the other does not.
 std::string why_none(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
   // Pairs that all favour one side have p = 2 / 2^pairs, times the pairs of contestants after correction.
-  const auto contestants = static_cast<double>(results.contestants.size());
-  const double min_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
-  if (min_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
-  if (c.interval.excludes(0) && c.p_corrected >= options.alpha)
-    return "; the means differ, but pairs fall either way: who is ahead depends on the cave";
-  return "";
+  const std::size_t compared = comparisons_of(results.contestants.size());
+  const double min_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * static_cast<double>(compared);
+  const std::string bound = core::format_text("%g", options.alpha);
+  if (min_p >= options.alpha)
+    return "; " + counted(c.pairs, "pair") + " cannot show any: p would have to be below " + bound +
+           ", and of so few it is " + core::format_text("%.2g", std::min(1.0, min_p)) + " at least";
+  if (!c.interval.excludes(0) || c.p_corrected < options.alpha) return "";
+  if (c.test.p < options.alpha)
+    return "; the interval, which is not corrected, excludes zero, and by itself this pair would show a "
+           "difference (" +
+           p_text(c.test.p) + "), but after correction p is not below " + bound;
+  return "; the means differ, but pairs fall either way: their test, which decides, gives no p below " +
+         bound + (c.caves > 1 ? ", and who is ahead depends on the cave" : "");
 }
 
 std::string seeds_text(const Comparison& c, const VerdictOptions& options) {

@@ -24,10 +24,12 @@ constexpr std::array kReasons = {
     Reason{"explored: no frontier can be reached", "nothing was left to explore"},
     Reason{"explored: no frontier left that can be accepted", "nothing was left to explore"},
     Reason{"explored: ", "nothing was left to explore"},
-    Reason{"what is left is too far for the battery, or for the time allowed",
-           "what was left was too far for the battery, or for the time allowed"},
-    Reason{"the time left only just suffices for the way home",
-           "the time left only just sufficed for the way home"},
+    Reason{"what is left is too far for the battery", "what was left was too far for the battery"},
+    Reason{"what is left is too far for the time allowed", "what was left was too far for the time allowed"},
+    Reason{"the battery only just suffices for the way home",
+           "the battery only just sufficed for the way home"},
+    Reason{"the time allowed only just suffices for the way home",
+           "the time allowed only just sufficed for the way home"},
     Reason{"the policy asked for it: an error of the core: ", "the core failed"},
     Reason{"the policy asked for it: ", "the policy asked for it"},
     Reason{"the state estimate is lost: ", "the pose was lost"},
@@ -73,15 +75,6 @@ struct Course {
   bool to_its_end = false;  // it explored to its end
 };
 
-std::string why_turned(const RunRecord& run, const std::string& reason) {
-  const auto homing = run.last<event::Homing>();
-  if (homing && reason.starts_with("the time left only just suffices")) {
-    if (homing->reason == "battery") return "the battery only just sufficed for the way home";
-    if (homing->reason == "time limit") return "the time allowed only just sufficed for the way home";
-  }
-  return afterwards(reason);
-}
-
 Course course_of(const RunRecord& run) {
   Course c;
   for (const nlohmann::json& e : run.events) {
@@ -93,7 +86,7 @@ Course course_of(const RunRecord& run) {
     if (!c.takeoff_s) c.takeoff_s = time_s;
     const bool down = phase->phase == core::Phase::land;
     if (!down && phase->phase != core::Phase::home) continue;
-    const Turn turn{time_s, phase->phase, why_turned(run, phase->reason)};
+    const Turn turn{time_s, phase->phase, afterwards(phase->reason)};
     if (!c.turned_back) c.turned_back = turn;
     c.out_of_contact = down && phase->reason == kOutOfContact;
     if (down && !phase->reason.empty() && phase->reason != kInContact && !c.out_of_contact)
@@ -232,7 +225,7 @@ Ending joint_ending(const std::vector<Ending>& robots) {
     joint.sentence += (joint.sentence.empty() ? "robot " : ". Robot ") + std::to_string(i + 1) + ": " +
                       (silent(robots[i]) ? "nothing recorded" : robots[i].sentence);
   }
-  if (joint.as_meant) joint.sentence = "all " + std::to_string(robots.size()) + " robots flew as meant";
+  if (joint.as_meant) joint.sentence = "all " + std::to_string(robots.size()) + " robots flew as planned";
   return joint;
 }
 

@@ -15,8 +15,8 @@ struct FailedPolicy {
 };
 
 struct Ending {
-  /// Whether the mission went as meant: like completed(), but a landing as a relay counts, too, and so does a
-  /// recording that was replayed to its end.
+  /// Whether the mission went as planned: like completed(), but a landing as a relay counts, too, and so does
+  /// a recording that was replayed to its end.
   bool as_meant = false;
   /// "home because nothing was left to explore; 62 % battery left", "home after 4 s: the pose was lost".
   /// Times count from take-off. Empty: the record has no events.
@@ -33,7 +33,7 @@ Ending ending_of(const RunRecord& run, const EndFigures& figures);
 /// With the figures from the record itself.
 Ending ending_of(const RunRecord& run);
 
-/// Of a team whose robots ended so: as meant if each was, or else the robots that were not, by number.
+/// Of a team whose robots ended so: as planned if each was, or else the robots that were not, by number.
 Ending joint_ending(const std::vector<Ending>& robots);
 
 }  // namespace karst::evaluation

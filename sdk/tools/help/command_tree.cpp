@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "sdk/tools/help/value_types.h"
+#include "sdk/tools/help/value_words.h"
 
 namespace karst::tools {
 namespace {
@@ -36,7 +37,7 @@ CommandOption option_of(const CLI::Option& from) {
   out.required = from.get_required();
   if (from.get_items_expected_max() == 0) return out;  // a flag
   const std::string type = from.get_type_name();
-  out.value = type.substr(0, type.find(':'));
+  out.value = value_word(type.substr(0, type.find(':')));
   out.choices = choices_in(type);
   out.kind = kind_of(out);
   out.default_text = from.get_default_str();

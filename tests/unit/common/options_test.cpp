@@ -268,6 +268,7 @@ TEST(Units, FactorsMatchTheirDefinitions) {
   EXPECT_DOUBLE_EQ(unit_factor("deg", "rad").value(), std::numbers::pi / 180);
   EXPECT_DOUBLE_EQ(unit_factor("min", "s").value(), 60);
   EXPECT_DOUBLE_EQ(unit_factor("m", "cm").value(), 100);
+  EXPECT_DOUBLE_EQ(unit_factor("ft", "in").value(), 12);
   EXPECT_FALSE(unit_factor("m", "s").has_value());
   EXPECT_FALSE(unit_factor("m/s", "rad/s").has_value());
   EXPECT_FALSE(unit_factor("furlong", "m").has_value());

@@ -47,6 +47,9 @@ TEST(CampaignReportInBrowser, DrawsEverySectionWithoutAnError) {
   EXPECT_NE(shown.find("karst report '0-0-2'"), std::string::npos);  // the failed trial
   EXPECT_EQ(shown.find("NaN"), std::string::npos);
   EXPECT_EQ(shown.find("undefined"), std::string::npos);
+  EXPECT_NE(shown.find("<b>5:00&nbsp;min</b><span>at most explored for</span>"), std::string::npos);
+  EXPECT_EQ(shown.find("m^3"), std::string::npos);
+  EXPECT_EQ(test::cut_on_desktop(dir.path() / "report.html"), "");
 }
 
 TEST(CampaignReportInBrowser, HasANorthArrowInBothViewsAndFitsAPhone) {

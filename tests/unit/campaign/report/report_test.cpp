@@ -224,8 +224,9 @@ TEST(CampaignReport, ListsTrialsThatCameHomeEarlyWithHowTheyEnded) {
   EXPECT_EQ(worst[0].why, "did not land (stuck): " + results.trials[2].ended);
   std::set<std::pair<std::size_t, std::string>> early;  // of the same figure, in either order
   for (const std::size_t i : {1u, 2u}) early.emplace(worst[i].trial, worst[i].why);
-  EXPECT_EQ(early, (std::set<std::pair<std::size_t, std::string>>{
-                       {4, "did not go as meant: " + results.trials[4].ended}, {8, "did not go as meant"}}));
+  EXPECT_EQ(early,
+            (std::set<std::pair<std::size_t, std::string>>{
+                {4, "did not go as planned: " + results.trials[4].ended}, {8, "did not go as planned"}}));
   EXPECT_EQ(written(results)["trials"][4]["ended"], results.trials[4].ended);
 }
 

@@ -50,7 +50,7 @@ TEST(RunEnding, OfATeamIsOneForEachRobotAndAsMeantIfAllAre) {
   dir.write("robot_2/events.jsonl", kHomeEvents);
   ASSERT_EQ(read_endings(dir.path()).size(), 2u);
   EXPECT_TRUE(read_ending(dir.path()).as_meant);
-  EXPECT_EQ(read_ending(dir.path()).sentence, "all 2 robots flew as meant");
+  EXPECT_EQ(read_ending(dir.path()).sentence, "all 2 robots flew as planned");
   dir.write("robot_2/events.jsonl", kLostEvents);
   EXPECT_FALSE(read_ending(dir.path()).as_meant);
   EXPECT_EQ(read_ending(dir.path()).sentence,
