@@ -158,7 +158,7 @@ TEST_F(MissionControlTest, NowExploredAndNowAGoalExploresUntilTheBatterySendsItH
   EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_FALSE(homing_reason().starts_with("explored")) << homing_reason();
-  EXPECT_NE(homing_reason().find("time"), std::string::npos) << homing_reason();
+  EXPECT_NE(homing_reason().find("battery"), std::string::npos) << homing_reason();
 }
 
 TEST_F(MissionControlTest, WithoutPatienceTheFirstExploredSendsItHome) {

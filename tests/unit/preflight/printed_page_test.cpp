@@ -41,8 +41,8 @@ Preflight wordy_mission() {
   p.policy->parameters.clear();
   for (int i = 0; i < 14; ++i)
     p.policy->parameters.emplace_back("min_distance_" + std::to_string(i), "12.5 m");
-  p.policy->reason = std::string(60, 'a');
-  for (int i = 0; i < 60; ++i) p.policy->reason += " the caves flown";
+  p.policy->reason = std::string(60, 'a');  // a long name and 480 characters, as many as reasons have
+  for (int i = 0; i < 30; ++i) p.policy->reason += " the caves flown";
   p.policy->confidence = 0.4;
   p.policy->expected[0].value = 0.3;
   p.cave->reachable_m3 = 1000;
