@@ -51,6 +51,10 @@ void collect_leaves(const pt::ptree& tree, const std::string& prefix,
   }
 }
 
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+}  // namespace
+
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -65,10 +69,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   }
   return row.back();
 }
-
-std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
-
-}  // namespace
 
 std::string nearest_name(const std::string& key, const std::vector<std::string>& candidates) {
   std::string best;

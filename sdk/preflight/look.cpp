@@ -37,12 +37,13 @@ constexpr double kLeastHole_m2 = 0.01;  // smaller ones are slits between triang
 
 bool is_auto(const Mission& m) { return m.policy == flight::kAutoPolicy; }
 
-/// Throws what `karst fly` would: an unknown policy, or a parameter that it does not have.
-void refuse_bad_policy(const Mission& mission, const LookOptions& options) {
+/// Every parameter of the mission's policy with the value in force. Throws what `karst fly` would: an unknown
+/// policy, or a parameter that it does not have.
+boost::property_tree::ptree parameters_in_force(const Mission& mission, const LookOptions& options) {
   flight::FlightRequest request;
   request.plugins = options.plugins;
   request.notes = false;
-  flight::load_policies({mission}, request);
+  return flight::load_policies({mission}, request).policies.front()->parameters();
 }
 
 std::optional<core::VehicleDescription> vehicle_of(const Mission& m, Preflight& p) {
@@ -222,8 +223,11 @@ PolicyFacts policy_facts(const Mission& m, const LookOptions& options, const Cav
   if (is_auto(m)) {
     Mission flown = m;
     flown.policy = f.policy;
+    const boost::property_tree::ptree unselected = parameters_in_force(flown, options);
     flown.policy_parameters = parameters;
-    refuse_bad_policy(flown, options);
+    parameters_in_force(flown, options);  // throws what is wrong
+    for (const auto& [key, value] : f.parameters)
+      if (unselected.get<std::string>(key, "") != value) f.changed.emplace_back(key, value);
   }
   return f;
 }
@@ -242,7 +246,7 @@ void refuse_unclear(const Mission& m) {
 
 Preflight look_at(const Mission& m, const LookOptions& options) {
   refuse_unclear(m);
-  if (!is_auto(m)) refuse_bad_policy(m, options);
+  if (!is_auto(m)) parameters_in_force(m, options);  // throws what is wrong
   const cave::Cave rock = cave::load_cave(m.cave, m.start, m.mesh);
   Preflight p;
   p.cave_file = m.cave;

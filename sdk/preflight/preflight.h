@@ -77,7 +77,8 @@ struct RankedPolicy {
 struct PolicyFacts {
   std::string policy;
   std::vector<std::pair<std::string, std::string>> parameters;
-  bool selected = false;                    // for this cave
+  std::vector<std::pair<std::string, std::string>> changed;  // of those selected: what is not the default
+  bool selected = false;                                     // for this cave
   bool fallback = false;                    // nothing could be selected; neither: named by the user
   std::string reason;                       // of the selection, or why nothing is expected
   std::string metric;                       // by which policies are ranked

@@ -13,7 +13,7 @@ using core::xml_text;
 constexpr const char* kStyle = R"css(
 @page { size: A4; margin: 12mm 14mm; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 182mm; padding: 6mm 0; color: #111; background: #fff;
+body { margin: 0 auto; max-width: 182mm; padding: 6mm 5mm; color: #111; background: #fff;
   font: 9.5pt/1.35 system-ui, "DejaVu Sans", sans-serif; overflow-wrap: anywhere; }
 h1 { font-size: 15pt; margin: 0 0 1mm; }
 h2 { font-size: 10.5pt; margin: 3mm 0 1mm; border-bottom: .3mm solid #111; }

@@ -6,12 +6,16 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/homing/path_home/home.h"
 #include "sdk/selection/figure_words.h"
 
 namespace karst::preflight {
 namespace {
 
 using core::format_text;
+
+constexpr double kClearlySooner = 0.95;  // of the time until the vehicle must turn back
+constexpr double kByFar = 2;             // times the battery: a flight time that nothing depends on
 
 Section vehicle_section(const VehicleFacts& v) {
   constexpr double kDegree_rad = std::numbers::pi / 180;
@@ -95,11 +99,30 @@ Section policy_section(const PolicyFacts& p) {
   return s;
 }
 
-Section time_section(const TimeBudget& t) {
+/// When nothing is left to explore, if that is before the vehicle must turn back; otherwise "".
+std::string explored_text(const Preflight& p) {
+  const TimeBudget& t = *p.time;
+  const double landed_s = p.policy ? expected_value(*p.policy, "flight_time_s") : selection::kUnknown;
+  if (const double explored_s = landed_s - t.home_s; explored_s < kClearlySooner * t.turn_back_s)
+    return "after about " + duration_text(std::max(0.0, explored_s)) + ", as in the flights known";
+  if (!std::isnan(landed_s) || !p.cave) return "";
+  const double length_m = p.cave->figures.length_m,
+               once_s = t.limits.takeoff_height_m / t.limits.landing_speed_mps +
+                        core::flight_time_s(length_m, t.limits.motion);
+  if (!(once_s < kClearlySooner * t.turn_back_s)) return "";
+  return "roughly after " + duration_text(once_s) +
+         format_text(": the time to fly once along the %.0f m of passages", length_m);
+}
+
+Section time_section(const Preflight& p) {
+  const TimeBudget& t = *p.time;
+  const TimeLimits& l = t.limits;
   Section s{"Time", {}};
-  if (t.limits.battery_s) s.rows.push_back({"battery", duration_text(*t.limits.battery_s) + " of hovering"});
-  s.rows.push_back({"flight time allowed", duration_text(t.limits.max_flight_time_s)});
+  if (l.battery_s) s.rows.push_back({"battery", duration_text(*l.battery_s) + " of hovering"});
+  if (!l.battery_s || l.max_flight_time_s < kByFar * *l.battery_s)
+    s.rows.push_back({"flight time allowed", duration_text(l.max_flight_time_s)});
   if (!t.explores()) return s;
+  if (const std::string text = explored_text(p); !text.empty()) s.rows.push_back({"explored", text});
   s.rows.push_back(
       {"turns back", duration_text(t.turn_back_s) +
                          format_text(" after take-off, if it is then %.0f m from the start and the "
@@ -135,7 +158,7 @@ std::string verdict_text(const std::vector<Finding>& findings) {
 
 std::vector<Section> sections_of(const Preflight& p) {
   std::vector<Section> all;
-  if (p.time) all.push_back(time_section(*p.time));
+  if (p.time) all.push_back(time_section(p));
   if (p.policy) all.push_back(policy_section(*p.policy));
   if (p.cave) all.push_back(cave_section(*p.cave));
   if (p.vehicle) all.push_back(vehicle_section(*p.vehicle));

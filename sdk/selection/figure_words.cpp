@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
@@ -35,6 +36,15 @@ std::string metric_words(const std::string& metric) {
 std::string plain_number(double value) {
   const double size = std::abs(value);
   return core::format_text("%.*f", size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : 2, value);
+}
+
+std::string rounded_number(double value) {
+  const double size = std::abs(value);
+  if (!(size >= 999.5 && size < 1e15)) return core::format_text("%.3g", value);  // no power of ten yet
+  double unit = 10;
+  while (size >= 999.5 * unit) unit *= 10;
+  const auto rounded = static_cast<std::size_t>(std::llround(size / unit) * std::llround(unit));
+  return (value < 0 ? "-" : "") + core::grouped(rounded);
 }
 
 std::string metric_value_text(const std::string& metric, double value) {

@@ -30,13 +30,14 @@ std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave
       high = std::max(high, x);
     }
   const std::string unit = f.unit.empty() ? "" : " " + unit_text(std::string(f.unit));
+  const auto text = [&unit](double x) { return rounded_number(x) + unit; };
   return format_text(
-      "nothing like this cave was flown: the nearest, %s, is at distance %.2f, and caves farther than %.2f "
-      "from all others were never tried; most unlike is its %s: %.3g%s, against %.3g%s there and %.3g to "
-      "%.3g%s in all",
-      e.caves[nearest.cave].name.c_str(), nearest.distance.value, limit, std::string(f.name).c_str(),
-      cave.*f.value, unit.c_str(), e.caves[nearest.cave].figures.*f.value, unit.c_str(), low, high,
-      unit.c_str());
+             "nothing like this cave was flown: the nearest, %s, is at distance %.2f, and caves farther than "
+             "%.2f from all others were never tried; most unlike is its ",
+             e.caves[nearest.cave].name.c_str(), nearest.distance.value, limit) +
+         std::string(f.name) + ": " + text(cave.*f.value) + ", against " +
+         text(e.caves[nearest.cave].figures.*f.value) + " there and " + rounded_number(low) + " to " +
+         text(high) + " in all";
 }
 
 bool likeness_tells_nothing(const Experience& e, const Selected& s) {

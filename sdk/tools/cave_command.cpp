@@ -42,7 +42,7 @@ struct GenerateArguments {
   std::string preset = "small", out, format = "ply";
   std::vector<std::string> set;
   std::uint64_t seed = 1;
-  bool force = false;
+  bool force = false, quiet = false;
 };
 
 struct InfoArguments {
@@ -88,11 +88,14 @@ void generate(const GenerateArguments& args) {
   const cave::CaveRecipe recipe = recipe_of(args);
   const CaveFiles files = new_cave_files(args.out, args.format, args.force);
   StepProgress progress;
-  const cave::GeneratedCave cave = cave::generate_cave(
-      recipe, args.seed, [&](const char* step, double fraction) { progress(step, fraction); });
+  const auto show = [&](const char* step, double fraction) {
+    if (!args.quiet) progress(step, fraction);
+  };
+  const cave::GeneratedCave cave = cave::generate_cave(recipe, args.seed, show);
   cave::write_mesh(files.mesh, cave.mesh);
   write_info(files.info, files.mesh_name, cave, recipe, args);
-  progress("measuring the volume to explore", 0.9);
+  if (args.quiet) return;
+  show("measuring the volume to explore", 0.9);
   const evaluation::Reachable r = evaluation::find_reachable(cave.mesh, cave.start.position, {}, files.mesh);
   progress.end();
 
@@ -147,6 +150,18 @@ void print_open_edges(const std::vector<cave::BoundaryLoop>& loops) {
     print_out("                     and %zu smaller ones; --json lists all\n", loops.size() - kShown);
 }
 
+std::string closed_text(const selection::MeshFacts& m) {
+  const std::string flipped = core::counted(m.flipped_edges, "edge") +
+                              (m.flipped_edges == 1 ? " joins" : " join") +
+                              " triangles that face opposite sides; harmless";
+  if (m.odd_edges == 0)
+    return m.flipped_edges == 0 ? "yes, every edge joins two triangles that face the same side"
+                                : "yes (" + flipped + ")";
+  const std::string open =
+      core::format_text("no, %zu of %zu edges do not join two triangles", m.odd_edges, m.edges);
+  return m.flipped_edges == 0 ? open : open + " (" + flipped + ")";
+}
+
 void print_mesh(const InfoArguments& args, const MeshReport& report) {
   const selection::MeshFacts& m = report.facts;
   const Vec3 e = m.high - m.low;
@@ -155,11 +170,7 @@ void print_mesh(const InfoArguments& args, const MeshReport& report) {
   print_out("  extent             %.1f x %.1f x %.1f m (%s), heights %s to %s m\n", e.x(), e.y(), e.z(),
             unit_note(report.frame).c_str(), core::decimal_text(m.low.z(), 1).c_str(),
             core::decimal_text(m.high.z(), 1).c_str());
-  if (m.odd_edges == 0)
-    print_out("  closed             yes, every edge joins two triangles that face the same side\n");
-  else
-    print_out("  closed             no, %zu of %zu edges do not join two triangles that face the same side\n",
-              m.odd_edges, m.edges);
+  print_out("  closed             %s\n", closed_text(m).c_str());
   print_open_edges(report.loops);
   if (!cave::is_plain(report.frame))
     print_out("  read as            %s\n", cave::to_text(report.frame).c_str());
@@ -177,10 +188,15 @@ ordered_json loop_json(const cave::BoundaryLoop& loop) {
 
 ordered_json json_of(const InfoArguments& args, const MeshReport& report) {
   const selection::MeshFacts& m = report.facts;
-  ordered_json j{{"file", args.file},          {"triangles", m.triangles},
-                 {"low_m", core::list(m.low)}, {"high_m", core::list(m.high)},
-                 {"closed", m.odd_edges == 0}, {"edges", m.edges},
-                 {"odd_edges", m.odd_edges},   {"open_loops", report.loops.size()}};
+  ordered_json j{{"file", args.file},
+                 {"triangles", m.triangles},
+                 {"low_m", core::list(m.low)},
+                 {"high_m", core::list(m.high)},
+                 {"closed", m.odd_edges == 0},
+                 {"edges", m.edges},
+                 {"odd_edges", m.odd_edges},
+                 {"flipped_edges", m.flipped_edges},
+                 {"open_loops", report.loops.size()}};
   j["open_edges"] = ordered_json::array();
   for (const cave::BoundaryLoop& loop : report.loops) j["open_edges"].push_back(loop_json(loop));
   j["advice"] = ordered_json::array();
@@ -322,6 +338,13 @@ std::string generate_footer() {
          "\nThe same preset, keys and seed give the same cave.";
 }
 
+/// As CLI11 writes choices. Those who name another one get the generator's own message.
+std::string preset_choices() {
+  std::string all;
+  for (const std::string& name : cave::cave_presets()) all += (all.empty() ? "TEXT:{" : ",") + name;
+  return all + "}";
+}
+
 }  // namespace
 
 CLI::App& add_cave_command(CLI::App& app) {
@@ -330,7 +353,9 @@ CLI::App& add_cave_command(CLI::App& app) {
 
   auto g = std::make_shared<GenerateArguments>();
   CLI::App* make = cave->add_subcommand("generate", "Make a cave: writes OUT.ply and OUT.info");
-  make->add_option("--preset", g->preset, "the kind of cave to start from")->capture_default_str();
+  make->add_option("--preset", g->preset, "the kind of cave to start from")
+      ->type_name(preset_choices())
+      ->capture_default_str();
   make->add_option("--seed", g->seed, "seed of the random numbers: another seed, another cave of the kind")
       ->check(whole_64_bits())
       ->capture_default_str();
@@ -339,11 +364,13 @@ CLI::App& add_cave_command(CLI::App& app) {
       ->required()
       ->check(not_empty());
   make->add_option("--set", g->set, "a value of the recipe, key=value; any number of these")
+      ->type_name(kSetting)
       ->allow_extra_args(false);
   make->add_option("--format", g->format, "file format of the mesh")
       ->check(CLI::IsMember({"ply", "stl"}))
       ->capture_default_str();
   make->add_flag("--force", g->force, "overwrite files that exist");
+  make->add_flag("--quiet", g->quiet, "print nothing but errors: no progress, no facts about the cave");
   make->footer(generate_footer);
   make->callback([g] { generate(*g); });
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/output_file.h"
@@ -111,6 +112,7 @@ int check_file(CheckArguments& args) {
     tests.push_back(to_json(r));
   }
   const bool passed = count[Verdict::failed] == 0;
+  const auto notes = static_cast<std::size_t>(count[Verdict::noted]);
   if (args.json)
     print_json(ordered_json{{"schema", 1},
                             {"file", args.options.file},
@@ -119,8 +121,9 @@ int check_file(CheckArguments& args) {
                             {"passed", passed},
                             {"tests", tests}});
   else
-    print_out("%d passed, %d failed, %d not applicable, %d not run\n", count[Verdict::passed],
-              count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run]);
+    print_out("%d passed, %d failed, %d not applicable, %d not run%s\n", count[Verdict::passed],
+              count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run],
+              count[Verdict::noted] > 0 ? (", " + core::counted(notes, "note")).c_str() : "");
   return passed ? 0 : kFailed;
 }
 

@@ -138,7 +138,7 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
     fs::remove_all(folder, error);
     throw;
   }
-  print_out("%s: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
+  print_out("%s: starts as: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
   const std::string ending(from->ending);
   for (const std::string& file :
        {name + ending, name + "_test" + ending, std::string("CMakeLists.txt"), std::string("README.md")})

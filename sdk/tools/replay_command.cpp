@@ -191,7 +191,9 @@ void add_replay_command(CLI::App& app) {
       ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
       ->type_name(kFile)
       ->check(not_empty());
-  command->add_option("--set", args->settings, "key=value; see --keys")->allow_extra_args(false);
+  command->add_option("--set", args->settings, "key=value; see --keys")
+      ->type_name(kSetting)
+      ->allow_extra_args(false);
   command->add_flag("--json", args->json, "print metrics.json instead of a summary; no progress");
   command->add_flag("--quiet", args->quiet, "no progress");
   command->add_flag("--no-report", args->no_report, "no report.html");

@@ -263,6 +263,7 @@ void add_select_command(CLI::App& app) {
       ->type_name(kFile)
       ->check(not_empty());
   select->add_option("--metric", args->options.metric, "the figure to do best in")
+      ->type_name(kMetric)
       ->check(not_empty())
       ->capture_default_str();
   select->add_option("--level", args->options.level, "of the intervals")

@@ -20,17 +20,25 @@ std::string words_to(const CLI::App& app) {
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   const std::string near = core::nearest_name(word, names);
-  return near.empty() ? ";" : "; did you mean " + near + "?";
+  const std::size_t length = word.size() - std::min(word.find_first_not_of('-'), word.size());
+  const bool is_slip =
+      !near.empty() && core::edit_distance(word, near) <= std::max<std::size_t>(1, length / 3);
+  return is_slip ? "; did you mean " + near + "?" : ";";
+}
+
+/// Of a word that names no command below `at`.
+std::string no_command(const CLI::App& at, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : at.get_subcommands([](const CLI::App*) { return true; }))
+    if (!command->get_group().empty()) names.push_back(command->get_name());
+  return "\"" + word + "\" is no command" + suggestion(word, names);
 }
 
 /// Of the first word that names no command where one was expected; "" if all words so far are valid.
 std::string wrong_command(const CLI::App& at) {
   const std::vector<std::string> rest = at.remaining();
-  if (at.get_require_subcommand_min() == 0 || rest.empty()) return "";
-  std::vector<std::string> names;
-  for (const CLI::App* command : at.get_subcommands([](const CLI::App*) { return true; }))
-    if (!command->get_group().empty()) names.push_back(command->get_name());
-  return "\"" + rest.front() + "\" is no command" + suggestion(rest.front(), names);
+  if (at.get_require_subcommand_min() == 0 || rest.empty() || rest.front().starts_with("--")) return "";
+  return no_command(at, rest.front());
 }
 
 /// Of the first word that is an option of no command; "" if there is none.
@@ -99,6 +107,10 @@ const CLI::App& reached(const CLI::App& app) {
   while (!at->get_subcommands().empty() && !at->get_subcommands().front()->get_name().empty())
     at = at->get_subcommands().front();
   return *at;
+}
+
+std::string unknown_command(const CLI::App& at, const std::string& word) {
+  return no_command(at, word) + " `" + words_to(at) + " --help` says more";
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

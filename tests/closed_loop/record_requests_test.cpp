@@ -30,6 +30,11 @@ TEST(RecordRequests, ReplayAnswersAsInFlight) {
       run_karst("policy replay " + (dir / "run/requests.bin").string() + " --expect-same --set turn_cost=60");
   EXPECT_EQ(other.code, 2) << other.text;
   EXPECT_TRUE(other.says("DIFFERS") && other.says("recorded: ")) << other.text;
+  EXPECT_EQ(run_karst("policy replay " + (dir / "run/requests.bin").string() +
+                      " --expect-same --set policy.parameters.turn_cost=60")
+                .text,
+            other.text)
+      << "as karst fly names it";
 
   const Output part = run_karst("policy replay " + (dir / "run").string() + " --from 3 --to 5 --expect-same");
   EXPECT_EQ(part.code, 0) << part.text;

@@ -59,10 +59,19 @@ std::string seeds_sentence(const CampaignResults& results) {
          "); flights of the same cave and seed share start, noise, gusts and faults.";
 }
 
+/// The reserve is part of the flight time; "" if it is not known.
+std::string reserve_text(const CampaignResults& results) {
+  const auto reserve = std::find_if(results.shared.begin(), results.shared.end(),
+                                    [](const auto& s) { return s.first == "mission.home_reserve"; });
+  if (reserve == results.shared.end() || results.flight_time.empty()) return "";
+  return " (this includes the way home and a reserve of " + reserve->second + ")";
+}
+
 std::string conditions_sentence(const CampaignResults& results) {
   std::string text = "The flight time was " +
                      (results.flight_time.empty() ? "not recorded" : results.flight_time) +
-                     ", and the horizon of figures over time was " + fixed_text(results.horizon_s, 0) + " s";
+                     reserve_text(results) + ", and the horizon of figures over time was " +
+                     fixed_text(results.horizon_s, 0) + " s";
   const auto known = std::find_if(profiles().begin(), profiles().end(),
                                   [&](const Profile& p) { return p.name == results.profile; });
   if (results.profile.empty()) return text + ".";

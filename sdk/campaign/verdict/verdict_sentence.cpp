@@ -57,10 +57,15 @@ std::string failures(const Comparison& c, const CampaignResults& results) {
   return text.empty() ? "" : "; " + text;
 }
 
-/// The size of the difference with its interval, signed so that the mean is positive.
-std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
+/// As in the tables, a minus b; or without its sign, where words say who has more.
+enum class Signed { as_a_minus_b, positive };
+
+/// The size of the difference with its interval, which has the same sign.
+std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options,
+                    Signed as) {
   const MetricDefinition& d = definition(c.metric);
-  const double factor = is_fraction(d) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
+  const double factor = is_fraction(d) ? 100 : 1,
+               sign = as == Signed::positive && c.difference < 0 ? -factor : factor;
   double low = sign * c.interval.low, high = sign * c.interval.high;
   if (low > high) std::swap(low, high);
   const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
@@ -125,19 +130,18 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
   if (c.pairs == 0)
     return "nothing to compare in " + subject_of(d) + ": no cave and seed of which it is known of both " + a +
            " and " + b;
-  const bool a_has_more = c.difference > 0;
   if (c.shown == Shown::no_difference) {
     const std::string between = "no difference shown between " + a + " and " + b + " in " + subject_of(d);
     if (c.difference == 0 && c.test.positive + c.test.negative == 0)
       return between + ": all " + counted(c.pairs, "pair") + " equal";
     const bool primary = d.name == options.metric;
-    return between + ": " + a + " " + (a_has_more ? "more" : "less") + " by " + size_of(c, results, options) +
+    return between + ": " + a + " minus " + b + ": " + size_of(c, results, options, Signed::as_a_minus_b) +
            why_none(c, results, options) + (primary ? seeds_text(c, options) : "");
   }
   // The better contestant is named first; for figures without a better direction, the one with more.
   const bool a_first = c.shown == Shown::a_better || c.shown == Shown::a_more;
-  return (a_first ? a : b) + " " + verb_of(d, a_first == a_has_more) + " " + (a_first ? b : a) + ": " +
-         size_of(c, results, options);
+  return (a_first ? a : b) + " " + verb_of(d, a_first == (c.difference > 0)) + " " + (a_first ? b : a) +
+         ": " + size_of(c, results, options, Signed::positive);
 }
 
 std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results) {

@@ -30,6 +30,7 @@ struct DecisionRecord {
   double previous_s = 0;           // when the decision before it did; -inf for the first
   std::string phase;               // "" if unknown
   std::string flown_policy;        // the flight's own, also where the fallback decided; "" if unknown
+  bool policy_failed = false;      // for good, in this decision or before it
   core::event::Decision decision;
   std::vector<core::event::Goal> refused;  // in the order in which they were tried
   std::optional<core::event::Goal> accepted;

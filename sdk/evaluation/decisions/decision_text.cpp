@@ -7,6 +7,7 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
 #include "sdk/evaluation/decisions/clock.h"
+#include "sdk/evaluation/decisions/decided_by.h"
 
 namespace karst::evaluation {
 namespace {
@@ -84,7 +85,7 @@ std::string fate_text(const DecisionRecord& d) {
 std::string frontier_lines(const DecisionRecord& d) {
   if (d.offered.empty()) return "No frontiers were offered.\n";
   std::string text = counted(d.offered.size(), "frontier") + (d.offered.size() == 1 ? " was" : " were") +
-                     " offered:\n    id  unknown cells  distance, m  centroid, m\n";
+                     " offered:\n    id  unknown cells  straight, m  centroid, m\n";
   for (const event::Cluster& c : d.offered) {
     const std::string distance = d.vehicle ? format_text("%.1f", (c.centroid - *d.vehicle).norm()) : "?";
     text += format_text("%6u  %13u  %11s  ", c.id, c.unknown_cells, distance.c_str()) +
@@ -93,13 +94,19 @@ std::string frontier_lines(const DecisionRecord& d) {
   return text;
 }
 
+/// A decision takes effect some time after the request that it answers.
+std::string times_text(const DecisionRecord& d, const std::vector<RecordedAnswer>& answers) {
+  if (answers.empty()) return " at " + clock_text(d.t_s);
+  return std::string(answers.size() > 1 ? ", last asked at " : ", asked at ") +
+         clock_text(answers.back().stamp_s) + ", decided at " + clock_text(d.t_s);
+}
+
 }  // namespace
 
 std::string decision_text(const DecisionRecord& d, const std::vector<RecordedAnswer>& answers) {
-  std::string text = format_text("Decision %zu of %zu at ", d.number, d.of) + clock_text(d.t_s) +
-                     after(", phase ", d.phase) + after(", by ", d.decision.policy) + ": " +
-                     core::name_of(d.decision.outcome) + after(", ", d.decision.reason) + ". " +
-                     counted(d.decision.goals, "goal") + " proposed" +
+  std::string text = format_text("Decision %zu of %zu", d.number, d.of) + times_text(d, answers) +
+                     after(", phase ", d.phase) + after(", by ", decided_by(d)) + ": " + outcome_words(d) +
+                     ". " + counted(d.decision.goals, "goal") + " proposed" +
                      (d.decision.appending ? ", to follow the goal under way" : "") + ".\n";
   std::vector<JudgedAnswer> read;
   for (const RecordedAnswer& a : answers) {
@@ -132,7 +139,7 @@ std::string decision_line(const DecisionRecord& d) {
   }
   if (d.decision.outcome == core::Outcome::goals && d.flown && d.flown->position)
     return text + place_text(*d.flown->position) + " m, as before" + after(": ", d.decision.reason) + "\n";
-  return text + core::name_of(d.decision.outcome) + after(", ", d.decision.reason) + "\n";
+  return text + outcome_words(d) + "\n";
 }
 
 }  // namespace karst::evaluation

@@ -70,7 +70,7 @@ std::string entry(const CommandOption& option) {
     help += help.empty() || help.ends_with('.') ? "" : ".";
     help += "\n" + sentence;
   };
-  if (!option.choices.empty()) append("One of " + joined(option.choices, ", ") + ".");
+  if (option.kind == ValueKind::choice) append("One of " + joined(option.choices, ", ") + ".");
   if (!option.default_text.empty()) append("Default: " + option.default_text + ".");
   if (option.required) append("Required.");
   return ".TP\n" + head + "\n" + roff_text(help);

@@ -7,6 +7,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/decimal_text.h"
+#include "core_stack/common/shell_word.h"
 
 namespace karst::core {
 namespace {
@@ -19,6 +20,13 @@ TEST(FormatText, IsWhatPrintfWrites) {
 TEST(FormatText, HasNoLongestText) {
   const std::string name(100'000, 'x');
   EXPECT_EQ(format_text("%s and %s.", name.c_str(), name.c_str()), name + " and " + name + ".");
+}
+
+TEST(ShellWord, IsQuotedOnlyIfNeedBe) {
+  EXPECT_EQ(shell_word("policy.auto.survey=own/tunnel.info"), "policy.auto.survey=own/tunnel.info");
+  EXPECT_EQ(shell_word("1 2 1.5"), "'1 2 1.5'");
+  EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
+  EXPECT_EQ(shell_word(""), "''");
 }
 
 TEST(DecimalText, ZeroHasNoSign) {

@@ -263,6 +263,13 @@ TEST(NearestName, PrefersTheLeastEdits) {
   EXPECT_EQ(nearest_name("", {}), "");
 }
 
+TEST(OptionTable, EditDistanceCountsInsertedDeletedAndReplacedCharacters) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("time", "cave"), 3u);
+}
+
 TEST(Units, FactorsMatchTheirDefinitions) {
   EXPECT_DOUBLE_EQ(unit_factor("km/h", "m/s").value(), 1 / 3.6);
   EXPECT_DOUBLE_EQ(unit_factor("deg", "rad").value(), std::numbers::pi / 180);

@@ -129,6 +129,19 @@ TEST(FigureWords, ValuesHaveSensibleDigitsAndUnits) {
   EXPECT_EQ(unit_text("even_volume 10 m^3, 2 m^3"), "even_volume 10 m³, 2 m³");
 }
 
+// A volume was "5.2e+03 m³".
+TEST(FigureWords, RoundedNumbersHaveThreeDigitsAndNoPowerOfTen) {
+  EXPECT_EQ(rounded_number(0.5432), "0.543");
+  EXPECT_EQ(rounded_number(80), "80");
+  EXPECT_EQ(rounded_number(999.4), "999");
+  EXPECT_EQ(rounded_number(999.7), "1,000");
+  EXPECT_EQ(rounded_number(5204), "5,200");
+  EXPECT_EQ(rounded_number(-6914), "-6,910");
+  EXPECT_EQ(rounded_number(9996), "10,000");
+  EXPECT_EQ(rounded_number(20349), "20,300");
+  EXPECT_EQ(rounded_number(1234567), "1,230,000");
+}
+
 TEST(FigureWords, EveryLearnedMetricHasWords) {
   for (const std::string& metric : learned_metrics()) EXPECT_NE(metric_words(metric), metric);
 }

@@ -215,6 +215,10 @@ TEST(Select, RefusesWhatIsUnlikeAllThatWasFlownAndNamesWhy) {
   const Selected s = select(e, strange, {}, "cave");
   EXPECT_TRUE(s.refused);
   EXPECT_NE(s.reason.find("most unlike is its width: 60 m"), std::string::npos) << s.reason;
+  CaveFigures huge = cave_figures(0, 0.4);
+  huge.volume_m3 = 5e7;
+  const Selected large = select(e, huge, {}, "cave");
+  EXPECT_NE(large.reason.find("most unlike is its volume: 50,000,000 m³"), std::string::npos) << large.reason;
   EXPECT_GT(s.near.front().distance.value, s.limit);
 }
 

@@ -259,7 +259,9 @@ TEST(CaveCommand, BadArgumentsNameTheReason) {
             std::string::npos);
   EXPECT_NE(reason({"cave", "generate", "--out", folder.string() + "/"}).find("without ending"),
             std::string::npos);
-  EXPECT_NE(reason({"cave", "info", (folder / "none.ply").string()}).find("no such cave file"),
+  EXPECT_NE(reason({"cave", "info", (folder / "none.ply").string()}).find("none.ply: no such file"),
+            std::string::npos);
+  EXPECT_NE(reason({"cave", "info", (folder / "none.info").string()}).find("`karst cave generate` makes one"),
             std::string::npos);
   EXPECT_TRUE(fs::is_empty(folder));
   std::ofstream(folder / "file") << "x";
@@ -277,7 +279,55 @@ TEST(MeshFacts, CountsEdgesOfAHoleAndOfAFlippedTriangle) {
   open.triangles.pop_back();
   EXPECT_EQ(karst::selection::mesh_facts(open).odd_edges, 3u);
   std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
-  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 3u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 0u) << "it is as closed as before";
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).flipped_edges, 3u);
+}
+
+TEST(MeshFacts, AnEdgeOfFourTrianglesIsOddAndNotFlipped) {
+  // Two cubes that touch along an edge.
+  std::set<std::array<int, 3>> cells{{0, 0, 0}, {1, 1, 0}};
+  const auto mesh = karst::test::lattice_mesh(cells, 1.0, {0, 0, 0});
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 1u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).flipped_edges, 0u);
+}
+
+// It was called open: the simulator looks at triangles from both sides.
+TEST(CaveCommand, AMeshWithATriangleTheOtherWayRoundIsClosed) {
+  const std::string path = (fresh_folder() / "room.ply").string();
+  auto mesh = room_with_corridor(false);
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  karst::cave::write_mesh(path, mesh);
+  const std::string text = run({"cave", "info", path});
+  EXPECT_NE(text.find("closed             yes (3 edges join triangles that face opposite sides; harmless)\n"),
+            std::string::npos)
+      << text;
+  const auto j = nlohmann::json::parse(run({"cave", "info", "--json", path}));
+  EXPECT_TRUE(j["closed"]);
+  EXPECT_EQ(j["odd_edges"], 0);
+  EXPECT_EQ(j["flipped_edges"], 3);
+
+  mesh = room_with_corridor(true);
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  karst::cave::write_mesh(path, mesh);
+  const std::string open = run({"cave", "info", path});
+  EXPECT_NE(open.find("edges do not join two triangles (3 edges join"), std::string::npos) << open;
+  EXPECT_NE(open.find("closed             no, 8 of "), std::string::npos) << open;
+}
+
+TEST(CaveCommand, APointCloudIsSentToFromCloud) {
+  const std::string path = (fresh_folder() / "cloud.ply").string();
+  std::ofstream(path) << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                         "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const std::string e = reason({"cave", "info", path});
+  EXPECT_NE(e.find("a point cloud? `karst cave from-cloud` makes a cave of it"), std::string::npos) << e;
+}
+
+TEST(CaveCommand, GenerateWithQuietPrintsNothing) {
+  const std::string stem = (fresh_folder() / "demo").string();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run(with({"cave", "generate", "--quiet", "--out", stem}, kQuick)), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_TRUE(fs::exists(stem + ".info") && fs::exists(stem + ".ply"));
 }
 
 }  // namespace

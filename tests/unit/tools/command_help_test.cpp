@@ -252,6 +252,38 @@ TEST(BashCompletion, OffersThePoliciesOfTheKarstThatIsTyped) {
     EXPECT_EQ(name.find_first_of(" :"), std::string::npos) << name << " is no policy";
 }
 
+// Behind --set nothing was offered.
+TEST(BashCompletion, OffersTheKeysOfSettingsAndTheirChoices) {
+  const Bash bash("settings");
+  const std::string karst = std::string(KARST_BINARY_DIR) + "/bin/karst";
+  EXPECT_EQ(bash.proposed(karst + " fly --set mission.max"), Names{"mission.max_flight_time="});
+  for (const char* command : {"preflight", "compare", "tune"})
+    EXPECT_EQ(bash.proposed(karst + " " + command + " --set mission.max"), Names{"mission.max_flight_time="})
+        << command;
+  const Names policy = bash.proposed(karst + " fly --set policy.");
+  for (const char* key : {"policy.isolation=", "policy.auto.survey="})
+    EXPECT_TRUE(policy.contains(key)) << key;
+  EXPECT_EQ(bash.proposed(karst + " fly --set = mission.max"), Names{"mission.max_flight_time="})
+      << "as bash splits words";
+  EXPECT_EQ(bash.proposed(karst + " cave generate --set vol"), Names{"volume="});
+  EXPECT_TRUE(bash.proposed(karst + " replay --set map.res").contains("map.resolution="));
+  EXPECT_EQ(bash.proposed(karst + " fly --set policy.isolation ="),
+            (Names{"in_process", "process", "where_possible"}));
+  EXPECT_EQ(bash.proposed(karst + " fly --set policy.isolation = wh"), Names{"where_possible"});
+  EXPECT_EQ(bash.proposed(karst + " fly --set = policy.isolation = wh"), Names{"where_possible"});
+  EXPECT_EQ(bash.proposed(karst + " fly --set seed ="), Names{}) << "a number";
+  EXPECT_EQ(bash.proposed(karst + " fly --set nonsense = x"), Names{});
+}
+
+TEST(BashCompletion, OffersPresetsAndMetrics) {
+  const Bash bash("presets");
+  EXPECT_EQ(bash.proposed("karst cave generate --preset ma"), Names{"maze"});
+  for (const char* command : {"results", "report", "compare", "select", "tune"}) {
+    const Names metrics = bash.proposed(std::string("karst ") + command + " --metric coverage");
+    EXPECT_TRUE(metrics.contains("coverage") && metrics.contains("coverage_auc")) << command;
+  }
+}
+
 /// The text of a function of the script.
 std::string function_in(const std::string& script, const std::string& name) {
   const std::size_t begin = script.find("\n" + name + "() {\n");
@@ -281,6 +313,20 @@ TEST(ZshCompletion, HasEveryCommandAndEveryOption) {
       EXPECT_TRUE(there) << words << " " << option;
     }
   });
+}
+
+TEST(ZshCompletion, OffersTheKeysOfSettingsPresetsAndMetrics) {
+  const std::string script = zsh_completion(commands_of(*karst_command()));
+  const auto offers = [&script](const char* function, const std::string& action) {
+    const std::string text = function_in(script, function);
+    EXPECT_NE(text.find(action), std::string::npos) << function << ": " << text;
+  };
+  offers("_karst__fly", ":KEY=VALUE: _karst_settings fly --keys'");
+  offers("_karst__compare", ":KEY=VALUE: _karst_settings fly --keys'");
+  offers("_karst__replay", ":KEY=VALUE: _karst_settings replay --keys'");
+  offers("_karst__cave__generate", ":KEY=VALUE: _karst_settings cave generate --help'");
+  offers("_karst__cave__generate", ":TEXT:(small ");
+  offers("_karst__results", ":METRIC:(");
 }
 
 TEST(ZshCompletion, ZshReadsIt) {

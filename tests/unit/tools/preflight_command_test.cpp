@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/shell_word.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
 #include "sdk/selection/describe.h"
+#include "sdk/selection/load_experience.h"
 #include "tests/unit/evaluation/reachable/boxes.h"
 #include "tests/unit/selection/experiences.h"
 
@@ -132,6 +134,40 @@ TEST(PreflightCommand, OfAKnownCaveIsGoWithThePolicyThatDidBestThere) {
   const Said in_words = run({cave, "--start", kStart, "--results", experience, "--battery", "5 min"});
   EXPECT_TRUE(in_words.text.starts_with("GO")) << in_words.text;
   EXPECT_TRUE(contains(in_words.text, "time of return")) << in_words.text;
+}
+
+std::string last_line(const std::string& text) {
+  EXPECT_TRUE(text.ends_with('\n'));
+  const std::string lines = text.substr(0, text.size() - 1);
+  return lines.substr(lines.rfind('\n') + 1);
+}
+
+// How to fly what was judged, a reader had to find out.
+TEST(PreflightCommand, EndsWithTheCommandThatFliesWhatWasJudged) {
+  const std::string cave = rooms(), file = (own_folder() / "experience.info").string();
+  experience_of(cave);
+  selection::Experience e = selection::load_experience({file}, [](const std::string&) {});
+  e.contestants[0].parameters.put("goals", "3");
+  e.contestants[0].parameters.put("horizon", "30 m");  // the default
+  std::ofstream(file) << selection::to_info(e);
+  const std::string begin = "  karst fly --cave " + core::shell_word(cave) + " --start '3 3 1' --policy ";
+  EXPECT_EQ(last_line(run({cave, "--start", kStart, "--results", file, "--battery", "5 min", "--set",
+                           "motion.max_speed=1 m/s"})
+                          .text),
+            begin +
+                "nearest_frontier --set 'simulator.battery_minutes=5 min' --set 'motion.max_speed=1 m/s' "
+                "--set policy.parameters.goals=3");
+  EXPECT_EQ(
+      last_line(run({cave, "--start", kStart, "--results", file, "--set", "policy.parameters.goals=5"}).text),
+      begin + "nearest_frontier --set policy.parameters.goals=5")
+      << "what is given takes precedence";
+  EXPECT_EQ(last_line(run({cave, "--start", kStart, "--results", file, "--policy", "lateral_frontier",
+                           "--vehicle", "lidar_only_uav", "--unit", "m"})
+                          .text),
+            "  karst fly --cave " + core::shell_word(cave) +
+                " --start '3 3 1' --unit m --policy lateral_frontier --set simulator.vehicle=lidar_only_uav");
+  const Said refused = run({cave, "--start", kStart, "--policy", "nearest_frontier", "--battery", "20 s"});
+  EXPECT_FALSE(contains(refused.text, "karst fly --cave")) << refused.text;
 }
 
 TEST(PreflightCommand, ABatteryThatIsTooSmallIsNoGo) {

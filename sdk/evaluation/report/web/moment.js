@@ -58,12 +58,12 @@ function choicePanel(decided, t) {
 function decisionPanel(t) {
   const i = lastAt(decisions.length, (k) => decisions[k].t, t);
   if (i < 0) return [make("div", { className: "quiet" }, "none yet")];
-  const d = decisions[i], count = (n) => n === undefined || n === null ? undefined : String(n);
+  const d = decisions[i], choice = choiceAt(data.choices, d.t), count = (n) => n === undefined || n === null ? undefined : String(n);
   return [
     rows([["number", String(d.sequence ?? i + 1)], ["at", clockText(d.t)],
-          ["by", d.policy && d.policy !== data.metrics.policy ? d.policy : null], ["outcome", count(d.outcome)],
+          ["by", d.policy && d.policy !== data.metrics.policy ? choice?.by ?? d.policy : null], ["outcome", choice?.result ?? count(d.outcome)],
           ["goals offered", count(d.goals)], ["frontiers", count(d.frontiers)]]),
-    make("div", {}, tied(d.reason || "")),
+    make("div", {}, tied(choice?.result ? "" : d.reason || "")),
     ...choicePanel(d.t, t),
   ];
 }

@@ -4,7 +4,7 @@
 function endedWell(outcome) { return outcome === "landed" || outcome === "replayed"; }
 
 function isTrouble(e) {
-  return e.kind === "safety" || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
+  return e.kind === "safety" || (e.kind === "log" && / broke, and was started once more: /.test(e.text)) || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
     (e.kind === "goal" && /rejected|unreachable|abandoned/.test(e.state)) ||
     (e.kind === "outcome" && !endedWell(e.outcome));
 }

@@ -71,6 +71,18 @@ TEST(CampaignReportInBrowser, HasANorthArrowInBothViewsAndFitsAPhone) {
   EXPECT_EQ(phone.open.find("replay-choices"), std::string::npos);
 }
 
+// Three means of 0.208 stood side by side, one of them bold.
+TEST(CampaignReportInBrowser, HasNoBoldMeanByCaveWhereTheBestArePrintedAlike) {
+  const auto table_of = [](double advantage) {
+    const TemporaryDirectory dir;
+    const std::string shown = show(fake_campaign(2, 2, 3, advantage, 0), dir.path());
+    const std::size_t begin = shown.find("id=\"figure-table\"");
+    return begin == std::string::npos ? "" : shown.substr(begin, shown.find("</table>", begin) - begin);
+  };
+  EXPECT_EQ(count(table_of(0.1), "<b>"), 3u) << "two caves, and all caves";
+  EXPECT_EQ(count(table_of(2e-5), "<b>"), 0u);
+}
+
 TEST(CampaignReportInBrowser, OfNextToNothingSaysWhatThereIs) {
   for (const auto& [contestants, caves, seeds] : {std::tuple{0, 0, 0}, {2, 1, 0}, {1, 1, 1}, {2, 2, 1}}) {
     TemporaryDirectory dir;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 #include "tests/unit/campaign/verdict/drawn_campaign.h"
 
@@ -104,6 +105,23 @@ TEST(Verdict, SaysWhichIsBetterByHowMuchAndHowSure) {
   EXPECT_EQ(v.sentence.rfind("B covers more, averaged over the flight, than A: ", 0), 0u) << v.sentence;
   EXPECT_NE(v.sentence.find(" points (95 % CI "), std::string::npos) << v.sentence;
   EXPECT_NE(v.sentence.find("6 caves x 10 seeds, p < 0.001)"), std::string::npos) << v.sentence;
+}
+
+// "B less by 0.37 points (95 % CI -1.18 to 1.35)" had an interval of the other sign than the tables.
+TEST(Verdict, WithoutAShownDifferenceGivesDifferenceAndIntervalAsTheTablesDo) {
+  const auto results = drawn_campaign(2, 1, 8, [](std::size_t k, std::size_t, std::int64_t seed) {
+    return Figures{{"coverage_auc", 0.5 + (k == 0 ? (seed % 2 ? -0.03 : 0.02) : 0)}};
+  });
+  const Comparison c = primary(compare_all(results, {.simulations = 0}));
+  ASSERT_EQ(c.shown, Shown::no_difference);
+  ASSERT_NEAR(c.difference, -0.005, 1e-9);
+  ASSERT_GT(-c.interval.low, c.interval.high);
+  const int decimals = decimals_for(100 * (c.interval.high - c.interval.low) / 5, 2);
+  const std::string expected =
+      "in coverage averaged over the flight: A minus B: " + fixed_text(-0.5, decimals) + " points (95 % CI " +
+      fixed_text(100 * c.interval.low, decimals) + " to " + fixed_text(100 * c.interval.high, decimals) +
+      " points; ";
+  EXPECT_NE(c.sentence.find(expected), std::string::npos) << c.sentence << "\nexpected " << expected;
 }
 
 TEST(Verdict, SaysSoonerOfShorterTimes) {

@@ -162,7 +162,7 @@ TEST(DecisionText, TellsAllThatWasRecorded) {
             "        accepted\n"
             "The goal was reached at 0:16.00, 5.7 s later.\n"
             "2 frontiers were offered:\n"
-            "    id  unknown cells  distance, m  centroid, m\n"
+            "    id  unknown cells  straight, m  centroid, m\n"
             "     7            120          3.0  (4.00 0.00 1.00)\n"
             "     9             40          4.1  (-3.00 1.00 1.00)\n"
             "Left out: frontier 11 at (0.00 0.00 9.00) m: no sensor sees it\n");
@@ -174,7 +174,7 @@ TEST(DecisionText, OfAGoalUnderWayAndOfNone) {
             "Decision 2 of 3 at 0:14.60, phase explore, by mine: goals. 1 goal proposed.\n"
             "Flew on to the goal accepted at 0:10.30, which was reached at 0:16.00, 1.4 s later.\n"
             "1 frontier was offered:\n"
-            "    id  unknown cells  distance, m  centroid, m\n"
+            "    id  unknown cells  straight, m  centroid, m\n"
             "     7             80            ?  (4.00 0.00 1.00)\n");
   EXPECT_EQ(
       decision_text(decision_of(run, 16.7), {}),
@@ -208,6 +208,66 @@ TEST(DecisionText, HasEachGoalOnceWhereTheAnswerIsRecorded) {
   EXPECT_EQ(count_of(text, "(3.00 0.00 1.00) m, frontier 7"), 1u) << text;
   EXPECT_NE(text.find("largest\n        refused: it lies in unknown space\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("that were tried"), std::string::npos) << text;
+}
+
+// The header had another time than the request, without a word why.
+TEST(DecisionText, SaysWhenItWasAskedForAndWhenItWasDecided) {
+  const DecisionRecord d = decision_of(record_of(kThreeDecisions), 10.3);
+  const std::string answer = R"({"outcome":"goals","reason":"","goals":[]})";
+  EXPECT_TRUE(decision_text(d, {}).starts_with("Decision 1 of 3 at 0:10.30, phase explore"));
+  EXPECT_TRUE(decision_text(d, {{2, 10.0, answer}})
+                  .starts_with("Decision 1 of 3, asked at 0:10.00, decided at 0:10.30, phase explore"))
+      << decision_text(d, {{2, 10.0, answer}});
+  EXPECT_TRUE(decision_text(d, {{2, 9.5, answer}, {3, 10.0, answer}})
+                  .starts_with("Decision 1 of 3, last asked at 0:10.00, decided at 0:10.30, "));
+}
+
+// "by fallback" and "explored" stood there in a flight in which nothing failed.
+TEST(DecisionText, SaysWhyTheFallbackDecided) {
+  const auto text_of = [](const std::string& reason, const std::string& more) {
+    return decision_text(
+        decision_of(
+            record_of(
+                std::string(kThreeDecisions) +
+                R"({"t":20.0,"kind":"decision","goals":1,"outcome":"explored","policy":"fallback","reason":")" +
+                reason + "\"}\n" + more),
+            20),
+        {});
+  };
+  const std::string refused =
+      R"({"t":20.0,"kind":"goal","frontier":7,"position":[3,0,1],"reason":"too far","score":2,"state":"rejected","why":"nearest"})"
+      "\n";
+  const std::string of_fallback =
+      R"({"t":20.0,"kind":"goal","frontier":7,"position":[3,0,1],"reason":"too far","score":2,"state":"rejected","why":"fallback: the nearest frontier"})"
+      "\n";
+  const std::string failed =
+      R"({"t":20.0,"kind":"safety","action":"fallback","reason":"the policy failed: it hangs"})"
+      "\n";
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string time = text_of("what is left is too far for the time allowed", refused + of_fallback);
+  EXPECT_TRUE(has(time,
+                  ", by the fallback, because all goals of mine were refused: nothing within reach in the "
+                  "time left. 1 goal proposed"))
+      << time;
+  const std::string battery = text_of("what is left is too far for the battery", of_fallback);
+  EXPECT_TRUE(has(
+      battery, ", by the fallback, because mine gave no goal: nothing within reach with the battery left."))
+      << battery;
+  const std::string broken = text_of("no frontier left that can be accepted", failed + of_fallback);
+  EXPECT_TRUE(
+      has(broken, ", by the fallback, because mine failed: explored, no frontier left that can be accepted."))
+      << broken;
+}
+
+TEST(DecisionLine, SaysThatTheTimeLeftEndedItAndNotTheCave) {
+  const std::string events =
+      std::string(kThreeDecisions) +
+      R"({"t":20.0,"kind":"decision","goals":1,"outcome":"explored","policy":"fallback","reason":"what is left is too far for the time allowed"})"
+      "\n";
+  EXPECT_EQ(decision_line(decision_of(record_of(events), 20)),
+            "  0:20.00  nothing within reach in the time left\n");
 }
 
 // "by fallback" stood above the policy's own goals.
