@@ -300,7 +300,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
   fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
   fly_app
       ->add_option("--time", args->flight_time,
-                   "flight time, such as \"300 s\" or 5min: short for --set mission.max_flight_time=...")
+                   "flight time, such as \"300 s\" or 5min: short for --set mission.max_flight_time")
       ->check(not_empty());
   fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")
       ->type_name(kFolder)
