@@ -13,6 +13,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
+#include "core_stack/common/shell_word.h"
 #include "sdk/evaluation/metrics/summary.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/cave_check.h"
@@ -74,8 +75,8 @@ void print_outcome(const nlohmann::ordered_json& metrics, const evaluation::Endi
 void print_way_to_debug(const fs::path& run_dir, const FlyArguments& args) {
   if (!args.record_requests)
     return print_error("karst: to repeat this in a debugger, fly with --record-requests\n");
-  std::string command = "gdb --args karst policy replay " + run_dir.string();
-  for (const std::string& plugin : args.plugins) command += " --plugin " + plugin;
+  std::string command = "gdb --args karst policy replay " + core::shell_word(run_dir.string());
+  for (const std::string& plugin : args.plugins) command += " --plugin " + core::shell_word(plugin);
   print_error("karst: `%s` repeats this in a debugger\n", command.c_str());
 }
 
@@ -178,12 +179,25 @@ void print_choice(const flight::Mission& mission) {
   std::fflush(stdout);  // the status line is another stream
 }
 
+/// What options of their own set, as key and value. Throws InputError if --set sets one of them, too.
+std::vector<std::pair<std::string, std::string>> values_of_options(const FlyArguments& args) {
+  std::vector<std::pair<std::string, std::string>> values;
+  const auto set = [&](const std::string& option, const std::string& key, const std::string& value) {
+    for (const std::string& setting : args.overrides.settings)
+      if (setting.starts_with(key + "="))
+        throw core::InputError("karst fly", option, "sets " + key + ", and so does --set: give one of them");
+    values.emplace_back(key, value);
+  };
+  if (args.seed) set("--seed", "seed", std::to_string(*args.seed));
+  if (!args.flight_time.empty()) set("--time", "mission.max_flight_time", args.flight_time);
+  if (args.in_process) set("--in-process", "policy.isolation", "in_process");
+  for (const auto& [key, value] : args.mesh) set("--" + key, "cave." + key, value);
+  return values;
+}
+
 flight::Mission mission_of(const FlyArguments& args, const PolicyChooser& choose_policy) {
   flight::MissionOverrides overrides = args.overrides;
-  if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
-  if (!args.flight_time.empty()) overrides.values.emplace_back("mission.max_flight_time", args.flight_time);
-  if (args.in_process) overrides.values.emplace_back("policy.isolation", "in_process");
-  for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
+  for (auto& value : values_of_options(args)) overrides.values.push_back(std::move(value));
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
   const bool is_auto = mission.policy == flight::kAutoPolicy;
   choose_policy(mission);

@@ -215,6 +215,18 @@ TEST(BadInput, ARefusedFlightLeavesNothingInADirectoryThatWasThere) {
   EXPECT_TRUE(fs::is_empty(dir / "run"));
 }
 
+TEST(BadInput, AnOptionAndASettingOfTheSameKey) {
+  // As it was: --time won, and nothing said so.
+  const fs::path dir = fresh_folder("bad_twice");
+  const std::string mesh = written(dir / "box.stl", box_stl(4));
+  const std::string flight = "--cave " + mesh + " --start '0 0 0' ";
+  expect_refused(fly(dir, flight + "--time 60s --set mission.max_flight_time=90s"),
+                 {"--time", "mission.max_flight_time", "--set", "give one of them"});
+  expect_refused(fly(dir, flight + "--seed 3 --set seed=4"), {"--seed", "give one of them"});
+  expect_refused(fly(dir, flight + "--in-process --set policy.isolation=process"),
+                 {"--in-process", "give one of them"});
+}
+
 TEST(BadInput, EmptyOptionsAreNoDefaults) {
   const fs::path dir = fresh_folder("bad_empty");
   const std::string mesh = written(dir / "box.stl", box_stl(4));
