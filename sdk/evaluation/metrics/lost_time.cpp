@@ -18,6 +18,8 @@ constexpr double kFlat = 0.05;       // of v_max: the speed at a slowdown's slow
 constexpr double kProminence = 0.1;  // of v_max: smaller changes of speed are no slowdown of their own
 constexpr double kStands_mps = 0.1;
 constexpr double kTurns_radps = 0.15;
+/// A vehicle whose heading is farther off the direction of flight does not wait for its heading.
+constexpr double kFacesAhead_rad = 0.6;
 constexpr double kLongestStep_s = 1.0;  // a gap in the telemetry is left out
 
 struct Limits {
@@ -27,6 +29,7 @@ struct Limits {
 struct Sample {
   double t_s = 0, dt_s = 0, speed_mps = 0;
   double across_mps2 = 0, heading_rate_radps = 0;  // absolute values
+  bool faces_ahead = false;
   bool looks_around = false;
 };
 
@@ -50,7 +53,7 @@ std::vector<std::vector<Sample>> stretches(const RunRecord& run, double until_s)
     const bool usable = before_s > 0 && after_s > 0 && before_s < kLongestStep_s &&
                         after_s < kLongestStep_s && at(i - 1).allFinite() && at(i).allFinite() &&
                         at(i + 1).allFinite() && std::isfinite((*heading)[i - 1]) &&
-                        std::isfinite((*heading)[i + 1]);
+                        std::isfinite((*heading)[i]) && std::isfinite((*heading)[i + 1]);
     if (t > until_s || phase == run.phases.end() || !usable) {
       joined = false;
       continue;
@@ -66,6 +69,8 @@ std::vector<std::vector<Sample>> stretches(const RunRecord& run, double until_s)
     if (s.speed_mps > kStands_mps) s.across_mps2 = (a - a.dot(v) / v.squaredNorm() * v).norm();
     s.heading_rate_radps =
         std::abs(angle_between((*heading)[i - 1], (*heading)[i + 1])) / (before_s + after_s);
+    s.faces_ahead = v.head<2>().norm() > kStands_mps &&
+                    std::abs(angle_between((*heading)[i], std::atan2(v.y(), v.x()))) < kFacesAhead_rad;
     s.looks_around = phase->is(core::Phase::look);
     out.back().push_back(s);
   }
@@ -108,7 +113,8 @@ SlowdownCause cause_of(const std::vector<Sample>& samples, std::size_t begin, st
   double across = 0, rate = 0, slowest_mps = limits.speed_mps;
   for (std::size_t i = begin; i < end; ++i) {
     across = std::max(across, samples[i].across_mps2 / limits.acceleration_mps2);
-    rate = std::max(rate, samples[i].heading_rate_radps / limits.heading_rate_radps);
+    if (samples[i].faces_ahead)
+      rate = std::max(rate, samples[i].heading_rate_radps / limits.heading_rate_radps);
     slowest_mps = std::min(slowest_mps, samples[i].speed_mps);
   }
   if (slowest_mps < kStands_mps) return SlowdownCause::stop;

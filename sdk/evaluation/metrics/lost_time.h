@@ -11,7 +11,7 @@ namespace karst::evaluation {
 /// What a vehicle slows down for.
 enum class SlowdownCause {
   bend,     // the acceleration across the path is near its limit
-  heading,  // the heading rate is near its limit
+  heading,  // the heading rate is near its limit, and the vehicle faces the direction of flight
   stop,     // it comes to rest
   other,    // rock or another vehicle near, sensors degraded, a narrow passage
 };

@@ -82,8 +82,9 @@ TEST_F(InputFile, AFileOfTheKernelIsRefusedUnderAnyName) {
   fs::create_symlink("/proc/self/pagemap", path("events.jsonl"));
   for (const std::string& file : {std::string("/proc/self/pagemap"), path("events.jsonl")})
     EXPECT_EQ(error_of(file), file + ": is a file of the kernel, not a regular file");
-  EXPECT_EQ(error_of("/sys/kernel/mm/transparent_hugepage/enabled").find(": is a file of the kernel"),
-            std::string("/sys/kernel/mm/transparent_hugepage/enabled").size());
+  const std::string of_sysfs = "/sys/kernel/mm/transparent_hugepage/enabled";
+  if (fs::exists(of_sysfs))  // not in every chroot
+    EXPECT_EQ(error_of(of_sysfs).find(": is a file of the kernel"), of_sysfs.size());
 }
 
 TEST_F(InputFile, TheSizeIsBounded) {

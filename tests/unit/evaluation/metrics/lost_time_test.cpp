@@ -108,6 +108,16 @@ TEST(LostTime, ABendIsToldFromALimitOfTheHeadingRate) {
   EXPECT_EQ(at_turn[SlowdownCause::bend].total_s(), 0);
 }
 
+TEST(LostTime, AVehicleThatFacesElsewhereDoesNotSlowDownForItsHeading) {
+  // As it was: a vehicle with a LiDAR, which turns to its goal's heading in flight, lost time to its heading
+  // rate.
+  DrawnFlight flight(2);
+  flight.fly(5, 2, 0, -0.3).fly(1, 1).fly(2, 1, 0, -1).fly(1, 2).fly(5, 2);
+  const LostTime lost = flight.lost();
+  EXPECT_EQ(lost[SlowdownCause::heading].total_s(), 0);
+  EXPECT_NEAR(lost[SlowdownCause::other].at_s, 1, 0.2);
+}
+
 TEST(LostTime, TurningOnTheSpotAndLookingAroundAreNoWaiting) {
   DrawnFlight flight;
   flight.fly(6, 0, 0, 1).fly(4, 0, 0, 0.9).fly(2, 0);
