@@ -49,6 +49,19 @@ constexpr auto names_of(Style) {
                                             {no_survey, "no survey"}});
 }
 
+/// Where a leg goes in an extended profile, as its surveyor had it.
+enum class Extend { normal, reverse, left, right, vertical, ignore, hide };
+constexpr auto names_of(Extend) {
+  using enum Extend;
+  return std::to_array<core::Named<Extend>>({{normal, "normal"},
+                                             {reverse, "reverse"},
+                                             {left, "left"},
+                                             {right, "right"},
+                                             {vertical, "vertical"},
+                                             {ignore, "ignore"},
+                                             {hide, "hide"}});
+}
+
 /// Between two stations. The readings are calibrated, averaged with the backsights, and corrected for the
 /// declination; none for what the style or the file does not give.
 struct Leg {
@@ -60,7 +73,8 @@ struct Leg {
   std::optional<double> length_m;
   std::optional<double> bearing_rad;      // clockwise from north
   std::optional<double> inclination_rad;  // up is positive
-  std::uint32_t run = 0;                  // legs of one run were measured one after the other
+  Extend extend = Extend::normal;
+  std::uint32_t run = 0;  // legs of one run were measured one after the other
   Source source;
 
   /// Under water, as far as the file tells: measured by depth gauge.
@@ -86,8 +100,8 @@ struct Section {
   std::uint32_t station = 0;
   std::optional<std::uint32_t> leg;  // that it was noted with, if the file says so
   /// Horizontal, of unit length: left is a quarter turn counter-clockwise from it, seen from above. Along the
-  /// run: between the directions of the legs before and behind; at a shaft, that of the nearest leg of the
-  /// run that is not vertical, else north.
+  /// run: between the directions of the legs before and behind; at a shaft, that of the section before, else of
+  /// the first one that has any, else north.
   core::Vec3 facing = core::Vec3::UnitY();
   Dimensions dimensions;
   std::uint32_t run = 0;  // of the legs; sections of .3d files, which lack it, are numbered by series

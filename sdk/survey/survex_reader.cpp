@@ -1,0 +1,172 @@
+#include "sdk/survey/survex_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+#include "core_stack/common/printable.h"
+#include "sdk/survey/cavern.h"
+#include "sdk/survey/dump3d.h"
+#include "sdk/survey/err_file.h"
+#include "sdk/survey/facing.h"
+#include "sdk/survey/place_sets.h"
+#include "sdk/survey/source_log.h"
+#include "sdk/survey/temporary_folder.h"
+
+namespace karst::survey {
+namespace {
+
+using Centimetres = std::array<long long, 3>;
+struct HashOfCentimetres {
+  std::size_t operator()(const Centimetres& c) const {
+    std::size_t hash = 0;
+    for (const long long part : c) hash = (hash ^ static_cast<std::size_t>(part)) * 0x9E3779B97F4A7C15u;
+    return hash ^ (hash >> 29u);
+  }
+};
+Centimetres centimetres(const core::Vec3& p) {
+  return {std::llround(p.x() * 100), std::llround(p.y() * 100), std::llround(p.z() * 100)};
+}
+
+class FromDump {
+ public:
+  FromDump(const Dump3d& dump, Survey& survey) : dump_(dump), survey_(survey) {}
+
+  void make() {
+    survey_.title = dump_.title;
+    for (const Dump3d::Node& n : dump_.nodes)
+      if (!n.name.empty()) add_station(n);
+    for (const Dump3d::Line& l : dump_.lines) add_line(l);
+    add_sections();
+    mark_surface();
+    count_loops();
+    set_facings(survey_);
+  }
+
+ private:
+  void add_station(const Dump3d::Node& n) {
+    const auto [it, is_new] =
+        at_.try_emplace(centimetres(n.position_m), static_cast<std::uint32_t>(survey_.stations.size()));
+    by_name_.emplace(n.name, it->second);
+    if (is_new) {
+      survey_.stations.emplace_back();
+      survey_.stations.back().name = n.name;
+      survey_.stations.back().position_m = n.position_m;
+    } else {
+      survey_.stations[it->second].aliases.push_back(n.name);
+    }
+    Station& station = survey_.stations[it->second];
+    station.entrance |= n.entrance;
+    station.fixed |= n.fixed;
+  }
+
+  std::optional<std::uint32_t> station_at(const core::Vec3& place) const {
+    const auto it = at_.find(centimetres(place));
+    return it == at_.end() ? std::nullopt : std::optional(it->second);
+  }
+
+  void add_line(const Dump3d::Line& l) {
+    const auto from = station_at(l.from_m), to = station_at(l.to_m);
+    // A splay leads to a point on the wall, with a name or without one.
+    if (l.splay || !from || !to) {
+      if (from && (!to || l.splay))
+        survey_.splays.push_back({*from, l.to_m, l.surface, {}});
+      else if (to)
+        survey_.splays.push_back({*to, l.from_m, l.surface, {}});
+      return;
+    }
+    if (*from == *to) return;
+    Leg& leg = survey_.legs.emplace_back();
+    leg.from = *from;
+    leg.to = *to;
+    leg.style = l.style.value_or(Style::normal);
+    leg.surface = l.surface;
+    leg.duplicate = l.duplicate;
+    leg.run = l.run;
+  }
+
+  void add_sections() {
+    for (const Dump3d::CrossSection& s : dump_.sections) {
+      const auto station = by_name_.find(s.station);
+      if (station == by_name_.end()) {
+        survey_.notes.push_back({{}, "a cross-section at an unknown station: " + core::printable(s.station)});
+      } else {
+        Section& section = survey_.sections.emplace_back();
+        section.station = station->second;
+        section.dimensions = s.dimensions;
+        section.run = s.series;
+      }
+      if (survey_.notes.size() >= kMaxNotes) break;
+    }
+  }
+
+  void mark_surface() {
+    std::vector<bool> surface(survey_.stations.size(), false), underground = surface;
+    for (const Leg& l : survey_.legs)
+      for (const std::uint32_t end : {l.from, l.to}) (l.surface ? surface : underground)[end] = true;
+    for (std::size_t i = 0; i < survey_.stations.size(); ++i)
+      survey_.stations[i].surface = surface[i] && !underground[i];
+  }
+
+  void count_loops() {
+    PlaceSets parts(survey_.stations.size());
+    for (const Leg& l : survey_.legs)
+      if (l.style != Style::no_survey && !parts.unite(l.from, l.to)) ++survey_.loops.count;
+    // Fixed stations count as one.
+    std::optional<std::uint32_t> first;
+    for (std::uint32_t i = 0; i < survey_.stations.size(); ++i) {
+      if (!survey_.stations[i].fixed) continue;
+      if (first && !parts.unite(*first, i)) ++survey_.loops.count;
+      first = first.value_or(i);
+    }
+  }
+
+  const Dump3d& dump_;
+  Survey& survey_;
+  std::unordered_map<Centimetres, std::uint32_t, HashOfCentimetres> at_;
+  std::unordered_map<std::string, std::uint32_t> by_name_;
+};
+
+Survey from_processed(const std::string& three_d, const std::string& file,
+                      const std::filesystem::path& folder, Survey survey) {
+  const Dump3d dump = read_dump3d(run_dump3d(three_d, folder), file);
+  FromDump(dump, survey).make();
+  if (survey.legs.empty()) throw core::InputError(file, "", "holds no leg");
+  return survey;
+}
+
+}  // namespace
+
+Survey read_by_cavern(const std::string& file) {
+  const TemporaryFolder folder;
+  const CavernRun run = run_cavern(file, folder.path());
+  SourceLog log;
+  log.files.push_back(file);
+  for (const CavernMessage& m : run.messages) {
+    const std::string& in = m.file.empty() ? file : m.file;
+    if (m.error) throw core::InputError(in, m.line > 0 ? "line " + std::to_string(m.line) : "", m.text);
+    const auto known = std::find(log.files.begin(), log.files.end(), in);
+    const auto number = static_cast<std::uint32_t>(known - log.files.begin());
+    if (known == log.files.end()) log.files.push_back(in);
+    log.note({number, static_cast<std::uint32_t>(m.line)}, "cavern: " + m.text);
+  }
+  if (!run.closed) throw core::InputError(file, "", "cavern could not process it");
+  Survey survey;
+  survey.files = log.files;
+  survey.notes = log.notes;
+  survey.notes_left_out = log.notes_left_out;
+  survey = from_processed(run.three_d.string(), file, folder.path(), std::move(survey));
+  survey.loops.traverses = read_err_file(run.err);
+  return survey;
+}
+
+Survey read_processed(const std::string& file) {
+  const TemporaryFolder folder;
+  Survey survey;
+  survey.files.push_back(file);
+  return from_processed(file, file, folder.path(), std::move(survey));
+}
+
+}  // namespace karst::survey
