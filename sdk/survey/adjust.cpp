@@ -135,13 +135,13 @@ class Adjustment {
   static void measured(const Reading& r, Leg& leg) {
     if (r.style == Style::no_survey) return;
     const core::Vec3 vector = r.vector_m();
-    leg.length_m = vector.norm();
-    if (r.style == Style::normal || r.style == Style::topofil || r.style == Style::diving)
-      leg.length_m = r.length_m;
-    if (!r.plumbed && vector.head<2>().norm() > 0)
-      leg.bearing_rad =
-          std::fmod(std::atan2(vector.x(), vector.y()) + 2 * std::numbers::pi, 2 * std::numbers::pi);
-    leg.inclination_rad = std::atan2(vector.z(), vector.head<2>().norm());
+    const bool by_compass = r.style != Style::cartesian;
+    leg.length_m = by_compass && r.style != Style::cylpolar ? r.length_m : vector.norm();
+    const double bearing = by_compass ? r.bearing_deg * kDegree : std::atan2(vector.x(), vector.y());
+    if (!r.plumbed && !std::isnan(bearing))
+      leg.bearing_rad = std::fmod(bearing + 2 * std::numbers::pi, 2 * std::numbers::pi);
+    leg.inclination_rad = std::isnan(r.inclination_deg) ? std::atan2(vector.z(), vector.head<2>().norm())
+                                                        : r.inclination_deg * kDegree;
   }
 
   void add_splays() {

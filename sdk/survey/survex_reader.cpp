@@ -91,7 +91,8 @@ class FromDump {
     for (const Dump3d::CrossSection& s : dump_.sections) {
       const auto station = by_name_.find(s.station);
       if (station == by_name_.end()) {
-        survey_.notes.push_back({{}, "a cross-section at an unknown station: " + core::printable(s.station)});
+        survey_.notes.push_back(
+            {{}, "a cross-section at an unknown station: " + core::printable(s.station), 0});
       } else {
         Section& section = survey_.sections.emplace_back();
         section.station = station->second;

@@ -100,8 +100,8 @@ struct Section {
   std::uint32_t station = 0;
   std::optional<std::uint32_t> leg;  // that it was noted with, if the file says so
   /// Horizontal, of unit length: left is a quarter turn counter-clockwise from it, seen from above. Along the
-  /// run: between the directions of the legs before and behind; at a shaft, that of the section before, else of
-  /// the first one that has any, else north.
+  /// run: between the directions of the legs before and behind; at a shaft, that of the section before, else
+  /// of the first one that has any, else north.
   core::Vec3 facing = core::Vec3::UnitY();
   Dimensions dimensions;
   std::uint32_t run = 0;  // of the legs; sections of .3d files, which lack it, are numbered by series
@@ -126,6 +126,7 @@ struct Loops {
 struct Note {
   Source source;
   std::string text;
+  std::size_t more = 0;  // further lines of the same file of which it holds as well
 };
 
 struct Survey {

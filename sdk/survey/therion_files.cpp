@@ -81,7 +81,7 @@ void TherionFiles::input(const std::string& name) {
     throw log_.error(source_, "more than " + std::to_string(kMaxInputs) + " inputs are not read");
   const InputPath found = input_path(open_.back().path.parent_path(), name);
   if (found.path.extension() == ".th2" || std::filesystem::path(name).extension() == ".th2") {
-    log_.note(source_, "a drawing, not read: " + name);
+    log_.note(source_, "drawings (.th2) are not read");
     return;
   }
   if (found.path.empty()) throw log_.error(source_, "cannot find the input " + name);
