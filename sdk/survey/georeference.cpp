@@ -157,7 +157,8 @@ class Probe {
     line("c c1 1 1 1");
     line("f0 f 1 1 1");
     if (at.isZero()) return;
-    line(core::format_text("*declination auto %.3f %.3f %.3f", at.x(), at.y(), at.z()));
+    // At sea level, as Therion asks for it: two kilometres up the declination differs by 0.005 degrees.
+    line(core::format_text("*declination auto %.3f %.3f 0", at.x(), at.y()));
     line("*data normal from to tape compass clino");
     line(core::format_text("c u %.0f 0 0", kProbe_m));
     for (std::size_t i = 0; i < years.size(); ++i) {

@@ -8,6 +8,7 @@
 
 #include "core_stack/common/printable.h"
 #include "sdk/survey/cavern.h"
+#include "sdk/survey/compass_dimensions.h"
 #include "sdk/survey/dump3d.h"
 #include "sdk/survey/err_file.h"
 #include "sdk/survey/facing.h"
@@ -138,6 +139,13 @@ Survey from_processed(const std::string& three_d, const std::string& file,
   return survey;
 }
 
+bool is_compass(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending != ".svx";
+}
+
 }  // namespace
 
 Survey read_by_cavern(const std::string& file) {
@@ -154,12 +162,15 @@ Survey read_by_cavern(const std::string& file) {
     log.note({number, static_cast<std::uint32_t>(m.line)}, "cavern: " + m.text);
   }
   if (!run.closed) throw core::InputError(file, "", "cavern could not process it");
+  std::vector<CompassDimensions> dimensions;
+  if (is_compass(file)) dimensions = read_compass_dimensions(file, log);
   Survey survey;
   survey.files = log.files;
   survey.notes = log.notes;
   survey.notes_left_out = log.notes_left_out;
   survey = from_processed(run.three_d.string(), file, folder.path(), std::move(survey));
   survey.loops.traverses = read_err_file(run.err);
+  add_compass_sections(dimensions, survey);
   return survey;
 }
 

@@ -71,6 +71,14 @@ TEST(IncludeDirection, CavesFromCloudsKnowNothingOfCampaignsAndFlights) {
   expect_none("sdk/cave_from_cloud", {"sdk/host", "sdk/map_merge", "sdk/campaign", "sdk/selection",
                                       "sdk/tuning", "sdk/flight", "sdk/tools", "CLI/"});
 }
+// Surveys are read without a cave, and know nothing of what is made of them.
+TEST(IncludeDirection, SurveysKnowTheCoreAndProcessesOnly) {
+  for (const Include& i : includes_below("sdk/survey"))
+    EXPECT_TRUE(!i.target.starts_with("sdk/") || i.target.starts_with("sdk/survey/") ||
+                i.target == "sdk/host/isolation/process.h")
+        << i.file << " includes " << i.target;
+  expect_none("sdk/survey", {"plugins/", "policies/", "CLI/", "core_stack/mapping", "core_stack/mission"});
+}
 // evaluation <- campaign <- selection <- flight <- tools; tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
   expect_none("sdk/evaluation",
