@@ -62,7 +62,7 @@ std::shared_ptr<CLI::App> karst_command() {
        {"preflight", "compare", "results", "replay", "evaluate", "map", "select", "tune", "completion"})
     add_missing(*app, name);
   for (const char* name : {"check", "replay"}) add_missing(policy, name);
-  for (const char* name : {"describe", "from-cloud"}) add_missing(cave, name);
+  for (const char* name : {"describe", "from-cloud", "from-survey"}) add_missing(cave, name);
   add_help_of_all(*app);
   return app;
 }

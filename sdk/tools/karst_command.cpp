@@ -16,6 +16,7 @@
 #include "sdk/tools/explain_time_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/from_cloud_command.h"
+#include "sdk/tools/from_survey_command.h"
 #include "sdk/tools/help_commands.h"
 #include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
@@ -53,6 +54,7 @@ std::shared_ptr<CLI::App> karst_command() {
   CLI::App& cave = add_cave_command(*app);
   add_cave_describe(cave);
   add_from_cloud_command(cave);
+  add_from_survey_command(cave);
   add_report_command(*app, campaign_page);
   add_table_command(*app);
   add_explain_command(*app);
