@@ -152,18 +152,16 @@ class Probe {
     // Used stations only are placed.
     line("*data nosurvey from to");
     for (std::size_t i = 1; i < network_.fixes.size(); ++i) line(core::format_text("f%zu f0", i));
-    line("*fix c 0 0 0");
     line("*data cartesian from to easting northing altitude");
-    line("c c1 1 1 1");
     line("f0 f 1 1 1");
     if (at.isZero()) return;
     // At sea level, as Therion asks for it: two kilometres up the declination differs by 0.005 degrees.
     line(core::format_text("*declination auto %.3f %.3f 0", at.x(), at.y()));
     line("*data normal from to tape compass clino");
-    line(core::format_text("c u %.0f 0 0", kProbe_m));
+    line(core::format_text("f0 u %.0f 0 0", kProbe_m));
     for (std::size_t i = 0; i < years.size(); ++i) {
       line("*date " + date_text(years[i]));
-      line(core::format_text("c y%zu %.0f 0 0", i, kProbe_m));
+      line(core::format_text("f0 y%zu %.0f 0 0", i, kProbe_m));
     }
   }
 
@@ -178,7 +176,8 @@ class Probe {
     const auto it = places_.find(station);
     if (it == places_.end())
       throw core::InputError(readings_.log.files.front(), "", "cavern gave no declination");
-    return std::atan2(it->second.x(), it->second.y()) * 180 / std::numbers::pi;
+    const core::Vec3 leg = it->second - place_of_fix(0);
+    return std::atan2(leg.x(), leg.y()) * 180 / std::numbers::pi;
   }
 
   Readings& readings_;

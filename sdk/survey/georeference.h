@@ -18,8 +18,8 @@ struct Georeference {
 /// to the system of the first fix, or to its UTM zone where that has latitude and longitude. Bearings turn by
 /// the declination and, with a coordinate system, by the convergence of the meridians. Readings without a
 /// declination get that of the International Geomagnetic Reference Field at the mean of the fixed stations,
-/// at their date; those without a date, that of the first year of the survey. All as Therion does. Notes are
-/// added to the log.
+/// at sea level, at their date; those without a date, that of the first year of the survey. All as Therion
+/// does. Notes are added to the log.
 Georeference georeference(Readings& readings, const Network& network);
 
 }  // namespace karst::survey

@@ -53,14 +53,20 @@ class FromDump {
     by_name_.emplace(n.name, it->second);
     if (is_new) {
       survey_.stations.emplace_back();
-      survey_.stations.back().name = n.name;
+      survey_.stations.back().name = dotted(n.name);
       survey_.stations.back().position_m = n.position_m;
     } else {
-      survey_.stations[it->second].aliases.push_back(n.name);
+      survey_.stations[it->second].aliases.push_back(dotted(n.name));
     }
     Station& station = survey_.stations[it->second];
     station.entrance |= n.entrance;
     station.fixed |= n.fixed;
+  }
+
+  /// With a dot between surveys, where the file has another separator: Compass has a space.
+  std::string dotted(std::string name) const {
+    std::replace(name.begin(), name.end(), dump_.separator, '.');
+    return name;
   }
 
   std::optional<std::uint32_t> station_at(const core::Vec3& place) const {

@@ -14,7 +14,7 @@ std::string key_of(std::uint32_t survey, const std::string& word) {
 std::uint32_t SurveyTree::enter(std::uint32_t parent, const std::string& name) {
   const auto [it, is_new] =
       by_name_.try_emplace(key_of(parent, name), static_cast<std::uint32_t>(surveys_.size()));
-  if (is_new) surveys_.push_back({parent, surveys_[parent].depth + 1, surveys_[parent].prefix + name + "."});
+  if (is_new) surveys_.push_back({parent, surveys_[parent].prefix + name + "."});
   return it->second;
 }
 
@@ -40,8 +40,8 @@ std::uint32_t StationNames::number(std::uint32_t survey, const std::string& word
       by_word_.try_emplace(key_of(survey, word), static_cast<std::uint32_t>(names_.size()));
   if (is_new) {
     const std::size_t at = word.find('@');
-    names_.push_back(
-        {survey, word.substr(0, at), at == std::string::npos ? "" : word.substr(at + 1), source});
+    names_.push_back({survey, word.substr(0, at), at == std::string::npos ? "" : word.substr(at + 1), source,
+                      false, false});
   }
   Name& name = names_[it->second];
   if (defines && !name.defined) {
@@ -52,7 +52,7 @@ std::uint32_t StationNames::number(std::uint32_t survey, const std::string& word
 }
 
 std::uint32_t StationNames::anonymous(const Source& source) {
-  names_.push_back({0, "", "", source, true});
+  names_.push_back({0, "", "", source, true, true});
   return static_cast<std::uint32_t>(names_.size() - 1);
 }
 
@@ -62,6 +62,9 @@ StationNames::Resolved StationNames::resolve(const SurveyTree& tree, const Sourc
   std::vector<std::uint32_t> named(count);  // the name without '@' that each one stands for
   for (std::uint32_t i = 0; i < count; ++i) {
     named[i] = i;
+    if (names_[i].name.empty() && !names_[i].anonymous)
+      throw log.error(names_[i].source,
+                      "is no name of a station: '@" + core::printable(names_[i].within) + "'");
     if (names_[i].within.empty()) continue;
     const Name name = names_[i];
     const auto survey = tree.find(name.survey, name.within);
@@ -75,7 +78,7 @@ StationNames::Resolved StationNames::resolve(const SurveyTree& tree, const Sourc
     if (!name.within.empty()) continue;
     station[i] = static_cast<std::uint32_t>(resolved.stations.size());
     ReadStation& read = resolved.stations.emplace_back();
-    read.anonymous = name.name.empty();
+    read.anonymous = name.anonymous;
     if (!read.anonymous) read.name = tree.full_name(name.survey, name.name);
     read.source = name.source;
     resolved.defined.push_back(name.defined);

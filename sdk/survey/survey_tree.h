@@ -12,14 +12,15 @@
 namespace karst::survey {
 
 constexpr std::size_t kMaxSurveyDepth = 256;
-constexpr std::size_t kMaxStationName = 4096;  // bytes, in full
+constexpr std::size_t kMaxStationName = 1024;  // bytes; as many again for the surveys around it
 
 class SurveyTree {
  public:
   /// The survey `name` within `parent`; a new one if there is none yet.
   std::uint32_t enter(std::uint32_t parent, const std::string& name);
   std::uint32_t parent(std::uint32_t survey) const { return surveys_[survey].parent; }
-  std::size_t depth(std::uint32_t survey) const { return surveys_[survey].depth; }
+  /// Of the names of a survey and those around it.
+  std::size_t name_bytes(std::uint32_t survey) const { return surveys_[survey].prefix.size(); }
   /// "inner.outer" as seen from a survey, none if there is no such survey.
   std::optional<std::uint32_t> find(std::uint32_t from, std::string_view path) const;
   /// A name in full, outermost survey first.
@@ -28,7 +29,6 @@ class SurveyTree {
  private:
   struct Node {
     std::uint32_t parent = 0;
-    std::size_t depth = 0;
     std::string prefix;  // "outer.inner."
   };
   std::vector<Node> surveys_{1};  // the first one has no name
@@ -43,14 +43,14 @@ class StationNames {
   std::uint32_t number(std::uint32_t survey, const std::string& word, const Source& source, bool defines);
   /// A new station without a name.
   std::uint32_t anonymous(const Source& source);
-  bool is_anonymous(std::uint32_t number) const { return names_[number].name.empty(); }
+  bool is_anonymous(std::uint32_t number) const { return names_[number].anonymous; }
 
   struct Resolved {
     std::vector<ReadStation> stations;
     std::vector<bool> defined;          // for each station
     std::vector<std::uint32_t> number;  // of each name: its station
   };
-  /// Throws core::InputError at the first name whose survey there is not.
+  /// Throws core::InputError at the first name whose survey there is not, or that is none.
   Resolved resolve(const SurveyTree& tree, const SourceLog& log);
 
  private:
@@ -58,7 +58,7 @@ class StationNames {
     std::uint32_t survey = 0;
     std::string name, within;  // within: what stands behind '@'
     Source source;
-    bool defined = false;
+    bool defined = false, anonymous = false;
   };
   std::vector<Name> names_;
   std::unordered_map<std::string, std::uint32_t> by_word_;

@@ -85,7 +85,6 @@ class TherionReader {
   void begin_survey(const std::vector<std::string>& words) {
     if (words.size() < 2) refuse("survey takes a name");
     if (surveys_.size() > kMaxSurveyDepth) refuse("surveys stand too deep in each other");
-    if (words[1].size() > kMaxStationName / kMaxSurveyDepth * 4) refuse("the name of the survey is too long");
     Level level = surveys_.back();
     level.name = words[1];
     level.source = files_.source();
@@ -105,6 +104,7 @@ class TherionReader {
       }
     }
     if (has_names) level.survey = tree_.enter(surveys_.back().survey, level.name);
+    if (tree_.name_bytes(level.survey) > kMaxStationName) refuse("the names of the surveys are too long");
     surveys_.push_back(std::move(level));
     if (!entrance.empty())
       remarks_.stations.push_back({names_.number(surveys_.back().survey, entrance, files_.source(), false),

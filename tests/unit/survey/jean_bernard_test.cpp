@@ -86,7 +86,9 @@ TEST(JeanBernard, SectionsFaceLevelAndTheirRunsStandTogether) {
     EXPECT_NEAR(section.facing.norm(), 1, 1e-9);
     EXPECT_EQ(section.facing.z(), 0);
     const auto it = last_of_run.find(section.run);
-    if (it != last_of_run.end()) EXPECT_EQ(it->second + 1, i) << section.run;
+    if (it != last_of_run.end()) {
+      EXPECT_EQ(it->second + 1, i) << section.run;
+    }
     last_of_run[section.run] = i;
   }
 }

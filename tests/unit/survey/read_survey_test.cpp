@@ -114,7 +114,7 @@ TEST(ReadSurvey, CompassSurveys) {
                                               "Z 0 100 0 100 0 0 I 0\r\nSCave\r\nNA D 7 10 1979 CX\r\nM 0 0 "
                                               "0 SA1 P 1 2 3 4 I 0\r\nD 0 100 0 SA2 P 1 2 3 4 I "
                                               "100\r\nX 0 100 0 100 0 0 SA\r\n\f\r\n"));
-  expect_at(place(plt, "A2"), {30.48, 0, 0});
+  expect_at(place(plt, "A.A2"), {30.48, 0, 0});
 }
 
 TEST(ReadSurvey, WithoutSurvexThePackageIsNamed) {

@@ -50,6 +50,13 @@ TEST(TherionReader, EquatesOfUnknownSurveysAreRefusedAndOfUnknownStationsNoted) 
   EXPECT_TRUE(notes_say(r.log.notes, "no leg leads to s.x"));
 }
 
+TEST(TherionReader, NamesThatAreEmptyOrTooLongAreRefused) {
+  EXPECT_TRUE(says(refusal_of_text("survey a\n" + kLeg + "equate 1 @a\nendsurvey\n"),
+                   "line 6: is no name of a station"));
+  EXPECT_TRUE(
+      says(refusal_of_text("survey " + std::string(2000, 'x') + "\n"), "line 1: the names of the surveys"));
+}
+
 TEST(TherionReader, InputsAreRelativeWithOrWithoutEndingAndInAnyCase) {
   const Folder folder;
   std::filesystem::create_directories(folder.path() / "Parts/deep");
