@@ -12,7 +12,7 @@ using Vec2 = Eigen::Vector2d;
 
 /// Corners counter-clockwise from the left (x) over the top (y). Corners of the same index of two outlines
 /// correspond.
-constexpr std::size_t kCorners = 40;
+constexpr std::size_t kCorners = 32;
 struct Outline {
   std::array<Vec2, kCorners> corners;
 };

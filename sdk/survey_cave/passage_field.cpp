@@ -96,13 +96,54 @@ PassageField::PassageField(const std::vector<Tube>& tubes, const FieldOptions& o
 }
 
 cave::Samples PassageField::sampled() const {
-  return {low_,
-          options_.grid_m,
-          corners_,
-          {[this](const Vec3& p, std::size_t block) { return value(p, block); },
-           [this](const Vec3& p, double radius_m, std::size_t block) {
-             return value_around(p, radius_m, block);
-           }}};
+  return {low_, options_.grid_m, corners_,
+          [this](std::size_t block, const Vec3& corner, float* values) { fill(block, corner, values); }};
+}
+
+void PassageField::fill(std::size_t block, const Vec3& corner, float* values) const {
+  const TubeList near(block_tubes_.begin() + first_tube_[block],
+                      block_tubes_.begin() + first_tube_[block + 1]);
+  fill_part(near, corner, {0, 0, 0}, cave::Samples::kEdge, values);
+}
+
+/// Halves the part until it is decided by its middle, or two nodes wide. Values that are told of a whole part
+/// have the right sign one step of the grid around it, too: no wall runs between it and the next node.
+void PassageField::fill_part(const TubeList& near, const Vec3& corner, const cave::Node& first, int edge,
+                             float* values) const {
+  const double half_m = 0.5 * (edge - 1) * options_.grid_m;
+  const double radius_m = half_m * std::sqrt(3.0) + options_.grid_m + options_.roughness_m;
+  const Vec3 middle = corner + options_.grid_m * Vec3(first.x, first.y, first.z) + Vec3::Constant(half_m);
+  TubeList left;
+  double nearest = kRock_m;
+  bool hollow = false;
+  for (const std::uint32_t i : near) {
+    const double d = tubes_[i].least_distance(middle, radius_m + join_m_);
+    if (d > radius_m + join_m_) continue;
+    left.push_back(i);
+    nearest = std::min(nearest, d);
+    hollow = hollow || (d < -radius_m && tubes_[i].holds_ball(middle, radius_m));
+    if (hollow) break;
+  }
+  const bool one_passage = std::all_of(left.begin(), left.end(), [&](std::uint32_t i) {
+    return tubes_[i].passage() == tubes_[left.front()].passage();
+  });
+  const bool solid = left.empty() || (one_passage && nearest > radius_m);
+  const auto each = [&](int step, const auto& visit) {
+    for (int z = 0; z < edge; z += step)
+      for (int y = 0; y < edge; y += step)
+        for (int x = 0; x < edge; x += step) visit(first + cave::Node{x, y, z});
+  };
+  if (hollow || solid) {
+    const auto all = static_cast<float>(hollow ? -radius_m : radius_m);
+    each(1, [&](const cave::Node& n) { values[cave::Samples::inside(n)] = all; });
+  } else if (edge > 2) {
+    each(edge / 2, [&](const cave::Node& n) { fill_part(left, corner, n, edge / 2, values); });
+  } else {
+    each(1, [&](const cave::Node& n) {
+      const Vec3 p = corner + options_.grid_m * Vec3(n.x, n.y, n.z);
+      values[cave::Samples::inside(n)] = static_cast<float>(value(p, left));
+    });
+  }
 }
 
 Vec3 PassageField::displacement(const Vec3& p) const {
@@ -118,36 +159,21 @@ Vec3 PassageField::displacement(const Vec3& p) const {
   return options_.roughness_m * (norm > 1 ? Vec3(v / norm) : v);
 }
 
-double PassageField::value(const Vec3& place, std::size_t block) const {
+double PassageField::value(const Vec3& place, const TubeList& near) const {
   const Vec3 p = place + displacement(place);
   double all = kRock_m, passage = kRock_m;
-  std::uint32_t current = 0;
-  bool any = false;
-  for (std::uint32_t k = first_tube_[block]; k < first_tube_[block + 1]; ++k) {
-    const Tube& tube = tubes_[block_tubes_[k]];
-    if (any && tube.passage() != current) {
+  std::uint32_t current = tubes_[near.front()].passage();
+  for (const std::uint32_t i : near) {
+    const Tube& tube = tubes_[i];
+    if (tube.passage() != current) {
       // Tubes of one passage meet without a rounded edge: it would widen the passage once a leg.
       all = cave::smooth_min(all, passage, join_m_);
       passage = kRock_m;
+      current = tube.passage();
     }
-    current = tube.passage();
-    any = true;
-    const double far = tube.far_distance(p);
-    if (far < passage) passage = std::min(passage, far > join_m_ ? far : tube.distance(p));
+    if (tube.far_distance(p) < passage) passage = std::min(passage, tube.distance(p));
   }
   return cave::smooth_min(all, passage, join_m_);
-}
-
-double PassageField::value_around(const Vec3& p, double radius_m, std::size_t block) const {
-  double nearest = kRock_m;
-  for (std::uint32_t k = first_tube_[block]; k < first_tube_[block + 1]; ++k) {
-    const Tube& tube = tubes_[block_tubes_[k]];
-    const double far = tube.far_distance(p);
-    if (far < 0 && tube.holds_ball(p, radius_m + options_.roughness_m)) return -radius_m;
-    nearest = std::min(nearest, far);
-  }
-  // Smooth minima of values farther than the join from zero are positive.
-  return nearest > radius_m + options_.roughness_m + join_m_ ? nearest : 0;
 }
 
 }  // namespace karst::survey_cave

@@ -26,10 +26,12 @@ class PassageField {
   /// Values at the nodes of the blocks near a passage. Throws std::length_error as Samples does.
   cave::Samples sampled() const;
 
-  double value(const core::Vec3& p, std::size_t block) const;
-  double value_around(const core::Vec3& p, double radius_m, std::size_t block) const;
-
  private:
+  using TubeList = std::vector<std::uint32_t>;
+  void fill(std::size_t block, const core::Vec3& corner, float* values) const;
+  void fill_part(const TubeList& near, const core::Vec3& corner, const cave::Node& first, int edge,
+                 float* values) const;
+  double value(const core::Vec3& place, const TubeList& near) const;
   core::Vec3 displacement(const core::Vec3& p) const;
 
   const std::vector<Tube>& tubes_;

@@ -76,6 +76,13 @@ double Tube::distance(const Vec3& p) const {
   return std::max(d * f.normal.dot(axis_), far_distance(p));
 }
 
+double Tube::least_distance(const Vec3& p, double enough_m) const {
+  const double far = far_distance(p);
+  if (far > enough_m) return far;
+  const double d = distance(p);
+  return d > 0 ? std::max(d / slope_, far) : d;
+}
+
 bool Tube::holds_ball(const Vec3& p, double radius_m) const {
   constexpr double kMild = 3;
   if (slope_ > kMild) return false;

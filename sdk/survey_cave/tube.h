@@ -30,6 +30,9 @@ class Tube {
   double distance(const core::Vec3& p) const;
   /// At most the true distance outside; cheap.
   double far_distance(const core::Vec3& p) const;
+  /// At most the true distance outside, also where the passage widens quickly; if it is more than `enough_m`,
+  /// it may be anything between that and the true one.
+  double least_distance(const core::Vec3& p, double enough_m) const;
   /// Whether all points within the radius of p are certainly in the tube.
   bool holds_ball(const core::Vec3& p, double radius_m) const;
 

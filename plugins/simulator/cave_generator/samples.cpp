@@ -61,20 +61,28 @@ std::vector<Node> corners_of(const CaveField& field) {
 Samples::Samples(const CaveField& field, double grid_m)
     : grid_m_(grid_m), low_(field.low()), corners_(corners_of(field)) {
   index_blocks();
-  const auto cube = [&](std::size_t block) -> const CaveField::Cube& {
+  sample([&](std::size_t block, const core::Vec3&, float* values) {
     const Node& c = corners_[block];
-    return field.cube(c.x >> 3, c.y >> 3, c.z >> 3);
-  };
-  sample({[&](const core::Vec3& p, std::size_t block) { return field.value(p, cube(block)); },
-          [&](const core::Vec3& p, double radius_m, std::size_t block) {
-            return field.value_around(p, radius_m, cube(block));
-          }});
+    const CaveField::Cube& cube = field.cube(c.x >> 3, c.y >> 3, c.z >> 3);
+    constexpr int kPart = 4;  // eighths of a block far from the surface are decided by one value
+    for (int part = 0; part < 8; ++part) {
+      const Node origin{kPart * (part & 1), kPart * (part >> 1 & 1), kPart * (part >> 2 & 1)};
+      const auto place = [&](const Node& n) { return position(c + n); };
+      const double half_m = 0.5 * (kPart - 1) * grid_m_;
+      const double all =
+          field.value_around(place(origin) + core::Vec3::Constant(half_m), half_m * std::sqrt(3.0), cube);
+      for (int k = 0; k < kPart * kPart * kPart; ++k) {
+        const Node n = origin + Node{k % kPart, k / kPart % kPart, k / (kPart * kPart)};
+        values[inside(n)] = static_cast<float>(all != 0 ? all : field.value(place(n), cube));
+      }
+    }
+  });
 }
 
-Samples::Samples(const core::Vec3& low, double grid_m, std::vector<Node> corners, const SampledField& field)
+Samples::Samples(const core::Vec3& low, double grid_m, std::vector<Node> corners, const FillBlock& fill)
     : grid_m_(grid_m), low_(low), corners_(std::move(corners)) {
   index_blocks();
-  sample(field);
+  sample(fill);
 }
 
 void Samples::index_blocks() {
@@ -98,23 +106,11 @@ void Samples::index_blocks() {
   }
 }
 
-void Samples::sample(const SampledField& field) {
+void Samples::sample(const FillBlock& fill_block) {
   values_.resize(corners_.size() * kNodes);
   const auto fill = [&](std::size_t first, std::size_t stride) {
-    for (std::size_t i = first; i < corners_.size(); i += stride) {
-      constexpr int kPart = 4;  // eighths of a block far from the surface are decided by one value
-      for (int part = 0; part < 8; ++part) {
-        const Node origin =
-            corners_[i] + Node{kPart * (part & 1), kPart * (part >> 1 & 1), kPart * (part >> 2 & 1)};
-        const double half_m = 0.5 * (kPart - 1) * grid_m_;
-        const double all =
-            field.value_around(position(origin) + core::Vec3::Constant(half_m), half_m * std::sqrt(3.0), i);
-        for (int k = 0; k < kPart * kPart * kPart; ++k) {
-          const Node n = origin + Node{k % kPart, k / kPart % kPart, k / (kPart * kPart)};
-          values_[i * kNodes + inside(n)] = static_cast<float>(all != 0 ? all : field.value(position(n), i));
-        }
-      }
-    }
+    for (std::size_t i = first; i < corners_.size(); i += stride)
+      fill_block(i, position(corners_[i]), &values_[i * kNodes]);
   };
   {
     std::jthread other(fill, std::size_t{1}, std::size_t{2});

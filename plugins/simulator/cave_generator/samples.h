@@ -16,14 +16,9 @@ struct Node {
   bool operator==(const Node&) const = default;
 };
 
-/// A signed distance field, negative in free space, in the blocks that are sampled. Both are called from two
-/// threads at once.
-struct SampledField {
-  /// At p, which lies in the block of that number.
-  std::function<double(const core::Vec3& p, std::size_t block)> value;
-  /// A value whose sign is right for all points within the radius of p, or 0 if there is none.
-  std::function<double(const core::Vec3& p, double radius_m, std::size_t block)> value_around;
-};
+/// Writes a signed distance field, negative in free space, into the nodes of a block (x fastest, then y and
+/// z). The block has that number and its first node lies at the corner. Called from two threads at once.
+using FillBlock = std::function<void(std::size_t block, const core::Vec3& corner, float* values)>;
 
 /// Nodes by blocks of 8x8x8. Only blocks near the cave exist; all others are rock. They are found through a
 /// coarse grid of tables, each for 16x16x16 blocks: a cave of tens of kilometres leaves most tables away.
@@ -38,7 +33,7 @@ class Samples {
   /// `corners`: the first nodes of the blocks, ascending by z, y and x, all of them multiples of kEdge and
   /// not negative. Node 0 0 0 lies at `low`. Throws std::length_error if they lie so far apart that the
   /// coarse grid has more than kMostTables cells.
-  Samples(const core::Vec3& low, double grid_m, std::vector<Node> corners, const SampledField& field);
+  Samples(const core::Vec3& low, double grid_m, std::vector<Node> corners, const FillBlock& fill);
   static constexpr std::size_t kMostTables = std::size_t{1} << 27;
 
   double grid_m() const { return grid_m_; }
@@ -85,7 +80,7 @@ class Samples {
   static constexpr std::size_t kNodes = kEdge * kEdge * kEdge, kTable = 16 * 16 * 16;
 
   void index_blocks();
-  void sample(const SampledField& field);
+  void sample(const FillBlock& fill);
 
   double grid_m_;
   core::Vec3 low_;

@@ -79,6 +79,11 @@ TEST(IncludeDirection, SurveysKnowTheCoreAndProcessesOnly) {
         << i.file << " includes " << i.target;
   expect_none("sdk/survey", {"plugins/", "policies/", "CLI/", "core_stack/mapping", "core_stack/mission"});
 }
+TEST(IncludeDirection, CavesFromSurveysKnowTheSurveyAndTheSimulatorsCavesOnly) {
+  expect_none("sdk/survey_cave", {"sdk/host", "sdk/evaluation", "sdk/cave_from_cloud", "sdk/map_merge",
+                                  "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools",
+                                  "plugins/replay", "CLI/"});
+}
 // evaluation <- campaign <- selection <- flight <- tools; tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
   expect_none("sdk/evaluation",
