@@ -51,6 +51,10 @@ void collect_leaves(const pt::ptree& tree, const std::string& prefix,
   }
 }
 
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+}  // namespace
+
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -65,10 +69,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   }
   return row.back();
 }
-
-std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
-
-}  // namespace
 
 std::string nearest_name(const std::string& key, const std::vector<std::string>& candidates) {
   std::string best;
@@ -143,7 +143,10 @@ void OptionTable::set(const std::string& source, const std::string& key, const s
   }
   if (!row->choices.empty() &&
       std::find(row->choices.begin(), row->choices.end(), text) == row->choices.end()) {
-    const std::string near = nearest_name(text, row->choices);
+    // Names as short as those of units are all near to each other: "km" is no slip for "m".
+    const bool short_names = std::all_of(row->choices.begin(), row->choices.end(),
+                                         [](const std::string& c) { return c.size() <= 2; });
+    const std::string near = short_names ? "" : nearest_name(text, row->choices);
     bad(near.empty() ? "" : "; did you mean " + near + "?");
   }
   if (auto* const* words = std::get_if<std::string*>(&row->target)) {

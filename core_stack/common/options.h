@@ -90,6 +90,9 @@ class OptionTable {
 /// Text of a row's current value with its unit, as `set` reads it.
 std::string value_text(const OptionTable::Row& row);
 
+/// The least number of characters to be inserted, deleted or replaced (Levenshtein, 1966).
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
 /// The candidate with the least edit distance to `key`, or "" if none is near.
 std::string nearest_name(const std::string& key, const std::vector<std::string>& candidates);
 

@@ -18,6 +18,7 @@ constexpr std::array kUnits = {
     Unit{"mm", "length", 0.001},
     Unit{"km", "length", 1000},
     Unit{"ft", "length", 0.3048},
+    Unit{"in", "length", 0.0254},
     Unit{"s", "time", 1},
     Unit{"ms", "time", 0.001},
     Unit{"min", "time", 60},

@@ -7,10 +7,10 @@
 
 namespace karst::core {
 
-enum class MeshUnit { m, cm, mm, ft };
+enum class MeshUnit { m, cm, mm, ft, in };
 constexpr auto names_of(MeshUnit) {
   using enum MeshUnit;
-  return std::to_array<Named<MeshUnit>>({{m, "m"}, {cm, "cm"}, {mm, "mm"}, {ft, "ft"}});
+  return std::to_array<Named<MeshUnit>>({{m, "m"}, {cm, "cm"}, {mm, "mm"}, {ft, "ft"}, {in, "in"}});
 }
 
 enum class UpAxis { z, y };
@@ -29,11 +29,11 @@ struct MeshKeys {
 };
 
 inline void describe(OptionTable& t, MeshKeys& k) {
-  t.add("scale", k.scale, "", 1e-6, 1e6, "of the mesh: factor for its coordinates, beside the unit");
-  t.add("unit", k.unit, "of the mesh's coordinates");
-  t.add("up", k.up, "the mesh's axis that points up");
+  t.add("scale", k.scale, "", 1e-6, 1e6, "extra scale factor for mesh coordinates");
+  t.add("unit", k.unit, "unit of the mesh's coordinates");
+  t.add("up", k.up, "axis of the mesh that points up");
   t.add("offset", k.offset, {},
-        "\"x y z\" in the mesh's own coordinates, which becomes the origin: subtracted before all else");
+        "\"x y z\" in the mesh's own coordinates: this place becomes the origin, before all else");
 }
 
 }  // namespace karst::core

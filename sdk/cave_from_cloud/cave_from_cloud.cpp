@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
 #include <utility>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "plugins/simulator/cave/cap_holes.h"
@@ -157,33 +160,33 @@ void add_findings(const std::string& path, const cave::RayScene& scene, const ca
 CaveFromCloud cave_from_cloud(const std::string& path, const cave::MeshFrame& frame,
                               const CloudOptions& options,
                               const std::function<void(const char*, double)>& progress) {
-  const auto step = [&](const char* name, double fraction) {
-    if (progress) progress(name, fraction);
+  const auto step = [&](const std::string& what, double fraction) {
+    if (progress) progress(what.c_str(), fraction);
   };
   CaveFromCloud made;
   CloudReport& report = made.report;
 
-  step("reading", 0);
+  step("reading " + std::filesystem::path(path).filename().string(), 0);
   CloudFile file = read_cloud(path, frame, options.file_normals);
   report.points = file.points;
   report.not_finite = file.not_finite;
   report.withheld = file.withheld;
   report.without_normal = file.without_normal;
 
-  step("thinning out", 0.1);
+  step("thinning out " + core::grouped(file.points) + " points", 0.1);
   PointCloud cloud = usable_points(path, file.cloud, options.resolution_m, report);
   file = {};  // gives its memory back
   report.guessed_beyond_m = options.guessed_beyond_m > 0 ? options.guessed_beyond_m : 2 * report.resolution_m;
 
-  step("normals", 0.2);
+  step("finding the normals of " + core::grouped(cloud.points.size()) + " points", 0.2);
   complete_normals(cloud, views_at(path, cloud, frame, options.views), report);
 
-  step("surface", 0.4);
+  step("reconstructing the surface", 0.4);
   TriangleMesh mesh = whole_surface(path, cloud, report.resolution_m);
   mesh.vertices = moved(mesh.vertices, cloud.origin);
   const core::PointTree measured(moved(cloud.points, cloud.origin));
 
-  step("choosing the cave", 0.8);
+  step("choosing the part of the surface that is the cave", 0.8);
   const MeshParts parts = parts_of(mesh);
   const std::uint32_t kept =
       part_with_cave(path, mesh, parts, guessed_triangles(mesh, measured, report.guessed_beyond_m),
@@ -192,7 +195,7 @@ CaveFromCloud cave_from_cloud(const std::string& path, const cave::MeshFrame& fr
   TriangleMesh part = part_of(mesh, parts, kept);
   const std::size_t reconstructed = part.triangles.size();
 
-  step("closing", 0.85);
+  step("closing holes", 0.85);
   close_holes(path, part, options.cap_limit_m, report);
   face_air(part);
   const cave::RayScene scene(std::move(part));
@@ -202,7 +205,7 @@ CaveFromCloud cave_from_cloud(const std::string& path, const cave::MeshFrame& fr
   report.volume_m3 = cave::enclosed_volume_m3(scene.mesh());
   report.off_surface = points_off(scene, measured, report.guessed_beyond_m);
 
-  step("start", 0.95);
+  step(options.start ? "checking the start" : "looking for a start", 0.95);
   made.start = options.start ? options.start : cave::propose_start(scene);
   add_findings(path, scene, frame, made.start, report);
   made.mesh = scene.mesh();

@@ -22,11 +22,14 @@ struct CheckOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
-enum class Verdict { passed, failed, not_applicable, not_run };
+enum class Verdict { passed, noted, failed, not_applicable, not_run };
 constexpr auto names_of(Verdict) {
   using enum Verdict;
-  return std::to_array<core::Named<Verdict>>(
-      {{passed, "passed"}, {failed, "failed"}, {not_applicable, "not applicable"}, {not_run, "not run"}});
+  return std::to_array<core::Named<Verdict>>({{passed, "passed"},
+                                              {noted, "note"},
+                                              {failed, "failed"},
+                                              {not_applicable, "not applicable"},
+                                              {not_run, "not run"}});
 }
 
 struct TestResult {

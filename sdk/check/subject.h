@@ -13,7 +13,7 @@
 
 namespace karst::check {
 
-/// basic: required for flight. strict: expected of a policy given to others. pedantic: hygiene.
+/// basic: required for flight. strict: expected of a policy given to others. pedantic: tidiness.
 enum class Level { basic, strict, pedantic };
 constexpr auto names_of(Level) {
   using enum Level;

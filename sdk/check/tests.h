@@ -18,6 +18,8 @@ struct Test {
   } of;
   const char* description;  // one sentence: what must hold
   void (*run)(Context&);    // throws Failed or NotApplicable
+  /// Below its level it is run, too, and a failure is a note.
+  bool noted_below = false;
 };
 
 /// In order of execution: gates first.

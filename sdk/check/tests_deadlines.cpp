@@ -69,9 +69,9 @@ void should_stop(Context& c) {
 std::vector<Test> deadline_tests() {
   return {
       {"deadlines.small", Level::strict, Of::policy,
-       "In 1,000 m^3 of known cave no decision takes more than 300 ms of processor time.", small},
+       "In 1,000 m³ of known cave no decision takes more than 300 ms of processor time.", small},
       {"deadlines.large", Level::basic, Of::policy,
-       "In 20,000 m^3 of known cave no decision takes more than 2 s of processor time.", large},
+       "In 20,000 m³ of known cave no decision takes more than 2 s of processor time.", large},
       {"deadlines.should_stop", Level::basic, Of::policy,
        "It returns at once when the host says stop and all services fail.", should_stop},
   };

@@ -62,7 +62,7 @@ void peak(Context& c) {
   const std::size_t most = peak_bytes(), taken = most > before ? most - before : 0;
   c.figures["MiB"] = taken >> 20;
   if (taken > kPeakLimit_bytes)
-    throw Failed{"deciding on 20,000 m^3 it takes " + std::to_string(taken >> 20) + " MiB, " +
+    throw Failed{"deciding on 20,000 m³ it takes " + std::to_string(taken >> 20) + " MiB, " +
                  std::to_string(kPeakLimit_bytes >> 20) + " are allowed"};
 }
 
@@ -74,8 +74,7 @@ std::vector<Test> memory_tests() {
        "Over many decisions the heap grows by less than 4 KiB each.", growth},
       {"memory.returned", Level::strict, Of::policy, "A destroyed object leaves nothing on the heap.",
        returned},
-      {"memory.peak", Level::basic, Of::policy, "Deciding on 20,000 m^3 it takes no more than 512 MiB.",
-       peak},
+      {"memory.peak", Level::basic, Of::policy, "Deciding on 20,000 m³ it takes no more than 512 MiB.", peak},
   };
 }
 

@@ -5,6 +5,8 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_lines.h"
+#include "core_stack/common/shell_word.h"
+#include "sdk/flight/auto_options.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
@@ -17,21 +19,6 @@ namespace {
 using boost::property_tree::ptree;
 using core::InputError;
 using selection::Source;
-
-struct AutoOptions {
-  std::string description, survey, survey_start, results, otherwise;
-  selection::SelectOptions select;
-};
-
-void describe(core::OptionTable& t, AutoOptions& o) {
-  t.add("description", o.description, {},
-        "what is known of the cave: INFO file of figures, or a map of a flight");
-  t.add("survey", o.survey, {}, "a survey of the cave: a mesh, or a cave's .info file");
-  t.add("survey_start", o.survey_start, {}, "\"x y z\" in the survey, of a mesh");
-  t.add("results", o.results, {}, "store of a campaign, or an experience; empty: what is installed");
-  t.add("metric", o.select.metric, {}, "the figure to do best in");
-  t.add("otherwise", o.otherwise, {}, "the policy if nothing similar was flown; empty: no flight");
-}
 
 void take(Mission& m, const std::string& policy, const ptree& parameters, const std::string& why) {
   m.policy = policy;
@@ -46,7 +33,11 @@ bool found_in_table(Mission& m) {
   bool found = false;
   for (const auto& [key, entry] : m.auto_policy) {
     if (key != "cave") continue;
-    const std::string where = "policy.auto.cave ";  // the name follows
+    const std::string where = "policy.auto.cave";
+    if (entry.empty())
+      throw InputError(m.file, where,
+                       "expected a block { name CAVE  policy POLICY }; policy.auto.survey or "
+                       "policy.auto.description names a file with what is known of the cave");
     selection::PolicyPreset preset;
     std::string cave, file;
     for (const auto& [field, value] : entry) {
@@ -59,14 +50,14 @@ bool found_in_table(Mission& m) {
       else if (field == "preset")
         file = value.data();
       else
-        throw InputError(m.file, "policy.auto.cave." + field,
+        throw InputError(m.file, where + "." + field,
                          "no such key; there are name, policy, parameters, preset");
     }
     if (cave.empty()) throw InputError(m.file, where, "lacks its name");
     if (preset.policy.empty() == file.empty())
-      throw InputError(m.file, where + cave, "expected either a policy or a preset");
+      throw InputError(m.file, where + " " + cave, "expected either a policy or a preset");
     if (cave != name) continue;
-    if (found) throw InputError(m.file, where + cave, "is there twice");
+    if (found) throw InputError(m.file, where + " " + cave, "is there twice");
     if (!file.empty()) preset = selection::read_preset(core::beside(m.file, file));
     take(m, preset.policy, preset.parameters, "the mission's table says so for the cave " + name);
     found = true;
@@ -86,14 +77,28 @@ AutoOptions options_of(const Mission& m) {
   return o;
 }
 
+/// The settings with which the cave's own mesh counts as a survey: for the user to decide. "" if the file
+/// alone does not say how its mesh is to be read.
+std::string own_mesh_settings(const Mission& m, const AutoOptions& o) {
+  if (m.cave.empty() || m.mesh != core::MeshKeys{}) return "";
+  if (m.start.empty() && std::filesystem::path(m.cave).extension() != ".info") return "";
+  const auto setting = [](const std::string& text) { return " --set " + core::shell_word(text); };
+  return setting("policy.auto.survey=" + m.cave) +
+         (m.start.empty() ? "" : setting("policy.auto.survey_start=" + m.start)) +
+         (o.otherwise.empty() ? setting("policy.auto.otherwise=nearest_frontier") : "");
+}
+
+std::string nothing_known(const Mission& m, const AutoOptions& o) {
+  const std::string own = own_mesh_settings(m, o);
+  return "nothing is known of the cave: give policy.auto.description (figures, or the map of an earlier "
+         "flight), policy.auto.survey, or a block policy.auto.cave for it" +
+         (own.empty() ? "" : "; to use the cave's own mesh:" + own);
+}
+
 selection::CaveFigures known_of(const Mission& m, const AutoOptions& o) {
   if (o.description.empty() == o.survey.empty())
-    throw InputError(
-        m.file, "policy.auto",
-        o.survey.empty()
-            ? "nothing is known of the cave: give policy.auto.description (figures, or the map of an earlier "
-              "flight) or policy.auto.survey, or an entry policy.auto.cave for it"
-            : "give a description or a survey, not both");
+    throw InputError(m.file, "policy.auto",
+                     o.survey.empty() ? nothing_known(m, o) : "give a description or a survey, not both");
   if (!o.survey.empty()) {
     if (selection::source_of(o.survey) != Source::mesh)
       throw InputError(m.file, "policy.auto.survey",
@@ -126,7 +131,9 @@ void choose_policy(Mission& m) {
   if (s.refused) {
     if (o.otherwise.empty() || o.otherwise == kAutoPolicy)
       throw InputError(m.file, "policy.auto",
-                       s.reason + "; policy.auto.otherwise can name a policy for such caves");
+                       s.reason +
+                           "; for such caves policy.auto.otherwise can name a policy: --set "
+                           "policy.auto.otherwise=nearest_frontier");
     return take(m, o.otherwise, {}, "otherwise: " + s.reason);
   }
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];

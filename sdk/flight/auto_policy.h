@@ -15,7 +15,7 @@
 //   }
 //
 // A cave's name is that of its file without folder and extension. The simulator's cave file is never read
-// unless it is given as the survey.
+// unless it is given as the survey. All keys: auto_options.h.
 #pragma once
 #include "sdk/flight/mission_file.h"
 

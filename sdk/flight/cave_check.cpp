@@ -18,6 +18,12 @@ using core::InputError;
 [[noreturn]] void refuse_without_start(const std::string& cave_file, const core::MeshKeys& keys) {
   const cave::MeshFile mesh = cave::mesh_of(cave_file, keys);
   const cave::RayScene scene(cave::load_mesh(mesh));
+  // What is wrong with the mesh comes first: a start would be one in a wrong frame.
+  std::string wrong;
+  for (const cave::MeshAdvice& a : cave::mesh_advice(cave::shape_of(scene), mesh.frame))
+    wrong += cave::to_text(a) + "; ";
+  if (!wrong.empty())
+    throw InputError(cave_file, "mesh", wrong + "then give a start, \"x y z [heading_deg]\"");
   throw InputError(cave_file, "start",
                    "missing: give \"x y z [heading_deg]\"" + cave::remedies(scene, mesh.frame, std::nullopt));
 }

@@ -9,6 +9,7 @@
 #include "plugins/simulator/simulated_world.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/mission_file.h"
+#include "sdk/flight/run_files.h"
 #include "sdk/host/load_policy.h"
 
 namespace karst::flight {
@@ -20,6 +21,7 @@ struct FlightRequest {
   int threads = 1;
   core::Clock clock = core::Clock::lockstep;
   Report report = Report::written;
+  OldRun old_run = OldRun::kept;
   bool record_requests = false;
   bool notes = true, status_line = true;  // on standard error
 };

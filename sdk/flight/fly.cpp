@@ -97,7 +97,7 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   const fs::path& run_dir = request_.run_dir;
   running_ = std::make_unique<Running>();
   Running& r = *running_;
-  r.claim.emplace(run_dir);
+  r.claim.emplace(run_dir, request_.old_run);
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const fs::path own = member_run_dir(run_dir, mission_, i);
     if (own != run_dir) r.own_claims.push_back(std::make_unique<RunClaim>(own));

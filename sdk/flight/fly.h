@@ -17,7 +17,7 @@
 
 namespace karst::flight {
 
-constexpr int kNotAsMeant = 2;  // exit code of a flight whose mission did not go as meant
+constexpr int kNotAsMeant = 2;  // exit code of a flight whose mission did not go as planned
 
 struct FlightOutcome {
   bool as_meant = false;  // the mission went so, of every vehicle, and the record is complete

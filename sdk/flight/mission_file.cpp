@@ -10,6 +10,7 @@
 #include "core_stack/common/random.h"
 #include "core_stack/vehicle/load_vehicle.h"
 #include "plugins/simulator/simulated_world.h"
+#include "sdk/flight/auto_options.h"
 #include "sdk/selection/preset.h"
 
 namespace karst::flight {
@@ -23,7 +24,13 @@ constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
                      *kSelection = "policy.selection";
 constexpr const char *kPolicyVersion = "policy.version", *kKarstVersion = "karst.version";
 
-void describe_mission(OptionTable& t, Mission& m) {
+struct AutoKeys {
+  AutoOptions options;
+  FixedChoice fixed;
+};
+
+/// With `auto_keys` the keys of policy.auto are there, too: for help, since no flight records them.
+void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr) {
   t.add("seed", m.seed, 0, 9e15, "seed of every random stream of the mission");
   t.add("vehicle", m.vehicle, {}, "the vehicle's plugin");
   t.under("cave", [&m](OptionTable& c) {
@@ -33,7 +40,7 @@ void describe_mission(OptionTable& t, Mission& m) {
           "\"x y z [heading_deg]\" above the floor to start from; empty: the cave's own");
     describe(c, m.mesh);
   });
-  t.under("policy", [&m](OptionTable& p) {
+  t.under("policy", [&m, auto_keys](OptionTable& p) {
     p.add("name", m.policy, {},
           "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
     p.add("stream", m.policy_stream, 0, 9e15,
@@ -48,6 +55,9 @@ void describe_mission(OptionTable& t, Mission& m) {
           "mission.decision_period of a policy in a process of its own");
     p.add("memory_limit_mib", m.policy_memory_limit_mib, 256, 1 << 20,
           "address space of a policy in a process of its own, in MiB");
+    if (!auto_keys) return;
+    p.section("auto", auto_keys->options);
+    p.section("auto.cave", auto_keys->fixed);
   });
   describe(t, m.core);
   t.section("team", m.core.team);
@@ -102,6 +112,8 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   Mission m;
   m.file = file.empty() ? "command line" : file;
   pt::ptree tree = file.empty() ? pt::ptree() : core::read_including_info(file);
+  if (tree.get_optional<std::string>("mesh"))
+    throw InputError(m.file, "", "is a cave file; fly it with karst fly --cave " + m.file);
   m.policy_parameters = take(tree, kParameters);  // only the policy itself knows the valid keys
   if (!m.policy_parameters.data().empty())
     throw InputError(m.file, kParameters,
@@ -195,8 +207,9 @@ pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
 
 std::string mission_help(const std::string& vehicle) {
   Mission m;
+  AutoKeys auto_keys;
   OptionTable table;
-  describe_mission(table, m);
+  describe_mission(table, m, &auto_keys);
   core::VehiclePlugin& plugin = core::load_vehicle(vehicle, core::plugin_root() / "vehicles");
   table.under(vehicle, [&plugin](OptionTable& t) { plugin.describe_options(t); });
   describe_radio(table, plugin);

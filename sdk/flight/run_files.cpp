@@ -1,11 +1,13 @@
 #include "sdk/flight/run_files.h"
 
 #include <array>
+#include <boost/property_tree/ptree.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
 
 namespace karst::flight {
 namespace {
@@ -42,6 +44,54 @@ constexpr std::array kRunFiles = {"events.jsonl",
 
 constexpr const char* kLock = "run.lock";
 
+/// The name of the first of these files that is there; "" if there is none.
+std::string run_file_in(const fs::path& run_dir) {
+  std::error_code ignored;
+  for (const char* file : kRunFiles)
+    if (fs::exists(fs::symlink_status(run_dir / file, ignored))) return file;
+  return "";
+}
+
+/// Whether karst wrote the folder's mission.info: it names the version of karst there.
+bool has_mission_of_karst(const fs::path& folder) {
+  const fs::path file = folder / "mission.info";
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(file, ignored))) return false;
+  try {
+    return core::read_info(file.string()).get_optional<std::string>("karst.version").has_value();
+  } catch (const core::InputError&) {
+    return false;
+  }
+}
+
+void remove_run_files(const fs::path& folder) {
+  std::error_code ignored;
+  for (const char* file : kRunFiles) fs::remove_all(folder / file, ignored);
+}
+
+/// Of a flight, and of each robot of a team.
+void remove_run(const fs::path& run_dir) {
+  std::error_code ignored;
+  for (int robot = 1;; ++robot) {
+    const fs::path own = run_dir / ("robot_" + std::to_string(robot));
+    if (!fs::is_directory(fs::symlink_status(own, ignored)) || !has_mission_of_karst(own)) break;
+    remove_run_files(own);
+    fs::remove(own, ignored);  // unless there is something else in it
+  }
+  remove_run_files(run_dir);
+}
+
+/// Throws unless the files there are those of a flight. A campaign may hold thousands of flights.
+void refuse_to_replace(const fs::path& run_dir) {
+  std::error_code ignored;
+  if (run_file_in(run_dir).empty()) return;
+  if (!has_mission_of_karst(run_dir) || fs::exists(run_dir / "campaign.sqlite", ignored))
+    throw core::InputError(
+        run_dir.string(), "--force",
+        "replaces a run directory only, and this is none: karst wrote no mission.info there, "
+        "or it holds a campaign");
+}
+
 }  // namespace
 
 fs::path run_dir_of(const std::string& out) { return fs::path(out).lexically_normal(); }
@@ -54,16 +104,17 @@ void refuse_run(const fs::path& folder) {
 }
 
 void refuse_taken(const fs::path& run_dir) {
-  std::error_code ignored;
-  for (const char* file : kRunFiles)
-    if (fs::exists(fs::symlink_status(run_dir / file, ignored)))
-      throw core::InputError(
-          run_dir.string(), file,
-          "is there already, of another run or your own; choose another --out or remove it");
+  if (const std::string file = run_file_in(run_dir); !file.empty())
+    throw core::InputError(run_dir.string(), "",
+                           "has files of a flight already (" + file +
+                               "); choose another --out, or replace the flight with karst fly --force");
 }
 
-RunClaim::RunClaim(fs::path run_dir) : run_dir_(std::move(run_dir)) {
-  refuse_taken(run_dir_);
+RunClaim::RunClaim(fs::path run_dir, OldRun old) : run_dir_(std::move(run_dir)) {
+  if (old == OldRun::replaced)
+    refuse_to_replace(run_dir_);
+  else
+    refuse_taken(run_dir_);
   std::error_code error;
   was_there_ = fs::exists(run_dir_, error);
   fs::create_directories(run_dir_, error);
@@ -78,12 +129,12 @@ RunClaim::RunClaim(fs::path run_dir) : run_dir_(std::move(run_dir)) {
   else
     throw core::InputError((run_dir_ / kLock).string(), "",
                            std::string("cannot be written: ") + std::strerror(errno));
+  if (old == OldRun::replaced) remove_run(run_dir_);  // behind the lock: no flight writes there now
 }
 
 RunClaim::~RunClaim() {
   std::error_code ignored;
-  if (!kept_)
-    for (const char* file : kRunFiles) fs::remove_all(run_dir_ / file, ignored);
+  if (!kept_) remove_run_files(run_dir_);
   fs::remove(run_dir_ / kLock, ignored);
   if (!kept_ && !was_there_) fs::remove(run_dir_, ignored);
 }

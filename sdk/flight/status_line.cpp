@@ -35,7 +35,7 @@ void StatusLine::show(core::TimeNs now, const std::vector<core::MissionStatus>& 
 void StatusLine::show_alone(const core::MissionStatus& s) const {
   if (!renews_ && s.time % kLineEvery != 0) return;
   const int t = static_cast<int>(core::seconds(s.time));
-  std::fprintf(stderr, "%s%-8s %2d:%02d  battery %3.0f %% (%2d:%02d left)  %6.0f m^3  %4.1f m/s  %.60s%s",
+  std::fprintf(stderr, "%s%-8s %2d:%02d  battery %3.0f %% (%2d:%02d left)  %6.0f m³  %4.1f m/s  %.60s%s",
                renews_ ? "\r\033[K" : "", core::name_of(s.phase), t / 60, t % 60, 100 * s.battery_fraction,
                static_cast<int>(s.battery_seconds_left) / 60, static_cast<int>(s.battery_seconds_left) % 60,
                s.explored_m3, s.speed_mps, core::printable(s.goal).c_str(), renews_ ? "" : "\n");

@@ -21,7 +21,9 @@
 #include "sdk/preflight/far_places.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/experience.h"
+#include "sdk/selection/forecast.h"
 #include "sdk/selection/load_experience.h"
+#include "sdk/selection/select_words.h"
 
 namespace karst::preflight {
 namespace {
@@ -30,16 +32,18 @@ using core::InputError;
 using flight::Mission;
 using selection::Experience;
 
+constexpr const char* kFallbackPolicy = "nearest_frontier";
 constexpr double kLeastHole_m2 = 0.01;  // smaller ones are slits between triangles
 
 bool is_auto(const Mission& m) { return m.policy == flight::kAutoPolicy; }
 
-/// Throws what `karst fly` would: an unknown policy, or a parameter that it does not have.
-void refuse_bad_policy(const Mission& mission, const LookOptions& options) {
+/// Every parameter of the mission's policy with the value in force. Throws what `karst fly` would: an unknown
+/// policy, or a parameter that it does not have.
+boost::property_tree::ptree parameters_in_force(const Mission& mission, const LookOptions& options) {
   flight::FlightRequest request;
   request.plugins = options.plugins;
   request.notes = false;
-  flight::load_policies({mission}, request);
+  return flight::load_policies({mission}, request).policies.front()->parameters();
 }
 
 std::optional<core::VehicleDescription> vehicle_of(const Mission& m, Preflight& p) {
@@ -80,9 +84,9 @@ std::vector<Hole> holes_of(const cave::RayScene& scene, const core::Vec3& start)
 CaveFacts cave_facts(const cave::Cave& rock, const selection::FreeSpace& space, const VehicleFacts& vehicle,
                      double hull_clearance_m, const FarPlaces& far) {
   const core::Vec3& start = rock.description.start.position;
-  const auto reachable = [&](double clearance_m) {
+  const auto reachable = [&](std::optional<double> clearance_m) {
     evaluation::ReachableOptions options;
-    options.clearance_m = clearance_m;
+    if (clearance_m) options.clearance_m = *clearance_m;
     return evaluation::find_reachable(rock.scene.mesh(), start, options, rock.description.mesh_path);
   };
   const evaluation::Reachable own = reachable(vehicle.clearance_m);
@@ -91,6 +95,7 @@ CaveFacts cave_facts(const cave::Cave& rock, const selection::FreeSpace& space, 
   c.passages = selection::passage_facts(rock.scene, own);
   c.start = start;
   c.start_clearance_m = rock.scene.distance_to_rock(start, 100);
+  c.explorable_m3 = reachable(std::nullopt).volume_m3();
   c.reachable_m3 = own.volume_m3();
   c.hull_reachable_m3 = hull_clearance_m < vehicle.clearance_m
                             ? std::max(c.reachable_m3, reachable(hull_clearance_m).volume_m3())
@@ -121,6 +126,7 @@ TimeLimits time_limits(const Mission& m) {
   l.max_flight_time_s = o.max_flight_time_s;
   l.home_margin = o.home_margin;
   l.home_reserve_s = o.home_reserve_s;
+  l.decision_period_s = o.decision_period_s;
   l.takeoff_height_m = o.takeoff_height_m;
   l.landing_speed_mps = o.landing_speed_mps;
   l.motion = m.core.motion;
@@ -143,40 +149,65 @@ void add_ranking(const Experience& e, const selection::Selected& s, PolicyFacts&
     if (is_own && !f.own) f.own = f.ranking.size() - 1;
   }
   f.confidence = s.confidence;
+  f.confidence_words = selection::confidence_in_words(e, s);
   f.horizon_s = e.flown.horizon_s;
 }
 
-void add_expected(const Experience& e, const selection::CaveFigures& figures, const selection::Selected& s,
-                  PolicyFacts& f) {
-  const std::vector<double> values = selection::expected_figures(e, figures, s, s.ranking[*f.own].contestant);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isnan(values[i])) continue;
-    const int metric = evaluation::metric_index(e.metrics[i]);
+selection::FlightTime flight_time(const TimeBudget& t) {
+  return {t.endurance_s, t.turn_back_s, t.return_s,
+          2 * t.limits.takeoff_height_m / t.limits.landing_speed_mps, t.limits.motion.max_speed_mps};
+}
+
+/// Figures of which the length of the flight decides are scaled to it; the others are means over the caves.
+void add_expected(const Experience& e, const CaveFacts& cave, const TimeBudget& time,
+                  const selection::Selected& s, PolicyFacts& f) {
+  const std::size_t contestant = s.ranking[*f.own].contestant;
+  const selection::Forecast forecast = selection::forecast(e, cave.figures, s, contestant, flight_time(time));
+  const auto add = [&f](const std::string& name, double value) {
+    if (std::isnan(value)) return;
+    const int metric = evaluation::metric_index(name);
     const std::string_view unit =
         metric < 0 ? "" : evaluation::metric_definitions()[static_cast<std::size_t>(metric)].unit;
-    f.expected.push_back({e.metrics[i], std::string(unit), values[i]});
+    f.expected.push_back({name, std::string(unit), value});
+  };
+  add("coverage", forecast.coverage);
+  add("explored_volume_m3", forecast.coverage * cave.explorable_m3);
+  add("flight_time_s", forecast.flight_s);
+  add("path_length_m", forecast.path_m);
+  add("energy_wh", forecast.energy_wh);
+  const std::vector<double> means = selection::expected_figures(e, cave.figures, s, contestant);
+  for (std::size_t i = 0; i < means.size(); ++i)
+    for (const char* name : {"completed", "contacts"})
+      if (e.metrics[i] == name) add(name, means[i]);
+}
+
+/// Refused without enough experience, with the reason.
+selection::Selected selected_for(const std::optional<Experience>& e, const Mission& m,
+                                 const LookOptions& options, const selection::CaveFigures& figures,
+                                 const std::string& mesh_hash) {
+  selection::Selected none;
+  none.refused = true;
+  none.reason = "no experience is installed, and --results gives none";
+  if (!e) return none;
+  try {
+    return selection::select(*e, figures, options.select, m.cave, mesh_hash);
+  } catch (const InputError& error) {
+    none.reason = error.what();
+    return none;
   }
 }
 
-/// Nothing if `auto` finds no policy, which is then a refusal.
-std::optional<PolicyFacts> policy_facts(const Mission& m, const LookOptions& options,
-                                        const selection::CaveFigures& figures, const std::string& mesh_hash,
-                                        Preflight& p) {
+PolicyFacts policy_facts(const Mission& m, const LookOptions& options, const CaveFacts& cave,
+                         const TimeBudget& time, const std::string& mesh_hash) {
   const std::optional<Experience> e = experience_of(options);
-  selection::Selected s;
-  s.refused = true;
-  s.reason = "no experience is installed, and --results gives none";
-  if (e) s = selection::select(*e, figures, options.select, m.cave, mesh_hash);
-  if (s.refused && is_auto(m)) {
-    p.refusals.push_back({Subject::policy, s.reason + "; --policy can name one"});
-    return std::nullopt;
-  }
+  const selection::Selected s = selected_for(e, m, options, cave.figures, mesh_hash);
   PolicyFacts f;
-  f.policy = m.policy;
-  f.selected = is_auto(m);
-  f.reason = s.reason;
+  f.fallback = is_auto(m) && s.refused;
+  f.policy = f.fallback ? kFallbackPolicy : m.policy;
+  f.selected = is_auto(m) && !s.refused;
   f.metric = options.select.metric;
   f.level = options.select.level;
+  f.reason = s.reason;
   boost::property_tree::ptree parameters = m.policy_parameters;
   if (e && !s.refused) {
     if (f.selected) {
@@ -186,14 +217,17 @@ std::optional<PolicyFacts> policy_facts(const Mission& m, const LookOptions& opt
         if (parameters.count(key) == 0) parameters.push_back({key, value});
     }
     add_ranking(*e, s, f);
-    if (f.own) add_expected(*e, figures, s, f);
+    if (f.own) add_expected(*e, cave, time, s, f);
   }
   for (const auto& [key, value] : parameters) f.parameters.emplace_back(key, value.data());
-  if (f.selected) {
+  if (is_auto(m)) {
     Mission flown = m;
     flown.policy = f.policy;
+    const boost::property_tree::ptree unselected = parameters_in_force(flown, options);
     flown.policy_parameters = parameters;
-    refuse_bad_policy(flown, options);
+    parameters_in_force(flown, options);  // throws what is wrong
+    for (const auto& [key, value] : f.parameters)
+      if (unselected.get<std::string>(key, "") != value) f.changed.emplace_back(key, value);
   }
   return f;
 }
@@ -212,7 +246,7 @@ void refuse_unclear(const Mission& m) {
 
 Preflight look_at(const Mission& m, const LookOptions& options) {
   refuse_unclear(m);
-  if (!is_auto(m)) refuse_bad_policy(m, options);
+  if (!is_auto(m)) parameters_in_force(m, options);  // throws what is wrong
   const cave::Cave rock = cave::load_cave(m.cave, m.start, m.mesh);
   Preflight p;
   p.cave_file = m.cave;
@@ -238,8 +272,7 @@ Preflight look_at(const Mission& m, const LookOptions& options) {
     return p;
   }
   options.tell("choosing the policy");
-  p.policy =
-      policy_facts(m, options, p.cave->figures, campaign::mesh_hash(cave::mesh_of(rock.description)), p);
+  p.policy = policy_facts(m, options, *p.cave, *p.time, campaign::mesh_hash(cave::mesh_of(rock.description)));
   return p;
 }
 

@@ -55,6 +55,7 @@ struct CaveFacts {
   selection::PassageFacts passages;
   core::Vec3 start = core::Vec3::Zero();
   double start_clearance_m = 0;
+  double explorable_m3 = 0;         // what coverage is measured by, as in `karst cave info`
   double reachable_m3 = 0;          // with the vehicle's clearance
   double hull_reachable_m3 = 0;     // of a vehicle that needs no more room than its hull
   double blind_climb_fraction = 0;  // of the places, those to which only climbs lead that no sensor covers
@@ -76,15 +77,18 @@ struct RankedPolicy {
 struct PolicyFacts {
   std::string policy;
   std::vector<std::pair<std::string, std::string>> parameters;
-  bool selected = false;                    // for this cave; false: named by the user
+  std::vector<std::pair<std::string, std::string>> changed;  // of those selected: what is not the default
+  bool selected = false;                                     // for this cave
+  bool fallback = false;                    // nothing could be selected; neither: named by the user
   std::string reason;                       // of the selection, or why nothing is expected
   std::string metric;                       // by which policies are ranked
   double level = 0.9;                       // of the intervals
-  double confidence = selection::kUnknown;  // in the first of the ranking
+  double confidence = selection::kUnknown;  // share of resamplings in which the first of the ranking is first
+  std::string confidence_words;             // the same, and how far to trust it
   double horizon_s = selection::kUnknown;   // the longest exploration of the flights it rests on
   std::vector<RankedPolicy> ranking;        // best first; empty if nothing is expected
   std::optional<std::size_t> own;           // place of this policy in the ranking
-  std::vector<ExpectedFigure> expected;     // of this policy
+  std::vector<ExpectedFigure> expected;     // of this policy, in the time that this flight has
 };
 
 struct Preflight {

@@ -42,6 +42,7 @@ ordered_json json_of(const CaveFacts& c) {
                  {"height_m_p10_p50_p90", c.passages.height_m},
                  {"start", core::list(c.start)},
                  {"start_clearance_m", c.start_clearance_m},
+                 {"coverage_volume_m3", c.explorable_m3},
                  {"reachable_volume_m3", c.reachable_m3},
                  {"hull_reachable_volume_m3", c.hull_reachable_m3},
                  {"blind_climb_fraction", c.blind_climb_fraction}};
@@ -53,7 +54,8 @@ ordered_json json_of(const CaveFacts& c) {
 }
 
 ordered_json json_of(const PolicyFacts& p) {
-  ordered_json j{{"name", p.policy}, {"selected", p.selected}, {"reason", p.reason}};
+  ordered_json j{
+      {"name", p.policy}, {"selected", p.selected}, {"fallback", p.fallback}, {"reason", p.reason}};
   j["parameters"] = ordered_json::object();
   for (const auto& [key, value] : p.parameters) j["parameters"][key] = value;
   j["confidence"] = known(p.confidence);

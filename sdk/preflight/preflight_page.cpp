@@ -13,7 +13,7 @@ using core::xml_text;
 constexpr const char* kStyle = R"css(
 @page { size: A4; margin: 12mm 14mm; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 182mm; padding: 6mm 0; color: #111; background: #fff;
+body { margin: 0 auto; max-width: 182mm; padding: 6mm 5mm; color: #111; background: #fff;
   font: 9.5pt/1.35 system-ui, "DejaVu Sans", sans-serif; overflow-wrap: anywhere; }
 h1 { font-size: 15pt; margin: 0 0 1mm; }
 h2 { font-size: 10.5pt; margin: 3mm 0 1mm; border-bottom: .3mm solid #111; }
@@ -29,11 +29,14 @@ td { vertical-align: top; padding: .4mm 0; }
 .plan .bar { stroke: #111; fill: none; }
 .plan text { fill: #111; font-family: system-ui, "DejaVu Sans", sans-serif; }
 .note { font-size: 8pt; margin: 0; text-align: center; }
+/* One page: the picture takes the room that the text leaves of 297 - 2 x 12 mm, less 1 mm for rounding. */
 @media print {
-  body { padding: 0; max-width: none; }
-  h2 { break-after: avoid; }
-  table, ul, .plan { break-inside: avoid; }
-  .plan { max-height: 95mm; width: auto; }
+  body { padding: 0; max-width: none; font-size: 8.5pt; line-height: 1.25; height: 272mm; display: flex;
+    flex-direction: column; }
+  h2 { break-after: avoid; margin-top: 2mm; }
+  table, ul { break-inside: avoid; }
+  body > * { flex: none; }
+  body > .plan { flex: 0 1 auto; min-height: 30mm; width: auto; margin: 1.5mm auto; }
 }
 )css";
 

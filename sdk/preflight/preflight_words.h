@@ -1,4 +1,5 @@
-// The summary in words: rows of a name and a text, which the terminal and the page show alike.
+// The summary in words: rows of a name and a text, which the terminal and the page show; details only the
+// page.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -10,6 +11,7 @@ namespace karst::preflight {
 
 struct Row {
   std::string name, text;
+  bool page_only = false;
 };
 struct Section {
   std::string title;
@@ -30,7 +32,7 @@ std::string findings_text(const Preflight& preflight, const std::vector<Finding>
 
 /// Characters before the text of each row in facts_text().
 constexpr std::size_t kNameColumns = 23;
-/// The sections, likewise.
+/// The sections without the rows that only the page has.
 std::string facts_text(const Preflight& preflight);
 
 }  // namespace karst::preflight

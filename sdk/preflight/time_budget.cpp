@@ -40,6 +40,7 @@ TimeBudget time_budget(const TimeLimits& limits, double farthest_m) {
   b.limits = limits;
   b.endurance_s = std::min(limits.battery_s.value_or(limits.max_flight_time_s), limits.max_flight_time_s);
   b.farthest_m = farthest_m;
+  b.stride_m = core::cruise_speed_mps(limits.motion) * limits.decision_period_s;
   b.can_explore = slack_s(limits, b.endurance_s, 0) > 0;
   b.reach_m = b.can_explore ? reach_m(limits, b.endurance_s, farthest_m) : 0;
   b.home_s = way_home_s(limits, b.reach_m);

@@ -12,6 +12,7 @@ struct TimeLimits {
   double max_flight_time_s = 3600;
   double home_margin = 0.15;  // of the time home
   double home_reserve_s = 20;
+  double decision_period_s = 4;
   double takeoff_height_m = 0.7;
   double landing_speed_mps = 0.4;
   core::MotionLimits motion;
@@ -25,9 +26,12 @@ struct TimeBudget {
   double home_s = 0;        // to fly home from there and land
   double turn_back_s = 0;   // after take-off, when it must turn back there
   double return_s = 0;      // after take-off, when it then has landed
+  double stride_m = 0;      // what the vehicle flies between two decisions
   bool can_explore = true;  // false: no time is left to fly anywhere and back
 
   bool reaches_all() const { return reach_m >= farthest_m; }
+  /// Nearer than a stride, nothing is seen that is not seen from the start, and goals are refused as too far.
+  bool explores() const { return can_explore && (reaches_all() || reach_m >= stride_m); }
 };
 
 /// With endurance T, margin m and reserve r, the vehicle turns back when T - t = (1 + m) home_s + r. At the

@@ -7,6 +7,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
+#include "sdk/selection/figure_words.h"
 
 namespace karst::preflight {
 namespace {
@@ -25,6 +26,16 @@ void judge_time(const TimeBudget& t, Findings& found) {
                      format_text("no time is left to explore: %sthe flight time allowed last %.0f s, and "
                                  "take-off, landing and the reserve (mission.home_reserve, %.0f s) need more",
                                  battery, t.endurance_s, t.limits.home_reserve_s)});
+    return;
+  }
+  if (!t.explores()) {
+    found.push_back(
+        {Severity::no_go, Subject::time,
+         format_text("the time is too short to explore: of %.0f s, take-off, landing, the reserve "
+                     "(mission.home_reserve, %.0f s) and the margin leave a flight of %.0f m from "
+                     "the start and back, less than the %.0f m between two decisions "
+                     "(mission.decision_period)",
+                     t.endurance_s, t.limits.home_reserve_s, t.reach_m, t.stride_m)});
     return;
   }
   if (!t.reaches_all())
@@ -65,12 +76,17 @@ void judge_cave(const CaveFacts& c, const VehicleFacts& v, Findings& found) {
 
 void judge_policy(const PolicyFacts& p, Findings& found) {
   if (p.ranking.empty()) {
-    watch(found, Subject::policy, "nothing can be said of what it will explore: " + p.reason);
+    watch(found, Subject::policy,
+          (p.fallback ? "no policy could be selected, so it is " + p.policy +
+                            ", and nothing can be said of what it will explore: "
+                      : "nothing can be said of what it will explore: ") +
+              p.reason);
     return;
   }
   if (p.selected && p.confidence < kLowConfidence)
     watch(found, Subject::confidence,
-          format_text("the choice of the policy is uncertain: confidence %.0f %%", 100 * p.confidence) +
+          "the choice of the policy is uncertain: it is first in only " +
+              selection::share_text(p.confidence) + " of the resamplings" +
               (p.ranking.size() > 1 ? ", next is " + p.ranking[1].name : ""));
   if (!p.selected && !p.own)
     watch(found, Subject::policy,
@@ -78,25 +94,32 @@ void judge_policy(const PolicyFacts& p, Findings& found) {
               p.ranking.front().name);
   if (!p.selected && p.own.value_or(0) > 0)
     watch(found, Subject::policy,
-          p.ranking.front().name +
-              format_text(" is expected to do better in %s: %.3g, against %.3g of ", p.metric.c_str(),
-                          p.ranking.front().expected, p.ranking[*p.own].expected) +
+          p.ranking.front().name + " is expected to do better in " + selection::metric_words(p.metric) +
+              ": " + selection::metric_value_text(p.metric, p.ranking.front().expected) + ", against " +
+              selection::metric_value_text(p.metric, p.ranking[*p.own].expected) + " of " +
               p.ranking[*p.own].name);
-  if (const double coverage = expected_value(p, "coverage"); coverage < kMuchCoverage)
-    watch(found, Subject::coverage,
-          format_text("the cave is larger than such a flight explores: %.0f %% of it is expected",
-                      100 * coverage));
 }
 
-/// The figures expected are those of flights of another length.
+/// The figures expected, in the time there is.
+void judge_coverage(const PolicyFacts& p, Findings& found) {
+  if (const double coverage = expected_value(p, "coverage"); coverage < kMuchCoverage)
+    watch(found, Subject::coverage,
+          "the cave is larger than this flight explores: " + selection::share_text(coverage) +
+              " of it is expected");
+}
+
+/// Flights of another length are behind what is expected. Longer ones matter only if something is left to
+/// explore.
 void judge_horizon(const PolicyFacts& p, const TimeBudget& t, Findings& found) {
   if (p.expected.empty() || !(p.horizon_s > 0)) return;
   if (std::abs(t.endurance_s - p.horizon_s) <= kOtherHorizon * p.horizon_s) return;
+  const bool longer = t.endurance_s > p.horizon_s;
+  if (longer && !(expected_value(p, "coverage") < kMuchCoverage)) return;
   watch(found, Subject::coverage,
         format_text(
-            "the expected figures are those of flights of at most %.0f s; this one may last %.0f s, and "
-            "explores %s",
-            p.horizon_s, t.endurance_s, t.endurance_s > p.horizon_s ? "more" : "less"));
+            "the expected figures come from flights of at most %.0f s, scaled to the %.0f s of this one, "
+            "which explores %s",
+            p.horizon_s, t.endurance_s, longer ? "more" : "less"));
 }
 
 }  // namespace
@@ -108,7 +131,10 @@ std::vector<Finding> findings_of(const Preflight& p) {
   for (const std::string& note : p.mesh_notes) watch(found, Subject::cave, note);
   if (p.cave && p.vehicle) judge_cave(*p.cave, *p.vehicle, found);
   if (p.policy) judge_policy(*p.policy, found);
-  if (p.policy && p.time) judge_horizon(*p.policy, *p.time, found);
+  if (p.policy && p.time && p.time->explores()) {
+    judge_coverage(*p.policy, found);
+    judge_horizon(*p.policy, *p.time, found);
+  }
   std::stable_sort(found.begin(), found.end(),
                    [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
   return found;

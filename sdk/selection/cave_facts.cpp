@@ -41,7 +41,10 @@ MeshFacts mesh_facts(const cave::TriangleMesh& mesh) {
   for (std::size_t i = 0, end = 0; i < runs.size(); i = end) {
     while (end < runs.size() && runs[end][0] == runs[i][0] && runs[end][1] == runs[i][1]) ++end;
     ++facts.edges;
-    if (end - i != 2 || runs[i][2] == runs[i + 1][2]) ++facts.odd_edges;
+    if (end - i != 2)
+      ++facts.odd_edges;
+    else if (runs[i][2] == runs[i + 1][2])
+      ++facts.flipped_edges;
   }
   facts.low = facts.high = mesh.vertices.front().cast<double>();
   for (const Vec3f& v : mesh.vertices) {

@@ -11,9 +11,10 @@ namespace karst::selection {
 struct MeshFacts {
   std::size_t triangles = 0;
   core::Vec3 low = core::Vec3::Zero(), high = core::Vec3::Zero();
-  /// Edges that do not belong to exactly two triangles which run along them in opposite directions; corners
-  /// at the same position count as one. 0: the mesh is closed and consistently oriented.
-  std::size_t edges = 0, odd_edges = 0;
+  /// Corners at the same position count as one. Odd edges do not belong to exactly two triangles; of a closed
+  /// mesh there are none. Flipped edges belong to two triangles that run along them in the same direction,
+  /// that is, whose normals point to opposite sides.
+  std::size_t edges = 0, odd_edges = 0, flipped_edges = 0;
 };
 MeshFacts mesh_facts(const cave::TriangleMesh& mesh);
 

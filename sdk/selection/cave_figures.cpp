@@ -19,7 +19,7 @@ using C = CaveFigures;
 // map (docs/select.md).
 constexpr std::array kFigures{
     FigureDefinition{"volume", "m^3", &C::volume_m3, 1, 1e9, true, 0, 0.2, 1,
-                     "room a vehicle can reach or see"},
+                     "free space that a vehicle can reach or see, with half of the cells at the rock"},
     FigureDefinition{"length", "m", &C::length_m, 1, 1e6, true, 0, 0.2, 0.5, "length of all passages"},
     FigureDefinition{"width", "m", &C::width_m, 0.5, 500, true, 0, 0.15, 1,
                      "median over the passages of the widest ball that fits, its diameter"},
@@ -92,9 +92,11 @@ std::string to_text(const CaveFigures& figures) {
   for (const FigureDefinition& f : kFigures) {
     const double v = figures.*f.value;
     if (!std::isfinite(v)) continue;
+    const std::string unit_as_printed =
+        f.unit == "m^3" ? "m³  " : std::string(f.unit);  // padded by characters
     std::array<char, 200> line;
     std::snprintf(line.data(), line.size(), "  %-13s %8.*f %-4s %.*s\n", std::string(f.name).c_str(),
-                  v < 100 ? 2 : 0, v, std::string(f.unit).c_str(), static_cast<int>(f.meaning.size()),
+                  v < 100 ? 2 : 0, v, unit_as_printed.c_str(), static_cast<int>(f.meaning.size()),
                   f.meaning.data());
     out += line.data();
   }

@@ -81,6 +81,18 @@ PossibleRange possible_range(const std::string& metric, const CaveFigures& cave)
   return range;
 }
 
+/// No more volume is explored than the coverage times the volume of the cave.
+void bound_volume(const std::vector<std::string>& metrics, const CaveFigures& cave,
+                  std::vector<double>& figures) {
+  const auto index = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(metrics.begin(), metrics.end(), name) - metrics.begin());
+  };
+  const std::size_t coverage = index("coverage"), volume = index("explored_volume_m3");
+  if (coverage >= metrics.size() || volume >= metrics.size()) return;
+  if (const double most_m3 = figures[coverage] * cave.volume_m3; figures[volume] > most_m3)
+    figures[volume] = most_m3;
+}
+
 /// Student's interval from the errors in left-out caves: for the mean in a new cave.
 void give_intervals(const Experience& e, const Values& v, const std::vector<double>& level,
                     const Kernel& kernel, double probability, std::vector<Expected>& ranking) {
@@ -190,9 +202,7 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
     for (double* value : {&x.value, &x.low, &x.high}) *value = range.nearest_to(*value);
   s.confidence = confidence_of(values, weight, sign, s.ranking.front().contestant, !s.flown);
   s.refused = !s.flown && s.near.front().distance.value > s.limit;
-  s.reason = s.refused ? why_far(e, cave, s.near.front(), s.limit)
-             : s.flown ? why_first_there(e, s, options)
-                       : why_first(e, s, options);
+  s.reason = s.refused ? why_far(e, cave, s.near.front(), s.limit) : why_first(e, s, options);
   return s;
 }
 
@@ -205,6 +215,7 @@ std::vector<double> expected_figures(const Experience& e, const CaveFigures& cav
     const double expected = predict(values, levels(values), weight, contestant);
     out.push_back(possible_range(e.metrics[m], cave).nearest_to(expected));
   }
+  bound_volume(e.metrics, cave, out);
   return out;
 }
 

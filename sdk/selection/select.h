@@ -47,7 +47,8 @@ Selected select(const Experience& experience, const CaveFigures& cave, const Sel
                 const std::string& source, const std::string& mesh_hash = "");
 
 /// The predicted figures of one contestant with the same bandwidth, by metric of the experience. None is
-/// outside of what its metric can be in this cave: an explored volume is at most that of the cave.
+/// outside of what its metric can be in this cave: an explored volume is at most the coverage times the
+/// volume of the cave.
 std::vector<double> expected_figures(const Experience& experience, const CaveFigures& cave,
                                      const Selected& selected, std::size_t contestant);
 

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "core_stack/common/character_count.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxErrorBytes = 8000;
 constexpr std::size_t kMinColumns = 20, kUsualColumns = 80;  // a terminal may say 0
+constexpr std::size_t kHelpColumns = 100;                    // without a terminal
 
 std::string formatted(const char* format, std::va_list arguments) {
   return core::printable(core::format_text_list(format, arguments));
@@ -57,6 +60,16 @@ std::size_t terminal_columns(std::FILE* to) {
   if (isatty(file) != 1) return 0;
   winsize size{};
   return ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col >= kMinColumns ? size.ws_col : kUsualColumns;
+}
+
+std::size_t help_columns() {
+  const char* const said = std::getenv("COLUMNS");
+  const std::string_view text = said == nullptr ? "" : said;
+  std::size_t columns = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), columns);
+  if (error == std::errc() && end == text.data() + text.size() && columns >= kMinColumns) return columns;
+  const std::size_t terminal = terminal_columns(stdout);
+  return terminal > 0 ? terminal : kHelpColumns;
 }
 
 std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent) {

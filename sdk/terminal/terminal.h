@@ -20,6 +20,9 @@ namespace karst {
 /// How many columns a line has on the terminal that `to` writes to; 0 if it writes to something else.
 std::size_t terminal_columns(std::FILE* to);
 
+/// How wide help is: COLUMNS of the environment, or else what the terminal says; 100 where there is none.
+std::size_t help_columns();
+
 /// `text` with each line broken between words where it is longer than `columns`; what goes on begins with
 /// `indent` blanks. A word that is longer than a line stays whole. 0 columns: no limit.
 std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent);

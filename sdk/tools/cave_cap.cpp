@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/decimal_text.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/json_point.h"
@@ -27,7 +28,7 @@ std::string fate_of(const cave::CapOfLoop& c, double limit_m) {
     case LeftOpen::slit:
       return "left open, all on one line: nothing passes";
     case LeftOpen::too_large:
-      return core::format_text("left open, wider than --cap-limit %g", limit_m);
+      return core::format_text("left open, wider than --cap-limit (%g m)", limit_m);
     case LeftOpen::seam:
       break;
   }
@@ -64,8 +65,8 @@ void write_capped(const cave::MeshFile& mesh, const CapArguments& args, bool jso
               core::counted(capped.loops.size(), "loop").c_str(), closed);
     for (std::size_t i = 0; i < capped.loops.size() && i < kMostLines; ++i) {
       const cave::CapOfLoop& c = capped.loops[i];
-      print_out("  %8.2f m2, %6.2f m across, around %.1f %.1f %.1f: %s\n", c.loop.area_m2, c.loop.diameter_m,
-                c.loop.centre.x(), c.loop.centre.y(), c.loop.centre.z(), fate_of(c, args.limit_m).c_str());
+      print_out("  %8.2f m², %6.2f m across, around %s: %s\n", c.loop.area_m2, c.loop.diameter_m,
+                core::decimal_text(c.loop.centre, 1).c_str(), fate_of(c, args.limit_m).c_str());
     }
     if (capped.loops.size() > kMostLines)
       print_out("  and %zu smaller ones; --json lists all\n", capped.loops.size() - kMostLines);

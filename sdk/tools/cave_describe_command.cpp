@@ -5,22 +5,35 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/json_text.h"
+#include "plugins/simulator/cave/cave.h"
 #include "sdk/selection/describe.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
+#include "sdk/tools/mesh_options.h"
 
 namespace karst::tools {
 namespace {
 
 struct DescribeArguments {
   std::string file, start;
+  MeshOptions mesh;
   bool json = false;
 };
 
+selection::CaveFigures figures_of(const DescribeArguments& args) {
+  if (args.mesh.empty()) return selection::describe_file(args.file, args.start).figures;
+  if (selection::source_of(args.file) != selection::Source::mesh)
+    throw core::InputError(args.file, args.mesh.front().first, "is of use with a mesh only");
+  const cave::Cave cave = cave::load_cave(args.file, args.start, mesh_keys_of(args.mesh));
+  return selection::describe(
+      selection::free_space_of(cave.scene, cave.description.start.position, {}, args.file));
+}
+
 void describe(const DescribeArguments& args) {
-  const selection::CaveFigures figures = selection::describe_file(args.file, args.start).figures;
+  const selection::CaveFigures figures = figures_of(args);
   if (args.json)
     print_json(core::json_of<nlohmann::ordered_json>(selection::to_json(figures)));
   else
@@ -35,12 +48,13 @@ void add_cave_describe(CLI::App& cave) {
       "describe",
       "What a cave is like: the figures by which karst select compares caves\n\nThey are explained in " +
           core::doc_path("docs/select.md") + ".");
-  like->add_option("file", d->file, "A cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
+  like->add_option("file", d->file, "a cave's .info file, a mesh, or the map of a flight (.bt, .ot)")
       ->type_name(kFile)
       ->required();
-  like->add_option("--start", d->start, "\"x y z\", for a mesh or instead of the file's own")
+  like->add_option("--start", d->start, "\"x y z\", m, for a mesh or instead of the file's own")
       ->check(not_empty());
-  like->add_flag("--json", d->json, "Write JSON");
+  add_mesh_options(*like, d->mesh);
+  like->add_flag("--json", d->json, "print JSON");
   like->callback([d] { describe(*d); });
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/output_file.h"
@@ -111,6 +112,7 @@ int check_file(CheckArguments& args) {
     tests.push_back(to_json(r));
   }
   const bool passed = count[Verdict::failed] == 0;
+  const auto notes = static_cast<std::size_t>(count[Verdict::noted]);
   if (args.json)
     print_json(ordered_json{{"schema", 1},
                             {"file", args.options.file},
@@ -119,8 +121,9 @@ int check_file(CheckArguments& args) {
                             {"passed", passed},
                             {"tests", tests}});
   else
-    print_out("%d passed, %d failed, %d not applicable, %d not run\n", count[Verdict::passed],
-              count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run]);
+    print_out("%d passed, %d failed, %d not applicable, %d not run%s\n", count[Verdict::passed],
+              count[Verdict::failed], count[Verdict::not_applicable], count[Verdict::not_run],
+              count[Verdict::noted] > 0 ? (", " + core::counted(notes, "note")).c_str() : "");
   return passed ? 0 : kFailed;
 }
 
@@ -185,7 +188,7 @@ void add_check_command(CLI::App& policy) {
       "  karst policy check mine.so --level pedantic --seed 7 --json\n"
       "  karst policy check mine.so --test goals --test determinism.repeat\n\n"
       "Levels: basic is what a flight needs, strict what a policy given to others should hold, pedantic adds "
-      "hygiene.\nExit code: 0 all passed, 2 a test failed, 1 not checked: a wrong argument, or no such "
+      "tidiness.\nExit code: 0 all passed, 2 a test failed, 1 not checked: a wrong argument, or no such "
       "file.");
   add_common(*check_app, *args);
   check_app

@@ -16,6 +16,7 @@
 #include "core_stack/common/options.h"
 #include "sdk/campaign/paper/paper.h"
 #include "sdk/campaign/plan/campaign.h"
+#include "sdk/campaign/plan/flight_times.h"
 #include "sdk/campaign/report/campaign_page.h"
 #include "sdk/campaign/run/run_campaign.h"
 #include "sdk/campaign/run/slurm.h"
@@ -128,11 +129,27 @@ void print_too_few(const campaign::Plan& plan) {
       plan.contestants.size(), least, pairs, (least + caves - 1) / caves);
 }
 
+/// Warns, before the first flight, about flights too short to explore in.
+void print_too_short(const campaign::Plan& plan) {
+  const std::string warning = campaign::little_exploration_text(plan);
+  if (!warning.empty()) print_wrapped(stderr, 7, "karst: %s\n", warning.c_str());
+}
+
+/// A campaign file says by itself what flies where.
+void refuse_file_among_policies(const CompareArguments& args) {
+  for (const std::string& who : args.who)
+    if (fs::path(who).extension() == ".info" || campaign::is_campaign(who))
+      throw InputError(who, "",
+                       "is a campaign's file or folder, which stands alone: give it without further "
+                       "policies and without --caves");
+}
+
 int compare(const CompareArguments& args) {
   if (!args.metric.empty()) check_metric(args.metric);
   std::optional<Campaign> c;
   campaign::RunOptions options;
   options.folder = args.out;
+  if (!args.caves.empty() || args.who.size() != 1) refuse_file_among_policies(args);
   if (!args.caves.empty()) {
     c = from_words(args);
   } else if (args.who.size() != 1) {
@@ -163,7 +180,10 @@ int compare(const CompareArguments& args) {
     CampaignProgress progress(args.quiet, args.jobs);
     bool told = false;
     options.progress = [&](const campaign::Plan& plan, const campaign::Progress& p) {
-      if (!std::exchange(told, true)) print_too_few(plan);
+      if (!std::exchange(told, true)) {
+        print_too_few(plan);
+        print_too_short(plan);
+      }
       progress.show(plan, p);
     };
     done = campaign::run_campaign(c, options);
@@ -228,6 +248,7 @@ void add_compare_command(CLI::App& app) {
   compare_app->add_option("--mission", args->mission, "mission file with settings that all share")
       ->type_name(kFile);
   compare_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
+      ->type_name(kSetting)
       ->allow_extra_args(false);
   compare_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
       ->type_name(kFile)
@@ -254,8 +275,10 @@ void add_compare_command(CLI::App& app) {
       ->add_option("--keep", args->keep,
                    "what stays of a trial: figures; replay (default): all but map.ot and map.ply; all")
       ->check(CLI::IsMember(core::all_names<campaign::Keep>()));
-  compare_app->add_option("--metric", args->metric,
-                          "figure that the verdict is about, decided before flying; default coverage_auc");
+  compare_app
+      ->add_option("--metric", args->metric,
+                   "figure that the verdict is about, decided before flying; default coverage_auc")
+      ->type_name(kMetric);
   compare_app->add_flag("--any-binary", args->any_binary,
                         "go on although karst or a plugin is another one than before");
   compare_app->add_flag("--quiet", args->quiet, "no progress");
@@ -296,8 +319,10 @@ void add_results_command(CLI::App& app) {
   results_app->add_option("--json", args->json, "write everything; - for standard output")
       ->type_name(kFile)
       ->check(not_empty());
-  results_app->add_option("--metric", args->metric,
-                          "figure that the verdict is about; default: as the campaign declared");
+  results_app
+      ->add_option("--metric", args->metric,
+                   "figure that the verdict is about; default: as the campaign declared")
+      ->type_name(kMetric);
   CLI::Option* paper = results_app
                            ->add_option("--paper", args->paper,
                                         "folder for tables (LaTeX, Markdown), figures (SVG, PDF) and methods")

@@ -29,14 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FlyArguments {
-  std::string mission_file, out, check;
+  std::string mission_file, out, check, flight_time;
   flight::MissionOverrides overrides;
   std::optional<std::int64_t> seed;
   fs::path cave_cache;
   std::vector<std::string> plugins;
   MeshOptions mesh;
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool keys = false, json = false, quiet = false, no_report = false, real_time = false,
+  bool keys = false, force = false, json = false, quiet = false, no_report = false, real_time = false,
        record_requests = false, in_process = false;
 };
 
@@ -70,14 +70,30 @@ void print_outcome(const nlohmann::ordered_json& metrics, const evaluation::Endi
                 evaluation::achievement_of(metrics, ending).c_str(), how.c_str());
 }
 
+/// How to look into a policy that broke: the run directory is that of its own vehicle.
+void print_way_to_debug(const fs::path& run_dir, const FlyArguments& args) {
+  if (!args.record_requests)
+    return print_error("karst: to repeat this in a debugger, fly with --record-requests\n");
+  std::string command = "gdb --args karst policy replay " + run_dir.string();
+  for (const std::string& plugin : args.plugins) command += " --plugin " + plugin;
+  print_error("karst: `%s` repeats this in a debugger\n", command.c_str());
+}
+
 /// On standard error, whatever else is printed: what flew is not what was to be flown.
-void print_failed_policies(const std::vector<evaluation::Ending>& endings) {
+void print_broken_policies(const std::vector<evaluation::Ending>& endings, const fs::path& run_dir,
+                           const FlyArguments& args) {
+  const bool team = endings.size() > 1;
   for (std::size_t i = 0; i < endings.size(); ++i) {
     const auto& failed = endings[i].failed_policy;
-    const std::string robot = endings.size() > 1 ? "of robot " + std::to_string(i + 1) + " " : "";
+    const auto& restart = endings[i].restart;
+    const std::string robot = "robot " + std::to_string(i + 1);
+    if (restart)
+      print_error("karst: %s%s\n", team ? (robot + ": ").c_str() : "", sentence_of(*restart).c_str());
     if (failed)
-      print_error("karst: the policy %sfailed at %.1f s, and the fallback took over: %s\n", robot.c_str(),
-                  failed->time_s, failed->why.c_str());
+      print_error("karst: the policy %sfailed at %.1f s, and the fallback took over: %s\n",
+                  team ? ("of " + robot + " ").c_str() : "", failed->time_s, failed->why.c_str());
+    if (restart || failed)
+      print_way_to_debug(team ? run_dir / ("robot_" + std::to_string(i + 1)) : run_dir, args);
   }
 }
 
@@ -106,7 +122,7 @@ void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequ
   print_out("  flight time      %s\n  path length      %s\n  mean speed       %s\n",
             number("flight_time_s", "%.0f s").c_str(), number("path_length_m", "%.0f m").c_str(),
             number("mean_speed_mps", "%.2f m/s").c_str());
-  print_out("  explored volume  %s", number("explored_volume_m3", "%.0f m^3").c_str());
+  print_out("  explored volume  %s", number("explored_volume_m3", "%.0f m³").c_str());
   if (!metrics["coverage"].is_null())
     print_out(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
   print_out("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
@@ -165,6 +181,7 @@ void print_choice(const flight::Mission& mission) {
 flight::Mission mission_of(const FlyArguments& args, const PolicyChooser& choose_policy) {
   flight::MissionOverrides overrides = args.overrides;
   if (args.seed) overrides.values.emplace_back("seed", std::to_string(*args.seed));
+  if (!args.flight_time.empty()) overrides.values.emplace_back("mission.max_flight_time", args.flight_time);
   if (args.in_process) overrides.values.emplace_back("policy.isolation", "in_process");
   for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
   flight::Mission mission = flight::read_mission(args.mission_file, overrides);
@@ -187,6 +204,7 @@ flight::FlightRequest request_of(const FlyArguments& args, const flight::Mission
   request.threads = args.threads;
   request.clock = args.real_time ? core::Clock::real_time : core::Clock::lockstep;
   request.report = args.no_report ? flight::Report::none : flight::Report::written;
+  request.old_run = args.force ? flight::OldRun::replaced : flight::OldRun::kept;
   request.record_requests = args.record_requests;
   request.notes = !args.quiet;
   request.status_line = !args.quiet && !args.json;
@@ -220,7 +238,7 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
     else
       print_flight(outcome, request);
   }
-  print_failed_policies(outcome.endings);
+  print_broken_policies(outcome.endings, request.run_dir, args);
   print_last_output(outcome.printed);
   if (!outcome.record_problem.empty())
     print_wrapped(stderr, 7, "karst: %s\nkarst: the %s record is incomplete: %s\n",
@@ -248,7 +266,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
       "Missions to start from: " +
           core::doc_path("examples/missions") +
           "\n\n"
-          "Exit code: 0 the mission went as meant: explored until nothing was left, or the time or the "
+          "Exit code: 0 the mission went as planned: explored until nothing was left, or the time or the "
           "battery, and landed at the start or as a relay (of a team: all did). 2 it did not: sent home or "
           "down early, landed elsewhere, or the record is incomplete. 1 not flown, or nothing could be "
           "printed.");
@@ -276,11 +294,18 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
-  fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")->allow_extra_args(false);
+  fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")
+      ->type_name(kSetting)
+      ->allow_extra_args(false);
   fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
+  fly_app
+      ->add_option("--time", args->flight_time,
+                   "flight time, such as \"300 s\" or 5min: short for --set mission.max_flight_time")
+      ->check(not_empty());
   fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")
       ->type_name(kFolder)
       ->check(not_empty());
+  fly_app->add_flag("--force", args->force, "replace the flight that is in the run directory already");
   fly_app
       ->add_option("--threads", args->threads,
                    "1: all on one thread; 2 or more: sensing and mapping on a thread of their own. "

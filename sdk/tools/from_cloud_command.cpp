@@ -92,7 +92,8 @@ void write_info_file(const CaveFiles& files, const FromCloudArguments& args, con
 void make_from_cloud(const FromCloudArguments& args) {
   if (!from_cloud::has_poisson())
     throw std::runtime_error("this karst was built without PCL: apt-get install libpcl-dev and build again");
-  const cave::MeshFrame frame = cave::mesh_frame("command line", args.cloud, mesh_keys_of(args.mesh));
+  cave::MeshFrame frame = cave::mesh_frame("command line", args.cloud, mesh_keys_of(args.mesh));
+  frame.given_as_options = true;
   const from_cloud::CloudOptions options = cloud_options_of(args);
   const CaveFiles files = new_cave_files(args.out, "ply", args.force);
   StepProgress progress;
@@ -123,37 +124,41 @@ void add_from_cloud_command(CLI::App& cave) {
   CLI::App* command = cave.add_subcommand(
       "from-cloud",
       "Make a cave of a laser scan, with a report of what was guessed: writes OUT.ply and OUT.info");
-  command->add_option("cloud", args->cloud, "A point cloud: .ply, .pcd or .las (not .laz)")
+  command->add_option("cloud", args->cloud, "a point cloud: .ply, .pcd or .las (not .laz)")
       ->type_name(kFile)
       ->required();
-  command->add_option("--out,-o", args->out, "Path of the cave without ending, such as caves/demo")
+  command->add_option("--out,-o", args->out, "path of the cave without ending, such as caves/demo")
       ->type_name(kFile)
       ->required()
       ->check(not_empty());
   command
-      ->add_option("--resolution", args->options.resolution_m,
-                   "Edge of the reconstruction's cells, m; else chosen from the spacing of the points")
+      ->add_option(
+          "--resolution", args->options.resolution_m,
+          "edge of the finest cells of the reconstruction, m; default: from the spacing of the points")
       ->check(number_in(0.02, 5.0));
   command
       ->add_option("--scanner", args->scanners,
                    "\"x y z\", a place of the scanner in the cloud's own coordinates; any number of these")
       ->allow_extra_args(false);
-  command->add_option("--path", args->path, "The scanner's trajectory (TUM), in the cloud's own coordinates")
+  command->add_option("--path", args->path, "the scanner's trajectory (TUM), in the cloud's own coordinates")
       ->type_name(kFile)
       ->check(not_empty());
-  command->add_flag("--estimate-normals", args->estimate_normals, "Do not use the normals of the file");
-  command->add_option("--start", args->start, "\"x y z [heading]\" in the cave to be made, m, z up")
+  command->add_flag("--estimate-normals", args->estimate_normals, "do not use the normals of the file");
+  command
+      ->add_option("--start", args->start,
+                   "\"x y z [heading]\" in the cave that results, m and degrees, z up")
       ->check(not_empty());
   command
-      ->add_option("--guessed-beyond", args->options.guessed_beyond_m,
-                   "Surface farther from all points counts as guessed, m; else twice the resolution")
+      ->add_option(
+          "--guessed-beyond", args->options.guessed_beyond_m,
+          "surface farther than this from all points counts as guessed, m; default: twice the resolution")
       ->check(number_in(0.01, 100));
-  command->add_option("--cap-limit", args->options.cap_limit_m, "Holes that are wider stay open, m")
+  command->add_option("--cap-limit", args->options.cap_limit_m, "diameter up to which holes are closed, m")
       ->check(number_in(0.01, 1000))
       ->capture_default_str();
-  add_mesh_options(*command, args->mesh);
-  command->add_flag("--force", args->force, "Overwrite a cave that is there");
-  command->add_flag("--json", args->json, "Write the report as JSON");
+  add_mesh_options(*command, args->mesh, ReadFile::cloud);
+  command->add_flag("--force", args->force, "overwrite files that exist");
+  command->add_flag("--json", args->json, "print the report as JSON");
   command->footer(
       "Examples:\n  karst cave from-cloud scan.las --out caves/real\n"
       "  karst cave from-cloud scan.las --offset \"672000 5200000 430\" --out caves/real\n"

@@ -1,6 +1,7 @@
 #include "sdk/tools/from_cloud_text.h"
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/decimal_text.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/json_point.h"
 #include "plugins/simulator/cave/propose_start.h"
@@ -32,8 +33,8 @@ std::string normals_text(const CloudReport& r) {
 }
 
 std::string place_text(double area_m2, double diameter_m, const core::Vec3& centre) {
-  return format_text("  %8.2f m2, %6.2f m across, around %.1f %.1f %.1f", area_m2, diameter_m, centre.x(),
-                     centre.y(), centre.z());
+  return format_text("  %8.2f m², %6.2f m across, around ", area_m2, diameter_m) +
+         core::decimal_text(centre, 1);
 }
 
 ordered_json place_json(double area_m2, double diameter_m, const core::Vec3& centre) {
@@ -54,14 +55,14 @@ std::vector<std::string> report_lines(const from_cloud::CaveFromCloud& made, std
                   "others left out",
                   r.thinned, r.resolution_m, r.spacing_m, r.lonely));
   lines.push_back("normals            " + normals_text(r));
-  lines.push_back(format_text("surface            %zu triangles, %.1f m2, closed; encloses %.1f m3; %.1f MB",
+  lines.push_back(format_text("surface            %zu triangles, %.1f m², closed; encloses %.1f m³; %.1f MB",
                               made.mesh.triangles.size(), r.guessed.whole_m2, r.volume_m3,
                               static_cast<double>(mesh_bytes) / 1e6));
   lines.push_back(
-      format_text("left out           %s of surface, %.1f m2; %zu points lie off the cave's surface",
+      format_text("left out           %s of surface, %.1f m²; %zu points lie off the cave's surface",
                   counted(r.other_parts, "other part").c_str(), r.other_parts_m2, r.off_surface));
   lines.push_back(
-      format_text("guessed            %.1f m2, %.1f %% of the surface, farther than %g m from all "
+      format_text("guessed            %.1f m², %.1f %% of the surface, farther than %g m from all "
                   "points; %s",
                   r.guessed.area_m2, percent(r.guessed.area_m2, r.guessed.whole_m2), r.guessed_beyond_m,
                   counted(r.guessed.patches.size(), "place").c_str()));

@@ -19,11 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_pages(const CLI::App& app, const fs::path& folder) {
+/// `doc_folder`: where the reader of the pages has the documentation; empty: where this karst has it.
+void write_pages(const CLI::App& app, const fs::path& folder, const std::string& doc_folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw core::InputError(folder.string(), "", "cannot be made: " + error.message());
-  for (const auto& [name, text] : man_pages(commands_of(app), KARST_VERSION, core::doc_root().string()))
+  const std::string here = core::doc_root().string();
+  const DocFolders doc{here, doc_folder.empty() ? here : doc_folder};
+  for (const auto& [name, text] : man_pages(commands_of(app), KARST_VERSION, doc))
     evaluation::write_whole_file(folder / name, text);
 }
 
@@ -45,10 +48,11 @@ void add_help_commands(CLI::App& app) {
     std::fputs((*shell == "zsh" ? zsh_completion(commands) : bash_completion(commands)).c_str(), stdout);
   });
 
-  auto folder = std::make_shared<std::string>();
+  auto folder = std::make_shared<std::string>(), doc_folder = std::make_shared<std::string>();
   CLI::App* man = app.add_subcommand("man", "Write the manual pages: what the installation does")->group("");
   man->add_option("folder", *folder, "folder for the pages")->required()->check(not_empty());
-  man->callback([folder, &app] { write_pages(app, *folder); });
+  man->add_option("--doc", *doc_folder, "where the pages' reader has the documentation")->check(not_empty());
+  man->callback([folder, doc_folder, &app] { write_pages(app, *folder, *doc_folder); });
 }
 
 }  // namespace karst::tools

@@ -89,12 +89,12 @@ CLI::App& add_policy_command(CLI::App& app) {
   add_policy_new(*policy);
   CLI::App* list =
       policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
-  list->add_option("--plugin", args->plugins, "Look at this plugin file first")
+  list->add_option("--plugin", args->plugins, "plugin file (.so) to look at first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
-  list->add_flag("--json", args->json, "Write JSON");
-  list->add_flag("--verbose,-v", args->verbose, "With parameters and the folders searched");
+  list->add_flag("--json", args->json, "write JSON");
+  list->add_flag("--verbose,-v", args->verbose, "with parameters and the folders searched");
   list->callback([args] {
     const host::SearchPath path = host::default_search_path(args->plugins);
     const std::vector<PolicyListing> all = host::list_policies(path);

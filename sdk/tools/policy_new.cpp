@@ -138,7 +138,7 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
     fs::remove_all(folder, error);
     throw;
   }
-  print_out("%s: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
+  print_out("%s: starts as: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
   const std::string ending(from->ending);
   for (const std::string& file :
        {name + ending, name + "_test" + ending, std::string("CMakeLists.txt"), std::string("README.md")})
@@ -157,7 +157,7 @@ void add_policy_new(CLI::App& policy) {
     std::string name, dir = ".", kind = "nearest";
   };
   auto args = std::make_shared<Arguments>();
-  std::string help = "Which policy to start from:";
+  std::string help = "policy to start from:";
   std::vector<std::string> names;
   for (const Template& t : templates()) {
     names.emplace_back(t.name);
@@ -166,8 +166,8 @@ void add_policy_new(CLI::App& policy) {
   }
   CLI::App* command = policy.add_subcommand(
       "new", "Write a folder with a policy to start from: its code, its test, its build");
-  command->add_option("NAME", args->name, "What the policy is called: [a-z][a-z0-9_]*")->required();
-  command->add_option("--dir", args->dir, "The folder is written into this one")
+  command->add_option("NAME", args->name, "name of the policy: [a-z][a-z0-9_]*")->required();
+  command->add_option("--dir", args->dir, "folder into which the new one is written")
       ->type_name(kFolder)
       ->check(not_empty());
   command->add_option("--template", args->kind, help)->check(CLI::IsMember(names))->capture_default_str();

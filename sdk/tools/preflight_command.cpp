@@ -8,6 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
+#include "core_stack/common/shell_word.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/mission_file.h"
@@ -25,6 +26,7 @@ namespace {
 using core::InputError;
 
 constexpr int kNoGo = 3;  // exit code
+constexpr const char *kVehicleKey = "simulator.vehicle", *kBatteryKey = "simulator.battery_minutes";
 
 struct PreflightArguments {
   flight::MissionOverrides overrides;
@@ -33,6 +35,13 @@ struct PreflightArguments {
   MeshOptions mesh;
   bool json = false, quiet = false;
 };
+
+/// Of a terminal; a file or a pipe gets lines of a length that can be read, too.
+std::size_t text_columns() {
+  constexpr std::size_t kColumnsOfAFile = 100;
+  const std::size_t columns = terminal_columns(stdout);
+  return columns > 0 ? columns : kColumnsOfAFile;
+}
 
 /// Adds a setting for which there is an option of its own.
 void add_setting(flight::MissionOverrides& overrides, const char* option, const std::string& key,
@@ -46,10 +55,33 @@ void add_setting(flight::MissionOverrides& overrides, const char* option, const 
 
 flight::Mission mission_of(const PreflightArguments& args) {
   flight::MissionOverrides overrides = args.overrides;
-  add_setting(overrides, "--vehicle", "simulator.vehicle", args.vehicle);
-  add_setting(overrides, "--battery", "simulator.battery_minutes", args.battery);
+  add_setting(overrides, "--vehicle", kVehicleKey, args.vehicle);
+  add_setting(overrides, "--battery", kBatteryKey, args.battery);
   for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
   return flight::read_mission("", overrides);
+}
+
+/// Flies what was judged: the policy and its parameters by name, so that nothing is selected again.
+std::string fly_command(const PreflightArguments& args, const preflight::PolicyFacts& policy) {
+  std::string command = "karst fly";
+  const auto add = [&command](const std::string& option, const std::string& value) {
+    if (value.empty()) return;
+    command += " " + (value.starts_with('-') ? core::shell_word(option + "=" + value)
+                                             : option + " " + core::shell_word(value));
+  };
+  const auto set = [&add](const std::string& key, const std::string& value) {
+    if (!value.empty()) add("--set", key + "=" + value);
+  };
+  add("--cave", args.overrides.cave);
+  add("--start", args.overrides.start);
+  for (const auto& [key, value] : args.mesh) add("--" + key, value);
+  for (const std::string& plugin : args.look.plugins) add("--plugin", plugin);
+  add("--policy", policy.policy);
+  set(kVehicleKey, args.vehicle);
+  set(kBatteryKey, args.battery);
+  for (const std::string& setting : args.overrides.settings) add("--set", setting);
+  for (const auto& [key, value] : policy.changed) set("policy.parameters." + key, value);
+  return command;
 }
 
 int run(const PreflightArguments& args) {
@@ -63,8 +95,11 @@ int run(const PreflightArguments& args) {
   if (args.json) {
     print_json(preflight::to_json(known, findings));
   } else {
-    print_wrapped(stdout, 4, "%s", preflight::findings_text(known, findings).c_str());
-    print_wrapped(stdout, preflight::kNameColumns, "%s", preflight::facts_text(known).c_str());
+    const std::size_t columns = text_columns();
+    print_out("%s", wrapped(preflight::findings_text(known, findings), columns, 4).c_str());
+    print_out("%s", wrapped(preflight::facts_text(known), columns, preflight::kNameColumns).c_str());
+    if (known.policy && preflight::is_go(findings))  // in one line, to be copied
+      print_out("Fly it:\n  %s\n", fly_command(args, *known.policy).c_str());
   }
   return preflight::is_go(findings) ? 0 : kNoGo;
 }
@@ -114,6 +149,7 @@ void add_preflight_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->check(not_empty());
   preflight_app->add_option("--set", args->overrides.settings, "key=value of a mission; see karst fly --keys")
+      ->type_name(kSetting)
       ->allow_extra_args(false);
   preflight_app->add_option("--page", args->page, "write the summary as a page to print, an HTML file")
       ->type_name(kFile)

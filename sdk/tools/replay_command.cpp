@@ -37,7 +37,7 @@ class ReplayLine {
   void show(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) const {
     if (quiet_ || (!terminal_ && scan % 100 != 0)) return;
     const core::Vec3& p = pose.T_world_body.position;
-    std::fprintf(stderr, "%sscan %zu of %zu  at (%.1f, %.1f, %.1f)  %d features  %.0f m^3 free  %s%s",
+    std::fprintf(stderr, "%sscan %zu of %zu  at (%.1f, %.1f, %.1f)  %d features  %.0f m³ free  %s%s",
                  terminal_ ? "\r\033[K" : "", scan, scans_, p.x(), p.y(), p.z(), pose.edges + pose.planes,
                  map.free_volume_m3(), pose.valid ? "" : ("lost: " + core::printable(pose.problem)).c_str(),
                  terminal_ ? "" : "\n");
@@ -99,7 +99,7 @@ void print_summary(const replay::ReplaySummary& s, const nlohmann::json& metrics
   if (s.imu_samples > 0) print_out("  IMU              %zu samples\n", s.imu_samples);
   print_out("  path length      %.2f m\n", s.path_m);
   if (metrics["explored_volume_m3"].is_number())
-    print_out("  free volume      %.0f m^3\n", metrics["explored_volume_m3"].get<double>());
+    print_out("  free volume      %.0f m³\n", metrics["explored_volume_m3"].get<double>());
   if (s.degenerate > 0) print_out("  degenerate       %zu scans left a direction free\n", s.degenerate);
   if (s.scans > 0)
     print_out("  localization     %.1f ms a scan, %.1f ms at most\n",
@@ -191,7 +191,9 @@ void add_replay_command(CLI::App& app) {
       ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")
       ->type_name(kFile)
       ->check(not_empty());
-  command->add_option("--set", args->settings, "key=value; see --keys")->allow_extra_args(false);
+  command->add_option("--set", args->settings, "key=value; see --keys")
+      ->type_name(kSetting)
+      ->allow_extra_args(false);
   command->add_flag("--json", args->json, "print metrics.json instead of a summary; no progress");
   command->add_flag("--quiet", args->quiet, "no progress");
   command->add_flag("--no-report", args->no_report, "no report.html");

@@ -82,8 +82,10 @@ void add_report_command(CLI::App& app, CampaignPage campaign_page) {
       ->type_name(kFile)
       ->required();
   report->add_flag("--no-report", args->no_report, "of a run: metrics only, no report.html");
-  report->add_option("--metric", args->metric,
-                     "of a campaign: the figure that its verdict is about; default: as it declared");
+  report
+      ->add_option("--metric", args->metric,
+                   "of a campaign: the figure that its verdict is about; default: as it declared")
+      ->type_name(kMetric);
   report->add_flag("--worst", args->worst,
                    "of a campaign: write the mission reports of its worst trials, too");
   report->callback([args, page_of = std::move(campaign_page)] {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
@@ -22,7 +23,8 @@ using host::RequestLogReader;
 using nlohmann::ordered_json;
 
 constexpr int kDiffers = 2;
-constexpr double kNoLimit_s = 1e7;  // a debugger may stop the policy for any time
+constexpr std::string_view kFlysPrefix = "policy.parameters.";  // of the same parameter in karst fly
+constexpr double kNoLimit_s = 1e7;                              // a debugger may stop the policy for any time
 
 struct ReplayArguments {
   std::string run, policy;
@@ -40,7 +42,10 @@ host::PolicyChoice choice_of(const ReplayArguments& args, const host::RequestLog
     const std::size_t equals = setting.find('=');
     if (equals == 0 || equals == std::string::npos)
       throw core::InputError("--set", setting, "expected parameter=value");
-    c.parameters.put(setting.substr(0, equals), setting.substr(equals + 1));
+    std::string key = setting.substr(0, equals);
+    if (key.starts_with(kFlysPrefix)) key.erase(0, kFlysPrefix.size());
+    if (key.empty()) throw core::InputError("--set", setting, "expected parameter=value");
+    c.parameters.put(key, setting.substr(equals + 1));
   }
   c.source = args.run;
   c.seed = header.seed;
@@ -134,7 +139,9 @@ void add_request_replay_command(CLI::App& policy) {
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());
-  app->add_option("--set", args->settings, "parameter=value")->allow_extra_args(false);
+  app->add_option("--set", args->settings,
+                  "parameter=value, or policy.parameters.parameter=value as of karst fly")
+      ->allow_extra_args(false);
   app->add_option("--from", args->from,
                   "show decisions from this number on; those before are put to it as well");
   app->add_option("--to", args->to, "end after this decision");

@@ -1,5 +1,6 @@
 #include "sdk/tools/results_text.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +9,7 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
+#include "sdk/campaign/paper/restricted_time.h"
 #include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/campaign/verdict/verdict.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
@@ -25,9 +27,21 @@ std::string number(double v) {
   return text.data();
 }
 
-/// `means`: for each figure, each contestant's mean.
+struct Column {
+  std::vector<double> means;    // by contestant
+  std::vector<bool> unreached;  // a restricted time that no flight of the contestant reached
+};
+Column column_of(const CampaignResults& results, int metric) {
+  Column column{campaign::comparable_means(results, metric),
+                std::vector<bool>(results.contestants.size(), false)};
+  if (!campaign::is_restricted_time(metric)) return column;
+  const std::vector<campaign::Reached> reached = campaign::reached_by(results, metric);
+  for (std::size_t i = 0; i < reached.size(); ++i) column.unreached[i] = reached[i].never();
+  return column;
+}
+
 void print_row(const CampaignResults& results, const campaign::RankedContestant& place,
-               const std::vector<std::vector<double>>& means) {
+               const std::vector<Column>& columns) {
   int trials = 0, failed = 0;
   for (const campaign::TrialResult& t : results.trials)
     if (t.contestant == place.contestant) {
@@ -38,7 +52,8 @@ void print_row(const CampaignResults& results, const campaign::RankedContestant&
   std::string line = "| " + (best == worst ? best : best + "-" + worst) + " | " +
                      results.contestants[place.contestant].name + " | " + std::to_string(trials) + " | " +
                      std::to_string(failed) + " |";
-  for (const std::vector<double>& of_figure : means) line += " " + number(of_figure[place.contestant]) + " |";
+  for (const Column& c : columns)
+    line += (c.unreached[place.contestant] ? " > " : " ") + number(c.means[place.contestant]) + " |";
   print_out("%s\n", line.c_str());
 }
 
@@ -66,16 +81,21 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   for (const std::string_view f : campaign::headline_figures())
     if (f != metric) figures.emplace_back(f);
   std::string head = "| place | contestant | trials | failed |", rule = "|---:|---|---:|---:|";
-  std::vector<std::vector<double>> means;
+  std::vector<Column> columns;
+  bool unreached = false;
   for (const std::string& f : figures) {
     head += " " + f + " |";
     rule += "---:|";
-    means.push_back(campaign::comparable_means(results, evaluation::metric_index(f)));
+    const Column& c = columns.emplace_back(column_of(results, evaluation::metric_index(f)));
+    unreached = unreached || std::find(c.unreached.begin(), c.unreached.end(), true) != c.unreached.end();
   }
   print_out("%s: means over %s, of the flights that all have flown\n\n%s\n%s\n", results.name.c_str(),
             core::counted(results.caves.size(), "cave").c_str(), head.c_str(), rule.c_str());
-  for (const campaign::RankedContestant& place : verdicts.ranking) print_row(results, place, means);
+  for (const campaign::RankedContestant& place : verdicts.ranking) print_row(results, place, columns);
   print_out("\n");
+  if (unreached)
+    print_out("> %.0f: no flight reached this coverage before the horizon of %.0f s.\n\n", results.horizon_s,
+              results.horizon_s);
   for (const campaign::Comparison& c : verdicts.comparisons)
     if (c.metric == verdicts.metric) print_wrapped(stdout, 2, "%s\n", c.sentence.c_str());
   if (results.contestants.size() > 2) print_wrapped(stdout, 2, "\n%s\n", verdicts.sentence.c_str());

@@ -10,9 +10,11 @@
 #include "core_stack/common/json_text.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/selection/describe.h"
+#include "sdk/selection/figure_words.h"
 #include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
+#include "sdk/selection/select_words.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 
@@ -48,11 +50,16 @@ Experience experience_of(const SelectArguments& args) {
   return selection::load_experience(files, tell);
 }
 
-std::string interval_text(const selection::Expected& x) {
+std::string interval_text(const std::string& metric, const selection::Expected& x) {
   if (std::isnan(x.low)) return "not known";
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%.3g to %.3g", x.low, x.high);
-  return text.data();
+  return selection::metric_value_text(metric, x.low) + " to " + selection::metric_value_text(metric, x.high);
+}
+
+/// Wrapped to the terminal; a file or a pipe gets lines of a length that can be read, too.
+void print_sentences(const std::string& text) {
+  constexpr std::size_t kColumnsOfAFile = 100;
+  const std::size_t columns = terminal_columns(stdout);
+  print_out("%s\n", wrapped(text, columns > 0 ? columns : kColumnsOfAFile, 2).c_str());
 }
 
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
@@ -62,27 +69,35 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
     const selection::NearCave& n = s.near[i];
     const auto& far = selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)];
-    print_out("  %-24s distance %5.2f, weight %3.0f %%, most unlike in %s (%.3g here, %.3g there)\n",
+    print_out("  %-24s distance %5.2f, weight %3.0f %%, most unlike in %s (%s here, %s there)\n",
               e.caves[n.cave].name.c_str(), n.distance.value, 100 * n.weight, std::string(far.name).c_str(),
-              cave.*far.value, e.caves[n.cave].figures.*far.value);
+              selection::plain_number(cave.*far.value).c_str(),
+              selection::plain_number(e.caves[n.cave].figures.*far.value).c_str());
   }
   if (s.refused) {
-    print_wrapped(stdout, 2, "No policy is named: %s.\n", s.reason.c_str());
+    print_sentences("No policy is named: " + selection::unit_text(s.reason) + ".");
     return;
   }
-  print_out("Expected %s, %.0f %% interval:\n", args.options.metric.c_str(), 100 * args.options.level);
+  const std::string& metric = args.options.metric;
+  print_out("Expected %s (%s), %.0f %% interval:\n", selection::metric_words(metric).c_str(), metric.c_str(),
+            100 * args.options.level);
   for (const selection::Expected& x : s.ranking)
-    print_out("  %-24s %8.3g   %s\n", e.contestants[x.contestant].name.c_str(), x.value,
-              interval_text(x).c_str());
+    print_out("  %-24s %8s   %s\n", e.contestants[x.contestant].name.c_str(),
+              selection::metric_value_text(metric, x.value).c_str(), interval_text(metric, x).c_str());
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];
   print_out("Policy: %s\n", first.policy.c_str());
   for (const auto& [key, value] : first.parameters)
-    print_out("  %s = %s\n", key.c_str(), value.data().c_str());
-  print_out("Expected there:");
+    print_out("  %s = %s\n", key.c_str(), selection::unit_text(value.data()).c_str());
+  print_out("%s:\n",
+            s.flown ? "Means over its flights there"
+                    : "Means over its flights in these caves, weighted, and not scaled to this cave's size");
   const std::vector<double> figures = expected_figures(e, cave, s, s.ranking.front().contestant);
   for (std::size_t m = 0; m < figures.size(); ++m)
-    if (!std::isnan(figures[m])) print_out(" %s %.3g", e.metrics[m].c_str(), figures[m]);
-  print_wrapped(stdout, 2, "\n%s.\n", s.reason.c_str());
+    if (!std::isnan(figures[m]))
+      print_out("  %-38s %s\n", selection::metric_words(e.metrics[m]).c_str(),
+                selection::metric_value_text(e.metrics[m], figures[m]).c_str());
+  print_sentences(s.reason);
+  print_sentences("Confidence: " + selection::confidence_in_words(e, s) + ".");
 }
 
 ordered_json parameters_json(const selection::Preset& preset) {
@@ -248,6 +263,7 @@ void add_select_command(CLI::App& app) {
       ->type_name(kFile)
       ->check(not_empty());
   select->add_option("--metric", args->options.metric, "the figure to do best in")
+      ->type_name(kMetric)
       ->check(not_empty())
       ->capture_default_str();
   select->add_option("--level", args->options.level, "of the intervals")

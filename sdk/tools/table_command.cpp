@@ -27,7 +27,7 @@ struct Column {
   double factor;
 };
 constexpr std::array kColumns = {
-    Column{"explored_volume_m3", "explored m^3", "%.0f", 1},
+    Column{"explored_volume_m3", "explored m³", "%.0f", 1},
     Column{"coverage", "coverage %", "%.1f", 100},
     Column{"path_length_m", "path m", "%.0f", 1},
     Column{"flight_time_s", "time s", "%.0f", 1},

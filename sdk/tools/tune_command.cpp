@@ -212,7 +212,9 @@ void add_tune_command(CLI::App& app) {
   tune_app->add_option("--parameter", args->parameters, "a parameter to tune; default: all that are numbers")
       ->allow_extra_args(false)
       ->check(not_empty());
-  tune_app->add_option("--metric", args->tune.metric, "the figure to do better in")->capture_default_str();
+  tune_app->add_option("--metric", args->tune.metric, "the figure to do better in")
+      ->type_name(kMetric)
+      ->capture_default_str();
   tune_app->add_option("--seeds", args->seeds, "seeds in each cave, the same for all candidates")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -228,6 +230,7 @@ void add_tune_command(CLI::App& app) {
       ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
+      ->type_name(kSetting)
       ->allow_extra_args(false);
   tune_app->add_option("--plugin", args->plugin, "policy plugin file (.so) to look in first")
       ->type_name(kFile)

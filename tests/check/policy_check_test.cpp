@@ -121,6 +121,24 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"takes_signal", "process.signals"}, Spoiled{"leaves_file", "process.leftovers"}),
     [](const auto& p) { return std::string(p.param.policy); });
 
+// Printing is what the documentation invites an author to while a policy is developed.
+TEST(Talking, IsANoteBelowPedanticUnlessItIsAskedFor) {
+  const std::string reason =
+      "bytes were written to stdout: use request.log(); printing is fine while you develop";
+  const auto checked = [](std::vector<std::string> more) {
+    std::vector<std::string> words{drawer("spoiled"), "--policy", "talks"};
+    words.insert(words.end(), more.begin(), more.end());
+    return check(words);
+  };
+  const Checked c = checked({"--level", "basic"});
+  EXPECT_EQ(c.exit_code, 0) << c.text;
+  EXPECT_EQ(c.tests("note"), Names{"process.output"});
+  EXPECT_EQ(c.tests("failed"), Names{});
+  EXPECT_THAT(c.text, HasSubstr(reason));
+  EXPECT_EQ(checked({"--test", "process.output"}).exit_code, 2);
+  EXPECT_EQ(checked({"--test", "process", "--level", "pedantic"}).tests("failed"), Names{"process.output"});
+}
+
 class BrokenFile : public ::testing::TestWithParam<Spoiled> {};  // policy: the file
 
 TEST_P(BrokenFile, FailsTheTestMeantForItAndTheRestIsNotRun) {

@@ -175,7 +175,7 @@ TEST(BadInput, ARunIsNeverOverwritten) {
   const std::string mesh = written(dir / "box.stl", box_stl(4));
   fs::create_directories(dir / "run");
   written(dir / "run" / "events.jsonl", "precious\n");
-  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {"another run"});
+  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {"has files of a flight already (events.jsonl)"});
   EXPECT_EQ(bytes_of(dir / "run" / "events.jsonl"), "precious\n");
 }
 
@@ -199,7 +199,7 @@ TEST(BadInput, AFileOfTheUsersIsNeverOverwritten) {
   for (const char* name : {"mission.info", "map.ply", "report.html", "truth.csv"}) {
     fs::create_directories(dir / "run");
     written(dir / "run" / name, "precious\n");
-    expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {name, "is there already"});
+    expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {name, "has files of a flight already"});
     EXPECT_EQ(bytes_of(dir / "run" / name), "precious\n");
     EXPECT_EQ(std::distance(fs::directory_iterator(dir / "run"), {}), 1);
     fs::remove_all(dir / "run");
@@ -280,9 +280,46 @@ TEST(BadInput, UsageErrorsNameTheWord) {
   expect_refused(run_karst("reprt x"), {"\"reprt\" is no command", "did you mean report"});
   expect_refused(run_karst("cave genrate --out x"), {"\"genrate\" is no command", "did you mean generate"});
   EXPECT_FALSE(run_karst("reprt x").says("subcommand is required")) << "it was said twice";
-  expect_refused(run_karst("fly --polcy x"), {"\"--polcy\" is no option of fly", "did you mean --policy?"});
-  expect_refused(run_karst("cave info --zzzzz"), {"\"--zzzzz\" is no option of info", "--help lists them"});
+  expect_refused(run_karst("fly --polcy x"),
+                 {"karst: \"--polcy\" is no option of karst fly; did you mean --policy?"});
+  expect_refused(
+      run_karst("cave info --zzzzz"),
+      {"karst: \"--zzzzz\" is no option of karst cave info; `karst cave info --help` says more\n"});
   expect_refused(run_karst("fly --threads many"), {"--threads", "many"});
+  EXPECT_EQ(run_karst("--verison").text,
+            "karst: \"--verison\" is no option of karst; did you mean --version? `karst --help` says more\n")
+      << "it was called a command";
+  // Only near spellings are meant: --tome was said to mean --cave.
+  EXPECT_EQ(run_karst("cave info --tome x").text,
+            "karst: \"--tome\" is no option of karst cave info; `karst cave info --help` says more\n");
+  EXPECT_FALSE(run_karst("flew").says("did you mean"));
+  EXPECT_TRUE(run_karst("fy").says("did you mean fly?"));
+}
+
+// "cave is required", "--paper: 1 required FOLDER missing", "shell: fish not in {bash,zsh}", and "Run with
+// --help or --help-all for more information".
+TEST(BadInput, UsageErrorsNameTheCommandAndWhereToReadMore) {
+  for (const auto& [arguments, said] :
+       {std::pair{"preflight",
+                  "karst: karst preflight: argument cave is missing; `karst preflight --help` says more\n"},
+        std::pair{"fly a b c",
+                  "karst: karst fly: \"b\" is more than it takes; `karst fly --help` says more\n"},
+        std::pair{"fly --out",
+                  "karst: karst fly: --out: needs a value, FOLDER; `karst fly --help` says more\n"},
+        std::pair{"completion fish",
+                  "karst: karst completion: shell: expected bash or zsh, got \"fish\"; "
+                  "`karst completion --help` says more\n"},
+        std::pair{"fly --threads many",
+                  "karst: karst fly: --threads: expected a number from 1 to 256, got "
+                  "\"many\"; `karst fly --help` says more\n"},
+        std::pair{"reprt", "karst: \"reprt\" is no command; did you mean report? `karst --help` says more\n"},
+        std::pair{"fly --seed x",
+                  "karst: karst fly: --seed: expected another kind of value, got \"x\"; "
+                  "`karst fly --help` says more\n"}}) {
+    const Output out = run_karst(arguments);
+    EXPECT_EQ(out.code, 1) << arguments;
+    EXPECT_EQ(out.text, said) << arguments;
+  }
 }
 
 // It was an error: "A subcommand is required".
@@ -295,6 +332,34 @@ TEST(BadInput, KarstAndItsGroupsAlonePrintTheirHelp) {
   }
   for (const char* wrong : {"--nonsense", "policy --nonsense", "map --nonsense"})
     expect_refused(run_karst(wrong), {"--nonsense"});
+}
+
+TEST(BadInput, HelpIsACommandToo) {
+  EXPECT_EQ(run_karst("help").text, run_karst("--help").text);
+  EXPECT_EQ(run_karst("help fly").text, run_karst("fly --help").text);
+  EXPECT_EQ(run_karst("help cave generate").text, run_karst("cave generate --help").text);
+  EXPECT_EQ(run_karst("help cave generate").code, 0);
+  expect_refused(run_karst("help reprt"), {"karst: \"reprt\" is no command; did you mean report?"});
+  expect_refused(run_karst("help cave genrate"), {"did you mean generate?", "`karst cave --help` says more"});
+}
+
+TEST(BadInput, ACaveFileIsNoMission) {
+  const fs::path dir = fresh_folder("bad_cave_as_mission");
+  written(dir / "box.stl", box_stl(4));
+  const std::string cave = written(dir / "box.info", "mesh box.stl\nstart \"0 0 0\"\n"),
+                    said = cave + ": is a cave file; fly it with karst fly --cave " + cave;
+  expect_refused(run_karst("fly " + cave), {said.c_str()});
+}
+
+TEST(BadInput, AFlightTimeIsReadAsOfTheMission) {
+  const fs::path dir = fresh_folder("bad_flight_time");
+  const std::string mesh = written(dir / "box.stl", box_stl(4)), resolved = (dir / "resolved.info").string();
+  const Output out =
+      run_karst("fly --cave " + mesh + " --start '0 0 0' --quiet --time 5min --check " + resolved);
+  ASSERT_EQ(out.code, 0) << out.text;
+  EXPECT_NE(bytes_of(resolved).find("max_flight_time \"300 s\""), std::string::npos) << bytes_of(resolved);
+  expect_refused(run_karst("fly --cave " + mesh + " --start '0 0 0' --time soon"),
+                 {"mission.max_flight_time", "soon"});
 }
 
 TEST(BadInput, UsageErrorsTeach) {

@@ -177,6 +177,9 @@ TEST(Compare, WhatIsWrongIsSaidBeforeAnythingFlies) {
   std::ofstream(dir / "no.ply") << "ply\n";
   refused("nearest_frontier --caves " + (dir / "no.ply").string(), {"no.ply"});
   refused("/nowhere/c.info", {"/nowhere/c.info"});
+  for (const std::string& beside :
+       std::vector<std::string>{" nearest_frontier", " other.info", " --caves " + cave})
+    refused("c.info" + beside, {"c.info: is a campaign's file or folder, which stands alone"});
   const std::string crashing = std::string(KARST_BINARY_DIR) + "/tests/plugins/crash_at_load.so";
   ASSERT_TRUE(fs::exists(crashing));
   refused("plain --plugin " + crashing + " --caves " + cave, {"crash_at_load.so"});
@@ -230,6 +233,7 @@ TEST(Compare, WhatCannotShowADifferenceIsSaidBeforeItFliesAndTheDeclaredMetricIs
   ASSERT_EQ(flown.code, 0) << flown.text;
   EXPECT_TRUE(flown.says("no difference can be shown by this campaign")) << flown.text;
   EXPECT_TRUE(flown.says("needs 6 pairs of flights, and these are 1; fly 6 seeds at least")) << flown.text;
+  EXPECT_TRUE(flown.says("the flight time of 12 s leaves no time to explore")) << flown.text;
   EXPECT_TRUE(flown.says("failed | path_length_m |")) << flown.text;
   const Output declared = run_karst("results " + out),
                other = run_karst("results " + out + " --metric coverage");

@@ -26,6 +26,8 @@ has 'karst_*' ./usr/lib/karst/vehicles/libkarst_vehicle_simulator.so
 has 'karst_*' ./usr/lib/karst/policies/nearest_frontier.so
 has 'karst_*' ./usr/lib/karst/karst-policy-child
 has 'karst_*' ./usr/share/man/man1/karst.1
+dpkg-deb --fsys-tarfile "$work/packages"/karst_*.deb | tar -xO ./usr/share/man/man1/karst-fly.1 | sed 's/\\-/-/g' |
+  grep -qF "/usr/share/doc/karst/examples/missions" || { echo "karst-fly(1) does not name the packaged examples"; exit 1; }
 has 'karst-sdk_*' ./usr/include/karst/policy.h
 has 'karst-sdk_*' ./usr/lib/cmake/karst/karstConfig.cmake
 has 'karst-doc_*' ./usr/share/doc/karst/docs/README.md

@@ -27,11 +27,25 @@ for file in bash-completion/completions/karst zsh/site-functions/_karst man/man1
   test -s "$share/$file" || { echo "$file is not installed"; exit 1; }
 done
 bash --norc -c ". '$share/bash-completion/completions/karst' && complete -p karst" > completion.txt
-if sed 's/\\-/-/g' "$share"/man/man1/*.1 | grep -F "$binary"; then echo "a manual page names the folder of the build"; exit 1; fi
-grep -rhoE "(docs|examples)/[A-Za-z0-9_./-]*[A-Za-z0-9_]" "$share/man" | sort -u > named_by_man.txt
+bash --norc -c ". '$share/bash-completion/completions/karst'
+  COMP_WORDS=('$karst' fly --set mission.max_f) COMP_CWORD=3
+  _karst
+  echo \"\${COMPREPLY[*]}\"" > keys.txt
+grep -qx "mission.max_flight_time=" keys.txt || { echo "keys of --set are not completed: $(cat keys.txt)"; exit 1; }
+
+# The missions that help names fly through any cave.
+for mission in "$share"/doc/karst/examples/missions/*.info; do
+  "$karst" fly --quiet "$mission" --cave cave.info --check "$(basename "$mission").resolved"
+done
+sed 's/\\-/-/g' "$share"/man/man1/*.1 > pages.txt
+if grep -F -e "$binary/share" -e KARST_DOC_FOLDER pages.txt; then echo "a manual page names the folder of the build, or none"; exit 1; fi
+grep -oE "[^[:space:]\"'(]*(docs|examples)/[A-Za-z0-9_./-]*[A-Za-z0-9_]" pages.txt | sort -u > named_by_man.txt
 test "$(wc -l < named_by_man.txt)" -ge 4
 while read -r path; do
-  test -e "$share/doc/karst/$path" || { echo "a manual page names $path, which is not there"; exit 1; }
+  case $path in
+    "$share/doc/karst/"*) test -e "$path" || { echo "a manual page names $path, which is not there"; exit 1; } ;;
+    *) echo "a manual page names $path, which is not of this installation"; exit 1 ;;
+  esac
 done < named_by_man.txt
 
 code=0

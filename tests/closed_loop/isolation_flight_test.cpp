@@ -68,6 +68,26 @@ TEST(CrashInFlight, CostsThePolicyAndTheVehicleLands) {
   EXPECT_NE(said.find("plain, and after it failed the fallback, explored"), std::string::npos) << said;
 }
 
+// Only events.jsonl said so.
+TEST(CrashInFlight, IsSaidOnTheTerminalAlthoughThePolicyFliesOn) {
+  const std::string plugin = std::string(KARST_BINARY_DIR) + "/tests/plugins/remembering.so";
+  std::string said;
+  const auto run =
+      fly("remembering_said", "--policy plain --record-requests --plugin " + plugin + kInChild, 25, &said);
+  EXPECT_NE(said.find("karst: plain crashed at "), std::string::npos) << said;
+  EXPECT_NE(said.find(" s in decide(), request 3 (SIGSEGV), and was started once more\n"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("`gdb --args karst policy replay " + run.string() + " --plugin " + plugin + "`"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("; the policy crashed and was started once more\n"), std::string::npos) << said;
+  const Output table = run_karst("table " + run.string());
+  EXPECT_NE(table.text.find("the policy crashed and was started once more"), std::string::npos) << table.text;
+  fly("remembering_unrecorded", "--policy plain --plugin " + plugin + kInChild, 25, &said);
+  EXPECT_NE(said.find("karst: to repeat this in a debugger, fly with --record-requests\n"), std::string::npos)
+      << said;
+}
+
 /// Every way a plugin of the drawer misbehaves once it is loaded.
 class DrawerFlight : public ::testing::TestWithParam<const char*> {};
 

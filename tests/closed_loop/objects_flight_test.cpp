@@ -61,7 +61,8 @@ TEST(Objects, AreFoundAndReportedAtTheStart) {
   const std::string cave = passage(folder);
   // At 2 m/s it passes three of the eight in fewer than six images.
   const std::string settings =
-      " --set simulator.objects.count=2 --set simulator.battery_minutes=5min --set motion.max_speed=1 --seed 5";
+      " --set simulator.objects.count=2 --set simulator.battery_minutes=5min --set motion.max_speed=1 --seed "
+      "5";
   const json m = fly(cave, folder / "one", settings + " --threads 1");
   expect_known(m, 8, 0.3);
   EXPECT_EQ(m["outcome"], "landed");

@@ -30,6 +30,11 @@ TEST(RecordRequests, ReplayAnswersAsInFlight) {
       run_karst("policy replay " + (dir / "run/requests.bin").string() + " --expect-same --set turn_cost=60");
   EXPECT_EQ(other.code, 2) << other.text;
   EXPECT_TRUE(other.says("DIFFERS") && other.says("recorded: ")) << other.text;
+  EXPECT_EQ(run_karst("policy replay " + (dir / "run/requests.bin").string() +
+                      " --expect-same --set policy.parameters.turn_cost=60")
+                .text,
+            other.text)
+      << "as karst fly names it";
 
   const Output part = run_karst("policy replay " + (dir / "run").string() + " --from 3 --to 5 --expect-same");
   EXPECT_EQ(part.code, 0) << part.text;
@@ -92,6 +97,10 @@ TEST(RecordRequests, ADecisionIsExplainedWithItsWholeList) {
   for (const char* part : {"Decision ", ", phase explore, by nearest_frontier: goals",
                            " offered:", "Request ", "best first:", "   1  score "})
     EXPECT_TRUE(whole.says(part)) << part << " in:\n" << whole.text;
+  EXPECT_FALSE(whole.says("that were tried")) << "they stand in the whole list\n" << whole.text;
+  const Output list = run_karst("explain " + run);
+  EXPECT_EQ(list.code, 0) << list.text;
+  EXPECT_TRUE(list.says(" decisions") && list.says("`karst explain " + run + " --at ")) << list.text;
   EXPECT_EQ(run_karst("report " + run).code, 0);
   EXPECT_NE(bytes_of(dir / "run/report.html").find("\"recorded\":true"), std::string::npos)
       << "the report has the list, too";

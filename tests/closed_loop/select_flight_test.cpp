@@ -115,12 +115,24 @@ TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const Output nothing = run_karst(fly + out);
   EXPECT_EQ(nothing.code, 1);
   EXPECT_TRUE(nothing.says("nothing is known of the cave")) << nothing.text;
+  const std::string own_mesh =
+      " --set policy.auto.survey=" + cave + " --set policy.auto.otherwise=nearest_frontier";
+  EXPECT_TRUE(nothing.says("to use the cave's own mesh:" + own_mesh)) << nothing.text;
+  const Output as_said = run_karst(fly + own_mesh + " --check " + (dir / "as_said.info").string());
+  EXPECT_EQ(as_said.code, 0) << as_said.text;
+  const Output no_block = run_karst(fly + out + " --set policy.auto.cave=" + cave);
+  EXPECT_EQ(no_block.code, 1);
+  EXPECT_TRUE(
+      no_block.says("policy.auto.cave: expected a block { name CAVE  policy POLICY }; "
+                    "policy.auto.survey or policy.auto.description names a file"))
+      << no_block.text;
   const Output peeking = run_karst(fly + out + " --set policy.auto.description=" + cave);
   EXPECT_EQ(peeking.code, 1);
   EXPECT_TRUE(peeking.says("give it as policy.auto.survey")) << peeking.text;
   const Output wide = run_karst(fly + out + " --set policy.auto.description=" + (dir / "wide.info").string());
   EXPECT_EQ(wide.code, 1);
   EXPECT_TRUE(wide.says("most unlike is its width: 80 m")) << wide.text;
+  EXPECT_TRUE(wide.says("--set policy.auto.otherwise=nearest_frontier")) << wide.text;
   EXPECT_FALSE(fs::exists(dir / "run"));
   const Output otherwise =
       run_karst(fly + " --set policy.auto.otherwise=nearest_frontier --set policy.auto.description=" +

@@ -58,11 +58,11 @@ Flown fly(const std::string& cave, const std::filesystem::path& run, const std::
   return f;
 }
 
-/// What must hold of every team that nothing befell: also landed as relays, its mission went as meant.
+/// What must hold of every team that nothing befell: also landed as relays, its mission went as planned.
 void expect_all_well(const Flown& f, std::size_t robots) {
   ASSERT_EQ(f.robots.size(), robots) << f.output.text;
   EXPECT_EQ(f.output.code, 0) << f.output.text;
-  EXPECT_TRUE(f.output.says("all " + std::to_string(robots) + " robots flew as meant")) << f.output.text;
+  EXPECT_TRUE(f.output.says("all " + std::to_string(robots) + " robots flew as planned")) << f.output.text;
   EXPECT_EQ(f.metrics["outcome"], "landed");
   EXPECT_EQ(f.metrics["contacts"], 0);
   EXPECT_EQ(f.metrics["robots_connected"], 1);
@@ -253,11 +253,10 @@ TEST(Team, RetreatsBeforeOneThatComesHomeWhereNoneGetsBy) {
   const auto folder = fresh_folder("team_retreat");
   const std::string cave =
       draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -0.9, 0}, {60, 0.9, 1.9}}}, {0, 0, 1});
-  const Flown f =
-      fly(cave, folder / "run",
-          team_of(2, "return_to_base",
-                  "--set radio.range=30m --set homing.landing.link.range=30m"
-                  " --set simulator.battery_minutes=2.2min"));  // enough to go in a second time
+  const Flown f = fly(cave, folder / "run",
+                      team_of(2, "return_to_base",
+                              "--set radio.range=30m --set homing.landing.link.range=30m"
+                              " --set simulator.battery_minutes=2.2min"));  // enough to go in a second time
   expect_all_well(f, 2);
   std::vector<double> x;  // of robot 2, every five seconds
   for (const json& e : f.truth)
@@ -321,7 +320,7 @@ TEST(Team, WithoutOneThatNeverComesBackGoesOn) {
                       team_of(3, "relay_chain", "--set team.lost_robot=1 --set team.lost_after=30s"));
   ASSERT_EQ(f.robots.size(), 3u);
   EXPECT_EQ(f.output.code, 2) << "not all came down";
-  EXPECT_TRUE(f.output.says("robot 1: lost after ") && !f.output.says("robots flew as meant"))
+  EXPECT_TRUE(f.output.says("robot 1: lost after ") && !f.output.says("robots flew as planned"))
       << f.output.text;
   EXPECT_EQ(f.robots[0]["outcome"], "lost");
   EXPECT_EQ(f.count(f.truth, "contact"), 0);

@@ -2,7 +2,7 @@
 //
 //   ```console
 //   $ karst policy new my_nearest
-//   my_nearest: flies to the nearest frontier
+//   my_nearest: starts as: flies to the nearest frontier
 //   ...
 //   ```
 // A line "..." stands for any lines. With KARST_ACCEPT=1 in the environment the output in the file is

@@ -27,6 +27,8 @@ struct CycleInput {
   std::vector<PolicyEvent> events;       // since the last cycle
   std::vector<TeammateState> teammates;  // empty without a team
   std::vector<std::uint32_t> looked_at;  // frontiers reached or seen in passing since the last cycle
+  /// Whether it is the mission's maximum flight time that ends the flight, rather than the battery.
+  bool limited_by_time() const { return mission_seconds_left < battery_seconds_left; }
 };
 
 struct RejectedGoal {

@@ -25,13 +25,18 @@ std::vector<FrontierCluster> without_cells(const std::vector<FrontierOffer>& off
 
 /// Handles a list without an acceptable goal. The fallback proposes every reachable frontier: if it has tried
 /// all of them, nothing is left to explore.
-void give_up(const GoalChoice& tried, bool all_too_far, DecidedBy by, CycleResult& result) {
+void give_up(const GoalChoice& tried, const CycleInput& input, bool all_too_far, DecidedBy by,
+             CycleResult& result) {
   const bool last_resort = by == DecidedBy::fallback && !tried.more_to_try;
   result.outcome = last_resort ? Outcome::explored : Outcome::hold;
   result.out_of_time = last_resort && all_too_far;
-  result.reason = result.out_of_time  ? "what is left is too far for the battery, or for the time allowed"
-                  : last_resort       ? "no frontier left that can be accepted"
-                  : tried.more_to_try ? "none of the goals tried so far could be accepted"
+  if (result.out_of_time)
+    result.reason = input.limited_by_time() ? "what is left is too far for the time allowed"
+                                            : "what is left is too far for the battery";
+  else if (last_resort)
+    result.reason = "no frontier left that can be accepted";
+  else
+    result.reason = tried.more_to_try ? "none of the goals tried so far could be accepted"
                                       : "no goal of the policy could be accepted";
 }
 
@@ -178,7 +183,7 @@ void DecisionCycle::choose(const Question& question, const PolicyAnswer& answer,
     result.goal = last.goal;
     result.path = last.path;
   } else {
-    give_up(last, own.all_too_far, by, result);
+    give_up(last, input, own.all_too_far, by, result);
   }
   for (const RejectedGoal& r : own.rejected)
     policy_.notify({PolicyEvent::Kind::goal_rejected, input.now, r.goal, r.reason});

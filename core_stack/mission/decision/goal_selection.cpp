@@ -65,8 +65,9 @@ GoalChoice GoalSelection::choose(const GoalQuery& query, const std::vector<Goal>
       break;
     } else {
       ++too_far;
-      choice.rejected.push_back(
-          {goal, "the battery, or the time allowed, does not last for going there and home"});
+      choice.rejected.push_back({goal, input.limited_by_time()
+                                           ? "the time allowed does not suffice for going there and home"
+                                           : "the battery does not last for going there and home"});
     }
   }
   choice.all_too_far = too_far > 0 && too_far == choice.rejected.size();

@@ -20,7 +20,8 @@ void describe(OptionTable& t, MissionOptions& o) {
   t.add("explored_patience", o.explored_patience_s, "s", 0, 60,
         "a vehicle that has hovered without a goal for this long flies home once the policy says explored");
   t.add("home_margin", o.home_margin, "", 0, 2, "share added to the time estimated for flying home");
-  t.add("home_reserve", o.home_reserve_s, "s", 5, 600, "battery time kept for after the way home");
+  t.add("home_reserve", o.home_reserve_s, "s", 5, 600,
+        "time kept for after the way home, of the battery and of mission.max_flight_time");
   t.add("landing_speed", o.landing_speed_mps, "m/s", 0.1, 0.7, "vertical speed of the landing");
   t.add("max_flight_time", o.max_flight_time_s, "s", 10, 86400,
         "homing begins at the latest in time for this");

@@ -65,7 +65,8 @@ void ReturnHome::on_estimate(const HomeEstimate& estimate) {
   const bool by_time = seconds_left < parts_.endurance.battery().seconds_left;
   onboard_.recorder.write(onboard_.now(), event::Homing{by_time ? "time limit" : "battery", distance_m_,
                                                         seconds_left, seconds_left - slack_s});
-  begin("the time left only just suffices for the way home");
+  begin(by_time ? "the time allowed only just suffices for the way home"
+                : "the battery only just suffices for the way home");
 }
 
 void ReturnHome::step() {

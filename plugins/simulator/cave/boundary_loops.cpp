@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core_stack/common/decimal_text.h"
 #include "core_stack/common/format_text.h"
 #include "plugins/simulator/cave/joined_vertices.h"
 
@@ -187,13 +188,17 @@ const BoundaryLoop* loop_towards(const std::vector<BoundaryLoop>& loops, const V
   return best;
 }
 
+std::string size_and_place(const BoundaryLoop& loop) {
+  return two_digits(loop.diameter_m) + " m across, " + two_digits(loop.area_m2) + " m², around " +
+         core::decimal_text(loop.centre, 1);
+}
+
 std::string hole_text(const BoundaryLoop* loop) {
   if (loop == nullptr) return "; no edge is open: parts of the mesh do not touch each other there";
   return core::format_text(
-      "; the open edges nearest to it are a loop of %zu, %s m across, %s m2, around %.1f %.1f %.1f. "
-      "`karst cave info CAVE --cap OUT.ply` closes such loops",
-      loop->vertices.size(), two_digits(loop->diameter_m).c_str(), two_digits(loop->area_m2).c_str(),
-      loop->centre.x(), loop->centre.y(), loop->centre.z());
+      "; the open edges nearest to it are a loop of %zu, %s. `karst cave info CAVE --cap OUT.ply` closes "
+      "such loops",
+      loop->vertices.size(), size_and_place(*loop).c_str());
 }
 
 }  // namespace karst::cave

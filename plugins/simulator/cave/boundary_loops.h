@@ -28,7 +28,10 @@ const BoundaryLoop* nearest_loop(const TriangleMesh& mesh, const std::vector<Bou
 const BoundaryLoop* loop_towards(const std::vector<BoundaryLoop>& loops, const core::Vec3& from,
                                  const core::Vec3& direction);
 
-/// "; the open edges nearest to it are a loop of 24, 1.9 m across, 2.8 m2, around 12.0 0.0 1.5", and how to
+/// "1.9 m across, 2.8 m², around 12.0 0.0 1.5"
+std::string size_and_place(const BoundaryLoop& loop);
+
+/// "; the open edges nearest to it are a loop of 24, 1.9 m across, 2.8 m², around 12.0 0.0 1.5", and how to
 /// close it; of null, that no edge is open. Continues a sentence about a hole.
 std::string hole_text(const BoundaryLoop* loop);
 

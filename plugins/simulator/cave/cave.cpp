@@ -60,10 +60,15 @@ CaveOfFile read_cave_file(const std::string& path) {
 }
 
 CaveOfFile read_cave(const std::string& path, const core::MeshKeys& keys) {
-  if (path.empty()) throw InputError("cave", "", "no cave given: name a cave's .info file or a mesh");
+  if (path.empty())
+    throw InputError("cave", "",
+                     "no cave given: name a cave's .info file or a mesh, with --cave FILE or as cave.file of "
+                     "the mission; `karst cave generate` makes one");
+  const bool is_cave_file = std::filesystem::path(path).extension() == ".info";
   if (!std::filesystem::exists(path))
-    throw InputError(path, "", "no such cave file; `karst cave generate` makes one");
-  if (std::filesystem::path(path).extension() == ".info") {
+    throw InputError(path, "",
+                     is_cave_file ? "no such cave file; `karst cave generate` makes one" : "no such file");
+  if (is_cave_file) {
     if (keys != core::MeshKeys{})
       throw InputError(path, "",
                        "is a cave file: it states scale, unit, up and offset of its mesh itself; they can be "
@@ -73,6 +78,7 @@ CaveOfFile read_cave(const std::string& path, const core::MeshKeys& keys) {
   CaveOfFile bare;
   bare.cave.file = bare.cave.mesh_path = path;
   bare.cave.mesh_frame = mesh_frame(path, path, keys);
+  bare.cave.mesh_frame.given_as_options = true;
   return bare;
 }
 

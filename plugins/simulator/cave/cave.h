@@ -111,7 +111,7 @@ struct CaveDescription {
 /// Throws InputError. The file's keys, by example:
 ///
 ///   mesh tunnel.ply              ; relative to this file
-///   unit mm                      ; of the mesh: m (default), cm, mm, ft
+///   unit mm                      ; of the mesh: m (default), cm, mm, ft, in
 ///   scale 1                      ; of the mesh, beside the unit
 ///   up y                         ; of the mesh: z (default) or y
 ///   offset "1000 0 2000"         ; in the mesh's own coordinates, subtracted first

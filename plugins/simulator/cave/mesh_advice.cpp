@@ -16,11 +16,13 @@ using core::Vec3;
 
 namespace {
 
-constexpr double kNoPassage_m = 600;        // wider than any passage
-constexpr double kWidePassage_m = 60;       // wider than nearly all
-constexpr double kLowMillimetres_m = 1e3;   // what 1 m is in millimetres, read as metres
-constexpr double kSureMillimetres_m = 6e3;  // in centimetres it would be wider than nearly all
-constexpr double kFarOrigin_m = 1e4;        // floats resolve 1 mm there
+constexpr double kNoPassage_m = 600;          // wider than any passage
+constexpr double kWidePassage_m = 60;         // wider than nearly all
+constexpr double kLowMillimetres_m = 1e3;     // what 1 m is in millimetres, read as metres
+constexpr double kSureMillimetres_m = 6e3;    // in centimetres it would be wider than nearly all
+constexpr double kFarOrigin_m = 1e4;          // floats resolve 1 mm there
+constexpr double kFarthestOnEarth_m = 2.1e7;  // half its circumference, and more than any map's coordinates
+constexpr double kFarthestNorthing_m = 1e7;   // of UTM
 
 struct OtherUnit {
   MeshAdvice advice;
@@ -31,7 +33,12 @@ OtherUnit other_unit(const std::string& why, const char* how_sure, bool millimet
   const char* name = millimetres ? "millimetres" : "centimetres";
   std::string remedy = millimetres ? "unit mm" : "unit cm";
   if (frame.states_its_own) remedy = millimetres ? "scale 0.001" : "scale 0.01";
-  return {{why + ": " + how_sure + " in " + name, remedy}, millimetres ? 1e-3 : 1e-2};
+  return {{why + ": " + how_sure + " in " + name, remedy, ""}, millimetres ? 1e-3 : 1e-2};
+}
+
+/// Along the axis along which it is farthest.
+double away_from_origin_m(const Eigen::AlignedBox3d& box) {
+  return box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
 }
 
 /// Of a file that is read as metres.
@@ -47,6 +54,11 @@ std::optional<OtherUnit> unit_of(const MeshShape& shape, const MeshFrame& frame)
   if (length_m > kFarthestVertex_m && length_m / 1000 <= kFarthestVertex_m)
     return other_unit(format_text("read as metres it is %.0f km long", length_m / 1000), "it is likely", true,
                       frame);
+  if (const double away_m = away_from_origin_m(shape.box); away_m > kFarthestOnEarth_m)
+    return other_unit(
+        format_text("read as metres it lies %.0f km from the origin, farther than any place on Earth",
+                    away_m / 1000),
+        "it is likely", away_m / 100 > kFarthestNorthing_m, frame);
   return std::nullopt;
 }
 
@@ -62,7 +74,7 @@ std::optional<MeshAdvice> axis_of(const MeshShape& shape, const MeshFrame& frame
                   "upright: it likely has %s up",
                   is_z ? "z" : "y", size.z(), size.y(), 100 * (shape.facing.x() + shape.facing.y()),
                   is_z ? "y" : "z"),
-      is_z ? "up y" : "up z"};
+      is_z ? "up y" : "up z", ""};
 }
 
 /// A whole number of units, and of metres if these are longer.
@@ -74,7 +86,7 @@ double rounded_place(double v, double metres_per_unit) {
 /// `in_m`: the unit that the file seems to be in.
 std::optional<MeshAdvice> origin_of(const MeshShape& shape, const MeshFrame& frame, double in_m) {
   const Vec3 &low = shape.box.min(), &high = shape.box.max();
-  const double away_m = in_m * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+  const double away_m = in_m * away_from_origin_m(shape.box);
   // A mesh that is large, and not far away, is no case for an offset.
   if (away_m < kFarOrigin_m || away_m < 2 * in_m * shape.box.sizes().maxCoeff()) return std::nullopt;
   const Vec3 middle((low.x() + high.x()) / 2, (low.y() + high.y()) / 2, low.z());
@@ -86,7 +98,8 @@ std::optional<MeshAdvice> origin_of(const MeshShape& shape, const MeshFrame& fra
   return MeshAdvice{format_text("it lies %.0f km from the origin%s", away_m / 1000,
                                 utm ? ", likely in UTM coordinates" : ""),
                     format_text("offset \"%.0f %.0f %.0f\"", rounded_place(origin.x(), unit_m),
-                                rounded_place(origin.y(), unit_m), rounded_place(origin.z(), unit_m))};
+                                rounded_place(origin.y(), unit_m), rounded_place(origin.z(), unit_m)),
+                    ""};
 }
 
 /// The least of height and widths at the middle of the column.
@@ -137,15 +150,29 @@ std::vector<MeshAdvice> mesh_advice(const MeshShape& shape, const MeshFrame& fra
   if (unit) all.push_back(unit->advice);
   if (const auto axis = axis_of(shape, frame)) all.push_back(*axis);
   if (const auto origin = origin_of(shape, frame, unit ? unit->in_m : 1.0)) all.push_back(*origin);
+  for (MeshAdvice& a : all) a.to_give = (frame.given_as_options ? "--" : "") + a.remedy;
   return all;
 }
 
-std::string to_text(const MeshAdvice& advice) { return advice.finding + " (" + advice.remedy + ")"; }
+std::string to_text(const MeshAdvice& advice) { return advice.finding + " (" + advice.to_give + ")"; }
+
+std::string axis_hint(const MeshShape& shape, const MeshFrame& frame) {
+  constexpr double kAsThick = 1.2, kAsMuch = 0.9, kMore = 1.25, kLong = 3;
+  const bool stated = frame.states_its_own || !frame.given_as_options || frame.up != core::UpAxis::z;
+  if (stated || shape.box.isEmpty() || axis_of(shape, frame)) return "";
+  const Vec3 size = shape.box.sizes();
+  if (size.y() > kAsThick * size.z()) return "";
+  const bool more = shape.facing.y() >= kMore * shape.facing.z(),
+             as_much = shape.facing.y() >= kAsMuch * shape.facing.z(),
+             is_long = std::max(size.x(), size.z()) >= kLong * size.y();
+  if (!more && !(as_much && is_long)) return "";
+  return "its shape does not tell whether y or z points up; if y is up in this file, pass --up y";
+}
 
 std::string reach_problem(const Eigen::AlignedBox3d& box, const MeshFrame& frame) {
   if (box.isEmpty()) return "";
   const Vec3 &low = box.min(), &high = box.max();
-  if (low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() <= kFarthestVertex_m) return "";
+  if (away_from_origin_m(box) <= kFarthestVertex_m) return "";
   std::string why = kReachRule + format_text("; these reach from %.0f %.0f %.0f to %.0f %.0f %.0f m", low.x(),
                                              low.y(), low.z(), high.x(), high.y(), high.z());
   MeshShape shape;

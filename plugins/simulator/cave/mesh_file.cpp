@@ -191,7 +191,9 @@ TriangleMesh import_mesh(const std::string& path, const std::string& extension, 
   TriangleMesh mesh;
   JoinedVertices joined(mesh.vertices);
   for (const MeshPart& part : parts) append_part(path, part, joined, mesh);
-  if (mesh.triangles.empty()) throw InputError(path, "", "the mesh has no triangle");
+  if (mesh.triangles.empty())
+    throw InputError(path, "",
+                     "the mesh has no triangle; a point cloud? `karst cave from-cloud` makes a cave of it");
   return mesh;
 }
 

@@ -1,5 +1,7 @@
 #include "plugins/simulator/cave/mesh_frame.h"
 
+#include <cmath>
+
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/units.h"
@@ -26,6 +28,13 @@ Vec3 to_metres(const MeshFrame& frame, const Vec3& p) {
 Vec3 to_file(const MeshFrame& frame, const Vec3& place_m) {
   const Vec3 p = place_m / frame.metres_per_unit;
   return frame.offset + (frame.up == UpAxis::z ? p : Vec3(p.x(), p.z(), -p.y()));
+}
+
+std::string unit_text(const MeshFrame& frame) {
+  for (const std::string& name : core::all_names<MeshUnit>())
+    if (const double m = *core::unit_factor(name, "m"); std::abs(frame.metres_per_unit - m) <= 1e-9 * m)
+      return name;
+  return core::shortest_text(frame.metres_per_unit) + " m";
 }
 
 std::string to_text(const MeshFrame& frame) {

@@ -14,6 +14,7 @@ struct MeshFrame {
   core::UpAxis up = core::UpAxis::z;
   core::Vec3 offset = core::Vec3::Zero();  // in the file's own coordinates
   bool states_its_own = false;             // a Collada file: the importer applies its unit and its axis
+  bool given_as_options = false;           // --unit mm: there is no cave file that could hold the key
 };
 
 /// Vertices farther from the origin are refused: there floats still resolve 8 mm.
@@ -27,6 +28,9 @@ bool is_plain(const MeshFrame& frame);
 core::Vec3 to_metres(const MeshFrame& frame, const core::Vec3& from_offset);
 /// The file's own coordinates of a place in metres.
 core::Vec3 to_file(const MeshFrame& frame, const core::Vec3& place_m);
+
+/// The name of the unit if it has one, "mm", or else how long it is, "0.5 m".
+std::string unit_text(const MeshFrame& frame);
 
 /// One line, equal for equal frames.
 std::string to_text(const MeshFrame& frame);

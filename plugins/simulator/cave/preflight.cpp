@@ -5,12 +5,14 @@
 #include <numbers>
 #include <string>
 
+#include "core_stack/common/decimal_text.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "plugins/simulator/cave/boundary_loops.h"
 
 namespace karst::cave {
 
+using core::decimal_text;
 using core::format_text;
 using core::InputError;
 using core::Vec3;
@@ -37,23 +39,32 @@ Surroundings look_around(const RayScene& scene, const Vec3& place, int rays) {
   return s;
 }
 
+namespace {
+
+/// "outside of the cave (12 % of its rays pass ...)" of a place most of whose rays pass an even number of
+/// surfaces.
+std::string not_inside_text(const Surroundings& s) {
+  return format_text(
+      "%s (%.0f %% of its rays pass an odd number of surfaces; from a place inside the cave, most do)",
+      s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_fraction);
+}
+
+}  // namespace
+
 void check_start(const Cave& cave, double vehicle_radius_m) {
   const CaveDescription& d = cave.description;
   const Surroundings s = look_around(cave.scene, d.start.position);
   const auto refuse = [&](const std::string& reason) { throw InputError(d.file, "start", reason); };
-  const auto& p = d.start.position;
+  const Vec3& p = d.start.position;
+  const std::string place = "(" + decimal_text(p, 2) + ")";
   if (s.clearance_m < vehicle_radius_m)
-    refuse(format_text("(%.2f %.2f %.2f) is %.2f m from rock; the vehicle's radius is %.2f m", p.x(), p.y(),
-                       p.z(), s.clearance_m, vehicle_radius_m));
-  if (s.odd_fraction < 0.5)
-    refuse(format_text("(%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
-                       p.x(), p.y(), p.z(), s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock",
-                       100 * s.odd_fraction));
+    refuse(place + format_text(" is %.2f m from rock; the vehicle's radius is %.2f m", s.clearance_m,
+                               vehicle_radius_m));
+  if (s.odd_fraction < 0.5) refuse(place + " is " + not_inside_text(s));
   if (s.escape_fraction > kPinholes) {
     const auto& e = s.escape_direction;
-    refuse(format_text("the mesh has a hole here: %.2f %% of the rays from (%.2f %.2f %.2f) escape, about "
-                       "(%.2f %.2f %.2f)",
-                       100 * s.escape_fraction, p.x(), p.y(), p.z(), e.x(), e.y(), e.z()) +
+    refuse(format_text("the mesh has a hole here: %.2f %% of the rays from %s escape, about (%s)",
+                       100 * s.escape_fraction, place.c_str(), decimal_text(e, 2).c_str()) +
            hole_text(loop_towards(boundary_loops(cave.scene.mesh()), p, e)));
   }
 }
@@ -78,15 +89,12 @@ void lay_objects(Cave& cave) {
     const Vec3& p = o.position;
     const Surroundings s = look_around(cave.scene, p);
     if (s.odd_fraction < 0.5)
-      refuse(format_text(
-          "the %s at (%.2f %.2f %.2f) is %s: only %.0f %% of its rays pass an odd number of surfaces",
-          core::name_of(o.kind), p.x(), p.y(), p.z(),
-          s.escape_fraction > 0.25 ? "outside of the cave" : "inside rock", 100 * s.odd_fraction));
+      refuse(format_text("the %s at (%s) is ", core::name_of(o.kind), decimal_text(p, 2).c_str()) +
+             not_inside_text(s));
     const Nearest rock = cave.scene.nearest(p, kLiesOn_m);
     if (rock.found && rock.distance_m < kMin_m)
-      refuse(format_text(
-          "the %s at (%.2f %.2f %.2f) is %.3f m from rock: its middle must be 0.02 m off at least",
-          core::name_of(o.kind), p.x(), p.y(), p.z(), rock.distance_m));
+      refuse(format_text("the %s at (%s) is %.3f m from rock: its middle must be 0.02 m off at least",
+                         core::name_of(o.kind), decimal_text(p, 2).c_str(), rock.distance_m));
     o.normal = rock.found ? Vec3((p - rock.point).normalized()) : Vec3(Vec3::Zero());
   }
 }
@@ -101,10 +109,10 @@ void check_climb(const Cave& cave, const Vec3& standing, double climb_m, double 
     throw InputError(
         cave.description.file, "start",
         format_text(
-            "from the floor below it, at (%.2f %.2f %.2f), the vehicle can rise by %.2f m only: rock is in "
-            "the way at (%.2f %.2f %.2f). The first hover is %.2f m up: start elsewhere or hover lower",
-            standing.x(), standing.y(), standing.z(), std::max(risen_m - kAir_m, 0.0), rock.point.x(),
-            rock.point.y(), rock.point.z(), climb_m));
+            "from the floor below it, at (%s), the vehicle can rise by %.2f m only: rock is in the way at "
+            "(%s). The first hover is %.2f m up: start elsewhere or hover lower",
+            decimal_text(standing, 2).c_str(), std::max(risen_m - kAir_m, 0.0),
+            decimal_text(rock.point, 2).c_str(), climb_m));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "core_stack/common/counted.h"
 #include "sdk/campaign/paper/printed_figure.h"
+#include "sdk/campaign/paper/restricted_time.h"
 #include "sdk/campaign/paper/result_tables.h"
 #include "sdk/campaign/paper/table_text.h"
 #include "sdk/campaign/verdict/figure_words.h"
@@ -58,14 +59,20 @@ PaperTable comparisons_table(const CampaignResults& results, const Verdicts& ver
   if (figure.better == evaluation::Better::neither) table.columns.back().heading = "Shown to have more";
   const int decimals = common_decimals(intervals, numbers, figure.factor);
   const auto number = [&](double v) { return printed_number(figure.factor * v, decimals); };
+  bool never = false;
+  const auto mean = [&](double v) {
+    if (!is_restricted_time(verdicts.metric) || !is_horizon(v, results.horizon_s)) return number(v);
+    never = true;
+    return "> " + number(v);
+  };
   for (const Comparison* c : primary) {
     const std::string shown = shown_text(*c, results), &a = results.contestants[c->a].name,
                       &b = results.contestants[c->b].name;
     table.rows.push_back({{a, a == shown},
                           {b, b == shown},
                           {std::to_string(c->pairs)},
-                          {number(c->mean_a)},
-                          {number(c->mean_b)},
+                          {mean(c->mean_a)},
+                          {mean(c->mean_b)},
                           {number(c->difference)},
                           {interval_text(c->interval, figure.factor, decimals,
                                          c->few_seeds ? DrawnFrom::caves : DrawnFrom::seeds)},
@@ -80,6 +87,9 @@ PaperTable comparisons_table(const CampaignResults& results, const Verdicts& ver
                   bootstrap_text(options, over_caves) + ". Test: " + test_text(results, options) +
                   ". Bold: the contestant that is shown " +
                   (figure.better == evaluation::Better::neither ? "to have more." : "to be better.");
+  if (is_restricted_time(verdicts.metric))
+    table.caption += " " + restricted_text({verdicts.metric}, results.horizon_s) + "." +
+                     (never ? " >: no flight reached it." : "");
   return table;
 }
 

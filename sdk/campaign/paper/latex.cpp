@@ -39,6 +39,7 @@ constexpr Escape kEscapes[] = {
     {"\u2212", "$-$"},
     {"\u2013", "\\textendash{}"},
     {"\u2020", "\\textdagger{}"},
+    {"\u2021", "\\textdaggerdbl{}"},
     {"\u00B3", "$^3$"},
 };
 

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/counted.h"
 #include "sdk/campaign/paper/contestant_text.h"
+#include "sdk/campaign/paper/restricted_time.h"
 #include "sdk/campaign/plan/profile.h"
 #include "sdk/campaign/verdict/figure_words.h"
 
@@ -58,10 +59,19 @@ std::string seeds_sentence(const CampaignResults& results) {
          "); flights of the same cave and seed share start, noise, gusts and faults.";
 }
 
+/// The reserve is part of the flight time; "" if it is not known.
+std::string reserve_text(const CampaignResults& results) {
+  const auto reserve = std::find_if(results.shared.begin(), results.shared.end(),
+                                    [](const auto& s) { return s.first == "mission.home_reserve"; });
+  if (reserve == results.shared.end() || results.flight_time.empty()) return "";
+  return " (this includes the way home and a reserve of " + reserve->second + ")";
+}
+
 std::string conditions_sentence(const CampaignResults& results) {
   std::string text = "The flight time was " +
                      (results.flight_time.empty() ? "not recorded" : results.flight_time) +
-                     ", and the horizon of figures over time was " + fixed_text(results.horizon_s, 0) + " s";
+                     reserve_text(results) + ", and the horizon of figures over time was " +
+                     fixed_text(results.horizon_s, 0) + " s";
   const auto known = std::find_if(profiles().begin(), profiles().end(),
                                   [&](const Profile& p) { return p.name == results.profile; });
   if (results.profile.empty()) return text + ".";
@@ -77,6 +87,17 @@ std::string metric_sentence(const CampaignResults& results, const VerdictOptions
          (options.metric == results.metric
               ? "which was declared before the first flight."
               : "although " + results.metric + " was declared before the first flight.");
+}
+
+/// What the times in the ranking's table are.
+std::string restricted_sentence(const CampaignResults& results, const VerdictOptions& options) {
+  const int primary = evaluation::metric_index(options.metric);
+  std::vector<int> metrics;
+  if (is_restricted_time(primary)) metrics.push_back(primary);
+  for (const std::string_view name : headline_figures())
+    if (const int metric = evaluation::metric_index(name); metric != primary && is_restricted_time(metric))
+      metrics.push_back(metric);
+  return restricted_text(metrics, results.horizon_s) + ".";
 }
 
 /// docs/statistics.md in short.
@@ -132,10 +153,11 @@ std::string left_out_sentence(const Verdicts& verdicts) {
 std::vector<std::string> methods_sentences(const ResultsWithExtras& campaign, const Verdicts& verdicts,
                                            const VerdictOptions& options) {
   const CampaignResults& results = campaign.results;
-  std::vector<std::string> sentences = {flights_sentence(results),        versions_sentence(campaign.extras),
-                                        contestants_sentence(results),    caves_sentence(results),
-                                        seeds_sentence(results),          conditions_sentence(results),
-                                        metric_sentence(results, options)};
+  std::vector<std::string> sentences = {
+      flights_sentence(results),         versions_sentence(campaign.extras),
+      contestants_sentence(results),     caves_sentence(results),
+      seeds_sentence(results),           conditions_sentence(results),
+      metric_sentence(results, options), restricted_sentence(results, options)};
   for (std::string& s : statistics_sentences(results, options)) sentences.push_back(std::move(s));
   sentences.push_back(failures_sentence(results));
   if (std::string left_out = left_out_sentence(verdicts); !left_out.empty())

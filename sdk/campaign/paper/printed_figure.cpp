@@ -11,7 +11,7 @@ PrintedFigure printed_figure(int metric) {
   const auto& figure = evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
   const std::string subject = subject_of(figure), unit(figure.unit == "m^3" ? "m\u00B3" : figure.unit);
   PrintedFigure printed{subject, subject, unit, unit, 1, figure.better};
-  if (subject != figure.name)  // its key has no capital
+  if (subject.find('_') == std::string::npos)  // a key has no capital
     printed.heading.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(subject.front())));
   if (is_fraction(figure))
     printed.unit = "%", printed.difference_unit = "percentage points", printed.factor = 100;

@@ -5,6 +5,7 @@
 
 #include "core_stack/common/counted.h"
 #include "sdk/campaign/paper/printed_figure.h"
+#include "sdk/campaign/paper/restricted_time.h"
 #include "sdk/campaign/paper/result_tables.h"
 #include "sdk/campaign/paper/table_text.h"
 #include "sdk/campaign/report/report_parts.h"
@@ -16,7 +17,9 @@ namespace {
 using core::counted;
 using evaluation::Interval;
 
-/// Means of a figure as cells, in the order of the ranking; what reads like the best is bold.
+constexpr const char* kBySome = " \u2021";
+
+/// Means of a figure as cells, in the order of the ranking. Bold: the one that is the best as printed.
 std::vector<PaperCell> mean_cells(const PrintedFigure& figure, const std::vector<double>& means,
                                   int decimals) {
   std::vector<PaperCell> cells;
@@ -27,8 +30,41 @@ std::vector<PaperCell> mean_cells(const PrintedFigure& figure, const std::vector
     best = figure.better == evaluation::Better::less ? std::fmin(best, v) : std::fmax(best, v);
   }
   if (figure.better == evaluation::Better::neither || means.size() < 2 || !std::isfinite(best)) return cells;
-  for (PaperCell& c : cells) c.bold = c.text == printed_number(figure.factor * best, decimals);
+  const std::string text = printed_number(figure.factor * best, decimals);
+  const auto is_best = [&](const PaperCell& c) { return c.text == text; };
+  if (std::count_if(cells.begin(), cells.end(), is_best) == 1)
+    std::find_if(cells.begin(), cells.end(), is_best)->bold = true;
   return cells;
+}
+
+/// Marks means of restricted times behind which flights are that did not reach the coverage.
+void mark_restricted(std::vector<PaperCell>& cells, const std::vector<std::size_t>& order,
+                     const std::vector<Reached>& by_contestant) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Reached& r = by_contestant[order[i]];
+    if (r.never()) cells[i] = {"> " + cells[i].text};
+    if (r.by_some()) cells[i].text += kBySome;
+  }
+}
+
+/// What the caption says of the columns with restricted times; "" without any.
+std::string restricted_caption(const CampaignResults& results, const std::vector<int>& metrics,
+                               const std::vector<std::size_t>& order) {
+  std::vector<int> restricted;
+  std::string never, by_some;
+  for (const int metric : metrics) {
+    if (!is_restricted_time(metric)) continue;
+    restricted.push_back(metric);
+    const std::vector<Reached> reached = reached_by(results, metric);
+    if (std::any_of(reached.begin(), reached.end(), [](const Reached& r) { return r.never(); }))
+      never = " >: no flight reached it.";
+    if (const std::string some = reached_by_some_text(results, order, reached); !some.empty())
+      by_some += (by_some.empty() ? " \u2021: only some flights reached it (" : "; ") +
+                 printed_figure(metric).subject + ": " + some;
+  }
+  if (restricted.empty()) return "";
+  return " " + restricted_text(restricted, results.horizon_s) + "." + never +
+         (by_some.empty() ? "" : by_some + ").");
 }
 
 std::vector<double> ranked(const Verdicts& verdicts, const std::vector<double>& by_contestant) {
@@ -64,7 +100,7 @@ std::string ranking_caption(const CampaignResults& results, const PrintedFigure&
                      bootstrap_text(options, any_over_caves) + ".";
   if (results.contestants.size() < 2) return text;
   return text + " Contestants that share a letter are not shown to differ (" + test_text(results, options) +
-         "). Bold: the best mean.";
+         "). Bold: the best mean of a column, if one contestant alone has it.";
 }
 
 }  // namespace
@@ -111,16 +147,24 @@ PaperTable ranking_table(const CampaignResults& results, const Verdicts& verdict
   add_column(table, {"Group", "", Aligned::left}, letters);
   add_column(table, {"Flights"}, flights);
   add_column(table, {"Failed"}, failed);
-  add_column(table, {figure.heading, figure.unit}, mean_cells(figure, primary, decimals));
+  std::vector<std::size_t> order;
+  for (const RankedContestant& p : verdicts.ranking) order.push_back(p.contestant);
+  std::vector<int> metrics;
+  const auto add_means = [&](int metric, const PrintedFigure& of, std::vector<PaperCell> cells) {
+    if (is_restricted_time(metric)) mark_restricted(cells, order, reached_by(results, metric));
+    add_column(table, {of.heading, of.unit}, cells);
+    metrics.push_back(metric);
+  };
+  add_means(verdicts.metric, figure, mean_cells(figure, primary, decimals));
   add_column(table, {interval_heading(options), figure.unit}, interval_cells);
   for (const std::string_view name : headline_figures()) {
     const int metric = evaluation::metric_index(name);
     if (metric == verdicts.metric) continue;
     const PrintedFigure other = printed_figure(metric);
     const std::vector<double> others = ranked(verdicts, comparable_means(results, metric));
-    add_column(table, {other.heading, other.unit},
-               mean_cells(other, others, common_decimals({}, others, other.factor)));
+    add_means(metric, other, mean_cells(other, others, common_decimals({}, others, other.factor)));
   }
+  table.caption += restricted_caption(results, metrics, order);
   return table;
 }
 

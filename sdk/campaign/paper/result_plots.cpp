@@ -33,6 +33,13 @@ class Range {
     least_ = std::min(least_, v);
     most_ = std::max(most_, v);
   }
+  /// Makes room beyond the least and the greatest, so that neither lies on the plot's frame.
+  void widen() {
+    if (!(least_ <= most_)) return;
+    constexpr double kShare = 0.05;
+    const double beyond = kShare * (most_ > least_ ? most_ - least_ : 1);
+    least_ -= beyond, most_ += beyond;
+  }
   PlotAxis axis(int ticks, const std::string& label) const {
     return least_ <= most_ ? number_axis(least_, most_, ticks, label) : number_axis(0, 1, ticks, label);
   }
@@ -109,6 +116,7 @@ std::string differences_plot(const CampaignResults& results, const ordered_json&
     fills.push_back(c.at("shown").get<std::string>().empty() ? MarkFill::hollow : MarkFill::filled);
     for (const double v : {estimates.back().mean, estimates.back().low, estimates.back().high}) range.add(v);
   }
+  range.widen();
   SvgPlot plot("Differences of pairs of contestants, with intervals",
                range.axis(4, with_unit("Difference in " + figure.subject, figure.difference_unit)),
                name_axis(rows), kRow_pt * static_cast<double>(rows.size() + 1), {});

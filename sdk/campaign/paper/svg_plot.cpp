@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "core_stack/common/character_count.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kColumn_pt = 252, kMinFrame_pt = 130, kEdge_pt = 6;
 constexpr double kText_pt = 8, kTickText_pt = 7, kCharacter = 0.56;  // of a text's size: Helvetica's mean
-constexpr double kLegendRow_pt = 11, kSample_pt = 20;
+constexpr double kLegendRow_pt = 11, kSample_pt = 20, kLabelRow_pt = 10;
 
 using core::xml_text;
 
@@ -50,6 +51,27 @@ std::string mark_path(double x, double y, const PlotLook& look, MarkFill fill) {
          attribute("stroke", look.colour) + attribute("stroke-width", "0.8") + "/>\n";
 }
 
+/// Adds the text in lines between words, each as wide as this or of one word.
+void add_lines(const std::string& text, double width_pt, std::vector<std::string>& lines) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && text_width_pt(line + " " + word, kText_pt) > width_pt)
+      lines.push_back(std::exchange(line, ""));
+    line += (line.empty() ? "" : " ") + word;
+  }
+  if (!line.empty()) lines.push_back(line);
+}
+
+/// An axis's label; its unit, in brackets, begins a line of its own where not all fits in one.
+std::vector<std::string> label_lines(const std::string& label, double width_pt) {
+  std::vector<std::string> lines;
+  const std::size_t unit = text_width_pt(label, kText_pt) > width_pt ? label.rfind(" (") : std::string::npos;
+  add_lines(label.substr(0, unit), width_pt, lines);
+  if (unit != std::string::npos) add_lines(label.substr(unit), width_pt, lines);
+  return lines;
+}
+
 double entry_width_pt(const std::string& name) { return kSample_pt + 12 + text_width_pt(name, kText_pt); }
 
 }  // namespace
@@ -69,9 +91,13 @@ SvgPlot::SvgPlot(std::string title, PlotAxis x, PlotAxis y, double frame_height_
   width_ = std::max(kMinFrame_pt, kColumn_pt - left_ - 2 * kEdge_pt);
   for (const std::string& name : legend_)
     width_ = std::max(width_, entry_width_pt(name) - left_);  // else it would be cut off
+  x_label_ = label_lines(x_.label, whole_width_pt() - 2 * kEdge_pt);
+  for (const std::string& line : x_label_)  // a single long word
+    width_ = std::max(width_, text_width_pt(line, kText_pt) - left_);
   draw_legend();
 }
 
+double SvgPlot::whole_width_pt() const { return left_ + width_ + 2 * kEdge_pt; }
 double SvgPlot::at_x(double v) const { return left_ + (v - x_.low) / (x_.high - x_.low) * width_; }
 double SvgPlot::at_y(double v) const { return top_ + (y_.high - v) / (y_.high - y_.low) * height_; }
 
@@ -133,7 +159,13 @@ std::string SvgPlot::axes() const {
   std::string out;
   for (const PlotTick& t : x_.ticks) out += text_at(at_x(t.at), bottom + 9, kTickText_pt, "middle", t.text);
   for (const PlotTick& t : y_.ticks) out += text_at(left_ - 3, at_y(t.at) + 2.5, kTickText_pt, "end", t.text);
-  if (!x_.label.empty()) out += text_at((left_ + right) / 2, bottom + 20, kText_pt, "middle", x_.label);
+  double half = 0;  // of the widest line: below the middle of the frame, but not over the edges
+  for (const std::string& line : x_label_) half = std::max(half, text_width_pt(line, kText_pt) / 2);
+  const double middle =
+      std::max(kEdge_pt + half, std::min((left_ + right) / 2, whole_width_pt() - kEdge_pt - half));
+  for (std::size_t i = 0; i < x_label_.size(); ++i)
+    out +=
+        text_at(middle, bottom + 20 + kLabelRow_pt * static_cast<double>(i), kText_pt, "middle", x_label_[i]);
   const double y = (top_ + bottom) / 2, x = kEdge_pt + kText_pt / 2;
   if (!y_.label.empty())
     out += text_at(x, y, kText_pt, "middle", y_.label,
@@ -143,7 +175,10 @@ std::string SvgPlot::axes() const {
 
 std::string SvgPlot::text() const {
   const double right = left_ + width_, bottom = top_ + height_;
-  const std::string wide = pt(right + 2 * kEdge_pt), high = pt(bottom + (x_.label.empty() ? 13 : 25));
+  const std::string wide = pt(whole_width_pt()),
+                    high = pt(bottom + (x_label_.empty()
+                                            ? 13
+                                            : 15 + kLabelRow_pt * static_cast<double>(x_label_.size())));
   std::string grid;
   for (const PlotTick& t : x_.ticks) grid += line_between(at_x(t.at), top_, at_x(t.at), bottom);
   for (const PlotTick& t : y_.ticks) grid += line_between(left_, at_y(t.at), right, at_y(t.at));

@@ -31,13 +31,14 @@ class SvgPlot {
  private:
   double at_x(double v) const;
   double at_y(double v) const;
+  double whole_width_pt() const;
   void draw_legend();
   std::string axes() const;
 
   std::string title_;
   PlotAxis x_, y_;
-  std::vector<std::string> legend_;
-  double left_, top_, width_ = 0, height_;  // of the frame
+  std::vector<std::string> legend_, x_label_;  // the label's lines
+  double left_, top_, width_ = 0, height_;     // of the frame
   std::string body_, legend_text_;
 };
 

@@ -90,10 +90,22 @@ std::vector<std::int64_t> parse_seeds(const std::string& source, std::int64_t co
   return seeds;
 }
 
+/// Names the key that a block with a wrong name may mean; the table, which has no blocks, knows none.
+void refuse_other_blocks(const pt::ptree& tree, const std::string& source, const std::string& place,
+                         const std::vector<std::string>& known) {
+  for (const auto& [key, child] : tree) {
+    if (child.empty()) continue;
+    const std::string near = core::nearest_name(key, known);
+    if (!near.empty())
+      throw InputError(source, place + key, "no such block; did you mean " + place + near + "?");
+  }
+}
+
 ContestantSpec read_contestant(pt::ptree block, const std::string& source) {
   ContestantSpec c;
   c.parameters = take_settings(block, "parameters", source, "contestant.");
   c.settings = take_settings(block, "settings", source, "contestant.");
+  refuse_other_blocks(block, source, "contestant.", {"parameters", "settings"});
   OptionTable table;
   table.under("contestant", [&c](OptionTable& t) {
     t.add("name", c.name, {}, "what it is called in results");
@@ -151,6 +163,8 @@ void refuse_no_file(const Campaign& c, const std::string& key, const std::string
   if (!fs::is_regular_file(file)) throw InputError(c.source, key, file + " is no file");
 }
 
+bool is_of_file(const Campaign& c) { return c.source != Campaign{}.source; }
+
 template <class Named>
 void check_names(const Campaign& c, const std::vector<Named>& all, const std::string& what) {
   std::set<std::string> seen;
@@ -191,14 +205,14 @@ void complete(Campaign& c) {
   for (ContestantSpec& k : c.contestants) {
     if (k.name.empty()) k.name = made_name(k);
     if (!k.plugin.empty()) {
-      refuse_no_file(c, "contestant.plugin", k.plugin);
+      refuse_no_file(c, is_of_file(c) ? "contestant " + k.name + ": plugin" : "--plugin", k.plugin);
       k.plugin = fs::absolute(k.plugin).lexically_normal().string();
     }
     refuse_reserved(c, "contestant " + k.name + ": ", k.settings);
   }
   for (CaveSpec& k : c.caves) {
     if (k.name.empty()) k.name = fs::path(k.file).stem().string();
-    refuse_no_file(c, "cave.file", k.file);
+    refuse_no_file(c, is_of_file(c) ? "cave.file" : "--caves", k.file);
     k.file = fs::absolute(k.file).lexically_normal().string();
   }
   refuse_reserved(c, "settings.", c.settings);
@@ -217,6 +231,8 @@ Campaign read_campaign(const std::string& file) {
     c.contestants.push_back(read_contestant(block, file));
   for (const pt::ptree& block : take_blocks(tree, "cave")) c.caves.push_back(read_cave(block, file));
 
+  refuse_other_blocks(tree, file, "", {"contestant", "cave", "settings"});
+
   std::int64_t seeds = 0;
   std::string seed_list;
   std::vector<std::string> profile_names;
@@ -231,6 +247,9 @@ Campaign read_campaign(const std::string& file) {
   table.add("seeds", seeds, 1, kMaxSeeds, "how many: 1, 2, 3 ...");
   table.add("seed_list", seed_list, {}, "the seeds themselves");
   table.add("metric", c.metric, metric_names(), "the figure that the verdict is about");
+  for (const auto& [key, value] : core::leaves_of(tree))
+    if (key.find('.') != std::string::npos)
+      throw InputError(file, key, "is no key of a campaign; settings of the missions go into settings { }");
   table.read(file, tree);
   c.seeds = parse_seeds(file, seeds, seed_list);
   c.mission = core::beside(file, c.mission);

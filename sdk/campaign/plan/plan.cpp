@@ -12,6 +12,7 @@
 #include "core_stack/common/options.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/campaign/plan/ask_karst.h"
+#include "sdk/campaign/plan/flight_times.h"
 #include "sdk/campaign/plan/hash.h"
 #include "sdk/campaign/plan/mesh_hash.h"
 #include "sdk/campaign/plan/plan_text.h"
@@ -22,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace pt = boost::property_tree;
 using core::InputError;
-
-constexpr double kEndless_s = 1e9;
 
 std::string json_object(const Settings& settings) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
@@ -68,23 +67,11 @@ PlannedCave planned(const CaveSpec& cave) {
   return out;
 }
 
-double seconds_of(const pt::ptree& mission, const std::string& key, double otherwise) {
-  const auto text = mission.get_optional<std::string>(key);
-  if (!text) return otherwise;
-  double s = otherwise;
-  core::OptionTable table;
-  table.add(key, s, "s", 0, 1e9, "");
-  table.set("mission", key, *text);
-  return s;
-}
-
 /// For a team, until the end of the last robot's flight, which starts last.
 double horizon_of(const PlannedContestant& c) {
   const int robots = std::max(1, c.mission.get("team.robots", 1));
-  const double stagger_s = robots > 1 ? seconds_of(c.mission, "team.stagger", 0) : 0;
-  return (robots - 1) * std::round(stagger_s) +
-         std::min(seconds_of(c.mission, "mission.max_flight_time", kEndless_s),
-                  seconds_of(c.mission, "simulator.battery_minutes", kEndless_s));
+  const double stagger_s = robots > 1 ? quantity_in(c.mission, "team.stagger", "s", 0) : 0;
+  return (robots - 1) * std::round(stagger_s) + longest_flight_s(c.mission);
 }
 
 /// Plans the cave; errors name the campaign's entry.

@@ -17,12 +17,12 @@ using Quantity = double CurvePoint::*;
 constexpr int kTimes = 101;
 constexpr int kResamples = 1000;  // bands in plots need fewer than tables
 
-/// From 0 to the horizon, or to the end of the last flight if that is earlier.
+/// From 0 to the horizon, however early the flights end; without a horizon, to the end of the last flight.
 Values time_grid(const CampaignResults& results) {
   double end_s = 0;
   for (const TrialResult& t : results.trials)
     if (!t.curve.empty()) end_s = std::max(end_s, t.curve.back().time_s);
-  if (results.horizon_s > 0) end_s = std::min(end_s, results.horizon_s);
+  if (end_s > 0 && results.horizon_s > 0) end_s = results.horizon_s;
   Values times;
   for (int i = 0; end_s > 0 && i < kTimes; ++i) times.push_back(end_s * i / (kTimes - 1));
   return times;

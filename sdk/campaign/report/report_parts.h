@@ -42,7 +42,7 @@ struct WorstTrial {
   std::string why;
 };
 /// At most `count` trials with one reason each: first failures, then contacts, then flights that did not
-/// land, then those that landed but did not go as meant (figure `completed`), each with how it ended; then
+/// land, then those that landed but did not go as planned (figure `completed`), each with how it ended; then
 /// the lowest primary figures relative to the mean of the trials in the same cave.
 std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric, std::size_t count);
 

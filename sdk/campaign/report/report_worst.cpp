@@ -59,7 +59,7 @@ std::vector<WorstTrial> worst_trials(const CampaignResults& results, int metric,
     } else if (t.outcome != core::name_of(core::MissionOutcome::landed)) {
       j = {kNotLanded, j.against_cave, {i, with_ending("did not land (" + t.outcome + ")", t)}};
     } else if (went_wrong(t)) {
-      j = {kNotAsMeant, j.against_cave, {i, with_ending("did not go as meant", t)}};
+      j = {kNotAsMeant, j.against_cave, {i, with_ending("did not go as planned", t)}};
     } else if (less ? fraction <= 1 : fraction >= 1) {
       continue;  // not below its cave's mean: not a bad trial
     }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/format_text.h"
 #include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/campaign/verdict/verdict_parts.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
@@ -22,7 +23,8 @@ const MetricDefinition& definition(int metric) {
 }
 
 std::string unit_of(const MetricDefinition& d) {
-  return is_fraction(d) ? " points" : d.unit.empty() ? "" : " " + std::string(d.unit);
+  if (is_fraction(d)) return " points";
+  return d.unit == "m^3" ? " m\u00B3" : d.unit.empty() ? "" : " " + std::string(d.unit);
 }
 
 /// Uses as many decimals as two significant digits of `scale` need.
@@ -34,6 +36,9 @@ std::string p_text(double p) {
   std::snprintf(text.data(), text.size(), p < 0.1 ? "p = %.3f" : "p = %.2f", p);
   return text.data();
 }
+
+/// The comparisons of two contestants in one figure, for which p is corrected.
+std::size_t comparisons_of(std::size_t contestants) { return contestants * (contestants - 1) / 2; }
 
 /// "6 caves x 10 seeds", or "57 pairs in 6 caves" if caves differ in their number of pairs.
 std::string sample(const Comparison& c) {
@@ -52,31 +57,45 @@ std::string failures(const Comparison& c, const CampaignResults& results) {
   return text.empty() ? "" : "; " + text;
 }
 
-/// The size of the difference with its interval, signed so that the mean is positive.
-std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
+/// As in the tables, a minus b; or without its sign, where words say who has more.
+enum class Signed { as_a_minus_b, positive };
+
+/// The size of the difference with its interval, which has the same sign.
+std::string size_of(const Comparison& c, const CampaignResults& results, const VerdictOptions& options,
+                    Signed as) {
   const MetricDefinition& d = definition(c.metric);
-  const double factor = is_fraction(d) ? 100 : 1, sign = c.difference < 0 ? -factor : factor;
+  const double factor = is_fraction(d) ? 100 : 1,
+               sign = as == Signed::positive && c.difference < 0 ? -factor : factor;
   double low = sign * c.interval.low, high = sign * c.interval.high;
   if (low > high) std::swap(low, high);
   const double scale = std::isnan(low) ? std::abs(factor * c.difference) : (high - low) / 5;
-  const bool corrected = results.contestants.size() > 2;
+  const std::size_t compared = comparisons_of(results.contestants.size());
   std::string text = number(sign * c.difference, scale) + unit_of(d) + " (";
   if (!std::isnan(low))
     text += number(100 * (1 - options.alpha), 10) + " % CI " + number(low, scale) + " to " +
             number(high, scale) + unit_of(d) + (c.few_seeds ? " over caves; " : "; ");
-  return text + sample(c) + ", " + p_text(c.p_corrected) + (corrected ? " after correction" : "") +
+  return text + sample(c) + ", " + p_text(c.p_corrected) +
+         (compared > 1 ? " after correction for " + std::to_string(compared) + " comparisons" : "") +
          failures(c, results) + ")";
 }
 
-/// The reason for no shown difference, if the interval alone does not tell.
+/// The reason for no shown difference, if the interval alone does not tell. The interval is of the mean and
+/// is not corrected; p is of the pairs' signed ranks and is. So one may show what the other does not.
 std::string why_none(const Comparison& c, const CampaignResults& results, const VerdictOptions& options) {
   // Pairs that all favour one side have p = 2 / 2^pairs, times the pairs of contestants after correction.
-  const auto contestants = static_cast<double>(results.contestants.size());
-  const double min_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * contestants * (contestants - 1) / 2;
-  if (min_p >= options.alpha) return "; " + counted(c.pairs, "pair") + " cannot show any";
-  if (c.interval.excludes(0) && c.p_corrected >= options.alpha)
-    return "; the means differ, but pairs fall either way: who is ahead depends on the cave";
-  return "";
+  const std::size_t compared = comparisons_of(results.contestants.size());
+  const double min_p = std::ldexp(2.0, -static_cast<int>(c.pairs)) * static_cast<double>(compared);
+  const std::string bound = core::format_text("%g", options.alpha);
+  if (min_p >= options.alpha)
+    return "; " + counted(c.pairs, "pair") + " cannot show any: p would have to be below " + bound +
+           ", and of so few it is " + core::format_text("%.2g", std::min(1.0, min_p)) + " at least";
+  if (!c.interval.excludes(0) || c.p_corrected < options.alpha) return "";
+  if (c.test.p < options.alpha)
+    return "; the interval, which is not corrected, excludes zero, and by itself this pair would show a "
+           "difference (" +
+           p_text(c.test.p) + "), but after correction p is not below " + bound;
+  return "; the means differ, but pairs fall either way: their test, which decides, gives no p below " +
+         bound + (c.caves > 1 ? ", and who is ahead depends on the cave" : "");
 }
 
 std::string seeds_text(const Comparison& c, const VerdictOptions& options) {
@@ -111,19 +130,18 @@ std::string sentence_of(const Comparison& c, const CampaignResults& results, con
   if (c.pairs == 0)
     return "nothing to compare in " + subject_of(d) + ": no cave and seed of which it is known of both " + a +
            " and " + b;
-  const bool a_has_more = c.difference > 0;
   if (c.shown == Shown::no_difference) {
     const std::string between = "no difference shown between " + a + " and " + b + " in " + subject_of(d);
     if (c.difference == 0 && c.test.positive + c.test.negative == 0)
       return between + ": all " + counted(c.pairs, "pair") + " equal";
     const bool primary = d.name == options.metric;
-    return between + ": " + a + " " + (a_has_more ? "more" : "less") + " by " + size_of(c, results, options) +
+    return between + ": " + a + " minus " + b + ": " + size_of(c, results, options, Signed::as_a_minus_b) +
            why_none(c, results, options) + (primary ? seeds_text(c, options) : "");
   }
   // The better contestant is named first; for figures without a better direction, the one with more.
   const bool a_first = c.shown == Shown::a_better || c.shown == Shown::a_more;
-  return (a_first ? a : b) + " " + verb_of(d, a_first == a_has_more) + " " + (a_first ? b : a) + ": " +
-         size_of(c, results, options);
+  return (a_first ? a : b) + " " + verb_of(d, a_first == (c.difference > 0)) + " " + (a_first ? b : a) +
+         ": " + size_of(c, results, options, Signed::positive);
 }
 
 std::string sentence_of(const Verdicts& verdicts, const CampaignResults& results) {

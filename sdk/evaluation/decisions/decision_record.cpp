@@ -63,9 +63,13 @@ std::vector<DecisionRecord> decisions_of(const RunRecord& run) {
   std::vector<DecisionRecord> all;
   std::multimap<double, std::size_t> at;  // time: place in the list
   double previous_s = -std::numeric_limits<double>::infinity();
-  std::string phase;
+  std::string phase, flown_policy;
+  std::optional<double> failed_s;
   for (const json& e : run.events) {
     if (const auto entered = event::as<event::Phase>(e)) phase = core::name_of(entered->phase);
+    if (const auto safety = event::as<event::Safety>(e);
+        safety && safety->action == core::SafetyAction::fallback && !failed_s)
+      failed_s = e["t"].get<double>();
     const auto decision = event::as<event::Decision>(e);
     if (!decision) continue;
     at.emplace(e["t"].get<double>(), all.size());
@@ -76,6 +80,7 @@ std::vector<DecisionRecord> decisions_of(const RunRecord& run) {
     d.phase = phase;
     d.decision = *decision;
     previous_s = d.t_s;
+    if (flown_policy.empty() && d.decision.policy != kFallback) flown_policy = d.decision.policy;
   }
   for (const json& e : run.events) {
     const auto [first, last] = at.equal_range(e["t"].get<double>());
@@ -84,6 +89,8 @@ std::vector<DecisionRecord> decisions_of(const RunRecord& run) {
   const ordered_json spans = goal_spans(run);
   for (DecisionRecord& d : all) {
     d.of = all.size();
+    d.flown_policy = flown_policy;
+    d.policy_failed = failed_s && *failed_s <= d.t_s;
     d.flown = goal_flown_at(spans, d.t_s);
     if (!run.estimate.empty()) d.vehicle = pose_at(run.estimate, d.t_s).position;
   }

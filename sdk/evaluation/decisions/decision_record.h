@@ -12,6 +12,9 @@
 
 namespace karst::evaluation {
 
+/// The policy that steps in where no goal of the flight's own was acceptable, or where that one failed.
+inline constexpr const char* kFallback = "fallback";
+
 /// A goal that was flown to, from when it was accepted.
 struct FlownGoal {
   double accepted_s = 0;
@@ -26,6 +29,8 @@ struct DecisionRecord {
   double t_s = 0;                  // when it took effect
   double previous_s = 0;           // when the decision before it did; -inf for the first
   std::string phase;               // "" if unknown
+  std::string flown_policy;        // the flight's own, also where the fallback decided; "" if unknown
+  bool policy_failed = false;      // for good, in this decision or before it
   core::event::Decision decision;
   std::vector<core::event::Goal> refused;  // in the order in which they were tried
   std::optional<core::event::Goal> accepted;

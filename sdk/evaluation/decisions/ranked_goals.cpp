@@ -29,18 +29,20 @@ std::uint32_t frontier_of(const json& goal) {
   return found != goal.end() && found->is_number_unsigned() ? found->get<std::uint32_t>() : 0;
 }
 
+RankedGoal tried_goal(const event::Goal& g, std::string fate) {
+  return {g.position, g.score, 0, g.frontier, g.why, std::move(fate)};
+}
+
 std::string fate_in(const DecisionRecord& d, const Vec3& place) {
-  const auto is_here = [&](const event::Goal& g) { return (g.position - place).norm() < kSamePlace_m; };
+  const auto is_here = [&](const event::Goal& g) {  // the fallback's goal may lie at the same place
+    return (g.position - place).norm() < kSamePlace_m && !is_of_fallback(tried_goal(g, ""));
+  };
   if (d.accepted && is_here(*d.accepted)) return "accepted";
   const auto refused = std::find_if(d.refused.begin(), d.refused.end(), is_here);
   if (refused != d.refused.end()) return "refused: " + refused->reason;
   const bool under_way =
       !d.accepted && d.flown && d.flown->position && (*d.flown->position - place).norm() < kUnderWay_m;
   return under_way ? "under way already" : "not tried";
-}
-
-RankedGoal tried_goal(const event::Goal& g, std::string fate) {
-  return {g.position, g.score, 0, g.frontier, g.why, std::move(fate)};
 }
 
 }  // namespace
@@ -70,5 +72,7 @@ std::vector<RankedGoal> tried_goals(const DecisionRecord& d) {
   if (d.accepted) goals.push_back(tried_goal(*d.accepted, "accepted"));
   return goals;
 }
+
+bool is_of_fallback(const RankedGoal& goal) { return goal.why.starts_with(std::string(kFallback) + ": "); }
 
 }  // namespace karst::evaluation

@@ -37,4 +37,8 @@ std::optional<JudgedAnswer> judged(const RecordedAnswer& answer, const DecisionR
 /// The goals that have events, in the order in which they were tried: those refused, then the accepted one.
 std::vector<RankedGoal> tried_goals(const DecisionRecord& decision);
 
+/// Whether the fallback proposed it: the goals of a decision may be those of the policy and, behind them,
+/// its.
+bool is_of_fallback(const RankedGoal& goal);
+
 }  // namespace karst::evaluation

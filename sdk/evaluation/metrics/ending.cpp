@@ -15,19 +15,27 @@ using core::format_text;
 using core::MissionOutcome;
 namespace event = core::event;
 
+/// Whether a vehicle turned back for it with mission.home_reserve left for after the way home.
+enum class Reserve { none, kept };
+
 /// A reason as mission control records it, and as it reads once the flight is over. What follows a reason
 /// that ends in a colon is a detail.
 struct Reason {
   std::string_view recorded, afterwards;
+  Reserve reserve = Reserve::none;
 };
 constexpr std::array kReasons = {
     Reason{"explored: no frontier can be reached", "nothing was left to explore"},
     Reason{"explored: no frontier left that can be accepted", "nothing was left to explore"},
     Reason{"explored: ", "nothing was left to explore"},
-    Reason{"what is left is too far for the battery, or for the time allowed",
-           "what was left was too far for the battery, or for the time allowed"},
-    Reason{"the time left only just suffices for the way home",
-           "the time left only just sufficed for the way home"},
+    Reason{"what is left is too far for the battery", "what was left was too far for the battery",
+           Reserve::kept},
+    Reason{"what is left is too far for the time allowed", "what was left was too far for the time allowed",
+           Reserve::kept},
+    Reason{"the battery only just suffices for the way home",
+           "the battery only just sufficed for the way home", Reserve::kept},
+    Reason{"the time allowed only just suffices for the way home",
+           "the time allowed only just sufficed for the way home", Reserve::kept},
     Reason{"the policy asked for it: an error of the core: ", "the core failed"},
     Reason{"the policy asked for it: ", "the policy asked for it"},
     Reason{"the state estimate is lost: ", "the pose was lost"},
@@ -45,11 +53,14 @@ constexpr std::string_view kOutOfContact = "out of contact, but there is no time
 constexpr std::string_view kInContact = "in contact";
 constexpr std::string_view kPolicyFailed = "the policy failed: ";
 
-std::string afterwards(const std::string& reason) {
+std::string afterwards(const std::string& reason, std::optional<double> home_reserve_s = {}) {
   for (const Reason& known : kReasons) {
     if (!reason.starts_with(known.recorded)) continue;
     const std::string detail = reason.substr(known.recorded.size());
-    if (detail.empty()) return std::string(known.afterwards);
+    const bool reserve = known.reserve == Reserve::kept && home_reserve_s;
+    if (detail.empty())
+      return std::string(known.afterwards) +
+             (reserve ? format_text(", with %.0f s in reserve", *home_reserve_s) : "");
     if (known.recorded.ends_with(": ")) return std::string(known.afterwards) + " (" + detail + ")";
   }
   return reason;
@@ -73,16 +84,7 @@ struct Course {
   bool to_its_end = false;  // it explored to its end
 };
 
-std::string why_turned(const RunRecord& run, const std::string& reason) {
-  const auto homing = run.last<event::Homing>();
-  if (homing && reason.starts_with("the time left only just suffices")) {
-    if (homing->reason == "battery") return "the battery only just sufficed for the way home";
-    if (homing->reason == "time limit") return "the time allowed only just sufficed for the way home";
-  }
-  return afterwards(reason);
-}
-
-Course course_of(const RunRecord& run) {
+Course course_of(const RunRecord& run, std::optional<double> home_reserve_s) {
   Course c;
   for (const nlohmann::json& e : run.events) {
     const auto phase = event::as<event::Phase>(e);
@@ -93,7 +95,7 @@ Course course_of(const RunRecord& run) {
     if (!c.takeoff_s) c.takeoff_s = time_s;
     const bool down = phase->phase == core::Phase::land;
     if (!down && phase->phase != core::Phase::home) continue;
-    const Turn turn{time_s, phase->phase, why_turned(run, phase->reason)};
+    const Turn turn{time_s, phase->phase, afterwards(phase->reason, home_reserve_s)};
     if (!c.turned_back) c.turned_back = turn;
     c.out_of_contact = down && phase->reason == kOutOfContact;
     if (down && !phase->reason.empty() && phase->reason != kInContact && !c.out_of_contact)
@@ -199,14 +201,21 @@ std::optional<FailedPolicy> failed_policy(const RunRecord& run) {
   return std::nullopt;
 }
 
+/// "; the policy crashed and was started once more"; "" if nothing happened to it.
+std::string trouble_text(const Ending& ending) {
+  if (ending.failed_policy) return "; the policy failed, and the fallback took over";
+  return ending.restart ? "; the policy " + ending.restart->what + " and was started once more" : "";
+}
+
 }  // namespace
 
 Ending ending_of(const RunRecord& run, const EndFigures& figures) {
   if (run.events.empty()) return {};
-  const Course course = course_of(run);
+  const Course course = course_of(run, figures.home_reserve_s);
   const auto end = run.last<event::Outcome>();
   Ending ending;
   ending.failed_policy = failed_policy(run);
+  ending.restart = policy_restart(run);
   ending.as_meant = (end && end->outcome == MissionOutcome::replayed) ||
                     completed(run, course.as_relay ? std::nullopt : figures.landing_error_m);
   ending.sentence = end ? of_outcome(course, *end, outcome_time_s(run), figures)
@@ -214,11 +223,13 @@ Ending ending_of(const RunRecord& run, const EndFigures& figures) {
   const bool empty = end && end->outcome == MissionOutcome::battery;
   if (figures.battery_left && std::isfinite(*figures.battery_left) && !empty)
     ending.sentence += format_text("; %.0f %% battery left", 100 * *figures.battery_left);
+  ending.sentence += trouble_text(ending);
   return ending;
 }
 
 Ending ending_of(const RunRecord& run) {
-  return ending_of(run, {landed_off_m(run), last_finite(run.telemetry.column("battery_fraction"))});
+  return ending_of(run, {landed_off_m(run), last_finite(run.telemetry.column("battery_fraction")),
+                         run.number(kHomeReserveKey)});
 }
 
 Ending joint_ending(const std::vector<Ending>& robots) {
@@ -232,7 +243,10 @@ Ending joint_ending(const std::vector<Ending>& robots) {
     joint.sentence += (joint.sentence.empty() ? "robot " : ". Robot ") + std::to_string(i + 1) + ": " +
                       (silent(robots[i]) ? "nothing recorded" : robots[i].sentence);
   }
-  if (joint.as_meant) joint.sentence = "all " + std::to_string(robots.size()) + " robots flew as meant";
+  if (joint.as_meant) joint.sentence = "all " + std::to_string(robots.size()) + " robots flew as planned";
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    if (robots[i].as_meant && (robots[i].failed_policy || robots[i].restart))
+      joint.sentence += "; robot " + std::to_string(i + 1) + trouble_text(robots[i]).replace(0, 1, ":");
   return joint;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "core_stack/common/decimal_text.h"
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/boundary_loops.h"
 #include "sdk/evaluation/reachable/open_cave.h"
@@ -26,11 +27,7 @@ std::string number_text(double v) {
   return text;
 }
 
-std::string place_text(const Vec3& p) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.1f %.1f %.1f", p.x(), p.y(), p.z());
-  return text;
-}
+std::string place_text(const Vec3& p) { return core::decimal_text(p, 1); }
 
 CellKey key_of(const Vec3& p, double resolution_m) {
   const auto k = [&](double v) { return static_cast<std::int32_t>(std::floor(v / resolution_m)); };

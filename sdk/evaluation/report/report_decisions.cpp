@@ -8,6 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/rounded.h"
+#include "sdk/evaluation/decisions/decided_by.h"
 #include "sdk/evaluation/decisions/ranked_goals.h"
 #include "sdk/evaluation/decisions/recorded_answers.h"
 
@@ -99,6 +100,10 @@ ordered_json decision_choices(const RunRecord& run, std::vector<std::string>& pr
     for (const ordered_json& row : rows)
       if (row.contains("left_out")) left_out += row["left_out"].get<std::size_t>();
     ordered_json choice = {{"t", d.t_s}, {"recorded", whole}};
+    // In words for people, where the recorded ones would be misread.
+    if (d.decision.policy == kFallback) choice["by"] = decided_by(d);
+    if (const std::string result = outcome_words(d); !result.starts_with(core::name_of(d.decision.outcome)))
+      choice["result"] = result;
     choice["answers"] = std::move(rows);
     choices.push_back(std::move(choice));
   }

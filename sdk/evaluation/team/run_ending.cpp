@@ -16,7 +16,10 @@ Ending of_vehicle(const fs::path& run_dir) {
   EndFigures figures;
   if (metrics.is_object())
     figures = {event_number(metrics, "landing_error_m"), event_number(metrics, "battery_left")};
-  return ending_of(read_events_alone(run_dir), figures);
+  RunRecord run = read_events_alone(run_dir);
+  run.settings = read_settings(run_dir / "mission.info", run.problems);
+  figures.home_reserve_s = run.number(kHomeReserveKey);
+  return ending_of(run, figures);
 }
 
 }  // namespace

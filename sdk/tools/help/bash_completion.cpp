@@ -12,7 +12,18 @@ _karst_policies() {
   "$1" policy list 2>/dev/null | sed -n 's/^\([^ :]*\) [^ ]*$/\1/p'
 }
 
-# Fills COMPREPLY: kind of value, words to choose from, what is typed of it, karst as typed.
+# The keys of settings: karst as typed, the words that list them. A line is "  KEY = VALUE", help follows.
+_karst_keys() {
+  "$1" $2 2>/dev/null | sed -n 's/^  \([a-z][^ ]*\) = .*/\1=/p'
+}
+
+# The values of the key $3, where there is a choice.
+_karst_key_values() {
+  "$1" $2 2>/dev/null |
+    sed -n "/^  $3 = /{n;s/.*(one of \(.*\))\$/\1/p;s/.*(true or false)\$/true false/p}" 2>/dev/null
+}
+
+# Fills COMPREPLY: kind of value, words to choose from, what is typed of it, karst as typed, the key set.
 _karst_values() {
   case "$1" in
     file | folder | policy_or_file) compopt -o filenames 2>/dev/null ;;
@@ -20,6 +31,11 @@ _karst_values() {
   case "$1" in
     choice) mapfile -t COMPREPLY < <(compgen -W "$2" -- "$3") ;;
     file) mapfile -t COMPREPLY < <(compgen -f -- "$3") ;;
+    setting)
+      compopt -o nospace 2>/dev/null
+      mapfile -t COMPREPLY < <(compgen -W "$(_karst_keys "$4" "$2")" -- "$3")
+      ;;
+    key_value) mapfile -t COMPREPLY < <(compgen -W "$(_karst_key_values "$4" "$2" "$5")" -- "$3") ;;
     folder) mapfile -t COMPREPLY < <(compgen -d -- "$3") ;;
     policy) mapfile -t COMPREPLY < <(compgen -W "$(_karst_policies "$4")" -- "$3") ;;
     policy_or_file) mapfile -t COMPREPLY < <(compgen -W "$(_karst_policies "$4")" -- "$3"; compgen -f -- "$3") ;;
@@ -28,19 +44,26 @@ _karst_values() {
 
 _karst() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}
-  local command=karst kind= words= options= i
+  local command=karst kind= words= options= key= at=0 i
   COMPREPLY=()
   if [[ $current == "=" ]]; then # bash takes --out=FILE for three words
-    current=
+    current= at=1
   elif [[ $before == "=" ]]; then
-    before=${COMP_WORDS[COMP_CWORD - 2]}
+    before=${COMP_WORDS[COMP_CWORD - 2]} at=2
+  fi
+  if ((at > 0 && COMP_CWORD > at + 1)) && [[ $before != -* ]]; then # and --set KEY=VALUE for four
+    key=$before before=${COMP_WORDS[COMP_CWORD - at - 1]}
+    [[ $before == "=" ]] && before=${COMP_WORDS[COMP_CWORD - at - 2]}
   fi
 )bash";
 
 constexpr const char* kBashTail = R"bash(  if [[ $current == -* ]]; then
     kind=choice words=$options
   fi
-  _karst_values "$kind" "$words" "$current" "${COMP_WORDS[0]}"
+  if [[ -n $key && $kind == setting ]]; then
+    kind=key_value
+  fi
+  _karst_values "$kind" "$words" "$current" "${COMP_WORDS[0]}" "$key"
 }
 complete -F _karst karst
 )bash";
@@ -49,9 +72,9 @@ std::string quoted(const std::string& text) { return '"' + text + '"'; }
 
 /// What is assigned where a value of this option or argument stands.
 std::string assignment(const CommandOption& option) {
-  std::string out = std::string("kind=") + core::name_of(option.kind);
-  if (option.kind == ValueKind::choice) out += " words=" + quoted(joined(option.choices));
-  return out;
+  if (option.kind == ValueKind::setting) return "kind=setting words=" + quoted(option.keys);
+  if (!option.choices.empty()) return "kind=choice words=" + quoted(joined(option.choices));
+  return std::string("kind=") + core::name_of(option.kind);
 }
 
 /// Lines of a `case` over "COMMAND OPTION"; `counts` says which options count.

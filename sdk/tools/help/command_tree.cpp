@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/tools/help/value_types.h"
+#include "sdk/tools/help/value_words.h"
 
 namespace karst::tools {
 namespace {
@@ -19,11 +21,32 @@ std::vector<std::string> choices_in(const std::string& type) {
   return choices;
 }
 
+/// Those by which one can compare.
+std::vector<std::string> metrics() {
+  std::vector<std::string> names;
+  for (const evaluation::MetricDefinition& m : evaluation::metric_definitions())
+    if (m.better != evaluation::Better::neither) names.emplace_back(m.name);
+  return names;
+}
+
+/// A command that lists the keys of its settings does so with --keys or in its help; the others take those of
+/// a mission.
+std::string keys_of(const Command& command) {
+  const std::string own = joined({command.words.begin() + 1, command.words.end()});
+  for (const CommandOption& option : command.options)
+    for (const std::string& name : option.names)
+      if (name == "--keys") return own + " --keys";
+  if (command.details.find("Keys for --set") != std::string::npos) return own + " --help";
+  return "fly --keys";
+}
+
 ValueKind kind_of(const CommandOption& option) {
   if (option.value == kFile) return ValueKind::file;
   if (option.value == kFolder) return ValueKind::folder;
   if (option.value == kPolicy) return ValueKind::policy;
   if (option.value == kPolicyOrFile) return ValueKind::policy_or_file;
+  if (option.value == kMetric) return ValueKind::metric;
+  if (option.value == kSetting) return ValueKind::setting;
   return option.choices.empty() ? ValueKind::other : ValueKind::choice;
 }
 
@@ -36,9 +59,10 @@ CommandOption option_of(const CLI::Option& from) {
   out.required = from.get_required();
   if (from.get_items_expected_max() == 0) return out;  // a flag
   const std::string type = from.get_type_name();
-  out.value = type.substr(0, type.find(':'));
+  out.value = value_word(type.substr(0, type.find(':')));
   out.choices = choices_in(type);
   out.kind = kind_of(out);
+  if (out.kind == ValueKind::metric) out.choices = metrics();
   out.default_text = from.get_default_str();
   out.repeats = from.get_items_expected_max() > 1;
   out.several = out.repeats && from.get_allow_extra_args();
@@ -64,6 +88,8 @@ void add(const CLI::App& app, std::vector<std::string> words, std::vector<Comman
     const CommandOption value = option_of(*option);
     (value.names.empty() ? command.arguments : command.options).push_back(value);
   }
+  for (CommandOption& option : command.options)
+    if (option.kind == ValueKind::setting) option.keys = keys_of(command);
   const std::vector<const CLI::App*> below =
       app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); });
   for (const CLI::App* b : below) command.below.push_back(b->get_name());

@@ -14,7 +14,7 @@ class App;
 namespace karst::tools {
 
 /// What a shell completes.
-enum class ValueKind { none, file, folder, policy, policy_or_file, choice, other };
+enum class ValueKind { none, file, folder, policy, policy_or_file, metric, setting, choice, other };
 constexpr auto names_of(ValueKind) {
   using enum ValueKind;
   return std::to_array<core::Named<ValueKind>>({{none, "none"},
@@ -22,6 +22,8 @@ constexpr auto names_of(ValueKind) {
                                                 {folder, "folder"},
                                                 {policy, "policy"},
                                                 {policy_or_file, "policy_or_file"},
+                                                {metric, "metric"},
+                                                {setting, "setting"},
                                                 {choice, "choice"},
                                                 {other, "other"}});
 }
@@ -32,7 +34,8 @@ struct CommandOption {
   std::string argument;              // name of the argument in help
   ValueKind kind = ValueKind::none;  // none: a flag
   std::string value;                 // what help shows for the value, such as FILE
-  std::vector<std::string> choices;
+  std::vector<std::string> choices;  // of a choice or a metric
+  std::string keys;                  // of a setting: the words behind `karst` that list the keys
   std::string default_text, help;
   bool required = false;
   bool repeats = false;  // may be given several times

@@ -5,13 +5,6 @@
 namespace karst::tools {
 namespace {
 
-constexpr const char* kFiles = R"roff(.SH FILES
-.TP
-.I share/doc/karst
-Documentation and examples, below the folder where karst is installed, such as /usr/local.
-Names such as docs/tune.md are relative to it.
-)roff";
-
 /// A line of text: roff reads a backslash, a hyphen, and a full stop or an apostrophe in front.
 std::string roff_line(const std::string& text) {
   std::string out = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
@@ -77,7 +70,7 @@ std::string entry(const CommandOption& option) {
     help += help.empty() || help.ends_with('.') ? "" : ".";
     help += "\n" + sentence;
   };
-  if (!option.choices.empty()) append("One of " + joined(option.choices, ", ") + ".");
+  if (option.kind == ValueKind::choice) append("One of " + joined(option.choices, ", ") + ".");
   if (!option.default_text.empty()) append("Default: " + option.default_text + ".");
   if (option.required) append("Required.");
   return ".TP\n" + head + "\n" + roff_text(help);
@@ -103,7 +96,19 @@ std::string see_also(const Command& command) {
   return references.empty() ? "" : ".SH SEE ALSO\n" + joined(references, ",\n") + "\n";
 }
 
-std::string page(const Command& command, const std::vector<Command>& all, const std::string& version) {
+/// `text` with `other` for each `part`.
+std::string with_instead(std::string text, const std::string& part, const std::string& other) {
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + other.size()))
+    text.replace(at, part.size(), other);
+  return text;
+}
+
+std::string files(const std::string& doc_folder) {
+  return ".SH FILES\n.TP\n" + italic(doc_folder) + "\nDocumentation and examples.\n";
+}
+
+std::string page(const Command& command, const std::vector<Command>& all, const std::string& version,
+                 const DocFolders& doc) {
   const std::string name = roff_line(page_name(command.words));
   std::string out = ".TH \"" + name + "\" 1 \"\" \"karst " + roff_line(version) + "\" \"karst\"\n";
   out += ".SH NAME\n" + name + " \\- " + roff_line(command.summary) + "\n";
@@ -115,24 +120,17 @@ std::string page(const Command& command, const std::vector<Command>& all, const 
     for (const Command& c : all)
       if (c.words == words_below(command, part))
         out += ".TP\n" + bold(joined(c.words)) + "\n" + roff_line(c.summary) + "\n";
-  return out + kFiles + see_also(command);
-}
-
-/// `text` without any `part`.
-std::string without(std::string text, const std::string& part) {
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at))
-    text.erase(at, part.size());
-  return text;
+  return with_instead(out, roff_line(doc.here + "/"), roff_line(doc.of_reader + "/")) + files(doc.of_reader) +
+         see_also(command);
 }
 
 }  // namespace
 
 std::map<std::string, std::string> man_pages(const std::vector<Command>& commands, const std::string& version,
-                                             const std::string& doc_root) {
+                                             const DocFolders& doc) {
   std::map<std::string, std::string> pages;
   for (const Command& command : commands)
-    pages[page_name(command.words) + ".1"] =
-        without(page(command, commands, version), roff_line(doc_root + "/"));
+    pages[page_name(command.words) + ".1"] = page(command, commands, version, doc);
   return pages;
 }
 

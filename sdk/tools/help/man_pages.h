@@ -8,9 +8,13 @@
 
 namespace karst::tools {
 
-/// Pages in roff by the name of their file: "karst-policy-new.1". Paths below `doc_root` lose it: a page may
-/// be installed anywhere.
+/// Where documentation lies for the karst that writes the pages, and for who reads them.
+struct DocFolders {
+  std::string here, of_reader;
+};
+
+/// Pages in roff by the name of their file: "karst-policy-new.1".
 std::map<std::string, std::string> man_pages(const std::vector<Command>& commands, const std::string& version,
-                                             const std::string& doc_root);
+                                             const DocFolders& doc);
 
 }  // namespace karst::tools

@@ -16,6 +16,19 @@ _karst_policies_or_files() {
   _karst_policies
   _files
 }
+# KEY=VALUE; the arguments are the words of karst that list the keys. A line is "  KEY = VALUE", help follows.
+_karst_settings() {
+  local key=${PREFIX%%=*}
+  local -a found
+  if compset -P 1 '*='; then
+    found=($(karst "$@" 2>/dev/null |
+      sed -n "/^  $key = /{n;s/.*(one of \(.*\))\$/\1/p;s/.*(true or false)\$/true false/p}" 2>/dev/null))
+    compadd -a found
+  else
+    found=($(karst "$@" 2>/dev/null | sed -n 's/^  \([a-z][^ ]*\) = .*/\1/p'))
+    compadd -S = -a found
+  fi
+}
 )zsh";
 
 /// In single quotes of the shell, with what _arguments and _describe would read.
@@ -44,6 +57,9 @@ std::string action(const CommandOption& option) {
       return "_karst_policies";
     case ValueKind::policy_or_file:
       return "_karst_policies_or_files";
+    case ValueKind::setting:
+      return " _karst_settings " + option.keys;  // behind a blank: called with these words alone
+    case ValueKind::metric:
     case ValueKind::choice:
       return "(" + joined(option.choices) + ")";
     case ValueKind::none:

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+
+#include "core_stack/common/counted.h"
+#include "core_stack/common/decimal_text.h"
+#include "core_stack/common/shell_word.h"
 
 namespace karst::core {
 namespace {
@@ -15,6 +20,29 @@ TEST(FormatText, IsWhatPrintfWrites) {
 TEST(FormatText, HasNoLongestText) {
   const std::string name(100'000, 'x');
   EXPECT_EQ(format_text("%s and %s.", name.c_str(), name.c_str()), name + " and " + name + ".");
+}
+
+TEST(ShellWord, IsQuotedOnlyIfNeedBe) {
+  EXPECT_EQ(shell_word("policy.auto.survey=own/tunnel.info"), "policy.auto.survey=own/tunnel.info");
+  EXPECT_EQ(shell_word("1 2 1.5"), "'1 2 1.5'");
+  EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
+  EXPECT_EQ(shell_word(""), "''");
+}
+
+TEST(DecimalText, ZeroHasNoSign) {
+  EXPECT_EQ(decimal_text(-0.04, 1), "0.0");
+  EXPECT_EQ(decimal_text(-0.0, 0), "0");
+  EXPECT_EQ(decimal_text(-0.06, 1), "-0.1");
+  EXPECT_EQ(decimal_text(-10.0, 1), "-10.0");
+  EXPECT_EQ(decimal_text(-HUGE_VAL, 1), "-inf");
+  EXPECT_EQ(decimal_text(Vec3(-0.001, -0.3, 1.22), 2), "0.00 -0.30 1.22");
+}
+
+TEST(Grouped, HasACommaBeforeEachThreeDigits) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(60'000), "60,000");
+  EXPECT_EQ(grouped(1'234'567), "1,234,567");
 }
 
 TEST(ShortestText, ReadsBackAsTheSameNumber) {

@@ -263,11 +263,19 @@ TEST(NearestName, PrefersTheLeastEdits) {
   EXPECT_EQ(nearest_name("", {}), "");
 }
 
+TEST(OptionTable, EditDistanceCountsInsertedDeletedAndReplacedCharacters) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("time", "cave"), 3u);
+}
+
 TEST(Units, FactorsMatchTheirDefinitions) {
   EXPECT_DOUBLE_EQ(unit_factor("km/h", "m/s").value(), 1 / 3.6);
   EXPECT_DOUBLE_EQ(unit_factor("deg", "rad").value(), std::numbers::pi / 180);
   EXPECT_DOUBLE_EQ(unit_factor("min", "s").value(), 60);
   EXPECT_DOUBLE_EQ(unit_factor("m", "cm").value(), 100);
+  EXPECT_DOUBLE_EQ(unit_factor("ft", "in").value(), 12);
   EXPECT_FALSE(unit_factor("m", "s").has_value());
   EXPECT_FALSE(unit_factor("m/s", "rad/s").has_value());
   EXPECT_FALSE(unit_factor("furlong", "m").has_value());

@@ -1,5 +1,5 @@
 // What the documentation quotes is there: code of examples, fields of the ABI, reasons for refusing a goal,
-// pages linked, sources named.
+// pages linked, sources named, versions of files. Its lines are no longer than a screen is wide.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -174,6 +174,96 @@ TEST(Goals, QuoteTheReasonsThatTheSourcesGive) {
     ++reasons;
   }
   EXPECT_GE(reasons, 16u);
+}
+
+/// The one number that the pattern's group has in this source.
+std::string number_in(const char* source, const char* pattern) {
+  const std::string text = text_of(root / source);
+  const auto found = all_matches(text, std::regex(pattern));
+  EXPECT_EQ(found.size(), 1u) << source << " has no single " << pattern;
+  return found.empty() ? "" : found.front()[1].str();
+}
+
+/// The latest version of every schema and extension that text between these marks names: "karst.metrics/1".
+std::map<std::string, int> latest_schemas(const std::string& text, const std::string& mark) {
+  std::map<std::string, int> latest;
+  for (const std::smatch& m : all_matches(text, std::regex(mark + "(karst\\.[a-z_]+)/([0-9]+)" + mark)))
+    latest[m[1]] = std::max(latest[m[1]], std::stoi(m[2]));
+  return latest;
+}
+
+/// The second cell of the table's row that begins so.
+std::string version_said(const std::string& page, const std::string& interface) {
+  const std::size_t row = page.find("\n| " + interface);
+  EXPECT_NE(row, std::string::npos) << "docs/formats.md has no row " << interface;
+  if (row == std::string::npos) return "";
+  const std::size_t begin = page.find(" | ", row + 3) + 3;
+  return page.substr(begin, page.find(" | ", begin) - begin);
+}
+
+TEST(Formats, HaveTheVersionsOfTheSources) {
+  const std::string page = text_of(root / "docs/formats.md");
+  const auto says = [&](const std::string& interface) { return version_said(page, interface); };
+  EXPECT_EQ(says("policy ABI"), number_in("sdk/abi/karst_abi.h", "#define KARST_ABI_MAJOR (\\d+)") + "." +
+                                    number_in("sdk/abi/karst_abi.h", "#define KARST_ABI_MINOR (\\d+)"));
+  EXPECT_EQ(
+      says("`requests.bin`"),
+      "records " + number_in("sdk/host/serialization/request_log.cpp", "constexpr int kSchema = (\\d+);") +
+          ", requests " +
+          number_in("sdk/host/serialization/flat_request.cpp", "constexpr std::uint32_t kVersion = (\\d+);"));
+  EXPECT_EQ(says("`campaign.sqlite`"),
+            "`karst.campaign/1`, `user_version` " +
+                number_in("sdk/campaign/store/store_schema.h", "constexpr int kSchemaVersion = (\\d+);"));
+  for (const char* source : {"sdk/tools/check_command.cpp", "sdk/tools/request_replay_command.cpp"})
+    EXPECT_EQ(says("`karst policy check --json`"), number_in(source, "\\{\"schema\", (\\d+)\\}")) << source;
+  EXPECT_EQ(says("radio frames of a team"),
+            number_in("core_stack/team/communication/messages.h", "kWireVersion = (\\d+);"));
+
+  std::string sources;
+  for (const char* folder : {"core_stack", "sdk"})
+    for (const auto& e : fs::recursive_directory_iterator(root / folder)) {
+      const std::string path = fs::relative(e.path(), root).string();
+      const bool is_code = path.ends_with(".h") || path.ends_with(".cpp");
+      if (is_code && !path.starts_with("sdk/check/"))
+        sources += text_of(e.path());  // it asks for unknown ones
+    }
+  std::map<std::string, int> in_sources = latest_schemas(sources, "\"");
+  in_sources.erase("karst.example");  // of the ABI's comments
+  EXPECT_EQ(latest_schemas(page, "`"), in_sources);
+}
+
+TEST(Formats, NameTheVersionOfKarst) {
+  const std::string version = number_in("CMakeLists.txt", "project\\(karst VERSION ([\\d.]+)");
+  EXPECT_EQ(number_in("docs/formats.md", "karst itself has version ([\\d.]*\\d)"), version);
+  EXPECT_EQ(number_in("CITATION.cff", "\nversion: ([\\d.]+)"), version);
+}
+
+std::size_t characters(const std::string& utf8) {
+  return static_cast<std::size_t>(
+      std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+// Not code, formulas (which are indented by four) and rows of tables, which cannot be broken.
+TEST(Documents, HaveLinesOfAtMost120Characters) {
+  std::vector<fs::path> all = pages();
+  all.insert(all.end(), {root / "CHANGELOG.md", root / "SECURITY.md"});
+  std::size_t lines = 0;
+  for (const fs::path& page : all) {
+    std::istringstream text(text_of(page));
+    bool in_code = false;
+    std::size_t number = 0;
+    for (std::string line; std::getline(text, line);) {
+      ++number;
+      const std::size_t begin = line.find_first_not_of(' ');
+      if (begin == std::string::npos) continue;
+      const bool fence = line.compare(begin, 3, "```") == 0;
+      in_code = in_code != fence;
+      if (in_code || fence || line[begin] == '|' || begin >= 4) continue;
+      EXPECT_LE(characters(line), 120u) << page << ":" << number;
+      ++lines;
+    }
+  }
+  EXPECT_GT(lines, 3000u);
 }
 
 }  // namespace

@@ -77,8 +77,12 @@ TEST(CaveCheck, MillimetresAreRefusedWithTheUnit) {
       written_rooms("mm.ply", [](const core::Vec3f& v) -> core::Vec3f { return 1000.0f * v; });
   for (const char* start : {"", "3 3 1", "3000 3000 1000"}) {
     const std::string e = refusal_of(cave, start);
-    EXPECT_TRUE(contains(e, "(unit mm)")) << start << ": " << e;
+    EXPECT_TRUE(contains(e, "(--unit mm)")) << start << ": " << e;
   }
+  // The start was named before the cause.
+  const std::string first = refusal_of(cave, "");
+  EXPECT_EQ(first.find(cave + ": mesh: "), 0u) << first;
+  EXPECT_LT(first.find("(--unit mm)"), first.find("then give a start")) << first;
   EXPECT_EQ(refusal_of(cave, "3 3 1", {1, core::MeshUnit::mm, core::UpAxis::z, ""}), "");
 }
 
@@ -88,8 +92,16 @@ TEST(CaveCheck, AnotherAxisIsNotedWhereTheFlightCouldGoOn) {
   // In the first room, which stands on its side.
   const std::vector<std::string> notes = check_cave(cave, "3 1.5 -3");
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_TRUE(contains(notes[0], "likely has y up (up y)")) << notes[0];
+  EXPECT_TRUE(contains(notes[0], "likely has y up (--up y)")) << notes[0];
   EXPECT_TRUE(check_cave(cave, "3 3 1", {1, core::MeshUnit::m, core::UpAxis::y, ""}).empty());
+}
+
+TEST(CaveCheck, ARemedyForACaveFileIsAKeyOfIt) {
+  written_rooms("mm.ply", [](const core::Vec3f& v) -> core::Vec3f { return 1000.0f * v; });
+  const std::string info = own_file("mm.info");
+  std::ofstream(info) << "mesh mm.ply\n";
+  const std::string e = refusal_of(info, "");
+  EXPECT_TRUE(contains(e, "(unit mm)")) << e;
 }
 
 TEST(CaveCheck, KeysBesideACaveFileAreRefused) {

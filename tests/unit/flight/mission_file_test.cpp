@@ -71,6 +71,11 @@ TEST(MissionFile, WhereThePolicyRunsIsLeftToTheMachineUnlessItIsSaid) {
   EXPECT_TRUE(holds(e, "one of where_possible process in_process")) << e;
 }
 
+TEST(MissionFile, ACaveFileIsRefusedWithTheOptionForIt) {
+  const std::string e = error_of("a_cave.info", "mesh a_cave.ply\nstart \"0 0 1\"\n");
+  EXPECT_TRUE(holds(e, "a_cave.info: is a cave file; fly it with karst fly --cave ")) << e;
+}
+
 TEST(MissionFile, AnUnknownKeyNamesFileKeyAndTheNearestOne) {
   const std::string e = error_of("unknown_key.info", "motion { max_sped \"1 m/s\" }\n");
   EXPECT_TRUE(holds(e, "unknown_key.info") && holds(e, "motion.max_sped") &&
@@ -241,6 +246,20 @@ TEST(MissionFile, TheHelpsExampleIsAccepted) {
   MissionOverrides o;
   o.settings = {"motion.max_speed=1 m/s", "simulator.gust=2 m/s"};
   EXPECT_EQ(error_of("help.info", "seed 1\n", o), "accepted");
+}
+
+// One had to read the sources.
+TEST(MissionHelp, ListsTheKeysOfPolicyAuto) {
+  const std::string help = mission_help("simulator");
+  for (const char* key : {"description", "survey", "survey_start", "results", "metric = coverage_auc",
+                          "otherwise", "cave.name", "cave.policy", "cave.preset"})
+    EXPECT_TRUE(holds(help, std::string("\n  policy.auto.") + key)) << key;
+}
+
+TEST(MissionFile, KeysOfPolicyAutoAreNotRecorded) {
+  const Mission m = read_mission(written("not_auto.info", "policy { name nearest_frontier }\n"), {});
+  EXPECT_EQ(m.resolved.count("policy"), 1u);
+  EXPECT_EQ(m.resolved.get_child("policy").count("auto"), 0u);
 }
 
 }  // namespace

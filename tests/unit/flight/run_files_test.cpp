@@ -52,6 +52,73 @@ TEST(RunClaim, APathThroughAFolderThatIsNotThereIsTheSameRun) {
   EXPECT_TRUE(fs::exists(dir.path() / "events.jsonl"));
 }
 
+constexpr const char* kMissionOfKarst = "seed 1\nkarst { version 0.1.0 }\n";
+
+std::string refusal_to_replace(const fs::path& run) {
+  try {
+    RunClaim claim(run, OldRun::replaced);
+    claim.keep();
+  } catch (const core::InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(RunClaim, ATakenDirectoryIsRefusedInPlainWords) {
+  const TemporaryDirectory dir;
+  dir.write("events.jsonl", "{}\n");
+  try {
+    RunClaim claim(dir.path());
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_EQ(
+        std::string(e.what()),
+        dir.path().string() +
+            ": has files of a flight already (events.jsonl); choose another --out, or replace the flight "
+            "with karst fly --force");
+  }
+}
+
+TEST(RunClaim, ReplacesAFlightAndLeavesWhatIsNoneOfItsFiles) {
+  const TemporaryDirectory dir;
+  dir.write("mission.info", kMissionOfKarst);
+  dir.write("events.jsonl", "{}\n");
+  dir.write("notes.txt", "precious\n");
+  for (const char* robot : {"robot_1", "robot_2"}) {
+    fs::create_directories(dir.path() / robot);
+    std::ofstream(dir.path() / robot / "mission.info") << kMissionOfKarst;
+    std::ofstream(dir.path() / robot / "events.jsonl") << "{}\n";
+  }
+  std::ofstream(dir.path() / "robot_2" / "notes.txt") << "precious\n";
+  EXPECT_EQ(refusal_to_replace(dir.path()), "");
+  EXPECT_TRUE(fs::exists(dir.path() / "notes.txt"));
+  for (const char* gone : {"mission.info", "events.jsonl", "robot_1", "robot_2/events.jsonl", "run.lock"})
+    EXPECT_FALSE(fs::exists(dir.path() / gone)) << gone;
+  EXPECT_TRUE(fs::exists(dir.path() / "robot_2" / "notes.txt"));
+}
+
+TEST(RunClaim, ReplacesNothingElse) {
+  const TemporaryDirectory none, own, broken, campaign, locked, fresh;
+  none.write("events.jsonl", "{}\n");
+  own.write("mission.info", "seed 1\n");
+  broken.write("mission.info", "precious {\n");
+  campaign.write("mission.info", kMissionOfKarst);
+  campaign.write("campaign.sqlite", "");
+  for (const TemporaryDirectory* dir : {&none, &own, &broken, &campaign}) {
+    const std::string e = refusal_to_replace(dir->path());
+    EXPECT_NE(e.find("--force: replaces a run directory only"), std::string::npos) << e;
+  }
+  EXPECT_TRUE(fs::exists(none.path() / "events.jsonl"));
+  EXPECT_TRUE(fs::exists(own.path() / "mission.info"));
+  EXPECT_TRUE(fs::exists(broken.path() / "mission.info"));
+  EXPECT_TRUE(fs::exists(campaign.path() / "campaign.sqlite"));
+  locked.write("mission.info", kMissionOfKarst);
+  locked.write("run.lock", "");
+  EXPECT_NE(refusal_to_replace(locked.path()).find("another karst writes there"), std::string::npos);
+  EXPECT_TRUE(fs::exists(locked.path() / "mission.info"));
+  EXPECT_EQ(refusal_to_replace(fresh.path() / "new"), "");
+}
+
 TEST(RunClaim, NoFlightGoesIntoACampaignAndNoCampaignIntoAFlight) {
   const TemporaryDirectory campaign, flight, team;
   campaign.write("campaign.sqlite", "");

@@ -158,7 +158,7 @@ TEST_F(MissionControlTest, NowExploredAndNowAGoalExploresUntilTheBatterySendsItH
   EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
   EXPECT_FALSE(homing_reason().starts_with("explored")) << homing_reason();
-  EXPECT_NE(homing_reason().find("time"), std::string::npos) << homing_reason();
+  EXPECT_NE(homing_reason().find("battery"), std::string::npos) << homing_reason();
 }
 
 TEST_F(MissionControlTest, WithoutPatienceTheFirstExploredSendsItHome) {
@@ -199,7 +199,7 @@ TEST_F(MissionControlTest, TurnsBackWhileTheBatteryLastsForTheWayHome) {
   };
   EXPECT_EQ(fly().outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
-  EXPECT_EQ(homing_reason(), "the time left only just suffices for the way home");
+  EXPECT_EQ(homing_reason(), "the battery only just suffices for the way home");
   EXPECT_EQ(told("homing", "reason"), Texts{"battery"});
   EXPECT_NEAR(vehicle.battery_s, options.mission.home_reserve_s, 5);
 }

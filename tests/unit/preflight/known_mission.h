@@ -8,6 +8,7 @@ inline preflight::CaveFacts roomy_cave() {
   preflight::CaveFacts c;
   c.figures.volume_m3 = 2100;
   c.figures.length_m = 210;
+  c.figures.width_m = 2.4;
   c.figures.drop_m = 12;
   c.figures.verticality = 0.1;
   c.figures.branching = 3;
@@ -16,7 +17,7 @@ inline preflight::CaveFacts roomy_cave() {
   c.passages.height_m = {2, 3.5, 6};
   c.start = core::Vec3(1, 2, 1.5);
   c.start_clearance_m = 1.2;
-  c.reachable_m3 = c.hull_reachable_m3 = 2000;
+  c.explorable_m3 = c.reachable_m3 = c.hull_reachable_m3 = 2000;
   c.plan.edge_m = 0.5;
   c.plan.runs = {{0, 0, 40}, {0, 1, 40}, {10, 2, 4}};
   c.plan.start = c.start;
@@ -31,10 +32,11 @@ inline preflight::PolicyFacts sure_policy() {
   p.reason = "deep_cave is expected to do best";
   p.metric = "coverage_auc";
   p.confidence = 0.8;
+  p.confidence_words = "first in 80 % of 1000 resamplings of the earlier flights";
   p.horizon_s = 480;
   p.ranking = {{"deep_cave", 0.7, 0.6, 0.8}, {"nearest", 0.6, 0.5, 0.7}};
   p.own = 0;
-  p.expected = {{"coverage", "", 0.95}, {"explored_volume_m3", "m^3", 1900}};
+  p.expected = {{"coverage", "", 0.95}, {"explored_volume_m3", "m^3", 1900}, {"flight_time_s", "s", 400}};
   return p;
 }
 

@@ -50,12 +50,46 @@ TEST(PreflightWords, FindingsAreNamedWithWhatTheyAreAbout) {
 TEST(PreflightWords, SayWhatIsKnownOfTheMission) {
   const std::string text = facts_text(test::known_mission());
   expect_parts(
-      text, {"Time:\n", "  battery              8:00 min of hovering\n", "flight time allowed  60:00 min",
-             "time of return", "with 20 s in reserve", "deep_cave with horizon=60 m, selected for this cave",
-             "confidence           80 %\n", "0.7, 90 % interval 0.6 to 0.8",
-             "95 % of the cave, 1900 m^3, in at most 480 s", "runner-up            nearest, 0.6", "2100 m^3",
-             "210 m of passages", "1.00 2.00 1.50, 1.2 m from rock",
-             "hull 0.60 m wide, flies where passages are 1.10 m wide", "86 deg up and 80 deg down"});
+      text,
+      {"Time:\n", "  battery              8:00 min of hovering\n", "time of return", "with 20 s in reserve",
+       "policy               deep_cave, selected for this cave\n",
+       "confidence           first in 80 % of 1000 resamplings", "70 %, 90 % interval 60 % to 80 %",
+       "95 % of the reachable volume, 1900 m³, landed after 6:40 min",
+       "ranked by            mean coverage over the time allowed (coverage_auc), in flights of at most 480 s",
+       "runner-up            nearest, 60 %", "2000 m³, by which coverage is measured",
+       "210 m in all; the widest ball that fits has a diameter of 2.4 m", "wall to wall         4.0 m wide",
+       "1.00 2.00 1.50, 1.2 m from rock", "hull 0.60 m wide, flies where passages are 1.10 m wide",
+       "86 deg up and 80 deg down"});
+}
+
+// Beside a battery of a few minutes an hour was "allowed".
+TEST(PreflightWords, TheFlightTimeAllowedIsLeftOutWhereTheBatteryEndsLongBefore) {
+  Preflight p = test::known_mission();
+  EXPECT_EQ(facts_text(p).find("flight time allowed"), std::string::npos);
+  p.time->limits.max_flight_time_s = 900;
+  expect_parts(facts_text(p), {"flight time allowed  15:00 min"});
+  p.time->limits.max_flight_time_s = 3600;
+  p.time->limits.battery_s.reset();
+  expect_parts(facts_text(p), {"flight time allowed  60:00 min"});
+}
+
+// Of a cave of half a minute only the time of return was said, which the battery decides.
+TEST(PreflightWords, SayWhenTheCaveIsExplored) {
+  Preflight p = test::known_mission();
+  p.policy->expected[2].value = p.time->home_s + 95;
+  expect_parts(facts_text(p), {"explored             after about 1:35 min, as in the flights known\n"});
+  p.policy->expected[2].value = p.time->return_s;
+  EXPECT_EQ(facts_text(p).find("  explored "), std::string::npos) << "the time ends before";
+}
+
+TEST(PreflightWords, OfACaveUnlikeAllFlownTheTimeToExploreItIsRough) {
+  Preflight p = test::known_mission();
+  p.policy->expected.clear();
+  p.cave->figures.length_m = 30;
+  const std::string text = facts_text(p);
+  expect_parts(text, {"explored             roughly after ", "to fly once along the 30 m of passages\n"});
+  p.cave->figures.length_m = 3000;
+  EXPECT_EQ(facts_text(p).find("  explored "), std::string::npos) << "no such flight is possible";
 }
 
 TEST(PreflightWords, OfANamedPolicyTheBestIsNamedToo) {
@@ -64,9 +98,33 @@ TEST(PreflightWords, OfANamedPolicyTheBestIsNamedToo) {
   p.policy->policy = "nearest_frontier";
   p.policy->own = 1;
   const std::string text = facts_text(p);
-  expect_parts(text, {"nearest_frontier with horizon=60 m, as named", "best                 deep_cave, 0.7"});
+  expect_parts(text, {"nearest_frontier, as named", "best                 deep_cave, 70 %"});
   EXPECT_EQ(text.find("runner-up"), std::string::npos);
   EXPECT_EQ(text.find("confidence"), std::string::npos) << "it is that of the first";
+}
+
+// All of them stood in one line.
+TEST(PreflightWords, ParametersAreOnThePageOnly) {
+  Preflight p = test::known_mission();
+  p.policy->parameters.emplace_back("even_volume", "10 m^3");
+  EXPECT_EQ(facts_text(p).find("60 m, even_volume"), std::string::npos);
+  expect_parts(preflight_page(p, {}),
+               {"<th scope=\"row\">parameters</th><td>horizon 60 m, even_volume 10 m³"});
+}
+
+TEST(PreflightWords, SayThatThePolicyIsAFallback) {
+  Preflight p = test::known_mission();
+  p.policy = PolicyFacts{};
+  p.policy->policy = "nearest_frontier";
+  p.policy->fallback = true;
+  expect_parts(facts_text(p), {"nearest_frontier, because no policy could be selected for this cave"});
+}
+
+// Of 0.9996, 100 % was said.
+TEST(PreflightWords, NearlyAllIsNotAll) {
+  Preflight p = test::known_mission();
+  p.policy->expected[0].value = 0.9996;
+  expect_parts(facts_text(p), {">99 % of the reachable volume"});
 }
 
 TEST(PreflightWords, OfAShortCaveThereIsNoVerticality) {

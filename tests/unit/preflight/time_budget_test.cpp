@@ -54,6 +54,21 @@ TEST(TimeBudget, WithoutTimeForMoreThanUpAndDownNothingIsExplored) {
   EXPECT_TRUE(time_budget(limits_with(23.8), 100).can_explore);
 }
 
+// 30 s allow 3 m from the start: a flight refused every goal and landed. With 36 s one flew 14 m.
+// A stride is 4 s at 1.6 m/s.
+TEST(TimeBudget, LessThanAStrideFromTheStartIsNoExploring) {
+  TimeLimits l = limits_with(std::nullopt);
+  l.max_flight_time_s = 30;
+  EXPECT_TRUE(time_budget(l, 80).can_explore);
+  EXPECT_NEAR(time_budget(l, 80).stride_m, 6.4, 1e-9);
+  EXPECT_FALSE(time_budget(l, 80).explores());
+  EXPECT_TRUE(time_budget(l, 2).explores()) << "all of a cave of 2 m is reached";
+  l.max_flight_time_s = 36;
+  EXPECT_TRUE(time_budget(l, 80).explores());
+  l.home_reserve_s = 30;
+  EXPECT_FALSE(time_budget(l, 80).explores());
+}
+
 TEST(TimeBudget, IsNeverNegative) {
   const TimeBudget b = time_budget(limits_with(6), 100);
   EXPECT_FALSE(b.can_explore);

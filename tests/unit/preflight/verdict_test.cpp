@@ -58,6 +58,20 @@ TEST(PreflightVerdict, ABatteryForNoMoreThanTheReserveIsNoGo) {
   EXPECT_FALSE(is_go(found));
 }
 
+// It said GO.
+TEST(PreflightVerdict, TimeForLessThanAStrideIsNoGo) {
+  const std::vector<Finding> found = findings_with([](Preflight& p) {
+    p.time->limits.max_flight_time_s = 30;
+    p.time = time_budget(p.time->limits, 100);
+  });
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].severity, Severity::no_go);
+  EXPECT_EQ(found[0].subject, Subject::time);
+  EXPECT_NE(found[0].text.find("the time is too short to explore: of 30 s"), std::string::npos)
+      << found[0].text;
+  EXPECT_EQ(found.size(), 1u) << "what it would explore is of no interest";
+}
+
 TEST(PreflightVerdict, WatchesForADeepCave) {
   expect_watch(only_with([](Preflight& p) { p.time = time_budget(p.time->limits, 2000); }), Subject::time,
                "2000 m from the start");
@@ -87,18 +101,21 @@ TEST(PreflightVerdict, WatchesForAHoleNearTheStart) {
 
 TEST(PreflightVerdict, WatchesForAnUncertainChoice) {
   const auto confidence = [](double c) { return [c](Preflight& p) { p.policy->confidence = c; }; };
-  expect_watch(only_with(confidence(0.4)), Subject::confidence, "confidence 40 %, next is nearest");
+  expect_watch(only_with(confidence(0.4)), Subject::confidence,
+               "first in only 40 % of the resamplings, next is nearest");
   EXPECT_TRUE(findings_with(confidence(0.6)).empty());
 }
 
 TEST(PreflightVerdict, WatchesForANamedPolicyThatIsNotTheBest) {
-  expect_watch(only_with([](Preflight& p) {
-                 p.policy->selected = false;
-                 p.policy->policy = "nearest_frontier";
-                 p.policy->own = 1;
-                 p.policy->confidence = 0.1;  // of no interest: it was named
-               }),
-               Subject::policy, "deep_cave is expected to do better in coverage_auc: 0.7, against 0.6");
+  expect_watch(
+      only_with([](Preflight& p) {
+        p.policy->selected = false;
+        p.policy->policy = "nearest_frontier";
+        p.policy->own = 1;
+        p.policy->confidence = 0.1;  // of no interest: it was named
+      }),
+      Subject::policy,
+      "deep_cave is expected to do better in mean coverage over the time allowed: 70 %, against 60 %");
 }
 
 TEST(PreflightVerdict, WatchesForANamedPolicyOfWhichNothingIsKnown) {
@@ -117,6 +134,17 @@ TEST(PreflightVerdict, WatchesForANamedPolicyOfWhichNothingIsKnown) {
                Subject::policy, "nothing like this cave was flown");
 }
 
+// A cave unlike those flown was no-go.
+TEST(PreflightVerdict, WatchesForAPolicyThatIsAFallback) {
+  expect_watch(only_with([](Preflight& p) {
+                 p.policy = PolicyFacts{};
+                 p.policy->policy = "nearest_frontier";
+                 p.policy->fallback = true;
+                 p.policy->reason = "nothing like this cave was flown";
+               }),
+               Subject::policy, "no policy could be selected, so it is nearest_frontier");
+}
+
 TEST(PreflightVerdict, WatchesForACaveLargerThanTheFlightExplores) {
   expect_watch(only_with([](Preflight& p) { p.policy->expected[0].value = 0.55; }), Subject::coverage,
                "55 % of it is expected");
@@ -124,7 +152,13 @@ TEST(PreflightVerdict, WatchesForACaveLargerThanTheFlightExplores) {
 
 TEST(PreflightVerdict, SaysThatTheExperienceIsOfFlightsOfAnotherLength) {
   const auto horizon = [](double s) { return [s](Preflight& p) { p.policy->horizon_s = s; }; };
-  expect_watch(only_with(horizon(300)), Subject::coverage, "explores more");
+  EXPECT_TRUE(findings_with(horizon(300)).empty()) << "nearly all is covered sooner";
+  const std::vector<Finding> longer = findings_with([](Preflight& p) {
+    p.policy->horizon_s = 300;
+    p.policy->expected[0].value = 0.5;
+  });
+  ASSERT_EQ(longer.size(), 2u);
+  expect_watch(longer[1], Subject::coverage, "explores more");
   expect_watch(only_with(horizon(900)), Subject::coverage, "explores less");
   EXPECT_TRUE(findings_with(horizon(500)).empty());
 }

@@ -49,6 +49,17 @@ TEST(Wrapped, WithoutAWidthNothingChanges) {
 
 TEST(Wrapped, CountsCharactersNotBytes) { EXPECT_EQ(wrapped("grün grün grün", 9, 0), "grün grün\ngrün"); }
 
+TEST(HelpColumns, AreThoseOfTheEnvironmentIfItSaysSome) {
+  setenv("COLUMNS", "72", 1);
+  EXPECT_EQ(help_columns(), 72u);
+  for (const char* wrong : {"", "wide", "-3", "0", "80x"}) {
+    setenv("COLUMNS", wrong, 1);
+    EXPECT_GE(help_columns(), 20u) << wrong;
+    EXPECT_NE(help_columns(), 72u) << wrong;
+  }
+  unsetenv("COLUMNS");
+}
+
 TEST(Wrapped, LosesNoWordAndKeepsTheWidth) {
   core::Random random(7);
   for (int i = 0; i < 300; ++i) {

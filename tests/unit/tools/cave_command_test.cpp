@@ -141,7 +141,7 @@ TEST(CaveCommand, UnitAndAxisAreAdvisedAndApplied) {
   ASSERT_FALSE(j["advice"].empty());
   EXPECT_EQ(j["advice"][0]["remedy"], "unit mm");
   EXPECT_TRUE(j["proposed_start"].is_null()) << "it would be a place in a wrong frame";
-  EXPECT_NE(run({"cave", "info", file}).find(": unit mm\n"), std::string::npos);
+  EXPECT_NE(run({"cave", "info", file}).find(": --unit mm\n"), std::string::npos);
   const std::vector<std::string> right{"--unit", "mm", "--up", "y", "--json"};
   const auto fine = nlohmann::json::parse(run(with({"cave", "info", file}, right)));
   EXPECT_TRUE(fine["advice"].empty()) << fine["advice"].dump();
@@ -161,10 +161,10 @@ TEST(CaveCommand, CapClosesAHoleAndSaysWhatItClosed) {
   karst::cave::write_mesh(mesh, room_with_corridor(true));
   const std::string e = reason({"cave", "info", mesh, "--start", "4 2 1.2"});
   EXPECT_NE(e.find("free space leads outside the mesh near 1"), std::string::npos) << e;
-  EXPECT_NE(e.find("a loop of 8, 2.8 m across, 4 m2, around 16.0 2.0 1."), std::string::npos) << e;
+  EXPECT_NE(e.find("a loop of 8, 2.8 m across, 4 m², around 16.0 2.0 1."), std::string::npos) << e;
   const std::string said = run({"cave", "info", mesh, "--cap", closed});
   EXPECT_NE(said.find("1 loop of open edges, 1 closed"), std::string::npos) << said;
-  EXPECT_NE(said.find("4.00 m2,   2.83 m across"), std::string::npos) << said;
+  EXPECT_NE(said.find("4.00 m²,   2.83 m across"), std::string::npos) << said;
   const auto j = nlohmann::json::parse(run({"cave", "info", "--json", closed, "--start", "4 2 1.2"}));
   EXPECT_TRUE(j["closed"]);
   EXPECT_EQ(j["open_loops"], 0);
@@ -178,6 +178,57 @@ TEST(CaveCommand, CapClosesAHoleAndSaysWhatItClosed) {
   EXPECT_FALSE(fs::exists(other));
 }
 
+TEST(CaveCommand, AnOpenMeshIsSaidToBeOpenAndItsStartToHoldAfterCapping) {
+  const fs::path folder = fresh_folder();
+  const std::string mesh = (folder / "open.ply").string(), closed = (folder / "closed.ply").string();
+  karst::cave::write_mesh(mesh, room_with_corridor(true));
+  const std::string said = run({"cave", "info", mesh});
+  for (const char* part : {"open edges         1 loop; `karst cave info CAVE --cap OUT.ply` closes holes\n",
+                           "2.8 m across, 4 m², around 16.0 2.0 1.", "valid only after capping: --start \"",
+                           "until then it is refused: ", "hole"})
+    EXPECT_NE(said.find(part), std::string::npos) << part << "\n" << said;
+  EXPECT_EQ(said.find("one that suits"), std::string::npos) << said;
+  const auto j = nlohmann::json::parse(run({"cave", "info", "--json", mesh}));
+  ASSERT_EQ(j["open_edges"].size(), 1u);
+  EXPECT_NEAR(j["open_edges"][0]["area_m2"].get<double>(), 4, 0.01);
+  EXPECT_TRUE(j["proposed_start_refused"].is_string());
+  run({"cave", "info", mesh, "--cap", closed});
+  const std::string start = j["proposed_start"];
+  const auto capped = nlohmann::json::parse(run({"cave", "info", "--json", closed, "--start", start}));
+  EXPECT_GE(capped["start_clearance_m"].get<double>(), 0.7);
+  const auto whole = nlohmann::json::parse(run({"cave", "info", "--json", closed}));
+  EXPECT_TRUE(whole["proposed_start_refused"].is_null());
+  EXPECT_TRUE(whole["open_edges"].empty());
+}
+
+TEST(CaveCommand, TheSizeIsPrintedWithTheUnitItWasReadIn) {
+  const fs::path folder = fresh_folder();
+  const std::string mesh = (folder / "room.ply").string(), info = (folder / "room.info").string();
+  karst::cave::write_mesh(mesh, room_with_corridor(false));
+  std::ofstream(info) << "mesh room.ply\n";
+  const auto says = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  };
+  says(run({"cave", "info", mesh}), "16.0 x 5.0 x 3.0 m (unit: m; --unit changes it), heights ");
+  says(run({"cave", "info", mesh, "--unit", "ft"}), "4.9 x 1.5 x 0.9 m (unit: ft; --unit changes it)");
+  says(run({"cave", "info", mesh, "--unit", "in"}), "(unit: in; --unit changes it)");
+  says(run({"cave", "info", info}), "(unit: m; the key unit changes it)");
+}
+
+TEST(CaveCommand, AnAxisThatTheShapeDoesNotTellIsHintedAtUntilItIsGiven) {
+  const fs::path folder = fresh_folder();
+  std::set<std::array<int, 3>> cells;
+  karst::test::fill(cells, {0, 0, -4}, {20, 4, 0});
+  const std::string mesh = (folder / "tunnel.ply").string();
+  karst::cave::write_mesh(mesh, karst::test::lattice_mesh(cells, 1.0, {0, 0, 0}));
+  const std::string said = run({"cave", "info", mesh});
+  EXPECT_NE(said.find("if y is up in this file, pass --up y"), std::string::npos) << said;
+  EXPECT_NE(said.find("heights -4.0 to 0.0 m"), std::string::npos) << said;
+  EXPECT_NE(said.find("one that suits: --start"), std::string::npos) << "a hint only: " << said;
+  for (const char* up : {"y", "z"})
+    EXPECT_EQ(run({"cave", "info", mesh, "--up", up}).find("  hint  "), std::string::npos) << up;
+}
+
 TEST(CaveCommand, BadMeshOptionsNameTheReason) {
   const std::string mesh = (fresh_folder() / "room.ply").string();
   karst::cave::write_mesh(mesh, room_with_corridor(false));
@@ -186,6 +237,9 @@ TEST(CaveCommand, BadMeshOptionsNameTheReason) {
   };
   EXPECT_NE(refused("--unit", "furlong").find("command line: unit: expected one of m cm mm ft"),
             std::string::npos);
+  const std::string km = refused("--unit", "km");
+  EXPECT_NE(km.find("expected one of m cm mm ft in, got \"km\""), std::string::npos) << km;
+  EXPECT_EQ(km.find("did you mean"), std::string::npos) << "a factor of 1000: " << km;
   EXPECT_NE(refused("--scale", "0").find("command line: scale: expected a number in"), std::string::npos);
   EXPECT_NE(refused("--scale", "nan").find("command line: scale: expected a number in"), std::string::npos);
   EXPECT_NE(refused("--up", "x").find("command line: up: expected one of z y"), std::string::npos);
@@ -205,7 +259,9 @@ TEST(CaveCommand, BadArgumentsNameTheReason) {
             std::string::npos);
   EXPECT_NE(reason({"cave", "generate", "--out", folder.string() + "/"}).find("without ending"),
             std::string::npos);
-  EXPECT_NE(reason({"cave", "info", (folder / "none.ply").string()}).find("no such cave file"),
+  EXPECT_NE(reason({"cave", "info", (folder / "none.ply").string()}).find("none.ply: no such file"),
+            std::string::npos);
+  EXPECT_NE(reason({"cave", "info", (folder / "none.info").string()}).find("`karst cave generate` makes one"),
             std::string::npos);
   EXPECT_TRUE(fs::is_empty(folder));
   std::ofstream(folder / "file") << "x";
@@ -223,7 +279,55 @@ TEST(MeshFacts, CountsEdgesOfAHoleAndOfAFlippedTriangle) {
   open.triangles.pop_back();
   EXPECT_EQ(karst::selection::mesh_facts(open).odd_edges, 3u);
   std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
-  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 3u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 0u) << "it is as closed as before";
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).flipped_edges, 3u);
+}
+
+TEST(MeshFacts, AnEdgeOfFourTrianglesIsOddAndNotFlipped) {
+  // Two cubes that touch along an edge.
+  std::set<std::array<int, 3>> cells{{0, 0, 0}, {1, 1, 0}};
+  const auto mesh = karst::test::lattice_mesh(cells, 1.0, {0, 0, 0});
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).odd_edges, 1u);
+  EXPECT_EQ(karst::selection::mesh_facts(mesh).flipped_edges, 0u);
+}
+
+// It was called open: the simulator looks at triangles from both sides.
+TEST(CaveCommand, AMeshWithATriangleTheOtherWayRoundIsClosed) {
+  const std::string path = (fresh_folder() / "room.ply").string();
+  auto mesh = room_with_corridor(false);
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  karst::cave::write_mesh(path, mesh);
+  const std::string text = run({"cave", "info", path});
+  EXPECT_NE(text.find("closed             yes (3 edges join triangles that face opposite sides; harmless)\n"),
+            std::string::npos)
+      << text;
+  const auto j = nlohmann::json::parse(run({"cave", "info", "--json", path}));
+  EXPECT_TRUE(j["closed"]);
+  EXPECT_EQ(j["odd_edges"], 0);
+  EXPECT_EQ(j["flipped_edges"], 3);
+
+  mesh = room_with_corridor(true);
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  karst::cave::write_mesh(path, mesh);
+  const std::string open = run({"cave", "info", path});
+  EXPECT_NE(open.find("edges do not join two triangles (3 edges join"), std::string::npos) << open;
+  EXPECT_NE(open.find("closed             no, 8 of "), std::string::npos) << open;
+}
+
+TEST(CaveCommand, APointCloudIsSentToFromCloud) {
+  const std::string path = (fresh_folder() / "cloud.ply").string();
+  std::ofstream(path) << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                         "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const std::string e = reason({"cave", "info", path});
+  EXPECT_NE(e.find("a point cloud? `karst cave from-cloud` makes a cave of it"), std::string::npos) << e;
+}
+
+TEST(CaveCommand, GenerateWithQuietPrintsNothing) {
+  const std::string stem = (fresh_folder() / "demo").string();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run(with({"cave", "generate", "--quiet", "--out", stem}, kQuick)), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_TRUE(fs::exists(stem + ".info") && fs::exists(stem + ".ply"));
 }
 
 }  // namespace

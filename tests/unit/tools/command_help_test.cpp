@@ -7,9 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/character_count.h"
 #include "sdk/tools/help/command_tree.h"
 #include "sdk/tools/help/completion.h"
+#include "sdk/tools/help/help_formatter.h"
 #include "sdk/tools/help/man_pages.h"
+#include "sdk/tools/help/value_words.h"
 #include "sdk/tools/karst_command.h"
 #include "tests/closed_loop/command.h"
 
@@ -105,6 +108,69 @@ TEST(CommandTree, KnowsWhatAValueIs) {
   EXPECT_EQ(option(5).kind, ValueKind::none);
 }
 
+TEST(ValueWords, AreThoseOfPeople) {
+  for (const auto& [type, words] :
+       {std::pair{"FLOAT:in 0.05 to 1", "NUMBER 0.05 to 1"},
+        std::pair{"INT:INT in [1 - 256]", "INTEGER 1 to 256"}, std::pair{"FLOAT:POSITIVE", "NUMBER above 0"},
+        std::pair{"TEXT:{ply,stl}", "ply|stl"}, std::pair{"SECONDS:in 0.1 to 600", "SECONDS 0.1 to 600"},
+        std::pair{"POLICY|FILE", "POLICY|FILE"}, std::pair{"UINT", "INTEGER"}, std::pair{"", ""}})
+    EXPECT_EQ(type_words(type), words);
+}
+
+/// Of a command with everything, at this width.
+std::string help_at(std::size_t columns) {
+  CLI::App app(
+      "Flies.\n\n  karst fly an-example-that-is-longer-than-the-lines-of-this-terminal.info\n\n"
+      "Exit code: 0 the mission went as planned, 2 it did not, 1 nothing flew.",
+      "karst fly");
+  app.formatter(std::make_shared<HelpFormatter>(columns));
+  std::vector<std::string> maps;
+  double size = 0.2;
+  app.add_option("maps", maps, "run directories")->type_name("FILE")->required()->expected(2, 1 << 29);
+  app.add_option("--size", size, "edge of the map's cells: what is thinner than this is not seen")
+      ->check(CLI::Range(0.05, 1.0, "in 0.05 to 1"))
+      ->capture_default_str();
+  return app.help();
+}
+
+TEST(Help, IsWrappedAndAligned) {
+  const std::string help = help_at(60);
+  for (const char* part :
+       {"\n  karst fly an-example-that-is-longer-than-the-lines-of-this-terminal.info\n",
+        "\nExit code: 0 the mission went as planned, 2 it did not, 1\nnothing flew.\n\nUsage:",
+        "edge of the map's cells: what\n                              is thinner",
+        "  --size NUMBER 0.05 to 1, default 0.2"})
+    EXPECT_NE(help.find(part), std::string::npos) << part << " in:\n" << help;
+  EXPECT_NE(help_at(200).find("cells: what is thinner than this is not seen\n"), std::string::npos);
+}
+
+// Lines had up to 288 columns.
+TEST(Help, OfEveryCommandFitsItsWidth) {
+  const auto app = karst_command();
+  app->formatter(std::make_shared<HelpFormatter>(80));
+  for_each_command(*app, "karst", [&](const CLI::App& c, const std::string& words) {
+    std::istringstream lines(HelpFormatter(80).make_help(&c, words, CLI::AppFormatMode::Normal));
+    for (std::string line; std::getline(lines, line);) {
+      const bool example =
+          line.starts_with("  ") && !line.starts_with("  -") && !line.starts_with(std::string(30, ' '));
+      const bool one_word = line.find_last_of(' ') < 30;  // such as a path
+      EXPECT_TRUE(example || one_word || core::character_count(line) <= 80) << words << ": " << line;
+    }
+  });
+}
+
+// Some began with a capital, some did not.
+TEST(Help, OptionsAreNoSentences) {
+  const auto app = karst_command();
+  for (const char* name : {"fly", "explain", "table", "replay", "completion"})
+    for (const CLI::Option* option : app->get_subcommand(name)->get_options()) {
+      const std::string text = option->get_description();
+      EXPECT_FALSE(text.ends_with('.')) << name << ": " << text;
+      EXPECT_FALSE(text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a' && text[1] <= 'z')
+          << name << ": " << text;
+    }
+}
+
 /// bash with the completion read, in a folder of its own.
 class Bash {
  public:
@@ -186,6 +252,38 @@ TEST(BashCompletion, OffersThePoliciesOfTheKarstThatIsTyped) {
     EXPECT_EQ(name.find_first_of(" :"), std::string::npos) << name << " is no policy";
 }
 
+// Behind --set nothing was offered.
+TEST(BashCompletion, OffersTheKeysOfSettingsAndTheirChoices) {
+  const Bash bash("settings");
+  const std::string karst = std::string(KARST_BINARY_DIR) + "/bin/karst";
+  EXPECT_EQ(bash.proposed(karst + " fly --set mission.max"), Names{"mission.max_flight_time="});
+  for (const char* command : {"preflight", "compare", "tune"})
+    EXPECT_EQ(bash.proposed(karst + " " + command + " --set mission.max"), Names{"mission.max_flight_time="})
+        << command;
+  const Names policy = bash.proposed(karst + " fly --set policy.");
+  for (const char* key : {"policy.isolation=", "policy.auto.survey="})
+    EXPECT_TRUE(policy.contains(key)) << key;
+  EXPECT_EQ(bash.proposed(karst + " fly --set = mission.max"), Names{"mission.max_flight_time="})
+      << "as bash splits words";
+  EXPECT_EQ(bash.proposed(karst + " cave generate --set vol"), Names{"volume="});
+  EXPECT_TRUE(bash.proposed(karst + " replay --set map.res").contains("map.resolution="));
+  EXPECT_EQ(bash.proposed(karst + " fly --set policy.isolation ="),
+            (Names{"in_process", "process", "where_possible"}));
+  EXPECT_EQ(bash.proposed(karst + " fly --set policy.isolation = wh"), Names{"where_possible"});
+  EXPECT_EQ(bash.proposed(karst + " fly --set = policy.isolation = wh"), Names{"where_possible"});
+  EXPECT_EQ(bash.proposed(karst + " fly --set seed ="), Names{}) << "a number";
+  EXPECT_EQ(bash.proposed(karst + " fly --set nonsense = x"), Names{});
+}
+
+TEST(BashCompletion, OffersPresetsAndMetrics) {
+  const Bash bash("presets");
+  EXPECT_EQ(bash.proposed("karst cave generate --preset ma"), Names{"maze"});
+  for (const char* command : {"results", "report", "compare", "select", "tune"}) {
+    const Names metrics = bash.proposed(std::string("karst ") + command + " --metric coverage");
+    EXPECT_TRUE(metrics.contains("coverage") && metrics.contains("coverage_auc")) << command;
+  }
+}
+
 /// The text of a function of the script.
 std::string function_in(const std::string& script, const std::string& name) {
   const std::size_t begin = script.find("\n" + name + "() {\n");
@@ -217,6 +315,20 @@ TEST(ZshCompletion, HasEveryCommandAndEveryOption) {
   });
 }
 
+TEST(ZshCompletion, OffersTheKeysOfSettingsPresetsAndMetrics) {
+  const std::string script = zsh_completion(commands_of(*karst_command()));
+  const auto offers = [&script](const char* function, const std::string& action) {
+    const std::string text = function_in(script, function);
+    EXPECT_NE(text.find(action), std::string::npos) << function << ": " << text;
+  };
+  offers("_karst__fly", ":KEY=VALUE: _karst_settings fly --keys'");
+  offers("_karst__compare", ":KEY=VALUE: _karst_settings fly --keys'");
+  offers("_karst__replay", ":KEY=VALUE: _karst_settings replay --keys'");
+  offers("_karst__cave__generate", ":KEY=VALUE: _karst_settings cave generate --help'");
+  offers("_karst__cave__generate", ":TEXT:(small ");
+  offers("_karst__results", ":METRIC:(");
+}
+
 TEST(ZshCompletion, ZshReadsIt) {
   if (run_command("command -v zsh").code != 0) GTEST_SKIP() << "zsh is not installed";
   const fs::path file = fresh_folder("completion_zsh") / "_karst";
@@ -226,6 +338,8 @@ TEST(ZshCompletion, ZshReadsIt) {
   EXPECT_EQ(read.text, "");
 }
 
+const DocFolders kNoFolders{"/nowhere", "/nowhere"};
+
 std::string in_roff(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '-' ? std::string("\\-") : std::string(1, c);
@@ -234,7 +348,7 @@ std::string in_roff(const std::string& text) {
 
 TEST(ManPages, ThereIsOneOfEachCommandWithItsOptions) {
   const auto app = karst_command();
-  const auto pages = man_pages(commands_of(*app), "1.2.3", "/nowhere");
+  const auto pages = man_pages(commands_of(*app), "1.2.3", kNoFolders);
   std::size_t shown = 0;
   for_each_command(*app, "karst", [&](const CLI::App& c, const std::string& words) {
     ++shown;
@@ -258,15 +372,17 @@ TEST(ManPages, ThereIsOneOfEachCommandWithItsOptions) {
   EXPECT_EQ(pages.size(), shown);
 }
 
-TEST(ManPages, NamePagesOfTheDocumentationWithoutTheFolderOfTheBuild) {
+TEST(ManPages, NameTheDocumentationThatTheirReaderHas) {
   const Command command{.words = {"karst"},
                         .summary = "flies",
                         .details = "See /a-build/share/doc/karst/docs/tune.md.",
                         .options = {},
                         .arguments = {},
                         .below = {}};
-  const std::string page = man_pages({command}, "1", "/a-build/share/doc/karst").at("karst.1");
-  EXPECT_NE(page.find("\nSee docs/tune.md.\n"), std::string::npos) << page;
+  const std::string page =
+      man_pages({command}, "1", {"/a-build/share/doc/karst", "/usr/share/doc/karst"}).at("karst.1");
+  EXPECT_NE(page.find("\nSee /usr/share/doc/karst/docs/tune.md.\n"), std::string::npos) << page;
+  EXPECT_NE(page.find(".SH FILES\n.TP\n\\fI/usr/share/doc/karst\\fR\n"), std::string::npos) << page;
 }
 
 TEST(ManPages, TextIsSafeFromRoff) {
@@ -276,7 +392,7 @@ TEST(ManPages, TextIsSafeFromRoff) {
                         .options = {},
                         .arguments = {},
                         .below = {}};
-  const std::string page = man_pages({command}, "1", "/nowhere").at("karst.1");
+  const std::string page = man_pages({command}, "1", kNoFolders).at("karst.1");
   EXPECT_NE(page.find("A back\\eslash.\n.br\n\\&.SH no section\n.br\n\\&'no request\n"), std::string::npos)
       << page;
   EXPECT_NE(page.find(".nf\n  an example\n"), std::string::npos) << page;
@@ -286,7 +402,7 @@ TEST(ManPages, TextIsSafeFromRoff) {
 TEST(ManPages, GroffReadsThemWithoutAWarning) {
   if (run_command("command -v groff").code != 0) GTEST_SKIP() << "groff is not installed";
   const fs::path folder = fresh_folder("man_pages");
-  for (const auto& [name, text] : man_pages(commands_of(*karst_command()), "1.2.3", "/nowhere"))
+  for (const auto& [name, text] : man_pages(commands_of(*karst_command()), "1.2.3", kNoFolders))
     written(folder / name, text);
   // A long path cannot be broken: no fault of the page.
   const Output read = run_command("for page in " + folder.string() +

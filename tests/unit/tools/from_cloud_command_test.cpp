@@ -71,6 +71,31 @@ TEST_F(FromCloudCommand, WritesACaveThatCanBeFlownAndSaysWhatWasGuessed) {
   EXPECT_TRUE(j["advice"].empty());
 }
 
+TEST_F(FromCloudCommand, SaysOnStandardErrorWhatItDoes) {
+  CLI::App app{"karst", "karst"};
+  add_from_cloud_command(add_cave_command(app));
+  std::vector<std::string> words{"0.25", "--resolution", out(), "--out", cloud_, "from-cloud", "cave"};
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  app.parse(words);
+  const std::string steps = testing::internal::GetCapturedStderr();
+  testing::internal::GetCapturedStdout();
+  for (const char* step : {"reading scan.ply\nthinning out ", " points\nfinding the normals of ",
+                           "reconstructing the surface\n", "closing holes\n", "looking for a start\n"})
+    EXPECT_TRUE(has(steps, step)) << step << "\n" << steps;
+}
+
+TEST_F(FromCloudCommand, TheOptionsOfACloudSpeakOfACloud) {
+  CLI::App app{"karst", "karst"};
+  CLI::App& cave = add_cave_command(app);
+  add_from_cloud_command(cave);
+  for (const char* name : {"--unit", "--scale", "--up", "--offset"}) {
+    const std::string help = cave.get_subcommand("from-cloud")->get_option(name)->get_description();
+    EXPECT_TRUE(has(help, "cloud") && !has(help, "mesh")) << help;
+    EXPECT_TRUE(has(cave.get_subcommand("info")->get_option(name)->get_description(), "mesh")) << name;
+  }
+}
+
 TEST_F(FromCloudCommand, WritesTheReportAsJson) {
   const auto j = nlohmann::json::parse(run_with({"--json", "--guessed-beyond", "0.4"}));
   EXPECT_EQ(j["schema"], "karst.from_cloud/1");

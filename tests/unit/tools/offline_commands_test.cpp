@@ -1,15 +1,21 @@
-// `karst evaluate` as a command: what it writes and what it refuses.
+// `karst evaluate` and `karst cave describe` as commands: what they write and what they refuse.
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core_stack/common/error.h"
+#include "plugins/simulator/cave/triangle_mesh.h"
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/report/report.h"
+#include "sdk/tools/cave_describe_command.h"
 #include "sdk/tools/evaluate_command.h"
 #include "tests/unit/evaluation/fake_run.h"
+#include "tests/unit/evaluation/reachable/boxes.h"
 
 namespace karst::tools {
 namespace {
@@ -63,6 +69,42 @@ TEST(EvaluateCommand, OfABareTrajectoryWritesBesideIt) {
   EXPECT_THROW(run({"evaluate", tum}), core::InputError) << "nothing to compare it with";
   EXPECT_THROW(run({"evaluate", "/nowhere"}), core::InputError);
   EXPECT_THROW(run({"evaluate", tum, "--truth", "/nowhere.tum"}), core::InputError);
+}
+
+/// What `cave describe` prints of a mesh.
+json described(std::vector<std::string> words) {
+  CLI::App app;
+  add_cave_describe(app);
+  words.insert(words.begin(), "describe");
+  words.emplace_back("--json");
+  std::reverse(words.begin(), words.end());
+  testing::internal::CaptureStdout();
+  try {
+    app.parse(words);
+  } catch (...) {
+    testing::internal::GetCapturedStdout();
+    throw;
+  }
+  return json::parse(testing::internal::GetCapturedStdout());
+}
+
+TEST(CaveDescribe, ABareMeshIsReadInTheUnitThatIsGiven) {
+  TemporaryDirectory dir;
+  std::set<std::array<int, 3>> cells;
+  test::fill(cells, {0, 0, 0}, {12, 4, 3});
+  cave::TriangleMesh mesh = test::lattice_mesh(cells, 1.0, {0.03, 0.04, 0.05});
+  const std::string metres = (dir.path() / "m.ply").string(), millimetres = (dir.path() / "mm.ply").string();
+  cave::write_mesh(metres, mesh);
+  for (core::Vec3f& v : mesh.vertices) v *= 1000.0f;
+  cave::write_mesh(millimetres, mesh);
+  const json m = described({metres, "--start", "3 2 1.5"}),
+             mm = described({millimetres, "--start", "3 2 1.5", "--unit", "mm"});
+  EXPECT_NEAR(mm["volume"].get<double>(), m["volume"].get<double>(), 0.5);
+  EXPECT_NEAR(mm["width"].get<double>(), m["width"].get<double>(), 0.01);
+  EXPECT_THROW(described({metres, "--unit", "km", "--start", "3 2 1.5"}), core::InputError);
+  const std::string numbers = (dir.path() / "numbers.info").string();
+  std::ofstream(numbers) << "width \"3 m\"\n";
+  EXPECT_THROW(described({numbers, "--unit", "mm"}), core::InputError) << "it has no mesh";
 }
 
 }  // namespace

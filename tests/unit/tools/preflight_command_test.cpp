@@ -10,12 +10,15 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/shell_word.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
 #include "sdk/selection/describe.h"
+#include "sdk/selection/load_experience.h"
 #include "tests/unit/evaluation/reachable/boxes.h"
 #include "tests/unit/selection/experiences.h"
 
@@ -64,6 +67,14 @@ std::string error_of(const std::vector<std::string>& words) {
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+/// With the words of each line on one line.
+std::string unwrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::string all;
+  for (std::string word; words >> word;) all += (all.empty() ? "" : " ") + word;
+  return all;
 }
 
 fs::path own_folder() {
@@ -125,12 +136,46 @@ TEST(PreflightCommand, OfAKnownCaveIsGoWithThePolicyThatDidBestThere) {
   EXPECT_TRUE(contains(in_words.text, "time of return")) << in_words.text;
 }
 
+std::string last_line(const std::string& text) {
+  EXPECT_TRUE(text.ends_with('\n'));
+  const std::string lines = text.substr(0, text.size() - 1);
+  return lines.substr(lines.rfind('\n') + 1);
+}
+
+// How to fly what was judged, a reader had to find out.
+TEST(PreflightCommand, EndsWithTheCommandThatFliesWhatWasJudged) {
+  const std::string cave = rooms(), file = (own_folder() / "experience.info").string();
+  experience_of(cave);
+  selection::Experience e = selection::load_experience({file}, [](const std::string&) {});
+  e.contestants[0].parameters.put("goals", "3");
+  e.contestants[0].parameters.put("horizon", "30 m");  // the default
+  std::ofstream(file) << selection::to_info(e);
+  const std::string begin = "  karst fly --cave " + core::shell_word(cave) + " --start '3 3 1' --policy ";
+  EXPECT_EQ(last_line(run({cave, "--start", kStart, "--results", file, "--battery", "5 min", "--set",
+                           "motion.max_speed=1 m/s"})
+                          .text),
+            begin +
+                "nearest_frontier --set 'simulator.battery_minutes=5 min' --set 'motion.max_speed=1 m/s' "
+                "--set policy.parameters.goals=3");
+  EXPECT_EQ(
+      last_line(run({cave, "--start", kStart, "--results", file, "--set", "policy.parameters.goals=5"}).text),
+      begin + "nearest_frontier --set policy.parameters.goals=5")
+      << "what is given takes precedence";
+  EXPECT_EQ(last_line(run({cave, "--start", kStart, "--results", file, "--policy", "lateral_frontier",
+                           "--vehicle", "lidar_only_uav", "--unit", "m"})
+                          .text),
+            "  karst fly --cave " + core::shell_word(cave) +
+                " --start '3 3 1' --unit m --policy lateral_frontier --set simulator.vehicle=lidar_only_uav");
+  const Said refused = run({cave, "--start", kStart, "--policy", "nearest_frontier", "--battery", "20 s"});
+  EXPECT_FALSE(contains(refused.text, "karst fly --cave")) << refused.text;
+}
+
 TEST(PreflightCommand, ABatteryThatIsTooSmallIsNoGo) {
   const std::string cave = rooms();
   const Said said = run({cave, "--start", kStart, "--policy", "nearest_frontier", "--battery", "20 s"});
   EXPECT_EQ(said.code, 3) << said.text;
   EXPECT_TRUE(said.text.starts_with("NO-GO")) << said.text;
-  EXPECT_TRUE(contains(said.text, "no time is left to explore")) << said.text;
+  EXPECT_TRUE(contains(unwrapped(said.text), "no time is left to explore")) << said.text;
 }
 
 TEST(PreflightCommand, AStartInRockIsNoGoWithTheReason) {
@@ -144,7 +189,8 @@ TEST(PreflightCommand, AStartInRockIsNoGoWithTheReason) {
   EXPECT_TRUE(j["policy"].is_null());
 }
 
-TEST(PreflightCommand, ACaveUnlikeAllFlownIsNoGoWithoutANamedPolicy) {
+// It was no-go.
+TEST(PreflightCommand, InACaveUnlikeAllFlownThePolicyIsTheNearestFrontier) {
   const std::string cave = rooms();
   selection::Experience e = test::experience(6, 0.3, 0.02, 1);
   for (selection::KnownCave& k : e.caves) {
@@ -155,11 +201,37 @@ TEST(PreflightCommand, ACaveUnlikeAllFlownIsNoGoWithoutANamedPolicy) {
   const std::string experience = (own_folder() / "experience.info").string();
   std::ofstream(experience) << selection::to_info(e);
   const Said chosen = run({cave, "--start", kStart, "--results", experience});
-  EXPECT_EQ(chosen.code, 3) << chosen.text;
-  EXPECT_TRUE(contains(chosen.text, "nothing like this cave was flown")) << chosen.text;
+  EXPECT_EQ(chosen.code, 0) << chosen.text;
+  EXPECT_TRUE(contains(unwrapped(chosen.text), "no policy could be selected, so it is nearest_frontier"));
+  EXPECT_TRUE(contains(unwrapped(chosen.text), "nothing like this cave was flown")) << chosen.text;
   const Said named = run({cave, "--start", kStart, "--results", experience, "--policy", "nearest_frontier"});
   EXPECT_EQ(named.code, 0) << named.text;
-  EXPECT_TRUE(contains(named.text, "nothing can be said of what it will explore")) << named.text;
+  EXPECT_TRUE(contains(unwrapped(named.text), "nothing can be said of what it will explore")) << named.text;
+}
+
+// What was expected did not depend on the time: more than such a flight can do.
+TEST(PreflightCommand, TheTimeBoundsWhatIsExpected) {
+  const std::string cave = rooms(), experience = experience_of(cave);
+  const auto expected = [&](const char* time) {
+    return json_of(run({cave, "--start", kStart, "--results", experience, "--set",
+                        std::string("mission.max_flight_time=") + time, "--json"}))["policy"]["expected"];
+  };
+  const nlohmann::json little = expected("60 s"), much = expected("300 s");
+  EXPECT_LT(little["coverage"].get<double>(), much["coverage"].get<double>() / 2);
+  EXPECT_LE(little["flight_time_s"].get<double>(), 40);
+  const Said too_little =
+      run({cave, "--start", kStart, "--results", experience, "--set", "mission.max_flight_time=30 s"});
+  EXPECT_EQ(too_little.code, 3) << too_little.text;
+}
+
+TEST(PreflightCommand, LinesOfAFileAreNotLongerThanAHundredColumns) {
+  const std::string cave = rooms(),
+                    text = run({cave, "--start", kStart, "--results", experience_of(cave)}).text;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (!contains(line, cave)) {
+      EXPECT_LE(line.size(), 104u) << line;  // m³ has a byte more than characters
+    }
 }
 
 TEST(PreflightCommand, WritesThePage) {

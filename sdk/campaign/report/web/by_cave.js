@@ -44,13 +44,14 @@ function showByCave(m) {
   fillTable(element("figure-table"), [["cave", "name"], ["trials", "number"], ...contestantNames.map((_, i) => [named(i), "number"])],
     caves.map((cave) => {
       const cells = cellsOf(m, cave), known = cells.filter(Boolean), means = known.map((s) => s.mean);
-      const best = better === "less" ? Math.min(...means) : Math.max(...means);
+      const best = numberText(better === "less" ? Math.min(...means) : Math.max(...means));
+      const alone = means.filter((v) => numberText(v) === best).length === 1;  // as the tables for a paper
       return [[name(cave), "name"], [countText(known.map((s) => s.n)), "number"], ...cells.map((s) => {
         if (!s) return ["–", "number"];
-        const leads = better !== "neither" && known.length > 1 && s.mean === best;
+        const leads = better !== "neither" && known.length > 1 && alone && numberText(s.mean) === best;
         return [make("span", {}, make(leads ? "b" : "span", {}, numberText(s.mean)), make("br"),
           make("small", {}, intervalText(s.interval) + (s.over ? "*" : ""))), "number"];
       })];
     }), (_, k) => caves[k] < 0 ? "total" : "");
-  element("figure-note").textContent = `Mean and ${percentOfIntervals} % interval; trials of each contestant. Bold is the best mean of a row; whether it is shown to be better stands under Pairs. Over all caves, each cave weighs the same` + (data.summaries[m].some((s) => s.all && s.all.over) ? "; * over caves, for want of seeds in each." : ".");
+  element("figure-note").textContent = `Mean and ${percentOfIntervals} % interval; trials of each contestant. Bold is the best mean of a row, if one contestant alone has it; whether it is shown to be better stands under Pairs. Over all caves, each cave weighs the same` + (data.summaries[m].some((s) => s.all && s.all.over) ? "; * over caves, for want of seeds in each." : ".");
 }

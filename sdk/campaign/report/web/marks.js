@@ -33,7 +33,7 @@ const contestantNames = data.contestants.map((c) => c.name);
 const caveNames = data.caves.map((c) => c.name);
 const metricNames = data.metrics.map((m) => m.name);
 /** "explored_volume_m3, m³", as axes are labelled. */
-function metricLabel(m) { const { name, unit } = data.metrics[m]; return name + (unit ? `, ${unit.replace("^3", "³")}` : ""); }
+function metricLabel(m) { const { name, unit } = data.metrics[m]; return name + (unit ? `, ${unitText(unit)}` : ""); }
 /** What a trial counts as in a figure. */
 function countedIn(trial, m) { return (trial.counted || trial.figures)[m]; }
 

@@ -48,5 +48,5 @@ function showMethod() {
   fillTable(element("contestants"), [["name", "name"], "policy", "version", "parameters", "settings of its own"],
     data.contestants.map((c, i) => [[named(i), "name"], c.policy, c.version, text(c.parameters), text(c.settings)]));
   fillTable(element("definitions"), [["figure", "name"], "unit", "better", "what it is"],
-    data.metrics.map((m) => [[m.name, "name"], m.unit, m.better === "neither" ? "" : m.better, m.meaning]));
+    data.metrics.map((m) => [[m.name, "name"], unitText(m.unit), m.better === "neither" ? "" : m.better, m.meaning]));
 }

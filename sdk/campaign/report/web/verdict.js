@@ -11,7 +11,7 @@ function showHeader() {
   const figures = [["contestants", data.contestants.length], ["caves", data.caves.length], ["seeds", seeds],
     ["trials" + (trials.length < whole ? ` of ${whole} possible` : ""), trials.length], ["failed", failed],
     ["hours flown", hours ? numberText(hours) : "–"],
-    ["at most explored for", data.horizon_s ? clockText(data.horizon_s) + " min" : "–"]];
+    ["at most explored for", data.horizon_s ? durationParts(data.horizon_s).join("\u00a0") : "–"]];
   element("summary").append(...figures.map(([name, value]) =>
     make("div", { className: "figure" }, make("b", {}, String(value)), make("span", {}, name))));
   if (!data.notes.length) return;
@@ -25,7 +25,7 @@ function showHeader() {
 function asSentence(text) {
   if (!text) return "";
   const named = contestantNames.some((n) => text.startsWith(n));
-  return (named ? text : text[0].toUpperCase() + text.slice(1)) + (/[.!]$/.test(text) ? "" : ".");
+  return tied((named ? text : text[0].toUpperCase() + text.slice(1)) + (/[.!]$/.test(text) ? "" : "."));
 }
 
 /** Parameters in which contestants of the same policy differ, as "name value". */

@@ -25,12 +25,26 @@ function entryAt(list, t) {
   return i < 0 ? null : list[i];
 }
 
+/** Whole seconds, halves to the even one: as the sentences of a flight round them. */
+function wholeSeconds(t) {
+  const s = Math.round(t);
+  return Math.max(0, s - t === 0.5 && s % 2 !== 0 ? s - 1 : s);
+}
 function clockText(t) {
-  const s = Math.max(0, Math.floor(t + 1e-6));
+  const s = wholeSeconds(t);
   const two = (v) => String(v).padStart(2, "0");
   const h = Math.floor(s / 3600);
   return (h ? h + ":" + two(Math.floor(s / 60) % 60) : Math.floor(s / 60)) + ":" + two(s % 60);
 }
+/** A duration as [text, unit]: ["5", "s"], ["2:57", "min"], ["1:02:57", "h"]. */
+function durationParts(t) {
+  const s = wholeSeconds(t);
+  return s < 60 ? [String(s), "s"] : [clockText(s), s < 3600 ? "min" : "h"];
+}
+/** A metric's unit for people: "m³" for "m^3". */
+function unitText(unit) { return (unit || "").replace("^3", "³"); }
+/** A sentence whose numbers stay in a line with their units. */
+function tied(text) { return text.replace(/(\d) (?=(?:%|m³|m\/s|m|s|min|h|kB|Wh|points)(?![\w³]))/g, "$1\u00a0"); }
 /** A number for people: three or four significant digits, thin groups; an en dash for what is not known. */
 function numberText(v, digits = 3) {
   if (typeof v !== "number" || !isFinite(v)) return "–";

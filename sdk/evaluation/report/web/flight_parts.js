@@ -77,6 +77,12 @@ function decodeTrack(track) {
   return { count: track.count, t: decode(track.t, Float32Array), xyz: decode(track.xyz, Float32Array),
            heading: decode(track.heading, Float32Array) };
 }
+/** Places along the path to where the vehicle is now: at most 200, the last one included. */
+function pathPlaces(track, now) {
+  const step = Math.max(1, Math.ceil(now.index / 199)), places = [];
+  for (let i = 0; i < now.index; i += step) places.push(new THREE.Vector3(track.xyz[3 * i], track.xyz[3 * i + 1], track.xyz[3 * i + 2]));
+  return [...places, now.position];
+}
 /** Where the vehicle is at t: { position, heading, index }. */
 function poseAt(track, t) {
   const i = Math.max(0, lastAt(track.count, (k) => track.t[k], t));

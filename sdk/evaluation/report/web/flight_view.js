@@ -8,6 +8,11 @@ function goalAt(run, t) {
   return run.goals.find((g) => g.t <= t && (g.until === null || t < g.until)) || null;
 }
 
+/** A goal's label: short, as its reason stands in the panel. */
+function goalText(run, goal) {
+  return `goal ${run.goals.indexOf(goal) + 1}` + (typeof goal.score === "number" ? `, score ${numberText(goal.score)}` : "");
+}
+
 /** The policy's drawings of one moment as an object, and its texts as labels. */
 function makeDrawings(drawings) {
   const group = new THREE.Group(), labels = [];
@@ -59,11 +64,11 @@ function makeFlight(run) {
   layer.drawings = new THREE.Group();
   object.add(layer.plan, layer.drawings);
 
-  let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], resolution = [1, 1];
+  let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], clusterPlaces = [], resolution = [1, 1];
   const used = { plan: run.plans.length, goal: run.goals.length, frontiers: run.frontiers.length, objects: run.objects.length,
                  drawings: run.drawings.some((d) => d[1].length) };
   const choices = ["path", "true path", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
-  const view = { object, layer, choices, labels: [], scores: null, vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
+  const view = { object, layer, choices, labels: [], avoid: [], scores: null, vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 
   view.setResolution = (w, h) => {
@@ -104,6 +109,7 @@ function makeFlight(run) {
       setMarks(frontiers, [].concat(...list.map((c) => c.slice(0, 3))),
                list.map((c) => Math.min(11, 3.5 + 0.3 * Math.sqrt(c[3]))), tints);
       view.scores = list.length ? { range, unknown } : null;
+      clusterPlaces = list.map((c) => new THREE.Vector3(...c.slice(0, 3)));
     }
     const found = entryAt(run.objects, t);
     if (found !== shownObjects) {
@@ -120,10 +126,11 @@ function makeFlight(run) {
       layer.drawings.add(made.group);
       drawingLabels = made.labels;
     }
+    view.avoid = [...clusterPlaces, ...track ? pathPlaces(track, view.now) : [], ...plan ? plan[1].map((p) => new THREE.Vector3(...p.slice(0, 3))) : []];
     view.labels = [];
     if (track) view.labels.push({ position: new THREE.Vector3(...track.xyz.slice(0, 3)), text: "start" });
     if (goal.visible && layer.goal.visible)
-      view.labels.push({ position: goal.position, text: active.why ? "goal: " + active.why : "goal" });
+      view.labels.push({ position: goal.position, text: goalText(run, active), beside: true });
     if (layer.objects.visible && shownObjects)
       for (const o of shownObjects[1]) view.labels.push({ position: new THREE.Vector3(...o.slice(0, 3)), text: o[3] });
     if (layer.drawings.visible) view.labels.push(...drawingLabels);

@@ -51,22 +51,51 @@ function makeGrid(points, z) {
   return { grid, step };
 }
 
-/** Puts labels where their positions appear; of those that would overlap, the earlier one stays. */
-function placeLabels(box, labels, camera, width, height) {
+/** Corners of a label of w x h about a point of the window: close to it, or `beside` it at the end of a line. */
+function labelCorners(x, y, w, h, beside) {
+  if (!beside)
+    return [[x + 14, y - h / 2], [x + 14, y - 1.6 * h], [x + 14, y + 0.6 * h], [x - 14 - w, y - h / 2], [x - w / 2, y - 14 - h],
+            [x - w / 2, y + 14], [x - 14 - w, y - 1.6 * h], [x - 14 - w, y + 0.6 * h]];
+  const corners = [];
+  for (const [dx, dy] of [[30, 30], [70, 60], [110, 100]])
+    for (const [right, below] of [[1, 0], [1, 1], [0, 0], [0, 1]])
+      corners.push([right ? x + dx : x - dx - w, below ? y + dy : y - dy - h]);
+  return corners;
+}
+
+/** A thin line from a point of the window to a label's nearest edge. */
+function labelLine(x, y, r) {
+  const toX = Math.min(Math.max(x, r.x), r.x + r.w), toY = Math.min(Math.max(y, r.y), r.y + r.h), line = make("i");
+  Object.assign(line.style, { left: x + "px", top: y + "px", width: Math.hypot(toX - x, toY - y) + "px",
+                              transform: `rotate(${Math.atan2(toY - y, toX - x)}rad)` });
+  return line;
+}
+
+/** Puts labels where their positions appear: { position, text, beside }. Each goes to the place about its position that
+ *  overlaps no earlier label; one `beside` it hides the fewest points of `avoid`. Without such a place it is left out. */
+function placeLabels(box, labels, camera, width, height, avoid = []) {
   box.textContent = "";
-  const taken = [];
-  for (const { position, text } of labels) {
-    const p = position.clone().project(camera);
-    if (p.z > 1 || Math.abs(p.x) > 1 || Math.abs(p.y) > 1) continue;
+  const taken = [], inWindow = (place) => {
+    const p = place.clone().project(camera);
+    return p.z > 1 || Math.abs(p.x) > 1 || Math.abs(p.y) > 1 ? null : [(p.x + 1) / 2 * width, (1 - p.y) / 2 * height];
+  };
+  const points = labels.some((l) => l.beside) ? avoid.map(inWindow).filter(Boolean) : [];
+  const hidden = (r) => points.filter(([x, y]) => x > r.x - 6 && x < r.x + r.w + 6 && y > r.y - 6 && y < r.y + r.h + 6).length;
+  for (const { position, text, beside } of labels) {
+    const p = inWindow(position);
+    if (!p) continue;
     const label = make("span", { textContent: text, title: text });
     box.append(label);
     const w = label.offsetWidth, h = label.offsetHeight;
-    const x = Math.min((p.x + 1) / 2 * width + 14, width - w - 4), y = (1 - p.y) / 2 * height - h / 2;
-    const overlaps = taken.some((r) => x < r.x + r.w && r.x < x + w && y < r.y + r.h && r.y < y + h);
-    if (overlaps) { label.remove(); continue; }
-    taken.push({ x, y, w, h });
-    label.style.left = x + "px";
-    label.style.top = y + "px";
+    const free = labelCorners(...p, w, h, beside)
+      .map(([x, y]) => ({ x: Math.min(x, width - w - 4), y, w, h }))
+      .filter((r) => r.x >= 0 && !taken.some((o) => r.x < o.x + o.w && o.x < r.x + r.w && r.y < o.y + o.h && o.y < r.y + r.h));
+    const place = beside ? free.filter((r) => r.y >= 0 && r.y + h <= height).sort((a, b) => hidden(a) - hidden(b))[0] : free[0];
+    if (!place) { label.remove(); continue; }
+    taken.push(place);
+    label.style.left = place.x + "px";
+    label.style.top = place.y + "px";
+    if (beside) box.append(labelLine(...p, place));
   }
 }
 

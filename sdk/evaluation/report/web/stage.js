@@ -43,7 +43,7 @@ function makeStage(box, labels, beside, { changed = () => {}, viewed = () => {} 
       cloud.uniforms.farFog.value = distance * 3.2;
     }
     renderer.render(scene, camera);
-    placeLabels(labels, flight.labels, camera, ...size);
+    placeLabels(labels, flight.labels, camera, ...size, flight.avoid);
   };
   const needle = box.querySelector(".north g");
   const redraw = () => {

@@ -4,7 +4,7 @@
 function endedWell(outcome) { return outcome === "landed" || outcome === "replayed"; }
 
 function isTrouble(e) {
-  return e.kind === "safety" || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
+  return e.kind === "safety" || (e.kind === "log" && / broke, and was started once more: /.test(e.text)) || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
     (e.kind === "goal" && /rejected|unreachable|abandoned/.test(e.state)) ||
     (e.kind === "outcome" && !endedWell(e.outcome));
 }
@@ -41,18 +41,25 @@ function eventLine(e) {
   return [`robot ${robot}`, eventText(rest)].filter(Boolean).join(": ");
 }
 
-/** What was flown, in a sentence, and whether the mission went as meant; `more` stands behind the title. */
+/** The text of the outcome and its class: green only for a mission as planned that flew to a goal. */
+function outcomeBadge(outcome) {
+  const good = data.as_meant ?? endedWell(outcome);
+  if (!good) return ["✕ " + (outcome || "not known") + (endedWell(outcome) ? ", not as planned" : ""), ""];
+  const nowhere = outcome === "landed" && data.as_meant && data.goals && data.goals.length === 0;
+  return nowhere ? ["landed without exploring", "nowhere"] : ["✓ " + outcome, "landed"];
+}
+
+/** What was flown, in a sentence, and whether the mission went as planned; `more` stands behind the title. */
 function showTitle(more = []) {
   const m = data.metrics;
   const seed = typeof m.seed === "number" ? "seed " + m.seed : "";
   const title = [m.policy || "unknown policy", m.cave || "unknown cave", seed, ...more].filter(Boolean);
   element("title").textContent = title.join(" · ");
   document.title = "karst: " + title.join(", ");
-  const good = data.as_meant ?? endedWell(m.outcome);
-  element("outcome").textContent = (good ? "✓ " : "✕ ") + (m.outcome || "not known") +
-    (endedWell(m.outcome) && !good ? ", not as meant" : "");
-  element("outcome").className = "badge " + (good ? "landed" : "");
-  element("summary").textContent = data.summary + (data.as_meant === null && m.reason ? "; " + m.reason : "");
+  const [text, look] = outcomeBadge(m.outcome);
+  element("outcome").textContent = text;
+  element("outcome").className = "badge " + look;
+  element("summary").textContent = tied(data.summary + (data.as_meant === null && m.reason ? "; " + m.reason : ""));
 }
 
 /** [[name, [value, unit] or null], ...] as cards; those without a value are named in one line below. */
@@ -80,7 +87,7 @@ function showHeader() {
   showTitle();
   const refused = typeof m.goals_rejected === "number" ? `(${m.goals_rejected})` : "";
   showFigures([
-    ["flight time", typeof m.flight_time_s === "number" ? [clockText(m.flight_time_s), "min"] : null],
+    ["flight time", typeof m.flight_time_s === "number" ? durationParts(m.flight_time_s) : null],
     ["explored", figure(m.explored_volume_m3, "m³", 4)], ["coverage", figureShare(m.coverage)],
     ["path length", figure(m.path_length_m, "m")], ["mean speed", figure(m.mean_speed_mps, "m/s")],
     ["least clearance", figure(m.min_clearance_m, "m", 2)], ["contacts", figure(m.contacts, "", 3)],
@@ -99,7 +106,7 @@ function showEvents() {
     const shown = data.events.filter((e) => !hidden.has(e.kind)).slice(0, 5000);
     body.replaceChildren(...shown.map((e) => {
       const row = make("tr", { className: isTrouble(e) ? "bad" : "" }, make("td", {}, clockText(e.t)),
-        make("td", {}, e.kind), make("td", {}, eventLine(e)));
+        make("td", {}, e.kind), make("td", {}, tied(eventLine(e))));
       row.addEventListener("click", () => setMoment(e.t));
       return row;
     }));
@@ -145,7 +152,7 @@ function showMetrics() {
   for (const [name, v] of figures)
     if (v !== null)
       element("metrics").append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, text(v)),
-        make("td", { className: "unit quiet" }, (data.units[name] || "").replace("^3", "³"))));
+        make("td", { className: "unit quiet" }, unitText(data.units[name]))));
   element("metrics-unknown").textContent = notKnown(unknown);
 }
 

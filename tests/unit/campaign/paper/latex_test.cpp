@@ -64,6 +64,7 @@ RC_GTEST_PROP(LatexText, PrintsAnyTextAsItIs, ()) {
 TEST(LatexText, LeavesLettersOfOtherLanguagesAndTakesSignsThatAreNone) {
   EXPECT_EQ(latex_text("Höhle"), "Höhle");
   EXPECT_EQ(latex_text("\u22120.5 \u2013 1"), "$-$0.5 \\textendash{} 1");
+  EXPECT_EQ(latex_text("> 1 \u2020 \u2021"), "\\textgreater{} 1 \\textdagger{} \\textdaggerdbl{}");
   EXPECT_EQ(latex_text("two\nlines\x01\xff"), "two lines??");
 }
 

@@ -37,14 +37,20 @@ TEST(Methods, SayWhatWasFlownAndHowItWasJudged) {
   CampaignResults results = fake_campaign(3, 2, 4);
   results.profile = "campaign";
   results.flight_time = "240 s";
+  results.shared = {{"mission.home_reserve", "20 s"}};
   const std::string text = methods_of(results, {"0.1.0+aaa.b", "0.1.0+aaa.b", "0.1.0+aaa.c"});
-  expect_said(text, {"3 contestants in 2 caves: 24 flights", "versions 0.1.0+aaa.b and 0.1.0+aaa.c",
-                     "policy_1 (lateral 1.0; gain = 0), policy_2 (lateral 1.0; gain = 1)",
-                     "The caves were cave_1 and cave_2.", "4 seeds were flown in each cave (1 to 4)",
-                     "The flight time was 240 s", "300 s; the profile was campaign (poses come from a sensor",
-                     "coverage_auc", "declared before the first flight", "95 % confidence intervals",
-                     "400 resamples", "Wilcoxon's signed-rank test", "Holm's method over 3 pairs",
-                     "p is below 0.05", "No flight failed."});
+  expect_said(
+      text,
+      {"3 contestants in 2 caves: 24 flights", "versions 0.1.0+aaa.b and 0.1.0+aaa.c",
+       "policy_1 (lateral 1.0; gain = 0), policy_2 (lateral 1.0; gain = 1)",
+       "The caves were cave_1 and cave_2.", "4 seeds were flown in each cave (1 to 4)",
+       "The flight time was 240 s (this includes the way home and a reserve of 20 s), and the "
+       "horizon",
+       "300 s; the profile was campaign (poses come from a sensor", "coverage_auc",
+       "declared before the first flight", "95 % confidence intervals", "400 resamples",
+       "Wilcoxon's signed-rank test", "Holm's method over 3 pairs", "p is below 0.05", "No flight failed.",
+       "Time to 50 % coverage and time to 90 % coverage are restricted mean times: a flight that "
+       "did not reach the coverage counts with the horizon (300 s)."});
   EXPECT_EQ(text.find("left out"), std::string::npos);
 }
 

@@ -182,6 +182,36 @@ TEST(DifferencesPlot, HasAMarkAndAnIntervalForEachPairAroundZeroOrNot) {
   }
 }
 
+TEST(DifferencesPlot, KeepsZeroAndTheIntervalsOffItsFrame) {
+  CampaignResults results = fake_campaign(2, 2, 6);  // one of the two far ahead everywhere: zero is at an end
+  const auto metric = static_cast<std::size_t>(evaluation::metric_index("coverage_auc"));
+  for (TrialResult& t : results.trials) t.figures[metric] = t.contestant == 0 ? 0.9 : 0.1;
+  const ptree svg = drawn(differences_plot(results, report_verdicts(compare_all(results, quick_verdict()))));
+  const Frame frame = frame_of(svg);
+  constexpr double kClear_pt = 3;
+  for (const ptree& line : elements(svg, "line"))
+    for (const char* x : {"x1", "x2"}) {
+      EXPECT_GT(measure(line, x), frame.left + kClear_pt);
+      EXPECT_LT(measure(line, x), frame.right - kClear_pt);
+    }
+}
+
+TEST(DifferencesPlot, BreaksALabelThatIsWiderThanAColumn) {
+  const CampaignResults results = fake_campaign(2, 1, 3);
+  const ptree svg = drawn(differences_plot(results, report_verdicts(compare_all(results, quick_verdict()))));
+  const double wide = std::stod(said(svg, "width")), high = std::stod(said(svg, "height"));
+  std::string label;
+  for (const ptree& text : elements(svg, "text")) {
+    const double half = 0.28 * measure(text, "font-size") * static_cast<double>(text.data().size());
+    if (said(text, "text-anchor") != "middle") continue;
+    EXPECT_GE(measure(text, "x") - half, 0) << text.data();
+    EXPECT_LE(measure(text, "x") + half, wide) << text.data();
+    EXPECT_LT(measure(text, "y"), high) << text.data();
+    if (measure(text, "font-size") == 8) label += (label.empty() ? "" : " ") + text.data();
+  }
+  EXPECT_EQ(label, "Difference in coverage averaged over the flight (percentage points)");
+}
+
 TEST(CavesPlot, HasEveryContestantInEveryCave) {
   const CampaignResults results = fake_campaign(3, 4, 3);
   const VerdictOptions options = quick_verdict();

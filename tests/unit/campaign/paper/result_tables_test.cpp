@@ -137,6 +137,80 @@ TEST(RankingTable, OfACampaignUnderWayIsOfTheFlightsThatAllHaveFlown) {
   EXPECT_NE(table.caption.find("of 7 flights of each"), std::string::npos) << table.caption;
 }
 
+double& time_of(TrialResult& t, const char* name) {
+  return t.figures[static_cast<std::size_t>(evaluation::metric_index(name))];
+}
+
+bool is_said(const PaperTable& table, const std::string& text) {
+  return table.caption.find(text) != std::string::npos;
+}
+
+TEST(RankingTable, SaysWhatRestrictedTimesAre) {
+  CampaignResults results = test::fake_campaign(2, 2, 3);
+  for (TrialResult& t : results.trials)
+    for (const char* name : {"restricted_t50_s", "restricted_t90_s"}) time_of(t, name) = 100;
+  const PaperTable table = ranking_table(results, compare_all(results, quick_verdict()), quick_verdict());
+  EXPECT_TRUE(
+      is_said(table,
+              "Time to 50 % coverage and time to 90 % coverage are restricted mean times: a flight that "
+              "did not reach the coverage counts with the horizon (300 s)."))
+      << table.caption;
+  EXPECT_FALSE(is_said(table, "no flight reached it")) << table.caption;
+  EXPECT_FALSE(is_said(table, "\u2021")) << table.caption;
+}
+
+TEST(RankingTable, MarksTimesThatNoFlightOrOnlySomeReached) {
+  CampaignResults results = test::fake_campaign(3, 2, 3);
+  for (TrialResult& t : results.trials) {
+    time_of(t, "restricted_t90_s") = results.horizon_s;
+    time_of(t, "restricted_t50_s") = t.contestant == 0 && t.seed == 1 ? 30 : results.horizon_s;
+  }
+  const PaperTable table = ranking_table(results, compare_all(results, quick_verdict()), quick_verdict());
+  for (std::size_t row = 0; row < 3; ++row) {
+    const PaperCell &t50 = cell_of(table, row, "Time to 50 % coverage"),
+                    &t90 = cell_of(table, row, "Time to 90 % coverage");
+    const bool first = cell_of(table, row, "Contestant").text == "policy_1";
+    EXPECT_EQ(t50.text, first ? "210 \u2021" : "> 300");
+    EXPECT_EQ(t50.bold, first);
+    EXPECT_EQ(t90.text, "> 300");
+    EXPECT_FALSE(t90.bold) << "nobody reached it";
+  }
+  EXPECT_TRUE(is_said(table, ">: no flight reached it.")) << table.caption;
+  EXPECT_TRUE(
+      is_said(table, "\u2021: only some flights reached it (time to 50 % coverage: policy_1 2 of 6)."))
+      << table.caption;
+}
+
+TEST(RankingTable, HasNoBoldTies) {
+  CampaignResults results = test::fake_campaign(3, 2, 3);
+  for (TrialResult& t : results.trials) time_of(t, "contacts") = t.contestant == 2 ? 1 : 0;
+  const PaperTable table = ranking_table(results, compare_all(results, quick_verdict()), quick_verdict());
+  for (std::size_t row = 0; row < 3; ++row) EXPECT_FALSE(cell_of(table, row, "Contacts").bold);
+  EXPECT_TRUE(is_said(table, "Bold: the best mean of a column, if one contestant alone has it."));
+}
+
+TEST(RankingTable, HeadingsBeginWithACapital) {
+  const CampaignResults results = test::fake_campaign(2, 1, 3);
+  const PaperTable table = ranking_table(results, compare_all(results, quick_verdict()), quick_verdict());
+  for (const PaperColumn& c : table.columns)
+    EXPECT_FALSE(c.heading.front() >= 'a' && c.heading.front() <= 'z') << c.heading;
+}
+
+TEST(ComparisonsTable, OfRestrictedTimesSaysWhatTheyAreAndMarksThoseNeverReached) {
+  CampaignResults results = test::fake_campaign(2, 2, 3);
+  for (TrialResult& t : results.trials)
+    time_of(t, "restricted_t50_s") =
+        t.contestant == 0 ? 100 + static_cast<double>(t.seed) : results.horizon_s;
+  VerdictOptions options = quick_verdict();
+  options.metric = "restricted_t50_s";
+  const PaperTable table = comparisons_table(results, compare_all(results, options), options);
+  const bool first_is_a = cell_of(table, 0, "A").text == "policy_1";
+  EXPECT_EQ(cell_of(table, 0, first_is_a ? "Mean of B" : "Mean of A").text.substr(0, 5), "> 300");
+  EXPECT_EQ(cell_of(table, 0, first_is_a ? "Mean of A" : "Mean of B").text.substr(0, 3), "102");
+  EXPECT_TRUE(is_said(table, "Time to 50 % coverage is a restricted mean time")) << table.caption;
+  EXPECT_TRUE(is_said(table, ">: no flight reached it.")) << table.caption;
+}
+
 TEST(ComparisonsTable, HasTheDifferencesThatTheStoreHasAndTheVerdictsIntervalAndTest) {
   TemporaryDirectory dir;
   test::store_campaign(test::fake_campaign(3, 2, 6), dir.path());

@@ -76,6 +76,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"UnknownKey",
             kWho + kCave + kSeeds + "flight_tim 3\n",
             {"flight_tim", "did you mean flight_time"}},
+        Bad{"SettingsOutsideOfTheirBlock",
+            kWho + kCave + kSeeds + "simulator { gust \"3 m/s\" }\n",
+            {"simulator.gust", "go into settings { }"}},
         Bad{"UnknownKeyOfContestant",
             kCave + kSeeds + "contestant { polcy near }\n",
             {"contestant.polcy", "did you mean contestant.policy"}},
@@ -87,7 +90,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"AMissingCave", kWho + kSeeds + "cave { file nowhere.ply }\n", {"nowhere.ply is not there"}},
         Bad{"AMissingPlugin",
             kCave + kSeeds + "contestant { policy x plugin x.so }\n",
-            {"x.so is not there"}},
+            {"contestant x: plugin: ", "x.so is not there"}},
+        Bad{"ABlockOfAContestantWithAnotherName",
+            kCave + kSeeds + "contestant { policy x paramters { horizon 3 } }\n",
+            {"contestant.paramters", "did you mean contestant.parameters?"}},
+        Bad{"ABlockWithAnotherName",
+            kCave + kSeeds + "contestants { policy x }\n",
+            {"contestants: no such block; did you mean contestant?"}},
         Bad{"NoPolicy", kCave + kSeeds + "contestant { name x }\n", {"contestant.policy", "missing"}},
         Bad{"NoCaveFile", kWho + kSeeds + "cave { name x }\n", {"cave.file", "missing"}},
         Bad{"ANameThatLeavesTheFolder", kCave + kSeeds + "contestant { policy x name \"../x\" }\n", {"../x"}},
@@ -127,6 +136,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(CampaignFile, ThatIsNotThereIsNamed) {
   EXPECT_TRUE(says(error_of([] { read_campaign("/nowhere/c.info"); }), "/nowhere/c.info"));
+}
+
+TEST(Campaign, OfTheCommandLineNamesTheOptionOfAMissingFile) {
+  Campaign c;
+  c.contestants = {parse_contestant("near")};
+  c.caves = {parse_cave("nowhere.ply")};
+  c.seeds = {1};
+  EXPECT_TRUE(says(error_of([&] { complete(c); }), "command line: --caves: nowhere.ply is not there"));
+  c.contestants[0].plugin = "x.so";
+  EXPECT_TRUE(says(error_of([&] { complete(c); }), "command line: --plugin: x.so is not there"));
 }
 
 TEST(Contestant, OfTheCommandLineHasParameters) {

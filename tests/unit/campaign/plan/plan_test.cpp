@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 
+#include "sdk/campaign/plan/flight_times.h"
 #include "sdk/campaign/plan/hash.h"
 #include "sdk/campaign/plan/mesh_hash.h"
 #include "sdk/campaign/plan/plan_text.h"
@@ -64,6 +65,33 @@ TEST(Plan, ContestantsThatMayNotExploreAsLongAreRefused) {
   EXPECT_TRUE(says(e, "c.info: contestant far: may explore for 120.0 s, near for 300.0 s")) << e;
   who[0].mission.put("simulator.battery_minutes", "2 min");
   EXPECT_EQ(horizon_of(who, "c.info"), 120);
+}
+
+// With 10 s, both contestants got the same coverage, and nothing said that none of it is exploration.
+TEST(Plan, WithLessThanHalfOfTheFlightForExplorationHasAWarningThatNamesTheKey) {
+  const auto warning = [](const std::string& flight_time, const std::string& reserve_of_far) {
+    Plan plan = small_plan();
+    for (PlannedContestant& c : plan.contestants) {
+      c.mission.put("mission.max_flight_time", flight_time);
+      c.mission.put("mission.takeoff_height", "0.8 m");
+      c.mission.put("mission.landing_speed", "0.4 m/s");
+      c.mission.put("mission.home_margin", "0.5");
+      c.mission.put("mission.home_reserve", c.name == "far" ? reserve_of_far : "20 s");
+    }
+    return little_exploration_text(plan);
+  };
+  // 2 s up, 3 s down with the margin: of T, T - 25 s are left.
+  EXPECT_EQ(warning("50 s", "20 s"), "");
+  const std::string some = warning("49 s", "20 s"), none = warning("10 s", "20 s");
+  EXPECT_TRUE(
+      says(some, "the flight time of 49 s leaves at most 24 s to explore (contestant near): take-off,"))
+      << some;
+  EXPECT_TRUE(says(some, "a reserve of 20 s (mission.home_reserve)")) << some;
+  EXPECT_TRUE(says(none, "the flight time of 10 s leaves no time to explore")) << none;
+  EXPECT_TRUE(says(warning("1 min", "40 s"),
+                   "the flight time of 60 s leaves at most 15 s to explore (contestant far)"))
+      << "of the contestant that has least";
+  EXPECT_EQ(little_exploration_text(small_plan()), "") << "a mission of which these are not known";
 }
 
 // As it was: all trials were flown, and then there was nothing to compare.

@@ -47,6 +47,9 @@ TEST(CampaignReportInBrowser, DrawsEverySectionWithoutAnError) {
   EXPECT_NE(shown.find("karst report '0-0-2'"), std::string::npos);  // the failed trial
   EXPECT_EQ(shown.find("NaN"), std::string::npos);
   EXPECT_EQ(shown.find("undefined"), std::string::npos);
+  EXPECT_NE(shown.find("<b>5:00&nbsp;min</b><span>at most explored for</span>"), std::string::npos);
+  EXPECT_EQ(shown.find("m^3"), std::string::npos);
+  EXPECT_EQ(test::cut_on_desktop(dir.path() / "report.html"), "");
 }
 
 TEST(CampaignReportInBrowser, HasANorthArrowInBothViewsAndFitsAPhone) {
@@ -66,6 +69,18 @@ TEST(CampaignReportInBrowser, HasANorthArrowInBothViewsAndFitsAPhone) {
   EXPECT_EQ(phone.too_wide, "");
   EXPECT_EQ(phone.too_small, "");
   EXPECT_EQ(phone.open.find("replay-choices"), std::string::npos);
+}
+
+// Three means of 0.208 stood side by side, one of them bold.
+TEST(CampaignReportInBrowser, HasNoBoldMeanByCaveWhereTheBestArePrintedAlike) {
+  const auto table_of = [](double advantage) {
+    const TemporaryDirectory dir;
+    const std::string shown = show(fake_campaign(2, 2, 3, advantage, 0), dir.path());
+    const std::size_t begin = shown.find("id=\"figure-table\"");
+    return begin == std::string::npos ? "" : shown.substr(begin, shown.find("</table>", begin) - begin);
+  };
+  EXPECT_EQ(count(table_of(0.1), "<b>"), 3u) << "two caves, and all caves";
+  EXPECT_EQ(count(table_of(2e-5), "<b>"), 0u);
 }
 
 TEST(CampaignReportInBrowser, OfNextToNothingSaysWhatThereIs) {

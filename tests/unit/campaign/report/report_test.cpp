@@ -161,6 +161,20 @@ TEST(CampaignReport, OfATrialCutShortKeepsWhatItHadExploredToTheEnd) {
   EXPECT_NEAR(d["curves"]["explored_m3"]["trials"][0].back().get<double>(), last, 1e-3 * last);
 }
 
+// The curves ended at 38 s where the horizon was 60 s.
+TEST(CampaignReport, CurvesGoOnToTheHorizonWhereAllFlightsEndBefore) {
+  CampaignResults results = fake_campaign(1, 1, 2);
+  for (TrialResult& t : results.trials) t.curve.resize(10);
+  ASSERT_LT(results.trials[0].curve.back().time_s, results.horizon_s);
+  const json curves = written(results)["curves"];
+  EXPECT_EQ(curves["t"].back(), results.horizon_s);
+  const double last = results.trials[0].curve.back().coverage;
+  EXPECT_NEAR(curves["coverage"]["trials"][0].back().get<double>(), last, 1e-3 * last);
+  results.horizon_s = 0;  // not known
+  EXPECT_NEAR(written(results)["curves"]["t"].back().get<double>(), results.trials[0].curve.back().time_s,
+              1e-6);
+}
+
 TEST(CampaignReport, VerdictsAreThoseOfTheStatistics) {
   const CampaignResults results = fake_campaign(3, 2, 6);
   const Verdicts verdicts = compare_all(results);
@@ -224,8 +238,9 @@ TEST(CampaignReport, ListsTrialsThatCameHomeEarlyWithHowTheyEnded) {
   EXPECT_EQ(worst[0].why, "did not land (stuck): " + results.trials[2].ended);
   std::set<std::pair<std::size_t, std::string>> early;  // of the same figure, in either order
   for (const std::size_t i : {1u, 2u}) early.emplace(worst[i].trial, worst[i].why);
-  EXPECT_EQ(early, (std::set<std::pair<std::size_t, std::string>>{
-                       {4, "did not go as meant: " + results.trials[4].ended}, {8, "did not go as meant"}}));
+  EXPECT_EQ(early,
+            (std::set<std::pair<std::size_t, std::string>>{
+                {4, "did not go as planned: " + results.trials[4].ended}, {8, "did not go as planned"}}));
   EXPECT_EQ(written(results)["trials"][4]["ended"], results.trials[4].ended);
 }
 

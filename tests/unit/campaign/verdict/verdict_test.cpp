@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 #include "tests/unit/campaign/verdict/drawn_campaign.h"
 
@@ -106,6 +107,23 @@ TEST(Verdict, SaysWhichIsBetterByHowMuchAndHowSure) {
   EXPECT_NE(v.sentence.find("6 caves x 10 seeds, p < 0.001)"), std::string::npos) << v.sentence;
 }
 
+// "B less by 0.37 points (95 % CI -1.18 to 1.35)" had an interval of the other sign than the tables.
+TEST(Verdict, WithoutAShownDifferenceGivesDifferenceAndIntervalAsTheTablesDo) {
+  const auto results = drawn_campaign(2, 1, 8, [](std::size_t k, std::size_t, std::int64_t seed) {
+    return Figures{{"coverage_auc", 0.5 + (k == 0 ? (seed % 2 ? -0.03 : 0.02) : 0)}};
+  });
+  const Comparison c = primary(compare_all(results, {.simulations = 0}));
+  ASSERT_EQ(c.shown, Shown::no_difference);
+  ASSERT_NEAR(c.difference, -0.005, 1e-9);
+  ASSERT_GT(-c.interval.low, c.interval.high);
+  const int decimals = decimals_for(100 * (c.interval.high - c.interval.low) / 5, 2);
+  const std::string expected =
+      "in coverage averaged over the flight: A minus B: " + fixed_text(-0.5, decimals) + " points (95 % CI " +
+      fixed_text(100 * c.interval.low, decimals) + " to " + fixed_text(100 * c.interval.high, decimals) +
+      " points; ";
+  EXPECT_NE(c.sentence.find(expected), std::string::npos) << c.sentence << "\nexpected " << expected;
+}
+
 TEST(Verdict, SaysSoonerOfShorterTimes) {
   const auto results = drawn_campaign(2, 3, 8, [](std::size_t c, std::size_t cave, std::int64_t seed) {
     return Figures{{"restricted_t90_s", 200.0 + 10.0 * double(cave) + double(seed * 7 % 5) +
@@ -120,7 +138,10 @@ TEST(Verdict, SaysWhyNoDifferenceIsShownWhereTheIntervalAloneDoesNotTell) {
   // Six pairs: p is 2/64 at least, and 6/64 for three contestants.
   const Verdicts few = compare_all(coverage_campaign(1, {1, 1.3, 1.6}, 3, 2));
   EXPECT_EQ(primary(few).shown, Shown::no_difference);
-  EXPECT_NE(primary(few).sentence.find("; 6 pairs cannot show any"), std::string::npos)
+  EXPECT_NE(
+      primary(few).sentence.find(
+          "; 6 pairs cannot show any: p would have to be below 0.05, and of so few it is 0.094 at least"),
+      std::string::npos)
       << primary(few).sentence;
   // A is far ahead in one cave, and a little behind in two.
   const auto by_cave = drawn_campaign(2, 3, 10, [](std::size_t k, std::size_t c, std::int64_t seed) {
@@ -130,8 +151,40 @@ TEST(Verdict, SaysWhyNoDifferenceIsShownWhereTheIntervalAloneDoesNotTell) {
   const Verdicts v = compare_all(by_cave);
   EXPECT_EQ(primary(v).shown, Shown::no_difference);
   EXPECT_GT(primary(v).interval.low, 0);
-  EXPECT_NE(v.sentence.find("; the means differ, but pairs fall either way"), std::string::npos)
+  EXPECT_NE(
+      v.sentence.find("; the means differ, but pairs fall either way: their test, which decides, gives no p "
+                      "below 0.05, and who is ahead depends on the cave"),
+      std::string::npos)
       << v.sentence;
+}
+
+TEST(Verdict, SaysWhatCorrectionDoesToAPairThatWouldShowADifferenceByItself) {
+  // Signed ranks 1, 2, 3, -4, 5 ... 9: 7 of 512 patterns have a sum of 4 or less to a side, so p = 14 / 512.
+  // C lies halfway between A and B, so the other two pairs have the same p, and Holm's correction makes each
+  // 42 / 512.
+  const auto results = drawn_campaign(3, 1, 9, [](std::size_t k, std::size_t, std::int64_t seed) {
+    const double ahead = (seed == 4 ? -0.01 : 0.01) * double(seed);
+    return Figures{{"coverage_auc", 0.5 + (k == 0 ? ahead : k == 2 ? ahead / 2 : 0)}};
+  });
+  const Comparison c = primary(compare_all(results, {.simulations = 0}));
+  ASSERT_EQ(c.shown, Shown::no_difference);
+  ASSERT_TRUE(c.interval.excludes(0));
+  EXPECT_NE(c.sentence.find("p = 0.082 after correction for 3 comparisons)"), std::string::npos)
+      << c.sentence;
+  EXPECT_NE(c.sentence.find(
+                "; the interval, which is not corrected, excludes zero, and by itself this pair would show a "
+                "difference (p = 0.027), but after correction p is not below 0.05"),
+            std::string::npos)
+      << c.sentence;
+}
+
+TEST(Verdict, SpeaksOfVolumesInCubicMetres) {
+  const auto results = drawn_campaign(2, 1, 8, [](std::size_t k, std::size_t, std::int64_t seed) {
+    return Figures{{"explored_volume_m3", 100 + double(seed) + (k == 0 ? 10 : 0)}};
+  });
+  const std::string sentence = primary(compare_all(results, {.metric = "explored_volume_m3"})).sentence;
+  EXPECT_NE(sentence.find(" m³ (95 % CI "), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.find("m^3"), std::string::npos) << sentence;
 }
 
 TEST(Verdict, SaysWhereNoDifferenceIsShownAndWhatWouldShowOne) {

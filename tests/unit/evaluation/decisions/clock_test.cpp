@@ -15,9 +15,18 @@ TEST(Clock, ReadsSecondsAndMinutes) {
   EXPECT_EQ(seconds_of_clock("61:05"), 3665);
 }
 
+TEST(Clock, ReadsUnitsOfTime) {
+  EXPECT_EQ(seconds_of_clock("10 s"), 10);
+  EXPECT_EQ(seconds_of_clock("8.7s"), 8.7);
+  EXPECT_EQ(seconds_of_clock("1.5 min"), 90);
+  EXPECT_EQ(seconds_of_clock("2h"), 7200);
+  EXPECT_EQ(seconds_of_clock("1e2 s"), 100);
+}
+
 TEST(Clock, RefusesWhatIsNoTime) {
-  for (const char* text : {"", ":", "1:", ":34", "1:60", "-1", "-1:10", "1:-10", "+5", "nan", "inf", "soon",
-                           "1:34 s", "1.5:10", "1:2:3", " 94", "1e999"})
+  for (const char* text :
+       {"",       ":",    "1:",  ":34", "1:60",   "-1",   "-1:10",   "1:-10",  "+5",    "nan", "inf",  "soon",
+        "1:34 s", "10 m", "10 ", "s",   "10 s s", "-1 s", "1e400 s", "1.5:10", "1:2:3", " 94", "1e999"})
     EXPECT_FALSE(seconds_of_clock(text)) << text;
 }
 

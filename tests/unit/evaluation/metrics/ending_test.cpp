@@ -57,15 +57,18 @@ const HomeReason kHome[] = {
     {"explored: ", "no frontier left that can be accepted", "home because nothing was left to explore"},
     {"explored: ", "", "home because nothing was left to explore"},
     {"explored: ", "all walls seen", "home because nothing was left to explore (all walls seen)"},
-    {"what is left is too far for the battery, or for the time allowed", "",
-     "home because what was left was too far for the battery, or for the time allowed"},
+    {"what is left is too far for the battery", "", "home because what was left was too far for the battery"},
+    {"what is left is too far for the time allowed", "",
+     "home because what was left was too far for the time allowed"},
     {"the policy asked for it: ", "", "home because the policy asked for it"},
     {"the policy asked for it: ", "late", "home because the policy asked for it (late)"},
     {"an error of the core: ", "", ""},  // the next one's detail
     {"the policy asked for it: ", "an error of the core: no memory",
      "home because the core failed (no memory)"},
-    {"the time left only just suffices for the way home", "",
-     "home because the time left only just sufficed for the way home"},
+    {"the battery only just suffices for the way home", "",
+     "home because the battery only just sufficed for the way home"},
+    {"the time allowed only just suffices for the way home", "",
+     "home because the time allowed only just sufficed for the way home"},
     {"the run directory cannot be written any more (disk full?)", "",
      "home because the run directory could not be written any more (disk full?)"},
 };
@@ -133,18 +136,6 @@ TEST(Ending, SaysWhyAVehicleWentHome) {
     EXPECT_EQ(e.sentence, r.sentence + "; 62 % battery left");
     EXPECT_TRUE(e.as_meant) << r.source;
   }
-}
-
-TEST(Ending, SaysWhichTimeOnlyJustSufficed) {
-  const std::string reason = "the time left only just suffices for the way home";
-  const auto by = [&](const std::string& which) {
-    return ending(explores() + line(64, event::Homing{which, 20, 30, 28}) + home(64, reason) + land(90) +
-                  landed(92))
-        .sentence;
-  };
-  EXPECT_EQ(by("battery"), "home because the battery only just sufficed for the way home");
-  EXPECT_EQ(by("time limit"), "home because the time allowed only just sufficed for the way home");
-  EXPECT_EQ(by("the moon"), "home because the time left only just sufficed for the way home");
 }
 
 TEST(Ending, OfAVehicleThatTheSupervisorSentHomeSaysWhenAndIsNotAsMeant) {
@@ -317,6 +308,68 @@ TEST(Ending, NamesAPolicyThatFailedOnTheWay) {
   EXPECT_EQ(e.failed_policy->time_s, 6.7);
   EXPECT_EQ(e.failed_policy->why, "plain: its process ended in decide()");
   EXPECT_TRUE(e.as_meant) << "the fallback explored to the end";
+  EXPECT_EQ(e.sentence,
+            "home because nothing was left to explore; the policy failed, and the fallback took over");
+}
+
+std::string restarted(const std::string& why) {
+  return line(8.7, event::Log{"warning: half_visits broke, and was started once more: " + why});
+}
+
+// Nothing but events.jsonl said so: a green "landed", and exit code 0.
+TEST(Ending, NamesAPolicyThatWasStartedOnceMore) {
+  const Ending e = ending(explores() +
+                              restarted("its process ended in decide(): killed by signal 11 (Segmentation "
+                                        "fault), request 5 at 8.4 s") +
+                              home(64, "explored: ") + land(90) + landed(92),
+                          {0.01, 0.62});
+  ASSERT_TRUE(e.restart);
+  EXPECT_EQ(sentence_of(*e.restart),
+            "half_visits crashed at 8.4 s in decide(), request 5 (SIGSEGV), and was started once more");
+  EXPECT_EQ(e.sentence,
+            "home because nothing was left to explore; 62 % battery left; the policy crashed and was started "
+            "once more");
+  EXPECT_TRUE(e.as_meant) << "the exit code stays as it was";
+  EXPECT_FALSE(e.failed_policy);
+  EXPECT_FALSE(ending(explores() + landed(92)).restart);
+  EXPECT_FALSE(
+      ending(explores() + line(8, event::Log{"warning: half_visits begins anew"}) + landed(92)).restart);
+}
+
+TEST(PolicyRestart, SaysWhatTheRecordHas) {
+  const auto told = [](const std::string& why) {
+    const Ending e = ending(explores() + restarted(why) + landed(92));
+    return e.restart ? sentence_of(*e.restart) : "";
+  };
+  const std::string end = ", and was started once more";
+  EXPECT_EQ(told("its process ended in on_event(): killed by signal 6 (Aborted), event reached at 5.6 s"),
+            "half_visits crashed at 5.6 s in on_event(), event reached (SIGABRT)" + end);
+  EXPECT_EQ(told("its process ended in decide(): exit code 3, request 2 at 5.0 s"),
+            "half_visits ended its process at 5.0 s in decide(), request 2 (exit code 3)" + end);
+  EXPECT_EQ(told("its process stopped itself in decide(), request 2 at 5.0 s"),
+            "half_visits broke at 5.0 s, request 2 (its process stopped itself in decide())" + end);
+  EXPECT_EQ(told("garbage came from its process in decide(): a count of 7"),
+            "half_visits broke at 8.7 s (garbage came from its process in decide(): a count of 7)" + end)
+      << "without a request the time of the event";
+  EXPECT_EQ(told("its process ended in decide(): killed by signal 4711 (?), request 2 at"),
+            "half_visits crashed at 8.7 s in decide(), request 2 at (killed by signal 4711 (?))" + end);
+}
+
+// A flight that was allowed 60 s landed after 38 s, and nothing said why.
+TEST(Ending, SaysWhatWasKeptForAfterTheWayHome) {
+  for (const std::string of : {"battery", "time allowed"}) {
+    const auto told = [&](const std::string& reason) {
+      const EndFigures figures{{}, 0.94, 20.0};
+      return ending(explores() + home(37, reason) + land(40) + landed(42), figures).sentence;
+    };
+    EXPECT_EQ(told("the " + of + " only just suffices for the way home"),
+              "home because the " + of +
+                  " only just sufficed for the way home, with 20 s in reserve; 94 % battery left");
+    EXPECT_EQ(
+        told("what is left is too far for the " + of),
+        "home because what was left was too far for the " + of + ", with 20 s in reserve; 94 % battery left");
+    EXPECT_EQ(told("explored: "), "home because nothing was left to explore; 94 % battery left");
+  }
 }
 
 TEST(Ending, OfAWholeRecordTakesBatteryAndLandingFromIt) {
@@ -337,13 +390,23 @@ TEST(JointEnding, IsThatOfTheOneVehicle) {
 TEST(JointEnding, OfATeamNamesThoseThatDidNotDoAsMeant) {
   const Ending well{.as_meant = true, .sentence = "home"}, lost{.as_meant = false, .sentence = "lost"},
       none{};
-  EXPECT_EQ(joint_ending({well, well}).sentence, "all 2 robots flew as meant");
+  EXPECT_EQ(joint_ending({well, well}).sentence, "all 2 robots flew as planned");
   EXPECT_TRUE(joint_ending({well, well}).as_meant);
   EXPECT_EQ(joint_ending({well, lost, none}).sentence, "robot 2: lost. Robot 3: nothing recorded");
   EXPECT_FALSE(joint_ending({well, lost, none}).as_meant);
   EXPECT_EQ(joint_ending({none, none}).sentence, "");
   EXPECT_FALSE(joint_ending({none, none}).as_meant);
   EXPECT_FALSE(joint_ending({}).as_meant);
+}
+
+TEST(JointEnding, NamesTheRobotsWhosePoliciesBroke) {
+  const Ending well{.as_meant = true, .sentence = "home"};
+  Ending crashed = well, failed = well;
+  crashed.restart = PolicyRestart{"mine", 8.4, "crashed", " in decide()"};
+  failed.failed_policy = FailedPolicy{9.1, "mine: it hangs"};
+  EXPECT_EQ(joint_ending({well, crashed, failed}).sentence,
+            "all 3 robots flew as planned; robot 2: the policy crashed and was started once more; robot 3: "
+            "the policy failed, and the fallback took over");
 }
 
 }  // namespace

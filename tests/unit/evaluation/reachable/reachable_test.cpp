@@ -192,7 +192,7 @@ TEST(Reachable, OpenCaveNamesTheHole) {
     double x = 0, y = 0, z = 0;
     ASSERT_EQ(std::sscanf(what.c_str() + what.find("near ") + 5, "%lf %lf %lf", &x, &y, &z), 3) << what;
     EXPECT_LT((Vec3(x, y, z) - Vec3(8, 1.5, 1.5)).norm(), 1.5) << what;
-    EXPECT_NE(what.find("a loop of 4, 1.4 m across, 1 m2, around 8.0 1.4 1."), std::string::npos) << what;
+    EXPECT_NE(what.find("a loop of 4, 1.4 m across, 1 m², around 8.0 1.4 1."), std::string::npos) << what;
     EXPECT_NE(what.find("--cap OUT.ply"), std::string::npos) << what;
   }
 }

@@ -32,9 +32,15 @@ ShownPage dumped(const std::filesystem::path& page, const std::string& hash, con
   return {dom, body == std::string::npos ? "" : dom.substr(body, dom.find("id=\"data\"") - body)};
 }
 
-/// The page in a frame of a phone's size, which chromium's own window cannot have, and a script that measures
-/// it. The frame's document stands in an attribute: a page from a file may not look into another one.
-std::string phone_frame(const std::string& page) {
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// As the value of an attribute.
+std::string quoted_page(const std::string& page) {
   std::string quoted;
   for (const char c : page) {
     if (c == '&') {
@@ -45,6 +51,45 @@ std::string phone_frame(const std::string& page) {
       quoted += c;
     }
   }
+  return quoted;
+}
+
+/// The page in a frame of 1240 x 900 pixels, and a script that measures it.
+std::string desktop_frame(const std::string& page) {
+  return R"html(<!doctype html><html><head><meta charset="utf-8"><title>desktop</title></head><body>
+<script>
+async function measureFrame(frame) {
+  const page = frame.contentDocument, root = page.documentElement;
+  for (let i = 0; i < 100 && !root.dataset.ready; ++i) await new Promise((go) => setTimeout(go, 20));
+  const cut = [], name = (e) => e.tagName.toLowerCase() + " " + e.textContent.slice(0, 40);
+  for (const e of page.querySelectorAll(".figure, .scroll:has(#robot-table), .card:has(> #pair-table)"))
+    if (e.checkVisibility() && e.scrollWidth > e.clientWidth) cut.push(name(e));
+  for (const e of page.querySelectorAll("th")) {
+    if (!e.checkVisibility() || !e.textContent.trim()) continue;
+    const tops = new Set(), range = page.createRange(), texts = page.createTreeWalker(e, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+      range.selectNodeContents(texts.currentNode);
+      for (const r of range.getClientRects()) tops.add(Math.round(r.top));
+    }
+    if (tops.size > e.textContent.trim().split(/[\s-]+/).length) cut.push(name(e));
+  }
+  const p = document.createElement("p");
+  p.id = "cut";
+  p.textContent = cut.join("; ");
+  document.body.append(p);
+  if (root.dataset.errors) document.documentElement.dataset.errors = root.dataset.errors;
+  document.documentElement.dataset.ready = root.dataset.ready || "no";
+  frame.remove();
+}
+</script>
+<iframe onload="measureFrame(this)" style="border: 0; width: 1240px; height: 900px" srcdoc=")html" +
+         quoted_page(page) + R"html("></iframe></body></html>
+)html";
+}
+
+/// The page in a frame of a phone's size, which chromium's own window cannot have, and a script that measures
+/// it. The frame's document stands in an attribute: a page from a file may not look into another one.
+std::string phone_frame(const std::string& page) {
   return R"html(<!doctype html><html><head><meta charset="utf-8"><title>phone</title></head><body>
 <script>
 async function measureFrame(frame) {
@@ -80,7 +125,7 @@ async function measureFrame(frame) {
 }
 </script>
 <iframe onload="measureFrame(this)" style="border: 0; width: 360px; height: 740px" srcdoc=")html" +
-         quoted + R"html("></iframe></body></html>
+         quoted_page(page) + R"html("></iframe></body></html>
 )html";
 }
 
@@ -100,13 +145,16 @@ ShownPage show_page(const std::filesystem::path& page, const std::string& hash) 
 }
 
 PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
-  std::ifstream in(page, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
   const TemporaryDirectory dir;
-  dir.write("phone.html", phone_frame(text.str()));
+  dir.write("phone.html", phone_frame(bytes_of(page)));
   const std::string dom = dumped(dir.path() / "phone.html", "", "--allow-file-access-from-files").dom;
   return {text_of(dom, "wide"), text_of(dom, "small"), text_of(dom, "open")};
+}
+
+std::string cut_on_desktop(const std::filesystem::path& page) {
+  const TemporaryDirectory dir;
+  dir.write("desktop.html", desktop_frame(bytes_of(page)));
+  return text_of(dumped(dir.path() / "desktop.html", "", "--allow-file-access-from-files").dom, "cut");
 }
 
 }  // namespace karst::test

@@ -21,4 +21,8 @@ struct PhoneLayout {
 };
 PhoneLayout lay_out_on_phone(const std::filesystem::path& page);
 
+/// What does not fit in a window 1240 pixels wide, separated by "; ": cards, and tables of robots and pairs,
+/// with something wider than they are, and heads of tables with a word broken in two.
+std::string cut_on_desktop(const std::filesystem::path& page);
+
 }  // namespace karst::test

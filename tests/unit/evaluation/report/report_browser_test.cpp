@@ -50,8 +50,105 @@ TEST(ReportInBrowser, TellsInItsHeadHowTheFlightEndedAndIsGreenOnlyIfThatWasMean
       << "\n";
   write_report(dir.path());
   const std::string early = show_page(dir.path() / "report.html").body;
-  EXPECT_NE(early.find("✕ landed, not as meant</span>"), std::string::npos);
+  EXPECT_NE(early.find("✕ landed, not as planned</span>"), std::string::npos);
   EXPECT_EQ(early.find("badge landed"), std::string::npos);
+}
+
+/// Leaves out the events of a kind.
+void drop_events(const fs::path& run_dir, const std::string& kind) {
+  std::ifstream in(run_dir / "events.jsonl");
+  std::string kept;
+  for (std::string line; std::getline(in, line);)
+    if (line.find("\"kind\":\"" + kind + "\"") == std::string::npos) kept += line + "\n";
+  in.close();
+  std::ofstream(run_dir / "events.jsonl") << kept;
+}
+
+TEST(ReportInBrowser, IsNotGreenForALandingWithoutAGoalEverFlown) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  drop_events(dir.path(), "goal");
+  write_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(body.find("<span id=\"outcome\" class=\"badge nowhere\">landed without exploring</span>"),
+            std::string::npos);
+}
+
+TEST(ReportInBrowser, RoundsTheFlightTimeAsItsSentenceDoes) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  const auto card = [&](const char* time_s) {
+    dir.write("metrics.json",
+              std::string(R"({"policy": "lateral", "explored_volume_m3": 120.25, "flight_time_s": )") +
+                  time_s + "}");
+    write_report(dir.path());
+    const std::string body = show_page(dir.path() / "report.html").body;
+    const std::string end = "<span>flight time</span>", begin = "<div class=\"figure\">";
+    const std::size_t to = body.find(end), from = body.rfind(begin, to) + begin.size();
+    const std::size_t sentence = body.find(" in ", body.find("id=\"summary\""));
+    if (to == std::string::npos || sentence == std::string::npos)
+      return std::string("no card or no sentence");
+    return body.substr(from, to - from) + body.substr(sentence, 24);
+  };
+  EXPECT_EQ(card("176.71").find("<b>2:57<small> min</small></b> in 177&nbsp;s"), 0u) << card("176.71");
+  EXPECT_EQ(card("36.5").find("<b>36<small> s</small></b> in 36&nbsp;s"), 0u)
+      << "halves to even: " << card("36.5");
+  EXPECT_EQ(card("5.4").find("<b>5<small> s</small></b> in 5&nbsp;s"), 0u) << card("5.4");
+  EXPECT_EQ(card("59.6").find("<b>1:00<small> min</small></b> in 60&nbsp;s"), 0u) << card("59.6");
+}
+
+TEST(ReportInBrowser, DoesNotTellTheSpeedOfTouchdownOnceItIsOnTheGround) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path());
+  const std::string end = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(end.find("<div class=\"phase\">done, on the ground</div>"), std::string::npos);
+  EXPECT_EQ(end.find("<dt>speed</dt>"), std::string::npos);
+  EXPECT_EQ(end.find("<dt>clearance</dt>"), std::string::npos);
+  EXPECT_NE(end.find("<dt>explored</dt>"), std::string::npos);
+  EXPECT_NE(show_page(dir.path() / "report.html", "t=15").body.find("<dt>speed</dt>"), std::string::npos);
+}
+
+/// A flight whose second goal is accepted at 6 s, while the first is flown to until 9 s.
+void write_queued_goals(const TemporaryDirectory& dir) {
+  write_small_run(dir.path());
+  dir.write("events.jsonl",
+            R"({"t":0,"kind":"phase","phase":"takeoff"}
+{"t":2,"kind":"phase","phase":"explore"}
+{"t":3,"kind":"decision","sequence":1,"outcome":"goals","goals":1,"reason":""}
+{"t":3,"kind":"goal","position":[6,0,0],"heading":0,"frontier":1,"score":5,"why":"4.4 m away","state":"accepted","reason":""}
+{"t":6,"kind":"decision","sequence":2,"outcome":"goals","goals":1,"reason":""}
+{"t":6,"kind":"goal","position":[12,0,0],"heading":0,"frontier":2,"score":4,"why":"1.5 m away","state":"accepted","reason":""}
+{"t":9,"kind":"goal","position":[6,0,0],"heading":0,"frontier":1,"score":5,"why":"4.4 m away","state":"reached","reason":""}
+{"t":12,"kind":"phase","phase":"home"}
+{"t":14,"kind":"phase","phase":"done"}
+{"t":14,"kind":"outcome","outcome":"landed","reason":"at the start"}
+)");
+}
+
+TEST(ReportInBrowser, SaysOfAnAcceptedGoalThatTheOneUnderWayComesFirst) {
+  TemporaryDirectory dir;
+  write_queued_goals(dir);
+  write_report(dir.path());
+  const std::string queued = "<div>accepted: next, after the goal under way</div>", row = "<dt>after it</dt>";
+  const std::string before = show_page(dir.path() / "report.html", "t=7").body;
+  EXPECT_NE(before.find("<div class=\"why\">4.4&nbsp;m away</div>"), std::string::npos);
+  EXPECT_NE(before.find(row + "<dd>goal 2, (12.0, 0.0, 0.0) m</dd>"), std::string::npos);
+  EXPECT_NE(before.find(queued), std::string::npos);
+  const std::string after = show_page(dir.path() / "report.html", "t=10").body;
+  EXPECT_NE(after.find("<div class=\"why\">1.5&nbsp;m away</div>"), std::string::npos);
+  EXPECT_EQ(after.find(row), std::string::npos);
+  EXPECT_EQ(after.find(queued), std::string::npos);
+  EXPECT_NE(after.find("<div>accepted</div>"), std::string::npos);
+}
+
+TEST(ReportInBrowser, LabelsTheGoalShortlyAtTheEndOfALine) {
+  TemporaryDirectory dir;
+  write_queued_goals(dir);
+  write_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html", "t=7").body;
+  const std::size_t at = body.find(">goal 1, score 5.00</span><i style=\"");
+  EXPECT_NE(at, std::string::npos) << body.substr(body.find("id=\"labels\""), 500);
 }
 
 /// What turns the north arrow, in the page's markup: "rotate(12)".
@@ -147,6 +244,22 @@ TEST(ReportInBrowser, FitsAPhone) {
   EXPECT_EQ(phone.open, "") << "the view's controls are folded up";
 }
 
+TEST(ReportInBrowser, CutsNoLabelAndBreaksNoWordOfAHeadOnADesktop) {
+  TemporaryDirectory dir;
+  for (const char* robot : {"robot_1", "robot_2", "robot_3"}) write_small_run(dir.path() / robot);
+  write_report(dir.path() / "robot_1");
+  EXPECT_EQ(test::cut_on_desktop(dir.path() / "robot_1" / "report.html"), "");
+  dir.write("metrics.json",
+            R"({"outcome": "landed", "exploration_time_s": 90, "explored_volume_m3": 4420, "coverage": 1,
+    "t50_s": 1234, "robots_landed": 1, "robots_connected": 1, "data_at_base_share": 1, "contacts": 0, "path_length_m": 527,
+    "bytes_on_air": 90965, "robots": [{"outcome": "landed", "reason": "as a relay", "start_s": 0, "battery_left": 0.9,
+    "exploration_time_s": 14.6, "connected": true, "records": 20, "records_at_base": 20}, {}, {}]})");
+  dir.write("team.jsonl",
+            "{\"t\":0,\"kind\":\"team\",\"robots\":3}\n{\"t\":0,\"kind\":\"start\",\"robot\":1}\n");
+  write_team_report(dir.path());
+  EXPECT_EQ(test::cut_on_desktop(dir.path() / "report.html"), "");
+}
+
 TEST(ReportInBrowser, OfATeamFitsAPhoneAndHasANorthArrow) {
   TemporaryDirectory dir;
   for (const char* robot : {"robot_1", "robot_2"}) write_small_run(dir.path() / robot);
@@ -157,6 +270,27 @@ TEST(ReportInBrowser, OfATeamFitsAPhoneAndHasANorthArrow) {
   const test::PhoneLayout phone = test::lay_out_on_phone(dir.path() / "report.html");
   EXPECT_EQ(phone.too_wide, "");
   EXPECT_EQ(phone.too_small, "");
+}
+
+TEST(ReportInBrowser, OfATeamNamesAsRelaysOnlyRobotsThatLandedAwayFromTheBase) {
+  TemporaryDirectory dir;
+  for (const char* robot : {"robot_1", "robot_2", "robot_3"}) write_small_run(dir.path() / robot);
+  dir.write("metrics.json", R"({"outcome": "landed", "robots": [{"outcome": "landed", "reason": "as a relay"},
+    {"outcome": "landed", "reason": "at the start"}, {"outcome": "landed", "reason": "as a relay"}]})");
+  dir.write("team.jsonl",
+            R"({"t":0,"kind":"team","robots":3,"strategy":"relay_chain","base":[0,0,1],"reach":15}
+{"t":0,"kind":"start","robot":1}
+{"t":1,"kind":"start","robot":2}
+{"t":2,"kind":"start","robot":3}
+{"t":5,"kind":"base","connected":[0,1,2,3],"links":[],"held":[],"relays":[[1,[9,0,0]],[2,[3,0,0]],[3,[0.4,0.3,0]]],"dead":[]}
+)");
+  write_team_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(body.find("<dt>reach it</dt><dd>1, 2, 3</dd><dt>stand as relays</dt><dd>1</dd>"),
+            std::string::npos);
+  for (const char* label :
+       {">1 landed</span>", ">2 landed</span>", ">3 landed</span>"})  // all at the same place
+    EXPECT_NE(body.find(label), std::string::npos) << label;
 }
 
 TEST(ReportInBrowser, OfAnEmptyRunSaysSoWithoutAnError) {

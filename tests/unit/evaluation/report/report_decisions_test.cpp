@@ -82,6 +82,23 @@ json choices_of(const fs::path& run_dir, std::vector<std::string>& problems) {
   return decision_choices(read_run(run_dir), problems);
 }
 
+TEST(DecisionChoices, SayWhyTheFallbackDecidedAndThatTheTimeEndedIt) {
+  const TemporaryDirectory dir;
+  dir.write(
+      "events.jsonl",
+      std::string(kEvents) +
+          R"({"t":20.0,"kind":"decision","goals":1,"outcome":"explored","policy":"fallback","reason":"what is left is too far for the time allowed"}
+{"t":20.0,"kind":"goal","frontier":7,"position":[3,0,1],"reason":"too far","score":2,"state":"rejected","why":"nearest"}
+)");
+  std::vector<std::string> problems;
+  const json choices = choices_of(dir.path(), problems);
+  ASSERT_EQ(choices.size(), 4u);
+  EXPECT_EQ(choices[3]["by"], "the fallback, because all goals of mine were refused");
+  EXPECT_EQ(choices[3]["result"], "nothing within reach in the time left");
+  EXPECT_FALSE(choices[2].contains("by")) << "the event has it";
+  EXPECT_FALSE(choices[2].contains("result"));
+}
+
 TEST(DecisionChoices, HaveTheWholeRankedListWhereRequestsWereRecorded) {
   const TemporaryDirectory dir;
   dir.write("events.jsonl", kEvents);

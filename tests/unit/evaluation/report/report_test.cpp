@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
-#include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/decisions/goal_spans.h"
+#include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/report/team_report.h"
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -104,7 +104,8 @@ TEST(Report, OfATeamSumsItUpAndHasAnEndingOfEachRobot) {
   write_team_report(dir.path());
   const json well = data_of(bytes_of(dir.path() / "report.html"));
   EXPECT_EQ(well["as_meant"], true);
-  EXPECT_EQ(well["summary"], "a team of 2 with lateral explored 100 m³ in 32 s; all 2 robots flew as meant");
+  EXPECT_EQ(well["summary"],
+            "a team of 2 with lateral explored 100 m³ in 32 s; all 2 robots flew as planned");
   EXPECT_EQ(well["robots"][1]["ending"], well["robots"][0]["ending"]) << "times count from its own take-off";
   EXPECT_EQ(well["robots"][0]["ending"].get<std::string>().find("home after "), 0u);
   std::ofstream(dir.path() / "robot_2" / "events.jsonl", std::ios::app)

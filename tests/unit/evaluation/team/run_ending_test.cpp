@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
 
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -34,7 +35,17 @@ TEST(RunEnding, OfAVehicleIsThatOfItsEventsAndFigures) {
   EXPECT_EQ(read_ending(dir.path()).sentence,
             "home because nothing was left to explore; landed 1.5 m from the start; 62 % battery left");
   EXPECT_FALSE(read_ending(dir.path()).as_meant);
+  dir.write("metrics.json", "{}");
+  std::string events = kHomeEvents;
+  events.replace(events.find("explored: no frontier can be reached"),
+                 std::string("explored: no frontier can be reached").size(),
+                 "the time allowed only just suffices for the way home");
+  dir.write("events.jsonl", events);
+  dir.write("mission.info", "mission {\n    home_reserve \"20 s\"\n}\n");
+  EXPECT_EQ(read_ending(dir.path()).sentence,
+            "home because the time allowed only just sufficed for the way home, with 20 s in reserve");
   dir.write("metrics.json", "{cut");
+  dir.write("events.jsonl", kHomeEvents);
   EXPECT_TRUE(read_ending(dir.path()).as_meant) << "damaged figures are not known";
   dir.write("events.jsonl", kLostEvents);
   EXPECT_EQ(read_ending(dir.path()).sentence, "home after 4 s: the pose was lost (no pose for too long)");
@@ -50,7 +61,7 @@ TEST(RunEnding, OfATeamIsOneForEachRobotAndAsMeantIfAllAre) {
   dir.write("robot_2/events.jsonl", kHomeEvents);
   ASSERT_EQ(read_endings(dir.path()).size(), 2u);
   EXPECT_TRUE(read_ending(dir.path()).as_meant);
-  EXPECT_EQ(read_ending(dir.path()).sentence, "all 2 robots flew as meant");
+  EXPECT_EQ(read_ending(dir.path()).sentence, "all 2 robots flew as planned");
   dir.write("robot_2/events.jsonl", kLostEvents);
   EXPECT_FALSE(read_ending(dir.path()).as_meant);
   EXPECT_EQ(read_ending(dir.path()).sentence,

@@ -165,7 +165,21 @@ TEST_F(ExplorationTest, WithoutBatteryForAnyGoalItGoesHomeAtOnce) {
   for (int i = 0; i < 30 && asked == 0; ++i) steps(0.1);
   ASSERT_EQ(asked, 1);
   steps(onboard.options.mission.decision_budget_s + 0.2);
-  EXPECT_EQ(went_home, "what is left is too far for the battery, or for the time allowed");
+  EXPECT_EQ(went_home, "what is left is too far for the battery");
+}
+
+// It named both: "too far for the battery, or for the time allowed".
+TEST_F(ExplorationTest, WithoutTimeForAnyGoalItGoesHomeAtOnce) {
+  begin();
+  endurance = Endurance(seconds(now()) + onboard.options.mission.home_reserve_s + 1);
+  BatteryStatus full;
+  full.stamp = now();
+  full.seconds_left = 600;
+  endurance.note(full);
+  answer = [](const DecisionRequest&) { return go_to({6, 0, 1}); };
+  for (int i = 0; i < 30 && asked == 0; ++i) steps(0.1);
+  steps(onboard.options.mission.decision_budget_s + 0.2);
+  EXPECT_EQ(went_home, "what is left is too far for the time allowed");
 }
 
 TEST_F(ExplorationTest, ThePolicyIsToldWhatIsLeftOfBatteryAndMission) {

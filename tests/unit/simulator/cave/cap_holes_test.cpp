@@ -123,7 +123,7 @@ TEST(BoundaryLoops, HolesThatTouchAtACornerAreTwo) {
 TEST(BoundaryLoops, TheTextNamesSizePlaceAndTheCommand) {
   const auto loops = boundary_loops(tube(10, 2, 24, 0b01));
   const std::string text = cave::hole_text(&loops[0]);
-  for (const char* part : {"loop of 24", "4 m across", "12 m2", "around 10.0 ", "--cap"})
+  for (const char* part : {"loop of 24", "4 m across", "12 m²", "around 10.0 ", "--cap"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
   EXPECT_NE(cave::hole_text(nullptr).find("no edge is open"), std::string::npos);
 }

@@ -126,7 +126,7 @@ TEST_F(CaveFiles, MistakesInTheFrameOfTheMeshAreNamed) {
     EXPECT_NE(e.find(part), std::string::npos) << "\"" << e << "\" lacks \"" << part << "\"";
     EXPECT_NE(e.find("cave.info"), std::string::npos) << e;
   };
-  expect("unit furlong", "unit: expected one of m cm mm ft, got \"furlong\"");
+  expect("unit furlong", "unit: expected one of m cm mm ft in, got \"furlong\"");
   expect("unit \"mm cm\"", "unit: expected one of");
   expect("scale 0", "scale: expected a number in 1e-06 to 1e+06, got \"0\"");
   expect("scale -1", "scale: expected a number");

@@ -135,5 +135,54 @@ TEST(MeshAdvice, MillimetresFarAwayGetAUnitAndAnOffset) {
       << advice[1].finding;
 }
 
+TEST(MeshAdvice, ASmallCaveInMillimetresOfUtmGetsAUnitToo) {
+  cave::MeshShape shape;  // 70 m long: its size alone tells nothing before its passages are known
+  shape.box = Eigen::AlignedBox3d(Vec3(4.2e8, 5.2e9, 1e6), Vec3(4.2e8 + 7e4, 5.2e9 + 1.2e4, 1.009e6));
+  MeshFrame bare;
+  bare.given_as_options = true;
+  const std::vector<MeshAdvice> advice = cave::mesh_advice(shape, bare);
+  ASSERT_EQ(advice.size(), 2u);
+  EXPECT_EQ(advice[0].remedy, "unit mm");
+  EXPECT_NE(advice[0].finding.find("farther than any place on Earth"), std::string::npos);
+  EXPECT_EQ(advice[1].remedy, "offset \"420035000 5200006000 1000000\"");
+  const std::string refused = cave::reach_problem(shape.box, bare);
+  EXPECT_NE(refused.find("(--unit mm)"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("(--offset \"420035000 "), std::string::npos) << refused;
+  shape.box = Eigen::AlignedBox3d(Vec3(4.2e7, 5.2e8, 1e5), Vec3(4.2e7 + 7e3, 5.2e8 + 1.2e3, 1.009e5));
+  EXPECT_EQ(cave::mesh_advice(shape, {}).at(0).remedy, "unit cm");
+}
+
+TEST(MeshAdvice, ARemedyIsWordedAsItIsGiven) {
+  MeshFrame bare;
+  bare.given_as_options = true;
+  const TriangleMesh large = box_mesh({0, 0, 0}, {4000, 4000, 4000});
+  EXPECT_EQ(advice_on(large, bare).at(0).to_give, "--unit mm");
+  EXPECT_EQ(advice_on(large).at(0).to_give, "unit mm") << "a key of the cave file";
+  EXPECT_NE(cave::to_text(advice_on(large, bare).at(0)).find("(--unit mm)"), std::string::npos);
+}
+
+std::string hint_on(TriangleMesh mesh, bool bare = true) {
+  MeshFrame frame;
+  frame.given_as_options = bare;
+  return cave::axis_hint(cave::shape_of(cave::RayScene(std::move(mesh))), frame);
+}
+
+TEST(AxisHint, IsGivenWhereTheShapeDoesNotTellTheAxis) {
+  EXPECT_NE(hint_on(box_mesh({0, 0, -4}, {20, 4, 0})).find("--up y"), std::string::npos)
+      << "a straight tunnel";
+  EXPECT_NE(hint_on(box_mesh({0, 0, 0}, {6, 5, 50})), "") << "a shaft, or a tunnel with y up";
+  EXPECT_NE(hint_on(box_mesh({0, 0, 0}, {30, 20, 40})), "")
+      << "most of it faces along y, as floor and roof do";
+}
+
+TEST(AxisHint, IsNotGivenWhereTheShapeOrTheUserTells) {
+  EXPECT_EQ(hint_on(maze()), "");
+  EXPECT_EQ(hint_on(box_mesh({0, 0, 0}, {20, 12, 4})), "") << "wider than high";
+  EXPECT_EQ(hint_on(box_mesh({0, 0, 0}, {4, 40, 4})), "") << "along y, which is not up";
+  EXPECT_EQ(hint_on(turned(maze())), "") << "there is advice";
+  EXPECT_EQ(hint_on(box_mesh({0, 0, -4}, {20, 4, 0}), false), "") << "a cave file states the axis";
+  EXPECT_EQ(cave::axis_hint({}, {}), "");
+}
+
 }  // namespace
 }  // namespace karst::test

@@ -124,12 +124,24 @@ class MeshFrames : public testing::Test {
 
 const Vec3 kUtm(423456, 5212345, 1203);  // somewhere in the Alps
 
+TEST_F(MeshFrames, AUnitIsNamedWhereItHasAName) {
+  const auto text = [](double scale, MeshUnit unit) {
+    return cave::unit_text(frame({scale, unit, UpAxis::z, ""}));
+  };
+  EXPECT_EQ(text(1, MeshUnit::m), "m");
+  EXPECT_EQ(text(1, MeshUnit::ft), "ft");
+  EXPECT_EQ(text(1, MeshUnit::in), "in");
+  EXPECT_EQ(text(0.001, MeshUnit::m), "mm") << "whichever key says so";
+  EXPECT_EQ(text(0.5, MeshUnit::m), "0.5 m");
+}
+
 TEST_F(MeshFrames, ACubeInAnyUnitIsTheSameCube) {
   const TriangleMesh cube = box_mesh({0, 0, 0}, {4, 4, 4});
   for (const auto& [unit, in_a_metre] : {std::pair{MeshUnit::m, 1.0},
                                          {MeshUnit::cm, 100.0},
                                          {MeshUnit::mm, 1000.0},
-                                         {MeshUnit::ft, 1 / 0.3048}}) {
+                                         {MeshUnit::ft, 1 / 0.3048},
+                                         {MeshUnit::in, 1 / 0.0254}}) {
     const double factor = in_a_metre;
     const std::string file = written("cube.obj", obj_text(cube, [&](const Vec3& p) { return factor * p; }));
     const Eigen::AlignedBox3d box = box_of(load_mesh(file, frame({1, unit, UpAxis::z, ""})));

@@ -42,7 +42,7 @@ function startTeamPanel() {
         ...(happened("object") ? [["finds, robot by robot", String(objectsAt("object", t).size)], ["known at the base", String(objectsAt("object_known", t).size)]] : [])]),
       make("h3", {}, "The base knows"),
       base ? rows([["reach it", robotsOf(base.connected).join(", ") || "none"],
-                   ["stand as relays", robotsOf(base.relays.map((r) => r[0])).join(", ") || "none"],
+                   ["stand as relays", robotsOf(relaysOf(base).map((r) => r[0])).join(", ") || "none"],
                    ...(happened("drop") ? [["dropped nodes that reach it", String(base.connected.filter((r) => r > data.robots.length).length)]] : []),
                    ["told dead", base.dead.join(", ") || "none"], ["links", String(base.links.length)],
                    ["reach", data.base.position ? withUnit(reachOf(base), "m", 3) : undefined]])

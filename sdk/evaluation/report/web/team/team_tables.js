@@ -37,7 +37,7 @@ function showRobots(follow) {
     ["outcome", (m) => m.outcome], ["battery left", (m) => share(m.battery_left), true],
     ["connected", (m) => m.connected === undefined || m.connected === null ? undefined : m.connected ? "yes" : "no"],
     ["records told", (m) => count(m.records), true], ["at the base", (m) => count(m.records_at_base), true],
-    ["why", (m, r) => r.ending || m.reason]];
+    ["why", (m, r) => tied(r.ending || m.reason || "")]];
   const known = ([, text]) => data.robots.some((r, i) => text(robots[i] || {}, r));
   const columns = all.filter(known);
   element("robots-unknown").textContent = notKnown(all.filter((c) => !known(c)).map(([title]) => title));

@@ -10,6 +10,13 @@ function robotPhase(robot, t) {
   const phase = phaseAt({ phases }, t), end = (data.metrics.robots || [])[robot - 1];
   return !phases.length ? "" : t < phases[0][1] ? "waiting" : phase === "done" && end ? end.outcome : phase;
 }
+/** The landed robots and the dropped nodes that stand as relays: a robot that came back to the base is none. */
+function relaysOf(base) {
+  const ends = data.metrics.robots || [], [x, y] = data.base.position || [NaN, NaN], kAtBase_m = 1;
+  const isBack = ([radio, ...place]) => (ends[radio - 1] || {}).reason === "at the start" ||
+    (radio <= data.robots.length && Math.hypot(place[0] - x, place[1] - y) < kAtBase_m);
+  return base.relays.filter((r) => !isBack(r));
+}
 /** What the base knew at t, or null. */
 function baseAt(t) { const moment = entryAt(data.base.moments, t); return moment && moment[1]; }
 
@@ -109,7 +116,7 @@ function makeTeam() {
     return node ? node.slice(1, 4) : null;
   };
   const showRelays = (base) => {
-    const standing = base ? base.relays : [], fine = (r) => base.connected.includes(r[0]) && !base.dead.includes(r[0]);
+    const standing = base ? relaysOf(base) : [], fine = (r) => base.connected.includes(r[0]) && !base.dead.includes(r[0]);
     const put = (points, list) => setMarks(points, [].concat(...list.map((r) => r.slice(1, 4))), list.map(() => 13));
     put(relays, standing.filter(fine));
     put(lost, standing.filter((r) => !fine(r)));

@@ -1,0 +1,16 @@
+// A word of a command line that is printed for people to copy.
+#pragma once
+#include <string>
+
+namespace karst::core {
+
+/// Quoted for the shell if need be: "plain", "'two words'".
+inline std::string shell_word(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace karst::core
