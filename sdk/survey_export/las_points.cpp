@@ -1,0 +1,78 @@
+#include "sdk/survey_export/las_points.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+namespace karst::survey_export {
+namespace {
+
+using core::Vec3;
+
+static_assert(std::endian::native == std::endian::little, "LAS is little-endian");
+
+constexpr double kScale_m = 0.001;
+constexpr std::uint16_t kHeaderBytes = 227, kRecordBytes = 20;
+
+template <class T>
+void put(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+void put_text(std::string& bytes, std::string text, std::size_t size) {
+  text.resize(size, '\0');
+  bytes += text;
+}
+
+}  // namespace
+
+std::string las_bytes(std::span<const Vec3> points) {
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    low = i == 0 ? points[i] : Vec3(low.cwiseMin(points[i]));
+    high = i == 0 ? points[i] : Vec3(high.cwiseMax(points[i]));
+  }
+  const Vec3 offset = low.array().floor();
+  if ((high - offset).maxCoeff() > kScale_m * std::numeric_limits<std::int32_t>::max() ||
+      points.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("too many points, or too far apart, for LAS 1.2");
+  const auto count = static_cast<std::uint32_t>(points.size());
+  std::string bytes;
+  bytes.reserve(kHeaderBytes + std::size_t{kRecordBytes} * points.size());
+  bytes += "LASF";
+  bytes.append(2 + 2 + 16, '\0');  // source, global encoding, project
+  put(bytes, std::uint8_t{1});
+  put(bytes, std::uint8_t{2});
+  put_text(bytes, "OTHER", 32);  // system: neither a known sensor nor a merge
+  put_text(bytes, "karst", 32);
+  put(bytes, std::uint16_t{0});  // day and year of creation: unknown
+  put(bytes, std::uint16_t{0});
+  put(bytes, kHeaderBytes);
+  put(bytes, std::uint32_t{kHeaderBytes});  // where the points begin
+  put(bytes, std::uint32_t{0});             // no variable length records
+  put(bytes, std::uint8_t{0});              // point format
+  put(bytes, kRecordBytes);
+  put(bytes, count);
+  put(bytes, count);  // by return: all are first ones
+  for (int i = 1; i < 5; ++i) put(bytes, std::uint32_t{0});
+  for (int axis = 0; axis < 3; ++axis) put(bytes, kScale_m);
+  for (int axis = 0; axis < 3; ++axis) put(bytes, offset[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    put(bytes, high[axis]);
+    put(bytes, low[axis]);
+  }
+  for (const Vec3& p : points) {
+    for (int axis = 0; axis < 3; ++axis)
+      put(bytes, static_cast<std::int32_t>(std::lround((p[axis] - offset[axis]) / kScale_m)));
+    put(bytes, std::uint16_t{0});      // intensity
+    put(bytes, std::uint8_t{0b1001});  // the first of one return
+    put(bytes, std::uint8_t{1});       // unclassified
+    put(bytes, std::uint8_t{0});       // scan angle
+    put(bytes, std::uint8_t{0});       // user data
+    put(bytes, std::uint16_t{0});      // source
+  }
+  return bytes;
+}
+
+}  // namespace karst::survey_export
