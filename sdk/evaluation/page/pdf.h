@@ -1,5 +1,6 @@
-// Figures and drawings as PDF, made of their SVG by rsvg-convert (Debian: librsvg2-bin). A program that is called when it
-// is there keeps cairo and pango out of karst's build, and what is drawn has one drawing instead of two.
+// Figures and drawings as PDF, made of their SVG by rsvg-convert (Debian: librsvg2-bin). A program that is
+// called when it is there keeps cairo and pango out of karst's build, and what is drawn has one drawing
+// instead of two.
 #pragma once
 #include <filesystem>
 #include <optional>

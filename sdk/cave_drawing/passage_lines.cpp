@@ -1,0 +1,68 @@
+#include "sdk/cave_drawing/passage_lines.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core_stack/common/error.h"
+#include "core_stack/planning/passages/cross_section.h"
+#include "core_stack/planning/passages/free_parts.h"
+#include "core_stack/planning/passages/slice_graph.h"
+#include "core_stack/planning/passages/slices.h"
+
+namespace karst::cave_drawing {
+namespace {
+
+constexpr std::uint64_t kMostWork = 40 * core::kMaxPassageWork;  // half a minute: nothing flies meanwhile
+
+/// As find_passages() has it: the frontier at the end is a quarter of the cross-section or more.
+bool ends_without_wall(const std::vector<core::SliceGroup>& groups, std::uint32_t end,
+                       const core::Slices& slices, double cell_m, double band_m) {
+  std::vector<std::uint32_t> last{end};
+  if (!groups[end].next.empty()) last.push_back(groups[end].next.front());
+  double area_m2 = 0, frontier_m2 = 0;
+  for (const std::uint32_t g : last)
+    for (const std::uint32_t s : groups[g].slices) {
+      const core::Slice& slice = slices.slices[s];
+      area_m2 = std::max(area_m2, static_cast<double>(slice.free_cells) * cell_m * cell_m * cell_m / band_m);
+      frontier_m2 += static_cast<double>(slice.frontier_cells) * cell_m * cell_m;
+    }
+  return 4 * frontier_m2 >= area_m2;
+}
+
+}  // namespace
+
+double PassageLines::length_m() const {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    for (const std::uint32_t j : points[i].next)
+      if (i < j) sum += (points[i].middle - points[j].middle).norm();
+  return sum;
+}
+
+PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, const std::string& file) {
+  core::WorkBudget work(kMostWork);
+  const std::optional<core::FreeParts> space = core::free_parts_around(map, start, work);
+  if (!space) throw core::InputError(file, "", "the map is too large to find its passages");
+  PassageLines out;
+  if (space->parts.empty() || space->start == core::kNoPart) return out;
+  const core::Slices slices = core::sliced(*space);
+  if (!work.spend(core::kSliceWork * slices.slices.size()))
+    throw core::InputError(file, "", "the map is too large to find its passages");
+  const double band_m = core::kBandCubes * space->grid.cube_m();
+  std::vector<core::CrossSection> sections;
+  for (const core::Slice& s : slices.slices)
+    sections.push_back(core::cross_section(map, space->parts[s.middle].middle, 0.5 * band_m));
+  const std::vector<core::SliceGroup> groups = core::simplified(slices.slices, sections, band_m);
+  const std::uint32_t first_slice = slices.slice_of[space->start];
+  for (std::uint32_t g = 0; g < groups.size(); ++g) {
+    const core::CrossSection& section = sections[groups[g].core];
+    PassagePoint point{section.center, section.width_m, section.height_m, groups[g].next, false};
+    if (point.next.size() < 2)
+      point.leads_on = ends_without_wall(groups, g, slices, space->grid.cell_m, band_m);
+    if (std::binary_search(groups[g].slices.begin(), groups[g].slices.end(), first_slice)) out.first = g;
+    out.points.push_back(std::move(point));
+  }
+  return out;
+}
+
+}  // namespace karst::cave_drawing
