@@ -91,7 +91,8 @@ std::string marks_of(const Drawing& drawing, const Frame& frame) {
       const Point at = frame.at(m.at);
       const bool must = kind == entrance || kind == find;
       const double size = kind == height || kind == station ? kNumber_mm : kName_mm;
-      const double width = text_width_mm(m.text, size);
+      // Numbers are not as close as they could be: a passage has many of them.
+      const double width = text_width_mm(m.text, size) + (kind == height ? 4 : 0);
       const std::optional<Point> place =
           must ? places.beside_anyhow(at, width, size) : places.beside(at, width, size);
       if (place) labels += text(*place, m.text, {size, Anchor::start, kind == entrance, true});
@@ -188,7 +189,7 @@ std::string north_arrow(const Point& middle, double turned_rad) {
   return "<g class=\"north\">\n<path fill=\"#000000\" d=\"M" + corner(tip) + "L" + corner(one) + "L" +
          corner(notch) + "Z\"/>\n<path fill=\"#ffffff\"" + stroke("#000000", 0.2) + " d=\"M" + corner(tip) +
          "L" + corner(other) + "L" + corner(notch) + "Z\"/>\n" +
-         text(middle - 1.15 * kHalf_mm * up + Point(0, 1.2), "N", {3.2, Anchor::middle, true}) + "</g>\n";
+         text(middle + 1.3 * kHalf_mm * up + Point(0, 1.2), "N", {3.2, Anchor::middle, true}) + "</g>\n";
 }
 
 }  // namespace karst::cave_drawing

@@ -20,7 +20,8 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kNear_m = 15;       // a find this near to a passage is drawn on its extended profile
+constexpr double kNear_m = 15;  // a find this near to a passage is drawn on its extended profile
+constexpr double kFarthestEnd_m = 15;
 constexpr std::size_t kHeights = 6;  // places of a passage from one that has its height to the next
 
 void expect_finite(const FlightRecord& record, std::optional<double> bearing_rad, const std::string& file) {
@@ -64,6 +65,16 @@ std::vector<std::size_t> places_with_heights(const PassageLines& lines) {
   return places;
 }
 
+/// Where a passage is lost sight of, beyond its last place.
+Vec3 end_of(const core::VoxelMap& map, const PassageLines& lines, const PassagePoint& last) {
+  if (last.next.empty()) return last.middle;
+  Vec3 ahead = last.middle - lines.points[last.next.front()].middle;
+  ahead.z() = 0;
+  if (ahead.norm() < 0.1) return last.middle;
+  ahead.normalize();
+  return last.middle + std::min(kFarthestEnd_m, core::free_reach_m(map, last.middle, ahead)) * ahead;
+}
+
 double floor_m(const PassagePoint& p) { return p.middle.z() - 0.5 * p.height_m; }
 
 }  // namespace
@@ -102,7 +113,7 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
     if (at) out.extended.marks.push_back({Mark::Kind::find, *at, f.what});
   }
   for (const PassagePoint& p : lines.points)
-    if (p.leads_on) add(Mark::Kind::unknown_end, p.middle, "?");
+    if (p.leads_on) add(Mark::Kind::unknown_end, end_of(map, lines, p), "?");
   for (const std::size_t i : places_with_heights(lines)) {
     const PassagePoint& p = lines.points[i];
     const double height = floor_m(p) - entrance.z();

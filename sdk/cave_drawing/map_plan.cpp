@@ -13,7 +13,7 @@ namespace karst::cave_drawing {
 namespace {
 
 constexpr double kLeastPiece_m2 = 0.2;  // of the outline: smaller ones are gaps between rays
-constexpr double kLeastWall_m = 2.0;    // within the outline: shorter ones are ledges
+constexpr double kLeastWall_m = 3.0;    // within the outline: shorter ones are ledges
 constexpr double kLeastStorey_m2 = 3.0;
 constexpr double kSimplified = 0.08;  // cells
 

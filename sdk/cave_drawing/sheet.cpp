@@ -15,7 +15,7 @@ constexpr double kMargin_mm = 10;       // printers leave it white
 constexpr double kTitle_mm = 34;        // the title block
 constexpr double kLabels_mm = 9;        // the grid's numbers, to the left
 constexpr double kLowLabels_mm = 5;     // and below
-constexpr double kAround_mm = 8;        // around the cave, for marks and names
+constexpr double kAround_mm = 6;        // around the cave, for marks and names
 constexpr double kLargestScale = 20;    // nothing is drawn larger
 constexpr double kSmallestScale = 1e6;  // a metre for a thousand kilometres
 
@@ -41,7 +41,7 @@ double least_scale(const Extent& extent, const Frame& frame) {
 
 double round_scale(double least) {
   for (double decade = 10; decade <= kSmallestScale; decade *= 10)
-    for (const double step : {1.0, 2.0, 2.5, 5.0})
+    for (const double step : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5})
       if (decade * step >= std::max(least, kLargestScale) * (1 - 1e-9)) return decade * step;
   return least;
 }

@@ -48,8 +48,8 @@ struct Extent {
 /// finite.
 Extent extent_of(const Drawing& drawing, const std::string& file);
 
-/// The page, upright or on its side, on which the drawing is largest. The scale is 1, 2, 2.5 or 5 times a
-/// power of ten. Throws core::InputError if the scale that is asked for does not fit.
+/// The page, upright or on its side, on which the drawing is largest. The scale is 1, 1.5, 2, 2.5,
+/// 3, 4, 5 or 7.5 times a power of ten. Throws core::InputError if the scale that is asked for does not fit.
 Sheet fitted_sheet(const Extent& extent, const SheetOptions& options, const std::string& file);
 
 /// A frame of this width around the extent, at whatever scale that gives, and not higher than `most_mm`.

@@ -88,7 +88,7 @@ std::string title_block(const Drawing& drawing, const CaveFacts& facts, const Sh
   }
   out += text({bar, top + 7.5}, core::format_text("1:%g", sheet.frame.scale), {4.4, Anchor::start, true});
   out += scale_bar({bar + 1, top + 11}, sheet.frame.scale, arrow - 12 - bar);
-  if (drawing.view == View::plan) out += north_arrow({arrow, top + 12}, -options.declination_rad);
+  if (drawing.view == View::plan) out += north_arrow({arrow, top + 16}, -options.declination_rad);
   const double rule = top + height - 6;
   out += straight({left, rule}, {left + width, rule}, stroke("#000000", 0.15));
   return out + text({x, top + height - 2}, legend_text(drawing, sheet.frame, step_m), {2.2});

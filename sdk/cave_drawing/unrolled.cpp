@@ -11,6 +11,7 @@
 #include "sdk/cave_drawing/free_runs.h"
 #include "sdk/cave_drawing/map_plan.h"
 #include "sdk/cave_drawing/passage_strips.h"
+#include "sdk/cave_drawing/way_between.h"
 
 namespace karst::cave_drawing {
 namespace {
@@ -81,10 +82,10 @@ StripLine sampled(const core::VoxelMap& map, const PassageLines& lines, const Pa
     if (i + 1 == line.size()) break;
     const Vec3 d = line[i + 1] - line[i];
     const double across = level(d).norm();
-    const auto n = std::max(1, static_cast<int>(std::ceil(d.norm() / step)));
-    for (int k = 0; k <= n; ++k) {
-      const double t = static_cast<double>(k) / n;
-      out.points.push_back({line[i] + t * d, s + t * across, (1 - t) * width_m[i] + t * width_m[i + 1],
+    const std::vector<Vec3> way = way_between(map, line[i], line[i + 1], step);
+    for (std::size_t k = 0; k < way.size(); ++k) {
+      const double t = static_cast<double>(k) / static_cast<double>(way.size() - 1);
+      out.points.push_back({way[k], s + t * across, (1 - t) * width_m[i] + t * width_m[i + 1],
                             heading_from(line, i), std::abs(d.z()) > across});
     }
     s += across;
