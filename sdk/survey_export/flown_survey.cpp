@@ -37,6 +37,17 @@ bool is_frontier(const core::VoxelMap& map, const Vec3& p) {
   return free && unknown;
 }
 
+/// At least half of the way: the vehicle sees ahead, as a surveyor does who shoots the last leg.
+bool was_flown(std::span<const LinePoint> passed) {
+  double flown_m = 0, length_m = 0;
+  for (std::size_t i = 1; i < passed.size(); ++i) {
+    const double step_m = (passed[i].position - passed[i - 1].position).norm();
+    length_m += step_m;
+    if (passed[i].flown && passed[i - 1].flown) flown_m += step_m;
+  }
+  return 2 * flown_m >= length_m;
+}
+
 class Builder {
  public:
   Builder(const FlownInput& input, const StationOptions& options) : input_(input), options_(options) {
@@ -110,9 +121,10 @@ class Builder {
     std::uint32_t before = add_node(line.nodes[0]);
     add_section(before, static_cast<std::uint32_t>(out_.survey.legs.size()), run);
     for (std::size_t i = 1; i < chosen.size(); ++i) {
-      const LinePoint &a = line.points[chosen[i - 1]], &b = line.points[chosen[i]];
-      const std::uint32_t here = i + 1 == chosen.size() ? add_node(line.nodes[1]) : add_station(b.position);
-      add_leg(before, here, !(a.flown && b.flown), run);
+      const std::span<const LinePoint> passed(&line.points[chosen[i - 1]], chosen[i] - chosen[i - 1] + 1);
+      const std::uint32_t here =
+          i + 1 == chosen.size() ? add_node(line.nodes[1]) : add_station(passed.back().position);
+      add_leg(before, here, !was_flown(passed), run);
       add_section(here, static_cast<std::uint32_t>(out_.survey.legs.size() - 1), run);
       before = here;
     }

@@ -14,7 +14,7 @@ namespace karst::survey_export {
 
 struct FlownSurvey {
   /// Station 0 is the entrance: the middle of the passage where the flight began. Legs of a run follow each
-  /// other; those to what was seen, but not flown, are `approximate`. Names are "NAME.1", "NAME.2", ...
+  /// other; those of which less than half was flown are `approximate`. Names are "NAME.1", "NAME.2", ...
   survey::Survey survey;
   std::string name;                       // of the survey: small letters, digits, - and _
   std::vector<double> leg_sd_m;           // of each leg, in each axis

@@ -66,8 +66,6 @@ class Choice {
     if (leg.norm() < 1e-6) return false;
     for (std::size_t m = i + 1; m < k; ++m) {
       const LinePoint& p = points_[m];
-      // The flown part of a passage ends at a station.
-      if (p.flown != points_[m - 1].flown || points_[k].flown != p.flown) return false;
       if (p.detour) continue;
       const double f = std::clamp((p.position - a).dot(leg) / leg.squaredNorm(), 0.0, 1.0);
       const double off_m = (p.position - (a + f * leg)).norm();

@@ -14,6 +14,7 @@
 #include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/explain_command.h"
 #include "sdk/tools/explain_time_command.h"
+#include "sdk/tools/export_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/from_cloud_command.h"
 #include "sdk/tools/from_survey_command.h"
@@ -62,6 +63,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_replay_command(*app);
   add_evaluate_command(*app);
   add_map_command(*app);
+  add_export_command(*app);
   add_select_command(*app);
   add_tune_command(*app);
   add_help_commands(*app);
