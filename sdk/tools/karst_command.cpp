@@ -11,6 +11,7 @@
 #include "sdk/tools/cave_describe_command.h"
 #include "sdk/tools/check_command.h"
 #include "sdk/tools/compare_command.h"
+#include "sdk/tools/draw_command.h"
 #include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/explain_command.h"
 #include "sdk/tools/explain_time_command.h"
@@ -57,6 +58,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_from_cloud_command(cave);
   add_from_survey_command(cave);
   add_report_command(*app, campaign_page);
+  add_draw_command(*app);
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);
