@@ -132,17 +132,28 @@ class Lines {
       const auto begin = std::find(groups.begin(), groups.end(), start_group_);
       std::rotate(groups.begin(), begin == groups.end() ? groups.begin() : begin, groups.end());
       groups.push_back(groups.front());
-      node(groups.front(), LineNode::Kind::start);
+      center(groups, {false, false});
       return add_line(groups, {false, false});
     }
-    std::array<bool, 2> free_end{chain.junctions[0] == kNoGroup, chain.junctions[1] == kNoGroup};
+    const std::array<bool, 2> free_end{chain.junctions[0] == kNoGroup, chain.junctions[1] == kNoGroup};
     if (!free_end[0]) groups.insert(groups.begin(), chain.junctions[0]);
     if (!free_end[1]) groups.push_back(chain.junctions[1]);
+    center(groups, free_end);
     const auto at = std::find(groups.begin(), groups.end(), start_group_);
     if (at == groups.end() || at == groups.begin() || at + 1 == groups.end())
       return add_line(groups, free_end);
-    add_line({groups.begin(), at + 1}, {free_end[0], false});
-    add_line({at, groups.end()}, {false, free_end[1]});
+    const std::vector<std::uint32_t> before(groups.begin(), at + 1), after(at, groups.end());
+    if (!free_end[0] || !is_niche(before, false)) add_line(before, {free_end[0], false});
+    if (!free_end[1] || !is_niche(after, true)) add_line(after, {false, free_end[1]});
+  }
+
+  /// From the start to rock, no longer than the passage is wide: no way that a surveyor would follow.
+  bool is_niche(const std::vector<std::uint32_t>& groups, bool last) const {
+    double length_m = 0;
+    for (std::size_t i = 1; i < groups.size(); ++i)
+      length_m += (points_[groups[i]].position - points_[groups[i - 1]].position).norm();
+    return kind_of_end(groups, last) == LineNode::Kind::dead_end &&
+           length_m < std::max(points_[start_group_].width_m, band_m_);
   }
 
   LineNode::Kind kind_of_end(const std::vector<std::uint32_t>& groups, bool last) const {
@@ -155,7 +166,6 @@ class Lines {
   void add_line(const std::vector<std::uint32_t>& groups, std::array<bool, 2> free_end) {
     MiddleLine line;
     for (const std::uint32_t g : groups) line.points.push_back(points_[g]);
-    center(line.points);
     fill_flown(line.points);
     std::array<LineNode::Kind, 2> kinds{LineNode::Kind::junction, LineNode::Kind::junction};
     for (const std::size_t side : {0u, 1u})
@@ -174,16 +184,32 @@ class Lines {
     out_.lines.push_back(std::move(line));
   }
 
-  /// Between the walls, and between floor and ceiling, across the line. Its ends stay: others share them.
-  void center(std::vector<LinePoint>& points) const {
-    std::vector<LinePoint> moved = points;
-    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-      const Vec3 along = points[i + 1].position - points[i - 1].position;
-      if (along.norm() < 1e-3) continue;
-      for (const Vec3& side : across(along.normalized()))
-        moved[i].position = centred(map_, moved[i].position, side, 0.5 * band_m_);
+  /// Moves the points of a chain between the walls, and between floor and ceiling, across the chain, and
+  /// measures them there. Its junctions stay: other chains share them. (The narrowest line of a cross-section
+  /// may cut a corner.)
+  void center(const std::vector<std::uint32_t>& groups, std::array<bool, 2> free_end) {
+    constexpr int kRounds = 3;  // a better line has better directions
+    const std::size_t n = groups.size(), first = free_end[0] ? 0 : 1, end = n - (free_end[1] ? 0 : 1);
+    if (n < 2) return;
+    const auto at = [&](std::size_t i) -> const Vec3& { return points_[groups[i]].position; };
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<LinePoint> moved;
+      for (std::size_t i = first; i < end; ++i) {
+        const std::size_t from = i < 2 ? std::min<std::size_t>(i == 0 && n > 3 ? 1 : 0, n - 2) : i - 2;
+        const std::size_t to = i + 2 < n ? i + 2 : i + 1 == n && n > 3 ? n - 2 : n - 1;
+        moved.push_back(points_[groups[i]]);
+        const Vec3 along = at(to) - at(from);
+        if (along.norm() < 1e-3) continue;
+        LinePoint& p = moved.back();
+        const std::array<Vec3, 2> sides = across(along.normalized());
+        for (const Vec3& side : sides) p.position = centred(map_, p.position, side, 0.5 * band_m_);
+        p.width_m = free_reach_m(map_, p.position, sides[0]) + free_reach_m(map_, p.position, -sides[0]);
+        p.height_m = free_reach_m(map_, p.position, sides[1]) + free_reach_m(map_, p.position, -sides[1]);
+      }
+      for (std::size_t i = first; i < end; ++i) points_[groups[i]] = moved[i - first];
     }
-    points = std::move(moved);
+    for (const std::uint32_t g : groups)
+      if (node_of_[g] != kNoNode) out_.nodes[node_of_[g]].point = points_[g];
   }
 
   /// A slice or two that the trajectory did not touch, between flown ones, were passed.

@@ -117,7 +117,9 @@ TEST(FlownSurvey, AJunctionIsOneStationOfThreeBranches) {
   EXPECT_EQ(count(d, 3), 1u);
   EXPECT_EQ(count(d, 1), 3u);
   for (std::size_t i = 0; i < d.size(); ++i)
-    if (d[i] == 3) EXPECT_LT((flown.survey.stations[i].position_m - Vec3(14.9, 0, 1.5)).norm(), 2.0);
+    if (d[i] == 3) {
+      EXPECT_LT((flown.survey.stations[i].position_m - Vec3(14.9, 0, 1.5)).norm(), 2.0);
+    }
   std::set<std::uint32_t> runs;
   for (const survey::Leg& l : flown.survey.legs) runs.insert(l.run);
   EXPECT_EQ(runs.size(), 3u);

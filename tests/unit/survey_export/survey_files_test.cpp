@@ -25,7 +25,7 @@ core::VoxelMap cave_map() {
   const auto cave = test::any_of({test::tunnel(), test::box({13.4, 1, 0}, {16.4, 15, 3})});
   return test::carved(
       cave, {-1, -3, -1}, {31, 16, 4},
-      test::any_of({test::box({26, -10, -10}, {50, 10, 10}), test::box({2, -10, -10}, {6, 10, 0})}));
+      test::any_of({test::box({26, -10, -10}, {50, 10, 10}), test::box({2, -10, -10}, {12, 10, 0})}));
 }
 FlownSurvey cave_survey(const core::VoxelMap& map) {
   return test::surveyed(map, test::way({{1, 0, 1.5}, {24, 0, 1.5}}));
@@ -107,7 +107,9 @@ TEST_F(SurveyFiles, TheTherionReaderGivesTheSameSurvey) {
   bool unseen = false;
   const auto same = [&](const std::optional<double>& a, const std::optional<double>& b) {
     EXPECT_EQ(a.has_value(), b.has_value());
-    if (a && b) EXPECT_NEAR(*a, *b, 0.0051);
+    if (a && b) {
+      EXPECT_NEAR(*a, *b, 0.0051);
+    }
     unseen = unseen || !b;
   };
   for (const survey::Section& s : read.sections) {
