@@ -80,9 +80,14 @@ TEST(IncludeDirection, SurveysKnowTheCoreAndProcessesOnly) {
   expect_none("sdk/survey", {"plugins/", "policies/", "CLI/", "core_stack/mapping", "core_stack/mission"});
 }
 TEST(IncludeDirection, CavesFromSurveysKnowTheSurveyAndTheSimulatorsCavesOnly) {
-  expect_none("sdk/survey_cave", {"sdk/host", "sdk/evaluation", "sdk/cave_from_cloud", "sdk/map_merge",
-                                  "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools",
-                                  "plugins/replay", "CLI/"});
+  expect_none("sdk/survey_cave",
+              {"sdk/host", "sdk/evaluation", "sdk/cave_from_cloud", "sdk/map_merge", "sdk/campaign",
+               "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools", "plugins/replay", "CLI/"});
+}
+TEST(IncludeDirection, SurveysOfFlightsKnowTheRecordTheSurveyAndMeshFilesOnly) {
+  expect_none("sdk/survey_export", {"sdk/host", "sdk/survey_cave", "sdk/cave_from_cloud", "sdk/map_merge",
+                                    "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools",
+                                    "plugins/replay", "plugins/simulator/sensors", "CLI/"});
 }
 // evaluation <- campaign <- selection <- flight <- tools; tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
