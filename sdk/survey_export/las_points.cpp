@@ -1,25 +1,20 @@
 #include "sdk/survey_export/las_points.h"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+
+#include "sdk/survey_export/little_endian.h"
 
 namespace karst::survey_export {
 namespace {
 
 using core::Vec3;
 
-static_assert(std::endian::native == std::endian::little, "LAS is little-endian");
-
 constexpr double kScale_m = 0.001;
 constexpr std::uint16_t kHeaderBytes = 227, kRecordBytes = 20;
 
-template <class T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 void put_text(std::string& bytes, std::string text, std::size_t size) {
   text.resize(size, '\0');
   bytes += text;

@@ -10,7 +10,7 @@ namespace {
 
 using core::format_text;
 
-std::string legs(const FlownSurvey& flown) {
+std::string survex_legs(const FlownSurvey& flown) {
   std::string text = "*data normal from to tape compass clino\n";
   std::optional<LegDeviations> last;
   for (std::size_t i = 0; i < flown.survey.legs.size(); ++i) {
@@ -56,7 +56,7 @@ std::string svx_text(const FlownSurvey& flown, const Placing& placing) {
     if (s.entrance) text += "*entrance " + name + '\n';
     if (s.continuation) text += "; station " + name + ": the passage goes on into unknown space\n";
   }
-  return text + legs(flown) + passages(flown) + "*end " + flown.name + '\n';
+  return text + survex_legs(flown) + passages(flown) + "*end " + flown.name + '\n';
 }
 
 }  // namespace karst::survey_export

@@ -14,7 +14,7 @@ using core::format_text;
 
 constexpr std::size_t kMostTies = 64;  // Therion weighs each vertex of the mesh with each of them
 
-std::string legs(const FlownSurvey& flown) {
+std::string therion_legs(const FlownSurvey& flown) {
   std::string text = "    data normal from to length compass clino\n";
   std::optional<LegDeviations> last;
   bool approximate = false;
@@ -63,7 +63,7 @@ std::string therion_text(const FlownSurvey& flown, const Placing& placing) {
   text += format_text("    %s %.4f degrees\n", placing.system.empty() ? "declination" : "grid-angle",
                       placing.declination_deg);
   text += "    units length left right up down metres\n    units bearing gradient degrees\n";
-  text += legs(flown) + dimensions(flown);
+  text += therion_legs(flown) + dimensions(flown);
   for (std::uint32_t i = 0; i < flown.survey.stations.size(); ++i) {
     const survey::Station& s = flown.survey.stations[i];
     if (!s.entrance && !s.continuation) continue;

@@ -1,11 +1,11 @@
 #include "sdk/survey_export/wall_mesh.h"
 
 #include <array>
-#include <bit>
 #include <unordered_map>
 #include <utility>
 
 #include "core_stack/mapping/occupancy/voxel_reader.h"
+#include "sdk/survey_export/little_endian.h"
 
 namespace karst::survey_export {
 namespace {
@@ -111,17 +111,11 @@ class Net {
   WallMesh walls_;
 };
 
-template <class T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 }  // namespace
 
 WallMesh wall_mesh(const core::VoxelMap& map) { return Net(map).made(); }
 
 std::string ply_bytes(const WallMesh& walls) {
-  static_assert(std::endian::native == std::endian::little, "PLY is written as the machine has it");
   const cave::TriangleMesh& mesh = walls.mesh;
   std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment walls of a karst map, metres, z up\n";
   bytes += "element vertex " + std::to_string(mesh.vertices.size()) + '\n';
