@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "core_stack/planning/passages/cross_section.h"
@@ -27,6 +28,33 @@ bool ends_without_wall(const std::vector<core::SliceGroup>& groups, std::uint32_
       frontier_m2 += static_cast<double>(slice.frontier_cells) * cell_m * cell_m;
     }
   return 4 * frontier_m2 >= area_m2;
+}
+
+/// Without ends that are nearer to the place before them than the wall is: corners of the passage there.
+PassageLines without_corners(const PassageLines& lines) {
+  std::vector<std::uint32_t> number(lines.points.size());
+  std::uint32_t kept = 0;
+  constexpr std::uint32_t kGone = ~std::uint32_t{0};
+  for (std::uint32_t i = 0; i < lines.points.size(); ++i) {
+    const PassagePoint& end = lines.points[i];
+    bool corner = i != lines.first && end.next.size() == 1 && !end.leads_on;
+    if (corner) {
+      const PassagePoint& before = lines.points[end.next.front()];
+      corner = before.next.size() > 1 && (end.middle - before.middle).norm() < 0.5 * before.width_m;
+    }
+    number[i] = corner ? kGone : kept++;
+  }
+  PassageLines out;
+  out.first = number[lines.first];
+  for (std::uint32_t i = 0; i < lines.points.size(); ++i) {
+    if (number[i] == kGone) continue;
+    PassagePoint point = lines.points[i];
+    point.next.clear();
+    for (const std::uint32_t j : lines.points[i].next)
+      if (number[j] != kGone) point.next.push_back(number[j]);
+    out.points.push_back(std::move(point));
+  }
+  return out;
 }
 
 }  // namespace
@@ -62,7 +90,7 @@ PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, c
     if (std::binary_search(groups[g].slices.begin(), groups[g].slices.end(), first_slice)) out.first = g;
     out.points.push_back(std::move(point));
   }
-  return out;
+  return without_corners(out);
 }
 
 }  // namespace karst::cave_drawing

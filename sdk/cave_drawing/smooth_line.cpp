@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kMostMoved = 0.5;  // cells
 constexpr int kRounds = 12;
+// Each round moves points towards those beside them, and then away from them by a little more: else curves
+// would shrink (Taubin, A signal processing approach to fair surface design, 1995).
+constexpr double kTowards = 0.5, kAway = -0.52;
 
 bool is_closed(const Line& line) { return line.size() > 2 && line.front() == line.back(); }
 
@@ -36,11 +39,12 @@ Line smoothed(const Line& steps) {
   Line at = from;
   const std::size_t n = at.size();
   const std::size_t first = closed ? 0 : 1, last = closed ? n : n - 1;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 2 * kRounds; ++round) {
+    const double share = round % 2 == 0 ? kTowards : kAway;
     const Line before = at;
     for (std::size_t i = first; i < last; ++i) {
       const Point mean = 0.5 * (before[(i + n - 1) % n] + before[(i + 1) % n]);
-      const Point moved = 0.5 * (before[i] + mean) - from[i];
+      const Point moved = before[i] + share * (mean - before[i]) - from[i];
       at[i] = from[i] + moved * std::min(1.0, kMostMoved / std::max(moved.norm(), 1e-12));
     }
   }

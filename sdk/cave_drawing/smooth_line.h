@@ -4,8 +4,8 @@
 
 namespace karst::cave_drawing {
 
-/// A line along the sides of cells, in units of cells, smoothed: the middles of its sides are moved towards
-/// the middle of those beside them, by at most half a cell. Closed lines stay closed, the ends of others
+/// A line along the sides of cells, in units of cells, smoothed: the middles of its sides are moved between
+/// those beside them, by at most half a cell. Closed lines stay closed, the ends of others
 /// stay in place.
 Line smoothed(const Line& steps);
 

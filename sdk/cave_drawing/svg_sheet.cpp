@@ -115,7 +115,8 @@ std::string svg_sheet(const Drawing& drawing, const CaveFacts& facts, const Shee
 
 std::string svg_picture(const Drawing& drawing, double width_mm, double most_mm, const std::string& file) {
   constexpr double kLeft_mm = 10, kBelow_mm = 12, kEdge_mm = 0.5;
-  Frame frame = fitted_frame(extent_of(drawing, file), width_mm - kLeft_mm - kEdge_mm, most_mm - kBelow_mm);
+  Frame frame =
+      fitted_frame(extent_of(drawing, file), width_mm - kLeft_mm - kEdge_mm, most_mm - kBelow_mm - kEdge_mm);
   frame.left_mm = kLeft_mm;
   frame.top_mm = kEdge_mm;
   const double step_m = grid_step_m(frame.scale, kGridLeast_mm), low = frame.top_mm + frame.height_mm;

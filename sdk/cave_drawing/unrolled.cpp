@@ -45,6 +45,17 @@ Vec3 heading_from(const std::vector<Vec3>& line, std::size_t i) {
   return Vec3::UnitX();
 }
 
+/// Without the zigzag of places that lie now on this side of a shaft and now on that: along it a profile
+/// would grow wider and wider. Its ends stay.
+std::vector<Vec3> without_zigzag(std::vector<Vec3> line) {
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<Vec3> before = line;
+    for (std::size_t i = 1; i + 1 < line.size(); ++i)
+      line[i] = 0.25 * before[i - 1] + 0.5 * before[i] + 0.25 * before[i + 1];
+  }
+  return line;
+}
+
 struct StripLine {
   std::vector<StripPoint> points;
   std::vector<double> place_s_m;  // of the strip's places
@@ -74,19 +85,20 @@ StripLine sampled(const core::VoxelMap& map, const PassageLines& lines, const Pa
     line.insert(line.begin(), to_wall(line.front(), -first_heading));
     width_m.insert(width_m.begin(), width_m.front());
   }
+  const std::vector<Vec3> smooth = without_zigzag(line);
   StripLine out;
-  double s = from_wall ? -level(line[1] - line[0]).norm() : 0;
+  double s = from_wall ? -level(smooth[1] - smooth[0]).norm() : 0;
   const double step = 0.5 * map.resolution_m();
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (i >= (from_wall ? 1u : 0u) && out.place_s_m.size() < places) out.place_s_m.push_back(s);
     if (i + 1 == line.size()) break;
-    const Vec3 d = line[i + 1] - line[i];
+    const Vec3 d = smooth[i + 1] - smooth[i];
     const double across = level(d).norm();
     const std::vector<Vec3> way = way_between(map, line[i], line[i + 1], step);
     for (std::size_t k = 0; k < way.size(); ++k) {
       const double t = static_cast<double>(k) / static_cast<double>(way.size() - 1);
       out.points.push_back({way[k], s + t * across, (1 - t) * width_m[i] + t * width_m[i + 1],
-                            heading_from(line, i), std::abs(d.z()) > across});
+                            heading_from(smooth, i), std::abs(d.z()) > across});
     }
     s += across;
   }

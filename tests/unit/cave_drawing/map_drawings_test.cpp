@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "tests/unit/cave_drawing/box_maps.h"
 #include "tests/unit/cave_drawing/drawn_lines.h"
@@ -26,12 +27,14 @@ FlightRecord record_of() {
 }
 
 TEST(MapDrawings, EntranceFindsAndPathAreDrawnWhereTheyAre) {
-  const CaveDrawings drawings = map_drawings(tunnel(), record_of(), {}, "map");
+  const CaveDrawings drawings = map_drawings(tunnel(), record_of(), std::numbers::pi / 2, "map");
   for (const Drawing* d : {&drawings.plan, &drawings.extended, &drawings.projected}) {
     EXPECT_EQ(test::count_of(*d, Mark::Kind::entrance), 1);
     EXPECT_EQ(test::count_of(*d, Mark::Kind::find), 1);
     for (const Mark& m : d->marks)
-      if (m.kind == Mark::Kind::find) EXPECT_EQ(m.text, "helmet");
+      if (m.kind == Mark::Kind::find) {
+        EXPECT_EQ(m.text, "helmet");
+      }
   }
   for (const Mark& m : drawings.projected.marks)
     if (m.kind == Mark::Kind::find) {
@@ -64,7 +67,9 @@ TEST(MapDrawings, AnEndWithoutAWallIsAskedAboutAndOneAtRockIsNot) {
   ASSERT_EQ(test::count_of(drawings.plan, Mark::Kind::unknown_end), 1);
   EXPECT_EQ(test::count_of(drawings.extended, Mark::Kind::unknown_end), 1);
   for (const Mark& m : drawings.plan.marks)
-    if (m.kind == Mark::Kind::unknown_end) EXPECT_NEAR(m.at.x(), 40, 0.5) << "where it is lost sight of";
+    if (m.kind == Mark::Kind::unknown_end) {
+      EXPECT_NEAR(m.at.x(), 40, 0.5) << "where it is lost sight of";
+    }
 }
 
 TEST(MapDrawings, AMapAloneHasNoEntrance) {

@@ -27,7 +27,9 @@ TEST(SurveyDrawings, APassageIsAsWideAndAsHighAsItsSections) {
   EXPECT_NEAR(drawings.facts.length_m.value_or(0), 40, 1e-9);
   EXPECT_FALSE(drawings.facts.volume_m3);
   for (const Mark& m : drawings.plan.marks)
-    if (m.kind == Mark::Kind::station) EXPECT_EQ(m.text.find('.'), std::string::npos) << m.text;
+    if (m.kind == Mark::Kind::station) {
+      EXPECT_EQ(m.text.find('.'), std::string::npos) << m.text;
+    }
 }
 
 /// East for 10 m, then north for 10 m, then down 5 m.
@@ -89,8 +91,12 @@ TEST(SurveyDrawings, HeightsAndLengthsCountFromTheEntrance) {
   made.survey.stations[0].continuation = true;
   const CaveDrawings drawings = survey_drawings(made.survey, {}, "cave.svx");
   for (const Mark& m : drawings.extended.marks) {
-    if (m.kind == Mark::Kind::entrance) EXPECT_EQ(m.at, Point(0, 0));
-    if (m.kind == Mark::Kind::unknown_end) EXPECT_EQ(m.at, Point(20, 5));
+    if (m.kind == Mark::Kind::entrance) {
+      EXPECT_EQ(m.at, Point(0, 0));
+    }
+    if (m.kind == Mark::Kind::unknown_end) {
+      EXPECT_EQ(m.at, Point(20, 5));
+    }
   }
   EXPECT_EQ(test::count_of(drawings.plan, Mark::Kind::unknown_end), 1);
   EXPECT_NEAR(drawings.facts.depth_m.value_or(0), 5, 1e-9);

@@ -100,8 +100,8 @@ TEST(SvgSheet, TheScaleBarIsAsLongAsTheScaleSays) {
     });
     EXPECT_GT(bar_m, 0);
     EXPECT_NEAR(bar_mm, bar_m * 1000 / scale, 0.01);
-    EXPECT_EQ(said(svg, "width"), "420mm") << "or 297 if it were upright";
-    EXPECT_EQ(said(svg, "viewBox"), "0 0 420 297") << "a unit is a millimetre";
+    EXPECT_EQ(said(svg, "width"), "297mm");
+    EXPECT_EQ(said(svg, "viewBox"), "0 0 297 420") << "a unit is a millimetre";
   }
 }
 
