@@ -13,8 +13,10 @@
 namespace karst::cave_drawing {
 namespace {
 
-constexpr double kWall_mm = 0.45, kHidden_mm = 0.25, kLeg_mm = 0.2, kPath_mm = 0.13, kGrid_mm = 0.1;
-constexpr double kFine_mm = 0.05;  // lines are simplified by no more on paper
+constexpr double kWall_mm = 0.45, kThinWall_mm = 0.2, kHidden_mm = 0.25, kLeg_mm = 0.2, kPath_mm = 0.13,
+                 kGrid_mm = 0.1;
+constexpr double kSmallScale = 2500;  // beyond, walls are thinner, and stations have no room
+constexpr double kFine_mm = 0.05;     // lines are simplified by no more on paper
 constexpr double kName_mm = 2.4, kNumber_mm = 2.2;
 
 std::string path_of(const Line& line, const Frame& frame) {
@@ -37,7 +39,7 @@ std::string lines_of(const char* name, const std::vector<Line>& lines, const Fra
 }
 
 std::string number_text(double v) {
-  const std::string digits = core::format_text("%g", std::abs(v));
+  const std::string digits = core::format_text("%.0f", std::abs(v));
   return v < 0 ? "\u2212" + digits : digits;
 }
 
@@ -87,7 +89,7 @@ std::string marks_of(const Drawing& drawing, const Frame& frame) {
   }
   for (const Mark::Kind kind : {entrance, find, height, station})
     for (const Mark& m : drawing.marks) {
-      if (m.kind != kind) continue;
+      if (m.kind != kind || (kind == station && frame.scale > kSmallScale)) continue;
       const Point at = frame.at(m.at);
       const bool must = kind == entrance || kind == find;
       const double size = kind == height || kind == station ? kNumber_mm : kName_mm;
@@ -157,7 +159,8 @@ std::string inside_frame(const Drawing& drawing, const Frame& frame, double step
   out += lines_of("path", drawing.paths, frame, stroke("#404040", kPath_mm) + round);
   out += lines_of("links", drawing.links, frame, stroke("#404040", kLeg_mm, "0.6 0.9"));
   out += lines_of("legs", drawing.centreline, frame, stroke("#303030", kLeg_mm) + round);
-  out += lines_of("walls", drawing.walls, frame, stroke("#000000", kWall_mm) + round);
+  out += lines_of("walls", drawing.walls, frame,
+                  stroke("#000000", frame.scale > kSmallScale ? kThinWall_mm : kWall_mm) + round);
   return out + marks_of(drawing, frame) +
          box(frame.left_mm, frame.top_mm, frame.width_mm, frame.height_mm,
              " class=\"frame\" fill=\"none\"" + stroke("#000000", 0.25));
