@@ -6,6 +6,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/unit_text.h"
 #include "core_stack/homing/path_home/home.h"
 #include "sdk/selection/figure_words.h"
 
@@ -83,7 +84,7 @@ Section policy_section(const PolicyFacts& p) {
   Section s{"Policy", {{"policy", p.policy + why_named(p)}}};
   std::string parameters;
   for (const auto& [key, value] : p.parameters)
-    parameters += (parameters.empty() ? "" : ", ") + key + " " + selection::unit_text(value);
+    parameters += (parameters.empty() ? "" : ", ") + key + " " + core::unit_text(value);
   if (!parameters.empty()) s.rows.push_back({"parameters", parameters, true});
   if (p.ranking.empty()) return s;
   if (p.own)

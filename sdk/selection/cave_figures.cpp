@@ -9,6 +9,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
+#include "core_stack/common/unit_text.h"
 
 namespace karst::selection {
 namespace {
@@ -92,11 +93,11 @@ std::string to_text(const CaveFigures& figures) {
   for (const FigureDefinition& f : kFigures) {
     const double v = figures.*f.value;
     if (!std::isfinite(v)) continue;
-    const std::string unit_as_printed =
-        f.unit == "m^3" ? "m³  " : std::string(f.unit);  // padded by characters
+    const std::string unit = core::unit_text(f.unit);
+    const int width = unit == f.unit ? 4 : 5;  // in bytes, of which m³ has one more than characters
     std::array<char, 200> line;
-    std::snprintf(line.data(), line.size(), "  %-13s %8.*f %-4s %.*s\n", std::string(f.name).c_str(),
-                  v < 100 ? 2 : 0, v, unit_as_printed.c_str(), static_cast<int>(f.meaning.size()),
+    std::snprintf(line.data(), line.size(), "  %-13s %8.*f %-*s %.*s\n", std::string(f.name).c_str(),
+                  v < 100 ? 2 : 0, v, width, unit.c_str(), static_cast<int>(f.meaning.size()),
                   f.meaning.data());
     out += line.data();
   }

@@ -1,36 +1,17 @@
 #include "sdk/selection/figure_words.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
-#include <utility>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/unit_text.h"
+#include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 
 namespace karst::selection {
-namespace {
-
-constexpr std::array kMetricWords{
-    std::pair<std::string_view, std::string_view>{"coverage_auc", "mean coverage over the time allowed"},
-    std::pair<std::string_view, std::string_view>{"coverage", "coverage at the end"},
-    std::pair<std::string_view, std::string_view>{"restricted_t50_s", "time to 50 % coverage"},
-    std::pair<std::string_view, std::string_view>{"restricted_t90_s", "time to 90 % coverage"},
-    std::pair<std::string_view, std::string_view>{"completed", "flights that ended as planned"},
-    std::pair<std::string_view, std::string_view>{"contacts", "contacts with rock in a flight"},
-    std::pair<std::string_view, std::string_view>{"explored_volume_m3", "explored volume"},
-    std::pair<std::string_view, std::string_view>{"exploring_speed_mps", "mean speed while exploring"},
-    std::pair<std::string_view, std::string_view>{"path_length_m", "path length"},
-    std::pair<std::string_view, std::string_view>{"energy_wh", "energy"}};
-
-}  // namespace
-
 std::string metric_words(const std::string& metric) {
-  const auto* const found = std::find_if(kMetricWords.begin(), kMetricWords.end(),
-                                         [&](const auto& words) { return words.first == metric; });
-  return found == kMetricWords.end() ? metric : std::string(found->second);
+  const int i = evaluation::metric_index(metric);
+  return i < 0 ? metric : campaign::subject_of(evaluation::metric_definitions()[static_cast<std::size_t>(i)]);
 }
 
 std::string plain_number(double value) {
@@ -51,21 +32,14 @@ std::string metric_value_text(const std::string& metric, double value) {
   const int i = evaluation::metric_index(metric);
   if (i < 0) return plain_number(value);
   const evaluation::MetricDefinition& m = evaluation::metric_definitions()[static_cast<std::size_t>(i)];
-  if (m.unit.empty() && m.most == 1) return core::format_text("%.0f %%", 100 * value);
-  return plain_number(value) + (m.unit.empty() ? "" : " " + unit_text(std::string(m.unit)));
+  if (campaign::is_fraction(m)) return core::format_text("%.0f %%", 100 * value);
+  return plain_number(value) + (m.unit.empty() ? "" : " " + core::unit_text(m.unit));
 }
 
 std::string share_text(double share) {
   if (share > 0 && share < 0.01) return "<1 %";
   if (share < 1 && share > 0.99) return ">99 %";
   return core::format_text("%.0f %%", 100 * share);
-}
-
-std::string unit_text(std::string text) {
-  static constexpr std::string_view kCubicMetres = "m^3";
-  for (std::size_t at = text.find(kCubicMetres); at != std::string::npos; at = text.find(kCubicMetres, at))
-    text.replace(at, kCubicMetres.size(), "m³");
-  return text;
 }
 
 }  // namespace karst::selection

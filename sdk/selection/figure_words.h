@@ -4,7 +4,7 @@
 
 namespace karst::selection {
 
-/// "mean coverage over the time allowed" for coverage_auc; the name itself if there are no words for it.
+/// "coverage averaged over the flight" for coverage_auc; the name itself if there are no words for it.
 std::string metric_words(const std::string& metric);
 
 /// "72 %" of a share, "1440 m³", "20.7 Wh", "65 s".
@@ -18,8 +18,5 @@ std::string rounded_number(double value);
 
 /// A share as a percentage that is 0 or 100 only if the share is: "72 %", "<1 %", ">99 %".
 std::string share_text(double share);
-
-/// Units of files as people write them: m³ for m^3.
-std::string unit_text(std::string text);
 
 }  // namespace karst::selection

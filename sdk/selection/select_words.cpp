@@ -6,6 +6,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/unit_text.h"
 #include "sdk/selection/figure_words.h"
 
 namespace karst::selection {
@@ -29,7 +30,7 @@ std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave
       low = std::min(low, x);
       high = std::max(high, x);
     }
-  const std::string unit = f.unit.empty() ? "" : " " + unit_text(std::string(f.unit));
+  const std::string unit = f.unit.empty() ? "" : " " + core::unit_text(f.unit);
   const auto text = [&unit](double x) { return rounded_number(x) + unit; };
   return format_text(
              "nothing like this cave was flown: the nearest, %s, is at distance %.2f, and caves farther than "

@@ -8,6 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/unit_text.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/figure_words.h"
@@ -75,7 +76,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
               selection::plain_number(e.caves[n.cave].figures.*far.value).c_str());
   }
   if (s.refused) {
-    print_sentences("No policy is named: " + selection::unit_text(s.reason) + ".");
+    print_sentences("No policy is named: " + core::unit_text(s.reason) + ".");
     return;
   }
   const std::string& metric = args.options.metric;
@@ -87,7 +88,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];
   print_out("Policy: %s\n", first.policy.c_str());
   for (const auto& [key, value] : first.parameters)
-    print_out("  %s = %s\n", key.c_str(), selection::unit_text(value.data()).c_str());
+    print_out("  %s = %s\n", key.c_str(), core::unit_text(value.data()).c_str());
   print_out("%s:\n",
             s.flown ? "Means over its flights there"
                     : "Means over its flights in these caves, weighted, and not scaled to this cave's size");

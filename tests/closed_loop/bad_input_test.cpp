@@ -175,7 +175,8 @@ TEST(BadInput, ARunIsNeverOverwritten) {
   const std::string mesh = written(dir / "box.stl", box_stl(4));
   fs::create_directories(dir / "run");
   written(dir / "run" / "events.jsonl", "precious\n");
-  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {"has files of a flight already (events.jsonl)"});
+  expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"),
+                 {"has files of a flight already (events.jsonl)"});
   EXPECT_EQ(bytes_of(dir / "run" / "events.jsonl"), "precious\n");
 }
 

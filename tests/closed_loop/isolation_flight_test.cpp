@@ -73,7 +73,7 @@ TEST(CrashInFlight, IsSaidOnTheTerminalAlthoughThePolicyFliesOn) {
   const std::string plugin = std::string(KARST_BINARY_DIR) + "/tests/plugins/remembering.so";
   std::string said;
   const auto run =
-      fly("remembering_said", "--policy plain --record-requests --plugin " + plugin + kInChild, 25, &said);
+      fly("remembering_said", "--policy plain --record-requests --plugin " + plugin + kInChild, 45, &said);
   EXPECT_NE(said.find("karst: plain crashed at "), std::string::npos) << said;
   EXPECT_NE(said.find(" s in decide(), request 3 (SIGSEGV), and was started once more\n"), std::string::npos)
       << said;
@@ -83,7 +83,7 @@ TEST(CrashInFlight, IsSaidOnTheTerminalAlthoughThePolicyFliesOn) {
   EXPECT_NE(said.find("; the policy crashed and was started once more\n"), std::string::npos) << said;
   const Output table = run_karst("table " + run.string());
   EXPECT_NE(table.text.find("the policy crashed and was started once more"), std::string::npos) << table.text;
-  fly("remembering_unrecorded", "--policy plain --plugin " + plugin + kInChild, 25, &said);
+  fly("remembering_unrecorded", "--policy plain --plugin " + plugin + kInChild, 45, &said);
   EXPECT_NE(said.find("karst: to repeat this in a debugger, fly with --record-requests\n"), std::string::npos)
       << said;
 }

@@ -54,7 +54,8 @@ TEST(PolicyAuto, IsSettledBeforeTakeOffRecordedAndReplayedWithoutIt) {
   EXPECT_NE(mission.find("goals 4"), std::string::npos);
   EXPECT_EQ(mission.find("name auto"), std::string::npos);
   EXPECT_NE(events.find("\"kind\":\"selection\""), std::string::npos);
-  EXPECT_NE(events.find("ratio is expected to do best in coverage_auc"), std::string::npos);
+  EXPECT_NE(events.find("ratio did best in coverage averaged over the flight (coverage_auc)"),
+            std::string::npos);
   fs::remove(dir / "experience.info");  // what was selected by is no longer there: the run stands by itself
   const Output again =
       run_karst("fly " + first + "/mission.info --threads 1 --no-report --quiet --out " + second);
@@ -92,7 +93,8 @@ TEST(PolicyAuto, SaysOnTheTerminalWhatItChoseAndWhy) {
   const Output said = run_karst(fly + resolved);
   ASSERT_EQ(said.code, 0) << said.text;
   EXPECT_TRUE(
-      said.says("policy auto: unknown_ratio with goals=4\n  ratio is expected to do best in coverage_auc"))
+      said.says("policy auto: unknown_ratio with goals=4\n  ratio did best in coverage averaged over "
+                "the flight (coverage_auc)"))
       << said.text;
   for (const char* without : {" --quiet", " --json"}) {
     const Output silent = run_karst(fly + (dir / "again.info").string() + without);

@@ -3,13 +3,14 @@
 #include <cctype>
 #include <cmath>
 
+#include "core_stack/common/unit_text.h"
 #include "sdk/campaign/verdict/figure_words.h"
 
 namespace karst::campaign {
 
 PrintedFigure printed_figure(int metric) {
   const auto& figure = evaluation::metric_definitions()[static_cast<std::size_t>(metric)];
-  const std::string subject = subject_of(figure), unit(figure.unit == "m^3" ? "m\u00B3" : figure.unit);
+  const std::string subject = subject_of(figure), unit = core::unit_text(figure.unit);
   PrintedFigure printed{subject, subject, unit, unit, 1, figure.better};
   if (subject.find('_') == std::string::npos)  // a key has no capital
     printed.heading.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(subject.front())));

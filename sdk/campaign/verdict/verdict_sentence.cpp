@@ -6,6 +6,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/unit_text.h"
 #include "sdk/campaign/verdict/figure_words.h"
 #include "sdk/campaign/verdict/verdict_parts.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
@@ -24,7 +25,7 @@ const MetricDefinition& definition(int metric) {
 
 std::string unit_of(const MetricDefinition& d) {
   if (is_fraction(d)) return " points";
-  return d.unit == "m^3" ? " m\u00B3" : d.unit.empty() ? "" : " " + std::string(d.unit);
+  return d.unit.empty() ? "" : " " + core::unit_text(d.unit);
 }
 
 /// Uses as many decimals as two significant digits of `scale` need.

@@ -8,6 +8,7 @@
 #include "core_stack/common/counted.h"
 #include "core_stack/common/decimal_text.h"
 #include "core_stack/common/shell_word.h"
+#include "core_stack/common/unit_text.h"
 
 namespace karst::core {
 namespace {
@@ -36,6 +37,12 @@ TEST(DecimalText, ZeroHasNoSign) {
   EXPECT_EQ(decimal_text(-10.0, 1), "-10.0");
   EXPECT_EQ(decimal_text(-HUGE_VAL, 1), "-inf");
   EXPECT_EQ(decimal_text(Vec3(-0.001, -0.3, 1.22), 2), "0.00 -0.30 1.22");
+}
+
+TEST(UnitText, WritesCubicMetresAsPeopleDo) {
+  EXPECT_EQ(unit_text("even_volume 10 m^3, 2 m^3"), "even_volume 10 m\u00B3, 2 m\u00B3");
+  EXPECT_EQ(unit_text("m^2, m/s"), "m^2, m/s");
+  EXPECT_EQ(unit_text(""), "");
 }
 
 TEST(Grouped, HasACommaBeforeEachThreeDigits) {

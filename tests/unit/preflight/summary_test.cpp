@@ -55,7 +55,7 @@ TEST(PreflightWords, SayWhatIsKnownOfTheMission) {
        "policy               deep_cave, selected for this cave\n",
        "confidence           first in 80 % of 1000 resamplings", "70 %, 90 % interval 60 % to 80 %",
        "95 % of the reachable volume, 1900 m³, landed after 6:40 min",
-       "ranked by            mean coverage over the time allowed (coverage_auc), in flights of at most 480 s",
+       "ranked by            coverage averaged over the flight (coverage_auc), in flights of at most 480 s",
        "runner-up            nearest, 60 %", "2000 m³, by which coverage is measured",
        "210 m in all; the widest ball that fits has a diameter of 2.4 m", "wall to wall         4.0 m wide",
        "1.00 2.00 1.50, 1.2 m from rock", "hull 0.60 m wide, flies where passages are 1.10 m wide",

@@ -107,15 +107,14 @@ TEST(PreflightVerdict, WatchesForAnUncertainChoice) {
 }
 
 TEST(PreflightVerdict, WatchesForANamedPolicyThatIsNotTheBest) {
-  expect_watch(
-      only_with([](Preflight& p) {
-        p.policy->selected = false;
-        p.policy->policy = "nearest_frontier";
-        p.policy->own = 1;
-        p.policy->confidence = 0.1;  // of no interest: it was named
-      }),
-      Subject::policy,
-      "deep_cave is expected to do better in mean coverage over the time allowed: 70 %, against 60 %");
+  expect_watch(only_with([](Preflight& p) {
+                 p.policy->selected = false;
+                 p.policy->policy = "nearest_frontier";
+                 p.policy->own = 1;
+                 p.policy->confidence = 0.1;  // of no interest: it was named
+               }),
+               Subject::policy,
+               "deep_cave is expected to do better in coverage averaged over the flight: 70 %, against 60 %");
 }
 
 TEST(PreflightVerdict, WatchesForANamedPolicyOfWhichNothingIsKnown) {

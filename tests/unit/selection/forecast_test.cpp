@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "sdk/selection/figure_words.h"
 #include "sdk/selection/select_words.h"
 #include "tests/unit/selection/experiences.h"
 
@@ -108,42 +107,6 @@ TEST(Forecast, WithoutFlightsNothingIsExpected) {
   Experience e = one_cave();
   for (Fared& f : e.fared) f = {};
   EXPECT_TRUE(std::isnan(forecast(e, cave_of(200), by_that_cave(), 0, flight_of(300)).coverage));
-}
-
-TEST(FigureWords, SharesAreWholeOnlyIfTheyAre) {
-  EXPECT_EQ(share_text(0.999), ">99 %");
-  EXPECT_EQ(share_text(0.9999999), ">99 %");
-  EXPECT_EQ(share_text(1), "100 %");
-  EXPECT_EQ(share_text(0.724), "72 %");
-  EXPECT_EQ(share_text(0.004), "<1 %");
-  EXPECT_EQ(share_text(0), "0 %");
-}
-
-TEST(FigureWords, ValuesHaveSensibleDigitsAndUnits) {
-  EXPECT_EQ(metric_value_text("coverage_auc", 0.722), "72 %");
-  EXPECT_EQ(metric_value_text("explored_volume_m3", 1440.3), "1440 m³");
-  EXPECT_EQ(metric_value_text("energy_wh", 20.66), "20.7 Wh");
-  EXPECT_EQ(metric_value_text("contacts", 0), "0");
-  EXPECT_EQ(metric_words("coverage_auc"), "mean coverage over the time allowed");
-  EXPECT_EQ(metric_words("depth_m"), "depth_m");
-  EXPECT_EQ(unit_text("even_volume 10 m^3, 2 m^3"), "even_volume 10 m³, 2 m³");
-}
-
-// A volume was "5.2e+03 m³".
-TEST(FigureWords, RoundedNumbersHaveThreeDigitsAndNoPowerOfTen) {
-  EXPECT_EQ(rounded_number(0.5432), "0.543");
-  EXPECT_EQ(rounded_number(80), "80");
-  EXPECT_EQ(rounded_number(999.4), "999");
-  EXPECT_EQ(rounded_number(999.7), "1,000");
-  EXPECT_EQ(rounded_number(5204), "5,200");
-  EXPECT_EQ(rounded_number(-6914), "-6,910");
-  EXPECT_EQ(rounded_number(9996), "10,000");
-  EXPECT_EQ(rounded_number(20349), "20,300");
-  EXPECT_EQ(rounded_number(1234567), "1,230,000");
-}
-
-TEST(FigureWords, EveryLearnedMetricHasWords) {
-  for (const std::string& metric : learned_metrics()) EXPECT_NE(metric_words(metric), metric);
 }
 
 // "confidence 100 %" stood beside intervals that overlapped.

@@ -6,32 +6,28 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/selection/cave_facts.h"
 #include "tests/unit/evaluation/reachable/boxes.h"
+#include "tests/unit/tools/captured_output.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using karst::core::InputError;
 
-/// What the command writes to standard output.
-std::string run(std::vector<std::string> words) {
+karst::test::CapturedOutput run_both(std::vector<std::string> words) {
   CLI::App app{"karst", "karst"};
   app.require_subcommand(1);
   karst::tools::add_cave_command(app);
-  std::reverse(words.begin(), words.end());
-  testing::internal::CaptureStdout();
-  try {
-    app.parse(words);
-  } catch (...) {
-    testing::internal::GetCapturedStdout();
-    throw;
-  }
-  return testing::internal::GetCapturedStdout();
+  return karst::test::captured_output(app, std::move(words));
 }
+
+/// What the command writes to standard output.
+std::string run(std::vector<std::string> words) { return run_both(std::move(words)).out; }
 
 fs::path fresh_folder() {
   const fs::path folder =
@@ -324,9 +320,8 @@ TEST(CaveCommand, APointCloudIsSentToFromCloud) {
 
 TEST(CaveCommand, GenerateWithQuietPrintsNothing) {
   const std::string stem = (fresh_folder() / "demo").string();
-  testing::internal::CaptureStderr();
-  EXPECT_EQ(run(with({"cave", "generate", "--quiet", "--out", stem}, kQuick)), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  const auto [out, err] = run_both(with({"cave", "generate", "--quiet", "--out", stem}, kQuick));
+  EXPECT_EQ(out + err, "");
   EXPECT_TRUE(fs::exists(stem + ".info") && fs::exists(stem + ".ply"));
 }
 

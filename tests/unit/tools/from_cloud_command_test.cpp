@@ -7,11 +7,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/from_cloud_command.h"
 #include "tests/unit/cave_from_cloud/scans.h"
+#include "tests/unit/tools/captured_output.h"
 
 namespace karst::tools {
 namespace {
@@ -22,18 +24,7 @@ using test::error_of;
 std::string run(std::vector<std::string> words) {
   CLI::App app{"karst", "karst"};
   add_from_cloud_command(add_cave_command(app));
-  std::reverse(words.begin(), words.end());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  try {
-    app.parse(words);
-  } catch (...) {
-    testing::internal::GetCapturedStdout();
-    testing::internal::GetCapturedStderr();
-    throw;
-  }
-  testing::internal::GetCapturedStderr();
-  return testing::internal::GetCapturedStdout();
+  return test::captured_output(app, std::move(words)).out;
 }
 
 class FromCloudCommand : public testing::Test {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "plugins/simulator/cave/triangle_mesh.h"
@@ -16,6 +17,7 @@
 #include "sdk/tools/evaluate_command.h"
 #include "tests/unit/evaluation/fake_run.h"
 #include "tests/unit/evaluation/reachable/boxes.h"
+#include "tests/unit/tools/captured_output.h"
 
 namespace karst::tools {
 namespace {
@@ -77,15 +79,7 @@ json described(std::vector<std::string> words) {
   add_cave_describe(app);
   words.insert(words.begin(), "describe");
   words.emplace_back("--json");
-  std::reverse(words.begin(), words.end());
-  testing::internal::CaptureStdout();
-  try {
-    app.parse(words);
-  } catch (...) {
-    testing::internal::GetCapturedStdout();
-    throw;
-  }
-  return json::parse(testing::internal::GetCapturedStdout());
+  return json::parse(test::captured_output(app, std::move(words)).out);
 }
 
 TEST(CaveDescribe, ABareMeshIsReadInTheUnitThatIsGiven) {

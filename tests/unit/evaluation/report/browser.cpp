@@ -54,43 +54,11 @@ std::string quoted_page(const std::string& page) {
   return quoted;
 }
 
-/// The page in a frame of 1240 x 900 pixels, and a script that measures it.
-std::string desktop_frame(const std::string& page) {
-  return R"html(<!doctype html><html><head><meta charset="utf-8"><title>desktop</title></head><body>
-<script>
-async function measureFrame(frame) {
-  const page = frame.contentDocument, root = page.documentElement;
-  for (let i = 0; i < 100 && !root.dataset.ready; ++i) await new Promise((go) => setTimeout(go, 20));
-  const cut = [], name = (e) => e.tagName.toLowerCase() + " " + e.textContent.slice(0, 40);
-  for (const e of page.querySelectorAll(".figure, .scroll:has(#robot-table), .card:has(> #pair-table)"))
-    if (e.checkVisibility() && e.scrollWidth > e.clientWidth) cut.push(name(e));
-  for (const e of page.querySelectorAll("th")) {
-    if (!e.checkVisibility() || !e.textContent.trim()) continue;
-    const tops = new Set(), range = page.createRange(), texts = page.createTreeWalker(e, NodeFilter.SHOW_TEXT);
-    while (texts.nextNode()) {
-      range.selectNodeContents(texts.currentNode);
-      for (const r of range.getClientRects()) tops.add(Math.round(r.top));
-    }
-    if (tops.size > e.textContent.trim().split(/[\s-]+/).length) cut.push(name(e));
-  }
-  const p = document.createElement("p");
-  p.id = "cut";
-  p.textContent = cut.join("; ");
-  document.body.append(p);
-  if (root.dataset.errors) document.documentElement.dataset.errors = root.dataset.errors;
-  document.documentElement.dataset.ready = root.dataset.ready || "no";
-  frame.remove();
-}
-</script>
-<iframe onload="measureFrame(this)" style="border: 0; width: 1240px; height: 900px" srcdoc=")html" +
-         quoted_page(page) + R"html("></iframe></body></html>
-)html";
-}
-
-/// The page in a frame of a phone's size, which chromium's own window cannot have, and a script that measures
-/// it. The frame's document stands in an attribute: a page from a file may not look into another one.
-std::string phone_frame(const std::string& page) {
-  return R"html(<!doctype html><html><head><meta charset="utf-8"><title>phone</title></head><body>
+/// The page in a frame of width x height pixels, and a script that runs `measure` once the page is ready,
+/// with `page`, its document, `root`, that document's element, and put(id, texts), which writes down what it
+/// found. The frame's document stands in an attribute: a page from a file may not look into another one.
+std::string measured_frame(const std::string& page, int width, int height, const std::string& measure) {
+  return R"html(<!doctype html><html><head><meta charset="utf-8"><title>frame</title></head><body>
 <script>
 async function measureFrame(frame) {
   const page = frame.contentDocument, root = page.documentElement;
@@ -102,6 +70,41 @@ async function measureFrame(frame) {
     document.body.append(p);
   };
   const name = (e) => e.tagName.toLowerCase() + (e.id ? "#" + e.id : e.className ? "." + e.className : "");
+)html" + measure +
+         R"html(
+  if (root.dataset.errors) document.documentElement.dataset.errors = root.dataset.errors;
+  document.documentElement.dataset.ready = root.dataset.ready || "no";
+  frame.remove();
+}
+</script>
+<iframe onload="measureFrame(this)" style="border: 0; width: )html" +
+         std::to_string(width) + "px; height: " + std::to_string(height) + R"html(px" srcdoc=")html" +
+         quoted_page(page) + R"html("></iframe></body></html>
+)html";
+}
+
+/// What is cut off, or broken within a word, in a window of 1240 x 900 pixels.
+std::string desktop_frame(const std::string& page) {
+  return measured_frame(page, 1240, 900, R"html(
+  const cut = [], told = (e) => e.tagName.toLowerCase() + " " + e.textContent.slice(0, 40);
+  for (const e of page.querySelectorAll(".figure, .scroll:has(#robot-table), .card:has(> #pair-table)"))
+    if (e.checkVisibility() && e.scrollWidth > e.clientWidth) cut.push(told(e));
+  for (const e of page.querySelectorAll("th")) {
+    if (!e.checkVisibility() || !e.textContent.trim()) continue;
+    const tops = new Set(), range = page.createRange(), texts = page.createTreeWalker(e, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+      range.selectNodeContents(texts.currentNode);
+      for (const r of range.getClientRects()) tops.add(Math.round(r.top));
+    }
+    if (tops.size > e.textContent.trim().split(/[\s-]+/).length) cut.push(told(e));
+  }
+  put("cut", cut);)html");
+}
+
+/// What is too wide, and what too small for a thumb, on a phone, whose size chromium's own window cannot
+/// have.
+std::string phone_frame(const std::string& page) {
+  return measured_frame(page, 360, 740, R"html(
   const size = (e) => { const r = e.getBoundingClientRect(); return name(e) + " " + r.width + " x " + r.height; };
   const wide = [], small = [];
   const measure = () => {
@@ -118,15 +121,7 @@ async function measureFrame(frame) {
   for (const d of page.querySelectorAll("details")) d.open = true;
   measure();
   put("wide", wide);
-  put("small", small);
-  if (root.dataset.errors) document.documentElement.dataset.errors = root.dataset.errors;
-  document.documentElement.dataset.ready = root.dataset.ready || "no";
-  frame.remove();
-}
-</script>
-<iframe onload="measureFrame(this)" style="border: 0; width: 360px; height: 740px" srcdoc=")html" +
-         quoted_page(page) + R"html("></iframe></body></html>
-)html";
+  put("small", small);)html");
 }
 
 std::string text_of(const std::string& dom, const std::string& id) {
