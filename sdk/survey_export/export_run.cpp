@@ -96,7 +96,7 @@ WallMesh write_survey(const RunSurvey& run, const Placing& placing, const std::s
   WallMesh walls = wall_mesh(run.map);
   cave::write_mesh(files[4].string(), walls.mesh);
   evaluation::write_whole_file(files[5], ply_bytes(walls));
-  evaluation::write_whole_file(files[6], las_bytes(wall_points(run, placing)));
+  evaluation::write_whole_file(files[6], las_bytes(wall_points(run, placing), files[6].string()));
   return walls;
 }
 

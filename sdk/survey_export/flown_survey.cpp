@@ -181,6 +181,7 @@ std::string survey_name(const std::string& text) {
     const bool letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
     name += letter ? c : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : '_';
   }
+  if (name.starts_with('-')) name[0] = '_';  // no keyword of Therion begins with it
   return name.empty() ? "cave" : name;
 }
 

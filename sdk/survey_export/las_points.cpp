@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 
+#include "core_stack/common/error.h"
 #include "sdk/survey_export/little_endian.h"
 
 namespace karst::survey_export {
@@ -20,9 +20,13 @@ void put_text(std::string& bytes, std::string text, std::size_t size) {
   bytes += text;
 }
 
+std::int32_t steps(double v_m, double offset_m) {
+  return static_cast<std::int32_t>(std::lround((v_m - offset_m) / kScale_m));
+}
+
 }  // namespace
 
-std::string las_bytes(std::span<const Vec3> points) {
+std::string las_bytes(std::span<const Vec3> points, const std::string& file) {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
     low = i == 0 ? points[i] : Vec3(low.cwiseMin(points[i]));
@@ -31,7 +35,7 @@ std::string las_bytes(std::span<const Vec3> points) {
   const Vec3 offset = low.array().floor();
   if ((high - offset).maxCoeff() > kScale_m * std::numeric_limits<std::int32_t>::max() ||
       points.size() > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("too many points, or too far apart, for LAS 1.2");
+    throw core::InputError(file, "", "too many points, or too far apart, for LAS 1.2");
   const auto count = static_cast<std::uint32_t>(points.size());
   std::string bytes;
   bytes.reserve(kHeaderBytes + std::size_t{kRecordBytes} * points.size());
@@ -54,12 +58,11 @@ std::string las_bytes(std::span<const Vec3> points) {
   for (int axis = 0; axis < 3; ++axis) put(bytes, kScale_m);
   for (int axis = 0; axis < 3; ++axis) put(bytes, offset[axis]);
   for (int axis = 0; axis < 3; ++axis) {
-    put(bytes, high[axis]);
-    put(bytes, low[axis]);
+    put(bytes, offset[axis] + kScale_m * steps(high[axis], offset[axis]));  // as the points have it
+    put(bytes, offset[axis] + kScale_m * steps(low[axis], offset[axis]));
   }
   for (const Vec3& p : points) {
-    for (int axis = 0; axis < 3; ++axis)
-      put(bytes, static_cast<std::int32_t>(std::lround((p[axis] - offset[axis]) / kScale_m)));
+    for (int axis = 0; axis < 3; ++axis) put(bytes, steps(p[axis], offset[axis]));
     put(bytes, std::uint16_t{0});      // intensity
     put(bytes, std::uint8_t{0b1001});  // the first of one return
     put(bytes, std::uint8_t{1});       // unclassified

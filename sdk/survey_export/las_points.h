@@ -9,7 +9,7 @@ namespace karst::survey_export {
 
 /// The file's bytes. Coordinates are in millimetres from the whole metre below the least one of each axis, so
 /// that those of a national grid keep their millimetres. No date: the same flight gives the same bytes.
-/// Throws std::length_error if the points span more than two thousand kilometres.
-std::string las_bytes(std::span<const core::Vec3> points);
+/// Throws core::InputError that names `file` if the points span more than two thousand kilometres.
+std::string las_bytes(std::span<const core::Vec3> points, const std::string& file);
 
 }  // namespace karst::survey_export

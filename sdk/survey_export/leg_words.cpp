@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/printable.h"
 
 namespace karst::survey_export {
 namespace {
@@ -57,8 +58,7 @@ std::string accuracy_words(const Accuracy& a) {
 
 std::string title_words(const std::string& title) {
   std::string text;
-  for (const char c : title)
-    text += static_cast<unsigned char>(c) < 0x20 || c == '"' || c == '\x7f' ? ' ' : c;
+  for (const char c : core::printable(title)) text += c == '\n' || c == '\t' || c == '"' ? ' ' : c;
   return text;
 }
 

@@ -22,7 +22,7 @@ struct LegDeviations {
 LegDeviations deviations_of(const FlownSurvey& flown, std::size_t leg);
 /// What was assumed for the accuracy, in a sentence.
 std::string accuracy_words(const Accuracy& accuracy);
-/// In one line, without quotes and control characters.
+/// In one line of UTF-8, without quotes and control characters: Therion reads no file with other bytes.
 std::string title_words(const std::string& title);
 
 }  // namespace karst::survey_export

@@ -10,6 +10,7 @@
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
+#include "core_stack/common/printable.h"
 #include "core_stack/common/rounded.h"
 #include "plugins/simulator/cave/cave_blocks.h"
 #include "sdk/survey_export/export_run.h"
@@ -44,14 +45,22 @@ survey_export::Placing placing_of(const ExportArguments& args) {
   return placing;
 }
 
+/// The files name each other, and Therion reads neither quotes in such a name nor bytes that are no UTF-8.
+void check_name(const ExportArguments& args) {
+  const std::string name = fs::path(args.out).filename().string();
+  if (name.empty())
+    throw InputError("command line", "--survey", "expected a path without ending, got a folder: " + args.out);
+  if (name.find_first_of("\"\n\t") != std::string::npos || core::printable(name) != name)
+    throw InputError("command line", "--survey",
+                     "expected a name in UTF-8 without quotes and control characters, got " + args.out);
+}
+
 /// Makes the folder of the files, and refuses to overwrite them.
 void check_out(const ExportArguments& args) {
   const fs::path parent = fs::path(args.out).parent_path();
   std::error_code error;
   if (!parent.empty()) fs::create_directories(parent, error);
   if (error) throw InputError(parent.string(), "", "cannot be made: " + error.message());
-  if (fs::path(args.out).filename().empty())
-    throw InputError("command line", "--survey", "expected a path without ending, got a folder: " + args.out);
   for (const fs::path& file : survey_export::survey_files(args.out))
     if (fs::exists(file) && !args.force)
       throw InputError(file.string(), "", "is there already; choose another --survey, or give --force");
@@ -123,6 +132,7 @@ void print(const RunSurvey& run, const WallMesh& walls, const ExportArguments& a
 
 void export_survey(const ExportArguments& args) {
   const survey_export::Placing placing = placing_of(args);
+  check_name(args);
   const RunSurvey run = survey_export::survey_of_run(args.run, fs::path(args.out).filename().string());
   check_out(args);
   const WallMesh walls = survey_export::write_survey(run, placing, args.out);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
@@ -26,6 +28,11 @@ std::string error_of(const F& f) {
   return "";
 }
 bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 std::string tum(const std::vector<Vec3>& way) {
   std::string text;
@@ -65,7 +72,13 @@ TEST_F(ExportRun, WritesAllFilesTheSameEachTime) {
   EXPECT_GT(walls.mesh.triangles.size(), 1000u);
   const std::vector<std::filesystem::path> files = survey_files(out);
   EXPECT_EQ(files.size(), 7u);
-  for (const auto& file : files) EXPECT_GT(std::filesystem::file_size(file), 100u) << file;
+  std::filesystem::create_directory(folder_.path() / "again");
+  const std::string again = (folder_.path() / "again" / "My Cave").string();
+  write_survey(survey_of_run(folder_.path(), "My Cave"), {}, again);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    EXPECT_GT(std::filesystem::file_size(files[i]), 100u) << files[i];
+    EXPECT_TRUE(bytes_of(files[i]) == bytes_of(survey_files(again)[i])) << files[i];
+  }
 }
 
 TEST_F(ExportRun, WithoutARecordOfTheLocalizationOnlyTheCellsCount) {

@@ -219,6 +219,7 @@ TEST(FlownSurvey, AMapWithoutAPassageAtTheStartIsRefused) {
 TEST(FlownSurvey, ASurveysNameHasOnlyWhatSurvexAndTherionTake) {
   EXPECT_EQ(survey_name("My Cave.2"), "my_cave_2");
   EXPECT_EQ(survey_name(""), "cave");
+  EXPECT_EQ(survey_name("-x-"), "_x-") << "Therion: invalid keyword -- -x";
 }
 
 }  // namespace

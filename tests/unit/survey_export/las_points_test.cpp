@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
+#include <array>
+#include <cstring>
+#include <string>
 #include <vector>
 
+#include "core_stack/common/error.h"
 #include "sdk/cave_from_cloud/las_file.h"
 #include "tests/unit/replay/folder.h"
 
@@ -32,14 +35,14 @@ TEST(LasPoints, AreReadAgainToTheMillimetre) {
   const std::vector<Vec3> points{{451234.5678, 5078123.4321, 812.001}, {451200.1, 5078000.2, -3.9}};
   const test::Folder folder;
   ReadPoints read;
-  EXPECT_EQ(from_cloud::read_las(folder.write("p.las", las_bytes(points)), read), 0u);
+  EXPECT_EQ(from_cloud::read_las(folder.write("p.las", las_bytes(points, "p.las")), read), 0u);
   ASSERT_EQ(read.points.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_LT((read.points[i] - points[i]).cwiseAbs().maxCoeff(), 0.00051);
 }
 
 TEST(LasPoints, HaveTheHeaderOfVersion12) {
-  const std::string bytes = las_bytes(std::vector<Vec3>{{1, 2, 3}});
+  const std::string bytes = las_bytes(std::vector<Vec3>{{1, 2, 3}}, "p.las");
   ASSERT_EQ(bytes.size(), 227u + 20u);
   EXPECT_EQ(bytes.substr(0, 4), "LASF");
   EXPECT_EQ(bytes[24], 1);
@@ -50,8 +53,21 @@ TEST(LasPoints, HaveTheHeaderOfVersion12) {
   EXPECT_EQ(bytes[107], 1);                               // number of points
 }
 
+TEST(LasPoints, TheHeadersExtentIsThatOfTheRoundedPoints) {
+  const std::string bytes = las_bytes(std::vector<Vec3>{{1.00049, 2, 3}, {5.00049, 2, 3}}, "p.las");
+  std::array<double, 2> high_low{};
+  std::memcpy(high_low.data(), &bytes[179], sizeof high_low);
+  EXPECT_DOUBLE_EQ(high_low[0], 5.0);
+  EXPECT_DOUBLE_EQ(high_low[1], 1.0);
+}
+
 TEST(LasPoints, TooFarApartAreRefused) {
-  EXPECT_THROW(las_bytes(std::vector<Vec3>{{0, 0, 0}, {3e6, 0, 0}}), std::length_error);
+  try {
+    las_bytes(std::vector<Vec3>{{0, 0, 0}, {3e6, 0, 0}}, "p.las");
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_TRUE(std::string(e.what()).starts_with("p.las: too many points")) << e.what();
+  }
 }
 
 }  // namespace

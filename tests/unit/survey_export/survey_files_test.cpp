@@ -181,6 +181,8 @@ TEST(SurveyText, TitlesCannotBreakTheFiles) {
   flown.survey.title = "a \"b\"\n*fix 1 0 0 0";
   EXPECT_NE(svx_text(flown, {}).find("*title \"a  b  *fix 1 0 0 0\"\n"), std::string::npos);
   EXPECT_NE(therion_text(flown, {}).find("survey cave -title \"a  b  *fix 1 0 0 0\"\n"), std::string::npos);
+  flown.survey.title = "run \xff";  // Therion: invalid UTF-8 string
+  EXPECT_NE(therion_text(flown, {}).find("-title \"run ?\"\n"), std::string::npos);
 }
 
 }  // namespace

@@ -110,5 +110,15 @@ TEST_F(ExportCommand, RefusesWhatItCannotUse) {
                   "cannot be made"));
 }
 
+TEST_F(ExportCommand, ANameThatTherionDoesNotReadIsRefusedBeforeAnythingIsMade) {
+  for (const char* name : {"my \"cave", "two\nlines", "latin \xe9", ""})
+    EXPECT_TRUE(has(error_of([&] {
+                      run({"export", folder_, "--survey", folder_ + "/made/" + name});
+                    }),
+                    "--survey: expected"))
+        << name;
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/made"));
+}
+
 }  // namespace
 }  // namespace karst::tools
