@@ -9,7 +9,7 @@
 namespace karst::cave_drawing {
 namespace {
 
-constexpr std::int64_t kMostCells = 200'000'000;  // 14 km square at half a metre
+constexpr std::int64_t kMostCells = 200'000'000;  // 7 km square at half a metre
 
 }  // namespace
 
@@ -45,25 +45,32 @@ CellMask without_specks(const CellMask& mask, std::size_t least) {
   // A margin of empty cells joins all that is outside.
   CellMask seen("", mask.low_x() - 1, mask.low_y() - 1, mask.high_x() + 1, mask.high_y() + 1);
   CellMask out = mask;
-  std::vector<std::pair<int, int>> piece;
+  std::vector<std::pair<int, int>> wave, next, few;
   for (int y = seen.low_y(); y <= seen.high_y(); ++y)
     for (int x = seen.low_x(); x <= seen.high_x(); ++x) {
       if (seen.at(x, y)) continue;
       const bool full = mask.at(x, y);
-      piece.assign(1, {x, y});
+      wave.assign(1, {x, y});
+      few.clear();
       seen.set(x, y);
-      for (std::size_t i = 0; i < piece.size(); ++i) {
-        const auto [px, py] = piece[i];
-        for (const auto& [dx, dy] : std::array<std::pair<int, int>, 4>{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}}) {
-          const int nx = px + dx, ny = py + dy;
-          if (nx < seen.low_x() || nx > seen.high_x() || ny < seen.low_y() || ny > seen.high_y()) continue;
-          if (seen.at(nx, ny) || mask.at(nx, ny) != full) continue;
-          seen.set(nx, ny);
-          piece.emplace_back(nx, ny);
-        }
+      std::size_t size = 0;
+      // Wave by wave: of all that is outside of a cave, only an edge is held.
+      for (; !wave.empty(); std::swap(wave, next)) {
+        size += wave.size();
+        if (size < least) few.insert(few.end(), wave.begin(), wave.end());
+        next.clear();
+        for (const auto& [px, py] : wave)
+          for (const auto& [dx, dy] :
+               std::array<std::pair<int, int>, 4>{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}}) {
+            const int nx = px + dx, ny = py + dy;
+            if (nx < seen.low_x() || nx > seen.high_x() || ny < seen.low_y() || ny > seen.high_y()) continue;
+            if (seen.at(nx, ny) || mask.at(nx, ny) != full) continue;
+            seen.set(nx, ny);
+            next.emplace_back(nx, ny);
+          }
       }
-      if (piece.size() < least)
-        for (const auto& [px, py] : piece) out.set(px, py, !full);
+      if (size < least)
+        for (const auto& [px, py] : few) out.set(px, py, !full);
     }
   return out;
 }

@@ -78,13 +78,6 @@ const Column* FreeRuns::find(std::int32_t x, std::int32_t y) const {
   return it != columns.end() && it->x == x && it->y == y ? &*it : nullptr;
 }
 
-std::size_t FreeRuns::cells() const {
-  std::size_t n = 0;
-  for (const Column& c : columns)
-    for (const Run& r : c.runs) n += static_cast<std::size_t>(r.high - r.low + 1);
-  return n;
-}
-
 FreeRuns free_runs(const core::VoxelMap& map, const std::string& file) {
   FreeRuns all;
   all.cell_m = map.resolution_m();

@@ -26,7 +26,6 @@ struct FreeRuns {
 
   /// Of the columns; nullptr if the column has no run.
   const Column* find(std::int32_t x, std::int32_t y) const;
-  std::size_t cells() const;
 };
 
 /// The largest connected part of the free cells. Less than half a metre that is not free does not part two

@@ -44,13 +44,14 @@ std::vector<std::string> fact_lines(const CaveFacts& facts) {
 std::string legend_text(const Drawing& drawing, const Frame& frame, double step_m) {
   std::string legend = core::format_text("grid %g m", step_m);
   if (drawing.view == View::plan) legend += ", grid north up";
-  bool heights = drawing.view != View::plan, leads_on = false, joints = false;
+  bool heights = drawing.view != View::plan, from_entrance = false, leads_on = false, joints = false;
   for (const Mark& m : drawing.marks) {
     heights = heights || m.kind == Mark::Kind::height;
+    from_entrance = from_entrance || m.kind == Mark::Kind::entrance;
     leads_on = leads_on || m.kind == Mark::Kind::unknown_end;
     joints = joints || m.kind == Mark::Kind::joint;
   }
-  if (heights) legend += ", heights in metres from the entrance";
+  if (heights) legend += from_entrance ? ", heights in metres from the entrance" : ", heights in metres";
   if (!drawing.hidden_walls.empty()) legend += ", dashed: passage below";
   if (!drawing.paths.empty()) legend += ", thin: flown path";
   if (leads_on) legend += ", ?: leads on";

@@ -108,7 +108,17 @@ StripLine sampled(const core::VoxelMap& map, const PassageLines& lines, const Pa
 
 int cell_of(double v, double cell_m) { return static_cast<int>(std::floor(v / cell_m + 1e-9)); }
 
-void add_run(ProfileCells& cells, int column, const Run& run) { cells[column].push_back(run); }
+/// From below, and one where several touch: a shaft gives a column a run for each of its points.
+std::vector<Run> merged(std::vector<Run> runs) {
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.low < b.low; });
+  std::vector<Run> out;
+  for (const Run& run : runs)
+    if (!out.empty() && run.low <= out.back().high + 1)
+      out.back().high = std::max(out.back().high, run.high);
+    else
+      out.push_back(run);
+  return out;
+}
 
 /// The cells of a strip, with its first place in column 0; heights are those of the map.
 ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& points) {
@@ -120,7 +130,7 @@ ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& 
     const double down = core::free_reach_m(map, at.p, -Vec3::UnitZ());
     constexpr double kRounding = 1e-6;
     const Run run{cell_of(at.p.z() - down + kRounding, cell_m), cell_of(at.p.z() + up - kRounding, cell_m)};
-    add_run(cells, cell_of(at.s_m, cell_m), run);
+    cells[cell_of(at.s_m, cell_m)].push_back(run);
     if (!at.is_steep) continue;
     const double most = std::max(cell_m, at.width_m);
     const double ahead = std::min(most, core::free_reach_m(map, at.p, at.ahead));
@@ -128,8 +138,9 @@ ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& 
     const int z = cell_of(at.p.z(), cell_m);
     for (int x = cell_of(at.s_m - behind + kRounding, cell_m);
          x <= cell_of(at.s_m + ahead - kRounding, cell_m); ++x)
-      add_run(cells, x, {z, z});
+      cells[x].push_back({z, z});
   }
+  for (auto& [x, runs] : cells) runs = merged(std::move(runs));
   // The line may jump over a corner of rock: what is on both sides of it is drawn through.
   std::optional<int> before;
   ProfileCells bridged = cells;

@@ -23,9 +23,14 @@ class SurveyLayout {
 
   UnrolledSurvey laid_out() {
     out_.first = first_station();
-    lay_out_from(out_.first, 0);
+    double right_m = part_from(out_.first).right_m;
     for (std::uint32_t i = 0; i < survey_.stations.size(); ++i)
-      if (!out_.s_m[i] && !legs_at_[i].empty()) lay_out_from(i, farthest_m_ + kBetweenParts_m);
+      if (!out_.s_m[i] && !legs_at_[i].empty()) {
+        const Part part = part_from(i);
+        const double by_m = right_m + kBetweenParts_m - part.left_m;
+        shift(part, by_m);
+        right_m = part.right_m + by_m;
+      }
     for (std::uint32_t l = 0; l < survey_.legs.size(); ++l)
       if (survey_.legs[l].extend == survey::Extend::hide) out_.legs[l].reset();
     return std::move(out_);
@@ -37,6 +42,20 @@ class SurveyLayout {
     double direction = 1;
     survey::Extend extend = survey::Extend::normal;
   };
+
+  /// What hangs together.
+  struct Part {
+    std::vector<std::uint32_t> stations, legs;
+    double left_m = 0, right_m = 0;
+  };
+
+  void shift(const Part& part, double by_m) {
+    for (const std::uint32_t s : part.stations) *out_.s_m[s] += by_m;
+    for (const std::uint32_t l : part.legs) {
+      out_.legs[l]->first += by_m;
+      out_.legs[l]->second += by_m;
+    }
+  }
 
   std::uint32_t first_station() const {
     std::optional<std::uint32_t> fixed, any;
@@ -59,26 +78,30 @@ class SurveyLayout {
     return {direction, leg.extend};
   }
 
-  void lay_out_from(std::uint32_t root, double s_m) {
-    out_.s_m[root] = s_m;
-    farthest_m_ = std::max(farthest_m_, s_m);
-    std::vector<std::uint32_t> open{root};
-    for (std::size_t i = 0; i < open.size(); ++i)
-      for (const std::uint32_t l : legs_at_[open[i]]) {
+  /// Lays a part out with its root at zero.
+  Part part_from(std::uint32_t root) {
+    Part part;
+    part.stations = {root};
+    out_.s_m[root] = 0;
+    for (std::size_t i = 0; i < part.stations.size(); ++i)
+      for (const std::uint32_t l : legs_at_[part.stations[i]]) {
         const survey::Leg& leg = survey_.legs[l];
         if (leg.extend == survey::Extend::ignore || done(l)) continue;
-        const std::uint32_t at = open[i], other = leg.from == at ? leg.to : leg.from;
+        const std::uint32_t at = part.stations[i], other = leg.from == at ? leg.to : leg.from;
         const Going going = after(going_[at], leg, leg.to == at);
         const core::Vec3 d = survey_.stations[other].position_m - survey_.stations[at].position_m;
         const double across = leg.extend == survey::Extend::vertical ? 0 : d.head<2>().norm();
         const double from = *out_.s_m[at], to = from + going.direction * across;
         out_.legs[l] = leg.from == at ? std::pair(from, to) : std::pair(to, from);
-        farthest_m_ = std::max(farthest_m_, to);
+        part.legs.push_back(l);
+        part.left_m = std::min(part.left_m, to);
+        part.right_m = std::max(part.right_m, to);
         if (out_.s_m[other]) continue;  // a loop ends here
         out_.s_m[other] = to;
         going_[other] = going;
-        open.push_back(other);
+        part.stations.push_back(other);
       }
+    return part;
   }
 
   bool done(std::uint32_t leg) const { return out_.legs[leg].has_value(); }
@@ -86,7 +109,6 @@ class SurveyLayout {
   const survey::Survey& survey_;
   std::vector<std::vector<std::uint32_t>> legs_at_;
   std::vector<Going> going_;
-  double farthest_m_ = 0;
   UnrolledSurvey out_;
 };
 

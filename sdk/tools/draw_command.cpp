@@ -9,13 +9,13 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
+#include "plugins/simulator/cave/cave_blocks.h"
 #include "sdk/cave_drawing/map_drawings.h"
 #include "sdk/cave_drawing/run_record.h"
 #include "sdk/cave_drawing/survey_drawings.h"
@@ -54,15 +54,6 @@ double read_scale(const std::string& text) {
   return scale;
 }
 
-core::Vec3 read_entrance(const std::string& text) {
-  std::istringstream in(text);
-  core::Vec3 p;
-  std::string more;
-  if (!(in >> p.x() >> p.y() >> p.z()) || in >> more || !p.allFinite())
-    throw InputError("command line", "--entrance", "expected \"x y z\", got \"" + text + "\"");
-  return p;
-}
-
 std::string map_in(const fs::path& run) {
   if (evaluation::is_team(run) && !fs::exists(run / "map.bt"))
     throw InputError(run.string(), "",
@@ -89,7 +80,8 @@ CaveDrawings drawings_of(const DrawArguments& args) {
     record = cave_drawing::flight_record(source);
   else
     record.name = source.stem().string();
-  if (!args.entrance.empty()) record.entrance = read_entrance(args.entrance);
+  if (!args.entrance.empty())
+    record.entrance = cave::read_vector("command line", "--entrance", args.entrance);
   return cave_drawing::map_drawings(core::read_octomap(file), record, bearing_rad, file);
 }
 
@@ -109,13 +101,14 @@ void write_drawings(const DrawArguments& args) {
   for (const auto* drawing : {&drawings.plan, &drawings.extended, &drawings.projected}) {
     const bool is_empty = drawing->spaces.empty() && drawing->centreline.empty();
     if (is_empty) {
-      print_error("karst: no %s profile: no passage is wide enough for a vehicle\n",
+      print_error("karst: the %s view is left out: no passage is wide enough for it\n",
                   core::name_of(drawing->view));
       continue;
     }
     files.emplace_back(args.out + "." + core::name_of(drawing->view),
                        svg_sheet(*drawing, drawings.facts, sheet, args.source));
   }
+  if (files.empty()) throw InputError(args.source, "", "no passage is wide enough to be drawn");
   for (const auto& [stem, svg] : files)
     for (const char* ending : {".svg", ".pdf"})
       if (!args.force && fs::exists(stem + ending))

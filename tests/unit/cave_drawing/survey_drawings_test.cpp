@@ -85,6 +85,30 @@ TEST(SurveyDrawings, AnIgnoredLegLeadsNowhereAndALoopIsDrawnOnce) {
   EXPECT_DOUBLE_EQ(s_of(loop, 4), 10);
 }
 
+TEST(SurveyDrawings, APartThatGoesToTheLeftDoesNotCoverTheOneBeforeIt) {
+  SurveyMaker made = corner();  // from 0 to 20 m
+  made.station("e", {0, 50, 0});
+  made.station("f", {60, 50, 0});
+  made.leg(4, 5).extend = Extend::left;
+  const UnrolledSurvey unrolled = unrolled_survey(made.survey);
+  EXPECT_DOUBLE_EQ(s_of(unrolled, 5), 30) << "10 m beside the first part";
+  EXPECT_DOUBLE_EQ(s_of(unrolled, 4), 90);
+  ASSERT_TRUE(unrolled.legs[3]);
+  EXPECT_EQ(*unrolled.legs[3], std::pair(90.0, 30.0));
+}
+
+TEST(SurveyDrawings, ACaveOfTenKilometresIsDrawnWithCoarserCells) {
+  SurveyMaker made;
+  for (const core::Vec3& at : {core::Vec3(0, 0, 0), core::Vec3(9000, 8500, 0)}) {
+    const std::uint32_t first = made.station("", at);
+    made.leg(first, made.station("", at + core::Vec3(100, 0, 0)), first);
+    for (const std::uint32_t s : {first, first + 1})
+      made.section(s, core::Vec3::UnitX(), 20, 20, 5, 5, first);
+  }
+  const CaveDrawings drawings = survey_drawings(made.survey, {}, "cave.svx");
+  EXPECT_NEAR(test::area_m2(drawings.plan), 2 * 100 * 40, 500);
+}
+
 TEST(SurveyDrawings, HeightsAndLengthsCountFromTheEntrance) {
   SurveyMaker made = corner();
   made.survey.stations[3].entrance = true;

@@ -115,6 +115,16 @@ TEST(SvgSheet, TheTitleBlockSaysWhatIsKnown) {
     EXPECT_NE(all.find(part), std::string::npos) << part;
 }
 
+TEST(SvgSheet, HeightsOfAMapWithoutAnEntranceAreNotSaidToBeFromIt) {
+  const CaveDrawings with = cross();
+  const CaveDrawings without = map_drawings(test::map_of_boxes({{{0, 0, 0}, {249, 14, 14}}}), {}, {}, "map");
+  for (const auto drawing : {&CaveDrawings::plan, &CaveDrawings::extended, &CaveDrawings::projected}) {
+    EXPECT_NE(svg_sheet(with.*drawing, with.facts, {}, "map").find("from the entrance"), std::string::npos);
+    EXPECT_EQ(svg_sheet(without.*drawing, without.facts, {}, "map").find("from the entrance"),
+              std::string::npos);
+  }
+}
+
 TEST(SvgSheet, OnlyThePlanHasANorthArrowAndTheProjectedProfileItsBearing) {
   const CaveDrawings drawings = cross();
   const auto has = [](const std::string& svg, const char* part) {

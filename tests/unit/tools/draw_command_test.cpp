@@ -108,6 +108,12 @@ TEST_F(DrawCommand, OverwritesOnlyWhenForced) {
   EXPECT_EQ(refusal({run(), "--out", out(), "--force"}), "");
 }
 
+TEST_F(DrawCommand, ACaveOfOneCellInWidthIsRefusedAndNothingIsWritten) {
+  core::write_octomap(test::map_of_boxes({{{0, 0, 0}, {199, 0, 0}}}), (folder_.path() / "map").string());
+  EXPECT_TRUE(has(refusal({run(), "--out", out()}), "no passage is wide enough to be drawn"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "drawings"));
+}
+
 TEST_F(DrawCommand, WhatCannotBeDrawnIsNamed) {
   EXPECT_TRUE(has(refusal({run(), "--out", out()}), "holds no map.bt"));
   folder_.write("team.jsonl", "{}\n");
