@@ -15,21 +15,6 @@ namespace {
 
 constexpr std::uint64_t kMostWork = 40 * core::kMaxPassageWork;  // half a minute: nothing flies meanwhile
 
-/// As find_passages() has it: the frontier at the end is a quarter of the cross-section or more.
-bool ends_without_wall(const std::vector<core::SliceGroup>& groups, std::uint32_t end,
-                       const core::Slices& slices, double cell_m, double band_m) {
-  std::vector<std::uint32_t> last{end};
-  if (!groups[end].next.empty()) last.push_back(groups[end].next.front());
-  double area_m2 = 0, frontier_m2 = 0;
-  for (const std::uint32_t g : last)
-    for (const std::uint32_t s : groups[g].slices) {
-      const core::Slice& slice = slices.slices[s];
-      area_m2 = std::max(area_m2, static_cast<double>(slice.free_cells) * cell_m * cell_m * cell_m / band_m);
-      frontier_m2 += static_cast<double>(slice.frontier_cells) * cell_m * cell_m;
-    }
-  return 4 * frontier_m2 >= area_m2;
-}
-
 /// Without ends that are nearer to the place before them than the wall is: corners of the passage there.
 PassageLines without_corners(const PassageLines& lines) {
   std::vector<std::uint32_t> number(lines.points.size());
@@ -85,8 +70,11 @@ PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, c
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
     const core::CrossSection& section = sections[groups[g].core];
     PassagePoint point{section.center, section.width_m, section.height_m, groups[g].next, false};
-    if (point.next.size() < 2)
-      point.leads_on = ends_without_wall(groups, g, slices, space->grid.cell_m, band_m);
+    if (point.next.size() < 2) {
+      std::vector<std::uint32_t> last{g};
+      last.insert(last.end(), point.next.begin(), point.next.end());
+      point.leads_on = core::is_open_end(last, groups, slices.slices, space->grid);
+    }
     if (std::binary_search(groups[g].slices.begin(), groups[g].slices.end(), first_slice)) out.first = g;
     out.points.push_back(std::move(point));
   }

@@ -97,20 +97,6 @@ class Lines {
     return node_of_[group];
   }
 
-  /// As core::find_passages has it: an end is open if the frontier of its last two groups is a quarter of the
-  /// passage's cross-section or more.
-  bool is_open(std::span<const std::uint32_t> last) const {
-    const double cell_m = space_.grid.cell_m;
-    double frontier_m2 = 0, area_m2 = 0;
-    for (const std::uint32_t g : last)
-      for (const std::uint32_t s : groups_[g].slices) {
-        const core::Slice& slice = slices_.slices[s];
-        frontier_m2 += static_cast<double>(slice.frontier_cells) * cell_m * cell_m;
-        area_m2 = std::max(area_m2, static_cast<double>(slice.free_cells) * std::pow(cell_m, 3) / band_m_);
-      }
-    return 4 * frontier_m2 >= area_m2;
-  }
-
   /// Towards the rock at the end of a passage; the last slice ends up to a band before it.
   std::optional<LinePoint> extended(const std::vector<LinePoint>& line) const {
     if (line.size() < 2) return std::nullopt;
@@ -159,7 +145,9 @@ class Lines {
   LineNode::Kind kind_of_end(const std::vector<std::uint32_t>& groups, bool last) const {
     const std::size_t n = std::min<std::size_t>(2, groups.size());
     const std::span<const std::uint32_t> all(groups);
-    return is_open(last ? all.last(n) : all.first(n)) ? LineNode::Kind::open_end : LineNode::Kind::dead_end;
+    const bool open =
+        core::is_open_end(last ? all.last(n) : all.first(n), groups_, slices_.slices, space_.grid);
+    return open ? LineNode::Kind::open_end : LineNode::Kind::dead_end;
   }
 
   /// The outermost groups are nodes.
