@@ -191,7 +191,7 @@ TEST(FlatRequest, OtherVersionIsNamed) {
   Room room;
   host::Bytes bytes = flatten(room.request);
   bytes[8] = std::byte{7};
-  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 4"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 5"));
 }
 
 TEST(FlatRequest, BlocksAreSoundOnlyInTheWorldAndInPlace) {
