@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
+#include <optional>
+#include <utility>
 
-#include "core_stack/mapping/occupancy/voxel_reader.h"
+#include "core_stack/planning/free_space/free_way.h"
 
 namespace karst::cave_drawing {
 namespace {
 
-using core::CellKey;
 using core::Vec3;
 
 constexpr double kAround_m = 3;
@@ -27,28 +26,14 @@ std::vector<Vec3> straight_way(const Vec3& from, const Vec3& to, double step_m) 
 
 std::vector<Vec3> way_between(const core::VoxelMap& map, const Vec3& from, const Vec3& to, double step_m) {
   const std::vector<Vec3> straight = straight_way(from, to, step_m);
-  const CellKey start = map.key_of(from), goal = map.key_of(to);
-  core::VoxelReader reader(map);
-  const auto is_free = [&](const CellKey& k) { return reader.at(k) == core::Cell::free; };
-  if (std::all_of(straight.begin(), straight.end(), [&](const Vec3& p) { return is_free(map.key_of(p)); }) ||
-      !is_free(start) || !is_free(goal))
+  const auto is_free = [&](const Vec3& p) { return map.at(p) == core::Cell::free; };
+  if (std::all_of(straight.begin(), straight.end(), is_free) || !is_free(from) || !is_free(to))
     return straight;
-  const CellKey low = map.key_of(from.cwiseMin(to) - Vec3::Constant(kAround_m));
-  const CellKey high = map.key_of(from.cwiseMax(to) + Vec3::Constant(kAround_m));
-  std::unordered_map<CellKey, CellKey, core::CellKeyHash> before{{goal, goal}};
-  std::vector<CellKey> open{goal};
-  for (std::size_t i = 0; i < open.size() && open.size() < kMostSeen && !before.contains(start); ++i)
-    for (const CellKey& face : core::kFaces) {
-      const CellKey k = open[i] + face;
-      if (k.x < low.x || k.y < low.y || k.z < low.z || k.x > high.x || k.y > high.y || k.z > high.z) continue;
-      if (!is_free(k) || !before.emplace(k, open[i]).second) continue;
-      open.push_back(k);
-    }
-  if (!before.contains(start)) return straight;
-  std::vector<Vec3> way{from};
-  for (CellKey k = start; k != goal; k = before.at(k)) way.push_back(map.center_of(k));
-  way.push_back(to);
-  return way;
+  std::optional<std::vector<Vec3>> way = core::free_way(map, from, to, kAround_m, kMostSeen);
+  if (!way) return straight;
+  way->back() = to;
+  way->insert(way->begin(), from);
+  return *std::move(way);
 }
 
 }  // namespace karst::cave_drawing

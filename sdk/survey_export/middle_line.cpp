@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/passages/slice_graph.h"
-#include "sdk/survey_export/free_way.h"
 
 namespace karst::survey_export {
 namespace {
@@ -21,7 +21,8 @@ using core::Vec3;
 constexpr double kStep_m = 0.3;        // between the places of the trajectory that are looked up
 constexpr double kWallMargin_m = 0.5;  // of the last station of a dead end to the rock ahead of it
 constexpr double kMostExtension_m = 3.0;
-constexpr double kMostStep_m = 5.0;  // between two points of a line
+constexpr double kMostStep_m = 5.0;               // between two points of a line
+constexpr std::size_t kMostSearched = 1'000'000;  // cells, between two points
 constexpr std::uint32_t kNoNode = ~std::uint32_t{0};
 
 /// Moves `p` to the middle between what bounds the free space on both sides of a line through it.
@@ -217,7 +218,7 @@ class Lines {
     for (std::size_t i = 1; i < line.points.size(); ++i) {
       const LinePoint from = line.points[i - 1], &to = line.points[i];
       if (!sees(map_, from.position, to.position)) {
-        const auto way = free_way(map_, from.position, to.position, 2 * band_m_);
+        const auto way = free_way(map_, from.position, to.position, 2 * band_m_, kMostSearched);
         if (!way) ++line.blocked;
         for (const Vec3& p : way.value_or(std::vector<Vec3>{})) {
           LinePoint between = to;

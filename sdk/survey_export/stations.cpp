@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sdk/survey_export/free_way.h"
+#include "core_stack/planning/free_space/free_way.h"
 
 namespace karst::survey_export {
 namespace {

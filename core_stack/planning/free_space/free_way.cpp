@@ -1,4 +1,4 @@
-#include "sdk/survey_export/free_way.h"
+#include "core_stack/planning/free_space/free_way.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,17 +7,11 @@
 
 #include "core_stack/mapping/occupancy/voxel_reader.h"
 
-namespace karst::survey_export {
+namespace karst::core {
 
-using core::Cell;
-using core::CellKey;
-using core::Vec3;
+bool sees(const VoxelMap& map, const Vec3& from, const Vec3& to) { return !map.first_not_free(from, to); }
 
-bool sees(const core::VoxelMap& map, const Vec3& from, const Vec3& to) {
-  return !map.first_not_free(from, to);
-}
-
-std::optional<Vec3> free_near(const core::VoxelMap& map, const Vec3& p) {
+std::optional<Vec3> free_near(const VoxelMap& map, const Vec3& p) {
   constexpr std::int32_t kAround = 3;
   const CellKey own = map.key_of(p);
   if (map.at(own) == Cell::free) return p;
@@ -37,8 +31,8 @@ std::optional<Vec3> free_near(const core::VoxelMap& map, const Vec3& p) {
   return nearest;
 }
 
-std::optional<std::vector<Vec3>> free_way(const core::VoxelMap& map, const Vec3& from, const Vec3& to,
-                                          double margin_m) {
+std::optional<std::vector<Vec3>> free_way(const VoxelMap& map, const Vec3& from, const Vec3& to,
+                                          double margin_m, std::size_t most_cells) {
   const CellKey first = map.key_of(from), last = map.key_of(to);
   const auto margin = static_cast<std::int32_t>(std::ceil(margin_m / map.resolution_m()));
   const CellKey low{std::min(first.x, last.x) - margin, std::min(first.y, last.y) - margin,
@@ -48,12 +42,12 @@ std::optional<std::vector<Vec3>> free_way(const core::VoxelMap& map, const Vec3&
   const auto inside = [&](const CellKey& k) {
     return k.x >= low.x && k.y >= low.y && k.z >= low.z && k.x <= high.x && k.y <= high.y && k.z <= high.z;
   };
-  core::VoxelReader reader(map);
-  std::unordered_map<CellKey, CellKey, core::CellKeyHash> before{{last, last}};
+  VoxelReader reader(map);
+  std::unordered_map<CellKey, CellKey, CellKeyHash> before{{last, last}};
   std::vector<CellKey> open{last};  // backwards, so that the way is read off forwards
-  for (std::size_t at = 0; at < open.size() && !before.contains(first); ++at) {
+  for (std::size_t at = 0; at < open.size() && open.size() < most_cells && !before.contains(first); ++at) {
     const CellKey here = open[at];
-    for (const CellKey& face : core::kFaces) {
+    for (const CellKey& face : kFaces) {
       const CellKey there = here + face;
       if (!inside(there) || before.contains(there) || reader.at(there) != Cell::free) continue;
       before.emplace(there, here);
@@ -68,4 +62,4 @@ std::optional<std::vector<Vec3>> free_way(const core::VoxelMap& map, const Vec3&
   return way;
 }
 
-}  // namespace karst::survey_export
+}  // namespace karst::core
