@@ -37,6 +37,13 @@ void Centreline::apply(const Refusal& refusal) const {
   if (refusal) refuse(*refusal);
 }
 
+std::uint32_t Centreline::number_of_station(const std::string& word, std::uint32_t survey,
+                                            bool defines) const {
+  const auto name = groups_.back().settings.station_name(word);
+  if (!name) refuse("is no name of a station: " + quoted_name(word));
+  return names_.number(survey, *name, source_, defines);
+}
+
 void Centreline::begin(std::uint32_t survey, const Declinations& outer, const Source& source) {
   groups_.assign(1, {});
   rows_.begin({});
@@ -50,6 +57,8 @@ void Centreline::begin(std::uint32_t survey, const Declinations& outer, const So
 
 void Centreline::end() {
   if (groups_.size() > 1) refuse("a group has no endgroup");
+  rows_.interrupt();
+  groups_.assign(1, {});
   for (std::size_t i = first_conditions_; i < readings_.conditions.size(); ++i) {
     Conditions& c = readings_.conditions[i];
     c.years = years_;
@@ -135,7 +144,7 @@ void Centreline::declination(const std::vector<std::string>& words) {
   Declinations read;
   apply(read_declinations(list, read));
   Conditions& conditions = groups_.back().settings.conditions;
-  conditions.declination_from_grid = words.front() == "grid-angle";
+  conditions.declination_from_grid = words.front() == "grid-angle" && read.any();
   conditions.declination_deg.reset();
   if (!read.by_year.table.empty())
     declinations_ = read;  // by the date of the centreline, which may stand below
@@ -154,9 +163,9 @@ void Centreline::date(const std::vector<std::string>& words) {
 void Centreline::equate(const std::vector<std::string>& words, const Source& source, std::uint32_t survey) {
   source_ = source;
   if (words.size() < 3) refuse("equate takes two stations or more");
-  const std::uint32_t first = names_.number(survey, words[1], source, false);
+  const std::uint32_t first = number_of_station(words[1], survey, false);
   for (std::size_t i = 2; i < words.size(); ++i)
-    readings_.equates.push_back({first, names_.number(survey, words[i], source, false), source});
+    readings_.equates.push_back({first, number_of_station(words[i], survey, false), source});
 }
 
 void Centreline::fix(const std::vector<std::string>& words) {
@@ -166,7 +175,7 @@ void Centreline::fix(const std::vector<std::string>& words) {
   Fix fix;
   fix.system = settings.system;
   fix.source = source_;
-  fix.station = names_.number(survey_, words[1], source_, true);
+  fix.station = number_of_station(words[1], survey_, true);
   const bool degrees = is_geographic(settings.system);
   std::vector<double> numbers;
   for (std::size_t i = 2; i < words.size(); ++i) {
@@ -192,7 +201,7 @@ void Centreline::station(const std::vector<std::string>& words) {
   if (words.size() < 3) refuse("station takes a name, a comment and flags");
   StationRemark remark;
   remark.source = source_;
-  remark.station = names_.number(survey_, words[1], source_, false);
+  remark.station = number_of_station(words[1], survey_, false);
   remark.comment = words[2];
   bool on = true;
   for (std::size_t i = 3; i < words.size(); ++i) {
@@ -211,6 +220,7 @@ void Centreline::station(const std::vector<std::string>& words) {
     if (i >= words.size()) refuse("a word is missing behind " + quoted_name(flag));
     on = true;
   }
+  if (!on) refuse("'not' is followed by a flag");
   remarks_.stations.push_back(std::move(remark));
 }
 
@@ -223,8 +233,8 @@ void Centreline::extend(const std::vector<std::string>& words) {
   }
   if (words.size() == 2) groups_.back().settings.extend = *direction;
   if (words.size() == 4)
-    remarks_.extends.push_back({names_.number(survey_, words[2], source_, false),
-                                names_.number(survey_, words[3], source_, false), *direction});
+    remarks_.extends.push_back({number_of_station(words[2], survey_, false),
+                                number_of_station(words[3], survey_, false), *direction});
 }
 
 void Centreline::group() {

@@ -37,7 +37,7 @@ class Centreline {
   void begin(std::uint32_t survey, const Declinations& outer, const Source& source);
   /// Carries out a command or takes a row of readings. False: the centreline ends here.
   bool line(const std::vector<std::string>& words, const Source& source);
-  /// `equate`, which also stands outside of centrelines.
+  /// `equate`, which also stands outside of centrelines, where no names are completed.
   void equate(const std::vector<std::string>& words, const Source& source, std::uint32_t survey);
   const Source& began() const { return began_; }
 
@@ -52,6 +52,8 @@ class Centreline {
   void extend(const std::vector<std::string>& words);
   void group();
   void end_group();
+  /// Of a station's name as it stands in a command.
+  std::uint32_t number_of_station(const std::string& word, std::uint32_t survey, bool defines) const;
   void apply(const Refusal& refusal) const;
   [[noreturn]] void refuse(const std::string& reason) const;
 

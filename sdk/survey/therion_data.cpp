@@ -48,6 +48,10 @@ void DataRows::begin(const DataFormat& format) {
 }
 
 void DataRows::interrupt() {
+  if (at_ > 0 && !format_.interleaved())
+    throw readings_.log.error(row_.source, "not enough readings: the lines of this row end early");
+  if (before_ && format_.has(Column::newline))
+    readings_.log.note(before_->source, "readings behind a station that no other station follows: left out");
   at_ = 0;
   before_.reset();
   last_to_.reset();
@@ -88,13 +92,9 @@ void DataRows::row(const std::vector<std::string>& words, const Source& source, 
 
 std::uint32_t DataRows::station_of(const std::string& word, bool defines) {
   if (word == "." || word == "-") return names_.anonymous(source_);
-  const std::size_t at = word.find('@');
-  if (at == 0 || word.size() > kMaxStationName) refuse("is no name of a station: " + core::printable(word));
-  if (settings_->name_prefix.empty() && settings_->name_suffix.empty())
-    return names_.number(survey_, word, source_, defines);
-  const std::string within = at == std::string::npos ? "" : word.substr(at);
-  return names_.number(survey_, settings_->name_prefix + word.substr(0, at) + settings_->name_suffix + within,
-                       source_, defines);
+  const auto name = settings_->station_name(word);
+  if (!name) refuse("is no name of a station: " + core::printable(word));
+  return names_.number(survey_, *name, source_, defines);
 }
 
 void DataRows::take(Column column, const std::string& word, Row& row) {
@@ -203,6 +203,8 @@ void DataRows::leg(const Row& row, std::uint32_t from, std::uint32_t to) {
                      reading.vector_m().norm() == 0 && !reading.splay;
   if (level) {
     readings_.equates.push_back({from, to, source_});
+    if (row.dimensions[1].any()) readings_.station_dimensions.push_back({to, row.dimensions[1], row.source});
+    if (last_to_ == from) last_to_ = to;  // the run goes on
     return;
   }
   add(std::move(reading), row);

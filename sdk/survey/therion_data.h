@@ -27,7 +27,7 @@ class DataRows {
   DataRows(Readings& readings, StationNames& names) : readings_(readings), names_(names) {}
 
   void begin(const DataFormat& format);
-  /// The next station begins a new run.
+  /// The next station begins a new run. What the rows before it lack is refused, or noted.
   void interrupt();
   /// Takes one line. Throws core::InputError naming it.
   void row(const std::vector<std::string>& words, const Source& source, std::uint32_t survey,

@@ -84,6 +84,9 @@ class TherionReader {
 
   void begin_survey(const std::vector<std::string>& words) {
     if (words.size() < 2) refuse("survey takes a name");
+    // With these in it, "a.b" and "1@a" could mean two things. Therion refuses them as well.
+    if (words[1].empty() || words[1].find_first_of(".@") != std::string::npos)
+      refuse("is no name of a survey: '" + core::printable(words[1]) + "'");
     if (surveys_.size() > kMaxSurveyDepth) refuse("surveys stand too deep in each other");
     Level level = surveys_.back();
     level.name = words[1];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core_stack/common/printable.h"
+#include "sdk/survey/survey_tree.h"
 
 namespace karst::survey {
 namespace {
@@ -71,6 +72,13 @@ void set_deviation_of(Conditions& conditions, Quantity quantity, std::optional<d
 }
 
 }  // namespace
+
+std::optional<std::string> Settings::station_name(const std::string& word) const {
+  if (word.empty() || word == "." || word == "-" || word.size() > kMaxStationName) return std::nullopt;
+  const std::size_t at = std::min(word.find('@'), word.size());
+  if (at == 0) return std::nullopt;
+  return name_prefix + word.substr(0, at) + name_suffix + word.substr(at);
+}
 
 double Settings::metres_between(Quantity q, double first, double second) const {
   const Calibration& c = calibration(q);

@@ -30,6 +30,8 @@ struct Settings {
   double degrees(Quantity q, double reading) const {
     return (q == Quantity::bearing ? bearing : gradient).degrees(calibration(q).corrected(reading));
   }
+  /// A station's name as `station-names` completes it: "p1x@branch" of "1@branch". None if it is no name.
+  std::optional<std::string> station_name(const std::string& word) const;
   /// Of the difference of two readings: a zero error cancels in it, and is then applied once, as in Therion.
   double metres_between(Quantity q, double first, double second) const;
 };

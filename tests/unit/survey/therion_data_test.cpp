@@ -164,6 +164,33 @@ TEST(TherionData, ALegOfNoLengthEquatesIfAsked) {
   EXPECT_EQ(inferred.equates.size(), 1u);
 }
 
+TEST(TherionData, AnInferredEquateEndsNoRunAndKeepsItsDimensions) {
+  const Readings r = readings_of(
+      "infer equates on\ndata normal from to length compass clino left right\n"
+      "1 2 5 0 0 1 1\n2 3 0 0 0 2 2\n3 4 5 0 0 3 3\n");
+  ASSERT_EQ(r.legs.size(), 2u);
+  EXPECT_EQ(r.legs[0].run, r.legs[1].run);
+  ASSERT_EQ(r.station_dimensions.size(), 1u);
+  EXPECT_EQ(r.stations[r.station_dimensions[0].station].name, "s.3");
+}
+
+TEST(TherionData, ARowWhoseLinesEndEarlyIsRefused) {
+  const std::string said = refusal_of("data normal from to newline length compass clino\n1 2\n10 0 0\n3 4\n");
+  EXPECT_TRUE(says(said, "s.th: line 6: not enough readings")) << said;
+}
+
+TEST(TherionData, InterleavedReadingsWithoutASecondStationAreNoted) {
+  const std::string data = "data normal station newline length compass clino\n1\n10 0 0\n2\n";
+  EXPECT_TRUE(readings_of(data).log.notes.empty());
+  const Readings r = readings_of(data + "20 0 0\n");
+  EXPECT_EQ(r.legs.size(), 1u);
+  ASSERT_EQ(r.log.notes.size(), 1u);
+  EXPECT_TRUE(says(r.log.notes[0].text, "that no other station follows"));
+  EXPECT_EQ(r.log.notes[0].source.line, 6u);
+  EXPECT_TRUE(readings_of("data nosurvey station\n1\n2\n").log.notes.empty())
+      << "nothing is read behind them";
+}
+
 TEST(TherionData, RowsThatDoNotFitAreRefusedWithTheirLine) {
   const std::string data = "data normal from to length compass clino\n";
   for (const auto& [row, why] :

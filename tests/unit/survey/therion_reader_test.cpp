@@ -148,6 +148,7 @@ TEST(TherionReader, StationsHaveCommentsFlagsAndFixes) {
   EXPECT_TRUE(says(refusal_of("station 9 \"\" entrance\n"), "line 3: there is no station s.9"));
   EXPECT_TRUE(says(refusal_of("station 1 \"\" haunted\n"), "is no flag of a station: 'haunted'"));
   EXPECT_TRUE(says(refusal_of("station 1 \"\" continuation explored\n"), "a word is missing"));
+  EXPECT_TRUE(says(refusal_of("station 1 \"\" not\n"), "'not' is followed by a flag"));
   EXPECT_TRUE(says(refusal_of("fix 1 2 3\n"), "line 3: fix takes"));
   EXPECT_TRUE(says(refusal_of("fix 1 a 3 4\n"), "is no coordinate: 'a'"));
 }
@@ -155,6 +156,43 @@ TEST(TherionReader, StationsHaveCommentsFlagsAndFixes) {
 TEST(TherionReader, StationNamesGetTheirPrefixAndSuffix) {
   EXPECT_EQ(names(readings_of("station-names p. /x\ndata normal from to length compass clino\n1 2 10 0 0\n")),
             (std::set<std::string>{"s.p.1/x", "s.p.2/x"}));
+}
+
+TEST(TherionReader, StationNamesAreCompletedInEveryCommandOfTheirCentrelineAndNowhereElse) {
+  const Folder folder;
+  const Readings r = read_therion(folder.write(
+      "s.th",
+      "survey s\ncentreline\nstation-names p x\nfix 1 5 6 7\ndata normal from to length compass clino\n"
+      "1 2 10 0 0\n3 4 10 0 0\nstation 4 \"\" entrance\nequate 2 3\nextend left 1 2\nendcentreline\n"
+      "equate p4x p1x\nendsurvey\n"));
+  EXPECT_EQ(names(r), (std::set<std::string>{"s.p1x", "s.p2x", "s.p3x", "s.p4x"}));
+  EXPECT_EQ(r.stations.at(r.fixes.at(0).station).name, "s.p1x");
+  EXPECT_EQ(r.legs.at(0).extend, Extend::left);
+  EXPECT_TRUE(r.stations.at(r.legs.at(1).to).entrance);
+  EXPECT_TRUE(r.log.notes.empty());
+}
+
+TEST(TherionReader, NoStationOfACommandIsAnonymous) {
+  EXPECT_TRUE(says(refusal_of("equate 1 .\n"), "line 3: is no name of a station: '.'"));
+  EXPECT_TRUE(says(refusal_of("fix - 0 0 0\n"), "line 3: is no name of a station: '-'"));
+  EXPECT_TRUE(says(refusal_of("equate 1 " + std::string(2000, 'x') + "\n"), "is no name of a station"));
+}
+
+TEST(TherionReader, NamesOfSurveysHaveNoDots) {
+  for (const char* name : {"a.b", "a@b", "\"\""})
+    EXPECT_TRUE(says(refusal_of_text(std::string("survey ") + name + "\nendsurvey\n"),
+                     "line 1: is no name of a survey"))
+        << name;
+}
+
+TEST(TherionReader, AGridAngleThatIsTakenBackLeavesTheDeclinationOfTheSurveyAround) {
+  const Folder folder;
+  const Readings r = read_therion(
+      folder.write("s.th",
+                   "survey s -declination [2 degrees]\ncentreline\ngrid-angle 9 degrees\ngrid-angle -\n"
+                   "data normal from to length compass clino\n1 2 10 0 0\nendcentreline\nendsurvey\n"));
+  EXPECT_EQ(r.conditions.at(0).declination_deg, 2);
+  EXPECT_FALSE(r.conditions.at(0).declination_from_grid) << "it counts from true north";
 }
 
 TEST(TherionReader, DeclinationsComeFromTheCentrelineTheDateOrTheSurveyAround) {
