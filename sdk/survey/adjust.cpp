@@ -49,19 +49,20 @@ class Adjustment {
       r.east_m = cosine * east + sine * north;
       r.north_m = cosine * north - sine * east;
     }
-    r.bearing_deg = std::fmod(r.bearing_deg + degrees + 720, 360);
+    r.bearing_deg = std::fmod(std::fmod(r.bearing_deg + degrees, 360) + 360, 360);
   }
 
   void close(const std::vector<core::Vec3>& fixes_m) {
     const TemporaryFolder folder;
     const std::string file = (folder.path() / "readings.svx").string();
     const std::vector<Source> sources = write_survex(file, readings_, network_, fixes_m);
-    const CavernRun run = run_cavern(file, folder.path());
+    const CavernRun run = run_cavern(file, folder.path(), readings_.log.files.front());
     for (const CavernMessage& m : run.messages) take(m, sources);
     const std::string& root = readings_.log.files.front();
     if (!run.closed) throw core::InputError(root, "", "cavern could not close its loops");
     positions_.assign(network_.stations.size(), core::Vec3::Constant(kNotRead));
-    for (const Dump3d::Node& node : read_dump3d(run_dump3d(run.three_d.string(), folder.path()), root).nodes)
+    for (const Dump3d::Node& node :
+         read_dump3d(run_dump3d(run.three_d.string(), folder.path(), root), root).nodes)
       if (const auto place = place_of_name(node.name); place && *place < positions_.size())
         positions_[*place] = node.position_m;
     survey_.loops.count = network_.loops;

@@ -30,29 +30,39 @@ std::optional<std::string> program_in_path(const std::string& name) {
   return std::nullopt;
 }
 
-/// Runs a program of Survex to its end, in English. `log` takes what it prints.
-host::ProcessEnd run_program(const std::string& name, const std::vector<std::string>& arguments,
-                             const fs::path& log, std::uintmax_t max_bytes, const std::string& file) {
+/// Runs a program of Survex on a file to its end, in English. `log` takes what it prints.
+host::ProcessEnd run_program(const std::string& name, std::vector<std::string> arguments,
+                             const std::string& file, const fs::path& log, std::uintmax_t max_bytes,
+                             const std::string& shown_as) {
+  core::check_input(file, kMaxPrinted);
   const auto program = program_in_path(name);
   if (!program)
-    throw core::InputError(file, "",
+    throw core::InputError(shown_as, "",
                            name + " of Survex is not installed, or not in PATH: apt-get install survex");
   std::vector<std::string> argv = {"/usr/bin/env", "LC_ALL=C", "SURVEXLANG=en", *program};
+  arguments.push_back(file.starts_with('-') ? "./" + file : file);  // else the name would be an option
   argv.insert(argv.end(), arguments.begin(), arguments.end());
   const pid_t pid = host::start_process(argv, log);
   const auto began = std::chrono::steady_clock::now();
   host::ProcessEnd end;
-  while (!host::has_ended(pid, end)) {
-    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - began;
+  const auto check_printed = [&] {
     std::error_code none;
-    const bool too_much = fs::file_size(log, none) > max_bytes && !none;
-    if (waited.count() > kProgramLimit_s || too_much) {
-      host::end_process(pid);
-      throw core::InputError(
-          file, "", too_much ? name + " prints without end" : name + " is not done after five minutes");
+    if (fs::file_size(log, none) > max_bytes && !none)
+      throw core::InputError(shown_as, "", name + " prints without end");
+  };
+  try {
+    while (!host::has_ended(pid, end)) {
+      const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - began;
+      if (waited.count() > kProgramLimit_s)
+        throw core::InputError(shown_as, "", name + " is not done after five minutes");
+      check_printed();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  } catch (const core::InputError&) {
+    host::end_process(pid);
+    throw;
   }
+  check_printed();
   return end;
 }
 
@@ -100,34 +110,31 @@ std::vector<CavernMessage> cavern_messages(const std::string& output) {
   return messages;
 }
 
-CavernRun run_cavern(const std::string& file, const fs::path& folder) {
-  core::check_input(file, kMaxPrinted);
+CavernRun run_cavern(const std::string& file, const fs::path& folder, const std::string& shown_as) {
+  const std::string& shown = shown_as.empty() ? file : shown_as;
   const fs::path log = folder / "cavern.txt";
-  // A name that begins with '-' would be an option.
-  const std::string input = file.starts_with('-') ? "./" + file : file;
   const host::ProcessEnd end =
-      run_program("cavern", {"--quiet", "--quiet", "--output=" + (folder / "closed").string(), input}, log,
-                  kMaxSaid, file);
+      run_program("cavern", {"--quiet", "--quiet", "--output=" + (folder / "closed").string()}, file, log,
+                  kMaxSaid, shown);
   CavernRun run;
   run.messages = cavern_messages(core::read_input(log.string(), kMaxSaid));
   run.three_d = folder / "closed.3d";
   run.err = folder / "closed.err";
   run.closed = end.exit_code == 0 && end.signal == 0 && fs::exists(run.three_d);
-  if (end.signal != 0) throw core::InputError(file, "", "cavern was " + host::describe(end));
+  if (end.signal != 0) throw core::InputError(shown, "", "cavern was " + host::describe(end));
   return run;
 }
 
-fs::path run_dump3d(const std::string& file, const fs::path& folder) {
-  core::check_input(file, kMaxPrinted);
+fs::path run_dump3d(const std::string& file, const fs::path& folder, const std::string& shown_as) {
+  const std::string& shown = shown_as.empty() ? file : shown_as;
   const fs::path printed = folder / "dump3d.txt";
-  const std::string input = file.starts_with('-') ? "./" + file : file;
-  const host::ProcessEnd end = run_program("dump3d", {input}, printed, kMaxPrinted, file);
+  const host::ProcessEnd end = run_program("dump3d", {}, file, printed, kMaxPrinted, shown);
   if (end.exit_code != 0 || end.signal != 0) {
     std::ifstream said = core::open_input(printed.string(), kMaxPrinted);
     std::string line, last;
     while (std::getline(said, line))
       if (!line.empty()) last = line.substr(0, 500);
-    throw core::InputError(file, "", "cannot be read as a survey: " + core::printable(last));
+    throw core::InputError(shown, "", "cannot be read as a survey: " + core::printable(last));
   }
   return printed;
 }

@@ -21,13 +21,15 @@ struct CavernRun {
   std::vector<CavernMessage> messages;
   std::filesystem::path three_d, err;  // its .3d and .err files
 };
-/// Runs cavern on a survey, with its output in `folder`. Throws core::InputError naming `file` if Survex is
-/// missing, takes longer than five minutes or writes more than it should.
-CavernRun run_cavern(const std::string& file, const std::filesystem::path& folder);
+/// Runs cavern on a survey, with its output in `folder`. Throws core::InputError naming `shown_as` (if that
+/// is empty, `file`) if Survex is missing, takes longer than five minutes or writes more than it should.
+CavernRun run_cavern(const std::string& file, const std::filesystem::path& folder,
+                     const std::string& shown_as = "");
 
 /// The text that dump3d prints of a .3d or .plt file, into `folder`. Throws as run_cavern() does, and if
 /// dump3d cannot read the file.
-std::filesystem::path run_dump3d(const std::string& file, const std::filesystem::path& folder);
+std::filesystem::path run_dump3d(const std::string& file, const std::filesystem::path& folder,
+                                 const std::string& shown_as = "");
 
 /// The messages in what cavern printed.
 std::vector<CavernMessage> cavern_messages(const std::string& output);

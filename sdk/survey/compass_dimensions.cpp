@@ -10,6 +10,7 @@
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/printable.h"
 #include "sdk/survey/input_path.h"
+#include "sdk/survey/lower_case.h"
 #include "sdk/survey/therion_units.h"
 
 namespace karst::survey {
@@ -73,8 +74,7 @@ void read_dat(const std::string& file, SourceLog& log, std::vector<CompassDimens
 std::vector<CompassDimensions> read_compass_dimensions(const std::string& file, SourceLog& log) {
   std::vector<CompassDimensions> all;
   const std::filesystem::path path = file;
-  std::string ending = path.extension().string();
-  if (ending == ".dat" || ending == ".DAT") {
+  if (ending_of(path) != ".mak") {
     read_dat(file, log, all);
     return all;
   }

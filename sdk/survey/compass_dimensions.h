@@ -19,7 +19,7 @@ struct CompassDimensions {
   Source source;
 };
 
-/// Of a .dat file, or of those that a .mak or .clp file names. A row that is none of the format is left out:
+/// Of a .dat file, or of those that a .mak file names. A row that is none of the format is left out:
 /// cavern says what is wrong with it. A file that is named and missing is noted.
 std::vector<CompassDimensions> read_compass_dimensions(const std::string& file, SourceLog& log);
 

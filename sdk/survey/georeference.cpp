@@ -36,6 +36,8 @@ std::pair<double, double> level_of(const Fix& fix) {
 }
 
 std::string plane_of(const Fix& fix) {
+  // Its axes point west and south: cavern writes the system that has them turned round.
+  if (fix.system == "JTSK" || fix.system == "JTSK03") return "i" + fix.system;
   if (fix.system != "lat-long" && fix.system != "long-lat") return *survex_system(fix.system);
   const auto [longitude, latitude] = level_of(fix);
   const int zone = std::clamp(static_cast<int>(std::floor((longitude + 180) / 6)) + 1, 1, 60);
@@ -58,13 +60,14 @@ class Probe {
 
   Georeference run() {
     result_.system = plane_of(readings_.fixes[network_.fixes.front()]);
-    ask({}, core::Vec3::Zero());
+    ask({}, std::nullopt);
     core::Vec3 mean = core::Vec3::Zero();
     for (std::size_t i = 0; i < network_.fixes.size(); ++i) {
       result_.fixes_m.push_back(place_of_fix(i));
       mean += result_.fixes_m.back() / static_cast<double>(network_.fixes.size());
     }
     const std::vector<double> years = years_of_readings();
+    check_years();
     ask(years, mean);
     const double convergence = turn("u");
     std::map<double, double> declination;
@@ -92,6 +95,20 @@ class Probe {
     return years;
   }
 
+  /// cavern only warns of a year that it does not know, and takes the declination as zero.
+  void check_years() const {
+    constexpr double kFirst = 1900, kLast = 2079;  // of cavern: before this
+    for (const Reading& r : readings_.legs) {
+      const Conditions& c = readings_.conditions[r.conditions];
+      const auto year = c.years ? std::optional(c.years->middle()) : first_year_;
+      if (c.declination_deg || !year || (*year >= kFirst && *year < kLast)) continue;
+      throw readings_.log.error(r.source,
+                                core::format_text("the reference field is not known in %.0f: give a "
+                                                  "declination, or correct the date",
+                                                  std::floor(*year)));
+    }
+  }
+
   double turn_of(const Conditions& c, double convergence, const std::map<double, double>& declination) {
     if (c.declination_deg) return *c.declination_deg + (c.declination_from_grid ? 0 : convergence);
     if (c.years) return convergence + declination.at(c.years->middle());
@@ -105,19 +122,19 @@ class Probe {
   }
 
   /// Has cavern place the fixes, and legs due north of the compass in each of the years.
-  void ask(const std::vector<double>& years, const core::Vec3& at) {
+  void ask(const std::vector<double>& years, const std::optional<core::Vec3>& at) {
     const TemporaryFolder folder;
     const std::string file = (folder.path() / "probe.svx").string();
     std::vector<const Fix*> of_line;
     write(file, years, at, of_line);
-    const CavernRun run = run_cavern(file, folder.path());
+    const std::string& root = readings_.log.files.front();
+    const CavernRun run = run_cavern(file, folder.path(), root);
     for (const CavernMessage& m : run.messages)
       if (m.error) refuse(m, of_line);
-    if (!run.closed)
-      throw core::InputError(readings_.log.files.front(), "", "cavern could not place its fixed stations");
+    if (!run.closed) throw core::InputError(root, "", "cavern could not place its fixed stations");
     places_.clear();
-    for (const Dump3d::Node& node : read_dump3d(run_dump3d(run.three_d.string(), folder.path()), file).nodes)
-      places_[node.name] = node.position_m;
+    const auto printed = run_dump3d(run.three_d.string(), folder.path(), root);
+    for (const Dump3d::Node& node : read_dump3d(printed, root).nodes) places_[node.name] = node.position_m;
   }
 
   [[noreturn]] void refuse(const CavernMessage& m, const std::vector<const Fix*>& of_line) const {
@@ -130,7 +147,7 @@ class Probe {
                               "the coordinates in " + fix->system + " cannot be converted: " + m.text);
   }
 
-  void write(const std::string& file, const std::vector<double>& years, const core::Vec3& at,
+  void write(const std::string& file, const std::vector<double>& years, const std::optional<core::Vec3>& at,
              std::vector<const Fix*>& of_line) const {
     std::ofstream out = core::open_output(file);
     const Fix* of_next = nullptr;
@@ -154,9 +171,9 @@ class Probe {
     for (std::size_t i = 1; i < network_.fixes.size(); ++i) line(core::format_text("f%zu f0", i));
     line("*data cartesian from to easting northing altitude");
     line("f0 f 1 1 1");
-    if (at.isZero()) return;
+    if (!at) return;
     // At sea level, as Therion asks for it: two kilometres up the declination differs by 0.005 degrees.
-    line(core::format_text("*declination auto %.3f %.3f 0", at.x(), at.y()));
+    line(core::format_text("*declination auto %.3f %.3f 0", at->x(), at->y()));
     line("*data normal from to tape compass clino");
     line(core::format_text("f0 u %.0f 0 0", kProbe_m));
     for (std::size_t i = 0; i < years.size(); ++i) {

@@ -4,23 +4,19 @@
 #include <system_error>
 #include <vector>
 
+#include "sdk/survey/lower_case.h"
+
 namespace karst::survey {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 /// What a folder calls `name` in any case; empty if nothing.
 fs::path entry_of(const fs::path& folder, const std::string& name) {
   std::vector<std::string> fitting;
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
-    if (lower(it->path().filename().string()) == lower(name))
+    if (lower_case(it->path().filename().string()) == lower_case(name))
       fitting.push_back(it->path().filename().string());
   return fitting.empty() ? fs::path() : fs::path(*std::min_element(fitting.begin(), fitting.end()));
 }

@@ -1,21 +1,17 @@
 #include "sdk/survey/read_survey.h"
 
-#include <filesystem>
-
 #include "core_stack/common/error.h"
 #include "sdk/survey/adjust.h"
+#include "sdk/survey/lower_case.h"
 #include "sdk/survey/survex_reader.h"
 #include "sdk/survey/therion_reader.h"
 
 namespace karst::survey {
 
 Survey read_survey(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string ending = ending_of(file);
   if (ending == ".th") return adjusted(read_therion(file));
-  if (ending == ".svx" || ending == ".dat" || ending == ".mak" || ending == ".clp")
-    return read_by_cavern(file);
+  if (ending == ".svx" || ending == ".dat" || ending == ".mak") return read_by_cavern(file);
   if (ending == ".3d" || ending == ".plt") return read_processed(file);
   throw core::InputError(file, "", "is no survey by its name: .th, .svx, .3d, .dat, .mak and .plt are read");
 }

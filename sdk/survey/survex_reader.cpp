@@ -12,6 +12,7 @@
 #include "sdk/survey/dump3d.h"
 #include "sdk/survey/err_file.h"
 #include "sdk/survey/facing.h"
+#include "sdk/survey/lower_case.h"
 #include "sdk/survey/place_sets.h"
 #include "sdk/survey/source_log.h"
 #include "sdk/survey/temporary_folder.h"
@@ -139,24 +140,17 @@ class FromDump {
 
 Survey from_processed(const std::string& three_d, const std::string& file,
                       const std::filesystem::path& folder, Survey survey) {
-  const Dump3d dump = read_dump3d(run_dump3d(three_d, folder), file);
+  const Dump3d dump = read_dump3d(run_dump3d(three_d, folder, file), file);
   FromDump(dump, survey).make();
   if (survey.legs.empty()) throw core::InputError(file, "", "holds no leg");
   return survey;
-}
-
-bool is_compass(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending != ".svx";
 }
 
 }  // namespace
 
 Survey read_by_cavern(const std::string& file) {
   const TemporaryFolder folder;
-  const CavernRun run = run_cavern(file, folder.path());
+  const CavernRun run = run_cavern(file, folder.path(), file);
   SourceLog log;
   log.files.push_back(file);
   for (const CavernMessage& m : run.messages) {
@@ -169,7 +163,7 @@ Survey read_by_cavern(const std::string& file) {
   }
   if (!run.closed) throw core::InputError(file, "", "cavern could not process it");
   std::vector<CompassDimensions> dimensions;
-  if (is_compass(file)) dimensions = read_compass_dimensions(file, log);
+  if (ending_of(file) != ".svx") dimensions = read_compass_dimensions(file, log);
   Survey survey;
   survey.files = log.files;
   survey.notes = log.notes;

@@ -6,7 +6,7 @@
 
 namespace karst::survey {
 
-/// A survey that cavern processes first: .svx, .dat, .mak, .clp. What cavern warns of becomes a note.
+/// A survey that cavern processes first: .svx, .dat, .mak. What cavern warns of becomes a note.
 Survey read_by_cavern(const std::string& file);
 
 /// A processed one: .3d, .plt. Legs meet where their ends have the same coordinates, to the centimetre.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sdk/survey/lower_case.h"
+
 namespace karst::survey {
 namespace {
 
@@ -62,13 +64,6 @@ constexpr auto kAngles = std::to_array<NamedAngle>({
     {"percent", {1, true}},
     {"percentage", {1, true}},
 });
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 std::optional<double> plain_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);

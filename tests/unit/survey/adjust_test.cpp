@@ -257,6 +257,41 @@ TEST(Adjust, CoordinateSystemsAndDatesTurnBearingsAsInTherion) {
   EXPECT_TRUE(notes_say(ours.notes, "readings without a date have the declination of 1985.07.2"));
 }
 
+// cavern takes the declination of such a year as zero, with no more than a warning.
+TEST(Adjust, DatesBeyondTheReferenceFieldAreRefusedUnlessThereIsADeclination) {
+  SKIP_WITHOUT_SURVEX();
+  const std::string leg = "cs UTM33\nfix 1 400000 5000000 0\n" + kNormal + "1 2 10 0 0\n";
+  for (const char* year : {"1850", "2150"}) {
+    const std::string said = refusal(std::string("date ") + year + ".06.01\n" + leg);
+    EXPECT_TRUE(says(said, "s.th: line 7: the reference field is not known in " + std::string(year))) << said;
+  }
+  EXPECT_EQ(refusal("date 1850.06.01\ndeclination 12 degrees\n" + leg), "");
+  EXPECT_EQ(refusal("date 1900.06.01\n" + leg), "");
+}
+
+// A scale error of 1 / cos(latitude) at the equator is none: the stations are where the legs lead.
+TEST(Adjust, AStationMayBeFixedAtTheOriginOfACoordinateSystem) {
+  SKIP_WITHOUT_SURVEX();
+  const Survey s =
+      survey_of_lines("cs EPSG:3857\nfix 1 0 0 0\ndeclination 0 degrees\n" + kNormal + "1 2 10 90 0\n");
+  expect_at(place(s, "s.2"), {10, 0, 0});
+}
+
+// JTSK counts to the west and to the south, and cavern writes no such coordinates.
+TEST(Adjust, CoordinatesToTheWestAndSouthBecomeThoseToTheEastAndNorth) {
+  SKIP_WITHOUT_SURVEX();
+  const Survey s = survey_of_lines("cs JTSK\nfix 1 400000 1197000 500\ndeclination 0 degrees\n" + kNormal +
+                                   "1 2 10 - up\n");
+  expect_at(place(s, "s.1"), {-400'000, -1'197'000, 500});
+  expect_at(place(s, "s.2"), {-400'000, -1'197'000, 510});
+}
+
+TEST(Adjust, ADeclinationOfSeveralTurnsIsOneWithinATurn) {
+  SKIP_WITHOUT_SURVEX();
+  const Survey s = survey_of_lines("declination -990 degrees\n" + kNormal + "1 2 10 0 0\n");
+  expect_at(place(s, "s.2"), {10, 0, 0});
+}
+
 TEST(Adjust, CoordinatesThatCannotBeConvertedAreRefusedWithTheirLine) {
   SKIP_WITHOUT_SURVEX();
   const std::string said = refusal("cs EPSG:1\nfix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n");

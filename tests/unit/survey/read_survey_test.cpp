@@ -68,6 +68,21 @@ TEST(ReadSurvey, ErrorsAndWarningsOfCavernNameTheirPlace) {
   EXPECT_TRUE(says(refusal_of_file(folder.write("d.svx", "")), "d.svx: "));
 }
 
+TEST(ReadSurvey, NamesMayHoldSpacesAndBeginAsAnOptionDoes) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  folder.write("-o x.svx", "1 2 10 0 0\n");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const Survey svx = read_survey("-o x.svx");
+  const CavernRun run = run_cavern("-o x.svx", folder.path());
+  std::filesystem::rename(run.three_d, "-o x.3d");
+  const Survey processed = read_survey("-o x.3d");
+  std::filesystem::current_path(before);
+  EXPECT_EQ(svx.legs.size(), 1u);
+  EXPECT_EQ(processed.legs.size(), 1u);
+}
+
 TEST(ReadSurvey, AProcessedSurveyIsThatOfItsSource) {
   SKIP_WITHOUT_SURVEX();
   const Folder folder;
@@ -110,6 +125,8 @@ TEST(ReadSurvey, CompassSurveys) {
   const Survey mak = read_survey(folder.write("c.mak", "#c.dat,A1[m,10,20,30];\r\n"));
   expect_at(place(mak, "A3"), {40.48, 50.48, 30});
   EXPECT_EQ(mak.sections.size(), 2u);
+  std::filesystem::copy_file(dat, folder.path() / "Copy.Dat");
+  EXPECT_EQ(read_survey((folder.path() / "Copy.Dat").string()).sections.size(), 2u);
   const Survey plt = read_survey(folder.write("c.plt",
                                               "Z 0 100 0 100 0 0 I 0\r\nSCave\r\nNA D 7 10 1979 CX\r\nM 0 0 "
                                               "0 SA1 P 1 2 3 4 I 0\r\nD 0 100 0 SA2 P 1 2 3 4 I "
@@ -119,13 +136,16 @@ TEST(ReadSurvey, CompassSurveys) {
 
 TEST(ReadSurvey, WithoutSurvexThePackageIsNamed) {
   const Folder folder;
-  const std::string file = folder.write("a.svx", "1 2 10 0 0\n");
+  const std::string svx = folder.write("a.svx", "1 2 10 0 0\n");
+  const std::string th =
+      folder.write("a.th", test::centreline("data normal from to length compass clino\n1 2 10 0 0\n"));
   const std::string path = std::getenv("PATH") ? std::getenv("PATH") : "";
   setenv("PATH", folder.path().c_str(), 1);
-  const std::string said = refusal_of_file(file);
+  const std::string said_of_svx = refusal_of_file(svx), said_of_th = refusal_of_file(th);
   setenv("PATH", path.c_str(), 1);
-  EXPECT_TRUE(says(said, "cavern of Survex is not installed, or not in PATH: apt-get install survex"))
-      << said;
+  const std::string why = ": cavern of Survex is not installed, or not in PATH: apt-get install survex";
+  EXPECT_EQ(said_of_svx, svx + why);
+  EXPECT_EQ(said_of_th, th + why) << "not the file that is written for cavern";
 }
 
 TEST(ReadSurvey, AHundredThousandLegsAreClosed) {
