@@ -158,7 +158,13 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
   try {
     mesh = walls(file, passages.tubes, with_passage, options, step, report);
   } catch (const std::length_error& e) {
-    throw InputError(file, "", std::string(e.what()) + ": choose a part: --survey, --around");
+    const Tube& widest =
+        *std::max_element(passages.tubes.begin(), passages.tubes.end(),
+                          [](const Tube& a, const Tube& b) { return a.reach_m() < b.reach_m(); });
+    throw InputError(
+        file, "",
+        e.what() + format_text(" (the widest reaches %.0f m from the leg at ", widest.reach_m()) +
+            survey.stations[survey.legs[widest.leg()].from].name + "): choose a part: --survey, --around");
   }
   report.triangles = mesh.triangles.size();
   report.volume_m3 = cave::enclosed_volume_m3(mesh);

@@ -73,6 +73,9 @@ PassageField::PassageField(const std::vector<Tube>& tubes, const FieldOptions& o
       const double beyond_m = tubes[i].reach_m() + margin_m;
       const Eigen::Array3i first = (((box.min() - low_).array() - beyond_m) / block_m).floor().cast<int>(),
                            last = (((box.max() - low_).array() + beyond_m) / block_m).floor().cast<int>();
+      // Checked before: one passage that is far too wide would fill the memory.
+      if ((last - first + 1).cast<double>().prod() > static_cast<double>(kMostPairs))
+        throw std::length_error("the passages are too long or too wide");
       for (int z = first.z(); z <= last.z(); ++z)
         for (int y = first.y(); y <= last.y(); ++y)
           for (int x = first.x(); x <= last.x(); ++x) {

@@ -1,32 +1,15 @@
 #include "sdk/survey_cave/passage_graph.h"
 
-#include <algorithm>
 #include <limits>
-#include <numeric>
 #include <queue>
 #include <tuple>
+
+#include "sdk/survey/place_sets.h"
 
 namespace karst::survey_cave {
 namespace {
 
 constexpr double kSamePlace_m = 0.01;
-
-/// The lowest member of each set.
-class NodeSets {
- public:
-  explicit NodeSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 }  // namespace
 
@@ -34,7 +17,7 @@ PassageGraph graph_of(const survey::Survey& survey, const SurveyPart& part, cons
   const auto length_m = [&](const survey::Leg& leg) {
     return (survey.stations[leg.from].position_m - survey.stations[leg.to].position_m).norm();
   };
-  NodeSets same(survey.stations.size());
+  survey::PlaceSets same(survey.stations.size());
   for (const std::uint32_t i : part.legs)
     if (const survey::Leg& leg = survey.legs[i]; length_m(leg) < kSamePlace_m) same.unite(leg.from, leg.to);
   PassageGraph graph;

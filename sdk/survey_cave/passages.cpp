@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+
+#include "sdk/survey/place_sets.h"
 
 namespace karst::survey_cave {
 namespace {
@@ -357,21 +358,18 @@ class TubeMaker {
   double least_m_;
 };
 
-/// By way: the number of its passage, those joined at joints of two.
+/// By way: the first way of its passage. Ways are joined at joints of two.
 std::vector<std::uint32_t> passage_numbers(const std::vector<Joint>& joints, std::size_t ways) {
-  std::vector<std::uint32_t> parent(ways);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  survey::PlaceSets passages(ways);
   for (const Joint& j : joints)
-    if (j.ends.size() == 2) {
-      const std::uint32_t a = root(j.ends[0].way), b = root(j.ends[1].way);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t i = 0; i < ways; ++i) parent[i] = root(i);
-  return parent;
+    if (j.ends.size() == 2) passages.unite(j.ends[0].way, j.ends[1].way);
+  std::vector<std::uint32_t> first(ways, kNone), number;  // first: of a set, by its root
+  for (std::uint32_t i = 0; i < ways; ++i) {
+    std::uint32_t& lowest = first[passages.root(i)];
+    lowest = std::min(lowest, i);
+    number.push_back(lowest);
+  }
+  return number;
 }
 
 }  // namespace

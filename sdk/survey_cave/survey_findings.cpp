@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string_view>
+
+#include "sdk/survey/lower_case.h"
 
 namespace karst::survey_cave {
 namespace {
@@ -29,9 +30,7 @@ bool names_obstacle(const std::string& comment) {
                                                     "\xc3\xa9"
                                                     "boulis",
                                                     "versturz"};
-  std::string lower = comment;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string lower = survey::lower_case(comment);
   return std::any_of(kWords.begin(), kWords.end(),
                      [&](std::string_view w) { return lower.find(w) != std::string::npos; });
 }
@@ -132,10 +131,9 @@ double within_reach_m(const Survey& survey, const PassageGraph& graph, const Pas
     }
   }
   if (around == nullptr) return 0;
-  std::vector<std::uint32_t> sources;
-  for (const survey::Leg& leg : {survey.legs[around->leg()]})
-    sources = {graph.node_of[leg.from], graph.node_of[leg.to]};
-  const std::vector<double> distance = distances_along(graph, sources, &wide);
+  const survey::Leg& first = survey.legs[around->leg()];
+  const std::vector<double> distance =
+      distances_along(graph, {graph.node_of[first.from], graph.node_of[first.to]}, &wide);
   double reached = 0;
   for (const Tube& t : passages.tubes)
     if (wide[t.leg()] && std::isfinite(distance[graph.node_of[survey.legs[t.leg()].from]]))

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/csv_cell.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/json_point.h"
 #include "plugins/simulator/cave/propose_start.h"
@@ -89,14 +90,6 @@ void add_obstacles(std::vector<std::string>& lines, const SurveyReport& r) {
                     " whose legs have no length, such as " + r.bare_stations.front());
 }
 
-/// A field of a table: quoted if need be.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string flags_of(const survey::Station& s) {
   std::string flags;
   const auto add = [&](bool is, const char* name) {
@@ -141,7 +134,8 @@ std::vector<std::string> survey_lines(const Survey& survey, const CaveFromSurvey
                     " of the survey's reader");
   add_rows(lines, survey.notes, [&](const survey::Note& n) {
     const std::string place = survey::place_of(survey, n.source);
-    return (place.empty() ? "" : place + ": ") + n.text;
+    return (place.empty() ? "" : place + ": ") + n.text +
+           (n.more > 0 ? format_text(" (and of %zu more lines)", n.more) : "");
   });
   lines.push_back("start              " + (made.start ? cave::start_text(*made.start)
                                                       : std::string("none found that suits: give --start")));
@@ -209,7 +203,9 @@ ordered_json survey_json(const Survey& survey, const CaveFromSurvey& made, std::
   j["findings"] = r.findings;
   j["notes"] = ordered_json::array();
   for (const survey::Note& n : survey.notes)
-    j["notes"].push_back({{"place", survey::place_of(survey, n.source)}, {"text", n.text}});
+    j["notes"].push_back(
+        {{"place", survey::place_of(survey, n.source)}, {"text", n.text}, {"more_lines", n.more}});
+  j["notes_left_out"] = survey.notes_left_out;
   j["start"] = made.start ? ordered_json(cave::start_text(*made.start)) : ordered_json();
   return j;
 }
@@ -218,7 +214,7 @@ std::string stations_csv(const Survey& survey, const CaveFromSurvey& made) {
   std::string text = "name,x,y,z,flags\n";
   for (const survey_cave::KeptStation& k : made.stations) {
     const survey::Station& s = survey.stations[k.station];
-    text += csv_field(s.name) +
+    text += core::csv_cell(s.name) +
             format_text(",%.3f,%.3f,%.3f,", k.position_m.x(), k.position_m.y(), k.position_m.z()) +
             flags_of(s) + "\n";
   }

@@ -243,6 +243,12 @@ TEST(CaveFromSurvey, TooManyTrianglesAreRefusedWithTheResolutionThatFits) {
   const std::string why = error_of([&] { made_of(straight_passage(4, 5, 1.5), o); });
   EXPECT_NE(why.find("--max-triangles 1000"), std::string::npos) << why;
   EXPECT_NE(why.find("--resolution 0."), std::string::npos) << why;
+  SurveyMaker wide = straight_passage(3, 5, 1);
+  for (auto& s : wide.survey.sections)
+    if (s.station == 2) s.dimensions.left_m = 4500;  // for 4.5
+  const std::string too_wide = error_of([&] { made_of(wide); });
+  EXPECT_NE(too_wide.find("too wide (the widest reaches 45"), std::string::npos) << too_wide;
+  EXPECT_NE(too_wide.find("from the leg at cave."), std::string::npos) << too_wide;
   SurveyMaker apart = straight_passage(1, 5, 1);
   apart.station("x.1", {9e6, 0, 0}), apart.station("x.2", {9e6, 9e6, 9e6});
   apart.leg(2, 3);
