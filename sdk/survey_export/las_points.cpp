@@ -5,11 +5,12 @@
 #include <limits>
 
 #include "core_stack/common/error.h"
-#include "sdk/survey_export/little_endian.h"
+#include "core_stack/common/little_endian.h"
 
 namespace karst::survey_export {
 namespace {
 
+using core::append_bytes;
 using core::Vec3;
 
 constexpr double kScale_m = 0.001;
@@ -41,34 +42,34 @@ std::string las_bytes(std::span<const Vec3> points, const std::string& file) {
   bytes.reserve(kHeaderBytes + std::size_t{kRecordBytes} * points.size());
   bytes += "LASF";
   bytes.append(2 + 2 + 16, '\0');  // source, global encoding, project
-  put(bytes, std::uint8_t{1});
-  put(bytes, std::uint8_t{2});
+  append_bytes(bytes, std::uint8_t{1});
+  append_bytes(bytes, std::uint8_t{2});
   put_text(bytes, "OTHER", 32);  // system: neither a known sensor nor a merge
   put_text(bytes, "karst", 32);
-  put(bytes, std::uint16_t{0});  // day and year of creation: unknown
-  put(bytes, std::uint16_t{0});
-  put(bytes, kHeaderBytes);
-  put(bytes, std::uint32_t{kHeaderBytes});  // where the points begin
-  put(bytes, std::uint32_t{0});             // no variable length records
-  put(bytes, std::uint8_t{0});              // point format
-  put(bytes, kRecordBytes);
-  put(bytes, count);
-  put(bytes, count);  // by return: all are first ones
-  for (int i = 1; i < 5; ++i) put(bytes, std::uint32_t{0});
-  for (int axis = 0; axis < 3; ++axis) put(bytes, kScale_m);
-  for (int axis = 0; axis < 3; ++axis) put(bytes, offset[axis]);
+  append_bytes(bytes, std::uint16_t{0});  // day and year of creation: unknown
+  append_bytes(bytes, std::uint16_t{0});
+  append_bytes(bytes, kHeaderBytes);
+  append_bytes(bytes, std::uint32_t{kHeaderBytes});  // where the points begin
+  append_bytes(bytes, std::uint32_t{0});             // no variable length records
+  append_bytes(bytes, std::uint8_t{0});              // point format
+  append_bytes(bytes, kRecordBytes);
+  append_bytes(bytes, count);
+  append_bytes(bytes, count);  // by return: all are first ones
+  for (int i = 1; i < 5; ++i) append_bytes(bytes, std::uint32_t{0});
+  for (int axis = 0; axis < 3; ++axis) append_bytes(bytes, kScale_m);
+  for (int axis = 0; axis < 3; ++axis) append_bytes(bytes, offset[axis]);
   for (int axis = 0; axis < 3; ++axis) {
-    put(bytes, offset[axis] + kScale_m * steps(high[axis], offset[axis]));  // as the points have it
-    put(bytes, offset[axis] + kScale_m * steps(low[axis], offset[axis]));
+    append_bytes(bytes, offset[axis] + kScale_m * steps(high[axis], offset[axis]));  // as the points have it
+    append_bytes(bytes, offset[axis] + kScale_m * steps(low[axis], offset[axis]));
   }
   for (const Vec3& p : points) {
-    for (int axis = 0; axis < 3; ++axis) put(bytes, steps(p[axis], offset[axis]));
-    put(bytes, std::uint16_t{0});      // intensity
-    put(bytes, std::uint8_t{0b1001});  // the first of one return
-    put(bytes, std::uint8_t{1});       // unclassified
-    put(bytes, std::uint8_t{0});       // scan angle
-    put(bytes, std::uint8_t{0});       // user data
-    put(bytes, std::uint16_t{0});      // source
+    for (int axis = 0; axis < 3; ++axis) append_bytes(bytes, steps(p[axis], offset[axis]));
+    append_bytes(bytes, std::uint16_t{0});      // intensity
+    append_bytes(bytes, std::uint8_t{0b1001});  // the first of one return
+    append_bytes(bytes, std::uint8_t{1});       // unclassified
+    append_bytes(bytes, std::uint8_t{0});       // scan angle
+    append_bytes(bytes, std::uint8_t{0});       // user data
+    append_bytes(bytes, std::uint16_t{0});      // source
   }
   return bytes;
 }

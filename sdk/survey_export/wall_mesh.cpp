@@ -4,12 +4,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core_stack/common/little_endian.h"
 #include "core_stack/mapping/occupancy/voxel_reader.h"
-#include "sdk/survey_export/little_endian.h"
 
 namespace karst::survey_export {
 namespace {
 
+using core::append_bytes;
 using core::Cell;
 using core::CellKey;
 using core::Vec3;
@@ -125,10 +126,10 @@ std::string ply_bytes(const WallMesh& walls) {
            "\nproperty list uchar uint vertex_indices\nend_header\n";
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     for (const Vec3f* v : {&mesh.vertices[i], &walls.normals[i]})
-      for (int axis = 0; axis < 3; ++axis) put(bytes, (*v)[axis]);
+      for (int axis = 0; axis < 3; ++axis) append_bytes(bytes, (*v)[axis]);
   for (const auto& t : mesh.triangles) {
-    put(bytes, std::uint8_t{3});
-    for (const std::uint32_t i : t) put(bytes, i);
+    append_bytes(bytes, std::uint8_t{3});
+    for (const std::uint32_t i : t) append_bytes(bytes, i);
   }
   return bytes;
 }
