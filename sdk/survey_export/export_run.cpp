@@ -9,6 +9,7 @@
 #include "sdk/evaluation/record/run_record.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/survey_export/las_points.h"
+#include "sdk/survey_export/new_legs.h"
 #include "sdk/survey_export/svx_file.h"
 #include "sdk/survey_export/therion_file.h"
 
@@ -76,6 +77,7 @@ RunSurvey survey_of_run(const fs::path& run, const std::string& name) {
       "Survey from a flight: " + (folder.has_filename() ? folder : folder.parent_path()).filename().string();
   input.source = run.string();
   FlownSurvey flown = flown_survey(input);
+  if (const auto known = survey_before(run)) flown.leg_is_new = new_legs(flown.survey, *known);
   return {std::move(map), std::move(flown), std::move(problems)};
 }
 

@@ -10,8 +10,8 @@
 namespace karst::survey_export {
 
 /// Of the run: the map, the vehicle's own trajectory, what its localization says of itself, and the frontiers
-/// that were left. Never ground truth. `name`: of the survey. Throws core::InputError if there is no map or
-/// no trajectory.
+/// that were left; and the survey that its mission names. Never ground truth. `name`: of the survey. Throws
+/// core::InputError if there is no map or no trajectory, or if that survey cannot be read any more.
 struct RunSurvey {
   core::VoxelMap map;
   FlownSurvey flown;

@@ -18,6 +18,7 @@ struct FlownSurvey {
   survey::Survey survey;
   std::string name;                       // of the survey: small letters, digits, - and _
   std::vector<double> leg_sd_m;           // of each leg, in each axis
+  std::vector<bool> leg_is_new;           // not in the survey that the mission had; empty: it had none
   core::Vec3 start = core::Vec3::Zero();  // where the vehicle stood
   Accuracy accuracy;
   std::size_t blocked_legs = 0;  // joined through cells that are not free

@@ -4,6 +4,7 @@
 
 #include "core_stack/common/format_text.h"
 #include "sdk/survey_export/leg_words.h"
+#include "sdk/survey_export/new_legs.h"
 
 namespace karst::survey_export {
 namespace {
@@ -20,7 +21,8 @@ std::string survex_legs(const FlownSurvey& flown) {
       text += format_text("*sd tape %.2f metres\n*sd compass clino %.1f degrees\n", d.tape_m, d.angle_deg);
       last = d;
     }
-    text += leg_words(flown, leg) + (leg.approximate ? " ; approximate: seen, not flown\n" : "\n");
+    text += leg_words(flown, leg) + (leg.approximate ? " ; approximate: seen, not flown" : "") +
+            (is_new(flown, i) ? " ; new\n" : "\n");
   }
   return text;
 }
@@ -41,6 +43,7 @@ std::string passages(const FlownSurvey& flown) {
 
 std::string svx_text(const FlownSurvey& flown, const Placing& placing) {
   std::string text = "; " + title_words(flown.survey.title) + "\n; " + accuracy_words(flown.accuracy) + '\n';
+  if (const std::string words = new_words(flown); !words.empty()) text += "; " + words + '\n';
   text += "*begin " + flown.name + '\n';
   text += "*title \"" + title_words(flown.survey.title) + "\"\n";
   if (!placing.system.empty()) text += "*cs " + placing.system + "\n*cs out " + placing.system + '\n';

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/format_text.h"
 #include "sdk/survey_export/leg_words.h"
+#include "sdk/survey_export/new_legs.h"
 
 namespace karst::survey_export {
 namespace {
@@ -29,7 +30,7 @@ std::string therion_legs(const FlownSurvey& flown) {
     if (leg.approximate != approximate)
       text += leg.approximate ? "    flags approximate\n" : "    flags not approximate\n";
     approximate = leg.approximate;
-    text += "      " + leg_words(flown, leg) + '\n';
+    text += "      " + leg_words(flown, leg) + (is_new(flown, i) ? "  # new\n" : "\n");
   }
   return text + (approximate ? "    flags not approximate\n" : "");
 }
@@ -51,6 +52,7 @@ std::string dimensions(const FlownSurvey& flown) {
 std::string therion_text(const FlownSurvey& flown, const Placing& placing) {
   const std::string title = title_words(flown.survey.title);
   std::string text = "encoding utf-8\n# " + title + "\n# " + accuracy_words(flown.accuracy) + '\n';
+  if (const std::string words = new_words(flown); !words.empty()) text += "# " + words + '\n';
   text += "survey " + flown.name + " -title \"" + title + "\"\n  centreline\n";
   if (!placing.system.empty()) text += "    cs " + placing.system + '\n';
   for (std::uint32_t i = 0; i < flown.survey.stations.size(); ++i)

@@ -15,6 +15,7 @@
 #include "plugins/simulator/cave/cave_blocks.h"
 #include "sdk/survey_export/export_run.h"
 #include "sdk/survey_export/leg_words.h"
+#include "sdk/survey_export/new_legs.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 
@@ -88,22 +89,28 @@ nlohmann::ordered_json json_of(const RunSurvey& run, const WallMesh& walls, cons
   const survey_export::Accuracy& a = run.flown.accuracy;
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const fs::path& file : survey_export::survey_files(out)) files.push_back(file.string());
-  return {{"schema", "karst.export/1"},
-          {"name", run.flown.name},
-          {"stations", run.flown.survey.stations.size()},
-          {"legs", run.flown.survey.legs.size()},
-          {"length_m", core::to_millionths(sums.length_m)},
-          {"approximate_legs", sums.approximate},
-          {"approximate_m", core::to_millionths(sums.approximate_m)},
-          {"continuations", sums.continuations},
-          {"blocked_legs", run.flown.blocked_legs},
-          {"cell_sd_m", core::to_millionths(a.leg_sd_m(0))},
-          {"drift_sd_m_per_root_m", core::to_millionths(std::sqrt(a.growth_m2_per_m))},
-          {"drift_scans", a.scans},
-          {"triangles", walls.mesh.triangles.size()},
-          {"open_edges", walls.open_edges},
-          {"files", files},
-          {"problems", run.problems}};
+  nlohmann::ordered_json j = {{"schema", "karst.export/1"},
+                              {"name", run.flown.name},
+                              {"stations", run.flown.survey.stations.size()},
+                              {"legs", run.flown.survey.legs.size()},
+                              {"length_m", core::to_millionths(sums.length_m)},
+                              {"approximate_legs", sums.approximate},
+                              {"approximate_m", core::to_millionths(sums.approximate_m)},
+                              {"continuations", sums.continuations},
+                              {"blocked_legs", run.flown.blocked_legs},
+                              {"cell_sd_m", core::to_millionths(a.leg_sd_m(0))},
+                              {"drift_sd_m_per_root_m", core::to_millionths(std::sqrt(a.growth_m2_per_m))},
+                              {"drift_scans", a.scans},
+                              {"triangles", walls.mesh.triangles.size()},
+                              {"open_edges", walls.open_edges},
+                              {"files", files},
+                              {"problems", run.problems}};
+  if (!run.flown.leg_is_new.empty()) {
+    const survey_export::NewSum sum = survey_export::new_sum(run.flown);
+    j["new_legs"] = sum.legs;
+    j["new_m"] = core::to_millionths(sum.length_m);
+  }
+  return j;
 }
 
 void print(const RunSurvey& run, const WallMesh& walls, const ExportArguments& args) {
@@ -115,6 +122,8 @@ void print(const RunSurvey& run, const WallMesh& walls, const ExportArguments& a
   if (sums.approximate > 0)
     print_out("  seen, but not flown: %s, %.1f m (approximate)\n",
               core::counted(sums.approximate, "leg").c_str(), sums.approximate_m);
+  if (const std::string words = survey_export::new_words(run.flown); !words.empty())
+    print_out("  %s\n", words.c_str());
   if (sums.continuations > 0)
     print_out("  goes on at %s\n", core::counted(sums.continuations, "station").c_str());
   if (run.flown.blocked_legs > 0)
