@@ -10,6 +10,7 @@
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/printable.h"
 #include "sdk/survey/input_path.h"
+#include "sdk/survey/leg_lookup.h"
 #include "sdk/survey/lower_case.h"
 #include "sdk/survey/therion_units.h"
 
@@ -99,6 +100,9 @@ void add_compass_sections(const std::vector<CompassDimensions>& dimensions, Surv
     by_name.emplace(survey.stations[i].name, i);
     for (const std::string& alias : survey.stations[i].aliases) by_name.emplace(alias, i);
   }
+  if (!dimensions.empty())  // the runs of legs without dimensions come behind those of the surveys
+    for (Leg& l : survey.legs) l.run += dimensions.back().series;
+  const LegLookup legs(survey);
   core::Vec3 facing = core::Vec3::UnitY();
   for (const CompassDimensions& d : dimensions) {
     const auto from = by_name.find(d.from), to = by_name.find(d.to);
@@ -111,6 +115,8 @@ void add_compass_sections(const std::vector<CompassDimensions>& dimensions, Surv
     section.facing = facing;
     section.dimensions = d.dimensions;
     section.run = d.series;
+    section.leg = legs.between(from->second, to->second);
+    if (section.leg) survey.legs[*section.leg].run = d.series;
     section.source = d.source;
   }
 }

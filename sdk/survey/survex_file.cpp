@@ -89,6 +89,9 @@ class SurvexWriter {
         r.plumbed || std::isnan(r.bearing_deg) ? " -" : core::format_text(" %.9f", r.bearing_deg);
     switch (r.style) {
       case Style::diving:
+        // cavern 1.4.4 puts the end of a dive of 10 m without a compass reading 6000 m down: give it one.
+        text += core::format_text(" %.6f %.9f %.6f", r.length_m, r.plumbed ? 0 : r.bearing_deg, r.rise_m);
+        break;
       case Style::cylpolar:
         text += core::format_text(" %.6f%s %.6f", r.length_m, bearing.c_str(), r.rise_m);
         break;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "core_stack/common/printable.h"
@@ -12,6 +13,7 @@
 #include "sdk/survey/dump3d.h"
 #include "sdk/survey/err_file.h"
 #include "sdk/survey/facing.h"
+#include "sdk/survey/leg_lookup.h"
 #include "sdk/survey/lower_case.h"
 #include "sdk/survey/place_sets.h"
 #include "sdk/survey/source_log.h"
@@ -38,16 +40,27 @@ class FromDump {
 
   void make() {
     survey_.title = dump_.title;
+    find_walls();
     for (const Dump3d::Node& n : dump_.nodes)
-      if (!n.name.empty()) add_station(n);
+      if (!n.name.empty() && (n.fixed || !walls_.contains(centimetres(n.position_m)))) add_station(n);
     for (const Dump3d::Line& l : dump_.lines) add_line(l);
     add_sections();
+    join_runs();
     mark_surface();
     count_loops();
     set_facings(survey_);
   }
 
  private:
+  /// Where splays alone lead. Such a place is no station, though it may have a name.
+  void find_walls() {
+    for (const Dump3d::Line& l : dump_.lines)
+      if (l.splay) walls_.insert(centimetres(l.to_m));
+    for (const Dump3d::Line& l : dump_.lines)
+      for (const core::Vec3& end : {l.from_m, l.to_m})
+        if (!l.splay) walls_.erase(centimetres(end));
+  }
+
   void add_station(const Dump3d::Node& n) {
     const auto [it, is_new] =
         at_.try_emplace(centimetres(n.position_m), static_cast<std::uint32_t>(survey_.stations.size()));
@@ -111,6 +124,19 @@ class FromDump {
     }
   }
 
+  /// A .3d file does not say which legs a series of sections goes along: those between neighbouring sections
+  /// are of its run. The runs of the other legs are numbered behind the series.
+  void join_runs() {
+    if (survey_.sections.empty()) return;
+    for (Leg& l : survey_.legs) l.run += dump_.sections.back().series;
+    const LegLookup legs(survey_);
+    for (std::size_t i = 1; i < survey_.sections.size(); ++i) {
+      const Section &a = survey_.sections[i - 1], &b = survey_.sections[i];
+      if (a.run != b.run) continue;
+      if (const auto leg = legs.between(a.station, b.station)) survey_.legs[*leg].run = b.run;
+    }
+  }
+
   void mark_surface() {
     std::vector<bool> surface(survey_.stations.size(), false), underground = surface;
     for (const Leg& l : survey_.legs)
@@ -134,6 +160,7 @@ class FromDump {
 
   const Dump3d& dump_;
   Survey& survey_;
+  std::unordered_set<Centimetres, HashOfCentimetres> walls_;
   std::unordered_map<Centimetres, std::uint32_t, HashOfCentimetres> at_;
   std::unordered_map<std::string, std::uint32_t> by_name_;
 };

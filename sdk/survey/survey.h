@@ -104,7 +104,7 @@ struct Section {
   /// of the first one that has any, else north.
   core::Vec3 facing = core::Vec3::UnitY();
   Dimensions dimensions;
-  std::uint32_t run = 0;  // of the legs; sections of .3d files, which lack it, are numbered by series
+  std::uint32_t run = 0;  // of the legs that it was noted with
   Source source;
 };
 

@@ -126,7 +126,7 @@ Refusal set_deviation(const std::vector<std::string>& words, Settings& settings)
   if (found.all.empty() || found.next >= words.size()) return "sd lacks a quantity or a value";
   if (const Refusal mixed = check_kind(found)) return mixed;
   const auto number = number_of(words[found.next]);
-  if (!number || std::isinf(*number) || *number < 0)
+  if (!number || std::isinf(*number) || *number <= 0)
     return "is no standard deviation: " + quoted(words[found.next]);
   std::optional<double> value;
   if (!std::isnan(*number)) {

@@ -144,12 +144,17 @@ void measure(Joint& joint, const Survey& survey, const std::vector<Way>& ways, c
         own |= survey.legs[ways[e.way].leg].run == s->run;
         leg |= s->leg == ways[e.way].leg;
       }
+      // It is that of another passage only if a leg of that one is here.
+      const std::vector<PassageGraph::Edge>& here = graph.edges[joint.node];
+      const bool elsewhere = std::any_of(here.begin(), here.end(), [&](const PassageGraph::Edge& e) {
+        return survey.legs[e.leg].run == s->run;
+      });
       const double score = 4 * own + 2 * leg + std::abs(along);
       if (score <= best_score) continue;
       best_score = score;
       best = s;
       best_along = along;
-      best_own = own || leg;
+      best_own = own || leg || !elsewhere;
     }
   if (best == nullptr) return;
   survey::Dimensions d = best->dimensions;

@@ -286,6 +286,13 @@ TEST(Adjust, CoordinatesToTheWestAndSouthBecomeThoseToTheEastAndNorth) {
   expect_at(place(s, "s.2"), {-400'000, -1'197'000, 510});
 }
 
+TEST(Adjust, ADiveStraightDownNeedsNoCompass) {
+  SKIP_WITHOUT_SURVEX();
+  const Survey s = survey_of_lines("data diving from to length compass depthchange\n1 2 10 - -10\n");
+  expect_at(place(s, "s.2"), {0, 0, -10});
+  EXPECT_FALSE(s.legs.at(0).bearing_rad);
+}
+
 TEST(Adjust, ADeclinationOfSeveralTurnsIsOneWithinATurn) {
   SKIP_WITHOUT_SURVEX();
   const Survey s = survey_of_lines("declination -990 degrees\n" + kNormal + "1 2 10 0 0\n");

@@ -68,6 +68,52 @@ TEST(ReadSurvey, ErrorsAndWarningsOfCavernNameTheirPlace) {
   EXPECT_TRUE(says(refusal_of_file(folder.write("d.svx", "")), "d.svx: "));
 }
 
+TEST(ReadSurvey, FarEndsOfSplaysAreNoStationsThoughTheyHaveNames) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  const Survey s = read_survey(folder.write(
+      "a.svx",
+      "*fix 1 0 0 0\n1 2 10 0 0\n*flags splay\n2 w 4 90 0\nv 2 4 90 0\n*flags not splay\n2 3 5 0 0\n"));
+  EXPECT_EQ(s.stations.size(), 3u);
+  EXPECT_EQ(s.legs.size(), 2u);
+  ASSERT_EQ(s.splays.size(), 2u);
+  for (const Splay& splay : s.splays) {
+    EXPECT_EQ(s.stations[splay.station].name, "2");
+    EXPECT_NEAR(std::abs(splay.end_m.x()), 4, 0.01);
+  }
+}
+
+// Splays between the legs, and a branch that is noted first, put the legs of a .3d file into pieces.
+TEST(ReadSurvey, LegsBetweenSectionsAreOfTheirRun) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  const Survey s = read_survey(
+      folder.write("a.svx",
+                   "*fix 1 0 0 0\n2 5 7 180 0\n1 2 10 0 0\n2 .. 4 90 0\n2 3 10 0 0\n3 .. 4 90 0\n3 4 10 0 0\n"
+                   "*data passage station left right up down\n2 1 1 1 1\n5 2 2 2 2\n"
+                   "*data passage station left right up down\n1 3 3 3 3\n2 3 3 3 3\n3 3 3 3 3\n"));
+  ASSERT_EQ(s.legs.size(), 4u);
+  ASSERT_EQ(s.sections.size(), 5u);
+  const auto run = [&](const std::string& a, const std::string& b) {
+    for (const Leg& l : s.legs) {
+      const std::string &from = s.stations[l.from].name, &to = s.stations[l.to].name;
+      if ((from == a && to == b) || (from == b && to == a)) return l.run;
+    }
+    return ~0u;
+  };
+  const auto run_of_width = [&](double left_m) {
+    for (const Section& section : s.sections)
+      if (section.dimensions.left_m == left_m) return section.run;
+    return ~0u;
+  };
+  EXPECT_EQ(run("2", "5"), run_of_width(2));
+  EXPECT_EQ(run("1", "2"), run_of_width(3));
+  EXPECT_EQ(run("2", "3"), run_of_width(3));
+  EXPECT_NE(run_of_width(2), run_of_width(3));
+  EXPECT_NE(run("3", "4"), run_of_width(2));
+  EXPECT_NE(run("3", "4"), run_of_width(3));
+}
+
 TEST(ReadSurvey, NamesMayHoldSpacesAndBeginAsAnOptionDoes) {
   SKIP_WITHOUT_SURVEX();
   const Folder folder;
@@ -120,6 +166,8 @@ TEST(ReadSurvey, CompassSurveys) {
   EXPECT_DOUBLE_EQ(*s.sections[0].dimensions.up_m, 2 * 0.3048);
   EXPECT_DOUBLE_EQ(*s.sections[0].dimensions.down_m, 3 * 0.3048);
   EXPECT_DOUBLE_EQ(*s.sections[0].dimensions.right_m, 4 * 0.3048);
+  ASSERT_TRUE(s.sections[0].leg);
+  EXPECT_EQ(s.legs[*s.sections[0].leg].run, s.sections[0].run);
   EXPECT_FALSE(s.sections[1].dimensions.left_m) << "-9.90 stands for what was not measured";
   EXPECT_TRUE(says(place_of(s, s.sections[1].source), "c.dat: line 11"));
   const Survey mak = read_survey(folder.write("c.mak", "#c.dat,A1[m,10,20,30];\r\n"));

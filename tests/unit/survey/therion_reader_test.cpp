@@ -224,6 +224,7 @@ TEST(TherionReader, UnknownUnitsAreRefusedAndUnitsOfNothingNoted) {
   EXPECT_TRUE(says(refusal_of("units compass percent\n"), "cannot be a percentage"));
   EXPECT_TRUE(says(refusal_of("calibrate tape 1 0\n"), "cannot be zero"));
   EXPECT_TRUE(says(refusal_of("sd tape 0.1\n"), "a value and a unit"));
+  EXPECT_TRUE(says(refusal_of("sd tape 0 metres\n"), "line 3: is no standard deviation: '0'"));
   EXPECT_TRUE(
       notes_say(readings_of("units lenght metres\n").log.notes, "units of lenght, which is no quantity"));
 }

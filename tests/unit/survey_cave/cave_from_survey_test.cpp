@@ -196,6 +196,15 @@ TEST(CaveFromSurvey, LegsWithoutLengthAndStationsAtOnePlaceAreNoTrouble) {
   EXPECT_NEAR(made.report.passage_m, 22, 1e-9);
 }
 
+TEST(CaveFromSurvey, SectionsOfARunWithoutLegsAreThoseOfThePassageThroughTheirStation) {
+  SurveyMaker m = straight_passage(4, 5, 1.5);
+  std::erase_if(m.survey.sections, [](const survey::Section& s) { return s.station == 2; });
+  for (auto& s : m.survey.sections) s.run = 7;
+  const CaveFromSurvey made = made_of(m);
+  EXPECT_EQ(made.report.half_width_m, 1.5);
+  EXPECT_EQ(made.report.defaults_m, 0) << "station 2 is between neighbours that were measured";
+}
+
 TEST(CaveFromSurvey, PartsThatAreNotConnectedAreSurfacesOfTheirOwn) {
   SurveyMaker m = straight_passage(2, 6, 1.2);
   m.station("far.1", {0, 30, 0}), m.station("far.2", {8, 30, 0});
