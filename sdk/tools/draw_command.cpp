@@ -142,7 +142,7 @@ void add_draw_command(CLI::App& app) {
       "Writes OUT.plan.svg, OUT.extended.svg, OUT.projected.svg, and the same as PDF.");
   command
       ->add_option("source", args->source,
-                   "A run directory, a map (.bt, .ot), or a survey (.th, .svx, .3d, .dat, .mak, .clp, .plt)")
+                   "A run directory, a map (.bt, .ot), or a survey (.th, .svx, .3d, .dat, .mak, .plt)")
       ->type_name(kFile)
       ->required()
       ->check(not_empty());
