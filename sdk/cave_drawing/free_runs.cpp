@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -26,7 +27,8 @@ std::vector<Column> columns_of(const core::VoxelMap& map) {
   std::sort(cells.begin(), cells.end(), [](const core::CellKey& a, const core::CellKey& b) {
     return std::tie(a.y, a.x, a.z) < std::tie(b.y, b.x, b.z);
   });
-  const auto gap = static_cast<std::int32_t>(kLeastRock_m / map.resolution_m());
+  // The most cells that are thinner than rock.
+  const auto gap = static_cast<std::int32_t>(std::ceil(kLeastRock_m / map.resolution_m() - 1e-9)) - 1;
   std::vector<Column> columns;
   for (const core::CellKey& k : cells) {
     if (columns.empty() || columns.back().x != k.x || columns.back().y != k.y)

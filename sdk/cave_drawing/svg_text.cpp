@@ -58,13 +58,14 @@ double text_width_mm(const std::string& plain, double size_mm) {
 
 std::string cut_to(const std::string& plain, double size_mm, double width_mm) {
   if (text_width_mm(plain, size_mm) <= width_mm) return plain;
-  std::string cut = plain;
+  const double one_mm = kCharacter * size_mm;
   const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
-  while (!cut.empty() && text_width_mm(cut + "\u2026", size_mm) > width_mm) {
-    while (!cut.empty() && is_inside(cut.back())) cut.pop_back();
-    if (!cut.empty()) cut.pop_back();
+  std::size_t bytes = 0;  // that are kept; the last character is the ellipsis
+  for (int characters = 2; bytes < plain.size() && characters * one_mm <= width_mm; ++characters) {
+    ++bytes;
+    while (bytes < plain.size() && is_inside(plain[bytes])) ++bytes;
   }
-  return cut + "\u2026";
+  return plain.substr(0, bytes) + "\u2026";
 }
 
 }  // namespace karst::cave_drawing

@@ -60,6 +60,20 @@ TEST(MapPlan, APassageThatCrossesAboveAnotherKeepsItsWallsAndHidesThoseBelow) {
   EXPECT_NEAR(upper_m, 8, 0.8) << "two walls of four metres";
 }
 
+TEST(MapPlan, RockOfHalfAMetrePartsTwoStoreysAndThinnerRockDoesNot) {
+  for (const auto& [cells, runs] : {std::pair{1, 1u}, std::pair{2, 2u}}) {  // of 0.25 m
+    core::MapOptions options;
+    options.resolution_m = 0.25;
+    core::VoxelMap map(options);
+    for (std::int32_t z = 0; z < 10; ++z)  // a shaft with a bridge of rock in one of its two columns
+      for (std::int32_t x = 0; x < 2; ++x)
+        map.assign({x, 0, z}, 1, x == 0 && z >= 4 && z < 4 + cells ? 2.0f : -2.0f);
+    const FreeRuns free = free_runs(map, "map");
+    ASSERT_EQ(free.columns.size(), 2u);
+    EXPECT_EQ(free.columns[0].runs.size(), runs) << cells;
+  }
+}
+
 TEST(MapPlan, PiecesApartFromTheCaveAreLeftOut) {
   const FreeRuns free = free_runs(map_of_boxes({{{0, 0, 0}, {49, 29, 9}}, {{90, 0, 0}, {99, 9, 9}}}), "map");
   EXPECT_EQ(mask_from_above(free, "map").count(), 1500u);

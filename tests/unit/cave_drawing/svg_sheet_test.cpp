@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "sdk/cave_drawing/map_drawings.h"
+#include "sdk/cave_drawing/svg_text.h"
 #include "tests/unit/cave_drawing/box_maps.h"
 #include "tests/unit/cave_drawing/drawn_lines.h"
 
@@ -113,6 +114,14 @@ TEST(SvgSheet, TheTitleBlockSaysWhatIsKnown) {
   for (const char* part : {"Gouffre <& \"Berger\">", "Plan", "explored by karst", "2026-11-26", "depth 3 m",
                            "length ", "volume ", "1:", "<helmet>", "entrance", "N", "grid "})
     EXPECT_NE(all.find(part), std::string::npos) << part;
+}
+
+TEST(SvgSheet, ANameThatIsTooLongIsCutAfterAWholeCharacter) {
+  EXPECT_EQ(cut_to("short", 1, 10), "short");
+  const std::string cut = cut_to("\u00E9\u00E9\u00E9\u00E9\u00E9\u00E9", 1, 2.3);  // room for four characters
+  EXPECT_EQ(cut, "\u00E9\u00E9\u00E9\u2026");
+  EXPECT_LE(text_width_mm(cut, 1), 2.3);
+  EXPECT_EQ(cut_to("long", 1, 0.1), "\u2026");
 }
 
 TEST(SvgSheet, HeightsOfAMapWithoutAnEntranceAreNotSaidToBeFromIt) {
