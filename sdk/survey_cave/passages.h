@@ -23,7 +23,6 @@ struct Passages {
   double shafts_m = 0;    // so steep that front and back are taken to be as far as left and right
   double widened_m = 0;   // widened or heightened to `least_m`
   std::size_t sections_from_splays = 0;
-  std::size_t points_off = 0;  // splays that run along the passage, and say nothing of its cross-section
 };
 
 /// A section stands in a vertical plane across the passage: along a gentle leg left and right are horizontal,

@@ -36,7 +36,7 @@ Tube::Tube(const TubeEnd& from, const TubeEnd& to, std::uint32_t leg, std::uint3
       reach_m_ = std::max(reach_m_, std::hypot(end->outline.corners[k].norm(), end->open ? 0.0 : end->cap_m));
     change_m = std::max(change_m, (corner_of(from_, k) - corner_of(to_, k)).norm());
   }
-  constexpr double kLeastGap = 0.3;  // of two planes within the tube, see passages.cpp
+  constexpr double kLeastGap = 0.3;  // of two planes within the tube, see is_mitred() in passages.cpp
   slope_ = 1 + change_m / (kLeastGap * length_m_);
 }
 
