@@ -79,6 +79,13 @@ TEST(IncludeDirection, SurveysKnowTheCoreAndProcessesOnly) {
         << i.file << " includes " << i.target;
   expect_none("sdk/survey", {"plugins/", "policies/", "CLI/", "core_stack/mapping", "core_stack/mission"});
 }
+TEST(IncludeDirection, PriorsOfSurveysKnowTheSurveyAndTheMapsOnly) {
+  for (const Include& i : includes_below("sdk/survey_prior"))
+    EXPECT_TRUE(!i.target.starts_with("sdk/") || i.target.starts_with("sdk/survey/") ||
+                i.target.starts_with("sdk/survey_prior/"))
+        << i.file << " includes " << i.target;
+  expect_none("sdk/survey_prior", {"plugins/", "policies/", "CLI/", "core_stack/mission"});
+}
 TEST(IncludeDirection, CavesFromSurveysKnowTheSurveyAndTheSimulatorsCavesOnly) {
   expect_none("sdk/survey_cave",
               {"sdk/host", "sdk/evaluation", "sdk/cave_from_cloud", "sdk/map_merge", "sdk/campaign",
