@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core_stack/common/printable.h"
+#include "core_stack/common/temporary_folder.h"
 #include "sdk/survey/cavern.h"
 #include "sdk/survey/dump3d.h"
 #include "sdk/survey/err_file.h"
@@ -13,7 +14,6 @@
 #include "sdk/survey/georeference.h"
 #include "sdk/survey/network.h"
 #include "sdk/survey/survex_file.h"
-#include "sdk/survey/temporary_folder.h"
 
 namespace karst::survey {
 namespace {
@@ -53,7 +53,7 @@ class Adjustment {
   }
 
   void close(const std::vector<core::Vec3>& fixes_m) {
-    const TemporaryFolder folder;
+    const core::TemporaryFolder folder("survey");
     const std::string file = (folder.path() / "readings.svx").string();
     const std::vector<Source> sources = write_survex(file, readings_, network_, fixes_m);
     const CavernRun run = run_cavern(file, folder.path(), readings_.log.files.front());

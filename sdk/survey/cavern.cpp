@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <chrono>
-#include <cstdlib>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -11,6 +10,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/printable.h"
+#include "core_stack/common/program_in_path.h"
 #include "sdk/host/isolation/process.h"
 
 namespace karst::survey {
@@ -22,20 +22,12 @@ constexpr double kProgramLimit_s = 300;
 constexpr std::uintmax_t kMaxPrinted = 4096 * core::kMiB;  // by dump3d: about 100 bytes a station or leg
 constexpr std::uintmax_t kMaxSaid = 16 * core::kMiB;       // by cavern
 
-std::optional<std::string> program_in_path(const std::string& name) {
-  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (std::error_code none; !folder.empty() && fs::exists(fs::path(folder) / name, none))
-      return (fs::path(folder) / name).string();
-  return std::nullopt;
-}
-
 /// Runs a program of Survex on a file to its end, in English. `log` takes what it prints.
 host::ProcessEnd run_program(const std::string& name, std::vector<std::string> arguments,
                              const std::string& file, const fs::path& log, std::uintmax_t max_bytes,
                              const std::string& shown_as) {
   core::check_input(file, kMaxPrinted);
-  const auto program = program_in_path(name);
+  const auto program = core::program_in_path(name);
   if (!program)
     throw core::InputError(shown_as, "",
                            name + " of Survex is not installed, or not in PATH: apt-get install survex");
@@ -95,7 +87,7 @@ std::optional<CavernMessage> message_of(std::string_view line) {
 
 }  // namespace
 
-bool has_survex() { return program_in_path("cavern") && program_in_path("dump3d"); }
+bool has_survex() { return core::program_in_path("cavern") && core::program_in_path("dump3d"); }
 
 std::vector<CavernMessage> cavern_messages(const std::string& output) {
   std::vector<CavernMessage> messages;

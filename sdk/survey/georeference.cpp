@@ -9,9 +9,9 @@
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/output_file.h"
 #include "core_stack/common/printable.h"
+#include "core_stack/common/temporary_folder.h"
 #include "sdk/survey/cavern.h"
 #include "sdk/survey/dump3d.h"
-#include "sdk/survey/temporary_folder.h"
 
 namespace karst::survey {
 namespace {
@@ -123,7 +123,7 @@ class Probe {
 
   /// Has cavern place the fixes, and legs due north of the compass in each of the years.
   void ask(const std::vector<double>& years, const std::optional<core::Vec3>& at) {
-    const TemporaryFolder folder;
+    const core::TemporaryFolder folder("survey");
     const std::string file = (folder.path() / "probe.svx").string();
     std::vector<const Fix*> of_line;
     write(file, years, at, of_line);

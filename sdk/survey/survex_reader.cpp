@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core_stack/common/printable.h"
+#include "core_stack/common/temporary_folder.h"
 #include "sdk/survey/cavern.h"
 #include "sdk/survey/compass_dimensions.h"
 #include "sdk/survey/dump3d.h"
@@ -17,7 +18,6 @@
 #include "sdk/survey/lower_case.h"
 #include "sdk/survey/place_sets.h"
 #include "sdk/survey/source_log.h"
-#include "sdk/survey/temporary_folder.h"
 
 namespace karst::survey {
 namespace {
@@ -176,7 +176,7 @@ Survey from_processed(const std::string& three_d, const std::string& file,
 }  // namespace
 
 Survey read_by_cavern(const std::string& file) {
-  const TemporaryFolder folder;
+  const core::TemporaryFolder folder("survey");
   const CavernRun run = run_cavern(file, folder.path(), file);
   SourceLog log;
   log.files.push_back(file);
@@ -202,7 +202,7 @@ Survey read_by_cavern(const std::string& file) {
 }
 
 Survey read_processed(const std::string& file) {
-  const TemporaryFolder folder;
+  const core::TemporaryFolder folder("survey");
   Survey survey;
   survey.files.push_back(file);
   return from_processed(file, file, folder.path(), std::move(survey));

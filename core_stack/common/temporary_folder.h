@@ -10,13 +10,15 @@
 
 #include "core_stack/common/error.h"
 
-namespace karst::survey {
+namespace karst::core {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "karst-survey-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw core::InputError(name, "", std::strerror(errno));
+  /// In the folder for temporary files (TMPDIR, else /tmp): "karst-PURPOSE-" and six letters.
+  explicit TemporaryFolder(const std::string& purpose) {
+    std::string name = (std::filesystem::temp_directory_path() / ("karst-" + purpose + "-XXXXXX")).string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw InputError(name, "", std::string("cannot be made: ") + std::strerror(errno));
     path_ = name;
   }
   ~TemporaryFolder() {
@@ -31,4 +33,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace karst::survey
+}  // namespace karst::core
