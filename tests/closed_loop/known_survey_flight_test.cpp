@@ -6,12 +6,13 @@
 namespace karst {
 namespace {
 
-/// The fork is at station 3. The main passage goes on to 12, wide and straight; the branch is low and bends.
+/// The fork is at station 3. The main passage goes on to 9, wide and in zigzag, so that from each bend much
+/// is to be seen at the next; the branch is low, and bends as well.
 const char* const kMain =
     "    data normal from to tape compass clino left right up down\n"
-    "    0 1 6 90 0 2 2 2 1\n    1 2 6 90 0 2 2 2 1\n    2 3 6 90 0 2 2 2 1\n    3 4 8 90 0 3 3 3 1\n"
-    "    4 5 8 90 0 3 3 3 1\n    5 6 8 90 0 3 3 3 1\n    6 7 8 80 0 3 3 3 1\n    7 8 8 80 0 3 3 3 1\n"
-    "    8 9 8 80 0 3 3 3 1\n    9 10 8 90 0 3 3 3 1\n    10 11 8 90 0 3 3 3 1\n    11 12 8 90 0 3 3 3 1\n";
+    "    0 1 6 90 0 2 2 2 1\n    1 2 6 90 0 2 2 2 1\n    2 3 6 90 0 2 2 2 1\n    3 4 10 45 0 3 3 3 1\n"
+    "    4 5 10 135 0 3 3 3 1\n    5 6 10 45 0 3 3 3 1\n    6 7 10 135 0 3 3 3 1\n    7 8 10 45 0 3 3 3 1\n"
+    "    8 9 10 135 0 3 3 3 1\n";
 const char* const kBranch =
     "    data normal from to tape compass clino left right up down\n"
     "    3 21 6 190 0 1.2 1.2 1.2 1\n    21 22 6 235 0 1.2 1.2 1.2 1\n    22 23 8 235 0 1.2 1.2 1.2 1\n"
