@@ -8,6 +8,7 @@
 #include "core_stack/common/printable.h"
 #include "core_stack/common/temporary_folder.h"
 #include "sdk/survey/cavern.h"
+#include "sdk/survey/check_legs.h"
 #include "sdk/survey/dump3d.h"
 #include "sdk/survey/err_file.h"
 #include "sdk/survey/facing.h"
@@ -30,6 +31,7 @@ class Adjustment {
     for (Reading& r : readings_.legs) turn(r, reference.turn_deg.at(r.conditions));
     close(reference.fixes_m);
     add_stations();
+    check_legs(readings_, network_, positions_);
     add_legs();
     add_splays();
     add_sections();

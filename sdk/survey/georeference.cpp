@@ -125,21 +125,34 @@ class Probe {
   void ask(const std::vector<double>& years, const std::optional<core::Vec3>& at) {
     const core::TemporaryFolder folder("survey");
     const std::string file = (folder.path() / "probe.svx").string();
-    std::vector<const Fix*> of_line;
-    write(file, years, at, of_line);
+    std::vector<Line> lines;
+    write(file, years, at, lines);
     const std::string& root = readings_.log.files.front();
     const CavernRun run = run_cavern(file, folder.path(), root);
-    for (const CavernMessage& m : run.messages)
-      if (m.error) refuse(m, of_line);
+    for (const CavernMessage& m : run.messages) take(m, lines, at.has_value());
     if (!run.closed) throw core::InputError(root, "", "cavern could not place its fixed stations");
     places_.clear();
     const auto printed = run_dump3d(run.three_d.string(), folder.path(), root);
     for (const Dump3d::Node& node : read_dump3d(printed, root).nodes) places_[node.name] = node.position_m;
   }
 
-  [[noreturn]] void refuse(const CavernMessage& m, const std::vector<const Fix*>& of_line) const {
+  /// A line of what cavern is asked, and what of the survey it stands for.
+  struct Line {
+    const Fix* fix = nullptr;
+    std::optional<double> year;
+    bool undated = false;  // on purpose
+  };
+
+  /// What the first question has cavern say, the second one has it say again.
+  void take(const CavernMessage& m, const std::vector<Line>& lines, bool is_second) {
     const std::size_t line = m.line == 0 ? 0 : m.line - 1;
-    const Fix* fix = line < of_line.size() ? of_line[line] : nullptr;
+    const Line of = line < lines.size() ? lines[line] : Line{};
+    if (m.error) refuse(m, of.fix);
+    if (is_second && !of.undated)
+      readings_.log.note(source_of(m.line == 0 ? Line{} : of), "cavern: " + m.text);
+  }
+
+  [[noreturn]] void refuse(const CavernMessage& m, const Fix* fix) const {
     if (fix == nullptr)
       throw core::InputError(readings_.log.files.front(), "",
                              "its coordinates cannot be converted: " + m.text);
@@ -147,24 +160,34 @@ class Probe {
                               "the coordinates in " + fix->system + " cannot be converted: " + m.text);
   }
 
+  /// The fix, or the first reading of the year.
+  Source source_of(const Line& line) const {
+    if (line.fix != nullptr) return line.fix->source;
+    for (const Reading& r : readings_.legs)
+      if (const auto& years = readings_.conditions[r.conditions].years;
+          line.year && years && years->middle() == *line.year)
+        return r.source;
+    return {0, 0};
+  }
+
   void write(const std::string& file, const std::vector<double>& years, const std::optional<core::Vec3>& at,
-             std::vector<const Fix*>& of_line) const {
+             std::vector<Line>& lines) const {
     std::ofstream out = core::open_output(file);
-    const Fix* of_next = nullptr;
+    Line of_next;
     const auto line = [&](const std::string& text) {
       out << text << '\n';
-      of_line.push_back(of_next);
+      lines.push_back(of_next);
     };
-    of_next = &readings_.fixes[network_.fixes.front()];
+    of_next.fix = &readings_.fixes[network_.fixes.front()];
     line("*cs out " + result_.system);
     for (std::size_t i = 0; i < network_.fixes.size(); ++i) {
       const Fix& fix = readings_.fixes[network_.fixes[i]];
-      of_next = &fix;
+      of_next.fix = &fix;
       const auto [x, y] = level_of(fix);
       line("*cs " + *survex_system(fix.system));
       line(core::format_text("*fix f%zu %.9f %.9f %.4f", i, x, y, fix.z));
     }
-    of_next = nullptr;
+    of_next.fix = nullptr;
     line("*cs " + result_.system);
     // Used stations only are placed.
     line("*data nosurvey from to");
@@ -175,8 +198,11 @@ class Probe {
     // At sea level, as Therion asks for it: two kilometres up the declination differs by 0.005 degrees.
     line(core::format_text("*declination auto %.3f %.3f 0", at->x(), at->y()));
     line("*data normal from to tape compass clino");
+    of_next.undated = true;
     line(core::format_text("f0 u %.0f 0 0", kProbe_m));
+    of_next.undated = false;
     for (std::size_t i = 0; i < years.size(); ++i) {
+      of_next.year = years[i];
       line("*date " + date_text(years[i]));
       line(core::format_text("f0 y%zu %.0f 0 0", i, kProbe_m));
     }
