@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/printable.h"
 #include "core_stack/common/temporary_folder.h"
 #include "sdk/survey/cavern.h"
@@ -44,6 +45,7 @@ class FromDump {
     for (const Dump3d::Node& n : dump_.nodes)
       if (!n.name.empty() && (n.fixed || !walls_.contains(centimetres(n.position_m)))) add_station(n);
     for (const Dump3d::Line& l : dump_.lines) add_line(l);
+    note_lost_legs();
     add_sections();
     join_runs();
     mark_surface();
@@ -98,7 +100,10 @@ class FromDump {
         survey_.splays.push_back({*to, l.from_m, l.surface, {}});
       return;
     }
-    if (*from == *to) return;
+    if (*from == *to) {
+      if (lost_legs_++ == 0) lost_at_ = *from;
+      return;
+    }
     Leg& leg = survey_.legs.emplace_back();
     leg.from = *from;
     leg.to = *to;
@@ -106,6 +111,24 @@ class FromDump {
     leg.surface = l.surface;
     leg.duplicate = l.duplicate;
     leg.run = l.run;
+  }
+
+  /// Stations are told apart by their places alone.
+  void note_lost_legs() {
+    if (lost_legs_ == 0) return;
+    if (survey_.notes.size() >= kMaxNotes) {
+      ++survey_.notes_left_out;
+      return;
+    }
+    const Station& at = survey_.stations[lost_at_];
+    std::string names = core::printable(at.name);
+    for (std::size_t i = 0; i < at.aliases.size() && i < 2; ++i)
+      names += " = " + core::printable(at.aliases[i]);
+    survey_.notes.push_back(
+        {{},
+         core::counted(lost_legs_, "leg") +
+             " left out: both ends round to the same centimetre, and are one station, such as " + names,
+         0});
   }
 
   void add_sections() {
@@ -163,6 +186,8 @@ class FromDump {
   std::unordered_set<Centimetres, HashOfCentimetres> walls_;
   std::unordered_map<Centimetres, std::uint32_t, HashOfCentimetres> at_;
   std::unordered_map<std::string, std::uint32_t> by_name_;
+  std::size_t lost_legs_ = 0;
+  std::uint32_t lost_at_ = 0;  // station of the first of them
 };
 
 Survey from_processed(const std::string& three_d, const std::string& file,

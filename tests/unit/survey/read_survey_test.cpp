@@ -145,6 +145,24 @@ TEST(ReadSurvey, AProcessedSurveyIsThatOfItsSource) {
       says(refusal_of_file(folder.write("b.3d", "not a survey")), "b.3d: cannot be read as a survey"));
 }
 
+TEST(ReadSurvey, LegsWithinACentimetreAreLeftOutWithANote) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  const std::string lines = "*begin a\n*fix 1 0 0 0\n1 2 10 0 0\n2 3 0.004 0 0\n3 4 10 0 0\n";
+  const Survey s = read_survey(folder.write("a.svx", lines + "*end a\n"));
+  EXPECT_EQ(s.legs.size(), 2u);
+  ASSERT_EQ(s.stations.size(), 3u);
+  EXPECT_EQ(&station(s, "a.2"), &station(s, "a.3"));
+  EXPECT_TRUE(test::notes_say(s.notes, "1 leg left out: both ends round to the same centimetre"));
+  EXPECT_TRUE(test::notes_say(s.notes, "such as a.2 = a.3") || test::notes_say(s.notes, "such as a.3 = a.2"));
+  const Survey more =
+      read_survey(folder.write("b.svx", lines + "4 5 0.003 90 0\n4 6 5 0 0\n*equate 6 7\n*end a\n"));
+  EXPECT_TRUE(test::notes_say(more.notes, "2 legs left out"));
+  const Survey equated =
+      read_survey(folder.write("c.svx", "*fix 1 0 0 0\n1 2 10 0 0\n*equate 2 3\n3 4 10 0 0\n"));
+  EXPECT_FALSE(test::notes_say(equated.notes, "left out"));
+}
+
 // Compass measures in feet.
 TEST(ReadSurvey, CompassSurveys) {
   SKIP_WITHOUT_SURVEX();
