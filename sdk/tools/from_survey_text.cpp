@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core_stack/common/character_count.h"
 #include "core_stack/common/counted.h"
 #include "core_stack/common/csv_cell.h"
 #include "core_stack/common/format_text.h"
@@ -75,8 +76,9 @@ void add_obstacles(std::vector<std::string>& lines, const SurveyReport& r) {
   if (!r.blocked.empty())
     lines.push_back("blocked            " + counted(r.blocked.size(), "station") +
                     " whose comment names a sump or a choke; the cave is open there");
-  add_rows(lines, r.blocked,
-           [](const survey_cave::Blocked& b) { return b.station + ": " + b.comment.substr(0, 60); });
+  add_rows(lines, r.blocked, [](const survey_cave::Blocked& b) {
+    return b.station + ": " + std::string(core::first_characters(b.comment, 60));
+  });
   if (!r.continuations.empty())
     lines.push_back("goes on            at " + counted(r.continuations.size(), "station"));
   add_rows(lines, r.continuations, [](const std::string& name) { return name; });
