@@ -11,6 +11,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/output_file.h"
+#include "core_stack/common/shell_word.h"
 #include "plugins/simulator/cave/cave_blocks.h"
 #include "plugins/simulator/cave/propose_start.h"
 #include "sdk/survey/read_survey.h"
@@ -55,15 +56,13 @@ CaveOptions cave_options_of(const FromSurveyArguments& args) {
 std::string survey_command_of(const FromSurveyArguments& args) {
   const CaveOptions& o = args.options;
   std::string text =
-      "karst cave from-survey \"" + args.survey + "\"" +
-      core::format_text(" --resolution %g --roughness %g --seed %llu --vehicle-width %g", o.resolution_m,
-                        o.roughness_m, static_cast<unsigned long long>(o.seed), o.vehicle_width_m);
-  if (!o.part.survey.empty()) text += " --survey \"" + o.part.survey + "\"";
-  if (!o.part.around.empty())
-    text += " --around \"" + o.part.around + "\"" + core::format_text(" --radius %g", o.part.radius_m);
-  if (!args.box.empty()) text += " --box \"" + args.box + "\"";
-  if (!args.start.empty()) text += " --start \"" + args.start + "\"";
-  return text;
+      "karst cave from-survey " + core::shell_word(args.survey) +
+      core::format_text(" --resolution %g --roughness %g --seed %llu --vehicle-width %g --max-triangles %zu",
+                        o.resolution_m, o.roughness_m, static_cast<unsigned long long>(o.seed),
+                        o.vehicle_width_m, o.max_triangles);
+  text += core::shell_option("--survey", o.part.survey) + core::shell_option("--around", o.part.around);
+  if (!o.part.around.empty()) text += core::format_text(" --radius %g", o.part.radius_m);
+  return text + core::shell_option("--box", args.box) + core::shell_option("--start", args.start);
 }
 
 void write_text(const std::string& path, const std::string& text) {

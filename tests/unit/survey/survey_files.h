@@ -8,14 +8,11 @@
 #include <string>
 
 #include "core_stack/common/error.h"
-#include "sdk/survey/cavern.h"
 #include "sdk/survey/readings.h"
 #include "sdk/survey/survey.h"
 #include "sdk/survey/therion_reader.h"
 #include "tests/unit/replay/folder.h"
-
-#define SKIP_WITHOUT_SURVEX() \
-  if (!karst::survey::has_survex()) GTEST_SKIP() << "skipped: no survex"
+#include "tests/unit/survey/skip_without_survex.h"
 
 namespace karst::test {
 

@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/shell_word.h"
 #include "sdk/tools/cave_command.h"
 #include "sdk/tools/from_survey_command.h"
 #include "tests/unit/simulator/meshes.h"
+#include "tests/unit/survey/skip_without_survex.h"
 
 namespace karst::tools {
 namespace {
@@ -56,6 +58,7 @@ class FromSurveyCommand : public testing::Test {
            "    endcentreline\n  endsurvey\n"
            "  equate 3@upper 0@lower\nendsurvey\n";
   }
+  void SetUp() override { SKIP_WITHOUT_SURVEX(); }
   ~FromSurveyCommand() override { std::filesystem::remove_all(folder_); }
 
   std::string run_with(const std::vector<std::string>& more) const {
@@ -75,7 +78,10 @@ TEST_F(FromSurveyCommand, WritesACaveThatCanBeFlownItsStationsAndWhatWasGuessed)
                            "connected          1 part\n", "karst fly --cave "})
     EXPECT_TRUE(has(said, line)) << line << "\n" << said;
   const std::string info = test::read_bytes(out_ + ".info");
-  EXPECT_TRUE(has(info, "; made by: karst cave from-survey \"" + survey_ + "\" --resolution 0.3")) << info;
+  EXPECT_TRUE(
+      has(info, "; made by: karst cave from-survey " + core::shell_word(survey_) + " --resolution 0.3"))
+      << info;
+  EXPECT_TRUE(has(info, " --max-triangles 20000000")) << info;
   EXPECT_TRUE(has(info, "within reach")) << "the report is in the file, too";
   const std::string table = test::read_bytes(out_ + ".stations.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 7) << table;
@@ -115,6 +121,30 @@ TEST_F(FromSurveyCommand, OverwritesOnlyIfForcedAndWithTheSameBytes) {
   EXPECT_EQ(test::read_bytes(out_ + ".info"), info);
   run_with({"--force", "--seed", "2"});
   EXPECT_NE(test::read_bytes(out_ + ".ply"), mesh);
+}
+
+TEST_F(FromSurveyCommand, LongCommentsAreCutBetweenCharacters) {
+  std::string umlauts;
+  for (int i = 0; i < 80; ++i) umlauts += "\u00f6";
+  const std::string commented = folder_ + "/commented.th";
+  std::ofstream(commented) << "encoding utf-8\nsurvey cave\n  centreline\n"
+                              "    data normal from to tape compass clino left right up down\n"
+                              "    0 1 10 90 0 2 2 2 1\n    station 1 \"sump "
+                           << umlauts << "\"\n  endcentreline\nendsurvey\n";
+  const std::string said = run({"cave", "from-survey", commented, "--out", out_, "--resolution", "0.4"});
+  EXPECT_TRUE(has(said, "cave.1: sump " + umlauts.substr(0, 2 * 55) + "\n")) << said;
+}
+
+TEST_F(FromSurveyCommand, TheCommandInTheFileIsQuotedForTheShell) {
+  const std::string odd = folder_ + "/it's a \"cave\" $HOME.th";
+  std::filesystem::copy_file(survey_, odd);
+  run({"cave", "from-survey", odd, "--out", out_, "--resolution", "0.4", "--max-triangles", "3000000",
+       "--around", "upper.1", "--radius", "50", "--box=-50 -50 -50 50 50 50"});
+  const std::string info = test::read_bytes(out_ + ".info");
+  EXPECT_TRUE(has(info, "karst cave from-survey " + core::shell_word(odd) + " --resolution 0.4")) << info;
+  EXPECT_TRUE(
+      has(info, " --max-triangles 3000000 --around upper.1 --radius 50 '--box=-50 -50 -50 50 50 50'\n"))
+      << info;
 }
 
 TEST_F(FromSurveyCommand, BadArgumentsAreNamedAndNothingIsWritten) {
