@@ -2,11 +2,13 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/closed_loop/command.h"
+#include "tests/unit/survey/skip_without_survex.h"
 
 namespace karst {
 namespace {
 
 TEST(SurveyFlight, ACaveMadeOfASurveyIsFlownAndLandedIn) {
+  SKIP_WITHOUT_SURVEX();
   const auto folder = fresh_folder("survey_flight");
   std::ofstream(folder / "cave.th")
       << "survey cave\n  centreline\n    station 0 \"\" entrance\n"
