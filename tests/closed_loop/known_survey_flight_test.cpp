@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/closed_loop/command.h"
+#include "tests/unit/survey/skip_without_survex.h"
 
 namespace karst {
 namespace {
@@ -38,6 +39,7 @@ Flown fly(const std::filesystem::path& folder, const std::string& name, const st
 }
 
 TEST(KnownSurveyFlight, WithItTheFlightIsSoonerInWhatTheSurveyLacks) {
+  SKIP_WITHOUT_SURVEX();
   const auto folder = fresh_folder("known_survey_flight");
   std::ofstream(folder / "cave.th") << survey(std::string(kMain) + kBranch);
   std::ofstream(folder / "known.th") << survey(kMain);
@@ -69,6 +71,7 @@ TEST(KnownSurveyFlight, WithItTheFlightIsSoonerInWhatTheSurveyLacks) {
 }
 
 TEST(KnownSurveyFlight, InProcessAndInAProcessOfItsOwnThePolicyKnowsTheSame) {
+  SKIP_WITHOUT_SURVEX();
   const auto folder = fresh_folder("known_survey_isolation");
   std::ofstream(folder / "cave.th") << survey(std::string(kMain) + kBranch);
   std::ofstream(folder / "known.th") << survey(kMain);
