@@ -19,7 +19,7 @@ set(CPACK_DEBIAN_KARST_PACKAGE_NAME karst)
 set(CPACK_DEBIAN_KARST_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_KARST_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_KARST_PACKAGE_RECOMMENDS "karst-doc")
-set(CPACK_DEBIAN_KARST_PACKAGE_SUGGESTS "karst-sdk, librsvg2-bin, slurm-client")
+set(CPACK_DEBIAN_KARST_PACKAGE_SUGGESTS "karst-sdk, librsvg2-bin, slurm-client, survex")
 set(CPACK_DEBIAN_KARST_DESCRIPTION
 "exploration policies for cave-flying UAVs: fly, measure, compare
 The command karst generates caves, flies exploration policies through them in a

@@ -13,4 +13,10 @@ inline std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
+/// " --option value"; joined by '=' where the value would be taken for an option. Nothing without a value.
+inline std::string shell_option(const std::string& option, const std::string& value) {
+  if (value.empty()) return "";
+  return " " + (value.starts_with('-') ? shell_word(option + "=" + value) : option + " " + shell_word(value));
+}
+
 }  // namespace karst::core

@@ -408,6 +408,7 @@ void MissionControl::record() {
   onboard_.recorder.telemetry({now(), phase(), flight.state(), flight.reference().position,
                                battery.fraction_left, battery.seconds_left, sensors_.explored_m3(),
                                return_home_.distance_m()});
+  if (const auto& m3 = sensors_.unsurveyed_m3()) onboard_.recorder.unsurveyed(now(), *m3);
   if (flown_path_.begun()) flown_path_.note(flight.reference().position);
   const bool each_second = now() % kSecond == 0;
   if (team_) team_->sharing.report(team_->right_of_way.phase_to_report());

@@ -159,6 +159,7 @@ void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> m
   struct Mapped {
     MapNews news;
     double explored_m3 = 0;
+    std::optional<double> unsurveyed_m3;
     std::optional<double> hull_clearance_m;
   };
   onboard_.map.job(
@@ -174,6 +175,7 @@ void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> m
         leave_out(rays, others);
         news.changes = explorer.integrate(rays);
         out.explored_m3 = explorer.map().free_volume_m3();
+        out.unsurveyed_m3 = explorer.unsurveyed_m3();
         const std::vector<Vec3>& ahead = question.ahead;
         if (ahead.size() > 1) {
           const int blocked = question.touch_only ? explorer.touching_segment(ahead)
@@ -189,6 +191,7 @@ void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> m
       },
       [this](const Mapped& mapped) {
         explored_m3_ = mapped.explored_m3;
+        unsurveyed_m3_ = mapped.unsurveyed_m3;
         hull_clearance_m_ = mapped.hull_clearance_m;
         last_seen_ = onboard_.now();
         wiring_.tell(mapped.news);

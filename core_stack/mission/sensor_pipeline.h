@@ -57,6 +57,8 @@ class SensorPipeline {
   void close() { closed_ = true; }
 
   double explored_m3() const { return explored_m3_; }
+  /// What of it the mission's survey lacks; none without a survey.
+  const std::optional<double>& unsurveyed_m3() const { return unsurveyed_m3_; }
   /// Of the hull from the nearest obstacle, if that is near.
   const std::optional<double>& hull_clearance_m() const { return hull_clearance_m_; }
   /// Time since the last scan or image in the map.
@@ -80,6 +82,7 @@ class SensorPipeline {
   bool in_first_map_ = true;
   bool closed_ = false;
   double explored_m3_ = 0;
+  std::optional<double> unsurveyed_m3_;
   std::optional<double> hull_clearance_m_;
   TimeNs last_seen_ = 0;            // when a scan or an image was last taken in
   int pictures_lost_ = 0;           // not kept

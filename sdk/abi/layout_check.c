@@ -1,6 +1,7 @@
 /* Compiles only if every struct of the ABI has the memory layout listed in karst_abi_layout.inc. */
 #include "karst_abi.h"
 #include "karst_abi_imaged.h"
+#include "karst_abi_survey.h"
 
 _Static_assert(sizeof(void*) == 8, "the policy ABI is defined for 64-bit platforms");
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
+#include <cstdio>
 #include <thread>
 
 #include "core_stack/common/error.h"
@@ -12,6 +12,7 @@
 #include "core_stack/common/json_file.h"
 #include "core_stack/common/options.h"
 #include "core_stack/common/shell_word.h"
+#include "core_stack/common/temporary_folder.h"
 #include "sdk/host/isolation/process.h"
 #include "sdk/host/plugin/probe.h"
 
@@ -29,20 +30,6 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 
 bool of_file(const Test& t) { return t.of == Test::Of::file || t.of == Test::Of::file_gate; }
 bool is_gate(const Test& t) { return t.of == Test::Of::file_gate || t.of == Test::Of::policy_gate; }
-
-/// A temporary folder, removed on destruction.
-struct ScratchFolder {
-  ScratchFolder() {
-    if (mkdtemp(path.data()) == nullptr) throw InputError(path, "", "cannot be made");
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string path = (fs::temp_directory_path() / "karst-check-XXXXXX").string();
-};
 
 std::string repeat_command(const CheckOptions& o, const std::string& policy, const Test& test) {
   return "karst policy check " + core::shell_word(o.file) + (policy.empty() ? "" : " --policy " + policy) +
@@ -80,8 +67,8 @@ std::string wait_for(pid_t child, const Progress& progress, const CheckOptions& 
 }
 
 TestResult run_in_child(const CheckOptions& o, const std::string& policy, const Test& test) {
-  const ScratchFolder work;
-  const fs::path folder = work.path;
+  const core::TemporaryFolder work("check");
+  const fs::path& folder = work.path();
   const Progress progress(folder / "progress");
   TestResult r{
       &test, policy, Verdict::passed, "", ordered_json::object(), 0, repeat_command(o, policy, test)};
@@ -90,7 +77,7 @@ TestResult run_in_child(const CheckOptions& o, const std::string& policy, const 
                                    "--test",         test.name,
                                    "--seed",         std::to_string(o.seed),
                                    "--level",        core::name_of(o.level),
-                                   "--work",         work.path};
+                                   "--work",         folder.string()};
   if (!policy.empty()) argv.insert(argv.end(), {"--policy", policy});
   const auto begin = Clock::now();
   host::ProcessEnd end;

@@ -9,6 +9,7 @@
 #include "core_stack/common/stall_watch.h"
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/team/run_ending.h"
+#include "sdk/flight/known_survey.h"
 #include "sdk/flight/run_files.h"
 #include "sdk/flight/status_line.h"
 #include "sdk/flight/team_metrics.h"
@@ -67,7 +68,7 @@ struct MissionFlight::Running {
 };
 
 MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& request)
-    : mission_(mission), request_(request), members_(missions_of_members(mission)) {
+    : mission_(with_survey(mission)), request_(request), members_(missions_of_members(mission_)) {
   if (is_team(mission_)) refuse_for_team(request_);
   loaded_ = load_policies(members_, request_);
   if (is_team(mission_)) key_ = radio_key(mission_);

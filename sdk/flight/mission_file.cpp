@@ -40,6 +40,17 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
           "\"x y z [heading_deg]\" above the floor to start from; empty: the cave's own");
     describe(c, m.mesh);
   });
+  t.under("survey", [&m](OptionTable& s) {
+    s.add("file", m.survey.file, {},
+          "survey of passages that are known before the flight: Therion (.th), Survex (.svx, .3d) or Compass "
+          "(.dat, .mak, .plt); relative to the mission file");
+    s.add(
+        "offset", m.survey.offset, {},
+        "\"x y z\" of the cave's origin in the survey, m; empty: by the stations of karst cave from-survey, "
+        "or 0 0 0 for a cave without them");
+    s.add("hints", m.survey.hints,
+          "tell the policy of it; false: only what the survey lacks is counted, for comparisons");
+  });
   t.under("policy", [&m, auto_keys](OptionTable& p) {
     p.add("name", m.policy, {},
           "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
@@ -69,6 +80,8 @@ void describe_radio(OptionTable& table, core::VehiclePlugin& plugin) {
   if (auto* teams = dynamic_cast<sim::SimulatedWorldPlugin*>(&plugin))
     table.under("radio", [teams](OptionTable& t) { teams->describe_radio(t); });
 }
+
+constexpr const char* kSurveySection = "survey";
 
 /// The sections that apply to teams only.
 constexpr const char* kTeamSections[] = {"team", "homing", "radio"};
@@ -155,6 +168,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   table.read(m.file, tree);
   m.cave = core::beside(file, m.cave);
   m.core.team.key_file = core::beside(file, m.core.team.key_file);
+  m.survey.file = core::beside(file, m.survey.file);
   const std::string recorded_policy = m.policy;
   if (!overrides.cave.empty()) {  // another cave, another start and mesh
     m.cave = overrides.cave;
@@ -181,6 +195,11 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   m.resolved = table.resolved();
   if (m.core.team.robots == 1)
     for (const char* section : kTeamSections) m.resolved.erase(section);
+  if (m.survey.file.empty()) {
+    if (!m.survey.offset.empty())
+      throw InputError(m.file, "survey.offset", "is of no use without survey.file");
+    m.resolved.erase(kSurveySection);
+  }
   return m;
 }
 
@@ -197,6 +216,10 @@ pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
   tree.put("cave.start", m.start);
   if (const std::string& key = m.core.team.key_file; !key.empty() && tree.get_child_optional("team"))
     tree.put("team.key_file", std::filesystem::absolute(key).lexically_normal().string());
+  if (!m.survey.file.empty()) {
+    tree.put("survey.file", std::filesystem::absolute(m.survey.file).lexically_normal().string());
+    tree.put("survey.offset", m.survey.offset);
+  }
   tree.put("policy.name", m.policy);
   if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);
   tree.put(kPolicyVersion, policy_version);

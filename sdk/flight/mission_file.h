@@ -35,10 +35,17 @@ struct MissionOverrides {
   std::vector<std::pair<std::string, std::string>> values;  // further keys with values
 };
 
+/// Keys of a survey that is known before the flight.
+struct SurveyKeys {
+  std::string file, offset;  // "": none; "": as the cave lies
+  bool hints = true;
+};
+
 struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   core::MeshKeys mesh;  // of a cave that is a bare mesh
+  SurveyKeys survey;
   std::int64_t seed = 1, policy_stream = 0;
   PolicyIsolation policy_isolation = PolicyIsolation::where_possible;
   double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;

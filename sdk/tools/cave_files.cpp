@@ -1,8 +1,10 @@
 #include "sdk/tools/cave_files.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/printable.h"
 
 namespace karst::tools {
 
@@ -20,6 +22,12 @@ CaveFiles new_cave_files(const std::string& out, const std::string& mesh_format,
     if (fs::exists(path) && !force)
       throw InputError(path, "", "is there already; choose another --out, or give --force to overwrite it");
   return files;
+}
+
+std::string comment_line(const std::string& text) {
+  std::string line = core::printable(text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return "; " + line + "\n";
 }
 
 }  // namespace karst::tools

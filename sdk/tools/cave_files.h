@@ -13,4 +13,7 @@ struct CaveFiles {
 /// one of them is there already, unless `force`, or if the folder cannot be made.
 CaveFiles new_cave_files(const std::string& out, const std::string& mesh_format, bool force);
 
+/// A line of a cave's .info file that is a comment, whatever the text holds.
+std::string comment_line(const std::string& text);
+
 }  // namespace karst::tools

@@ -58,11 +58,11 @@ std::shared_ptr<CLI::App> karst_command() {
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);
-  for (const char* name :
-       {"preflight", "compare", "results", "replay", "evaluate", "map", "select", "tune", "completion"})
+  for (const char* name : {"preflight", "compare", "results", "replay", "evaluate", "draw", "map", "export",
+                           "select", "tune", "completion"})
     add_missing(*app, name);
   for (const char* name : {"check", "replay"}) add_missing(policy, name);
-  for (const char* name : {"describe", "from-cloud"}) add_missing(cave, name);
+  for (const char* name : {"describe", "from-cloud", "from-survey"}) add_missing(cave, name);
   add_help_of_all(*app);
   return app;
 }

@@ -1,7 +1,6 @@
 #include "sdk/tools/from_cloud_command.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -12,7 +11,6 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/output_file.h"
-#include "core_stack/common/printable.h"
 #include "plugins/simulator/cave/cave_blocks.h"
 #include "plugins/simulator/cave/propose_start.h"
 #include "sdk/cave_from_cloud/cave_from_cloud.h"
@@ -78,19 +76,12 @@ std::string command_of(const FromCloudArguments& args, double resolution_m) {
   return text;
 }
 
-/// A line of a cave file that is a comment, whatever the text holds.
-std::string comment(const std::string& text) {
-  std::string line = core::printable(text);
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  return "; " + line + "\n";
-}
-
 void write_info_file(const CaveFiles& files, const FromCloudArguments& args, const cave::MeshFrame& frame,
                      const CaveFromCloud& made, const std::vector<std::string>& lines) {
   std::ofstream out = core::open_output(files.info);
-  out << comment("made by: " + command_of(args, made.report.resolution_m));
-  if (!cave::is_plain(frame)) out << comment("the cloud was read as: " + cave::to_text(frame));
-  for (const std::string& line : lines) out << comment("  " + line);
+  out << comment_line("made by: " + command_of(args, made.report.resolution_m));
+  if (!cave::is_plain(frame)) out << comment_line("the cloud was read as: " + cave::to_text(frame));
+  for (const std::string& line : lines) out << comment_line("  " + line);
   out << "mesh \"" << files.mesh_name << "\"\n";
   if (made.start) out << "start \"" << cave::start_text(*made.start) << "\"\n";
   out << "reflectivity 0.5\n";

@@ -11,11 +11,14 @@
 #include "sdk/tools/cave_describe_command.h"
 #include "sdk/tools/check_command.h"
 #include "sdk/tools/compare_command.h"
+#include "sdk/tools/draw_command.h"
 #include "sdk/tools/evaluate_command.h"
 #include "sdk/tools/explain_command.h"
 #include "sdk/tools/explain_time_command.h"
+#include "sdk/tools/export_command.h"
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/from_cloud_command.h"
+#include "sdk/tools/from_survey_command.h"
 #include "sdk/tools/help_commands.h"
 #include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
@@ -53,13 +56,16 @@ std::shared_ptr<CLI::App> karst_command() {
   CLI::App& cave = add_cave_command(*app);
   add_cave_describe(cave);
   add_from_cloud_command(cave);
+  add_from_survey_command(cave);
   add_report_command(*app, campaign_page);
+  add_draw_command(*app);
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);
   add_replay_command(*app);
   add_evaluate_command(*app);
   add_map_command(*app);
+  add_export_command(*app);
   add_select_command(*app);
   add_tune_command(*app);
   add_help_commands(*app);

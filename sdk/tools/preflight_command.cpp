@@ -65,9 +65,7 @@ flight::Mission mission_of(const PreflightArguments& args) {
 std::string fly_command(const PreflightArguments& args, const preflight::PolicyFacts& policy) {
   std::string command = "karst fly";
   const auto add = [&command](const std::string& option, const std::string& value) {
-    if (value.empty()) return;
-    command += " " + (value.starts_with('-') ? core::shell_word(option + "=" + value)
-                                             : option + " " + core::shell_word(value));
+    command += core::shell_option(option, value);
   };
   const auto set = [&add](const std::string& key, const std::string& value) {
     if (!value.empty()) add("--set", key + "=" + value);

@@ -4,6 +4,7 @@
  */
 #include "karst_abi.h"
 #include "karst_abi_imaged.h"
+#include "karst_abi_survey.h"
 
 #define PROBE(type)                                           \
   KARST_EXPORT const void* karst_probe_##type(const type* x); \
@@ -47,3 +48,7 @@ PROBE(karst_state_extension_t)
 PROBE(karst_imaged_camera_t)
 PROBE(karst_surface_cell_t)
 PROBE(karst_imaged_service_t)
+PROBE(karst_survey_size_t)
+PROBE(karst_survey_leg_t)
+PROBE(karst_survey_lead_t)
+PROBE(karst_survey_service_t)

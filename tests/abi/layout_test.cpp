@@ -11,6 +11,7 @@
 
 #include "sdk/abi/karst_abi.h"
 #include "sdk/abi/karst_abi_imaged.h"
+#include "sdk/abi/karst_abi_survey.h"
 
 namespace {
 

@@ -139,6 +139,7 @@ DecisionRequest DecisionCycle::request(const ClearanceRoadmap& roadmap, const Cy
   request.map = &world_->map();
   request.roadmap = &roadmap.roadmap();
   request.imaged = world_->imaged();
+  request.survey = world_->survey();
   for (const TeammateState& teammate : input.teammates)
     request.teammates.push_back(home_->seen_by_policy(teammate, input.now));
   request.vehicle = &vehicle_;

@@ -73,6 +73,8 @@ class Explorer {
   std::optional<WaitingPlace> find_waiting_place(RoomQuery query);
 
   const VoxelMap& map() const { return world_.map(); }
+  /// See WorldModel::unsurveyed_m3.
+  std::optional<double> unsurveyed_m3() const { return world_.unsurveyed_m3(); }
   const Vec3& home() const { return world_.home(); }
   /// Moves home to the actual hover, if take-off had to stop lower than planned.
   void set_home(const Vec3& hover_point) { world_.set_home(hover_point); }

@@ -1,10 +1,13 @@
 // All settings of the core stack in one struct and one table: the mission file's sections.
 #pragma once
+#include <memory>
+
 #include "core_stack/control/mpc_tracker.h"
 #include "core_stack/control/se3_controller.h"
 #include "core_stack/localization/localization_options.h"
 #include "core_stack/mapping/frontiers/frontiers.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mapping/prior/surveyed_passages.h"
 #include "core_stack/mission/options/safety_options.h"
 #include "core_stack/objects/object_options.h"
 #include "core_stack/perception/intensity_filter.h"
@@ -33,6 +36,12 @@ struct MissionOptions {
 };
 void describe(OptionTable& t, MissionOptions& o);
 
+/// What a survey tells of the cave. It stands in no table: who flies the mission reads the survey.
+struct KnownSurvey {
+  std::shared_ptr<const SurveyedPassages> passages;  // null: the mission has no survey
+  bool told_to_policy = true;                        // else it is only counted what it lacks
+};
+
 struct CoreOptions {
   MissionOptions mission;
   SafetyOptions safety;
@@ -47,6 +56,7 @@ struct CoreOptions {
   Se3Options controller;
   TeamOptions team;  // described separately: a single vehicle has none
   HomingOptions homing;
+  KnownSurvey survey;
 };
 void describe(OptionTable& t, CoreOptions& o);
 

@@ -10,6 +10,7 @@
 #include "core_stack/mapping/frontiers/frontiers.h"
 #include "core_stack/mapping/frontiers/imaged_surface.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mapping/prior/surveyed_passages.h"
 #include "core_stack/mission/policy/decision.h"
 #include "core_stack/planning/roadmap/roadmap.h"
 #include "core_stack/vehicle/vehicle.h"
@@ -54,7 +55,8 @@ struct DecisionRequest {
   Vec3 last_goal = Vec3::Zero();
   const VoxelMap* map = nullptr;
   const Roadmap* roadmap = nullptr;
-  const ImagedSurface* imaged = nullptr;  // by the colour camera; null without one
+  const ImagedSurface* imaged = nullptr;     // by the colour camera; null without one
+  const SurveyedPassages* survey = nullptr;  // known before the flight; null without one
   const VehicleDescription* vehicle = nullptr;
   std::vector<FrontierOffer> frontiers;  // by id
   std::vector<OtherVehicle> teammates;   // by id

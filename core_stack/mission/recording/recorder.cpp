@@ -67,6 +67,17 @@ void Recorder::telemetry(const Telemetry& r) {
                           r.battery_fraction, r.battery_seconds_left, r.explored_m3, r.home_distance_m);
 }
 
+void Recorder::unsurveyed(TimeNs t, double volume_m3) {
+  const std::string volume = formatted("%.3f", volume_m3);
+  if (volume == last_unsurveyed_) return;
+  if (!unsurveyed_.is_open()) {
+    unsurveyed_.open(directory_ / "unsurveyed.csv", std::ios::binary | std::ios::trunc);
+    unsurveyed_ << "t_s,unsurveyed_m3\n";
+  }
+  unsurveyed_ << formatted("%.2f,", seconds(t)) << volume << '\n';
+  last_unsurveyed_ = volume;
+}
+
 void Recorder::located(const Located& r) {
   const LoamPose& p = r.pose;
   localization_ << formatted("%.3f,%.3f,%d,%d,%d,%d,%.4f,%.4f,%.5f,%s,", seconds(p.stamp), seconds(r.used_at),
@@ -114,7 +125,7 @@ void Recorder::final_map(const VoxelMap& map) {
 bool Recorder::flush() {
   bool good = true;
   for (std::ofstream* f :
-       {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_}) {
+       {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_, &unsurveyed_}) {
     f->flush();
     good = good && f->good();
   }

@@ -45,6 +45,8 @@ class Recorder {
   void write(TimeNs t, const char* kind, const std::string& fields);
   void pose(const State& state);
   void telemetry(const Telemetry& row);
+  /// A line of unsurveyed.csv, made with the first, if the volume differs from the last line's.
+  void unsurveyed(TimeNs t, double volume_m3);
   void located(const Located& row);
   void map_changes(TimeNs t, std::span<const CellChange> changes);
   /// A line of frames.csv, made with the first; `file` is relative to the directory, "" if no picture is
@@ -63,7 +65,8 @@ class Recorder {
 
  private:
   std::filesystem::path directory_;
-  std::ofstream events_, trajectory_, telemetry_, localization_, growth_, decisions_, frames_;
+  std::ofstream events_, trajectory_, telemetry_, localization_, growth_, decisions_, frames_, unsurveyed_;
+  std::string last_unsurveyed_;  // as written
 };
 
 }  // namespace karst::core

@@ -20,9 +20,12 @@ WorldModel::WorldModel(const CoreOptions& options, const VehicleDescription& veh
       rgb_(vehicle.rgb),
       map_(options.map),
       frontiers_(options.frontiers),
+      survey_(options.survey),
       usual_(options.planning, Passages::usual),
       narrow_clearance_m_(narrow_clearance_m(options.planning, vehicle.radius_m)),
-      home_(vehicle.T_world_start.position + Vec3(0, 0, options.mission.takeoff_height_m)) {}
+      home_(vehicle.T_world_start.position + Vec3(0, 0, options.mission.takeoff_height_m)) {
+  if (survey_.passages) unsurveyed_.emplace(survey_.passages);
+}
 
 std::vector<CellChange> WorldModel::integrate(const std::vector<Ray>& rays) {
   return take_in(map_.insert(rays));
@@ -40,6 +43,7 @@ std::vector<CellChange> WorldModel::take_in(std::vector<CellChange> changes) {
   frontiers_.update(map_, changes);
   usual_.note(changes);
   if (narrow_) narrow_->note(changes);
+  if (unsurveyed_) unsurveyed_->note(map_, changes);
   return changes;
 }
 

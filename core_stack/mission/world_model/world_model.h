@@ -9,6 +9,7 @@
 
 #include "core_stack/mapping/frontiers/frontiers.h"
 #include "core_stack/mapping/frontiers/imaged_surface.h"
+#include "core_stack/mapping/prior/unsurveyed_volume.h"
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/mission/world_model/clearance_roadmap.h"
 
@@ -28,6 +29,12 @@ class WorldModel {
   const Frontiers& frontiers() const { return frontiers_; }
   /// Null if the vehicle has no colour camera.
   const ImagedSurface* imaged() const { return rgb_ ? &imaged_ : nullptr; }
+  /// What the policy may know of a survey; null if that is nothing.
+  const SurveyedPassages* survey() const { return survey_.told_to_policy ? survey_.passages.get() : nullptr; }
+  /// Of the free cells, what the mission's survey lacks; none without a survey.
+  std::optional<double> unsurveyed_m3() const {
+    return unsurveyed_ ? std::optional(unsurveyed_->m3()) : std::nullopt;
+  }
   const Vec3& home() const { return home_; }
   void set_home(const Vec3& hover_point) { home_ = hover_point; }
 
@@ -57,6 +64,8 @@ class WorldModel {
   VoxelMap map_;
   Frontiers frontiers_;
   ImagedSurface imaged_;
+  KnownSurvey survey_;
+  std::optional<UnsurveyedVolume> unsurveyed_;
   ClearanceRoadmap usual_;
   std::optional<double> narrow_clearance_m_;  // if narrow passages may be flown
   std::optional<ClearanceRoadmap> narrow_;

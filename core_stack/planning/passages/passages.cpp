@@ -74,16 +74,11 @@ class PassageMapBuilder {
     return static_cast<std::uint32_t>(out_.ends.size() - 1);
   }
 
-  /// The end of a passage whose last groups these are, the very last first. It is open if the frontier there
-  /// is a quarter of the passage's cross-section or more.
+  /// The end of a passage whose last groups these are, the very last first.
   std::uint32_t add_last(std::span<const std::uint32_t> last) {
-    const Shares shares = shares_of(last);
-    double area_m2 = 0;
-    for (const std::uint32_t g : last)
-      for (const std::uint32_t s : groups_[g].slices)
-        area_m2 = std::max(area_m2, volume_m3(slices_.slices[s].free_cells) / band_m_);
-    const bool open = 4 * shares.frontier_m2 >= area_m2;
-    return add_end(last.front(), open ? PassageEnd::Kind::open_end : PassageEnd::Kind::dead_end, shares);
+    const bool open = is_open_end(last, groups_, slices_.slices, out_.space_.grid);
+    return add_end(last.front(), open ? PassageEnd::Kind::open_end : PassageEnd::Kind::dead_end,
+                   shares_of(last));
   }
 
   void add_passage(const SliceChain& chain) {

@@ -220,4 +220,18 @@ std::vector<SliceGroup> simplified(const std::vector<Slice>& slices,
   return merging.groups();
 }
 
+bool is_open_end(std::span<const std::uint32_t> last, const std::vector<SliceGroup>& groups,
+                 const std::vector<Slice>& slices, const PassageGrid& grid) {
+  const double band_m = kBandCubes * grid.cube_m();
+  std::uint64_t frontier_cells = 0, most_cells = 0;
+  for (const std::uint32_t g : last)
+    for (const std::uint32_t s : groups[g].slices) {
+      frontier_cells += slices[s].frontier_cells;
+      most_cells = std::max(most_cells, slices[s].free_cells);
+    }
+  const double frontier_m2 = static_cast<double>(frontier_cells) * grid.cell_m * grid.cell_m;
+  const double area_m2 = static_cast<double>(most_cells) * grid.cell_m * grid.cell_m * grid.cell_m / band_m;
+  return 4 * frontier_m2 >= area_m2;
+}
+
 }  // namespace karst::core

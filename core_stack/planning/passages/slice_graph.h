@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core_stack/planning/passages/cross_section.h"
@@ -42,5 +43,10 @@ std::vector<SliceChain> chains_of(const std::vector<SliceGroup>& groups);
 /// that width of it are merged into it: a hall is one junction, and not part of the passages that lead there.
 std::vector<SliceGroup> simplified(const std::vector<Slice>& slices,
                                    const std::vector<CrossSection>& sections, double band_m);
+
+/// Whether a passage leads on into the unknown at the end whose last groups these are: the frontier there is
+/// a quarter of the passage's cross-section or more.
+bool is_open_end(std::span<const std::uint32_t> last, const std::vector<SliceGroup>& groups,
+                 const std::vector<Slice>& slices, const PassageGrid& grid);
 
 }  // namespace karst::core

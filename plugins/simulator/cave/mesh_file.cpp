@@ -15,6 +15,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/little_endian.h"
 #include "core_stack/common/output_file.h"
 #include "plugins/simulator/cave/import_child.h"
 #include "plugins/simulator/cave/mesh_advice.h"
@@ -131,20 +132,15 @@ void collect_parts(const aiScene& scene, const aiNode& node, const aiMatrix4x4& 
     collect_parts(scene, *node.mChildren[i], T, frame, offset_left, out);
 }
 
-template <class T>
-void put(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 std::string stl_bytes(const TriangleMesh& mesh) {
   std::string bytes(80, ' ');
-  put(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  core::append_bytes(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const auto& t : mesh.triangles) {
     const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const Vec3f normal = (b - a).cross(c - a).normalized();
     for (const Vec3f& v : {normal, a, b, c})
-      for (int k = 0; k < 3; ++k) put(bytes, v[k]);
-    put(bytes, std::uint16_t{0});
+      for (int k = 0; k < 3; ++k) core::append_bytes(bytes, v[k]);
+    core::append_bytes(bytes, std::uint16_t{0});
   }
   return bytes;
 }
@@ -156,10 +152,10 @@ std::string ply_bytes(const TriangleMesh& mesh) {
                       std::to_string(mesh.triangles.size()) +
                       "\nproperty list uchar int vertex_indices\nend_header\n";
   for (const Vec3f& v : mesh.vertices)
-    for (int k = 0; k < 3; ++k) put(bytes, v[k]);
+    for (int k = 0; k < 3; ++k) core::append_bytes(bytes, v[k]);
   for (const auto& t : mesh.triangles) {
-    put(bytes, std::uint8_t{3});
-    for (const std::uint32_t i : t) put(bytes, i);
+    core::append_bytes(bytes, std::uint8_t{3});
+    for (const std::uint32_t i : t) core::append_bytes(bytes, i);
   }
   return bytes;
 }

@@ -107,6 +107,23 @@ std::optional<StartPose> propose_start(const RayScene& scene, const StartNeeds& 
   return StartPose{*in_sight_of_hole, heading_of_longest_sight(scene, *in_sight_of_hole)};
 }
 
+std::optional<StartPose> start_among(const RayScene& scene, const std::vector<Vec3>& places,
+                                     const StartNeeds& needs) {
+  constexpr double kFar_m = 1000;
+  for (const Vec3& p : places) {
+    const double down_m = scene.ray_cast(p, -Vec3::UnitZ(), kFar_m),
+                 up_m = scene.ray_cast(p, Vec3::UnitZ(), kFar_m);
+    if (!std::isfinite(down_m + up_m)) continue;
+    const auto place = place_in(scene, {p - down_m * Vec3::UnitZ(), down_m + up_m}, needs);
+    if (!place) continue;
+    const Surroundings s = look_around(scene, place->position);
+    if (s.odd_fraction < 0.5 || s.escape_fraction > kPinholes || !can_climb(scene, place->standing, needs))
+      continue;
+    return StartPose{place->position, heading_of_longest_sight(scene, place->position)};
+  }
+  return std::nullopt;
+}
+
 std::string start_text(const StartPose& s) {
   const Vec3& p = s.position;
   return core::format_text("%.2f %.2f %.2f %.0f", p.x(), p.y(), p.z(),

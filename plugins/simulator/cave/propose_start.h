@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "plugins/simulator/cave/cave.h"
 
@@ -21,6 +22,11 @@ struct StartNeeds {
 /// roomiest and most level first; the place must be inside by the rays of look_around(). Places that see a
 /// hole of the mesh come last. The same for the same mesh; none if no candidate suits.
 std::optional<StartPose> propose_start(const RayScene& scene, const StartNeeds& needs = {});
+
+/// The first of the places above which, or at which, such a start lies: in the column of air through the
+/// place. Places in rock do not suit, nor do those that see a hole of the mesh.
+std::optional<StartPose> start_among(const RayScene& scene, const std::vector<core::Vec3>& places,
+                                     const StartNeeds& needs = {});
 
 /// As a cave file and --start have it: "x y z heading_deg", to the centimetre and degree.
 std::string start_text(const StartPose& start);

@@ -1,7 +1,10 @@
 #include "plugins/simulator/cave_generator/samples.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace karst::cave {
 namespace {
@@ -42,30 +45,72 @@ int corner_to_open(const Samples& s, const Node& cell) {
   return -1;
 }
 
+std::vector<Node> corners_of(const CaveField& field) {
+  const auto [nx, ny, nz] = field.cubes_along();
+  std::vector<Node> corners;
+  for (std::int32_t z = 0; z < nz; ++z)
+    for (std::int32_t y = 0; y < ny; ++y)
+      for (std::int32_t x = 0; x < nx; ++x)
+        if (field.cube(x, y, z).any())
+          corners.push_back({x * Samples::kEdge, y * Samples::kEdge, z * Samples::kEdge});
+  return corners;
+}
+
 }  // namespace
 
 Samples::Samples(const CaveField& field, double grid_m)
-    : grid_m_(grid_m), low_(field.low()), count_(field.cubes_along()) {
-  blocks_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
-  const auto fill = [&](std::size_t first, std::size_t stride) {
-    for (std::size_t i = first; i < blocks_.size(); i += stride) {
-      const Node c = block_corner(i);
-      const CaveField::Cube& cube = field.cube(c.x >> 3, c.y >> 3, c.z >> 3);
-      if (!cube.any()) continue;
-      std::vector<float> values(kEdge * kEdge * kEdge);
-      constexpr int kPart = 4;  // eighths of a block far from the surface are decided by one value
-      for (int part = 0; part < 8; ++part) {
-        const Node origin = c + Node{kPart * (part & 1), kPart * (part >> 1 & 1), kPart * (part >> 2 & 1)};
-        const double half_m = 0.5 * (kPart - 1) * grid_m;
-        const double all = field.value_around(position(origin) + core::Vec3::Constant(half_m),
-                                              half_m * std::sqrt(3.0), cube);
-        for (int k = 0; k < kPart * kPart * kPart; ++k) {
-          const Node n = origin + Node{k % kPart, k / kPart % kPart, k / (kPart * kPart)};
-          values[inside(n)] = static_cast<float>(all != 0 ? all : field.value(position(n), cube));
-        }
+    : grid_m_(grid_m), low_(field.low()), corners_(corners_of(field)) {
+  index_blocks();
+  sample([&](std::size_t block, const core::Vec3&, float* values) {
+    const Node& c = corners_[block];
+    const CaveField::Cube& cube = field.cube(c.x >> 3, c.y >> 3, c.z >> 3);
+    constexpr int kPart = 4;  // eighths of a block far from the surface are decided by one value
+    for (int part = 0; part < 8; ++part) {
+      const Node origin{kPart * (part & 1), kPart * (part >> 1 & 1), kPart * (part >> 2 & 1)};
+      const auto place = [&](const Node& n) { return position(c + n); };
+      const double half_m = 0.5 * (kPart - 1) * grid_m_;
+      const double all =
+          field.value_around(place(origin) + core::Vec3::Constant(half_m), half_m * std::sqrt(3.0), cube);
+      for (int k = 0; k < kPart * kPart * kPart; ++k) {
+        const Node n = origin + Node{k % kPart, k / kPart % kPart, k / (kPart * kPart)};
+        values[inside(n)] = static_cast<float>(all != 0 ? all : field.value(place(n), cube));
       }
-      blocks_[i] = std::move(values);
     }
+  });
+}
+
+Samples::Samples(const core::Vec3& low, double grid_m, std::vector<Node> corners, const FillBlock& fill)
+    : grid_m_(grid_m), low_(low), corners_(std::move(corners)) {
+  index_blocks();
+  sample(fill);
+}
+
+void Samples::index_blocks() {
+  for (const Node& c : corners_)
+    tables_ = {std::max(tables_[0], (c.x >> 7) + 1), std::max(tables_[1], (c.y >> 7) + 1),
+               std::max(tables_[2], (c.z >> 7) + 1)};
+  const std::size_t layer = static_cast<std::size_t>(tables_[0]) * static_cast<std::size_t>(tables_[1]);
+  if (layer > kMostTables || layer * static_cast<std::size_t>(tables_[2]) > kMostTables)
+    throw std::length_error("the blocks lie too far apart");
+  table_of_.assign(layer * static_cast<std::size_t>(tables_[2]), kMissing);
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Node& c = corners_[i];
+    std::uint32_t& table =
+        table_of_[(static_cast<std::size_t>(c.z >> 7) * tables_[1] + (c.y >> 7)) * tables_[0] + (c.x >> 7)];
+    if (table == kMissing) {
+      table = static_cast<std::uint32_t>(blocks_of_.size() / kTable);
+      blocks_of_.resize(blocks_of_.size() + kTable, kMissing);
+    }
+    const auto at = static_cast<std::size_t>(((c.z >> 3 & 15) * 16 + (c.y >> 3 & 15)) * 16 + (c.x >> 3 & 15));
+    blocks_of_[table * kTable + at] = static_cast<std::uint32_t>(i);
+  }
+}
+
+void Samples::sample(const FillBlock& fill_block) {
+  values_.resize(corners_.size() * kNodes);
+  const auto fill = [&](std::size_t first, std::size_t stride) {
+    for (std::size_t i = first; i < corners_.size(); i += stride)
+      fill_block(i, position(corners_[i]), &values_[i * kNodes]);
   };
   {
     std::jthread other(fill, std::size_t{1}, std::size_t{2});
@@ -82,12 +127,6 @@ Samples::Samples(const CaveField& field, double grid_m)
       }
   });
   for (const Node& n : border) set(n, kRock);
-}
-
-Node Samples::block_corner(std::size_t i) const {
-  const auto nx = static_cast<std::size_t>(count_[0]), ny = static_cast<std::size_t>(count_[1]);
-  return {static_cast<std::int32_t>(i % nx) * kEdge, static_cast<std::int32_t>(i / nx % ny) * kEdge,
-          static_cast<std::int32_t>(i / (nx * ny)) * kEdge};
 }
 
 Node Samples::nearest(const core::Vec3& p) const {
@@ -113,28 +152,40 @@ void separate_sheets(Samples& s) {
   }
 }
 
-void keep_one_cave(Samples& s, const core::Vec3& start) {
-  const auto mark = [&s](std::vector<std::vector<bool>>& marks, std::vector<Node> queue,
+void keep_one_cave(Samples& s, const core::Vec3& start) { keep_caves(s, {&start, 1}); }
+
+void keep_caves(Samples& s, std::span<const core::Vec3> places) {
+  const auto mark = [&s](std::vector<std::vector<bool>>& marks, const std::vector<Node>& seeds,
                          const auto& belongs) {
-    while (!queue.empty()) {
-      const Node n = queue.back();
-      queue.pop_back();
-      if (!s.has_block(n) || !belongs(n)) continue;
-      std::vector<bool>& block = marks[s.block_of(n)];
+    std::vector<Node> queue;
+    const auto visit = [&](const Node& n) {
+      const std::size_t i = s.block_of(n);
+      if (i == Samples::kNone || !belongs(n)) return;
+      std::vector<bool>& block = marks[i];
       if (block.empty()) block.resize(Samples::kEdge * Samples::kEdge * Samples::kEdge);
-      if (block[Samples::inside(n)]) continue;
+      if (block[Samples::inside(n)]) return;
       block[Samples::inside(n)] = true;
-      for (const Node& f : kFaces) queue.push_back(n + f);
+      queue.push_back(n);
+    };
+    for (const Node& seed : seeds) {
+      visit(seed);
+      while (!queue.empty()) {
+        const Node n = queue.back();
+        queue.pop_back();
+        for (const Node& f : kFaces) visit(n + f);
+      }
     }
   };
   std::vector<std::vector<bool>> cave(s.block_count()), rock(s.block_count());
-  mark(cave, {s.nearest(start)}, [&s](const Node& n) { return s.hollow(n); });
+  std::vector<Node> seeds;
+  for (const core::Vec3& p : places) seeds.push_back(s.nearest(p));
+  mark(cave, seeds, [&s](const Node& n) { return s.hollow(n); });
   std::vector<Node> outer;
   s.for_each([&](const Node& n) {
     for (const Node& f : kFaces)
       if (!s.has_block(n + f)) outer.push_back(n);
   });
-  mark(rock, std::move(outer), [&s](const Node& n) { return !s.hollow(n); });
+  mark(rock, outer, [&s](const Node& n) { return !s.hollow(n); });
   const auto marked = [&](const std::vector<std::vector<bool>>& marks, const Node& n) {
     const std::vector<bool>& block = marks[s.block_of(n)];
     return !block.empty() && block[Samples::inside(n)];

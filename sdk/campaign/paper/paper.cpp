@@ -6,10 +6,10 @@
 #include "sdk/campaign/paper/latex.h"
 #include "sdk/campaign/paper/markdown.h"
 #include "sdk/campaign/paper/methods.h"
-#include "sdk/campaign/paper/pdf.h"
 #include "sdk/campaign/paper/result_plots.h"
 #include "sdk/campaign/paper/result_tables.h"
 #include "sdk/campaign/report/report_parts.h"
+#include "sdk/evaluation/page/pdf.h"
 #include "sdk/evaluation/record/whole_file.h"
 
 namespace karst::campaign {
@@ -68,7 +68,7 @@ PaperFiles write_paper(const fs::path& folder_or_store, const fs::path& folder, 
   verdict.metric = options.metric.empty() ? campaign.results.metric : options.metric;
   verdict.simulations = 0;  // a paper has no forecast
   const Texts texts = paper_texts(campaign, verdict);
-  const auto converter = pdf_converter(options.search_path);
+  const auto converter = evaluation::pdf_converter(options.search_path);
   PaperFiles files{files_of(texts, folder, converter.has_value()), converter.has_value()};
   std::error_code error, no_matter;
   for (const fs::path& file : files.written)
@@ -79,7 +79,7 @@ PaperFiles write_paper(const fs::path& folder_or_store, const fs::path& folder, 
   for (const auto& [name, text] : texts) evaluation::write_whole_file(folder / name, text);
   for (const fs::path& file : files.written)
     if (converter && file.extension() == ".pdf")
-      write_pdf(*converter, fs::path(file).replace_extension(".svg"), file);
+      evaluation::write_pdf(*converter, fs::path(file).replace_extension(".svg"), file);
   return files;
 }
 

@@ -4,15 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/program_in_path.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/host/isolation/process.h"
 
@@ -33,17 +32,15 @@ constexpr double kEvaluationLimit_s = 1800;
 constexpr auto kPoll = std::chrono::milliseconds(500);
 constexpr int kPollsOfQueue = 6;  // the queue is polled less often than the folder by this factor
 
-std::string find_program(const std::string& name) {
-  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (fs::exists(fs::path(folder) / name)) return (fs::path(folder) / name).string();
+std::string slurm_program(const std::string& name) {
+  if (auto program = core::program_in_path(name)) return *program;
   throw InputError("slurm", name, "is not installed here, or not in PATH");
 }
 
 /// The output of a Slurm command; throws with its message if the command fails.
 std::string ask(std::vector<std::string> argv) {
   const std::string name = argv[0];
-  argv[0] = find_program(name);
+  argv[0] = slurm_program(name);
   const ProcessOutput output = run_process(argv, kCommand_s);
   std::string said = output.out;
   while (!said.empty() && said.back() == '\n') said.pop_back();
@@ -55,7 +52,7 @@ std::string ask(std::vector<std::string> argv) {
 /// Whether any task of an array waits or runs. An array unknown to Slurm has ended.
 bool is_active(const std::string& array) {
   const ProcessOutput queue =
-      run_process({find_program("squeue"), "--noheader", "--jobs", array, "--format", "%T"}, kCommand_s);
+      run_process({slurm_program("squeue"), "--noheader", "--jobs", array, "--format", "%T"}, kCommand_s);
   if (queue.end.exit_code != 0 && queue.out.find("Invalid job id") == std::string::npos)
     return true;  // the controller does not answer: it may still run
   return queue.end.exit_code == 0 && !queue.out.empty();

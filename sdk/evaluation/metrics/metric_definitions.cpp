@@ -85,6 +85,10 @@ constexpr std::array kDefinitions = {
     MetricDefinition{"exploration_time_3_s", "s", more, nothing, "the same of robot 3"},
     MetricDefinition{"exploration_time_4_s", "s", more, nothing, "the same of robot 4"},
     MetricDefinition{"exploration_time_5_s", "s", more, nothing, "the same of robot 5"},
+    MetricDefinition{"unsurveyed_volume_m3", "m^3", more, nothing,
+                     "explored volume that the mission's survey lacks"},
+    MetricDefinition{"time_to_unsurveyed_50_s", "s", less, unknown,
+                     "time from take-off to 50 m^3 that the survey lacks, if they were reached"},
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "sdk/evaluation/metrics/coverage_curve.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/object_figures.h"
+#include "sdk/evaluation/metrics/unsurveyed.h"
 #include "sdk/evaluation/record/whole_file.h"
 
 namespace karst::evaluation {
@@ -203,6 +204,10 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
        {"data_at_base_share", "robots_landed", "robots_connected", "exploration_time_1_s",
         "exploration_time_2_s", "exploration_time_3_s", "exploration_time_4_s", "exploration_time_5_s"})
     m[key] = nullptr;  // of a team: sdk/flight/team_metrics.h
+  if (const auto beyond = unsurveyed_figures(run)) {
+    m["unsurveyed_volume_m3"] = value(beyond->volume_m3);
+    m["time_to_unsurveyed_50_s"] = value(beyond->time_to_50_s);
+  }
   return m;
 }
 

@@ -50,6 +50,10 @@ std::string achievement_of(const ordered_json& metrics, const Ending& ending) {
   } else {
     text += " flew" + (cave.empty() ? "" : " in " + cave) + part(" for %.0f s", time_s);
   }
+  if (const auto beyond_m3 = number_of(metrics, "unsurveyed_volume_m3")) {
+    text += part(", %.0f m³ beyond the survey", beyond_m3);
+    text += part(" (50 m³ after %.0f s)", number_of(metrics, "time_to_unsurveyed_50_s"));
+  }
   const auto clearance_m = number_of(metrics, "min_clearance_m");
   if (clearance_m && *clearance_m > 0) text += part(", %.2f m or more from rock", clearance_m);
   return text;

@@ -168,6 +168,7 @@ RunRecord read_run(const fs::path& run_dir) {
   run.telemetry = read_table(run_dir / "telemetry.csv", {"phase"}, problems);
   run.truth_table = read_table(run_dir / "truth.csv", {}, problems);
   run.decisions = read_table(run_dir / "decisions.csv", {}, problems);
+  run.unsurveyed = read_table(run_dir / "unsurveyed.csv", {}, problems);
   run.growth = read_map_growth(run_dir / "map_growth.bin", problems);
   run.timing = read_json(run_dir / "timing.json", problems);
   run.evaluation = read_json(run_dir / "evaluation.json", problems);

@@ -41,6 +41,7 @@ struct RunRecord {
   std::vector<nlohmann::json> truth_objects;  // likewise, of objects of interest
   std::vector<StampedPose> estimate, truth;
   Table telemetry, truth_table, decisions;
+  Table unsurveyed;  // what a survey lacks; empty without one
   std::vector<OccupiedSpan> growth;
   nlohmann::json timing;      // null if absent
   nlohmann::json evaluation;  // null if absent

@@ -1,6 +1,7 @@
 #include "sdk/host/serialization/flat_request.h"
 
 #include <array>
+#include <utility>
 
 #include "core_stack/mapping/occupancy/voxel_classes.h"
 #include "core_stack/planning/roadmap/roadmap.h"
@@ -9,11 +10,13 @@ namespace karst::host {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x747365757165726bull;  // "krequest"
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr std::size_t kHeader = 8 + 4 + 4 + 8 + 8;  // magic, version, reserved, length, sum of the body
 constexpr std::uint64_t kMaxClusters = 1'000'000, kMaxCells = 100'000'000, kMaxSensors = 64,
-                        kMaxChannels = 4096, kLongestName = 1000, kMaxTeammates = 1000;
-constexpr std::size_t kKeyBytes = 12, kClusterBytes = 160, kTeammateBytes = 69;
+                        kMaxChannels = 4096, kLongestName = 1000, kMaxTeammates = 1000,
+                        kMaxStations = 100'000'000;
+constexpr std::size_t kKeyBytes = 12, kClusterBytes = 160, kTeammateBytes = 69, kStationBytes = 24,
+                      kLegBytes = 72, kLeadBytes = 5;
 constexpr std::size_t kBlockBytes = kKeyBytes + sizeof(core::ClassBlock::classes);
 
 /// Detects damage, not tampering. Four lanes keep the multiplier busy: a snapshot of megabytes costs little.
@@ -173,6 +176,38 @@ void put_map(FlatWriter& out, const core::DecisionRequest& r, std::uint64_t sinc
   out.put(planned.search_slack_cells);
 }
 
+void put(FlatWriter& out, const core::PassageSize& s) {
+  for (const double d : {s.left_m, s.right_m, s.up_m, s.down_m}) out.put(d);
+}
+
+core::PassageSize passage_size(FlatReader& in) {
+  const auto left = in.number<double>(), right = in.number<double>(), up = in.number<double>(),
+             down = in.number<double>();
+  return {left, right, up, down};
+}
+
+void put_survey(FlatWriter& out, const core::SurveyedPassages* survey, std::uint64_t map_since) {
+  out.put(survey != nullptr);
+  if (survey == nullptr) return;
+  out.put(map_since == 0);
+  if (map_since != 0) return;
+  const core::SurveyPrior& prior = survey->prior();
+  out.put<std::uint64_t>(prior.stations.size());
+  for (const core::Vec3& p : prior.stations) out.put(p);
+  out.put<std::uint64_t>(prior.legs.size());
+  for (const core::SurveyedLeg& l : prior.legs) {
+    out.put(l.from);
+    out.put(l.to);
+    put(out, l.from_size);
+    put(out, l.to_size);
+  }
+  out.put<std::uint64_t>(prior.leads.size());
+  for (const core::SurveyLead& l : prior.leads) {
+    out.put(l.station);
+    out.put(l.noted);
+  }
+}
+
 /// The body, after a check that the header agrees with it.
 FlatReader body_of(std::span<const std::byte> bytes) {
   FlatReader in(bytes);
@@ -222,6 +257,7 @@ Bytes flatten(const core::DecisionRequest& r, std::uint64_t map_since) {
   put_teammates(out, r.teammates);
   put_map(out, r, map_since);
   put_imaged(out, r.imaged);
+  put_survey(out, r.survey, map_since);
   Bytes bytes = out.take();
   seal(bytes);
   return bytes;
@@ -263,11 +299,13 @@ const core::DecisionRequest& RequestReader::read(std::span<const std::byte> byte
     read_teammates(in);
     read_map(in);
     read_imaged(in);
+    read_survey(in);
     in.require_end();
   } catch (...) {
     request_ = {};
     roadmap_.reset();
     map_.reset();
+    survey_.reset();
     throw;
   }
   return request_;
@@ -295,6 +333,32 @@ void RequestReader::read_imaged(FlatReader& in) {
   for (core::CellKey& k : cells) k = key(in);
   imaged_ = core::ImagedSurface(cells);
   request_.imaged = &imaged_;
+}
+
+void RequestReader::read_survey(FlatReader& in) {
+  request_.survey = nullptr;
+  if (!in.flag()) return;
+  if (in.flag()) {
+    core::SurveyPrior prior;
+    prior.stations.resize(in.count(kStationBytes, kMaxStations, "stations"));
+    for (core::Vec3& p : prior.stations) p = in.vec3();
+    prior.legs.resize(in.count(kLegBytes, kMaxStations, "legs"));
+    for (core::SurveyedLeg& l : prior.legs) {
+      l.from = in.number<std::uint32_t>();
+      l.to = in.number<std::uint32_t>();
+      l.from_size = passage_size(in);
+      l.to_size = passage_size(in);
+    }
+    prior.leads.resize(in.count(kLeadBytes, kMaxStations, "leads"));
+    for (core::SurveyLead& l : prior.leads) {
+      l.station = in.number<std::uint32_t>();
+      l.noted = in.flag();
+    }
+    if (!core::is_sound(prior)) in.fail("the survey is none");
+    survey_.emplace(std::move(prior));
+  }
+  if (!survey_) in.fail("it tells of a survey that came before it, and that is not here");
+  request_.survey = &*survey_;
 }
 
 void RequestReader::read_frontiers(FlatReader& in) {

@@ -3,7 +3,8 @@
 //
 // Data that a policy cannot see is left out: only the class of the map's cells is written, and only the
 // clearances of the roadmap, from which the reader builds the same one. A map may be written as its changes
-// since an earlier one, which the reader must still hold.
+// since an earlier one, which the reader must still hold. A survey never changes: with such changes, it is the
+// one that the reader holds.
 #pragma once
 #include <memory>
 #include <optional>
@@ -47,6 +48,7 @@ class RequestReader {
   void read_teammates(FlatReader& in);
   void read_map(FlatReader& in);
   void read_imaged(FlatReader& in);
+  void read_survey(FlatReader& in);
   void update_roadmap(const core::PlanningOptions& options, std::span<const core::CellChange> changes);
 
   Keeps keeps_;
@@ -54,6 +56,7 @@ class RequestReader {
   std::optional<core::Roadmap> roadmap_;
   core::VehicleDescription vehicle_;
   core::ImagedSurface imaged_;
+  std::optional<core::SurveyedPassages> survey_;
   std::vector<core::FrontierCluster> clusters_;
   core::DecisionRequest request_;
 };

@@ -318,8 +318,10 @@ struct Services : Serving {
   static std::int64_t now_ns(const karst_host_t* h) noexcept { return session(h).now_; }
   static std::uint32_t should_stop(const karst_host_t* h) noexcept { return session(h).abandoned_ ? 1u : 0u; }
   static const void* extension(const karst_host_t*, karst_text_t id) noexcept {
-    return id.data != nullptr && std::string_view(id.data, id.length) == KARST_IMAGED_ID ? imaged_service()
-                                                                                         : nullptr;
+    const std::string_view asked(id.data == nullptr ? "" : id.data, id.data == nullptr ? 0 : id.length);
+    if (asked == KARST_IMAGED_ID) return imaged_service();
+    if (asked == KARST_SURVEY_ID) return survey_service();
+    return nullptr;
   }
 
   static void install(Session& s, karst_host_t& host) {

@@ -39,6 +39,7 @@ void Session::begin_deciding(const core::DecisionRequest& request, const PathLen
   motion_.max_speed_mps = request.max_speed_mps;
   motion_.max_acceleration_mps2 = request.max_acceleration_mps2;
   imaged_ = request.imaged;
+  survey_ = request.survey;
   rgb_ = request.vehicle == nullptr ? nullptr : request.vehicle->rgb.get();
 }
 
@@ -49,6 +50,7 @@ void Session::end_deciding() {
   lengths_ = {};
   paths_ = {};
   imaged_ = nullptr;
+  survey_ = nullptr;
   rgb_ = nullptr;
   unimaged_.reset();
 }

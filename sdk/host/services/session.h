@@ -18,6 +18,7 @@
 #include "core_stack/mission/policy/policy_port.h"
 #include "core_stack/planning/trajectory/trajectory.h"
 #include "sdk/abi/karst_abi_imaged.h"
+#include "sdk/abi/karst_abi_survey.h"
 #include "sdk/host/services/path_question.h"
 #include "sdk/host/services/snapshot.h"
 
@@ -53,6 +54,7 @@ class Session {
   friend struct Serving;
   friend struct Services;
   friend struct ImagedServices;
+  friend struct SurveyServices;
   const Snapshot* find(const karst_map_t* map);
 
   karst_map_service_t map_service_{};
@@ -72,6 +74,7 @@ class Session {
   const core::ImagedSurface* imaged_ = nullptr;  // null: no colour camera
   const core::RgbCameraModel* rgb_ = nullptr;
   std::optional<core::UnimagedSurface> unimaged_;  // of this request; computed on first use
+  const core::SurveyedPassages* survey_ = nullptr;  // null: the mission has no survey
   std::mutex kept_mutex_;
   std::map<const karst_map_t*, std::unique_ptr<Snapshot>> kept_;
 
@@ -85,6 +88,9 @@ class Session {
 
 /// The extension "karst.imaged/1".
 const karst_imaged_service_t* imaged_service();
+
+/// The extension "karst.survey/1".
+const karst_survey_service_t* survey_service();
 
 /// Fills the four service tables and the host table with the functions of services.cpp.
 void install_services(Session& session, karst_host_t& host);

@@ -12,5 +12,15 @@ TEST(CharacterCount, IsOfCharactersNotBytes) {
   EXPECT_EQ(character_count("\u00b2 \u20ac \U0001F987"), 5u) << "of two, three and four bytes";
 }
 
+TEST(CharacterCount, TextIsCutBetweenCharacters) {
+  EXPECT_EQ(first_characters("", 3), "");
+  EXPECT_EQ(first_characters("rock", 0), "");
+  EXPECT_EQ(first_characters("rock", 3), "roc");
+  EXPECT_EQ(first_characters("rock", 9), "rock");
+  EXPECT_EQ(first_characters("Höhle", 1), "H");
+  EXPECT_EQ(first_characters("Höhle", 2), "Hö");
+  EXPECT_EQ(first_characters("\u20ac\U0001F987x", 2), "\u20ac\U0001F987");
+}
+
 }  // namespace
 }  // namespace karst::core

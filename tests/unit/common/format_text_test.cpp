@@ -28,6 +28,9 @@ TEST(ShellWord, IsQuotedOnlyIfNeedBe) {
   EXPECT_EQ(shell_word("1 2 1.5"), "'1 2 1.5'");
   EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
   EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_option("--start", "1 2 1.5"), " --start '1 2 1.5'");
+  EXPECT_EQ(shell_option("--start", "-1 2 1.5"), " '--start=-1 2 1.5'") << "a value, not an option";
+  EXPECT_EQ(shell_option("--start", ""), "");
 }
 
 TEST(DecimalText, ZeroHasNoSign) {

@@ -71,6 +71,22 @@ TEST(MissionFile, WhereThePolicyRunsIsLeftToTheMachineUnlessItIsSaid) {
   EXPECT_TRUE(holds(e, "one of where_possible process in_process")) << e;
 }
 
+TEST(MissionFile, ASurveyStandsBesideTheMissionAndNoMissionWithoutOneTellsOfIt) {
+  const std::string file = written("surveyed.info", "survey { file old/cave.svx hints false }\n");
+  const Mission m = read_mission(file, {});
+  const std::string survey = (fs::path(file).parent_path() / "old/cave.svx").string();
+  EXPECT_EQ(m.survey.file, survey);
+  EXPECT_FALSE(m.survey.hints);
+  const auto recorded = recorded_mission(m, {}, "");
+  EXPECT_EQ(recorded.get<std::string>("survey.file"), fs::absolute(survey).lexically_normal().string());
+  EXPECT_EQ(recorded.get<std::string>("survey.hints"), "false");
+  EXPECT_TRUE(read_mission(written("surveyed2.info", "survey { file a.svx }\n"), {}).survey.hints);
+  const auto plain = recorded_mission(read_mission(written("unsurveyed.info", "seed 9\n"), {}), {}, "");
+  EXPECT_FALSE(plain.get_child_optional("survey"));
+  const std::string e = error_of("no_survey.info", "survey { offset \"1 2 3\" }\n");
+  EXPECT_TRUE(holds(e, "no_survey.info: survey.offset: is of no use without survey.file")) << e;
+}
+
 TEST(MissionFile, ACaveFileIsRefusedWithTheOptionForIt) {
   const std::string e = error_of("a_cave.info", "mesh a_cave.ply\nstart \"0 0 1\"\n");
   EXPECT_TRUE(holds(e, "a_cave.info: is a cave file; fly it with karst fly --cave ")) << e;

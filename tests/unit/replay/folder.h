@@ -1,31 +1,20 @@
-// A fresh folder for a test's files, removed at the end of its life.
+// A fresh folder with files for a test.
 #pragma once
-#include <unistd.h>
-
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "core_stack/common/temporary_folder.h"
+
 namespace karst::test {
 
-class Folder {
+class Folder : public core::TemporaryFolder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "karst_replay_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  Folder() : TemporaryFolder("test") {}
   std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return (path_ / name).string();
+    std::ofstream(path() / name, std::ios::binary) << bytes;
+    return (path() / name).string();
   }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 template <class T>

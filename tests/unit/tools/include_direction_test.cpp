@@ -71,6 +71,39 @@ TEST(IncludeDirection, CavesFromCloudsKnowNothingOfCampaignsAndFlights) {
   expect_none("sdk/cave_from_cloud", {"sdk/host", "sdk/map_merge", "sdk/campaign", "sdk/selection",
                                       "sdk/tuning", "sdk/flight", "sdk/tools", "CLI/"});
 }
+// Surveys are read without a cave, and know nothing of what is made of them.
+TEST(IncludeDirection, SurveysKnowTheCoreAndProcessesOnly) {
+  for (const Include& i : includes_below("sdk/survey"))
+    EXPECT_TRUE(!i.target.starts_with("sdk/") || i.target.starts_with("sdk/survey/") ||
+                i.target == "sdk/host/isolation/process.h")
+        << i.file << " includes " << i.target;
+  expect_none("sdk/survey", {"plugins/", "policies/", "CLI/", "core_stack/mapping", "core_stack/mission"});
+}
+TEST(IncludeDirection, PriorsOfSurveysKnowTheSurveyAndTheMapsOnly) {
+  for (const Include& i : includes_below("sdk/survey_prior"))
+    EXPECT_TRUE(!i.target.starts_with("sdk/") || i.target.starts_with("sdk/survey/") ||
+                i.target.starts_with("sdk/survey_prior/"))
+        << i.file << " includes " << i.target;
+  expect_none("sdk/survey_prior", {"plugins/", "policies/", "CLI/", "core_stack/mission"});
+}
+TEST(IncludeDirection, CavesFromSurveysKnowTheSurveyAndTheSimulatorsCavesOnly) {
+  expect_none("sdk/survey_cave",
+              {"sdk/host", "sdk/evaluation", "sdk/cave_from_cloud", "sdk/map_merge", "sdk/campaign",
+               "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools", "plugins/replay", "CLI/"});
+}
+TEST(IncludeDirection, SurveysOfFlightsKnowTheRecordTheSurveyAndMeshFilesOnly) {
+  expect_none("sdk/survey_export", {"sdk/host", "sdk/survey_cave", "sdk/cave_from_cloud", "sdk/map_merge",
+                                    "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools",
+                                    "plugins/replay", "plugins/simulator/sensors", "CLI/"});
+}
+// Drawings are made of maps and surveys: nothing below knows of them.
+TEST(IncludeDirection, DrawingsKnowTheRecordAndTheSurveyOnly) {
+  expect_none("sdk/cave_drawing",
+              {"sdk/host", "sdk/survey_cave", "sdk/survey_export", "sdk/map_merge", "sdk/campaign",
+               "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools", "plugins/", "CLI/"});
+  for (const char* below : {"sdk/evaluation", "sdk/survey", "sdk/host"})
+    expect_none(below, {"sdk/cave_drawing"});
+}
 // evaluation <- campaign <- selection <- flight <- tools; tuning <- tools
 TEST(IncludeDirection, EvaluationAndCampaignsKnowNothingOfWhatReadsThem) {
   expect_none("sdk/evaluation",

@@ -30,7 +30,7 @@ TEST(PolicyList, JsonNamesThePoliciesThatComeWithKarstWithTheirParameters) {
   std::map<std::string, nlohmann::json> found;
   for (const auto& p : out.at("policies")) found[p.at("id")] = p;
   for (const char* id : {"nearest_frontier", "lateral_frontier", "highest_frontier", "unknown_ratio",
-                         "information_gain", "viewpoint_tour", "deep_cave"}) {
+                         "information_gain", "viewpoint_tour", "deep_cave", "beyond_survey"}) {
     ASSERT_TRUE(found.contains(id)) << id;
     EXPECT_EQ(found[id].at("abi"), "1.0");
     for (const auto& p : found[id].at("parameters")) EXPECT_FALSE(p.at("help").get<std::string>().empty());

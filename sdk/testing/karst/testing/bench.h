@@ -10,6 +10,7 @@
 #pragma once
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +46,7 @@ class Bench {
   std::vector<Sensor> sensors{lidar()};
   std::vector<Frontier> frontiers;
   std::vector<Teammate> teammates;
+  std::optional<DrawnSurvey> survey;  // of the mission
 
   const DrawnHost& host() const { return host_; }
 
@@ -111,6 +113,7 @@ class Bench {
                           {0, 0}});
     host_.now_ns = static_cast<std::int64_t>(time_s * 1e9);
     host_.start = start;
+    host_.survey = survey;
     karst_request_t r{};
     r.size = sizeof r;
     r.sequence = ++sequence_;

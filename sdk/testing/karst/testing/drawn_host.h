@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <karst/testing/drawn_map.h>
 #include <karst/testing/drawn_passages.h>
+#include <karst/testing/drawn_survey.h>
 
 namespace karst::testing {
 
@@ -31,6 +33,7 @@ class DrawnHost {
     path_service_ = {sizeof path_service_, 0, &lengths, &paths};
     gain_service_ = {sizeof gain_service_, 0, &newly_seen};
     draw_service_ = {sizeof draw_service_, 0, &draw_points, &draw_lines, &draw_text};
+    survey_service_ = {sizeof survey_service_, 0, &survey_legs, &survey_leads, &survey_distances};
     host_ = {sizeof host_,   KARST_ABI_MINOR, this, &map_service_, &path_service_,
              &gain_service_, &draw_service_,  &log, &random,       &now,
              &should_stop,   &extension};
@@ -44,6 +47,7 @@ class DrawnHost {
   std::int64_t now_ns = 0;
   Vec3 start;                  // of the mission: from where passages are found
   double max_speed_mps = 2.0;  // for the flight times of paths
+  std::optional<DrawnSurvey> survey;
   std::vector<std::string> log_lines;
   std::size_t drawings = 0;
 
@@ -335,7 +339,38 @@ class DrawnHost {
   }
   static std::int64_t now(const karst_host_t* h) noexcept { return self(h).now_ns; }
   static std::uint32_t should_stop(const karst_host_t*) noexcept { return 0; }
-  static const void* extension(const karst_host_t*, karst_text_t) noexcept { return nullptr; }
+  static const void* extension(const karst_host_t* h, karst_text_t id) noexcept {
+    const std::string_view asked(id.data == nullptr ? "" : id.data, id.data == nullptr ? 0 : id.length);
+    return asked == KARST_SURVEY_ID ? &self(h).survey_service_ : nullptr;
+  }
+
+  static std::int32_t no_survey(karst_error_t* e) noexcept {
+    return refuse(e, KARST_ERROR_UNAVAILABLE, "the mission has no survey");
+  }
+  template <class Item>
+  static void copy(const std::vector<Item>& items, Item* out, std::uint64_t capacity, std::uint64_t* total) {
+    *total = items.size();
+    for (std::size_t i = 0; i < items.size() && i < capacity; ++i) out[i] = items[i];
+  }
+  static std::int32_t survey_legs(const karst_host_t* h, karst_survey_leg_t* out, std::uint64_t capacity,
+                                  std::uint64_t* total, karst_error_t* e) noexcept {
+    if (!self(h).survey) return no_survey(e);
+    copy(self(h).survey->legs, out, capacity, total);
+    return KARST_OK;
+  }
+  static std::int32_t survey_leads(const karst_host_t* h, karst_survey_lead_t* out, std::uint64_t capacity,
+                                   std::uint64_t* total, karst_error_t* e) noexcept {
+    if (!self(h).survey) return no_survey(e);
+    copy(self(h).survey->leads, out, capacity, total);
+    return KARST_OK;
+  }
+  static std::int32_t survey_distances(const karst_host_t* h, const karst_vec3_t* points, std::uint64_t count,
+                                       double* out, karst_error_t* e) noexcept {
+    if (count > KARST_MAX_BATCH) return too_many(e);
+    if (!self(h).survey) return no_survey(e);
+    for (std::uint64_t i = 0; i < count; ++i) out[i] = self(h).survey->distance_m(points[i]);
+    return KARST_OK;
+  }
 
   DrawnMap map_;
   std::uint64_t chance_ = 1;
@@ -343,6 +378,7 @@ class DrawnHost {
   karst_path_service_t path_service_{};
   karst_gain_service_t gain_service_{};
   karst_draw_service_t draw_service_{};
+  karst_survey_service_t survey_service_{};
   karst_host_t host_{};
 };
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "core_stack/common/error.h"
-#include "sdk/campaign/paper/pdf.h"
+#include "sdk/evaluation/page/pdf.h"
 #include "tests/unit/campaign/fake_campaign.h"
 #include "tests/unit/campaign/stored_campaign.h"
 #include "tests/unit/evaluation/fake_run.h"
@@ -19,6 +19,8 @@ namespace karst::campaign {
 namespace {
 
 namespace fs = std::filesystem;
+using evaluation::pdf_converter;
+using evaluation::write_pdf;
 using test::fake_campaign;
 using test::TemporaryDirectory;
 

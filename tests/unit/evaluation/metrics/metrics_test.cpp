@@ -324,6 +324,24 @@ TEST(Metrics, TimesOfCoverageAreCountedFromTakeOffAndNullIfNeverReached) {
   EXPECT_TRUE(m["t95_s"].is_null());
 }
 
+TEST(Metrics, OfWhatASurveyLacksAreThereIfTheMissionHasOne) {
+  TemporaryDirectory dir;
+  dir.write("events.jsonl", std::string(kPhases) + kLanded);  // take-off at 10 s
+  const auto of = [&dir](const std::string& rows) {
+    dir.write("unsurveyed.csv", "t_s,unsurveyed_m3\n" + rows);
+    return figures(dir);
+  };
+  EXPECT_FALSE(figures(dir).contains("unsurveyed_volume_m3"));
+  const ordered_json m = of("0.5,0.000\n20,49.992\n31.5,50.000\n33,48.000\n40,61.500\n");
+  EXPECT_EQ(m["unsurveyed_volume_m3"], 61.5);
+  EXPECT_EQ(m["time_to_unsurveyed_50_s"], 21.5) << "from take-off, and the first time";
+  const ordered_json never = of("0.5,0.000\n20,49.992\n");
+  EXPECT_EQ(never["unsurveyed_volume_m3"], 49.992);
+  EXPECT_TRUE(never.contains("time_to_unsurveyed_50_s"));
+  EXPECT_TRUE(never["time_to_unsurveyed_50_s"].is_null());
+  EXPECT_EQ(of("0.5,80\n")["time_to_unsurveyed_50_s"], 0.0) << "seen from the ground";
+}
+
 TEST(Metrics, ACoverageReachedBeforeTakeOffTookNoTime) {
   const core::VoxelMap map = ball_map(2.0);
   TemporaryDirectory dir;

@@ -34,6 +34,19 @@ TEST(Summary, LeavesOutWhatIsNotKnown) {
       << "damaged figures are not known";
 }
 
+TEST(Summary, WithASurveySaysWhatLiesBeyondIt) {
+  ordered_json m = metrics();
+  m["unsurveyed_volume_m3"] = 211.4;
+  m["time_to_unsurveyed_50_s"] = 21.6;
+  EXPECT_EQ(
+      achievement_of(m, kWentHome),
+      "nearest_frontier explored 506 m³ of small (38.7 % of what can be reached) in 40 s, 211 m³ beyond the "
+      "survey (50 m³ after 22 s), 0.38 m or more from rock");
+  m["unsurveyed_volume_m3"] = 3;
+  m["time_to_unsurveyed_50_s"] = nullptr;
+  EXPECT_NE(achievement_of(m, kWentHome).find("in 40 s, 3 m³ beyond the survey, 0.38 m"), std::string::npos);
+}
+
 TEST(Summary, OfAFlightThatTouchedRockClaimsNoClearance) {
   ordered_json m = metrics();
   m["min_clearance_m"] = -0.01;

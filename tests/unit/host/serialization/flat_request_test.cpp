@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <cstring>
+
 #include "core_stack/mapping/occupancy/voxel_classes.h"
 #include "sdk/host/services/translation.h"
 #include "tests/abi/room.h"
@@ -96,6 +98,50 @@ TEST(FlatRequest, WhatThePolicySeesIsTheSame) {
   x.sensors = y.sensors = nullptr;
   x.frontiers = y.frontiers = nullptr;
   EXPECT_EQ(std::memcmp(&x, &y, sizeof x), 0);
+}
+
+core::SurveyedPassages survey() {
+  return core::SurveyedPassages({{{0, 0, 0}, {10, 1, 0}, {20, 0, -5}},
+                                 {{0, 1, {1, 2, 3, 4}, {0.5, 0, 1, 1}}, {1, 2, {0.5, 0, 1, 1}, {2, 2, 2, 2}}},
+                                 {{1, true}, {2, false}}});
+}
+
+TEST(FlatRequest, TheSurveyIsTheSameAndWrittenWithAWholeMapOnly) {
+  Room room;
+  const core::SurveyedPassages known = survey();
+  const std::size_t without = flatten(room.request).size();
+  room.request.survey = &known;
+  const host::Bytes whole = flatten(room.request), changes = flatten(room.request, room.map.revision());
+  EXPECT_EQ(whole.size() - without, 1u + 3 * 8u + 3 * 24u + 2 * 72u + 2 * 5u);
+  EXPECT_THAT(refusal(changes), HasSubstr("is not here"));
+  RequestReader reader(RequestReader::Keeps::map);
+  for (const host::Bytes& bytes : {whole, changes}) {
+    const core::SurveyedPassages* read = reader.read(bytes).survey;
+    ASSERT_NE(read, nullptr);
+    const core::SurveyPrior& p = read->prior();
+    EXPECT_EQ(p.stations, known.prior().stations);
+    ASSERT_EQ(p.legs.size(), 2u);
+    EXPECT_EQ(p.legs[1].from, 1u);
+    EXPECT_EQ(p.legs[1].to, 2u);
+    EXPECT_EQ(p.legs[0].from_size.down_m, 4);
+    EXPECT_EQ(p.legs[0].to_size.right_m, 0);
+    ASSERT_EQ(p.leads.size(), 2u);
+    EXPECT_TRUE(p.leads[0].noted && !p.leads[1].noted);
+    EXPECT_EQ(read->distance_m({5, 7, 1}), known.distance_m({5, 7, 1}));
+  }
+  room.request.survey = nullptr;
+  EXPECT_EQ(reader.read(flatten(room.request, room.map.revision())).survey, nullptr);
+}
+
+TEST(FlatRequest, ASurveyWithoutSenseIsRefused) {
+  Room room;
+  const core::SurveyedPassages known = survey();
+  room.request.survey = &known;
+  host::Bytes bytes = flatten(room.request);
+  const std::uint32_t nowhere = 3;  // the last lead's station
+  std::memcpy(bytes.data() + bytes.size() - 5, &nowhere, sizeof nowhere);
+  host::seal(bytes);
+  EXPECT_THAT(refusal(bytes), HasSubstr("the survey is none"));
 }
 
 TEST(FlatRequest, WithoutMapVehicleAndFrontiersIsARequestToo) {
@@ -191,7 +237,7 @@ TEST(FlatRequest, OtherVersionIsNamed) {
   Room room;
   host::Bytes bytes = flatten(room.request);
   bytes[8] = std::byte{7};
-  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 4"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("version 7, this karst reads version 5"));
 }
 
 TEST(FlatRequest, BlocksAreSoundOnlyInTheWorldAndInPlace) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
 
 #include "tests/unit/mission/mapped_world.h"
 
@@ -78,6 +79,23 @@ TEST(DecisionCycle, TellsThePolicyOfBatteryAndMissionTime) {
   EXPECT_EQ(d.policy.asked[0].battery_seconds_left, 600);
   EXPECT_EQ(d.policy.asked[0].mission_seconds_left, 3500);
   EXPECT_EQ(d.policy.asked[0].max_acceleration_mps2, CoreOptions{}.motion.max_acceleration_mps2);
+}
+
+TEST(DecisionCycle, TellsThePolicyOfTheSurveyIfTheMissionSaysSo) {
+  CoreOptions options;
+  const PassageSize size;
+  options.survey.passages =
+      std::make_shared<const SurveyedPassages>(SurveyPrior{{{0, 3, 2}, {4, 3, 2}}, {{0, 1, size, size}}, {}});
+  for (const bool told : {true, false}) {
+    options.survey.told_to_policy = told;
+    Deciding d(options);
+    d.cycle.decide(d.input, {});
+    ASSERT_EQ(d.policy.asked.size(), 1u);
+    EXPECT_EQ(d.policy.asked[0].survey, told ? options.survey.passages.get() : nullptr);
+  }
+  Deciding without;
+  without.cycle.decide(without.input, {});
+  EXPECT_EQ(without.policy.asked[0].survey, nullptr);
 }
 
 TEST(DecisionCycle, AFrontierThatWasLookedAtRests) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -47,6 +48,21 @@ TEST(Recorder, GrowthHoldsTheComingAndGoingOfOccupiedCellsOnly) {
   ASSERT_TRUE(in.read(reinterpret_cast<char*>(got.data()), sizeof got));
   EXPECT_EQ(got, (std::array<std::int32_t, 8>{1, 2, 3, 250, -7, 8, -9, -250}));
   EXPECT_EQ(in.peek(), EOF);
+}
+
+TEST(Recorder, WhatASurveyLacksIsWrittenWhenItChangesAndNoFileIsThereWithoutASurvey) {
+  const fs::path dir = fresh("recorder_unsurveyed");
+  Recorder recorder(dir);
+  EXPECT_FALSE(fs::exists(dir / "unsurveyed.csv"));
+  recorder.unsurveyed(100 * kMillisecond, 0);
+  recorder.unsurveyed(200 * kMillisecond, 0);
+  recorder.unsurveyed(300 * kMillisecond, 1.25);
+  recorder.unsurveyed(400 * kMillisecond, 1.25);
+  recorder.unsurveyed(12500 * kMillisecond, 0.5);
+  ASSERT_TRUE(recorder.flush());
+  std::ifstream in(dir / "unsurveyed.csv");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(text, "t_s,unsurveyed_m3\n0.10,0.000\n0.30,1.250\n12.50,0.500\n");
 }
 
 TEST(Recorder, RefusesADirectoryThatHoldsARun) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+
 #include "core_stack/planning/search/grid_planner.h"
 #include "tests/unit/mission/mapped_world.h"
 
@@ -28,6 +31,27 @@ TEST(WorldModel, TakesRaysIntoTheMapAndItsFrontiers) {
   });
   EXPECT_GT(frontier_cells, 100u);
   EXPECT_EQ(world.frontiers().cell_count(), frontier_cells);
+}
+
+TEST(WorldModel, CountsWhatTheSurveyLacksWhetherThePolicyIsToldOrNot) {
+  EXPECT_FALSE(mapped(room_open_to_x()).unsurveyed_m3());
+  const PassageSize size{1, 1, 1, 1};
+  CoreOptions options;
+  options.survey.passages =
+      std::make_shared<const SurveyedPassages>(SurveyPrior{{{0, 3, 2}, {4, 3, 2}}, {{0, 1, size, size}}, {}});
+  for (const bool told : {true, false}) {
+    options.survey.told_to_policy = told;
+    const WorldModel world = mapped(room_open_to_x(), options);
+    double expected_m3 = 0;
+    world.map().for_each_known([&](const CellKey& k, Cell cell, float) {
+      const bool lacked = options.survey.passages->distance_m(world.map().center_of(k)) > kBeyondSurvey_m;
+      if (cell == Cell::free && lacked) expected_m3 += std::pow(world.map().resolution_m(), 3);
+    });
+    EXPECT_GT(expected_m3, 1);
+    EXPECT_LT(expected_m3, world.map().free_volume_m3());
+    EXPECT_NEAR(world.unsurveyed_m3().value_or(-1), expected_m3, 1e-6);
+    EXPECT_EQ(world.survey(), told ? options.survey.passages.get() : nullptr);
+  }
 }
 
 TEST(WorldModel, DeclaresTheLaunchSiteFree) {

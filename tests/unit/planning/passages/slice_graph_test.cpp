@@ -201,5 +201,19 @@ TEST(Simplified, EverySliceIsInOneGroup) {
   EXPECT_TRUE(simplified({}, {}, kBand_m).empty());
 }
 
+TEST(OpenEnds, AreThoseWhoseFrontierIsAQuarterOfTheCrossSection) {
+  std::vector<Slice> slices(1);
+  slices[0].free_cells = 800;  // of a band of eight cells: 100 across
+  const std::vector<SliceGroup> groups{{{0}, {}, 0}};
+  const std::vector<std::uint32_t> last{0};
+  PassageGrid grid;
+  grid.cell_m = 0.2;
+  grid.cube_shift = 2;
+  slices[0].frontier_cells = 24;
+  EXPECT_FALSE(is_open_end(last, groups, slices, grid));
+  slices[0].frontier_cells = 26;
+  EXPECT_TRUE(is_open_end(last, groups, slices, grid));
+}
+
 }  // namespace
 }  // namespace karst::core

@@ -1,4 +1,4 @@
-#include "sdk/campaign/paper/pdf.h"
+#include "sdk/evaluation/page/pdf.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include "core_stack/common/error.h"
 #include "sdk/host/isolation/process.h"
 
-namespace karst::campaign {
+namespace karst::evaluation {
 
 namespace fs = std::filesystem;
 
@@ -41,4 +41,4 @@ void write_pdf(const fs::path& converter, const fs::path& svg, const fs::path& p
                                                           (made.out.empty() ? "" : ": " + made.out)));
 }
 
-}  // namespace karst::campaign
+}  // namespace karst::evaluation

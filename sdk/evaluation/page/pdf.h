@@ -1,11 +1,12 @@
-// Figures as PDF, made of their SVG by rsvg-convert (Debian: librsvg2-bin). A program that is called when it
-// is there keeps cairo and pango out of karst's build, and the figures have one drawing instead of two.
+// Figures and drawings as PDF, made of their SVG by rsvg-convert (Debian: librsvg2-bin). A program that is
+// called when it is there keeps cairo and pango out of karst's build, and what is drawn has one drawing
+// instead of two.
 #pragma once
 #include <filesystem>
 #include <optional>
 #include <string>
 
-namespace karst::campaign {
+namespace karst::evaluation {
 
 /// rsvg-convert in one of the folders, which are separated by colons as in $PATH.
 std::optional<std::filesystem::path> pdf_converter(const std::string& search_path);
@@ -15,4 +16,4 @@ std::optional<std::filesystem::path> pdf_converter(const std::string& search_pat
 void write_pdf(const std::filesystem::path& converter, const std::filesystem::path& svg,
                const std::filesystem::path& pdf);
 
-}  // namespace karst::campaign
+}  // namespace karst::evaluation

@@ -1,0 +1,38 @@
+// The passage at both ends of a surveyed leg, from left, right, up and down.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "sdk/survey/survey.h"
+
+namespace karst::cave_drawing {
+
+struct LegEnd {
+  core::Vec3 station = core::Vec3::Zero();
+  core::Vec3 left = core::Vec3::Zero(), right = core::Vec3::Zero();  // on the walls; the station if unknown
+  double up_m = 0, down_m = 0, width_m = 0;
+};
+
+class LegWalls {
+ public:
+  /// `survey` must outlive it.
+  explicit LegWalls(const survey::Survey& survey);
+
+  /// Its first and its second station. A section of the leg's own run comes before others at the station.
+  std::array<LegEnd, 2> of(const survey::Leg& leg) const;
+
+ private:
+  LegEnd end_of(std::uint32_t station, std::uint32_t run) const;
+
+  const survey::Survey& survey_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> of_run_;  // station and run: section
+  std::map<std::uint32_t, std::size_t> of_station_;                        // the first
+};
+
+/// More up or down than ahead.
+bool is_steep(const std::array<LegEnd, 2>& ends);
+
+}  // namespace karst::cave_drawing

@@ -1,0 +1,55 @@
+#include "sdk/survey/err_file.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <system_error>
+
+#include "core_stack/common/input_file.h"
+
+namespace karst::survey {
+namespace {
+
+/// First and last word of "1 - 2 = 3 - 4".
+void set_ends(const std::string& stations, Loops::Traverse& traverse) {
+  traverse.from = stations.substr(0, stations.find(' '));
+  const std::size_t last = stations.find_last_of(' ');
+  traverse.to = last == std::string::npos ? stations : stations.substr(last + 1);
+}
+
+}  // namespace
+
+std::vector<Loops::Traverse> read_err_file(const std::filesystem::path& file) {
+  std::vector<Loops::Traverse> traverses;
+  std::error_code none;
+  if (!std::filesystem::exists(file, none)) return traverses;
+  std::ifstream in = core::open_input(file.string(), core::kMaxRecordFileBytes);
+  // Four lines and an empty one for each:
+  //   1 - 2 - 3 - 1
+  //   Original length  34.00m (  3 legs), moved   0.19m ( 0.06m/leg). Error   0.55%
+  //   0.684427
+  //   H: 0.909431 V: 0.000000
+  std::string stations, text;
+  while (std::getline(in, stations)) {
+    if (stations.empty()) continue;
+    if (!std::getline(in, text)) break;
+    Loops::Traverse traverse;
+    set_ends(stations, traverse);
+    const int read = std::sscanf(text.c_str(), "Original length %lfm (%zu legs), moved %lfm",
+                                 &traverse.length_m,  // NOLINT
+                                 &traverse.legs, &traverse.error_m);
+    double sigmas = 0;
+    if (std::getline(in, text) && std::sscanf(text.c_str(), "%lf", &sigmas) == 1)
+      traverse.sigmas = sigmas;  // NOLINT
+    while (std::getline(in, text) && !text.empty()) {
+    }
+    if (read != 3) continue;  // a traverse of equates alone has no length
+    if (traverse.length_m > 0) traverse.error_percent = 100 * traverse.error_m / traverse.length_m;
+    traverses.push_back(std::move(traverse));
+  }
+  std::stable_sort(traverses.begin(), traverses.end(),
+                   [](const auto& a, const auto& b) { return a.error_m > b.error_m; });
+  return traverses;
+}
+
+}  // namespace karst::survey

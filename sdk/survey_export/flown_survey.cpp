@@ -1,0 +1,188 @@
+#include "sdk/survey_export/flown_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "core_stack/common/error.h"
+#include "sdk/survey/facing.h"
+#include "sdk/survey_export/middle_line.h"
+#include "sdk/survey_export/wall_distance.h"
+
+namespace karst::survey_export {
+namespace {
+
+using core::Vec3;
+using survey::Leg;
+using survey::Station;
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr double kPlumb_m = 0.001;          // level part of a leg that goes straight up or down
+constexpr double kFrontierWithin_m = 15.0;  // of the station that is told of it
+constexpr std::int32_t kFrontierCells = 2;  // around a cluster's centre that are looked at
+
+/// Whether free cells still meet unknown ones there.
+bool is_frontier(const core::VoxelMap& map, const Vec3& p) {
+  bool free = false, unknown = false;
+  const core::CellKey own = map.key_of(p);
+  for (std::int32_t z = -kFrontierCells; z <= kFrontierCells; ++z)
+    for (std::int32_t y = -kFrontierCells; y <= kFrontierCells; ++y)
+      for (std::int32_t x = -kFrontierCells; x <= kFrontierCells; ++x) {
+        const core::Cell c = map.at(own + core::CellKey{x, y, z});
+        free = free || c == core::Cell::free;
+        unknown = unknown || c == core::Cell::unknown;
+      }
+  return free && unknown;
+}
+
+/// At least half of the way: the vehicle sees ahead, as a surveyor does who shoots the last leg.
+bool was_flown(std::span<const LinePoint> passed) {
+  double flown_m = 0, length_m = 0;
+  for (std::size_t i = 1; i < passed.size(); ++i) {
+    const double step_m = (passed[i].position - passed[i - 1].position).norm();
+    length_m += step_m;
+    if (passed[i].flown && passed[i - 1].flown) flown_m += step_m;
+  }
+  return 2 * flown_m >= length_m;
+}
+
+class Builder {
+ public:
+  Builder(const FlownInput& input, const StationOptions& options) : input_(input), options_(options) {
+    out_.name = input.name;
+    out_.accuracy = input.accuracy;
+    out_.start = input.flown.front();
+    out_.survey.title = input.title;
+    out_.survey.files = {input.source};
+  }
+
+  FlownSurvey built() {
+    lines_ = middle_lines(*input_.map, out_.start, input_.flown);
+    if (lines_.lines.empty())
+      throw core::InputError(input_.source, "",
+                             "the map holds no passage around the place where the flight began");
+    station_of_.assign(lines_.nodes.size(), kNone);
+    add_node(0);
+    for (const MiddleLine& line : lines_.lines) add_line(line);
+    measure_sections();
+    mark_continuations();
+    return std::move(out_);
+  }
+
+ private:
+  const Station& station(std::uint32_t i) const { return out_.survey.stations[i]; }
+
+  std::uint32_t add_station(const Vec3& position) {
+    Station s;
+    s.name = input_.name + "." + std::to_string(out_.survey.stations.size() + 1);
+    s.position_m = position;
+    out_.survey.stations.push_back(std::move(s));
+    return static_cast<std::uint32_t>(out_.survey.stations.size() - 1);
+  }
+
+  std::uint32_t add_node(std::uint32_t node) {
+    if (station_of_[node] != kNone) return station_of_[node];
+    const std::uint32_t i = station_of_[node] = add_station(lines_.nodes[node].point.position);
+    Station& s = out_.survey.stations[i];
+    if (node == 0) {
+      s.entrance = s.fixed = true;
+      s.comment = "start of the flight";
+    } else if (lines_.nodes[node].kind == LineNode::Kind::open_end) {
+      s.continuation = true;
+    }
+    return i;
+  }
+
+  void add_leg(std::uint32_t from, std::uint32_t to, bool approximate, std::uint32_t run) {
+    const Vec3 v = station(to).position_m - station(from).position_m;
+    Leg leg;
+    leg.from = from;
+    leg.to = to;
+    leg.approximate = approximate;
+    leg.length_m = v.norm();
+    const double level_m = std::hypot(v.x(), v.y());
+    if (level_m > kPlumb_m) {
+      const double bearing = std::atan2(v.x(), v.y());
+      leg.bearing_rad = bearing < 0 ? bearing + 2 * std::numbers::pi : bearing;
+    }
+    leg.inclination_rad =
+        level_m > kPlumb_m ? std::atan2(v.z(), level_m) : std::copysign(0.5 * std::numbers::pi, v.z());
+    leg.run = run;
+    out_.survey.legs.push_back(leg);
+    out_.leg_sd_m.push_back(input_.accuracy.leg_sd_m(v.norm()));
+  }
+
+  void add_line(const MiddleLine& line) {
+    out_.blocked_legs += line.blocked;
+    const std::vector<std::size_t> chosen = stations_on(*input_.map, line, options_);
+    const auto run = static_cast<std::uint32_t>(run_++);
+    std::uint32_t before = add_node(line.nodes[0]);
+    add_section(before, static_cast<std::uint32_t>(out_.survey.legs.size()), run);
+    for (std::size_t i = 1; i < chosen.size(); ++i) {
+      const std::span<const LinePoint> passed(&line.points[chosen[i - 1]], chosen[i] - chosen[i - 1] + 1);
+      const std::uint32_t here =
+          i + 1 == chosen.size() ? add_node(line.nodes[1]) : add_station(passed.back().position);
+      add_leg(before, here, !was_flown(passed), run);
+      add_section(here, static_cast<std::uint32_t>(out_.survey.legs.size() - 1), run);
+      before = here;
+    }
+  }
+
+  void add_section(std::uint32_t at, std::uint32_t leg, std::uint32_t run) {
+    survey::Section s;
+    s.station = at;
+    s.leg = leg;
+    s.run = run;
+    out_.survey.sections.push_back(s);
+  }
+
+  void measure_sections() {
+    survey::set_facings(out_.survey);
+    for (survey::Section& s : out_.survey.sections)
+      s.dimensions = dimensions_at(*input_.map, station(s.station).position_m, s.facing);
+  }
+
+  void mark_continuations() {
+    for (const Vec3& p : input_.frontiers) {
+      if (!is_frontier(*input_.map, p)) continue;
+      Station* nearest = nullptr;
+      double least = kFrontierWithin_m;
+      for (Station& s : out_.survey.stations)
+        if (const double away = (s.position_m - p).norm(); away < least) {
+          least = away;
+          nearest = &s;
+        }
+      if (nearest != nullptr) nearest->continuation = true;
+    }
+    for (Station& s : out_.survey.stations)
+      if (s.continuation && s.comment.empty()) s.comment = "goes on into unknown space";
+  }
+
+  const FlownInput& input_;
+  const StationOptions& options_;
+  MiddleLines lines_;
+  std::vector<std::uint32_t> station_of_;  // each node
+  std::size_t run_ = 0;
+  FlownSurvey out_;
+};
+
+}  // namespace
+
+FlownSurvey flown_survey(const FlownInput& input, const StationOptions& options) {
+  if (input.flown.empty()) throw core::InputError(input.source, "", "nothing was flown");
+  return Builder(input, options).built();
+}
+
+std::string survey_name(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+    name += letter ? c : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : '_';
+  }
+  if (name.starts_with('-')) name[0] = '_';  // no keyword of Therion begins with it
+  return name.empty() ? "cave" : name;
+}
+
+}  // namespace karst::survey_export

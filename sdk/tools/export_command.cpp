@@ -1,0 +1,190 @@
+#include "sdk/tools/export_command.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+#include <system_error>
+
+#include "core_stack/common/counted.h"
+#include "core_stack/common/error.h"
+#include "core_stack/common/printable.h"
+#include "core_stack/common/rounded.h"
+#include "plugins/simulator/cave/cave_blocks.h"
+#include "sdk/survey_export/export_run.h"
+#include "sdk/survey_export/leg_words.h"
+#include "sdk/survey_export/new_legs.h"
+#include "sdk/terminal/terminal.h"
+#include "sdk/tools/arguments.h"
+
+namespace karst::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+using survey_export::RunSurvey;
+using survey_export::WallMesh;
+
+struct ExportArguments {
+  std::string run, out, fix, system;
+  double declination_deg = 0;
+  bool force = false, json = false;
+};
+
+survey_export::Placing placing_of(const ExportArguments& args) {
+  survey_export::Placing placing;
+  placing.declination_deg = args.declination_deg;
+  placing.system = args.system;
+  // Names that Survex and Therion share.
+  static const std::regex known("(EPSG|ESRI):[0-9]{4,6}|UTM([1-9]|[1-5][0-9]|60)[NS]");
+  if (!args.system.empty() && !std::regex_match(args.system, known))
+    throw InputError("command line", "--cs",
+                     "expected a system in metres such as EPSG:32633 or UTM33N, got \"" + args.system + "\"");
+  if (!args.fix.empty()) placing.start_m = cave::read_vector("command line", "--fix", args.fix);
+  return placing;
+}
+
+/// The files name each other, and Therion reads neither quotes in such a name nor bytes that are no UTF-8.
+void check_name(const ExportArguments& args) {
+  const std::string name = fs::path(args.out).filename().string();
+  if (name.empty())
+    throw InputError("command line", "--survey", "expected a path without ending, got a folder: " + args.out);
+  if (name.find_first_of("\"\n\t") != std::string::npos || core::printable(name) != name)
+    throw InputError("command line", "--survey",
+                     "expected a name in UTF-8 without quotes and control characters, got " + args.out);
+}
+
+/// Makes the folder of the files, and refuses to overwrite them.
+void check_out(const ExportArguments& args) {
+  const fs::path parent = fs::path(args.out).parent_path();
+  std::error_code error;
+  if (!parent.empty()) fs::create_directories(parent, error);
+  if (error) throw InputError(parent.string(), "", "cannot be made: " + error.message());
+  for (const fs::path& file : survey_export::survey_files(args.out))
+    if (fs::exists(file) && !args.force)
+      throw InputError(file.string(), "", "is there already; choose another --survey, or give --force");
+}
+
+struct Sums {
+  std::size_t approximate = 0, continuations = 0;
+  double length_m = 0, approximate_m = 0;
+};
+Sums sums_of(const survey::Survey& survey) {
+  Sums sums;
+  for (const survey::Leg& leg : survey.legs) {
+    const double length_m = leg.length_m.value_or(0);
+    sums.length_m += length_m;
+    if (!leg.approximate) continue;
+    ++sums.approximate;
+    sums.approximate_m += length_m;
+  }
+  for (const survey::Station& s : survey.stations) sums.continuations += s.continuation ? 1u : 0u;
+  return sums;
+}
+
+nlohmann::ordered_json json_of(const RunSurvey& run, const WallMesh& walls, const std::string& out) {
+  const Sums sums = sums_of(run.flown.survey);
+  const survey_export::Accuracy& a = run.flown.accuracy;
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const fs::path& file : survey_export::survey_files(out)) files.push_back(file.string());
+  nlohmann::ordered_json j = {{"schema", "karst.export/1"},
+                              {"name", run.flown.name},
+                              {"stations", run.flown.survey.stations.size()},
+                              {"legs", run.flown.survey.legs.size()},
+                              {"length_m", core::to_millionths(sums.length_m)},
+                              {"approximate_legs", sums.approximate},
+                              {"approximate_m", core::to_millionths(sums.approximate_m)},
+                              {"continuations", sums.continuations},
+                              {"blocked_legs", run.flown.blocked_legs},
+                              {"cell_sd_m", core::to_millionths(a.leg_sd_m(0))},
+                              {"drift_sd_m_per_root_m", core::to_millionths(std::sqrt(a.growth_m2_per_m))},
+                              {"drift_scans", a.scans},
+                              {"triangles", walls.mesh.triangles.size()},
+                              {"open_edges", walls.open_edges},
+                              {"files", files},
+                              {"problems", run.problems}};
+  if (!run.flown.leg_is_new.empty()) {
+    const survey_export::NewSum sum = survey_export::new_sum(run.flown);
+    j["new_legs"] = sum.legs;
+    j["new_m"] = core::to_millionths(sum.length_m);
+  }
+  return j;
+}
+
+void print(const RunSurvey& run, const WallMesh& walls, const ExportArguments& args) {
+  const survey::Survey& s = run.flown.survey;
+  const Sums sums = sums_of(s);
+  print_out("%s: %s, %s, %.1f m\n", run.flown.name.c_str(),
+            core::counted(s.stations.size(), "station").c_str(), core::counted(s.legs.size(), "leg").c_str(),
+            sums.length_m);
+  if (sums.approximate > 0)
+    print_out("  seen, but not flown: %s, %.1f m (approximate)\n",
+              core::counted(sums.approximate, "leg").c_str(), sums.approximate_m);
+  if (const std::string words = survey_export::new_words(run.flown); !words.empty())
+    print_out("  %s\n", words.c_str());
+  if (sums.continuations > 0)
+    print_out("  goes on at %s\n", core::counted(sums.continuations, "station").c_str());
+  if (run.flown.blocked_legs > 0)
+    print_out("  not in sight of each other: %s\n",
+              core::counted(run.flown.blocked_legs, "pair of neighbours").c_str());
+  print_wrapped(stdout, 2, "  %s\n", survey_export::accuracy_words(run.flown.accuracy).c_str());
+  print_out("  walls: %s triangles\n", core::grouped(walls.mesh.triangles.size()).c_str());
+  for (const std::string& problem : run.problems) print_error("%s\n", problem.c_str());
+  std::string files;
+  for (const fs::path& file : survey_export::survey_files(args.out))
+    files += (files.empty() ? "" : ", ") + file.string();
+  print_wrapped(stdout, 2, "written: %s\n", files.c_str());
+  print_out("next:\n  cavern %s.svx\n  therion %s.thconfig\n", args.out.c_str(), args.out.c_str());
+}
+
+void export_survey(const ExportArguments& args) {
+  const survey_export::Placing placing = placing_of(args);
+  check_name(args);
+  const RunSurvey run = survey_export::survey_of_run(args.run, fs::path(args.out).filename().string());
+  check_out(args);
+  const WallMesh walls = survey_export::write_survey(run, placing, args.out);
+  if (args.json)
+    print_json(json_of(run, walls, args.out));
+  else
+    print(run, walls, args);
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  auto args = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export", "Write what a flight found as a survey, with its walls");
+  command->add_option("run", args->run, "Run directory")->type_name(kFolder)->required();
+  command
+      ->add_option(
+          "--survey", args->out,
+          "Path without ending: writes OUT.svx (Survex), OUT.th, OUT.thconfig and OUT_scan.th (Therion), "
+          "OUT.stl and OUT.ply (walls), OUT.las (points)")
+      ->type_name(kFile)
+      ->required()
+      ->check(not_empty());
+  auto* fix = command
+                  ->add_option("--fix", args->fix,
+                               "\"x y z\", where the vehicle stood at its start, m (default: as in the map)")
+                  ->check(not_empty());
+  command->add_option("--cs", args->system, "Coordinate system of --fix, such as EPSG:32633 or UTM33N")
+      ->check(not_empty())
+      ->needs(fix);
+  command
+      ->add_option(
+          "--declination", args->declination_deg,
+          "From north to the map's y axis, clockwise, degrees; with --cs, from the north of its grid")
+      ->check(number_in(-180, 180))
+      ->capture_default_str();
+  command->add_flag("--force", args->force, "Overwrite files that are there");
+  command->add_flag("--json", args->json, "Write the summary as JSON");
+  command->footer(
+      "Examples:\n  karst export runs/monday --survey surveys/monday\n"
+      "  karst export runs/monday --survey surveys/monday --fix \"451234.5 5078123.0 812.4\" --cs UTM33N "
+      "--declination 3.1");
+  command->callback([args] { export_survey(*args); });
+}
+
+}  // namespace karst::tools

@@ -1,0 +1,99 @@
+#include "sdk/cave_drawing/map_drawings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tests/unit/cave_drawing/box_maps.h"
+#include "tests/unit/cave_drawing/drawn_lines.h"
+
+namespace karst::cave_drawing {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+core::VoxelMap tunnel() { return test::map_of_boxes({{{0, 0, 0}, {199, 14, 14}}}); }
+
+FlightRecord record_of() {
+  FlightRecord record;
+  record.name = "tunnel";
+  record.from = "flight";
+  record.entrance = core::Vec3(1.5, 1.5, 0.5);
+  record.path = {{1.5, 1.5, 0.5}, {30, 1.5, 1.5}};
+  record.finds = {{"helmet", {20, 1, 0.2}}};
+  return record;
+}
+
+TEST(MapDrawings, EntranceFindsAndPathAreDrawnWhereTheyAre) {
+  const CaveDrawings drawings = map_drawings(tunnel(), record_of(), std::numbers::pi / 2, "map");
+  for (const Drawing* d : {&drawings.plan, &drawings.extended, &drawings.projected}) {
+    EXPECT_EQ(test::count_of(*d, Mark::Kind::entrance), 1);
+    EXPECT_EQ(test::count_of(*d, Mark::Kind::find), 1);
+    for (const Mark& m : d->marks)
+      if (m.kind == Mark::Kind::find) {
+        EXPECT_EQ(m.text, "helmet");
+      }
+  }
+  for (const Mark& m : drawings.projected.marks)
+    if (m.kind == Mark::Kind::find) {
+      EXPECT_NEAR(m.at.x(), 18.5, 1e-9) << "along the tunnel, from the entrance";
+      EXPECT_NEAR(m.at.y(), -0.3, 1e-9);
+    }
+  ASSERT_EQ(drawings.plan.paths.size(), 1u);
+  EXPECT_EQ(drawings.plan.paths[0][1], Point(30, 1.5));
+  EXPECT_TRUE(drawings.extended.paths.empty());
+}
+
+TEST(MapDrawings, TheFiguresAreThoseOfTheRoom) {
+  const CaveFacts facts = map_drawings(tunnel(), record_of(), {}, "map").facts;
+  EXPECT_EQ(facts.name, "tunnel");
+  EXPECT_NEAR(facts.depth_m.value_or(0), 3, 1e-9);
+  EXPECT_NEAR(facts.volume_m3.value_or(0), 200 * 15 * 15 * 0.008, 1e-6);
+  EXPECT_NEAR(facts.length_m.value_or(0), 40, 4);
+}
+
+TEST(MapDrawings, AnEndWithoutAWallIsAskedAboutAndOneAtRockIsNot) {
+  EXPECT_EQ(test::count_of(map_drawings(tunnel(), record_of(), {}, "map").plan, Mark::Kind::unknown_end), 0);
+  core::VoxelMap open{core::MapOptions{}};
+  for (int x = -2; x <= 199; ++x)
+    for (int y = -2; y <= 16; ++y)
+      for (int z = -2; z <= 16; ++z) {
+        const bool free = x >= 0 && y >= 0 && y < 15 && z >= 0 && z < 15;
+        open.assign({x, y, z}, 1, free ? -2.0f : 2.0f);
+      }
+  const CaveDrawings drawings = map_drawings(open, record_of(), {}, "map");
+  ASSERT_EQ(test::count_of(drawings.plan, Mark::Kind::unknown_end), 1);
+  EXPECT_EQ(test::count_of(drawings.extended, Mark::Kind::unknown_end), 1);
+  for (const Mark& m : drawings.plan.marks)
+    if (m.kind == Mark::Kind::unknown_end) {
+      EXPECT_NEAR(m.at.x(), 40, 0.5) << "where it is lost sight of";
+    }
+}
+
+TEST(MapDrawings, AMapAloneHasNoEntrance) {
+  const CaveDrawings drawings = map_drawings(tunnel(), {}, {}, "map");
+  EXPECT_EQ(test::count_of(drawings.plan, Mark::Kind::entrance), 0);
+  EXPECT_FALSE(drawings.extended.spaces.empty());
+}
+
+TEST(MapDrawings, WhatIsNoNumberIsRefused) {
+  const core::VoxelMap map = tunnel();
+  FlightRecord entrance = record_of(), path = record_of(), find = record_of();
+  entrance.entrance->x() = kNan;
+  path.path[1].y() = kNan;
+  find.finds[0].position.z() = kNan;
+  for (const FlightRecord& bad : {entrance, path, find})
+    EXPECT_NE(test::refusal_by([&] { map_drawings(map, bad, {}, "a.bt"); }).find("not a number"),
+              std::string::npos);
+  EXPECT_NE(test::refusal_by([&] { map_drawings(map, record_of(), kNan, "a.bt"); }).find("bearing"),
+            std::string::npos);
+  EXPECT_NE(test::refusal_by([&] {
+              map_drawings(core::VoxelMap{core::MapOptions{}}, {}, {}, "a.bt");
+            }).find("no free cell"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace karst::cave_drawing

@@ -1,0 +1,226 @@
+// Where a flight's survey has its stations, and what it says of them, in caves whose shape is known.
+#include "sdk/survey_export/flown_survey.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "core_stack/common/error.h"
+#include "tests/unit/survey_export/carved_map.h"
+
+namespace karst::survey_export {
+namespace {
+
+using core::Vec3;
+using test::box;
+using test::carved;
+using test::surveyed;
+using test::way;
+
+std::vector<int> degrees(const survey::Survey& s) {
+  std::vector<int> out(s.stations.size());
+  for (const survey::Leg& l : s.legs) {
+    ++out[l.from];
+    ++out[l.to];
+  }
+  return out;
+}
+std::size_t count(const std::vector<int>& degrees, int degree) {
+  return static_cast<std::size_t>(std::count(degrees.begin(), degrees.end(), degree));
+}
+
+/// What holds of every survey: legs as long as their stations are apart, at most 10 m, through free cells.
+void expect_sound(const core::VoxelMap& map, const FlownSurvey& flown) {
+  const survey::Survey& s = flown.survey;
+  ASSERT_EQ(flown.leg_sd_m.size(), s.legs.size());
+  EXPECT_EQ(flown.blocked_legs, 0u);
+  for (const survey::Leg& l : s.legs) {
+    const Vec3 &a = s.stations[l.from].position_m, &b = s.stations[l.to].position_m;
+    EXPECT_FALSE(map.first_not_free(a, b)) << s.stations[l.from].name << " " << s.stations[l.to].name;
+    EXPECT_LE(*l.length_m, 10.001);
+    EXPECT_NEAR(*l.length_m, (b - a).norm(), 1e-9);
+    if (!l.bearing_rad) continue;
+    const Vec3 measured(std::sin(*l.bearing_rad) * std::cos(*l.inclination_rad),
+                        std::cos(*l.bearing_rad) * std::cos(*l.inclination_rad),
+                        std::sin(*l.inclination_rad));
+    EXPECT_LT((*l.length_m * measured - (b - a)).norm(), 1e-6);
+  }
+  ASSERT_FALSE(s.stations.empty());
+  EXPECT_TRUE(s.stations[0].entrance && s.stations[0].fixed);
+  for (std::size_t i = 1; i < s.stations.size(); ++i)
+    EXPECT_FALSE(s.stations[i].entrance || s.stations[i].fixed || s.stations[i].surface);
+}
+
+TEST(FlownSurvey, AStraightTunnelHasItsStationsOnTheAxisAndItsWallsWithinACell) {
+  const core::VoxelMap map = test::tunnel_map();
+  const FlownSurvey flown = surveyed(map, test::tunnel_flight());
+  expect_sound(map, flown);
+  const survey::Survey& s = flown.survey;
+  EXPECT_LE(s.legs.size(), 6u);
+  double least = 30, most = 0;
+  for (const survey::Station& at : s.stations) {
+    EXPECT_NEAR(at.position_m.y(), 0, 0.2) << at.name;
+    EXPECT_NEAR(at.position_m.z(), 1.5, 0.2) << at.name;
+    least = std::min(least, at.position_m.x());
+    most = std::max(most, at.position_m.x());
+  }
+  EXPECT_LT(least, 2);
+  EXPECT_GT(most, 29);
+  for (const survey::Section& section : s.sections) {
+    const Vec3& p = s.stations[section.station].position_m;
+    const double turn = section.facing.x();  // along the tunnel, or against it
+    ASSERT_NEAR(std::abs(turn), 1, 0.05);
+    const survey::Dimensions& d = section.dimensions;
+    ASSERT_TRUE(d.left_m && d.right_m && d.up_m && d.down_m);
+    EXPECT_NEAR(*d.left_m, turn > 0 ? 2 - p.y() : 2 + p.y(), 0.2);
+    EXPECT_NEAR(*d.right_m, turn > 0 ? 2 + p.y() : 2 - p.y(), 0.2);
+    EXPECT_NEAR(*d.up_m, 3 - p.z(), 0.2);
+    EXPECT_NEAR(*d.down_m, p.z(), 0.2);
+  }
+  for (const survey::Leg& l : s.legs) EXPECT_FALSE(l.approximate);
+  for (const survey::Station& at : s.stations) EXPECT_FALSE(at.continuation) << at.name;
+}
+
+TEST(FlownSurvey, ABendHasAStation) {
+  const auto cave = test::any_of({box({0, -1.6, 0}, {20, 1.4, 3}), box({17, -1.6, 0}, {20, 20, 3})});
+  const core::VoxelMap map = carved(cave, {-1, -3, -1}, {21, 21, 4});
+  const FlownSurvey flown = surveyed(map, way({{1, 0, 1.5}, {18.5, 0, 1.5}, {18.5, 19, 1.5}}));
+  expect_sound(map, flown);
+  const std::vector<int> d = degrees(flown.survey);
+  EXPECT_EQ(count(d, 1), 2u);
+  EXPECT_EQ(count(d, 2), d.size() - 2);
+  double nearest = 100;
+  for (const survey::Station& s : flown.survey.stations)
+    nearest = std::min(nearest, (s.position_m - Vec3(18.5, 0, 1.5)).norm());
+  EXPECT_LT(nearest, 1.5);
+}
+
+TEST(FlownSurvey, AChangeOfSizeHasAStation) {
+  const auto cave = test::any_of({box({0, -1, 0}, {15, 1, 2}), box({15, -4, 0}, {30, 4, 6})});
+  const core::VoxelMap map = carved(cave, {-1, -5, -1}, {31, 5, 7});
+  const FlownSurvey flown = surveyed(map, way({{1, 0, 1}, {14, 0, 1}, {28, 0, 2}}));
+  expect_sound(map, flown);
+  double nearest = 100;
+  for (const survey::Station& s : flown.survey.stations)
+    nearest = std::min(nearest, std::abs(s.position_m.x() - 15));
+  EXPECT_LT(nearest, 2.0);
+}
+
+TEST(FlownSurvey, AJunctionIsOneStationOfThreeBranches) {
+  const core::VoxelMap map = test::tee_map();
+  const FlownSurvey flown =
+      surveyed(map, way({{1, 0, 1.5}, {15, 0, 1.5}, {15, 14, 1.5}, {15, 0, 1.5}, {29, 0, 1.5}}));
+  expect_sound(map, flown);
+  const std::vector<int> d = degrees(flown.survey);
+  EXPECT_EQ(count(d, 3), 1u);
+  EXPECT_EQ(count(d, 1), 3u);
+  for (std::size_t i = 0; i < d.size(); ++i)
+    if (d[i] == 3) {
+      EXPECT_LT((flown.survey.stations[i].position_m - Vec3(14.9, 0, 1.5)).norm(), 2.0);
+    }
+  std::set<std::uint32_t> runs;
+  for (const survey::Leg& l : flown.survey.legs) runs.insert(l.run);
+  EXPECT_EQ(runs.size(), 3u);
+}
+
+TEST(FlownSurvey, ADeadEndHasItsLastStationNearTheRockAndDoesNotGoOn) {
+  const core::VoxelMap map = test::tunnel_map();
+  const FlownSurvey flown = surveyed(map, test::tunnel_flight());
+  const survey::Station& last = flown.survey.stations[flown.survey.legs.back().to];
+  EXPECT_NEAR(last.position_m.x(), 29.5, 0.4);
+  EXPECT_FALSE(last.continuation);
+}
+
+TEST(FlownSurvey, AnEndInUnknownSpaceGoesOn) {
+  const core::VoxelMap map = test::tunnel_map(box({22, -10, -10}, {50, 10, 10}));
+  const FlownSurvey flown = surveyed(map, way({{1, 0, 1.5}, {20, 0, 1.5}}));
+  expect_sound(map, flown);
+  std::size_t continuations = 0;
+  for (const survey::Station& s : flown.survey.stations)
+    if (s.continuation) {
+      ++continuations;
+      EXPECT_NEAR(s.position_m.x(), 21, 1.6);
+      EXPECT_FALSE(s.comment.empty());
+    }
+  EXPECT_EQ(continuations, 1u);
+}
+
+TEST(FlownSurvey, ALeftFrontierMarksTheNearestStationUnlessTheMapKnowsThePlaceByNow) {
+  const core::VoxelMap map = test::tunnel_map(box({14, 1.9, 1}, {15, 10, 2}));  // a hole in the wall
+  const Vec3 hole(14.5, 1.9, 1.5), wall(8, 1.9, 1.5);
+  const FlownSurvey flown = surveyed(map, test::tunnel_flight(), {hole, wall});
+  double least = 100;
+  const survey::Station* nearest = nullptr;
+  for (const survey::Station& s : flown.survey.stations)
+    if (const double away = (s.position_m - hole).norm(); away < least) {
+      least = away;
+      nearest = &s;
+    }
+  for (const survey::Station& s : flown.survey.stations) EXPECT_EQ(s.continuation, &s == nearest) << s.name;
+}
+
+TEST(FlownSurvey, WhatWasSeenButNotFlownIsApproximate) {
+  const core::VoxelMap map = test::tee_map();
+  const FlownSurvey flown = surveyed(map, way({{1, 0, 1.5}, {29, 0, 1.5}}));
+  std::size_t approximate = 0;
+  for (const survey::Leg& l : flown.survey.legs) {
+    const double y = flown.survey.stations[l.to].position_m.y();
+    EXPECT_EQ(l.approximate, y > 3) << y;
+    approximate += l.approximate ? 1u : 0u;
+  }
+  EXPECT_GE(approximate, 1u);
+}
+
+TEST(FlownSurvey, AShaftHasLegsStraightDownAndSectionsAcrossIt) {
+  const core::VoxelMap map = carved(box({-2, -2, -25}, {2, 2, 0}), {-3, -3, -26}, {3, 3, 1});
+  const FlownSurvey flown = surveyed(map, way({{0, 0, -2}, {0, 0, -24}}));
+  expect_sound(map, flown);
+  double deepest = 0;
+  for (const survey::Station& s : flown.survey.stations) {
+    EXPECT_LT(std::hypot(s.position_m.x(), s.position_m.y()), 0.3);
+    deepest = std::min(deepest, s.position_m.z());
+  }
+  EXPECT_LT(deepest, -23.5);
+  for (const survey::Section& s : flown.survey.sections) {
+    ASSERT_TRUE(s.dimensions.left_m && s.dimensions.right_m);
+    EXPECT_NEAR(*s.dimensions.left_m + *s.dimensions.right_m, 4.2, 0.4);
+  }
+}
+
+TEST(FlownSurvey, ARingClosesAtItsFirstStation) {
+  const auto outer = box({-10, -10, 0}, {10, 10, 3}), pillar = box({-7, -7, -1}, {7, 7, 4});
+  const core::VoxelMap map =
+      carved([&](const Vec3& p) { return outer(p) && !pillar(p); }, {-11, -11, -1}, {11, 11, 4});
+  const FlownSurvey flown = surveyed(map, way({{0, -8.5, 1.5},
+                                               {8.5, -8.5, 1.5},
+                                               {8.5, 8.5, 1.5},
+                                               {-8.5, 8.5, 1.5},
+                                               {-8.5, -8.5, 1.5},
+                                               {0, -8.5, 1.5}}));
+  expect_sound(map, flown);
+  EXPECT_EQ(flown.survey.legs.size(), flown.survey.stations.size());
+  const std::vector<int> d = degrees(flown.survey);
+  EXPECT_EQ(count(d, 2), d.size());
+}
+
+TEST(FlownSurvey, AMapWithoutAPassageAtTheStartIsRefused) {
+  const core::VoxelMap map = test::tunnel_map();
+  try {
+    surveyed(map, {{500, 0, 0}});
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("run: the map holds no passage"), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(surveyed(map, {}), core::InputError);
+}
+
+TEST(FlownSurvey, ASurveysNameHasOnlyWhatSurvexAndTherionTake) {
+  EXPECT_EQ(survey_name("My Cave.2"), "my_cave_2");
+  EXPECT_EQ(survey_name(""), "cave");
+  EXPECT_EQ(survey_name("-x-"), "_x-") << "Therion: invalid keyword -- -x";
+}
+
+}  // namespace
+}  // namespace karst::survey_export
