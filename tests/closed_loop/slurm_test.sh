@@ -30,6 +30,7 @@ free_port() { # one that nobody listens on
   while port=$((20000 + RANDOM % 20000)); (: >"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do :; done
   echo $port
 }
+grep -qs ' /sys/fs/cgroup ' /proc/mounts || skip "slurmd needs /sys/fs/cgroup, and nothing is mounted there"
 host=$(hostname -s)
 mungekey --create --keyfile="$work/munge/key" || skip "mungekey cannot make a key"
 munged --foreground --force --socket="$run/munge" --key-file="$work/munge/key" --log-file="$work/munge/log" \
@@ -72,7 +73,7 @@ for _ in $(seq 300); do
   [ "$(sinfo --noheader --format=%T 2>/dev/null)" = idle ] && break
   sleep 0.2
 done
-[ "$(sinfo --noheader --format=%T 2>/dev/null)" = idle ] || { sinfo; tail -5 "$work"/slurm*.log; echo "Slurm did not start"; exit 1; }
+[ "$(sinfo --noheader --format=%T 2>/dev/null)" = idle ] || { sinfo; tail -n 5 "$work"/slurm*.log; echo "Slurm did not start"; exit 1; }
 
 fail() { echo "FAILED: $1"; exit 1; }
 "$karst" cave generate --preset small --seed 3 --set volume=300 --out "$work/cave" >"$work/cave.log" 2>&1 || fail "no cave"
