@@ -42,7 +42,7 @@ void expect_drawable(const survey::Survey& survey, std::optional<double> bearing
 /// Fills the pieces into cells fine enough for print, and draws their outline.
 void draw_pieces(const std::vector<Piece>& pieces, Drawing& drawing, const std::string& file) {
   constexpr double kAcross = 2500, kFinest_m = 0.05, kCoarsest_m = 0.5;
-  constexpr double kMostCells = 2.5e7;  // 5000 by 5000: paper resolves no more
+  constexpr double kDrawnCells = 2.5e7;  // 5000 by 5000: paper resolves no more
   Point low = Point::Constant(std::numeric_limits<double>::infinity()), high = -low;
   const auto cover = [&](const Point& p, double around_m) {
     low = low.cwiseMin(p - Point::Constant(around_m));
@@ -55,7 +55,7 @@ void draw_pieces(const std::vector<Piece>& pieces, Drawing& drawing, const std::
   if (!low.allFinite() || !high.allFinite()) return;
   const Point size = high - low;
   const double cell_m = std::max(std::clamp(size.maxCoeff() / kAcross, kFinest_m, kCoarsest_m),
-                                 std::sqrt(size.prod() / kMostCells));
+                                 std::sqrt(size.prod() / kDrawnCells));
   const auto cell = [&](double v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); };
   CellMask mask(file, cell(low.x()) - 1, cell(low.y()) - 1, cell(high.x()) + 1, cell(high.y()) + 1);
   for (const Piece& piece : pieces) {

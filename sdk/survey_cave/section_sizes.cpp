@@ -20,8 +20,6 @@ struct Measured {
   bool own = true;                // measured in this passage, not in another one through the station
 };
 
-Vec3 horizontal(const Vec3& v) { return {v.x(), v.y(), 0}; }
-
 /// Left and right, or up and down, of nothing are not measured.
 void drop_empty(survey::Dimensions& d) {
   constexpr double kNothing_m = 0.05;
@@ -41,7 +39,7 @@ Measured measured_at(const Joint& joint, const Survey& survey, const std::vector
   const Section* best = nullptr;
   double best_score = -1, best_along = 0;
   bool best_own = true;
-  const Vec3 level = horizontal(joint.normal).normalized();
+  const Vec3 level = Vec3(joint.normal.x(), joint.normal.y(), 0).normalized();
   for (const std::uint32_t station : graph.stations[joint.node])
     for (const Section* s : sections[station]) {
       const double along = is_shaft(joint) ? 1 : s->facing.dot(level);
