@@ -7,42 +7,27 @@
 
 #include "sdk/host/isolation/process.h"
 #include "sdk/survey/read_survey.h"
-#include "tests/unit/survey/survey_files.h"
+#include "tests/unit/survey/adjusted_surveys.h"
 
 namespace karst::survey {
 namespace {
 
 using core::Vec3;
+using test::adjusted;
+using test::adjusted_lines;
+using test::adjustment_refusal;
+using test::expect_at;
 using test::Folder;
+using test::kNormal;
 using test::notes_say;
 using test::place;
 using test::says;
 using test::station;
 
-constexpr double kRounded_m = 0.0051 * 1.8;  // positions come to the centimetre
-
-Survey survey_of(const std::string& text) {
-  const Folder folder;
-  return read_survey(folder.write("s.th", text));
-}
-Survey survey_of_lines(const std::string& lines) { return survey_of(test::centreline(lines)); }
-std::string refusal(const std::string& lines) {
-  try {
-    survey_of_lines(lines);
-  } catch (const core::InputError& e) {
-    return e.what();
-  }
-  return "";
-}
-void expect_at(const Vec3& a, const Vec3& b) {
-  EXPECT_LT((a - b).norm(), kRounded_m) << a.transpose() << " and " << b.transpose();
-}
-const std::string kNormal = "data normal from to length compass clino\n";
-
 TEST(Adjust, AnOpenTraverseEndsWhereItsLegsLead) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines("fix 1 100 200 50\ndeclination 10 degrees\n" + kNormal +
-                                   "1 2 10 80 30\n2 3 5 - down\n");
+  const Survey s =
+      adjusted_lines("fix 1 100 200 50\ndeclination 10 degrees\n" + kNormal + "1 2 10 80 30\n2 3 5 - down\n");
   expect_at(place(s, "s.1"), {100, 200, 50});
   expect_at(place(s, "s.2"), {100 + 10 * std::sqrt(0.75), 200, 55});
   expect_at(place(s, "s.3"), {100 + 10 * std::sqrt(0.75), 200, 50});
@@ -57,8 +42,8 @@ TEST(Adjust, AnOpenTraverseEndsWhereItsLegsLead) {
 // Around a square with good angles: the last leg is 0.4 m short, and shares that with the one opposite.
 TEST(Adjust, AMisclosureIsSharedByTheLegsThatCanHaveCausedIt) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines("fix 1 0 0 0\nsd length 2 metres\nsd compass clino 0.0001 degrees\n" +
-                                   kNormal + "1 2 10 0 0\n2 3 10 90 0\n3 4 10 180 0\n4 1 9.6 270 0\n");
+  const Survey s = adjusted_lines("fix 1 0 0 0\nsd length 2 metres\nsd compass clino 0.0001 degrees\n" +
+                                  kNormal + "1 2 10 0 0\n2 3 10 90 0\n3 4 10 180 0\n4 1 9.6 270 0\n");
   expect_at(place(s, "s.2"), {0, 10, 0});
   expect_at(place(s, "s.3"), {9.8, 10, 0});
   expect_at(place(s, "s.4"), {9.8, 0, 0});
@@ -71,12 +56,12 @@ TEST(Adjust, AMisclosureIsSharedByTheLegsThatCanHaveCausedIt) {
 
 TEST(Adjust, StationsThatAreEquatedAreOne) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of("survey a\nsurvey b\ncentreline\n" + kNormal +
-                             "1 2 10 0 0\nendcentreline\nendsurvey\n"
-                             "survey c\ncentreline\n" +
-                             kNormal +
-                             "1 2 10 90 0\nstation 1 \"\" entrance\nendcentreline\n"
-                             "endsurvey\nequate 2@b 1@c\nendsurvey\n");
+  const Survey s = adjusted("survey a\nsurvey b\ncentreline\n" + kNormal +
+                            "1 2 10 0 0\nendcentreline\nendsurvey\n"
+                            "survey c\ncentreline\n" +
+                            kNormal +
+                            "1 2 10 90 0\nstation 1 \"\" entrance\nendcentreline\n"
+                            "endsurvey\nequate 2@b 1@c\nendsurvey\n");
   ASSERT_EQ(s.stations.size(), 3u);
   EXPECT_EQ(s.legs[0].to, s.legs[1].from);
   EXPECT_EQ(station(s, "a.c.1").name, "a.b.2");
@@ -86,35 +71,36 @@ TEST(Adjust, StationsThatAreEquatedAreOne) {
 
 TEST(Adjust, WhatNothingTiesToAFixedStationIsLeftOutWithANote) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines("fix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n3 4 10 0 0\n4 5 10 0 0\n");
+  const Survey s = adjusted_lines("fix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n3 4 10 0 0\n4 5 10 0 0\n");
   EXPECT_EQ(s.stations.size(), 2u);
   EXPECT_TRUE(notes_say(s.notes, "2 legs from here on are tied to no fixed station"));
-  const Survey loose = survey_of_lines(kNormal + "1 2 10 0 0\n3 4 10 0 0\n4 5 10 0 0\n");
+  const Survey loose = adjusted_lines(kNormal + "1 2 10 0 0\n3 4 10 0 0\n4 5 10 0 0\n");
   EXPECT_EQ(loose.stations.size(), 3u) << "the larger part";
   EXPECT_TRUE(notes_say(loose.notes, "no station of the survey is fixed"));
 }
 
 TEST(Adjust, ContradictoryFixesAreRefusedWithBothLines) {
-  const std::string said = refusal("fix 1 0 0 0\nfix 2 5 0 0\n" + kNormal + "1 3 10 0 0\nequate 1 2\n");
+  const std::string said =
+      adjustment_refusal("fix 1 0 0 0\nfix 2 5 0 0\n" + kNormal + "1 3 10 0 0\nequate 1 2\n");
   EXPECT_TRUE(says(said, "s.th: line 4: the station s.2 is fixed elsewhere")) << said;
   EXPECT_TRUE(says(said, "line 3")) << said;
 }
 
 TEST(Adjust, ALegBetweenEquatedStationsIsNoted) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines(kNormal + "1 2 10 0 0\n2 3 4 0 0\nequate 2 3\n");
+  const Survey s = adjusted_lines(kNormal + "1 2 10 0 0\n2 3 4 0 0\nequate 2 3\n");
   EXPECT_EQ(s.legs.size(), 1u);
   EXPECT_TRUE(notes_say(s.notes, "a leg of 4.00 m whose ends are equated"));
 }
 
 TEST(Adjust, ASurveyWithoutLegsIsRefused) {
-  EXPECT_TRUE(says(refusal("fix 1 0 0 0\n"), "holds no leg"));
-  EXPECT_TRUE(says(refusal(""), "holds no leg"));
+  EXPECT_TRUE(says(adjustment_refusal("fix 1 0 0 0\n"), "holds no leg"));
+  EXPECT_TRUE(says(adjustment_refusal(""), "holds no leg"));
 }
 
 TEST(Adjust, SplaysStartAtTheirStationsAndMakeNone) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines(kNormal + "1 2 10 0 0\n2 . 3 90 0\n- 2 3 90 0\nflags splay\n1 w 2 - up\n");
+  const Survey s = adjusted_lines(kNormal + "1 2 10 0 0\n2 . 3 90 0\n- 2 3 90 0\nflags splay\n1 w 2 - up\n");
   EXPECT_EQ(s.stations.size(), 2u);
   ASSERT_EQ(s.splays.size(), 3u);
   expect_at(s.splays[0].end_m, {3, 10, 0});
@@ -125,14 +111,14 @@ TEST(Adjust, SplaysStartAtTheirStationsAndMakeNone) {
 
 TEST(Adjust, StationsOfSurfaceLegsAloneAreOnTheSurface) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines(kNormal + "flags surface\n1 2 10 0 0\nflags not surface\n2 3 10 0 0\n");
+  const Survey s = adjusted_lines(kNormal + "flags surface\n1 2 10 0 0\nflags not surface\n2 3 10 0 0\n");
   EXPECT_TRUE(station(s, "s.1").surface && !station(s, "s.2").surface && !station(s, "s.3").surface);
   EXPECT_NEAR(length_m(s), 10, 0.02);
 }
 
 TEST(Adjust, SectionsFaceAlongTheirRun) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines(
+  const Survey s = adjusted_lines(
       "data normal from to length compass clino left right up down\n"
       "1 2 10 0 0 1 1 1 1\n2 3 10 90 0 2 2 2 2\n3 4 10 - down 3 3 3 3\n4 5 10 - down 4 4 4 4\nbreak\n"
       "2 6 10 180 0 5 5 5 5\n");
@@ -149,7 +135,7 @@ TEST(Adjust, SectionsFaceAlongTheirRun) {
 
 TEST(Adjust, DimensionsOfStationsJoinTheRunThatLeadsThere) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines(
+  const Survey s = adjusted_lines(
       kNormal + "1 2 10 90 0\n2 3 10 90 0\ndata dimensions station left right\n3 1 2\n1 3 4\n2 5 -\n");
   ASSERT_EQ(s.sections.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -262,52 +248,52 @@ TEST(Adjust, DatesBeyondTheReferenceFieldAreRefusedUnlessThereIsADeclination) {
   SKIP_WITHOUT_SURVEX();
   const std::string leg = "cs UTM33\nfix 1 400000 5000000 0\n" + kNormal + "1 2 10 0 0\n";
   for (const char* year : {"1850", "2150"}) {
-    const std::string said = refusal(std::string("date ") + year + ".06.01\n" + leg);
+    const std::string said = adjustment_refusal(std::string("date ") + year + ".06.01\n" + leg);
     EXPECT_TRUE(says(said, "s.th: line 7: the reference field is not known in " + std::string(year))) << said;
   }
-  EXPECT_EQ(refusal("date 1850.06.01\ndeclination 12 degrees\n" + leg), "");
-  EXPECT_EQ(refusal("date 1900.06.01\n" + leg), "");
+  EXPECT_EQ(adjustment_refusal("date 1850.06.01\ndeclination 12 degrees\n" + leg), "");
+  EXPECT_EQ(adjustment_refusal("date 1900.06.01\n" + leg), "");
 }
 
 // A scale error of 1 / cos(latitude) at the equator is none: the stations are where the legs lead.
 TEST(Adjust, AStationMayBeFixedAtTheOriginOfACoordinateSystem) {
   SKIP_WITHOUT_SURVEX();
   const Survey s =
-      survey_of_lines("cs EPSG:3857\nfix 1 0 0 0\ndeclination 0 degrees\n" + kNormal + "1 2 10 90 0\n");
+      adjusted_lines("cs EPSG:3857\nfix 1 0 0 0\ndeclination 0 degrees\n" + kNormal + "1 2 10 90 0\n");
   expect_at(place(s, "s.2"), {10, 0, 0});
 }
 
 // JTSK counts to the west and to the south, and cavern writes no such coordinates.
 TEST(Adjust, CoordinatesToTheWestAndSouthBecomeThoseToTheEastAndNorth) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines("cs JTSK\nfix 1 400000 1197000 500\ndeclination 0 degrees\n" + kNormal +
-                                   "1 2 10 - up\n");
+  const Survey s = adjusted_lines("cs JTSK\nfix 1 400000 1197000 500\ndeclination 0 degrees\n" + kNormal +
+                                  "1 2 10 - up\n");
   expect_at(place(s, "s.1"), {-400'000, -1'197'000, 500});
   expect_at(place(s, "s.2"), {-400'000, -1'197'000, 510});
 }
 
 TEST(Adjust, ADiveStraightDownNeedsNoCompass) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines("data diving from to length compass depthchange\n1 2 10 - -10\n");
+  const Survey s = adjusted_lines("data diving from to length compass depthchange\n1 2 10 - -10\n");
   expect_at(place(s, "s.2"), {0, 0, -10});
   EXPECT_FALSE(s.legs.at(0).bearing_rad);
 }
 
 TEST(Adjust, ADeclinationOfSeveralTurnsIsOneWithinATurn) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of_lines("declination -990 degrees\n" + kNormal + "1 2 10 0 0\n");
+  const Survey s = adjusted_lines("declination -990 degrees\n" + kNormal + "1 2 10 0 0\n");
   expect_at(place(s, "s.2"), {10, 0, 0});
 }
 
 TEST(Adjust, CoordinatesThatCannotBeConvertedAreRefusedWithTheirLine) {
   SKIP_WITHOUT_SURVEX();
-  const std::string said = refusal("cs EPSG:1\nfix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n");
+  const std::string said = adjustment_refusal("cs EPSG:1\nfix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n");
   EXPECT_TRUE(says(said, "s.th: line 4: the coordinates in EPSG:1 cannot be converted")) << said;
-  EXPECT_TRUE(says(refusal("cs \"UTM33 *include x\"\nfix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n"),
+  EXPECT_TRUE(says(adjustment_refusal("cs \"UTM33 *include x\"\nfix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n"),
                    "is no coordinate system"));
-  EXPECT_TRUE(
-      says(refusal("fix 3 0 0 0\ncs UTM33\nfix 1 400000 5000000 0\n" + kNormal + "1 2 10 0 0\n2 3 10 0 0\n"),
-           "line 3: is fixed in local coordinates"));
+  EXPECT_TRUE(says(adjustment_refusal("fix 3 0 0 0\ncs UTM33\nfix 1 400000 5000000 0\n" + kNormal +
+                                      "1 2 10 0 0\n2 3 10 0 0\n"),
+                   "line 3: is fixed in local coordinates"));
 }
 
 }  // namespace

@@ -2,46 +2,36 @@
 // one.
 #include "sdk/survey/check_legs.h"
 
-#include "sdk/survey/read_survey.h"
+#include "tests/unit/survey/adjusted_surveys.h"
 #include "tests/unit/survey/fake_cavern.h"
-#include "tests/unit/survey/survey_files.h"
 
 namespace karst::survey {
 namespace {
 
+using test::adjusted_lines;
+using test::adjustment_refusal;
 using test::FakeCavern;
+using test::kNormal;
 using test::notes_say;
 using test::says;
 
-Survey survey_of(const std::string& lines) {
-  const test::Folder folder;
-  return read_survey(folder.write("s.th", test::centreline(lines)));
-}
-std::string refusal(const std::string& lines) {
-  try {
-    survey_of(lines);
-  } catch (const core::InputError& e) {
-    return e.what();
-  }
-  return "";
-}
-const std::string kNormal = "data normal from to length compass clino\n";
 const char* const kTenIsEleven = "sed -i 's/ 10\\.000000 / 11.000000 /' \"$file\"";
 
 TEST(CheckLegs, ALegThatCavernMisplacesIsRefusedWithItsLine) {
   SKIP_WITHOUT_SURVEX();
   const std::string lines = kNormal + "1 2 5 0 0\n2 3 10 0 0\n";
-  EXPECT_EQ(refusal(lines), "");
+  EXPECT_EQ(adjustment_refusal(lines), "");
   const FakeCavern fake(kTenIsEleven);
-  EXPECT_TRUE(
-      says(refusal(lines), "s.th: line 5: cavern puts the end of this leg 1.00 m from where its reading"))
-      << refusal(lines);
+  EXPECT_TRUE(says(adjustment_refusal(lines),
+                   "s.th: line 5: cavern puts the end of this leg 1.00 m from where its reading"))
+      << adjustment_refusal(lines);
 }
 
 TEST(CheckLegs, LegsOfLoopsMayMove) {
   SKIP_WITHOUT_SURVEX();
   const FakeCavern fake(kTenIsEleven);
-  EXPECT_EQ(refusal(kNormal + "1 2 10 0 0\n2 3 12 90 0\n3 4 10 180 0\n4 1 12.3 270 0\n4 5 7 0 0\n"), "");
+  EXPECT_EQ(
+      adjustment_refusal(kNormal + "1 2 10 0 0\n2 3 12 90 0\n3 4 10 180 0\n4 1 12.3 270 0\n4 5 7 0 0\n"), "");
 }
 
 // cavern 1.4.4 puts the end of a vertical dive without a compass reading kilometres down.
@@ -49,16 +39,17 @@ TEST(CheckLegs, ADiveThatEndsKilometresDownIsRefused) {
   SKIP_WITHOUT_SURVEX();
   const std::string lines =
       "data diving from to length compass depthchange\n1 2 10 - -10\n" + kNormal + "2 3 5 0 0\n";
-  EXPECT_EQ(refusal(lines), "");
+  EXPECT_EQ(adjustment_refusal(lines), "");
   const FakeCavern fake("sed -i 's/ 10\\.000000 0\\.000000000 / 10.000000 - /' \"$file\"");
-  const std::string said = refusal(lines);
+  const std::string said = adjustment_refusal(lines);
   if (said.empty()) GTEST_SKIP() << "skipped: this cavern places vertical dives";
   EXPECT_TRUE(says(said, "s.th: line 4: cavern puts the end of this leg 5990.00 m")) << said;
 }
 
 TEST(CheckLegs, ADiveDeeperThanItsTapeIsLongIsNotedWithWhereItEnds) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = survey_of("data diving from to length compass depthchange\n1 2 10 90 -12\n2 3 10 90 -6\n");
+  const Survey s =
+      adjusted_lines("data diving from to length compass depthchange\n1 2 10 90 -12\n2 3 10 90 -6\n");
   const double depth_m = -test::place(s, "s.2").z();
   ASSERT_GT(depth_m, 10);
   ASSERT_LT(depth_m, 12);
@@ -76,8 +67,9 @@ TEST(CheckLegs, WhatCavernWarnsOfIsNotedWithTheLineOfTheSurvey) {
   const FakeCavern fake(
       "n=$(grep -n -e '^[*]fix f1' -e ' 10\\.000000 ' \"$file\" | cut -d: -f1 | head -1)\n"
       "echo \"$file:$n: warning: it rains in $(basename $file)\"");
-  const Survey s = survey_of("cs UTM33\nfix 1 400000 5000000 0\nfix 9 400100 5000000 0\ndate 2010.05.03\n" +
-                             kNormal + "1 2 10 0 0\n2 3 7 0 0\n9 8 7 0 0\n");
+  const Survey s =
+      adjusted_lines("cs UTM33\nfix 1 400000 5000000 0\nfix 9 400100 5000000 0\ndate 2010.05.03\n" + kNormal +
+                     "1 2 10 0 0\n2 3 7 0 0\n9 8 7 0 0\n");
   const auto line_of = [&](const std::string& text) {
     for (const Note& n : s.notes)
       if (n.text == text) return std::pair(n.source.line, n.more);

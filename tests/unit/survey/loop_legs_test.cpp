@@ -4,7 +4,7 @@
 #include <random>
 
 #include "sdk/survey/place_sets.h"
-#include "tests/unit/survey/survey_files.h"
+#include "tests/unit/survey/adjusted_surveys.h"
 
 namespace karst::survey {
 namespace {
@@ -13,7 +13,7 @@ std::vector<bool> found(Readings readings) {
   const Network network = network_of(readings);
   return legs_on_loops(readings, network);
 }
-const std::string kNormal = "data normal from to length compass clino\n";
+using test::kNormal;
 using Found = std::vector<bool>;
 
 TEST(LoopLegs, ALegToALoopAndOneBetweenTwoLoopsAreOnNone) {
@@ -46,7 +46,7 @@ TEST(LoopLegs, ALegLiesOnALoopIfItsEndsAreConnectedWithoutIt) {
       text += data;
       const bool measured = text.ends_with("clino\n");
       for (int i = 0; i < (measured ? 22 : 4); ++i) {
-        const unsigned from = random() % 20, to = (from + 1 + random() % 19) % 20;
+        const auto from = random() % 20, to = (from + 1 + random() % 19) % 20;
         text += std::to_string(from) + " " + std::to_string(to) + (measured ? " 9 0 0\n" : "\n");
       }
     }

@@ -1,11 +1,12 @@
 #include "sdk/survey/read_survey.h"
 
-#include "tests/unit/survey/survey_files.h"
+#include "tests/unit/survey/adjusted_surveys.h"
 
 namespace karst::survey {
 namespace {
 
 using core::Vec3;
+using test::expect_at;
 using test::Folder;
 using test::place;
 using test::says;
@@ -19,10 +20,6 @@ std::string refusal_of_file(const std::string& file) {
   }
   return "";
 }
-void expect_at(const Vec3& a, const Vec3& b) {
-  EXPECT_LT((a - b).norm(), 0.01) << a.transpose() << " and " << b.transpose();
-}
-
 TEST(ReadSurvey, TheEndingTellsTheKind) {
   EXPECT_TRUE(says(refusal_of_file("cave.stl"), "cave.stl: is no survey by its name: .th, .svx, .3d"));
   EXPECT_TRUE(says(refusal_of_file("/nowhere/cave.th"), "/nowhere/cave.th: cannot be opened: no such file"));
