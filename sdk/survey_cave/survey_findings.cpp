@@ -76,8 +76,10 @@ void tell_of_guesses(const Survey& survey, const Passages& passages, SurveyRepor
 double narrow_m(const Tube& tube, double width_m) {
   constexpr double kStep_m = 0.5, kMostSteps = 2000;
   const int steps = static_cast<int>(std::clamp(std::ceil(tube.length_m() / kStep_m), 2.0, kMostSteps));
-  int narrow = 0;
-  for (int i = 0; i < steps; ++i) narrow += tube.size_at((i + 0.5) / steps).minCoeff() < width_m ? 1 : 0;
+  double narrow = 0;
+  for (int i = 0; i <= steps; ++i)
+    if (tube.size_at(static_cast<double>(i) / steps).minCoeff() < width_m)
+      narrow += i == 0 || i == steps ? 0.5 : 1.0;
   return tube.length_m() * narrow / steps;
 }
 

@@ -60,7 +60,7 @@ from_cloud::CloudOptions cloud_options_of(const FromCloudArguments& args) {
   for (const std::string& s : args.scanners)
     options.views.push_back(cave::read_vector("command line", "--scanner", s));
   if (!args.path.empty()) append_path(args.path, options.views);
-  if (!args.start.empty()) options.start = cave::read_start("command line", args.start);
+  if (!args.start.empty()) options.start = cave::read_start("command line, --start", args.start);
   return options;
 }
 

@@ -48,7 +48,7 @@ Eigen::AlignedBox3d read_box(const std::string& text) {
 CaveOptions cave_options_of(const FromSurveyArguments& args) {
   CaveOptions options = args.options;
   if (!args.box.empty()) options.part.box = read_box(args.box);
-  if (!args.start.empty()) options.start = cave::read_start("command line", args.start);
+  if (!args.start.empty()) options.start = cave::read_start("command line, --start", args.start);
   return options;
 }
 

@@ -96,7 +96,7 @@ TEST_F(FromSurveyCommand, WritesACaveThatCanBeFlownItsStationsAndWhatWasGuessed)
 TEST_F(FromSurveyCommand, WritesTheReportAsJson) {
   const auto j = nlohmann::json::parse(run_with({"--json", "--vehicle-width", "0.6"}));
   EXPECT_EQ(j["schema"], "karst.from_survey/1");
-  EXPECT_NEAR(j["passage_m"].get<double>(), 46, 1e-6);
+  EXPECT_NEAR(j["passage_m"].get<double>(), 46, 0.03) << "positions come to the centimetre";
   EXPECT_NEAR(j["depth_m"].get<double>(), 8 * std::sin(10 * std::numbers::pi / 180), 0.01);
   EXPECT_GT(j["narrow_m"].get<double>(), 0);
   EXPECT_NEAR(j["within_reach_m"].get<double>(), 30, 8.1);
@@ -106,10 +106,10 @@ TEST_F(FromSurveyCommand, WritesTheReportAsJson) {
 
 TEST_F(FromSurveyCommand, APartIsChosenByNameAndNearAStation) {
   auto j = nlohmann::json::parse(run_with({"--json", "--survey", "upper"}));
-  EXPECT_NEAR(j["passage_m"].get<double>(), 30, 1e-6);
-  EXPECT_NEAR(j["other_parts_of_survey_m"].get<double>(), 16, 1e-6);
+  EXPECT_NEAR(j["passage_m"].get<double>(), 30, 0.03);
+  EXPECT_NEAR(j["other_parts_of_survey_m"].get<double>(), 16, 0.03);
   j = nlohmann::json::parse(run_with({"--json", "--force", "--around", "upper.1", "--radius", "11"}));
-  EXPECT_NEAR(j["passage_m"].get<double>(), 20, 1e-6);
+  EXPECT_NEAR(j["passage_m"].get<double>(), 20, 0.03);
 }
 
 TEST_F(FromSurveyCommand, OverwritesOnlyIfForcedAndWithTheSameBytes) {
@@ -151,7 +151,7 @@ TEST_F(FromSurveyCommand, BadArgumentsAreNamedAndNothingIsWritten) {
   EXPECT_TRUE(has(error_of([&] { run_with({"--survey", "uper"}); }), "the nearest name is upper"));
   EXPECT_TRUE(has(error_of([&] { run_with({"--around", "upper.9"}); }), "no such station"));
   EXPECT_TRUE(has(error_of([&] { run_with({"--box", "0 0 0 1"}); }), "--box"));
-  EXPECT_TRUE(has(error_of([&] { run_with({"--start", "0 0"}); }), "--start"));
+  EXPECT_TRUE(has(error_of([&] { run_with({"--start", "0 0"}); }), "command line, --start: start: expected \"x y z [heading_deg]\""));
   EXPECT_TRUE(has(error_of([&] { run_with({"--max-triangles", "1000"}); }), "--max-triangles 1000"));
   EXPECT_THROW(run_with({"--radius", "5"}), CLI::RequiresError);
   EXPECT_THROW(run_with({"--resolution", "0"}), CLI::ValidationError);
