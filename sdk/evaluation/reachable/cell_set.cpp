@@ -1,6 +1,9 @@
 #include "sdk/evaluation/reachable/cell_set.h"
 
 #include <deque>
+#include <stdexcept>
+
+#include "sdk/evaluation/reachable/outside_tiles.h"
 
 namespace karst::evaluation {
 namespace {
@@ -60,8 +63,11 @@ constexpr std::array<std::array<int, 3>, 6> kSides{
 
 CellSet::CellSet(const CellKey& low, const CellKey& high)
     : first_{low.x >> 3, low.y >> 3, low.z >> 3},
-      count_{(high.x >> 3) - first_.x + 1, (high.y >> 3) - first_.y + 1, (high.z >> 3) - first_.z + 1} {
-  index_.assign(static_cast<std::size_t>(count_.x) * count_.y * count_.z, -1);
+      count_{(high.x >> 3) - first_.x + 1, (high.y >> 3) - first_.y + 1, (high.z >> 3) - first_.z + 1},
+      tiles_{(count_.x + kTileEdge - 1) / kTileEdge, (count_.y + kTileEdge - 1) / kTileEdge,
+             (count_.z + kTileEdge - 1) / kTileEdge} {
+  tile_numbers_.assign(static_cast<std::size_t>(tiles_.x) * tiles_.y * tiles_.z, kNoTile);
+  numbers_.assign(kTilePlaces, -1);
 }
 
 std::size_t CellSet::size() const {
@@ -72,18 +78,19 @@ std::size_t CellSet::size() const {
 }
 
 CellSet::Block& CellSet::at(const CellKey& place) {
-  std::int32_t& i = index_[index_of(place)];
+  std::uint32_t& tile = tile_numbers_[tile_index(tile_of(place))];
+  if (tile == kNoTile) {
+    const std::size_t number = numbers_.size() / kTilePlaces;
+    numbers_.resize(numbers_.size() + kTilePlaces, -1);
+    tile = static_cast<std::uint32_t>(number);
+  }
+  std::int32_t& i = numbers_[tile * kTilePlaces + inside(place)];
   if (i < 0) {
-    i = static_cast<std::int32_t>(blocks_.size());
+    if (blocks_.size() == kMaxBlocks) throw std::length_error("too many blocks of cells");
     blocks_.push_back({});
+    i = static_cast<std::int32_t>(blocks_.size() - 1);
   }
   return blocks_[static_cast<std::size_t>(i)];
-}
-
-CellKey CellSet::corner_of(std::size_t index) const {
-  const auto nx = static_cast<std::size_t>(count_.x), ny = static_cast<std::size_t>(count_.y);
-  return first_cell({static_cast<std::int32_t>(index % nx), static_cast<std::int32_t>(index / nx % ny),
-                     static_cast<std::int32_t>(index / (nx * ny))});
 }
 
 namespace {
@@ -103,18 +110,22 @@ std::optional<CellSet> flooded(const CellSet& set, Filled what, const CellKey& s
     return b;
   };
   if (!set.has_place(set.block_of(seed)) || set.contains(seed) == complement) return filled;
+  std::optional<OutsideTiles> outside;
+  if (complement) outside.emplace(set);
   filled.insert(seed);
   std::deque<CellKey> queue{set.block_of(seed)};
-  std::vector<bool> queued(static_cast<std::size_t>(n.x) * n.y * n.z);
+  std::vector<bool> queued{true};  // for each block of `filled`
+  const auto is_queued = [&](const CellKey& place) {
+    return queued[static_cast<std::size_t>(filled.number_of(place))];
+  };
   while (!queue.empty()) {
     const CellKey place = queue.front();
     queue.pop_front();
-    queued[set.index_of(place)] = false;
-    if (complement && (place.x == 0 || place.y == 0 || place.z == 0 || place.x == n.x - 1 ||
-                       place.y == n.y - 1 || place.z == n.z - 1))
-      return std::nullopt;
-    fill_block(filled.at(place), allowed(place));
-    const CellSet::Block cells = filled.at(place);
+    is_queued(place) = false;
+    if (outside && (set.is_outermost(place) || outside->hold(place))) return std::nullopt;
+    CellSet::Block& grown = filled.at(place);
+    fill_block(grown, allowed(place));
+    const CellSet::Block cells = grown;
     for (int side = 0; side < 6; ++side) {
       const auto& d = kSides[static_cast<std::size_t>(side)];
       const CellKey next = place + CellKey{d[0], d[1], d[2]};
@@ -125,13 +136,14 @@ std::optional<CellSet> flooded(const CellSet& set, Filled what, const CellKey& s
       for (std::size_t z = 0; z < 8; ++z) any |= (arriving[z] &= open[z]) != 0;
       if (!any) continue;
       CellSet::Block& there = filled.at(next);
+      if (queued.size() < filled.block_count()) queued.push_back(false);
       bool fresh = false;
       for (std::size_t z = 0; z < 8; ++z) {
         fresh |= (arriving[z] & ~there[z]) != 0;
         there[z] |= arriving[z];
       }
-      if (!fresh || queued[set.index_of(next)]) continue;
-      queued[set.index_of(next)] = true;
+      if (!fresh || is_queued(next)) continue;
+      is_queued(next) = true;
       queue.push_back(next);
     }
   }

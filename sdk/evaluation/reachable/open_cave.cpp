@@ -1,7 +1,11 @@
 #include "sdk/evaluation/reachable/open_cave.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
+#include <optional>
+
+#include "sdk/evaluation/reachable/outside_tiles.h"
 
 namespace karst::evaluation {
 namespace {
@@ -9,28 +13,32 @@ namespace {
 constexpr std::array<CellKey, 6> kSteps{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
+/// Once the path is outside, it is followed to the outermost blocks in this many blocks only: 1.3e5 m^3 in
+/// cells of 0.2 m. The space around a large cave is ten thousand times as much.
+constexpr std::size_t kMostBlocks = std::size_t{1} << 15;
+
 /// For each visited cell the step (1..6) that led to it, 0 if unvisited.
 class Trail {
  public:
-  explicit Trail(const CellSet& shape) : shape_(shape) {
-    const CellKey n = shape.blocks_along();
-    blocks_.resize(static_cast<std::size_t>(n.x) * n.y * n.z);
-  }
+  explicit Trail(const CellSet& shape)
+      : visited_(shape.first_cell({}), shape.first_cell(shape.blocks_along()) + CellKey{-1, -1, -1}) {}
   std::uint8_t& at(const CellKey& k) {
-    std::vector<std::uint8_t>& b = blocks_[shape_.index_of(shape_.block_of(k))];
-    if (b.empty()) b.assign(512, 0);
-    return b[static_cast<std::size_t>((k.z & 7) * 64 + (k.y & 7) * 8 + (k.x & 7))];
+    const CellKey place = visited_.block_of(k);
+    std::int32_t number = visited_.number_of(place);
+    if (number < 0) {
+      visited_.at(place);
+      number = static_cast<std::int32_t>(steps_.size());
+      steps_.emplace_back();
+    }
+    return steps_[static_cast<std::size_t>(number)]
+                 [static_cast<std::size_t>((k.z & 7) * 64 + (k.y & 7) * 8 + (k.x & 7))];
   }
+  std::size_t block_count() const { return steps_.size(); }
 
  private:
-  const CellSet& shape_;
-  std::vector<std::vector<std::uint8_t>> blocks_;
+  CellSet visited_;  // numbers the blocks
+  std::deque<std::array<std::uint8_t, 512>> steps_;
 };
-
-bool outermost(const CellSet& shape, const CellKey& k) {
-  const CellKey p = shape.block_of(k), n = shape.blocks_along();
-  return p.x <= 0 || p.y <= 0 || p.z <= 0 || p.x >= n.x - 1 || p.y >= n.y - 1 || p.z >= n.z - 1;
-}
 
 /// Number of the 26 straight lines out of a cell that end at rock.
 int sides_with_rock(const CellSet& rock, const CellKey& k) {
@@ -54,10 +62,18 @@ CellKey find_opening(const CellSet& rock, const CellKey& start) {
   trail.at(start) = 7;
   std::deque<CellKey> queue{start};
   CellKey end = start;
+  const OutsideTiles outside(rock);
+  std::optional<CellKey> first_outside;
   while (!queue.empty()) {
     end = queue.front();
     queue.pop_front();
-    if (outermost(rock, end)) break;
+    const CellKey place = rock.block_of(end);
+    if (rock.is_outermost(place)) break;
+    if (!first_outside && outside.hold(place)) first_outside = end;
+    if (first_outside && trail.block_count() > kMostBlocks) {
+      end = *first_outside;
+      break;
+    }
     for (std::size_t s = 0; s < kSteps.size(); ++s) {
       const CellKey next = end + kSteps[s];
       if (rock.contains(next) || trail.at(next)) continue;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
+#include <stdexcept>
 
 #include "core_stack/common/decimal_text.h"
 #include "core_stack/common/error.h"
@@ -19,7 +21,10 @@ using core::InputError;
 using core::Vec3;
 
 constexpr double kStartSearchM = 3;
-constexpr double kMaxBlocks = 1e8;
+// In cells of 0.2 m: no cave is 105 km across, and in bounds of 10 x 10 x 2.8 km the table of a set's tiles
+// takes 64 MiB. The blocks that the bounds of the triangles hold take a minute or two to visit; in a mesh
+// that is fine enough to look like rock they are a few per triangle.
+constexpr double kMaxBlocksAlong = 65536, kMaxBlocks = 68719476736.0, kMaxBlocksOfTriangles = 4e9;
 
 std::string number_text(double v) {
   char text[32];
@@ -40,20 +45,28 @@ Triangle triangle(const cave::TriangleMesh& mesh, std::size_t i) {
           mesh.vertices[t[2]].cast<double>()};
 }
 
+[[noreturn]] void refuse_size(const std::string& name, double resolution_m) {
+  throw InputError(name, "", "the mesh is too large for cells of " + number_text(resolution_m) + " m");
+}
+
 /// Bounds with more than a block to spare on all sides, so that the outermost blocks hold no rock.
 CellSet empty_set_around(const cave::TriangleMesh& mesh, double resolution_m, const std::string& name) {
   if (mesh.triangles.empty()) throw InputError(name, "", "the mesh has no triangles");
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t) {
-      low = low.cwiseMin(mesh.vertices[v].cast<double>());
-      high = high.cwiseMax(mesh.vertices[v].cast<double>());
-    }
   const double block_m = CellSet::kEdge * resolution_m;
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  double blocks_of_triangles = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle t = triangle(mesh, i);
+    const Vec3 own_low = t.a.cwiseMin(t.b).cwiseMin(t.c), own_high = t.a.cwiseMax(t.b).cwiseMax(t.c);
+    blocks_of_triangles += ((own_high - own_low) / block_m + Vec3::Ones()).prod();
+    low = low.cwiseMin(own_low);
+    high = high.cwiseMax(own_high);
+  }
   const Vec3 blocks = (high - low) / block_m + Vec3::Constant(4);
-  if (!blocks.allFinite() || !(blocks.prod() < kMaxBlocks) ||
+  if (!blocks.allFinite() || !(blocks.maxCoeff() < kMaxBlocksAlong) || !(blocks.prod() < kMaxBlocks) ||
+      !(blocks_of_triangles < kMaxBlocksOfTriangles) ||
       !(low.cwiseAbs().maxCoeff() + high.cwiseAbs().maxCoeff() < 1e9 * resolution_m))
-    throw InputError(name, "", "the mesh is too large for cells of " + number_text(resolution_m) + " m");
+    refuse_size(name, resolution_m);
   const Vec3 spare = Vec3::Constant(2 * block_m);
   return CellSet(key_of(low - spare, resolution_m), key_of(high + spare, resolution_m));
 }
@@ -82,6 +95,16 @@ std::optional<CellKey> flyable_near(const Vec3& start, const CellSet& clear, con
         best_distance = distance;
       }
   return best;
+}
+
+/// What `find` returns; more blocks than a set can hold are an error of the mesh.
+template <class Find>
+Reachable within_memory(const std::string& name, double resolution_m, const Find& find) {
+  try {
+    return find();
+  } catch (const std::length_error&) {
+    refuse_size(name, resolution_m);
+  }
 }
 
 /// All sets except `reachable`, which includes cells that are only seen.
@@ -125,15 +148,17 @@ Reachable find_flyable(const cave::TriangleMesh& mesh, const Vec3& start, const 
 
 Reachable find_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
                          const std::string& name) {
-  Reachable r = find_flyable(mesh, start, options, name);
-  r.reachable = seen_from(r.flyable, r.free, options.sight_m / options.resolution_m);
-  r.reachable_cells = r.reachable.size();
-  return r;
+  return within_memory(name, options.resolution_m, [&] {
+    Reachable r = find_flyable(mesh, start, options, name);
+    r.reachable = seen_from(r.flyable, r.free, options.sight_m / options.resolution_m);
+    r.reachable_cells = r.reachable.size();
+    return r;
+  });
 }
 
 void check_reachable(const cave::TriangleMesh& mesh, const Vec3& start, const ReachableOptions& options,
                      const std::string& name) {
-  find_flyable(mesh, start, options, name);
+  within_memory(name, options.resolution_m, [&] { return find_flyable(mesh, start, options, name); });
 }
 
 }  // namespace karst::evaluation

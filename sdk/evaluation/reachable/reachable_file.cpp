@@ -65,16 +65,13 @@ Bytes bytes_of(const Reachable& r, std::uint64_t key) {
   const CellKey low = r.free.first_cell({}), high = r.free.first_cell({n.x - 1, n.y - 1, n.z - 1});
   Bytes out;
   append(out, Head{key, {low.x, low.y, low.z, high.x, high.y, high.z}});
-  for (CellKey p; p.z < n.z; ++p.z)
-    for (p.y = 0; p.y < n.y; ++p.y)
-      for (p.x = 0; p.x < n.x; ++p.x) {
-        const auto block = [&](const CellSet& set) {
-          const auto* b = set.find(p);
-          return b ? *b : CellSet::Block{};
-        };
-        if (r.free.find(p))
-          append(out, BlockEntry{r.free.index_of(p), block(r.free), block(r.flyable), block(r.reachable)});
-      }
+  r.free.for_each_block([&](const CellKey& p, const CellSet::Block& free) {
+    const auto block = [&](const CellSet& set) {
+      const auto* b = set.find(p);
+      return b ? *b : CellSet::Block{};
+    };
+    append(out, BlockEntry{r.free.index_of(p), free, block(r.flyable), block(r.reachable)});
+  });
   append(out, sum_of(out, out.size()));
   return out;
 }

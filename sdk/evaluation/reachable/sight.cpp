@@ -27,23 +27,20 @@ std::uint64_t window(const CellSet& set, const CellKey& low) {
 
 /// Blocks of `free` from which a ray of `steps` blocks' length can reach `flyable` at all.
 std::vector<CellKey> blocks_in_range(const CellSet& flyable, const CellSet& free, int steps) {
-  const CellKey n = free.blocks_along();
-  std::vector<bool> met(static_cast<std::size_t>(n.x) * n.y * n.z);
+  std::vector<bool> met(free.block_count());
   std::vector<CellKey> blocks;
-  for (CellKey p; p.z < n.z; ++p.z)
-    for (p.y = 0; p.y < n.y; ++p.y)
-      for (p.x = 0; p.x < n.x; ++p.x)
-        if (flyable.find(p)) {
-          met[free.index_of(p)] = true;
-          blocks.push_back(p);
-        }
+  flyable.for_each_block([&](const CellKey& p, const CellSet::Block&) {
+    met[static_cast<std::size_t>(free.number_of(p))] = true;
+    blocks.push_back(p);
+  });
   for (std::size_t begin = 0; steps > 0; --steps) {
     const std::size_t end = blocks.size();
     for (; begin < end; ++begin)
       for (int i = 0; i < 27; ++i) {
         const CellKey next = blocks[begin] + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        if (!free.find(next) || met[free.index_of(next)]) continue;
-        met[free.index_of(next)] = true;
+        const std::int32_t number = free.number_of(next);
+        if (number < 0 || met[static_cast<std::size_t>(number)]) continue;
+        met[static_cast<std::size_t>(number)] = true;
         blocks.push_back(next);
       }
   }

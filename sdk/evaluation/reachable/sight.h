@@ -12,7 +12,8 @@ const std::vector<core::Vec3>& sight_directions();
 std::vector<CellKey> cells_along(const core::Vec3& direction, double cells);
 
 /// The cells of `free` that are in `flyable`, or from which one of the sight directions leads through cells
-/// of `free` only to a cell of `flyable` within `cells` cell edges. `flyable` must be a subset of `free`.
+/// of `free` only to a cell of `flyable` within `cells` cell edges. `flyable` must be a subset of `free`,
+/// block by block and cell by cell, and have its bounds.
 CellSet seen_from(const CellSet& flyable, const CellSet& free, double cells);
 
 }  // namespace karst::evaluation

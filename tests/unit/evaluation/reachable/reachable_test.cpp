@@ -197,6 +197,62 @@ TEST(Reachable, OpenCaveNamesTheHole) {
   }
 }
 
+/// A tunnel 3 km long and 4 m wide, and two boxes that make the bounds 3 x 2 x 2 km.
+TriangleMesh long_tunnel() {
+  Lattice cells{{0, 0, 0}, {749, 499, 499}};
+  fill(cells, {0, 250, 250}, {750, 251, 251});
+  return lattice_mesh(cells, 4.0, kOffset);
+}
+
+TEST(Reachable, ALongTunnelInWideBoundsTakesTheMemoryOfItsCells) {
+  const Reachable r = find_reachable(long_tunnel(), {2, 1002, 1002}, {}, "long");
+  EXPECT_EQ(r.free_cells, 14999u * 19 * 19);
+  EXPECT_EQ(r.reachable_cells, r.free_cells);
+  for (const CellSet* set : {&r.free, &r.flyable, &r.reachable}) {
+    EXPECT_LE(set->block_count(), 4u * 4 * 1876);  // 19 cells lie in 3 or 4 blocks
+    EXPECT_LE(set->tile_count(), 2u * 2 * 119);
+  }
+}
+
+TEST(Reachable, AnOpenCaveInWideBoundsNamesTheHole) {
+  TriangleMesh mesh = long_tunnel();
+  std::erase_if(mesh.triangles, [&](const auto& t) {  // of the roof
+    const auto center = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+    return center.z() > 1003.9f && center.z() < 1010 && center.x() > 400 && center.x() < 404;
+  });
+  try {
+    find_reachable(mesh, {300, 1002, 1002}, {}, "long.ply");
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    const std::size_t near = what.find("free space leads outside the mesh near ");
+    ASSERT_NE(near, std::string::npos) << what;
+    double x = 0, y = 0, z = 0;
+    ASSERT_EQ(std::sscanf(what.c_str() + what.find("near ", near) + 5, "%lf %lf %lf", &x, &y, &z), 3) << what;
+    EXPECT_LT((Vec3(x, y, z) - Vec3(402, 1002, 1004)).norm(), 5) << what;
+  }
+}
+
+TEST(Reachable, WhatNoCaveMeasuresIsTooLarge) {
+  Lattice cells;
+  fill(cells, {0, 0, 0}, {4, 4, 4});
+  const TriangleMesh mesh = lattice_mesh(cells, 1.0, kOffset);
+  const auto message = [&](const karst::core::Vec3f& far) -> std::string {
+    TriangleMesh stray = mesh;
+    stray.vertices[0] = far;
+    try {
+      find_reachable(stray, {2, 2, 2}, {}, "stray.ply");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string expected = "the mesh is too large for cells of 0.2 m";
+  EXPECT_NE(message({2e5f, 0, 0}).find(expected), std::string::npos) << "200 km along an axis";
+  EXPECT_NE(message({3e4f, 3e4f, 3e4f}).find(expected), std::string::npos) << "30 x 30 x 30 km";
+  EXPECT_NE(message({8e3f, 8e3f, 4e3f}).find(expected), std::string::npos) << "one triangle 8 x 8 x 4 km";
+}
+
 /// The mesh as an OBJ file, its coordinates turned.
 std::string written_obj(const std::string& name, const TriangleMesh& mesh, bool y_up) {
   const std::filesystem::path folder = std::filesystem::path(KARST_BINARY_DIR) / "test_runs";
