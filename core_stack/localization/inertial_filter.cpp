@@ -16,6 +16,7 @@ constexpr TimeNs kAhead = 50 * kMillisecond;  // poses newer than the IMU by mor
 // Uncertainty at the start: the vehicle stands at a declared pose, and its biases are unknown.
 constexpr double kStartPosition = 0.05, kStartVelocity = 0.05, kStartAngle = 0.02, kStartAccelBias = 0.2,
                  kStartGyroBias = 0.02;
+constexpr double kRestartVelocity = 0.3;
 
 // Indices of the blocks of the error state.
 constexpr int kP = 0, kV = 3, kA = 6, kBa = 9, kBg = 12;
@@ -200,7 +201,9 @@ void InertialFilter::restart_at(const PoseMeasurement& pose) {
   }
   covariance_.block<3, 3>(kP, kP) = pose.covariance.topLeftCorner<3, 3>();
   covariance_.block<3, 3>(kA, kA) = pose.covariance.bottomRightCorner<3, 3>();
-  covariance_.block<3, 3>(kV, kV) += Eigen::Matrix3d::Identity() * squared(0.3);
+  covariance_.block<3, 3>(kV, kV) += Eigen::Matrix3d::Identity() * squared(kRestartVelocity);
+  // A bias learned while the poses were tilted turns with the body, and contradicts all poses to come.
+  covariance_.block<3, 3>(kBa, kBa) += Eigen::Matrix3d::Identity() * squared(kStartAccelBias);
   last_pose_ = pose.stamp;
   replay_after(*step);
 }

@@ -223,6 +223,31 @@ TEST(Estimator, StartsAtTheDeclaredPose) {
   EXPECT_NEAR(heading_of(e.state().orientation), 0.7, 1e-12);
 }
 
+TEST(Estimator, ATurnOnATiltedMapCostsOneRestart) {
+  // As it was in a shaft of the Jean-Bernard: the map had tilted slowly. The bias of the accelerometer
+  // explained it, until the vehicle turned about: the bias turned with it. Each restart kept the bias, and
+  // the next poses contradicted it again, until the vehicle had to land.
+  Estimator e({}, {});
+  double heading_rad = 0;
+  int refused = 0, refused_late = 0;
+  for (TimeNs now = 0; now <= 140 * kSecond; now += kImuPeriod) {
+    const bool turns = now > 120 * kSecond && now <= 122 * kSecond;
+    const double rate_radps = turns ? 0.5 * M_PI : 0;
+    heading_rad += rate_radps * seconds(kImuPeriod);
+    const Quat tilt(Eigen::AngleAxisd(0.05 * std::min(1.0, seconds(now) / 100), Vec3::UnitX()));
+    const Quat upright(Eigen::AngleAxisd(heading_rad, Vec3::UnitZ()));
+    e.on_imu({now, upright.conjugate() * Vec3(0, 0, 9.81), Vec3(0, 0, rate_radps)});
+    if (now == 0 || now % (100 * kMillisecond) != 0) continue;
+    if (e.on_lidar_pose({now, {Vec3::Zero(), tilt * upright}, 1e-6 * Matrix6::Identity()})) continue;
+    ++refused;
+    if (now > 126 * kSecond) ++refused_late;
+  }
+  EXPECT_LE(refused, 15) << "three until it is doubted, and ten until another filter has settled";
+  EXPECT_EQ(refused_late, 0);
+  EXPECT_EQ(e.diagnose(140 * kSecond).health, Health::good);
+  EXPECT_LT(e.state().position.norm(), 0.1);
+}
+
 TEST(Estimator, ErrorsAgreeWithTheSteadyStateOfTheRiccatiEquation) {
   // Position, velocity and bias of one axis in discrete time: the covariance's fixed point, found by
   // iterating the equation written out here, predicts the spread of the position error when tilt is exact.
