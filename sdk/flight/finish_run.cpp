@@ -9,6 +9,7 @@
 #include "core_stack/common/options.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
 #include "plugins/simulator/cave/cave.h"
+#include "sdk/cave_drawing/report_drawings.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/reachable/imaged_rock.h"
@@ -115,7 +116,8 @@ nlohmann::json finish_run(const fs::path& run_dir, const Finishing& how) {
   if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
-  if (how.report == Report::written) evaluation::write_report(run_dir);
+  if (how.report == Report::written)
+    evaluation::write_report(run_dir, cave_drawing::report_drawings(run_dir));
   return metrics;
 }
 

@@ -9,6 +9,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/common/options.h"
+#include "sdk/cave_drawing/report_drawings.h"
 #include "sdk/evaluation/accuracy/map_reference.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/evaluation/report/report.h"
@@ -146,7 +147,7 @@ void evaluate(const EvaluateArguments& args) {
   const fs::path out = is_run ? run / "evaluation.json" : fs::path(args.run + ".evaluation.json");
   evaluation::write_whole_file(out, core::json_text(result, 1) + "\n");
   const bool with_report = is_run && fs::is_regular_file(run / "report.html");
-  if (with_report) evaluation::write_report(run);
+  if (with_report) evaluation::write_report(run, cave_drawing::report_drawings(run));
   if (args.json) {
     print_json(without_plots(result));
     return;

@@ -7,6 +7,7 @@
 #include "core_stack/common/json_text.h"
 #include "sdk/campaign/report/report.h"
 #include "sdk/campaign/report/report_parts.h"
+#include "sdk/cave_drawing/report_drawings.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/team_report.h"
@@ -92,7 +93,7 @@ ordered_json worst(const CampaignResults& results, int metric, const CampaignRep
       if (evaluation::is_team(run))
         evaluation::write_team_report(run);
       else
-        evaluation::write_report(run);
+        evaluation::write_report(run, cave_drawing::report_drawings(run));
     } catch (const std::exception& e) {  // one damaged trial must not affect the others
       notes.push_back(std::string("no mission report: ") + e.what());
     }

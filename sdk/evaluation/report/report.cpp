@@ -1,6 +1,7 @@
 #include "sdk/evaluation/report/report.h"
 
 #include <fstream>
+#include <utility>
 
 #include "core_stack/common/json_file.h"
 #include "core_stack/common/json_text.h"
@@ -21,6 +22,12 @@ Texts operator+(Texts first, const Texts& second) {
   return first;
 }
 
+ordered_json drawings_data(const ReportDrawings& drawings) {
+  ordered_json pages = ordered_json::array();
+  for (const ReportDrawing& d : drawings.pages) pages.push_back({{"title", d.title}, {"svg", d.svg}});
+  return {{"pages", std::move(pages)}, {"note", drawings.note}};
+}
+
 }  // namespace
 
 std::string report_page(const ordered_json& data) {
@@ -39,11 +46,13 @@ std::string team_report_page(const ordered_json& data) {
                        data);
 }
 
-void write_report(const std::filesystem::path& run_dir) {
+void write_report(const std::filesystem::path& run_dir, const ReportDrawings& drawings) {
   const RunRecord run = read_run(run_dir);
   auto metrics = core::json_of_file<ordered_json>(run_dir / "metrics.json");
   if (!metrics.is_object()) metrics = evaluate_run(run_dir, {});
-  write_whole_file(run_dir / "report.html", report_page(report_data(run, metrics)));
+  ordered_json data = report_data(run, metrics);
+  data["cave_drawings"] = drawings_data(drawings);
+  write_whole_file(run_dir / "report.html", report_page(data));
 }
 
 }  // namespace karst::evaluation

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sdk/evaluation/record/run_record.h"
+#include "sdk/evaluation/report/report_drawings.h"
 
 namespace karst::evaluation {
 
@@ -15,8 +16,8 @@ nlohmann::ordered_json report_data(const RunRecord& run, const nlohmann::ordered
 std::string report_page(const nlohmann::ordered_json& data);
 
 /// Writes run_dir/report.html from the files of the run directory; uses its metrics.json if there is one.
-/// A truncated run gives a report of its readable part. Throws InputError if `run_dir` is not a directory or
-/// the file cannot be written.
-void write_report(const std::filesystem::path& run_dir);
+/// A truncated run gives a report of its readable part. Without drawings and note the page does not speak of
+/// drawings. Throws InputError if `run_dir` is not a directory or the file cannot be written.
+void write_report(const std::filesystem::path& run_dir, const ReportDrawings& drawings = {});
 
 }  // namespace karst::evaluation

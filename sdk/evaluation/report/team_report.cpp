@@ -152,6 +152,7 @@ ordered_json team_report_data(const TeamRecord& team, const ordered_json& metric
   d["volume"] = report_curve(team.merged.telemetry.times(), team.merged.telemetry.column("explored_m3"));
   d["events"] = event_rows(team);
   d["cloud"] = scene_cloud(team.merged, duration_s, problems);
+  d["cave_drawings"]["note"] = "The report of each robot has the drawings of its own map.";
   d["problems"] = problems;
   return d;
 }

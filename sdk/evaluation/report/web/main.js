@@ -8,6 +8,7 @@ startTimeline();
 startMomentPanel();
 startCharts(addRunPlots);
 startErrors();
+showCaveDrawings();
 const caveView = startCaveView(makeFlight(data));
 moment.listeners.push((t) => caveView.setTime(t));
 startPictures(caveView);

@@ -5,6 +5,7 @@ setTimeRange(data.begin_s, data.duration_s);
 drawTeamTrack();
 startTimeline();
 startTeamPanel();
+showCaveDrawings();
 startCharts(addTeamPlots);
 const team = makeTeam();
 const caveView = startCaveView(team);
