@@ -140,8 +140,11 @@ class Builder {
 
   void measure_sections() {
     survey::set_facings(out_.survey);
-    for (survey::Section& s : out_.survey.sections)
-      s.dimensions = dimensions_at(*input_.map, station(s.station).position_m, s.facing);
+    for (survey::Section& s : out_.survey.sections) {
+      const Vec3& p = station(s.station).position_m;
+      s.dimensions =
+          across_passage(*input_.map, out_.survey, p, s.facing, dimensions_at(*input_.map, p, s.facing));
+    }
   }
 
   void mark_continuations() {

@@ -14,6 +14,17 @@ constexpr double kMostWall_m = 100.0;
 /// passed. None if the ray comes to unknown space, or farther than kMostWall_m.
 std::optional<double> wall_distance_m(const core::VoxelMap& map, const core::Vec3& from, const core::Vec3& d);
 
+/// Whether the ray from `from` along `d`, `distance_m` long, looks along another passage instead of across
+/// its own: three quarters on, it is within 45 degrees of a leg's direction, nearer to that leg than half as
+/// far as it came, and in sight of it. At a junction, such a ray gives no width.
+bool runs_along_leg(const core::VoxelMap& map, const survey::Survey& survey, const core::Vec3& from,
+                    const core::Vec3& d, double distance_m);
+
+/// Without the distances whose rays run along a leg.
+survey::Dimensions across_passage(const core::VoxelMap& map, const survey::Survey& survey,
+                                  const core::Vec3& station, const core::Vec3& facing,
+                                  survey::Dimensions dimensions);
+
 /// Left and right across `facing` (level, of unit length), up and down; none where nothing was seen.
 survey::Dimensions dimensions_at(const core::VoxelMap& map, const core::Vec3& station,
                                  const core::Vec3& facing);

@@ -125,6 +125,31 @@ TEST(FlownSurvey, AJunctionIsOneStationOfThreeBranches) {
   EXPECT_EQ(runs.size(), 3u);
 }
 
+TEST(FlownSurvey, AtAJunctionARayAlongAnotherPassageGivesNoWidth) {
+  const core::VoxelMap map = test::tee_map();
+  const FlownSurvey flown =
+      surveyed(map, way({{1, 0, 1.5}, {15, 0, 1.5}, {15, 14, 1.5}, {15, 0, 1.5}, {29, 0, 1.5}}));
+  const std::vector<int> d = degrees(flown.survey);
+  std::size_t at_junction = 0;
+  for (const survey::Section& s : flown.survey.sections) {
+    const survey::Dimensions& m = s.dimensions;
+    for (const std::optional<double>& wall_m : {m.left_m, m.right_m})
+      if (wall_m) {
+        EXPECT_LT(*wall_m, 4) << "the widest passage has 4 m between its walls";
+      }
+    EXPECT_TRUE(m.up_m && m.down_m);
+    if (d[s.station] != 3) continue;
+    ++at_junction;
+    const double across = std::abs(s.facing.x());  // 1: the tunnel's section, 0: the branch's
+    EXPECT_EQ(m.left_m.has_value() + m.right_m.has_value(), across > 0.9 ? 1 : 0) << across;
+    const Vec3& p = flown.survey.stations[s.station].position_m;
+    if (across > 0.99) {
+      EXPECT_NEAR(m.left_m ? *m.left_m : *m.right_m, 2 + p.y(), 0.3);  // the wall opposite to the branch
+    }
+  }
+  EXPECT_EQ(at_junction, 3u);
+}
+
 TEST(FlownSurvey, ADeadEndHasItsLastStationNearTheRockAndDoesNotGoOn) {
   const core::VoxelMap map = test::tunnel_map();
   const FlownSurvey flown = surveyed(map, test::tunnel_flight());

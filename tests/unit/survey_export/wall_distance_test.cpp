@@ -39,5 +39,42 @@ TEST(WallDistance, LeftIsAQuarterTurnCounterClockwiseOfTheFacing) {
   EXPECT_NEAR(*d.down_m, 0.5, 0.2);
 }
 
+/// Two legs that meet in the middle of the tunnel: one along it, one into the branch.
+survey::Survey tee_legs() {
+  survey::Survey s;
+  for (const Vec3& p : {Vec3(5.1, 0.1, 1.5), Vec3(14.9, 0.1, 1.5), Vec3(14.9, 9.1, 1.5)}) {
+    s.stations.emplace_back();
+    s.stations.back().position_m = p;
+  }
+  s.legs.resize(2);
+  s.legs[0].to = s.legs[1].from = 1;
+  s.legs[1].to = 2;
+  return s;
+}
+
+TEST(WallDistance, ARayIntoTheBranchRunsAlongItsLegAndOneToTheWallOppositeDoesNot) {
+  const core::VoxelMap map = test::tee_map();
+  const survey::Survey legs = tee_legs();
+  for (const double x :
+       {14.9, 13.9}) {  // the junction, and a place beside it that looks into the branch, too
+    const Vec3 p(x, 0.1, 1.5);
+    const survey::Dimensions d = dimensions_at(map, p, Vec3::UnitX());
+    EXPECT_GT(d.left_m.value(), 14);
+    const survey::Dimensions across = across_passage(map, legs, p, Vec3::UnitX(), d);
+    EXPECT_FALSE(across.left_m) << x;
+    EXPECT_EQ(across.right_m, d.right_m);
+    EXPECT_TRUE(across.up_m && across.down_m);
+  }
+  EXPECT_FALSE(runs_along_leg(map, legs, {10.1, 0.1, 1.5}, Vec3::UnitY(), 2)) << "beyond the branch's mouth";
+}
+
+TEST(WallDistance, ALegBehindRockIsNotThatOfTheRay) {
+  const core::VoxelMap map = test::tunnel_map();
+  survey::Survey legs = tee_legs();
+  EXPECT_TRUE(runs_along_leg(map, legs, {14.9, 0.1, 1.5}, Vec3::UnitY(), 2));
+  legs.stations[1].position_m = {14.9, 2.1, 1.5};  // the second leg is in the rock
+  EXPECT_FALSE(runs_along_leg(map, legs, {14.9, 0.1, 1.5}, Vec3::UnitY(), 2));
+}
+
 }  // namespace
 }  // namespace karst::survey_export
