@@ -68,7 +68,12 @@ struct MissionFlight::Running {
 };
 
 MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& request)
-    : mission_(with_survey(mission)), request_(request), members_(missions_of_members(mission_)) {
+    : mission_(with_survey(mission,
+                           [&](const std::string& note) {
+                             if (request.notes) print_error("note: %s\n", note.c_str());
+                           })),
+      request_(request),
+      members_(missions_of_members(mission_)) {
   if (is_team(mission_)) refuse_for_team(request_);
   loaded_ = load_policies(members_, request_);
   if (is_team(mission_)) key_ = radio_key(mission_);

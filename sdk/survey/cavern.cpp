@@ -1,5 +1,6 @@
 #include "sdk/survey/cavern.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <sstream>
@@ -85,18 +86,32 @@ std::optional<CavernMessage> message_of(std::string_view line) {
   return std::nullopt;
 }
 
+void add_once(const std::string& name, std::vector<std::string>& names) {
+  if (names.size() < 1000 && std::find(names.begin(), names.end(), name) == names.end())
+    names.push_back(name);
+}
+
 }  // namespace
 
 bool has_survex() { return core::program_in_path("cavern") && core::program_in_path("dump3d"); }
 
 std::vector<CavernMessage> cavern_messages(const std::string& output) {
   std::vector<CavernMessage> messages;
+  bool names_follow = false;
   std::istringstream lines(output);
   for (std::string line; std::getline(lines, line);) {
-    if (auto message = message_of(line)) messages.push_back(std::move(*message));
-    // The names of unattached stations follow on lines of their own.
-    else if (!messages.empty() && messages.back().error && messages.back().line == 0 && !line.empty() &&
-             messages.back().text.size() < 200)
+    if (auto message = message_of(line)) {
+      messages.push_back(std::move(*message));
+      names_follow = false;
+    }
+    // The names of unattached stations follow on lines of their own, some twice.
+    else if (messages.empty() || !messages.back().error || messages.back().line != 0 || line.empty())
+      continue;
+    else if (names_follow)
+      add_once(core::printable(line), messages.back().unattached);
+    else if (line.find("not attached") != std::string::npos)
+      names_follow = true;
+    else if (messages.back().text.size() < 200)
       messages.back().text += "; " + core::printable(line);
   }
   return messages;

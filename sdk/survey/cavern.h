@@ -15,6 +15,7 @@ struct CavernMessage {
   std::string file, text;
   std::size_t line = 0;  // 0: of the whole survey
   bool error = false;
+  std::vector<std::string> unattached;  // stations of parts that hang on no fixed station
 };
 struct CavernRun {
   bool closed = false;  // it wrote the survey

@@ -61,10 +61,15 @@ class Dump3dReader {
  public:
   Dump3d read(std::istream& in, const std::string& shown_as) {
     std::string text;
-    for (std::size_t line = 1; std::getline(in, text); ++line)
+    for (std::size_t line = 1; std::getline(in, text); ++line) {
+      if (text == "EXTENDED ELEVATION")
+        throw core::InputError(shown_as, "",
+                               "is an extended elevation, as Survex's `extend` makes: a drawing of the cave "
+                               "unrolled into a plane. Give the .3d file that it was made of");
       if (!take(text))
         throw core::InputError(shown_as, "line " + std::to_string(line) + " of what dump3d prints of it",
                                "cannot be read: " + core::printable(text.substr(0, 200)));
+    }
     return std::move(dump_);
   }
 

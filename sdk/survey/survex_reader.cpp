@@ -15,6 +15,7 @@
 #include "sdk/survey/dump3d.h"
 #include "sdk/survey/err_file.h"
 #include "sdk/survey/facing.h"
+#include "sdk/survey/include_cycle.h"
 #include "sdk/survey/leg_lookup.h"
 #include "sdk/survey/lower_case.h"
 #include "sdk/survey/place_sets.h"
@@ -190,6 +191,41 @@ class FromDump {
   std::uint32_t lost_at_ = 0;  // station of the first of them
 };
 
+/// cavern names stations of the parts that hang on no fixed one: one or more of each part.
+std::string text_of_error(const CavernMessage& m) {
+  if (m.unattached.empty()) return m.text;
+  const std::size_t n = m.unattached.size();
+  std::string text =
+      m.text + ": " + (n == 1 ? "1 loose part, with" : "up to " + std::to_string(n) + " loose parts, with");
+  for (std::size_t i = 0; i < n && i < 5; ++i) text += (i > 0 ? ", " : " ") + m.unattached[i];
+  if (n > 5) text += " and others";
+  return text +
+         ". They are not attached to a fixed station: tie each by a leg or an *equate, or *fix one of its "
+         "stations";
+}
+
+/// The first errors of cavern, each with its place.
+[[noreturn]] void refuse_as_cavern(const std::string& file, const std::vector<CavernMessage>& messages) {
+  constexpr std::size_t kMostErrors = 5;
+  std::string in, place, text;
+  std::size_t errors = 0;
+  for (const CavernMessage& m : messages) {
+    if (!m.error || ++errors > kMostErrors) continue;
+    const std::string where = m.file.empty() ? file : m.file;
+    const std::string line = m.line > 0 ? "line " + std::to_string(m.line) : "";
+    if (errors == 1) {
+      in = where;
+      place = line;
+      text = text_of_error(m);
+    } else {
+      text += "; " + (where == in ? "" : core::printable(where) + ": ") + (line.empty() ? "" : line + ": ") +
+              text_of_error(m);
+    }
+  }
+  if (errors > kMostErrors) text += "; and " + core::counted(errors - kMostErrors, "more error");
+  throw core::InputError(in, place, text);
+}
+
 Survey from_processed(const std::string& three_d, const std::string& file,
                       const std::filesystem::path& folder, Survey survey) {
   const Dump3d dump = read_dump3d(run_dump3d(three_d, folder, file), file);
@@ -201,13 +237,14 @@ Survey from_processed(const std::string& three_d, const std::string& file,
 }  // namespace
 
 Survey read_by_cavern(const std::string& file) {
+  if (ending_of(file) == ".svx") refuse_include_cycles(file);
   const core::TemporaryFolder folder("survey");
   const CavernRun run = run_cavern(file, folder.path(), file);
   SourceLog log;
   log.files.push_back(file);
   for (const CavernMessage& m : run.messages) {
     const std::string& in = m.file.empty() ? file : m.file;
-    if (m.error) throw core::InputError(in, m.line > 0 ? "line " + std::to_string(m.line) : "", m.text);
+    if (m.error) refuse_as_cavern(file, run.messages);
     const auto known = std::find(log.files.begin(), log.files.end(), in);
     const auto number = static_cast<std::uint32_t>(known - log.files.begin());
     if (known == log.files.end()) log.files.push_back(in);

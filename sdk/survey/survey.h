@@ -119,7 +119,7 @@ struct Loops {
     std::optional<double> sigmas;  // error over the one expected from the standard deviations
   };
   std::size_t count = 0;            // independent loops
-  std::vector<Traverse> traverses;  // that are part of a loop; the largest error first
+  std::vector<Traverse> traverses;  // with an error of 0.01 m or more; the largest first
 };
 
 /// What was guessed, skipped or contradicts itself, in words.

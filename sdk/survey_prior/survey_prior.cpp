@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -134,26 +135,58 @@ core::SurveyPrior prior_of(const Survey& survey, const Vec3& offset_m) {
   return prior;
 }
 
-Vec3 offset_of(const std::string& file, const Survey& survey, const std::string& cave) {
+std::optional<StationFit> station_fit(const std::string& file, const Survey& survey, const std::string& cave,
+                                      const std::optional<Vec3>& given_m) {
   const fs::path stations = fs::path(cave).replace_extension(".stations.csv");
-  if (cave.empty() || !fs::exists(stations)) return Vec3::Zero();
+  if (cave.empty() || !fs::exists(stations)) return std::nullopt;
   std::map<std::string, Vec3> named;
   for (const survey::Station& s : survey.stations) {
     named.emplace(s.name, s.position_m);
     for (const std::string& alias : s.aliases) named.emplace(alias, s.position_m);
   }
-  std::array<std::vector<double>, 3> offsets;
+  std::vector<Vec3> differences;
   for (const NamedPlace& place : read_stations(stations.string()))
     if (const auto found = named.find(place.name); found != named.end())
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto axis = static_cast<Eigen::Index>(i);
-        offsets[i].push_back(found->second[axis] - place.position_m[axis]);
-      }
-  if (offsets[0].empty())
+      differences.emplace_back(found->second - place.position_m);
+  StationFit fit;
+  fit.names = differences.size();
+  if (given_m) fit.offset_m = *given_m;
+  if (differences.empty()) {
+    if (given_m) return fit;
     throw InputError(file, "",
                      "has no station of " + stations.string() +
                          ": where it lies in the cave is not known; give survey.offset");
-  return {median(offsets[0]), median(offsets[1]), median(offsets[2])};
+  }
+  if (!given_m)
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      std::vector<double> along;
+      for (const Vec3& d : differences) along.push_back(d[axis]);
+      fit.offset_m[axis] = median(std::move(along));
+    }
+  std::vector<double> residuals;
+  for (const Vec3& d : differences) residuals.push_back((d - fit.offset_m).norm());
+  fit.greatest_m = *std::max_element(residuals.begin(), residuals.end());
+  fit.median_m = median(std::move(residuals));
+  if (!given_m && fit.median_m > kMostResidual_m)
+    throw InputError(file, "",
+                     core::format_text("contradicts the cave: after the best offset, %s, half of the %zu "
+                                       "stations of the same name as in %s are %.1f m or more apart, at "
+                                       "most %.1f m; the names mean other stations, or a survey is wrong. "
+                                       "If it fits nevertheless, give survey.offset",
+                                       offset_text(fit.offset_m).c_str(), fit.names,
+                                       stations.string().c_str(), fit.median_m, fit.greatest_m));
+  return fit;
+}
+
+double distance_to_legs_m(const core::SurveyPrior& prior, const Vec3& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const core::SurveyedLeg& leg : prior.legs) {
+    const Vec3 &a = prior.stations[leg.from], along = prior.stations[leg.to] - a;
+    const double length2 = along.squaredNorm();
+    const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, (a + t * along - p).norm());
+  }
+  return nearest;
 }
 
 Vec3 read_offset(const std::string& source, const std::string& key, const std::string& text) {

@@ -1,5 +1,7 @@
 // What a survey tells of the cave before the flight, in the frame of the flight.
 #pragma once
+#include <cstddef>
+#include <optional>
 #include <string>
 
 #include "core_stack/mapping/prior/surveyed_passages.h"
@@ -18,11 +20,26 @@ namespace karst::survey_prior {
 /// they are entrances, or a leg over ground ends there.
 core::SurveyPrior prior_of(const survey::Survey& survey, const core::Vec3& offset_m);
 
-/// Where the cave's origin is in the coordinates of the survey, if `karst cave from-survey` has made the
-/// cave: by the stations of OUT.stations.csv beside `cave` that have the same name (the median on each axis).
-/// Zero if there is no such file. Throws core::InputError naming `file`, the survey's, if no name is the
-/// same.
-core::Vec3 offset_of(const std::string& file, const survey::Survey& survey, const std::string& cave);
+/// How the stations of a survey lie on those of the same name in the cave.
+struct StationFit {
+  core::Vec3 offset_m = core::Vec3::Zero();  // the cave's origin in the coordinates of the survey
+  std::size_t names = 0;                     // stations that both have
+  double median_m = 0, greatest_m = 0;       // distances of those after the offset; 0 without any
+};
+
+/// A name that was given to another station in the meantime, or a station that was measured anew, moves a few
+/// stations by metres. If half of them are farther off, the surveys contradict each other.
+constexpr double kMostResidual_m = 5;
+
+/// By the stations of OUT.stations.csv beside `cave`, which `karst cave from-survey` writes; none if there is
+/// no such file. The offset is `given_m`, else the median on each axis. Throws core::InputError naming
+/// `file`, the survey's, if none is given and no name is the same, or the median residual is more than
+/// kMostResidual_m.
+std::optional<StationFit> station_fit(const std::string& file, const survey::Survey& survey,
+                                      const std::string& cave, const std::optional<core::Vec3>& given_m);
+
+/// The distance from a point to the nearest leg's line; +infinity if there is no leg.
+double distance_to_legs_m(const core::SurveyPrior& prior, const core::Vec3& p);
 
 /// "x y z" in metres, separated by blanks. Throws core::InputError naming `source` and `key`.
 core::Vec3 read_offset(const std::string& source, const std::string& key, const std::string& text);
