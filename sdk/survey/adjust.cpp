@@ -37,6 +37,7 @@ class Adjustment {
     add_sections();
     set_facings(survey_);
     survey_.title = readings_.title;
+    survey_.left_out = network_.left_out;
     survey_.files = std::move(readings_.log.files);
     survey_.notes = std::move(readings_.log.notes);
     survey_.notes_left_out = readings_.log.notes_left_out;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/printable.h"
 #include "sdk/survey/place_sets.h"
@@ -92,12 +93,15 @@ class Builder {
     std::vector<bool> told(readings_.stations.size(), false);
     for (const Reading& r : readings_.legs) {
       if (!ties(r) || kept(r.from)) continue;
+      ++network_.left_out.legs;
+      network_.left_out.legs_m += r.vector_m().norm();
       const std::uint32_t part = tied_.root(root(r.from));
       if (told[part]) continue;
       told[part] = true;
-      readings_.log.note(r.source,
-                         core::format_text("%zu legs from here on are tied to no fixed station: left out",
-                                           part_legs_[part]));
+      ++network_.left_out.parts;
+      readings_.log.note(r.source, core::counted(part_legs_[part], "leg") + " from here on " +
+                                       (part_legs_[part] == 1 ? "is" : "are") +
+                                       " tied to no fixed station: left out");
     }
     std::erase_if(network_.fixes, [&](std::uint32_t i) { return !kept(readings_.fixes[i].station); });
   }

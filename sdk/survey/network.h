@@ -21,6 +21,7 @@ struct Network {
   std::vector<SplayAt> splays;
   std::vector<std::uint32_t> fixes;  // indices; one for each fixed place
   std::size_t loops = 0;             // independent ones, fixed places taken as one
+  LeftOut left_out;                  // for lack of a fixed station
 };
 
 /// Parts that neither a leg nor an equate ties to a fixed station are left out, each with a note; if nothing

@@ -122,6 +122,12 @@ struct Loops {
   std::vector<Traverse> traverses;  // with an error of 0.01 m or more; the largest first
 };
 
+/// Parts of a survey that hang together with no fixed station. Readers of processed surveys see none.
+struct LeftOut {
+  std::size_t parts = 0, legs = 0;
+  double legs_m = 0;
+};
+
 /// What was guessed, skipped or contradicts itself, in words.
 struct Note {
   Source source;
@@ -137,6 +143,7 @@ struct Survey {
   std::vector<Splay> splays;
   std::vector<Section> sections;  // those of a run in the order of the survey
   Loops loops;
+  LeftOut left_out;
   std::vector<Note> notes;
   std::size_t notes_left_out = 0;  // beyond the first kMaxNotes
 };

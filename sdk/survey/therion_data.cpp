@@ -297,6 +297,11 @@ void DataRows::set_bearing(const Row& row, Reading& reading) const {
     if (std::isnan(value)) return kNotRead;
     const double bearing = turned(settings_->degrees(Quantity::bearing, value));
     if (bearing < 0 || bearing >= 360) refuse(core::format_text("a bearing out of range: %g", value));
+    constexpr double kRounding_deg = 1e-6;  // 400 grads are 360 degrees
+    if (const double read = settings_->bearing.degrees(value);
+        read < -kRounding_deg || read > 360 + kRounding_deg)
+      readings_.log.note(source_,
+                         core::format_text("a bearing out of range, %g: taken as %g deg", value, bearing));
     return bearing;
   };
   const double there = degrees(Column::bearing);

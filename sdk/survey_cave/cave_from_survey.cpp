@@ -5,11 +5,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/printable.h"
 #include "core_stack/common/random.h"
 #include "plugins/simulator/cave/mesh_volume.h"
+#include "plugins/simulator/cave/preflight.h"
 #include "plugins/simulator/cave_generator/surface_net.h"
+#include "sdk/survey/survey_checks.h"
 #include "sdk/survey_cave/passage_field.h"
 #include "sdk/survey_cave/passages.h"
 #include "sdk/survey_cave/start_in_survey.h"
@@ -120,6 +124,22 @@ void add_findings(const PassageGraph& graph, const Passages& passages, SurveyRep
     report.findings.emplace_back("the survey has no dimension at all: every passage is 2 m wide and high");
 }
 
+/// As a flight checks it: in a passage, most rays cross the walls an odd number of times.
+void check_start(const std::string& file, const cave::RayScene& scene, const survey::Survey& survey,
+                 const std::vector<KeptStation>& stations, const Vec3& start) {
+  if (cave::look_around(scene, start).odd_fraction > 0.5) return;
+  const KeptStation& nearest =
+      *std::min_element(stations.begin(), stations.end(), [&](const KeptStation& a, const KeptStation& b) {
+        return (a.position_m - start).squaredNorm() < (b.position_m - start).squaredNorm();
+      });
+  const Vec3& p = nearest.position_m;
+  throw InputError(
+      file, "--start",
+      format_text("lies in no passage; the nearest station is %.1f m away: ", (p - start).norm()) +
+          core::printable(survey.stations[nearest.station].name) +
+          format_text(" at \"%.2f %.2f %.2f\" of the cave", p.x(), p.y(), p.z()));
+}
+
 }  // namespace
 
 CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& survey,
@@ -172,11 +192,17 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
 
   step("start", 0.8);
   const cave::RayScene scene(std::move(mesh));
+  if (options.start) check_start(file, scene, survey, made.stations, options.start->position);
   made.start = options.start ? options.start : start_in_survey(scene, survey, graph, passages);
   if (made.start)
     report.within_reach_m =
         within_reach_m(survey, graph, passages, options.vehicle_width_m, made.start->position);
   add_findings(graph, passages, report);
+  if (survey.left_out.parts > 0)
+    report.findings.push_back(
+        core::counted(survey.left_out.parts, "part") +
+        " of the survey left out: no leg or equate ties it to the rest (see the notes)");
+  for (std::string& check : survey::survey_checks(survey)) report.findings.push_back(std::move(check));
   made.mesh = scene.mesh();
   return made;
 }

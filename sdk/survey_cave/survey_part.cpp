@@ -7,6 +7,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/options.h"
+#include "core_stack/common/printable.h"
 
 namespace karst::survey_cave {
 namespace {
@@ -26,6 +27,13 @@ bool any_name(const Station& s, const Holds& holds) {
   return holds(s.name) || std::any_of(s.aliases.begin(), s.aliases.end(), holds);
 }
 
+/// What to try instead: the nearest name, or one of those that there are.
+std::string nearest_text(const std::string& name, const std::vector<std::string>& names) {
+  const std::string nearest = core::nearest_name(name, names);
+  if (!nearest.empty()) return "; the nearest name is " + core::printable(nearest);
+  return ", nor one of a name like it; there is, for example, " + core::printable(names.front());
+}
+
 std::vector<bool> in_survey(const std::string& file, const Survey& survey, const std::string& name) {
   std::vector<bool> in(survey.stations.size());
   bool found = false;
@@ -42,8 +50,7 @@ std::vector<bool> in_survey(const std::string& file, const Survey& survey, const
     }
   if (names.empty()) throw InputError(file, "--survey " + name, "the stations are in no survey");
   throw InputError(file, "--survey " + name,
-                   "there is no such survey; the nearest name is " +
-                       core::nearest_name(name, {names.begin(), names.end()}));
+                   "there is no such survey" + nearest_text(name, {names.begin(), names.end()}));
 }
 
 }  // namespace
@@ -69,8 +76,7 @@ std::uint32_t station_named(const std::string& file, const Survey& survey, const
   std::vector<std::string> names;
   for (const Station& s : survey.stations) names.push_back(s.name);
   if (names.empty()) throw InputError(file, "", "the survey has no station");
-  throw InputError(file, "station " + name,
-                   "there is no such station; the nearest name is " + core::nearest_name(name, names));
+  throw InputError(file, "station " + name, "there is no such station" + nearest_text(name, names));
 }
 
 SurveyPart part_of(const std::string& file, const Survey& survey, const PartOptions& options) {

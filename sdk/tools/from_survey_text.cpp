@@ -117,6 +117,10 @@ std::vector<std::string> survey_lines(const Survey& survey, const CaveFromSurvey
       format_text("left out           %.0f m on the surface, %.0f m of duplicates, %.0f m in other "
                   "parts of the survey",
                   r.surface_m, r.duplicate_m, r.rest_m));
+  if (const survey::LeftOut& out = survey.left_out; out.parts > 0)
+    lines.push_back("left out           " + counted(out.parts, "part") +
+                    format_text(", %.0f m in ", out.legs_m) + counted(out.legs, "leg") +
+                    ", that no leg or equate ties to the rest");
   lines.push_back(
       format_text("walls              %zu triangles, %.0f m2, closed; enclose %.0f m3; grid %g m, "
                   "roughness %g m; %.1f MB",
@@ -156,6 +160,9 @@ ordered_json survey_json(const Survey& survey, const CaveFromSurvey& made, std::
                  {"surface_legs_m", r.surface_m},
                  {"duplicate_legs_m", r.duplicate_m},
                  {"other_parts_of_survey_m", r.rest_m},
+                 {"loose_parts", survey.left_out.parts},
+                 {"loose_legs", survey.left_out.legs},
+                 {"loose_legs_m", survey.left_out.legs_m},
                  {"offset_m", core::list(r.offset_m)},
                  {"resolution_m", r.resolution_m},
                  {"roughness_m", r.roughness_m},
