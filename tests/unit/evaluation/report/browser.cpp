@@ -124,6 +124,22 @@ std::string phone_frame(const std::string& page) {
   put("small", small);)html");
 }
 
+std::string drawings_frame(const std::string& page, int width_px) {
+  return measured_frame(page, width_px, 740, R"html(
+  const told = [], ids = new Map();
+  for (const f of page.querySelectorAll("#cave-drawings figure")) {
+    const svg = f.querySelector("svg.cave-drawing"), r = (svg || f).getBoundingClientRect();
+    const fits = svg && svg.checkVisibility() && svg.querySelector("path, polyline, polygon, line") &&
+                 r.left >= 0 && r.right <= frame.clientWidth && r.width > 0.8 * frame.clientWidth &&
+                 r.height > 0.5 * r.width;
+    told.push(f.querySelector("figcaption").textContent + (fits ? "" : " " + r.width + " x " + r.height));
+  }
+  if (root.scrollWidth > frame.clientWidth) told.push("page of " + root.scrollWidth);
+  for (const e of page.querySelectorAll("[id]")) ids.set(e.id, (ids.get(e.id) || 0) + 1);
+  for (const [id, count] of ids) if (count > 1) told.push("twice: " + id);
+  put("drawings", told);)html");
+}
+
 std::string text_of(const std::string& dom, const std::string& id) {
   const std::string mark = "<p id=\"" + id + "\">";
   const std::size_t at = dom.find(mark);
@@ -144,6 +160,13 @@ PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
   dir.write("phone.html", phone_frame(bytes_of(page)));
   const std::string dom = dumped(dir.path() / "phone.html", "", "--allow-file-access-from-files").dom;
   return {text_of(dom, "wide"), text_of(dom, "small"), text_of(dom, "open")};
+}
+
+std::string drawings_on(const std::filesystem::path& page, int width_px) {
+  const TemporaryDirectory dir;
+  dir.write("drawings.html", drawings_frame(bytes_of(page), width_px));
+  const std::string options = "--allow-file-access-from-files";
+  return text_of(dumped(dir.path() / "drawings.html", "", options).dom, "drawings");
 }
 
 std::string cut_on_desktop(const std::filesystem::path& page) {

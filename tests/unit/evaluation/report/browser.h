@@ -21,6 +21,11 @@ struct PhoneLayout {
 };
 PhoneLayout lay_out_on_phone(const std::filesystem::path& page);
 
+/// The titles of the cave's drawings, separated by "; ", in a window so many pixels wide: each is visible and
+/// fills most of it. After a title stands what is wrong, such as its size; at the end "page of", if the
+/// page is wider than the window; and ids that stand twice in the document.
+std::string drawings_on(const std::filesystem::path& page, int width_px);
+
 /// What does not fit in a window 1240 pixels wide, separated by "; ": cards, and tables of robots and pairs,
 /// with something wider than they are, and heads of tables with a word broken in two.
 std::string cut_on_desktop(const std::filesystem::path& page);

@@ -4,8 +4,11 @@
 #include <fstream>
 #include <string>
 
+#include "core_stack/mapping/octomap/octomap_io.h"
+#include "sdk/cave_drawing/report_drawings.h"
 #include "sdk/evaluation/report/report.h"
 #include "sdk/evaluation/report/team_report.h"
+#include "tests/unit/cave_drawing/box_maps.h"
 #include "tests/unit/evaluation/fake_run.h"
 #include "tests/unit/evaluation/report/browser.h"
 
@@ -242,6 +245,43 @@ TEST(ReportInBrowser, FitsAPhone) {
   EXPECT_EQ(phone.too_wide, "");
   EXPECT_EQ(phone.too_small, "");
   EXPECT_EQ(phone.open, "") << "the view's controls are folded up";
+}
+
+TEST(ReportInBrowser, ShowsThreeDrawingsOfTheCaveThatFitAPhone) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  // A passage 30 m long with a side passage that leads up.
+  core::write_octomap(test::map_of_boxes({{{0, 0, 0}, {150, 9, 9}}, {{80, 5, 5}, {89, 60, 20}}}),
+                      (dir.path() / "map").string());
+  write_report(dir.path(), cave_drawing::report_drawings(dir.path()));
+  EXPECT_EQ(test::drawings_on(dir.path() / "report.html", 400), "Plan; Extended profile; Projected profile");
+  const std::string body = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(body.find("<section id=\"cave-drawings\" aria-label=\"Drawings\">"), std::string::npos);
+  EXPECT_NE(body.find("<code>karst draw RUN --out drawings/cave</code>"), std::string::npos);
+}
+
+TEST(ReportInBrowser, KeepsTheIdsOfDrawingsApart) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  const std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"cave-drawing\" width=\"210mm\" height=\"297mm\" "
+      "viewBox=\"0 0 210 297\"><clipPath id=\"a\"><path d=\"M0 0H9V9Z\"/></clipPath>"
+      "<path d=\"M0 0H9V9Z\" fill=\"#aaaaaa\" clip-path=\"url(#a)\"/></svg>";
+  write_report(dir.path(), {{{"One", svg}, {"Two", svg}}, ""});
+  EXPECT_EQ(test::drawings_on(dir.path() / "report.html", 400), "One; Two");
+  const std::string body = show_page(dir.path() / "report.html").body;
+  for (const char* part : {"<clipPath id=\"drawing1-a\">", "<clipPath id=\"drawing2-a\">",
+                           "fill=\"#aaaaaa\" clip-path=\"url(#drawing2-a)\""})
+    EXPECT_NE(body.find(part), std::string::npos) << part;
+}
+
+TEST(ReportInBrowser, SaysWhyThereAreNoDrawings) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  write_report(dir.path(), cave_drawing::report_drawings(dir.path()));
+  const std::string body = show_page(dir.path() / "report.html").body;
+  EXPECT_NE(body.find("class=\"unknown quiet\">No drawings: the run holds no map.bt"), std::string::npos);
+  EXPECT_EQ(test::drawings_on(dir.path() / "report.html", 400), "");
 }
 
 TEST(ReportInBrowser, CutsNoLabelAndBreaksNoWordOfAHeadOnADesktop) {

@@ -69,6 +69,22 @@ TEST(Report, HoldsTheRunsData) {
   EXPECT_FALSE(d["curves"]["volume"].empty());
 }
 
+TEST(Report, HoldsTheDrawingsThatItIsGivenAndTheirNote) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  write_report(dir.path(), {{{"Plan", "<svg><text>A &lt;b&gt;</text></svg>"}}, "One is left out."});
+  const std::string page = bytes_of(dir.path() / "report.html");
+  const json drawn = data_of(page)["cave_drawings"];
+  ASSERT_EQ(drawn["pages"].size(), 1u);
+  EXPECT_EQ(drawn["pages"][0]["title"], "Plan");
+  EXPECT_EQ(drawn["pages"][0]["svg"], "<svg><text>A &lt;b&gt;</text></svg>");
+  EXPECT_EQ(drawn["note"], "One is left out.");
+  write_report(dir.path());
+  const json none = data_of(bytes_of(dir.path() / "report.html"))["cave_drawings"];
+  EXPECT_TRUE(none["pages"].empty());
+  EXPECT_EQ(none["note"], "");
+}
+
 TEST(Report, SumsTheFlightUpAndSaysWhetherItWentAsMeant) {
   TemporaryDirectory dir;
   test::write_fake_run(dir.path());
