@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "tests/unit/evaluation/fake_run.h"
@@ -11,14 +14,16 @@
 namespace karst::test {
 namespace {
 
+constexpr const char* kChromium =
+    "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
+    "--disable-background-networking --disable-component-update --use-angle=swiftshader "
+    "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 ";
+
 ShownPage dumped(const std::filesystem::path& page, const std::string& hash, const std::string& options) {
   TemporaryDirectory profile;
-  const std::string command =
-      "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
-      "--disable-background-networking --disable-component-update --use-angle=swiftshader "
-      "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 " +
-      options + " --user-data-dir=" + profile.path().string() + " --dump-dom 'file://" + page.string() +
-      (hash.empty() ? "" : "#" + hash) + "' 2>/dev/null";
+  const std::string command = kChromium + options + " --user-data-dir=" + profile.path().string() +
+                              " --dump-dom 'file://" + page.string() + (hash.empty() ? "" : "#" + hash) +
+                              "' 2>/dev/null";
   std::FILE* pipe = popen(command.c_str(), "r");
   std::string dom;
   char buffer[65536];
@@ -167,6 +172,28 @@ std::string drawings_on(const std::filesystem::path& page, int width_px) {
   dir.write("drawings.html", drawings_frame(bytes_of(page), width_px));
   const std::string options = "--allow-file-access-from-files";
   return text_of(dumped(dir.path() / "drawings.html", "", options).dom, "drawings");
+}
+
+PrintedPages print_page(const std::filesystem::path& page) {
+  const TemporaryDirectory dir;
+  const std::filesystem::path pdf = dir.path() / "page.pdf";
+  const std::string command =
+      std::string(kChromium) + "--user-data-dir=" + (dir.path() / "profile").string() +
+      " --print-to-pdf=" + pdf.string() + " 'file://" + page.string() + "' >/dev/null 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  const std::string bytes = bytes_of(pdf);
+  const std::regex box(R"(/MediaBox ?\[0 0 ([0-9.]+) ([0-9.]+)\])");
+  PrintedPages printed;
+  for (std::sregex_iterator it(bytes.begin(), bytes.end(), box); it != std::sregex_iterator(); ++it) {
+    const double width_mm = std::stod((*it)[1]) / 72 * 25.4, height_mm = std::stod((*it)[2]) / 72 * 25.4;
+    const auto is = [&](double w, double h) {
+      return std::abs(width_mm - w) < 0.5 && std::abs(height_mm - h) < 0.5;
+    };
+    ++printed.all;
+    if (is(210, 297)) ++printed.a4_upright;
+    if (is(297, 210)) ++printed.a4_wide;
+  }
+  return printed;
 }
 
 std::string cut_on_desktop(const std::filesystem::path& page) {

@@ -26,6 +26,12 @@ PhoneLayout lay_out_on_phone(const std::filesystem::path& page);
 /// page is wider than the window; and ids that stand twice in the document.
 std::string drawings_on(const std::filesystem::path& page, int width_px);
 
+/// The page on paper, in the browser's own size of paper (letter) where the page asks for no other.
+struct PrintedPages {
+  int all = 0, a4_upright = 0, a4_wide = 0;
+};
+PrintedPages print_page(const std::filesystem::path& page);
+
 /// What does not fit in a window 1240 pixels wide, separated by "; ": cards, and tables of robots and pairs,
 /// with something wider than they are, and heads of tables with a word broken in two.
 std::string cut_on_desktop(const std::filesystem::path& page);

@@ -275,6 +275,24 @@ TEST(ReportInBrowser, KeepsTheIdsOfDrawingsApart) {
     EXPECT_NE(body.find(part), std::string::npos) << part;
 }
 
+TEST(ReportInBrowser, PrintsEachDrawingOnAPageOfItsOwn) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  const auto paper = [](const std::string& width, const std::string& height) {
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"cave-drawing\" width=\"" + width +
+           "mm\" height=\"" + height + "mm\" viewBox=\"0 0 " + width + " " + height +
+           "\"><path d=\"M0 0H9V9Z\"/></svg>";
+  };
+  write_report(dir.path(), {{{"One", paper("210", "297")}, {"Two", paper("297", "210")}}, ""});
+  const test::PrintedPages with = test::print_page(dir.path() / "report.html");
+  EXPECT_EQ(with.a4_upright, 1);
+  EXPECT_EQ(with.a4_wide, 1);
+  write_report(dir.path());
+  const test::PrintedPages without = test::print_page(dir.path() / "report.html");
+  EXPECT_EQ(without.a4_upright + without.a4_wide, 0);
+  EXPECT_GT(without.all, 0);
+}
+
 TEST(ReportInBrowser, SaysWhyThereAreNoDrawings) {
   TemporaryDirectory dir;
   write_small_run(dir.path());
