@@ -13,7 +13,7 @@
 namespace karst::cave_drawing {
 namespace {
 
-constexpr double kWall_mm = 0.45, kThinWall_mm = 0.2, kHidden_mm = 0.25, kLeg_mm = 0.2, kPath_mm = 0.13,
+constexpr double kWall_mm = 0.45, kThinWall_mm = 0.2, kUncertain_mm = 0.2, kHidden_mm = 0.25, kLeg_mm = 0.2, kPath_mm = 0.13,
                  kGrid_mm = 0.1;
 constexpr double kSmallScale = 2500;  // beyond, walls are thinner, and stations have no room
 constexpr double kFine_mm = 0.05;     // lines are simplified by no more on paper
@@ -159,6 +159,7 @@ std::string inside_frame(const Drawing& drawing, const Frame& frame, double step
   out += lines_of("path", drawing.paths, frame, stroke("#404040", kPath_mm) + round);
   out += lines_of("links", drawing.links, frame, stroke("#404040", kLeg_mm, "0.6 0.9"));
   out += lines_of("legs", drawing.centreline, frame, stroke("#303030", kLeg_mm) + round);
+  out += lines_of("uncertain", drawing.uncertain_walls, frame, stroke("#000000", kUncertain_mm, "2 1.2"));
   out += lines_of("walls", drawing.walls, frame,
                   stroke("#000000", frame.scale > kSmallScale ? kThinWall_mm : kWall_mm) + round);
   return out + marks_of(drawing, frame) +

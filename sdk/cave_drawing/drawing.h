@@ -38,20 +38,22 @@ struct Drawing {
   double bearing_rad = 0;                 // of a projected profile: clockwise from north, to the right
   std::vector<std::vector<Line>> spaces;  // filled by the even-odd rule: rings, those of pillars included
   std::vector<Line> walls;
-  std::vector<Line> hidden_walls;  // of passages below others
-  std::vector<Line> centreline;    // measured legs
-  std::vector<Line> paths;         // flown
-  std::vector<Line> splays;        // shots to the walls
-  std::vector<Line> links;         // from a passage to where its side passage is drawn
+  std::vector<Line> uncertain_walls;  // the limit of what was seen, or walls that were not measured
+  std::vector<Line> hidden_walls;     // of passages below others
+  std::vector<Line> centreline;       // measured legs
+  std::vector<Line> paths;            // flown
+  std::vector<Line> splays;           // shots to the walls
+  std::vector<Line> links;            // from a passage to where its side passage is drawn
   std::vector<Mark> marks;
 };
 
 /// What the title block says of the cave. Unknown figures are not printed.
 struct CaveFacts {
   std::string name, date;
-  std::string from;                // "flight", "map", "survey"
-  std::optional<double> length_m;  // along the passages
-  std::optional<double> depth_m;   // from the highest to the lowest place
+  std::string from;                       // "flight", "map", "survey"
+  std::optional<double> length_m;         // along the passages
+  std::optional<double> depth_m;          // of a survey: from the highest station to the lowest
+  std::optional<double> floor_to_roof_m;  // of a map: from the lowest floor to the highest roof
   std::optional<double> volume_m3;
 };
 

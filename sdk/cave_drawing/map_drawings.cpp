@@ -89,8 +89,8 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
   const double bearing = bearing_rad.value_or(longest_bearing(free));
 
   CaveDrawings out;
-  out.plan = plan_of(free, file);
-  out.projected = projected_profile(free, entrance, bearing, file);
+  out.plan = plan_of(free, file, &map);
+  out.projected = projected_profile(free, entrance, bearing, file, &map);
   UnrolledProfile unrolled = unrolled_profile(map, lines, entrance.z(), file);
   out.extended = std::move(unrolled.drawing);
   const auto add = [&](Mark::Kind kind, const Vec3& p, const std::string& text) {
@@ -129,8 +129,9 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
     out.plan.paths.push_back(std::move(from_above));
     out.projected.paths.push_back(std::move(from_aside));
   }
-  out.facts = {record.name, record.date, record.from, std::nullopt, std::nullopt, map.free_volume_m3()};
-  out.facts.depth_m = (free.high_z - free.low_z + 1) * free.cell_m;
+  out.facts = {record.name,  record.date,  record.from,         std::nullopt,
+               std::nullopt, std::nullopt, map.free_volume_m3()};
+  out.facts.floor_to_roof_m = (free.high_z - free.low_z + 1) * free.cell_m;
   if (!lines.points.empty()) out.facts.length_m = lines.length_m();
   return out;
 }

@@ -16,6 +16,8 @@ constexpr double kLeastPiece_m2 = 0.2;  // of the outline: smaller ones are gaps
 constexpr double kLeastWall_m = 3.0;    // within the outline: shorter ones are ledges
 constexpr double kLeastStorey_m2 = 3.0;
 constexpr double kSimplified = 0.08;  // cells
+constexpr int kWallCells = 2;         // beside free cells: rock no farther away is their wall
+constexpr double kLeastRock = 0.3;    // of a wall's height: less is the floor that goes on, or the roof
 
 using RunName = std::tuple<std::int32_t, std::int32_t, std::size_t>;  // y, x, number from below
 
@@ -55,6 +57,24 @@ void add_walls(const std::vector<CellSide>& sides, double cell_m, std::vector<Li
       walls.push_back(scaled(simplified(smoothed(line), kSimplified), cell_m));
 }
 
+/// Whether enough of the height of a column's runs has rock on this side.
+bool has_rock_beside(const FreeRuns& free, const core::VoxelMap& map, int x, int y, std::size_t side) {
+  const Column* column = free.find(x, y);
+  if (column == nullptr) return true;  // a gap that was closed
+  int cells = 0, rock = 0;
+  for (const Run& run : column->runs)
+    for (std::int32_t z = run.low; z <= run.high; ++z) {
+      ++cells;
+      for (int out = 1; out <= kWallCells; ++out)
+        if (map.at(core::CellKey{x + out * kBesideX[side], y + out * kBesideY[side], z}) ==
+            core::Cell::occupied) {
+          ++rock;
+          break;
+        }
+    }
+  return rock >= kLeastRock * cells;
+}
+
 /// The same side, seen from either cell.
 std::pair<std::pair<int, int>, bool> place_of(const CellSide& s) {
   const bool upright = s.heading % 2 == 1;
@@ -69,20 +89,32 @@ CellMask mask_from_above(const FreeRuns& free, const std::string& file) {
   return mask;
 }
 
-void draw_mask(const CellMask& mask, double cell_m, Drawing& drawing) {
+IsWallKnown known_by(const CellMask& rock) {
+  return [&rock](int x, int y, std::size_t side) {
+    for (int out = 1; out <= kWallCells; ++out)
+      if (rock.at(x + out * kBesideX[side], y + out * kBesideY[side])) return true;
+    return false;
+  };
+}
+
+void draw_mask(const CellMask& mask, double cell_m, Drawing& drawing, const IsWallKnown& is_known) {
   const auto least = static_cast<std::size_t>(std::ceil(kLeastPiece_m2 / (cell_m * cell_m)));
   std::vector<Line> rings;
-  for (const Line& ring : outlines_of(without_specks(opened(mask), least)))
+  for (const Line& ring : outlines_of(without_specks(opened(mask), least))) {
+    add_ring_walls(ring, cell_m, is_known, drawing);
     rings.push_back(scaled(simplified(smoothed(ring), kSimplified), cell_m));
-  drawing.walls.insert(drawing.walls.end(), rings.begin(), rings.end());
+  }
   if (!rings.empty()) drawing.spaces.push_back(std::move(rings));
 }
 
-Drawing plan_of(const FreeRuns& free, const std::string& file) {
+Drawing plan_of(const FreeRuns& free, const std::string& file, const core::VoxelMap* map) {
   Drawing plan;
   plan.view = View::plan;
   const CellMask mask = opened(mask_from_above(free, file));
-  draw_mask(mask, free.cell_m, plan);
+  IsWallKnown is_known;
+  if (map != nullptr)
+    is_known = [&](int x, int y, std::size_t side) { return has_rock_beside(free, *map, x, y, side); };
+  draw_mask(mask, free.cell_m, plan, is_known);
   const std::set<RunName> below = storeys_below(free);
   std::vector<CellSide> above, hidden;
   std::set<std::pair<std::pair<int, int>, bool>> drawn;

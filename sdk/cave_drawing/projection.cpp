@@ -55,10 +55,11 @@ Point projected(const core::Vec3& p, const core::Vec3& entrance, double bearing_
 }
 
 Drawing projected_profile(const FreeRuns& free, const core::Vec3& entrance, double bearing_rad,
-                          const std::string& file) {
+                          const std::string& file, const core::VoxelMap* map) {
   const Point along = direction_of(bearing_rad);
   const double half = 0.5 * (std::abs(along.x()) + std::abs(along.y()));  // of a cell's width from the side
-  const auto middle = [&](const Column& c) { return along.dot(Point(c.x + 0.5, c.y + 0.5)); };
+  const auto at = [&](int x, int y) { return along.dot(Point(x + 0.5, y + 0.5)); };
+  const auto middle = [&](const Column& c) { return at(c.x, c.y); };
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Column& c : free.columns) {
     low = std::min(low, middle(c));
@@ -66,22 +67,31 @@ Drawing projected_profile(const FreeRuns& free, const core::Vec3& entrance, doub
   }
   CellMask mask(file, static_cast<std::int64_t>(std::floor(low - half)) - 1, free.low_z,
                 static_cast<std::int64_t>(std::ceil(high + half)) + 1, free.high_z);
-  constexpr double kRounding = 1e-6;
-  for (const Column& c : free.columns) {
-    // Cells whose middle the column covers.
-    const auto first = static_cast<int>(std::ceil(middle(c) - half - 0.5 + kRounding));
-    const auto last = static_cast<int>(std::floor(middle(c) + half - 0.5 - kRounding));
+  // Cells whose middle a column covers.
+  const auto cover = [&](CellMask& covered, double column, std::int32_t low_z, std::int32_t high_z) {
+    constexpr double kRounding = 1e-6;
+    const auto first = static_cast<int>(std::ceil(column - half - 0.5 + kRounding));
+    const auto last = static_cast<int>(std::floor(column + half - 0.5 - kRounding));
     for (int x = first; x <= std::max(first, last); ++x)
-      for (const Run& run : c.runs)
-        for (std::int32_t z = run.low; z <= run.high; ++z) mask.set(x, z);
-  }
+      for (std::int32_t z = low_z; z <= high_z; ++z) covered.set(x, z);
+  };
+  for (const Column& c : free.columns)
+    for (const Run& run : c.runs) cover(mask, middle(c), run.low, run.high);
+  constexpr int kBeside = 3;
+  CellMask rock(file, mask.low_x() - kBeside, mask.low_y() - kBeside, mask.high_x() + kBeside,
+                mask.high_y() + kBeside);
+  if (map != nullptr)
+    map->for_each_known([&](const core::CellKey& k, core::Cell c, float) {
+      if (c == core::Cell::occupied) cover(rock, at(k.x, k.y), k.z, k.z);
+    });
   Drawing profile;
   profile.view = View::projected_profile;
   profile.bearing_rad = bearing_rad;
-  draw_mask(mask, free.cell_m, profile);
+  draw_mask(mask, free.cell_m, profile, map == nullptr ? IsWallKnown{} : known_by(rock));
   const Point origin(-along.dot(entrance.head<2>()), -entrance.z());
   for (auto& rings : profile.spaces) shift(rings, origin);
   shift(profile.walls, origin);
+  shift(profile.uncertain_walls, origin);
   return profile;
 }
 

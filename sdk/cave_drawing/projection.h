@@ -19,8 +19,9 @@ double longest_bearing(const FreeRuns& free);
 /// Along the bearing from the entrance on, and height above it.
 Point projected(const core::Vec3& p, const core::Vec3& entrance, double bearing_rad);
 
-/// Spaces and walls, without marks.
+/// Spaces and walls, without marks. With the map, walls are uncertain where it has no rock beside the free
+/// cells.
 Drawing projected_profile(const FreeRuns& free, const core::Vec3& entrance, double bearing_rad,
-                          const std::string& file);
+                          const std::string& file, const core::VoxelMap* map = nullptr);
 
 }  // namespace karst::cave_drawing

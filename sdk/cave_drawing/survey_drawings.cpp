@@ -1,6 +1,7 @@
 #include "sdk/cave_drawing/survey_drawings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "sdk/cave_drawing/map_plan.h"
 #include "sdk/cave_drawing/projection.h"
 #include "sdk/cave_drawing/unrolled_survey.h"
+#include "sdk/cave_drawing/wall_trace.h"
 
 namespace karst::cave_drawing {
 namespace {
@@ -39,8 +41,22 @@ void expect_drawable(const survey::Survey& survey, std::optional<double> bearing
       throw core::InputError(file, "station " + s.name, "its position is not a number");
 }
 
-/// Fills the pieces into cells fine enough for print, and draws their outline.
-void draw_pieces(const std::vector<Piece>& pieces, Drawing& drawing, const std::string& file) {
+void fill_piece(CellMask& mask, const Piece& piece, double cell_m) {
+  std::vector<Point> in_cells;
+  for (const Point& p : piece.around) in_cells.push_back(p / cell_m);
+  fill_convex(mask, convex_hull(std::move(in_cells)));
+  if (piece.disc) fill_disc(mask, *piece.disc / cell_m, piece.radius_m / cell_m);
+}
+
+/// A passage as it is drawn, and as far as it was measured.
+struct Pieces {
+  std::vector<Piece> drawn, measured;
+};
+
+/// Fills the pieces into cells fine enough for print, and draws their outline. It is uncertain where it is
+/// not that of what was measured.
+void draw_pieces(const Pieces& both, Drawing& drawing, const std::string& file) {
+  const std::vector<Piece>& pieces = both.drawn;
   constexpr double kAcross = 2500, kFinest_m = 0.05, kCoarsest_m = 0.5;
   constexpr double kDrawnCells = 2.5e7;  // 5000 by 5000: paper resolves no more
   Point low = Point::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -58,13 +74,13 @@ void draw_pieces(const std::vector<Piece>& pieces, Drawing& drawing, const std::
                                  std::sqrt(size.prod() / kDrawnCells));
   const auto cell = [&](double v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); };
   CellMask mask(file, cell(low.x()) - 1, cell(low.y()) - 1, cell(high.x()) + 1, cell(high.y()) + 1);
-  for (const Piece& piece : pieces) {
-    std::vector<Point> in_cells;
-    for (const Point& p : piece.around) in_cells.push_back(p / cell_m);
-    fill_convex(mask, convex_hull(std::move(in_cells)));
-    if (piece.disc) fill_disc(mask, *piece.disc / cell_m, piece.radius_m / cell_m);
-  }
-  draw_mask(mask, cell_m, drawing);
+  CellMask measured = mask;
+  for (const Piece& piece : pieces) fill_piece(mask, piece, cell_m);
+  for (const Piece& piece : both.measured) fill_piece(measured, piece, cell_m);
+  draw_mask(mask, cell_m, drawing, [&](int x, int y, std::size_t side) {
+    // The wall's own cell, or the next one further in: two fillings may round differently.
+    return measured.at(x, y) || measured.at(x - kBesideX[side], y - kBesideY[side]);
+  });
 }
 
 std::string short_name(const std::string& full) {
@@ -102,20 +118,15 @@ class SurveyDrawer {
   Drawing extended_profile() const {
     Drawing out;
     out.view = View::extended_profile;
-    std::vector<Piece> pieces;
+    Pieces pieces;
     for (std::size_t i = 0; i < survey_.legs.size(); ++i) {
       if (!unrolled_.legs[i]) continue;
-      const auto ends = walls_.of(survey_.legs[i]);
+      const LegPassage passage = walls_.of(survey_.legs[i]);
       const auto [from, to] = *unrolled_.legs[i];
-      const Point a(from, height(ends[0].station)), b(to, height(ends[1].station));
+      const Point a(from, height(passage.drawn[0].station)), b(to, height(passage.drawn[1].station));
       out.centreline.push_back({a, b});
-      Piece piece;
-      const double wide_m = is_steep(ends) ? 0.25 * (ends[0].width_m + ends[1].width_m) : 0;
-      for (const double aside : {-wide_m, wide_m})
-        piece.around.insert(piece.around.end(),
-                            {a + Point(aside, ends[0].up_m), a + Point(aside, -ends[0].down_m),
-                             b + Point(aside, ends[1].up_m), b + Point(aside, -ends[1].down_m)});
-      pieces.push_back(std::move(piece));
+      pieces.drawn.push_back(upright_piece(passage.drawn, a, b));
+      pieces.measured.push_back(upright_piece(passage.measured, a, b));
     }
     draw_pieces(pieces, out, file_);
     add_marks(out, [&](std::size_t i) -> std::optional<Point> {
@@ -128,28 +139,44 @@ class SurveyDrawer {
  private:
   double height(const Vec3& p) const { return p.z() - zero_.z(); }
 
+  static Piece upright_piece(const std::array<LegEnd, 2>& ends, const Point& a, const Point& b) {
+    Piece piece;
+    const double wide_m = is_steep(ends) ? 0.25 * (ends[0].width_m + ends[1].width_m) : 0;
+    for (const double aside : {-wide_m, wide_m})
+      piece.around.insert(piece.around.end(),
+                          {a + Point(aside, ends[0].up_m), a + Point(aside, -ends[0].down_m),
+                           b + Point(aside, ends[1].up_m), b + Point(aside, -ends[1].down_m)});
+    return piece;
+  }
+
+  template <class Seen>
+  static Piece flat_piece(const std::array<LegEnd, 2>& ends, const Seen& seen, bool from_aside) {
+    Piece piece;
+    for (const LegEnd& end : ends) {
+      piece.around.insert(piece.around.end(), {seen(end.left), seen(end.right), seen(end.station)});
+      if (!from_aside) continue;
+      piece.around.push_back(seen(end.station + end.up_m * Vec3::UnitZ()));
+      piece.around.push_back(seen(end.station - end.down_m * Vec3::UnitZ()));
+    }
+    const LegEnd& wider = ends[0].width_m > ends[1].width_m ? ends[0] : ends[1];
+    if (!from_aside && is_steep(ends) && wider.width_m > 0) {
+      piece.disc = seen(0.5 * (wider.left + wider.right));
+      piece.radius_m = 0.5 * wider.width_m;
+    }
+    return piece;
+  }
+
   /// A plan or a projected profile: `seen` gives the place of a point.
   template <class Seen>
   Drawing flat(const Seen& seen, bool from_aside) const {
     Drawing out;
-    std::vector<Piece> pieces;
+    Pieces pieces;
     for (const survey::Leg& leg : survey_.legs) {
       if (leg.surface) continue;
-      const auto ends = walls_.of(leg);
-      out.centreline.push_back({seen(ends[0].station), seen(ends[1].station)});
-      Piece piece;
-      for (const LegEnd& end : ends) {
-        piece.around.insert(piece.around.end(), {seen(end.left), seen(end.right), seen(end.station)});
-        if (!from_aside) continue;
-        piece.around.push_back(seen(end.station + end.up_m * Vec3::UnitZ()));
-        piece.around.push_back(seen(end.station - end.down_m * Vec3::UnitZ()));
-      }
-      const LegEnd& wider = ends[0].width_m > ends[1].width_m ? ends[0] : ends[1];
-      if (!from_aside && is_steep(ends) && wider.width_m > 0) {
-        piece.disc = seen(0.5 * (wider.left + wider.right));
-        piece.radius_m = 0.5 * wider.width_m;
-      }
-      pieces.push_back(std::move(piece));
+      const LegPassage passage = walls_.of(leg);
+      out.centreline.push_back({seen(passage.drawn[0].station), seen(passage.drawn[1].station)});
+      pieces.drawn.push_back(flat_piece(passage.drawn, seen, from_aside));
+      pieces.measured.push_back(flat_piece(passage.measured, seen, from_aside));
     }
     for (const survey::Splay& s : survey_.splays)
       if (!s.surface && s.end_m.allFinite())

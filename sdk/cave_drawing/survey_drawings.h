@@ -8,9 +8,10 @@
 
 namespace karst::cave_drawing {
 
-/// Between two stations the passage is the convex hull of what was measured at both; along a leg that is
-/// steeper than 45 degrees it is also as deep as it is wide. What is over ground is left out. Throws
-/// core::InputError that names `file` if no leg is underground, or a position is not finite.
+/// Between two stations the passage is the convex hull of what was measured at both, or else interpolated
+/// (uncertain walls); along a leg that is steeper than 45 degrees it is also as deep as it is wide. What is
+/// over ground is left out. Throws core::InputError that names `file` if no leg is underground, or a position
+/// is not finite.
 CaveDrawings survey_drawings(const survey::Survey& survey, std::optional<double> bearing_rad,
                              const std::string& file);
 

@@ -36,12 +36,14 @@ std::vector<std::string> fact_lines(const CaveFacts& facts) {
   std::vector<std::string> lines;
   if (facts.length_m) lines.push_back(core::format_text("length %.0f m", *facts.length_m));
   if (facts.depth_m) lines.push_back(core::format_text("depth %.0f m", *facts.depth_m));
+  if (facts.floor_to_roof_m)
+    lines.push_back(core::format_text("floor to roof %.0f m", *facts.floor_to_roof_m));
   if (facts.volume_m3) lines.push_back(core::format_text("volume %.0f m\u00B3", *facts.volume_m3));
   if (!facts.date.empty()) lines.push_back(facts.date);
   return lines;
 }
 
-std::string legend_text(const Drawing& drawing, const Frame& frame, double step_m) {
+std::string legend_text(const Drawing& drawing, const CaveFacts& facts, const Frame& frame, double step_m) {
   std::string legend = core::format_text("grid %g m", step_m);
   if (drawing.view == View::plan) legend += ", grid north up";
   bool heights = drawing.view != View::plan, from_entrance = false, leads_on = false, joints = false;
@@ -52,7 +54,10 @@ std::string legend_text(const Drawing& drawing, const Frame& frame, double step_
     joints = joints || m.kind == Mark::Kind::joint;
   }
   if (heights) legend += from_entrance ? ", heights in metres from the entrance" : ", heights in metres";
-  if (!drawing.hidden_walls.empty()) legend += ", dashed: passage below";
+  if (!drawing.hidden_walls.empty()) legend += ", grey dashes: passage below";
+  if (!drawing.uncertain_walls.empty())
+    legend +=
+        facts.from == "survey" ? ", black dashes: walls not measured" : ", black dashes: limit of sight";
   if (!drawing.paths.empty()) legend += ", thin: flown path";
   if (leads_on) legend += ", ?: leads on";
   if (joints) legend += ", same letters: same place";
@@ -92,7 +97,7 @@ std::string title_block(const Drawing& drawing, const CaveFacts& facts, const Sh
   if (drawing.view == View::plan) out += north_arrow({arrow, top + 16}, -options.declination_rad);
   const double rule = top + height - 6;
   out += straight({left, rule}, {left + width, rule}, stroke("#000000", 0.15));
-  return out + text({x, top + height - 2}, legend_text(drawing, sheet.frame, step_m), {2.2});
+  return out + text({x, top + height - 2}, legend_text(drawing, facts, sheet.frame, step_m), {2.2});
 }
 
 std::string head(double width_mm, double height_mm, const std::string& label) {

@@ -120,8 +120,24 @@ std::vector<Run> merged(std::vector<Run> runs) {
   return out;
 }
 
-/// The cells of a strip, with its first place in column 0; heights are those of the map.
-ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& points) {
+/// Rock that was seen where a strip ends.
+void add_end_rock(const core::VoxelMap& map, const StripPoint& end, const Vec3& outwards,
+                  const std::vector<Run>& runs, int column, ProfileCells& rock) {
+  const double cell_m = map.resolution_m();
+  for (const Run& run : runs)
+    for (int z = run.low; z <= run.high; ++z)
+      for (const double out : {0.75, 1.5, 2.25}) {
+        Vec3 p = end.p + out * cell_m * outwards;
+        p.z() = (z + 0.5) * cell_m;
+        if (map.at(p) != core::Cell::occupied) continue;
+        rock[column].push_back({z, z});
+        break;
+      }
+}
+
+/// The cells of a strip, with its first place in column 0; heights are those of the map. `rock` is where
+/// walls beside them were seen.
+ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& points, ProfileCells& rock) {
   ProfileCells cells;
   const double cell_m = map.resolution_m();
   for (const StripPoint& at : points) {
@@ -130,7 +146,13 @@ ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& 
     const double down = core::free_reach_m(map, at.p, -Vec3::UnitZ());
     constexpr double kRounding = 1e-6;
     const Run run{cell_of(at.p.z() - down + kRounding, cell_m), cell_of(at.p.z() + up - kRounding, cell_m)};
-    cells[cell_of(at.s_m, cell_m)].push_back(run);
+    const int column = cell_of(at.s_m, cell_m);
+    cells[column].push_back(run);
+    const auto is_rock = [&](int z) {
+      return map.at(Vec3(at.p.x(), at.p.y(), (z + 0.5) * cell_m)) == core::Cell::occupied;
+    };
+    if (is_rock(run.high + 1) || is_rock(run.high + 2)) rock[column].push_back({run.high + 1, run.high + 1});
+    if (is_rock(run.low - 1) || is_rock(run.low - 2)) rock[column].push_back({run.low - 1, run.low - 1});
     if (!at.is_steep) continue;
     const double most = std::max(cell_m, at.width_m);
     const double ahead = std::min(most, core::free_reach_m(map, at.p, at.ahead));
@@ -139,6 +161,16 @@ ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& 
     for (int x = cell_of(at.s_m - behind + kRounding, cell_m);
          x <= cell_of(at.s_m + ahead - kRounding, cell_m); ++x)
       cells[x].push_back({z, z});
+    const auto add_side = [&](double reach, const Vec3& d, int beside) {
+      const auto cell_behind = [&](double cells_on) {
+        return map.at(Vec3(at.p + (reach + cells_on * cell_m) * d));
+      };
+      const bool is_open =
+          reach < most && cell_behind(0.5) == core::Cell::unknown && cell_behind(1.5) != core::Cell::occupied;
+      if (!is_open) rock[beside].push_back({z, z});
+    };
+    add_side(ahead, at.ahead, cell_of(at.s_m + ahead - kRounding, cell_m) + 1);
+    add_side(behind, -at.ahead, cell_of(at.s_m - behind + kRounding, cell_m) - 1);
   }
   for (auto& [x, runs] : cells) runs = merged(std::move(runs));
   // The line may jump over a corner of rock: what is on both sides of it is drawn through.
@@ -212,13 +244,25 @@ UnrolledProfile unrolled_profile(const core::VoxelMap& map, const PassageLines& 
   const auto cells = [&](double m) { return std::max(1, static_cast<int>(std::lround(m / cell_m))); };
   std::vector<std::optional<double>> s_of(lines.points.size());
   const auto drawn_at = [&](double s, double z) { return Point(s, z - entrance_z_m); };
-  ProfileCells drawn;
+  ProfileCells drawn, rock;
   std::size_t moved = 0;
   for (const PassageStrip& strip : passage_strips(lines)) {
     const bool is_first = drawn.empty();
     const StripLine line = sampled(map, lines, strip, is_first);
-    const ProfileCells own = cells_of(map, line.points);
+    ProfileCells own_rock;
+    const ProfileCells own = cells_of(map, line.points, own_rock);
     if (own.empty()) continue;
+    const bool to_end = !strip.closes_loop && lines.points[strip.points.back()].next.size() < 2;
+    const bool from_wall = is_first && lines.points[strip.points.front()].next.size() < 2;
+    for (const bool at_first : {true, false}) {
+      const int last = at_first ? own.begin()->first : own.rbegin()->first,
+                beyond = at_first ? last - 1 : last + 1;
+      const StripPoint& end = at_first ? line.points.front() : line.points.back();
+      if (at_first ? from_wall : to_end)
+        add_end_rock(map, end, at_first ? Vec3(-end.ahead) : end.ahead, own.at(last), beyond, own_rock);
+      else
+        for (const Run& run : own.at(last)) own_rock[beyond].push_back(run);  // cut there, and not open
+    }
     const PassagePoint& branch = lines.points[strip.points.front()];
     const double from_s = s_of[strip.points.front()].value_or(0.0);
     const int column = cell_of(from_s, cell_m);
@@ -238,6 +282,10 @@ UnrolledProfile unrolled_profile(const core::VoxelMap& map, const PassageLines& 
       if (!s_of[strip.points[i]]) s_of[strip.points[i]] = s_drawn(line.place_s_m[i]);
     for (const auto& [x, runs] : own) {
       auto& there = drawn[place.of(x)];
+      there.insert(there.end(), runs.begin(), runs.end());
+    }
+    for (const auto& [x, runs] : own_rock) {
+      auto& there = rock[place.of(x)];
       there.insert(there.end(), runs.begin(), runs.end());
     }
     const double z = branch.middle.z();
@@ -265,13 +313,16 @@ UnrolledProfile unrolled_profile(const core::VoxelMap& map, const PassageLines& 
   for (std::size_t i = 0; i < lines.points.size(); ++i)
     out.at.push_back(drawn_at(s_of[i].value_or(0.0), lines.points[i].middle.z()));
   if (drawn.empty()) return out;
-  draw_mask(mask_of(drawn, file), cell_m, out.drawing);
+  rock[0];  // where nothing was seen, the mask is empty
+  const CellMask seen = mask_of(rock, file);
+  draw_mask(mask_of(drawn, file), cell_m, out.drawing, known_by(seen));
   const auto lower = [&](std::vector<Line>& all) {
     for (Line& l : all)
       for (Point& p : l) p.y() -= entrance_z_m;
   };
   for (auto& rings : out.drawing.spaces) lower(rings);
   lower(out.drawing.walls);
+  lower(out.drawing.uncertain_walls);
   return out;
 }
 

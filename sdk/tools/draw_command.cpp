@@ -23,6 +23,7 @@
 #include "sdk/evaluation/page/pdf.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/evaluation/team/team_folders.h"
+#include "sdk/survey/lower_case.h"
 #include "sdk/survey/read_survey.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
@@ -63,6 +64,16 @@ std::string map_in(const fs::path& run) {
   throw InputError(run.string(), "", "holds no map.bt, which a flight writes at its end");
 }
 
+void expect_survey(const std::string& source) {
+  const std::string ending = survey::ending_of(source);
+  for (const char* known : {".th", ".svx", ".3d", ".dat", ".mak", ".plt"})
+    if (ending == known) return;
+  throw InputError(
+      source, "",
+      "cannot be drawn: it is no run directory, and by its name neither a map (.bt, .ot) nor a survey "
+      "(.th, .svx, .3d, .dat, .mak, .plt)");
+}
+
 CaveDrawings drawings_of(const DrawArguments& args) {
   const fs::path source = args.source;
   std::optional<double> bearing_rad;
@@ -70,6 +81,7 @@ CaveDrawings drawings_of(const DrawArguments& args) {
   const std::string ending = source.extension().string();
   const bool is_run = fs::is_directory(source), is_map = ending == ".bt" || ending == ".ot";
   if (!is_run && !is_map) {
+    expect_survey(args.source);
     if (!args.entrance.empty())
       throw InputError("command line", "--entrance", "is for maps; a survey names its own");
     return cave_drawing::survey_drawings(survey::read_survey(args.source), bearing_rad, args.source);

@@ -49,9 +49,16 @@ TEST(MapDrawings, EntranceFindsAndPathAreDrawnWhereTheyAre) {
 TEST(MapDrawings, TheFiguresAreThoseOfTheRoom) {
   const CaveFacts facts = map_drawings(tunnel(), record_of(), {}, "map").facts;
   EXPECT_EQ(facts.name, "tunnel");
-  EXPECT_NEAR(facts.depth_m.value_or(0), 3, 1e-9);
+  EXPECT_NEAR(facts.floor_to_roof_m.value_or(0), 3, 1e-9);
+  EXPECT_FALSE(facts.depth_m) << "a survey's, from station to station";
   EXPECT_NEAR(facts.volume_m3.value_or(0), 200 * 15 * 15 * 0.008, 1e-6);
   EXPECT_NEAR(facts.length_m.value_or(0), 40, 4);
+}
+
+TEST(MapDrawings, WallsOfRockAreCertain) {
+  const CaveDrawings drawings = map_drawings(tunnel(), record_of(), {}, "map");
+  for (const Drawing* d : {&drawings.plan, &drawings.extended, &drawings.projected})
+    EXPECT_TRUE(d->uncertain_walls.empty()) << core::name_of(d->view);
 }
 
 TEST(MapDrawings, AnEndWithoutAWallIsAskedAboutAndOneAtRockIsNot) {
@@ -70,6 +77,16 @@ TEST(MapDrawings, AnEndWithoutAWallIsAskedAboutAndOneAtRockIsNot) {
     if (m.kind == Mark::Kind::unknown_end) {
       EXPECT_NEAR(m.at.x(), 40, 0.5) << "where it is lost sight of";
     }
+  // The limit of sight is no wall: all of the end is uncertain, and nothing but it.
+  const CaveDrawings east = map_drawings(open, record_of(), std::numbers::pi / 2, "map");
+  for (const auto& [drawing, entrance_m] :
+       {std::pair{&east.plan, 0.0}, {&east.projected, 1.5}, {&east.extended, 1.5}}) {
+    ASSERT_FALSE(drawing->uncertain_walls.empty()) << core::name_of(drawing->view);
+    EXPECT_NEAR(test::span_of(drawing->uncertain_walls, 1).length(), 3, 1.0);
+    if (drawing != &east.extended) {
+      EXPECT_NEAR(test::span_of(drawing->uncertain_walls, 0).low, 40 - entrance_m, 0.8);
+    }
+  }
 }
 
 TEST(MapDrawings, AMapAloneHasNoEntrance) {

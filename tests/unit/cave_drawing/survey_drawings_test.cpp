@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "sdk/cave_drawing/leg_walls.h"
 #include "sdk/cave_drawing/unrolled_survey.h"
 #include "tests/unit/cave_drawing/drawn_lines.h"
 #include "tests/unit/survey_cave/surveys.h"
@@ -30,6 +31,31 @@ TEST(SurveyDrawings, APassageIsAsWideAndAsHighAsItsSections) {
     if (m.kind == Mark::Kind::station) {
       EXPECT_EQ(m.text.find('.'), std::string::npos) << m.text;
     }
+}
+
+TEST(SurveyDrawings, AMissingDimensionIsInterpolatedAlongThePassageAndItsWallUncertain) {
+  SurveyMaker made = test::straight_passage(4, 10, 2);
+  made.survey.sections[2].dimensions.right_m.reset();
+  made.survey.sections[2].dimensions.down_m.reset();
+  const CaveDrawings drawings = survey_drawings(made.survey, {}, "cave.svx");
+  for (const Drawing* d : {&drawings.plan, &drawings.extended}) {
+    EXPECT_NEAR(test::area_m2(*d), 160, 3) << "as wide and high as beside it: " << core::name_of(d->view);
+    const test::Span along = test::span_of(d->uncertain_walls, 0),
+                     across = test::span_of(d->uncertain_walls, 1);
+    EXPECT_NEAR(along.low, 10, 1) << "the wall between the stations that have it";
+    EXPECT_NEAR(along.high, 30, 1);
+    EXPECT_NEAR(across.high, -2, 0.1) << "the right wall, and the floor";
+  }
+}
+
+TEST(SurveyDrawings, ALegWithDimensionsAtOneEndHasUncertainWallsAndOneWithoutAnyIsALine) {
+  SurveyMaker made = test::straight_passage(3, 10, 2);
+  made.survey.sections.resize(2);
+  const CaveDrawings drawings = survey_drawings(made.survey, {}, "cave.svx");
+  EXPECT_NEAR(test::area_m2(drawings.plan), 80, 3) << "two legs of three";
+  EXPECT_NEAR(test::span_of(drawings.plan.uncertain_walls, 0).high, 20, 0.2);
+  EXPECT_EQ(drawings.plan.centreline.size(), 3u);
+  for (LegEnd end : LegWalls(made.survey).of(made.survey.legs[2]).drawn) EXPECT_EQ(end.width_m, 0);
 }
 
 /// East for 10 m, then north for 10 m, then down 5 m.

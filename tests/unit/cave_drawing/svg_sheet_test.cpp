@@ -111,9 +111,23 @@ TEST(SvgSheet, TheTitleBlockSaysWhatIsKnown) {
   std::string all;
   for_each_element(drawn(svg_sheet(drawings.plan, drawings.facts, {}, "map")),
                    [&](const std::string&, const ptree& e) { all += e.data() + "\n"; });
-  for (const char* part : {"Gouffre <& \"Berger\">", "Plan", "explored by karst", "2026-11-26", "depth 3 m",
-                           "length ", "volume ", "1:", "<helmet>", "entrance", "N", "grid "})
+  for (const char* part :
+       {"Gouffre <& \"Berger\">", "Plan", "explored by karst", "2026-11-26", "floor to roof 3 m", "length ",
+        "volume ", "1:", "<helmet>", "entrance", "N", "grid "})
     EXPECT_NE(all.find(part), std::string::npos) << part;
+}
+
+TEST(SvgSheet, UncertainWallsAreThinAndDashedAndTheLegendSaysWhy) {
+  CaveDrawings drawings = cross();
+  EXPECT_EQ(svg_sheet(drawings.plan, drawings.facts, {}, "map").find("black dashes"), std::string::npos);
+  drawings.plan.uncertain_walls = {{{0, 0}, {10, 0}}};
+  for (const auto& [from, why] : {std::pair{"flight", "black dashes: limit of sight"},
+                                  {"survey", "black dashes: walls not measured"}}) {
+    drawings.facts.from = from;
+    const std::string svg = svg_sheet(drawings.plan, drawings.facts, {}, "map");
+    EXPECT_NE(svg.find(why), std::string::npos) << from;
+    EXPECT_NE(svg.find("class=\"uncertain\""), std::string::npos);
+  }
 }
 
 TEST(SvgSheet, ANameThatIsTooLongIsCutAfterAWholeCharacter) {

@@ -121,6 +121,10 @@ TEST_F(DrawCommand, WhatCannotBeDrawnIsNamed) {
   EXPECT_TRUE(has(refusal({folder_.write("bad.bt", "no map"), "--out", out()}), "bad.bt"));
   EXPECT_TRUE(has(refusal({run() + "/map.bt", "--out", out(), "--entrance", "1 2"}), "--entrance"));
   EXPECT_FALSE(refusal({run(), "--out", out(), "--bearing", "nan"}).empty());
+  for (const char* name : {"cave.ply", "no_such_run"}) {
+    const std::string said = refusal({name, "--out", out()});
+    for (const char* part : {name, "run directory", ".bt, .ot", ".svx"}) EXPECT_TRUE(has(said, part)) << said;
+  }
 }
 
 }  // namespace
