@@ -61,6 +61,36 @@ TEST_F(KnownSurveyTest, LiesInACaveOfASurveyByItsStationsAndTheMissionRecordsHow
   EXPECT_EQ(with_survey(mission_).survey.offset, "1.000 2.000 3.000") << "what is given counts";
 }
 
+TEST_F(KnownSurveyTest, NotesSayHowItLiesInTheCave) {
+  const auto notes = [this] {
+    std::string all;
+    with_survey(mission_, [&](const std::string& note) { all += note + "\n"; });
+    return all;
+  };
+  const auto expect_note = [&](const std::string& part) {
+    const std::string all = notes();
+    EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
+  };
+  mission_.cave = folder_.write("cave.info", "mesh cave.ply\nstart \"0 0 1\"\n");
+  folder_.write("cave.ply", "");
+  expect_note("cave.svx: lies in the cave with the offset 0.000 0.000 0.000: as no table of stations");
+  expect_note("the start is 2");  // 225 m
+  folder_.write("cave.stations.csv", "name,x,y,z,flags\ncave.1,0,0,1,\ncave.2,10.000,0.000,1.000,\n");
+  expect_note(
+      "offset 100.000 200.000 29.000: 2 of its stations have names of the cave's; they lie 0.00 m "
+      "(median) and at most 0.00 m");
+  EXPECT_EQ(notes().find("the start is"), std::string::npos) << "it is in the survey";
+  mission_.survey.offset = "5000 5000 0";
+  expect_note("survey.offset contradicts the names");
+  expect_note("m from its nearest leg: does survey.offset fit the cave?");
+}
+
+TEST_F(KnownSurveyTest, OneThatContradictsTheCaveIsRefused) {
+  mission_.cave = folder_.write("cave.info", "mesh cave.ply\n");
+  folder_.write("cave.stations.csv", "name,x,y,z,flags\ncave.1,0,0,0,\ncave.2,0,80,0,\ncave.3,50,0,0,\n");
+  EXPECT_NE(error().find("cave.svx: contradicts the cave"), std::string::npos) << error();
+}
+
 TEST_F(KnownSurveyTest, BadInputIsNamed) {
   mission_.survey.offset = "1 2";
   EXPECT_NE(error().find("mission.info: survey.offset: expected \"x y z\""), std::string::npos) << error();

@@ -74,6 +74,9 @@ TEST(Adjust, WhatNothingTiesToAFixedStationIsLeftOutWithANote) {
   const Survey s = adjusted_lines("fix 1 0 0 0\n" + kNormal + "1 2 10 0 0\n3 4 10 0 0\n4 5 10 0 0\n");
   EXPECT_EQ(s.stations.size(), 2u);
   EXPECT_TRUE(notes_say(s.notes, "2 legs from here on are tied to no fixed station"));
+  EXPECT_EQ(s.left_out.parts, 1u);
+  EXPECT_EQ(s.left_out.legs, 2u);
+  EXPECT_GT(s.left_out.legs_m, 0);
   const Survey loose = adjusted_lines(kNormal + "1 2 10 0 0\n3 4 10 0 0\n4 5 10 0 0\n");
   EXPECT_EQ(loose.stations.size(), 3u) << "the larger part";
   EXPECT_TRUE(notes_say(loose.notes, "no station of the survey is fixed"));

@@ -49,6 +49,24 @@ TEST(Dump3d, ALineThatCannotBeReadIsNamed) {
   }
 }
 
+TEST(Dump3d, AnExtendedElevationIsNoCave) {
+  try {
+    dump("TITLE \"mole\"\nVERSION 8\nEXTENDED ELEVATION\nSEPARATOR '.'\n--\nNODE 0 0 0 [a] UNDERGROUND\n");
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_TRUE(says(e.what(), "a.3d: is an extended elevation")) << e.what();
+  }
+  EXPECT_TRUE(dump("TITLE \"EXTENDED ELEVATION\"\n--\n").nodes.empty()) << "a title may say so";
+}
+
+TEST(ErrFile, ATraverseThatNeverMovedIsOnNoLoop) {
+  const Folder folder;
+  EXPECT_TRUE(read_err_file(folder.write("a.err",
+                                         "1 - 2 - 3\nOriginal length  20.00m (  2 legs), moved   0.00m ( "
+                                         "0.00m/leg). Error   0.00%\n0.000000\nH: 0.000000 V: 0.000000\n\n"))
+                  .empty());
+}
+
 TEST(ErrFile, TraversesAreSortedByTheirError) {
   const Folder folder;
   const auto traverses =
@@ -72,7 +90,7 @@ TEST(CavernMessages, AreReadWithTheirFileAndLine) {
       "Survex 1.4.4\na.svx:5:18: error: Expecting numeric field\n *declination auto\n      ^\n"
       "dir:x/b.svx:7: warning: Unused fixed point \"9\"\na.svx:5: info: Declination: 0.9\n"
       "cavern: error: Survey not all connected to fixed stations\nThe following survey stations are not "
-      "attached:\n3\n");
+      "attached to a fixed point:\nx.m\nx.c\nx.c\n");
   ASSERT_EQ(messages.size(), 3u);
   EXPECT_EQ(messages[0].file, "a.svx");
   EXPECT_EQ(messages[0].line, 5u);
@@ -82,7 +100,8 @@ TEST(CavernMessages, AreReadWithTheirFileAndLine) {
   EXPECT_EQ(messages[1].line, 7u);
   EXPECT_FALSE(messages[1].error);
   EXPECT_TRUE(messages[2].file.empty());
-  EXPECT_TRUE(says(messages[2].text, "not attached:; 3"));
+  EXPECT_TRUE(says(messages[2].text, "not all connected to fixed stations"));
+  EXPECT_EQ(messages[2].unattached, (std::vector<std::string>{"x.m", "x.c"}));
 }
 
 TEST(PlaceNames, AreReadBack) {

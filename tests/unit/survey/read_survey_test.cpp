@@ -65,6 +65,33 @@ TEST(ReadSurvey, ErrorsAndWarningsOfCavernNameTheirPlace) {
   EXPECT_TRUE(says(refusal_of_file(folder.write("d.svx", "")), "d.svx: "));
 }
 
+TEST(ReadSurvey, SeveralErrorsOfCavernAreGivenAtOnce) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  const std::string said =
+      refusal_of_file(folder.write("a.svx", "*fix 1 0 0 0\n1 2 10 0 0\n2 3 x 0 0\n*foo bar\n3 4 y 0 0\n"));
+  for (const char* part : {"a.svx: line 3: ", "; line 4: ", "; line 5: "})
+    EXPECT_TRUE(says(said, part)) << said;
+  std::string many = "*fix 1 0 0 0\n1 2 10 0 0\n";
+  for (int i = 0; i < 7; ++i) many += "*foo bar\n";
+  const std::string cut = refusal_of_file(folder.write("b.svx", many));
+  EXPECT_TRUE(says(cut, "; line 7: ") && !says(cut, "line 8") && says(cut, "; and 2 more errors")) << cut;
+}
+
+TEST(ReadSurvey, LoosePartsAreCountedAndNamed) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  const std::string said =
+      refusal_of_file(folder.write("a.svx", "*begin x\n1 2 10 40 0\n8 9 10 40 0\n*end x\n"));
+  EXPECT_TRUE(says(said, "1 loose part, with x.8") && says(said, "*equate")) << said;
+}
+
+TEST(ReadSurvey, ASurvexFileThatIncludesItselfIsRefusedWithItsLine) {
+  SKIP_WITHOUT_SURVEX();
+  const Folder folder;
+  EXPECT_TRUE(says(refusal_of_file(folder.write("a.svx", "*include a\n1 2 10 0 0\n")), "a.svx: line 1: "));
+}
+
 TEST(ReadSurvey, FarEndsOfSplaysAreNoStationsThoughTheyHaveNames) {
   SKIP_WITHOUT_SURVEX();
   const Folder folder;

@@ -26,6 +26,15 @@ TEST(TherionData, ALegOfTapeCompassAndClino) {
               {10 * std::sqrt(0.75), 0, 5});
 }
 
+TEST(TherionData, ABearingBeyondTheCircleIsTakenAroundItWithANote) {
+  const std::string data = "data normal from to length compass clino\n";
+  const Readings beyond = readings_of(data + "1 2 10 400 0\n");
+  EXPECT_NEAR(beyond.legs.at(0).bearing_deg, 40, 1e-9);
+  EXPECT_TRUE(test::notes_say(beyond.log.notes, "a bearing out of range, 400: taken as 40 deg"));
+  for (const char* full : {"1 2 10 360 0\n", "units compass grads\n1 2 10 400 0\n"})
+    EXPECT_FALSE(test::notes_say(readings_of(data + full).log.notes, "out of range")) << full;
+}
+
 TEST(TherionData, ColumnsStandInAnyOrderAndOthersAreIgnored) {
   expect_near(only_leg("data normal to clino ignore from compass tape ignoreall\n2 30 x 1 90 10 and more\n"),
               {10 * std::sqrt(0.75), 0, 5});

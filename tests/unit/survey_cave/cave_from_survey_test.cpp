@@ -264,5 +264,29 @@ TEST(CaveFromSurvey, TooManyTrianglesAreRefusedWithTheResolutionThatFits) {
   EXPECT_NE(error_of([&] { made_of(apart); }).find("test.th: "), std::string::npos);
 }
 
+TEST(CaveFromSurvey, AStartInNoPassageIsRefusedWithTheNearestStation) {
+  const SurveyMaker m = straight_passage(4, 5, 1.5);
+  CaveOptions o = smooth();
+  o.start = cave::StartPose{{12, 0, 0}, 0};
+  EXPECT_TRUE(made_of(m, o).start);
+  o.start = cave::StartPose{{16, 30, 40}, 0};
+  const std::string said = error_of([&] { made_of(m, o); });
+  EXPECT_NE(said.find("test.th: --start: lies in no passage; the nearest station is 50.0 m away: cave.3 at "
+                      "\"15.00 0.00 0.00\""),
+            std::string::npos)
+      << said;
+}
+
+TEST(CaveFromSurvey, WhatLooksWrongInTheSurveyIsAFinding) {
+  SurveyMaker m = straight_passage(4, 5, 1.5);
+  EXPECT_TRUE(made_of(m).report.findings.empty());
+  m.survey.loops.traverses.push_back({"cave.0", "cave.2", 2, 10, 5, 50, 40});
+  m.survey.left_out = {2, 3, 25};
+  const std::vector<std::string> findings = made_of(m).report.findings;
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_NE(findings[0].find("2 parts of the survey left out"), std::string::npos) << findings[0];
+  EXPECT_NE(findings[1].find("50.0 %"), std::string::npos) << findings[1];
+}
+
 }  // namespace
 }  // namespace karst::survey_cave

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -146,21 +147,48 @@ TEST(SurveyPrior, SplaysAcrossThePassageStandInForSections) {
 TEST(SurveyPrior, LiesInACaveByTheStationsOfTheSameName) {
   const test::Folder folder;
   const std::string cave = folder.write("cave.info", "mesh cave.ply\n");
-  EXPECT_EQ(offset_of("s.svx", tee(), cave), Vec3::Zero()) << "a cave that no survey has made";
-  EXPECT_EQ(offset_of("s.svx", tee(), ""), Vec3::Zero());
+  EXPECT_FALSE(station_fit("s.svx", tee(), cave, {})) << "a cave that no survey has made";
+  EXPECT_FALSE(station_fit("s.svx", tee(), "", {}));
   folder.write("cave.stations.csv",
                "name,x,y,z,flags\ncave.0,0.000,-1.000,2.000,entrance fixed\ncave.1,10.000,-1.000,2.000,\n"
                "\"cave.2\",20.010,-1.000,2.000,\nelsewhere.7,0.000,0.000,0.000,\n");
-  EXPECT_EQ(offset_of("s.svx", tee(), cave), Vec3(100, 51, 8));
+  const auto fit = station_fit("s.svx", tee(), cave, {});
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->offset_m, Vec3(100, 51, 8));
+  EXPECT_EQ(fit->names, 3u);
+  EXPECT_NEAR(fit->median_m, 0, 1e-9);
+  EXPECT_NEAR(fit->greatest_m, 0.01, 1e-9);
   Survey other = tee();
   for (survey::Station& s : other.stations) s.name = "other" + s.name;
-  EXPECT_TRUE(says(error_of([&] { offset_of("s.svx", other, cave); }), "s.svx: has no station of "));
-  EXPECT_TRUE(says(error_of([&] { offset_of("s.svx", other, cave); }), "give survey.offset"));
+  EXPECT_TRUE(says(error_of([&] { station_fit("s.svx", other, cave, {}); }), "s.svx: has no station of "));
+  EXPECT_TRUE(says(error_of([&] { station_fit("s.svx", other, cave, {}); }), "give survey.offset"));
+  EXPECT_EQ(station_fit("s.svx", other, cave, Vec3(1, 2, 3))->names, 0u);
   other.stations[1].aliases = {"cave.1"};
-  EXPECT_EQ(offset_of("s.svx", other, cave), Vec3(100, 51, 8));
+  EXPECT_EQ(station_fit("s.svx", other, cave, {})->offset_m, Vec3(100, 51, 8));
   folder.write("cave.stations.csv", "name,x,y,z,flags\ncave.0,0.0,far,2.0,\n");
   EXPECT_TRUE(
-      says(error_of([&] { offset_of("s.svx", tee(), cave); }), "stations.csv: line 2: expected name"));
+      says(error_of([&] { station_fit("s.svx", tee(), cave, {}); }), "stations.csv: line 2: expected name"));
+}
+
+TEST(SurveyPrior, ThatContradictsTheStationsOfTheCaveIsRefusedUnlessTheOffsetIsGiven) {
+  const test::Folder folder;
+  const std::string cave = folder.write("cave.info", "mesh cave.ply\n");
+  folder.write("cave.stations.csv",
+               "name,x,y,z,flags\ncave.0,0,0,0,\ncave.1,0,10,0,\ncave.2,0,20,0,\ncave.3,0,30,0,\n");
+  const std::string said = error_of([&] { station_fit("s.svx", tee(), cave, {}); });
+  EXPECT_TRUE(says(said, "s.svx: contradicts the cave")) << said;
+  EXPECT_TRUE(says(said, "4 stations of the same name")) << said;
+  const auto given = station_fit("s.svx", tee(), cave, Vec3(100, 50, 10));
+  ASSERT_TRUE(given);
+  EXPECT_EQ(given->offset_m, Vec3(100, 50, 10));
+  EXPECT_NEAR(given->greatest_m, std::hypot(20, 20), 1e-9) << "of cave.2";
+}
+
+TEST(SurveyPrior, TheDistanceToItsLegsEndsAtTheirStations) {
+  const core::SurveyPrior prior = prior_of(tee(), Vec3::Zero());
+  EXPECT_NEAR(distance_to_legs_m(prior, {105, 50, 17}), 7, 1e-9);
+  EXPECT_NEAR(distance_to_legs_m(prior, {97, 50, 14}), 5, 1e-9);
+  EXPECT_TRUE(std::isinf(distance_to_legs_m({}, {0, 0, 0})));
 }
 
 TEST(SurveyPrior, OffsetsAreThreeNumbers) {
