@@ -1,15 +1,17 @@
 #include "sdk/survey_export/export_run.h"
 
+#include <boost/property_tree/ptree.hpp>
+#include <optional>
 #include <utility>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/options.h"
 #include "core_stack/mapping/occupancy/voxel_reader.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
 #include "core_stack/mission/recording/run_event.h"
 #include "sdk/evaluation/record/run_record.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/survey_export/las_points.h"
-#include "sdk/survey_export/new_legs.h"
 #include "sdk/survey_export/svx_file.h"
 #include "sdk/survey_export/therion_file.h"
 
@@ -30,6 +32,15 @@ core::VoxelMap map_of(const fs::path& run) {
                                (run / "robot_1").string()
                          : "is not there: the map is written when a flight ends");
   return core::read_octomap(file.string());
+}
+
+/// That of the cave's file; of the run's folder if the run does not name its cave.
+std::string cave_name(const fs::path& run) {
+  if (const fs::path mission = run / "mission.info"; fs::exists(mission))
+    if (const fs::path cave = core::read_info(mission.string()).get("cave.file", ""); cave.has_stem())
+      return cave.stem().string();
+  const fs::path folder = fs::absolute(run).lexically_normal();
+  return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
 }
 
 std::vector<Vec3> frontiers_left(const fs::path& run, std::vector<std::string>& problems) {
@@ -58,8 +69,9 @@ std::vector<Vec3> wall_points(const RunSurvey& run, const Placing& placing) {
 
 }  // namespace
 
-RunSurvey survey_of_run(const fs::path& run, const std::string& name) {
+RunSurvey survey_of_run(const fs::path& run, const std::string& name, const OtherPrior& other_prior) {
   core::VoxelMap map = map_of(run);
+  const std::optional<KnownSurvey> known = survey_before(run, other_prior);
   std::vector<std::string> problems;
   const auto estimate = evaluation::read_tum(run / "trajectory.tum", problems);
   if (estimate.empty())
@@ -72,13 +84,14 @@ RunSurvey survey_of_run(const fs::path& run, const std::string& name) {
       evaluation::read_table(run / "localization.csv", {"believed", "problem"}, problems);
   input.accuracy = accuracy_of(localization, estimate, map.resolution_m());
   input.name = survey_name(name);
-  const fs::path folder = fs::absolute(run).lexically_normal();
-  input.title =
-      "Survey from a flight: " + (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  input.title = "Survey from a flight: " + cave_name(run);
   input.source = run.string();
   FlownSurvey flown = flown_survey(input);
-  if (const auto known = survey_before(run)) flown.leg_is_new = new_legs(flown.survey, *known);
-  return {std::move(map), std::move(flown), std::move(problems)};
+  if (known) {
+    flown.leg_is_new = new_legs(flown.survey, known->passages);
+    flown.offset_m = known->offset_m;
+  }
+  return {std::move(map), std::move(flown), std::move(problems), known ? known->file : ""};
 }
 
 std::vector<fs::path> survey_files(const std::string& out) {

@@ -20,6 +20,8 @@ struct FlownSurvey {
   std::vector<double> leg_sd_m;           // of each leg, in each axis
   std::vector<bool> leg_is_new;           // not in the survey that the mission had; empty: it had none
   core::Vec3 start = core::Vec3::Zero();  // where the vehicle stood
+  /// The map's origin in the coordinates of the survey that the mission had; zero without one.
+  core::Vec3 offset_m = core::Vec3::Zero();
   Accuracy accuracy;
   std::size_t blocked_legs = 0;  // joined through cells that are not free
 };

@@ -3,6 +3,7 @@
 #include <boost/property_tree/ptree.hpp>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/options.h"
 #include "sdk/survey/read_survey.h"
@@ -10,15 +11,36 @@
 
 namespace karst::survey_export {
 
-std::optional<core::SurveyedPassages> survey_before(const std::filesystem::path& run) {
+namespace {
+
+survey::Survey read_named(const std::string& mission, const std::string& file) {
+  try {
+    return survey::read_survey(file);
+  } catch (const core::InputError& e) {
+    throw core::InputError(
+        mission, "survey.file",
+        std::string(e.what()) +
+            "; if the survey was moved, say where with --prior FILE; --prior none leaves it out");
+  }
+}
+
+}  // namespace
+
+std::optional<KnownSurvey> survey_before(const std::filesystem::path& run, const OtherPrior& other) {
   const std::string mission = (run / "mission.info").string();
-  if (!std::filesystem::exists(mission)) return std::nullopt;
-  const boost::property_tree::ptree tree = core::read_info(mission);
-  const std::string file = tree.get("survey.file", "");
+  boost::property_tree::ptree tree;
+  if (std::filesystem::exists(mission)) tree = core::read_info(mission);
+  const std::string file = other ? other->string() : tree.get("survey.file", "");
   if (file.empty()) return std::nullopt;
-  const core::Vec3 offset_m =
-      survey_prior::read_offset(mission, "survey.offset", tree.get("survey.offset", "0 0 0"));
-  return core::SurveyedPassages(survey_prior::prior_of(survey::read_survey(file), offset_m));
+  std::optional<core::Vec3> offset_m;
+  if (const std::string text = tree.get("survey.offset", ""); !text.empty())
+    offset_m = survey_prior::read_offset(mission, "survey.offset", text);
+  const survey::Survey survey = other ? survey::read_survey(file) : read_named(mission, file);
+  if (!offset_m)
+    if (const auto fit = survey_prior::station_fit(file, survey, tree.get("cave.file", ""), std::nullopt))
+      offset_m = fit->offset_m;
+  const core::Vec3 at_m = offset_m.value_or(core::Vec3::Zero());
+  return KnownSurvey{file, core::SurveyedPassages(survey_prior::prior_of(survey, at_m)), at_m};
 }
 
 std::vector<bool> new_legs(const survey::Survey& flown, const core::SurveyedPassages& known) {

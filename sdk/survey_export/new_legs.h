@@ -11,9 +11,19 @@
 
 namespace karst::survey_export {
 
-/// The survey that the run's mission names, as it lies in the map; none if it names none. Throws
-/// core::InputError if it cannot be read.
-std::optional<core::SurveyedPassages> survey_before(const std::filesystem::path& run);
+struct KnownSurvey {
+  std::string file;
+  core::SurveyedPassages passages;  // as they lie in the map
+  core::Vec3 offset_m;              // the map's origin in the coordinates of the survey
+};
+
+/// Takes the place of the survey that a mission names; an empty path: none does.
+using OtherPrior = std::optional<std::filesystem::path>;
+
+/// The survey that the run's mission names, or the other one at the mission's survey.offset (without one,
+/// where the stations of the cave have it); none if there is none. Throws core::InputError if it cannot be
+/// read, naming the mission file if that names the survey.
+std::optional<KnownSurvey> survey_before(const std::filesystem::path& run, const OtherPrior& other = {});
 
 /// Of each leg, whether at least half of it is farther than core::kBeyondSurvey_m from the known passages.
 std::vector<bool> new_legs(const survey::Survey& flown, const core::SurveyedPassages& known);

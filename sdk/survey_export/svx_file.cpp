@@ -52,7 +52,7 @@ std::string svx_text(const FlownSurvey& flown, const Placing& placing) {
   for (std::uint32_t i = 0; i < flown.survey.stations.size(); ++i) {
     const survey::Station& s = flown.survey.stations[i];
     const std::string name = station_word(flown, i);
-    if (s.fixed) {
+    if (s.fixed && placing.fixed) {
       const core::Vec3 p = placed(placing, flown, s.position_m);
       text += format_text("*fix %s %.3f %.3f %.3f\n", name.c_str(), p.x(), p.y(), p.z());
     }

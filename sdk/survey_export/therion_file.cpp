@@ -56,7 +56,7 @@ std::string therion_text(const FlownSurvey& flown, const Placing& placing) {
   text += "survey " + flown.name + " -title \"" + title + "\"\n  centreline\n";
   if (!placing.system.empty()) text += "    cs " + placing.system + '\n';
   for (std::uint32_t i = 0; i < flown.survey.stations.size(); ++i)
-    if (flown.survey.stations[i].fixed) {
+    if (flown.survey.stations[i].fixed && placing.fixed) {
       const core::Vec3 p = placed(placing, flown, flown.survey.stations[i].position_m);
       text += format_text("    fix %s %.3f %.3f %.3f\n", station_word(flown, i).c_str(), p.x(), p.y(), p.z());
     }

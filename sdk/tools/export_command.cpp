@@ -12,8 +12,10 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/printable.h"
 #include "core_stack/common/rounded.h"
+#include "core_stack/common/shell_word.h"
 #include "plugins/simulator/cave/cave_blocks.h"
 #include "sdk/survey_export/export_run.h"
+#include "sdk/survey_export/geographic_system.h"
 #include "sdk/survey_export/leg_words.h"
 #include "sdk/survey_export/new_legs.h"
 #include "sdk/terminal/terminal.h"
@@ -28,22 +30,32 @@ using survey_export::RunSurvey;
 using survey_export::WallMesh;
 
 struct ExportArguments {
-  std::string run, out, fix, system;
+  std::string run, out, fix, system, prior;
   double declination_deg = 0;
-  bool force = false, json = false;
+  bool no_fix = false, force = false, json = false;
 };
 
 survey_export::Placing placing_of(const ExportArguments& args) {
   survey_export::Placing placing;
   placing.declination_deg = args.declination_deg;
   placing.system = args.system;
+  placing.fixed = !args.no_fix;
   // Names that Survex and Therion share.
   static const std::regex known("(EPSG|ESRI):[0-9]{4,6}|UTM([1-9]|[1-5][0-9]|60)[NS]");
+  if (survey_export::is_geographic(args.system))
+    throw InputError("command line", "--cs",
+                     "expected a system in metres such as EPSG:32633 or UTM33N; " + args.system +
+                         " is latitude and longitude, in degrees");
   if (!args.system.empty() && !std::regex_match(args.system, known))
     throw InputError("command line", "--cs",
                      "expected a system in metres such as EPSG:32633 or UTM33N, got \"" + args.system + "\"");
   if (!args.fix.empty()) placing.start_m = cave::read_vector("command line", "--fix", args.fix);
   return placing;
+}
+
+survey_export::OtherPrior prior_of(const ExportArguments& args) {
+  if (args.prior.empty()) return std::nullopt;
+  return args.prior == "none" ? fs::path() : fs::path(args.prior);
 }
 
 /// The files name each other, and Therion reads neither quotes in such a name nor bytes that are no UTF-8.
@@ -89,22 +101,26 @@ nlohmann::ordered_json json_of(const RunSurvey& run, const WallMesh& walls, cons
   const survey_export::Accuracy& a = run.flown.accuracy;
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const fs::path& file : survey_export::survey_files(out)) files.push_back(file.string());
-  nlohmann::ordered_json j = {{"schema", "karst.export/1"},
-                              {"name", run.flown.name},
-                              {"stations", run.flown.survey.stations.size()},
-                              {"legs", run.flown.survey.legs.size()},
-                              {"length_m", core::to_millionths(sums.length_m)},
-                              {"approximate_legs", sums.approximate},
-                              {"approximate_m", core::to_millionths(sums.approximate_m)},
-                              {"continuations", sums.continuations},
-                              {"blocked_legs", run.flown.blocked_legs},
-                              {"cell_sd_m", core::to_millionths(a.leg_sd_m(0))},
-                              {"drift_sd_m_per_root_m", core::to_millionths(std::sqrt(a.growth_m2_per_m))},
-                              {"drift_scans", a.scans},
-                              {"triangles", walls.mesh.triangles.size()},
-                              {"open_edges", walls.open_edges},
-                              {"files", files},
-                              {"problems", run.problems}};
+  nlohmann::ordered_json j = {
+      {"schema", "karst.export/1"},
+      {"name", run.flown.name},
+      {"stations", run.flown.survey.stations.size()},
+      {"legs", run.flown.survey.legs.size()},
+      {"length_m", core::to_millionths(sums.length_m)},
+      {"approximate_legs", sums.approximate},
+      {"approximate_m", core::to_millionths(sums.approximate_m)},
+      {"continuations", sums.continuations},
+      {"blocked_legs", run.flown.blocked_legs},
+      {"cell_sd_m", core::to_millionths(a.leg_sd_m(0))},
+      {"drift_sd_m_per_root_m", core::to_millionths(std::sqrt(a.growth_m2_per_m))},
+      {"drift_scans", a.scans},
+      {"offset_m",
+       {core::to_millionths(run.flown.offset_m.x()), core::to_millionths(run.flown.offset_m.y()),
+        core::to_millionths(run.flown.offset_m.z())}},
+      {"triangles", walls.mesh.triangles.size()},
+      {"open_edges", walls.open_edges},
+      {"files", files},
+      {"problems", run.problems}};
   if (!run.flown.leg_is_new.empty()) {
     const survey_export::NewSum sum = survey_export::new_sum(run.flown);
     j["new_legs"] = sum.legs;
@@ -130,19 +146,29 @@ void print(const RunSurvey& run, const WallMesh& walls, const ExportArguments& a
     print_out("  not in sight of each other: %s\n",
               core::counted(run.flown.blocked_legs, "pair of neighbours").c_str());
   print_wrapped(stdout, 2, "  %s\n", survey_export::accuracy_words(run.flown.accuracy).c_str());
+  if (const core::Vec3& o = run.flown.offset_m; !o.isZero() && args.fix.empty())
+    print_wrapped(stdout, 2,
+                  "  coordinates: those of the survey %s; the cave's origin is at %.3f %.3f %.3f\n",
+                  run.prior.c_str(), o.x(), o.y(), o.z());
+  if (args.no_fix) print_out("  no station is fixed\n");
   print_out("  walls: %s triangles\n", core::grouped(walls.mesh.triangles.size()).c_str());
   for (const std::string& problem : run.problems) print_error("%s\n", problem.c_str());
   std::string files;
   for (const fs::path& file : survey_export::survey_files(args.out))
     files += (files.empty() ? "" : ", ") + file.string();
   print_wrapped(stdout, 2, "written: %s\n", files.c_str());
-  print_out("next:\n  cavern %s.svx\n  therion %s.thconfig\n", args.out.c_str(), args.out.c_str());
+  print_out("next:\n  cavern %s\n  therion %s\n", core::shell_word(args.out + ".svx").c_str(),
+            core::shell_word(args.out + ".thconfig").c_str());
 }
 
 void export_survey(const ExportArguments& args) {
   const survey_export::Placing placing = placing_of(args);
   check_name(args);
-  const RunSurvey run = survey_export::survey_of_run(args.run, fs::path(args.out).filename().string());
+  const RunSurvey run =
+      survey_export::survey_of_run(args.run, fs::path(args.out).filename().string(), prior_of(args));
+  if (!placing.system.empty() && !placing.start_m && run.flown.offset_m.isZero())
+    throw InputError("command line", "--cs",
+                     "needs --fix: no survey of the mission says where the cave lies in " + placing.system);
   check_out(args);
   const WallMesh walls = survey_export::write_survey(run, placing, args.out);
   if (args.json)
@@ -166,12 +192,27 @@ void add_export_command(CLI::App& app) {
       ->required()
       ->check(not_empty());
   auto* fix = command
-                  ->add_option("--fix", args->fix,
-                               "\"x y z\", where the vehicle stood at its start, m (default: as in the map)")
+                  ->add_option(
+                      "--fix", args->fix,
+                      "\"x y z\" of the vehicle's centre at its start, m (default: as in the survey that the "
+                      "mission had, else as in the map)")
                   ->check(not_empty());
-  command->add_option("--cs", args->system, "Coordinate system of --fix, such as EPSG:32633 or UTM33N")
-      ->check(not_empty())
-      ->needs(fix);
+  auto* system =
+      command
+          ->add_option("--cs", args->system,
+                       "Coordinate system of --fix, or of the mission's survey, such as EPSG:32633 or UTM33N")
+          ->check(not_empty());
+  command
+      ->add_flag("--no-fix", args->no_fix,
+                 "Fix no station in OUT.svx and OUT.th, to equate one with a station of another survey")
+      ->excludes(fix)
+      ->excludes(system);
+  command
+      ->add_option(
+          "--prior", args->prior,
+          "Survey to compare with instead of the one that the run's mission.info names; none: with none")
+      ->type_name(kFile)
+      ->check(not_empty());
   command
       ->add_option(
           "--declination", args->declination_deg,

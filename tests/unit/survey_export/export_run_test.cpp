@@ -98,6 +98,13 @@ TEST_F(ExportRun, RefusesARunWithoutAMap) {
   EXPECT_TRUE(says(error_of([] { survey_of_run("/nonexistent/run", "cave"); }), "no such run directory"));
 }
 
+TEST_F(ExportRun, TheTitleHasTheCavesNameAndWithoutOneTheFolders) {
+  const auto title = [&] { return survey_of_run(folder_.path(), "x").flown.survey.title; };
+  EXPECT_EQ(title(), "Survey from a flight: " + folder_.path().filename().string());
+  folder_.write("mission.info", "cave { file \"/caves/old mine.info\" }\n");
+  EXPECT_EQ(title(), "Survey from a flight: old mine");
+}
+
 TEST_F(ExportRun, RefusesAnEmptyFlight) {
   folder_.write("trajectory.tum", "");
   const auto read = [&] { survey_of_run(folder_.path(), "cave"); };

@@ -81,6 +81,7 @@ TEST(NewLegs, TheSurveyIsTheOneOfTheRunsMission) {
   EXPECT_FALSE(survey_before(run.path()));
   run.write("mission.info", "survey { file \"/nonexistent/cave.svx\" offset \"1 2 3\" }\n");
   EXPECT_THROW(survey_before(run.path()), core::InputError);
+  EXPECT_FALSE(survey_before(run.path(), std::filesystem::path())) << "none was asked for";
   if (!survey::has_survex()) GTEST_SKIP() << "skipped: no survex/therion";
   const std::string svx = run.write("cave.svx",
                                     "*begin cave\n*fix 1 100 0 0\n*data normal from to tape compass clino\n"
@@ -88,7 +89,26 @@ TEST(NewLegs, TheSurveyIsTheOneOfTheRunsMission) {
   run.write("mission.info", "survey { file \"" + svx + "\" offset \"100 0 0\" }\n");
   const auto known = survey_before(run.path());
   ASSERT_TRUE(known);
-  EXPECT_NEAR(known->distance_m({14, 0, 0}), 4, 0.02);
+  EXPECT_NEAR(known->passages.distance_m({14, 0, 0}), 4, 0.02);
+  EXPECT_NEAR((known->offset_m - Vec3(100, 0, 0)).norm(), 0, 1e-9);
+  run.write("mission.info", "survey { file \"/nonexistent/cave.svx\" offset \"100 0 0\" }\n");
+  const auto other = survey_before(run.path(), std::filesystem::path(svx));
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->file, svx);
+  EXPECT_NEAR(other->passages.distance_m({14, 0, 0}), 4, 0.02) << "at the offset of the mission";
+}
+
+TEST(NewLegs, ASurveyThatWasMovedIsNamedWithTheMissionFileAndTheOptionThatHelps) {
+  const test::Folder run;
+  const std::string mission = run.write("mission.info", "survey { file \"/nonexistent/cave.svx\" }\n");
+  try {
+    survey_before(run.path());
+    FAIL();
+  } catch (const core::InputError& e) {
+    const std::string said = e.what();
+    EXPECT_EQ(said.rfind(mission + ": survey.file: /nonexistent/cave.svx: ", 0), 0u) << said;
+    EXPECT_NE(said.find("--prior FILE; --prior none"), std::string::npos) << said;
+  }
 }
 
 }  // namespace

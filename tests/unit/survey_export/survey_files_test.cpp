@@ -164,6 +164,28 @@ TEST_F(SurveyFiles, TherionTakesTheSurveyWithoutAWarning) {
   }
 }
 
+TEST(SurveyText, TheEntranceIsFixedInTheCoordinatesOfTheMissionsSurveyUnlessAPlaceIsGiven) {
+  const core::VoxelMap map = cave_map();
+  FlownSurvey flown = cave_survey(map);
+  flown.offset_m = Vec3(451000, 5078000, 800);
+  const Vec3 p = flown.survey.stations[0].position_m;
+  EXPECT_LT((placed({}, flown, p) - (p + flown.offset_m)).norm(), 1e-6);
+  Placing placing;
+  placing.start_m = Vec3(1, 2, 3);
+  EXPECT_LT((placed(placing, flown, flown.start) - Vec3(1, 2, 3)).norm(), 1e-9);
+}
+
+TEST(SurveyText, NoStationIsFixedIfAskedFor) {
+  const core::VoxelMap map = cave_map();
+  const FlownSurvey flown = cave_survey(map);
+  Placing placing;
+  EXPECT_NE(svx_text(flown, placing).find("\n*fix 1 "), std::string::npos);
+  EXPECT_NE(therion_text(flown, placing).find("    fix 1 "), std::string::npos);
+  placing.fixed = false;
+  EXPECT_EQ(svx_text(flown, placing).find("*fix"), std::string::npos);
+  EXPECT_EQ(therion_text(flown, placing).find("    fix "), std::string::npos);
+}
+
 TEST(SurveyText, TheScanTiesTheMeshToStationsOfTheCentreline) {
   const core::VoxelMap map = cave_map();
   const FlownSurvey flown = cave_survey(map);

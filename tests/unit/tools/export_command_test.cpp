@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core_stack/mapping/octomap/octomap_io.h"
+#include "sdk/survey/cavern.h"
 #include "tests/unit/simulator/meshes.h"
 #include "tests/unit/survey_export/carved_map.h"
 
@@ -88,6 +89,32 @@ TEST_F(ExportCommand, FixesAndTurnsTheSurvey) {
   EXPECT_TRUE(has(text_of(".th"), "    grid-angle 3.5000 degrees\n"));
 }
 
+TEST_F(ExportCommand, CommandsToCopyAreQuoted) {
+  const std::string said = run({"export", folder_, "--survey", folder_ + "/a b c"});
+  EXPECT_TRUE(has(said, "  cavern '" + folder_ + "/a b c.svx'\n")) << said;
+  EXPECT_TRUE(has(said, "  therion '" + folder_ + "/a b c.thconfig'\n")) << said;
+}
+
+TEST_F(ExportCommand, WithoutAFixNoStationIsFixedAndTheSummarySaysSo) {
+  EXPECT_TRUE(has(run_with({"--no-fix"}), "no station is fixed"));
+  EXPECT_FALSE(has(text_of(".svx"), "*fix"));
+}
+
+TEST_F(ExportCommand, ASurveyOfTheMissionThatWasMovedCanBeReplacedOrLeftOut) {
+  std::ofstream(folder_ + "/mission.info")
+      << "survey { file \"/nonexistent/old.svx\" offset \"1000 0 0\" }\n";
+  EXPECT_TRUE(has(error_of([&] { run_with({}); }), "mission.info: survey.file: /nonexistent/old.svx"));
+  EXPECT_FALSE(has(run_with({"--prior", "none"}), "coordinates: "));
+  if (!survey::has_survex()) GTEST_SKIP() << "skipped: no survex/therion";
+  std::ofstream(folder_ + "/moved.svx") << "*fix 1 1000 0 1.5\n*data normal from to tape compass clino\n"
+                                           "1 2 30 90 0\n";
+  const std::string said = run_with({"--force", "--prior", folder_ + "/moved.svx"});
+  EXPECT_TRUE(has(said, "coordinates: those of the survey")) << said;
+  EXPECT_TRUE(has(said, "new: 0 legs")) << said;
+  EXPECT_TRUE(has(text_of(".svx"), "*fix 1 100")) << text_of(".svx");
+  EXPECT_NO_THROW(run_with({"--force", "--prior", folder_ + "/moved.svx", "--cs", "UTM33N"}));
+}
+
 TEST_F(ExportCommand, OverwritesOnlyIfForced) {
   run_with({});
   EXPECT_TRUE(has(error_of([&] { run_with({}); }), "tunnel.svx: is there already"));
@@ -97,7 +124,12 @@ TEST_F(ExportCommand, OverwritesOnlyIfForced) {
 TEST_F(ExportCommand, RefusesWhatItCannotUse) {
   EXPECT_TRUE(has(error_of([&] { run_with({"--fix", "1 2"}); }), "--fix"));
   EXPECT_TRUE(has(error_of([&] { run_with({"--fix", "1 2 3", "--cs", "lat-long"}); }), "--cs"));
-  EXPECT_THROW(run_with({"--cs", "UTM33N"}), CLI::ParseError);
+  EXPECT_TRUE(has(error_of([&] {
+                    run_with({"--fix", "1 2 3", "--cs", "EPSG:4326"});
+                  }),
+                  "--cs: expected a system in metres such as EPSG:32633 or UTM33N; EPSG:4326 is latitude"));
+  EXPECT_TRUE(has(error_of([&] { run_with({"--cs", "UTM33N"}); }), "--cs: needs --fix"));
+  EXPECT_THROW(run_with({"--fix", "1 2 3", "--no-fix"}), CLI::ParseError);
   EXPECT_THROW(run_with({"--declination", "north"}), CLI::ParseError);
   EXPECT_THROW(run({"export", folder_}), CLI::ParseError);
   EXPECT_TRUE(has(error_of([&] {
