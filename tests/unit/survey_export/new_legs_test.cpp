@@ -98,6 +98,20 @@ TEST(NewLegs, TheSurveyIsTheOneOfTheRunsMission) {
   EXPECT_NEAR(other->passages.distance_m({14, 0, 0}), 4, 0.02) << "at the offset of the mission";
 }
 
+TEST(NewLegs, WithoutASurveyOfTheMissionTheStationsOfTheCaveSayWhereAnotherOneLies) {
+  if (!survey::has_survex()) GTEST_SKIP() << "skipped: no survex/therion";
+  const test::Folder run;
+  const std::string svx =
+      run.write("old.svx",
+                "*begin cave\n*fix 1 451000 5078000 800\n*data normal from to tape compass "
+                "clino\n1 2 10 90 0\n*end cave\n");
+  run.write("made.stations.csv", "name,x,y,z,flags\ncave.1,0,0,0,\ncave.2,10,0,0,\n");
+  run.write("mission.info", "cave { file \"" + (run.path() / "made.info").string() + "\" }\n");
+  const auto known = survey_before(run.path(), std::filesystem::path(svx));
+  ASSERT_TRUE(known);
+  EXPECT_NEAR((known->offset_m - Vec3(451000, 5078000, 800)).norm(), 0, 0.02);
+}
+
 TEST(NewLegs, ASurveyThatWasMovedIsNamedWithTheMissionFileAndTheOptionThatHelps) {
   const test::Folder run;
   const std::string mission = run.write("mission.info", "survey { file \"/nonexistent/cave.svx\" }\n");
