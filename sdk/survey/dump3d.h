@@ -35,8 +35,8 @@ struct Dump3d {
   std::vector<CrossSection> sections;
 };
 
-/// Throws core::InputError naming `shown_as` and the line of the text that cannot be read, and for an extended
-/// elevation, whose stations lie in one plane.
+/// Throws core::InputError naming `shown_as` and the line of the text that cannot be read, and for an
+/// extended elevation, whose stations lie in one plane.
 Dump3d read_dump3d(const std::filesystem::path& text, const std::string& shown_as);
 
 }  // namespace karst::survey

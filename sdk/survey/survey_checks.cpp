@@ -12,7 +12,7 @@ namespace {
 
 using core::format_text;
 
-std::string placed(const Survey& survey, const Source& source) {
+std::string in_parentheses(const Survey& survey, const Source& source) {
   return source.line > 0 ? " (" + place_of(survey, source) + ")" : "";
 }
 
@@ -52,7 +52,8 @@ void check_lengths(const Survey& survey, std::vector<std::string>& checks) {
   checks.push_back(core::counted(wrong, "leg") +
                    format_text(" longer than %g m; the longest has %.1f m, from ", kLongLeg_m, longest_m) +
                    core::printable(survey.stations[longest->from].name) + " to " +
-                   core::printable(survey.stations[longest->to].name) + placed(survey, longest->source));
+                   core::printable(survey.stations[longest->to].name) +
+                   in_parentheses(survey, longest->source));
 }
 
 void check_walls(const Survey& survey, std::vector<std::string>& checks) {
@@ -74,7 +75,7 @@ void check_walls(const Survey& survey, std::vector<std::string>& checks) {
                    format_text(" with a wall more than %g m away; the farthest at %.1f m, seen from ",
                                kFarWall_m, farthest_m) +
                    core::printable(survey.stations[farthest->station].name) +
-                   placed(survey, farthest->source));
+                   in_parentheses(survey, farthest->source));
 }
 
 }  // namespace

@@ -45,8 +45,7 @@ std::shared_ptr<CLI::App> root_command() {
   auto app = std::make_shared<CLI::App>(
       "karst: fly exploration policies through caves.\n\n"
       "  karst cave generate --preset small --seed 7 --out caves/demo   make a cave\n"
-      "  karst cave from-survey cave.svx --out caves/real               make a cave of a survey (Therion, "
-      "Survex, Compass)\n"
+      "  karst cave from-survey cave.svx --out caves/real               make a cave of a survey\n"
       "  karst preflight caves/demo.info --battery \"8 min\"              say go or no-go before a mission\n"
       "  karst fly --cave caves/demo.info --policy nearest_frontier     fly a policy through it\n"
       "  karst compare CAMPAIGN.info                                    say which of several policies is "
