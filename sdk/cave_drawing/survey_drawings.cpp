@@ -15,6 +15,7 @@
 #include "sdk/cave_drawing/leg_walls.h"
 #include "sdk/cave_drawing/map_plan.h"
 #include "sdk/cave_drawing/projection.h"
+#include "sdk/cave_drawing/strip_places.h"
 #include "sdk/cave_drawing/unrolled_survey.h"
 #include "sdk/cave_drawing/wall_trace.h"
 
@@ -129,6 +130,13 @@ class SurveyDrawer {
       pieces.measured.push_back(upright_piece(passage.measured, a, b));
     }
     draw_pieces(pieces, out, file_);
+    for (std::size_t i = 0; i < unrolled_.twice.size(); ++i) {
+      const StationTwice& t = unrolled_.twice[i];
+      const double z = height(survey_.stations[t.station].position_m);
+      const Point here(t.s_m, z), again(t.again_s_m, z);
+      if (t.is_moved) out.links.push_back({here, again});
+      for (const Point& p : {here, again}) out.marks.push_back({Mark::Kind::joint, p, letters(i)});
+    }
     add_marks(out, [&](std::size_t i) -> std::optional<Point> {
       if (!unrolled_.s_m[i]) return std::nullopt;
       return Point(*unrolled_.s_m[i], height(survey_.stations[i].position_m));

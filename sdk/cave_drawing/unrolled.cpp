@@ -11,6 +11,7 @@
 #include "sdk/cave_drawing/free_runs.h"
 #include "sdk/cave_drawing/map_plan.h"
 #include "sdk/cave_drawing/passage_strips.h"
+#include "sdk/cave_drawing/strip_places.h"
 #include "sdk/cave_drawing/way_between.h"
 
 namespace karst::cave_drawing {
@@ -20,11 +21,7 @@ using core::Vec3;
 
 constexpr double kApart_m = 1.0;   // between passages that are drawn beside each other
 constexpr double kShift_m = 4.0;   // by which a side passage is tried farther and farther aside
-constexpr int kMostShifts = 5000;  // 20 km
 constexpr double kFurthest_m = 4;  // that a wall is from the last place of a passage
-
-/// By column of cells, what is free in it.
-using ProfileCells = std::map<int, std::vector<Run>>;
 
 struct StripPoint {
   Vec3 p;
@@ -184,34 +181,6 @@ ProfileCells cells_of(const core::VoxelMap& map, const std::vector<StripPoint>& 
   return bridged;
 }
 
-/// Where a strip is drawn: column x of it at `column` + x, or - x - 1 if it goes to the left.
-struct Place {
-  int column = 0;
-  bool to_left = false;
-  int of(int x) const { return to_left ? column - x - 1 : column + x; }
-};
-
-bool is_free(const ProfileCells& drawn, const ProfileCells& strip, const Place& place, int apart, int hall) {
-  for (const auto& [x, runs] : strip) {
-    if (x < hall) continue;  // where it branches off, they overlap
-    const int at = place.of(x);
-    for (auto it = drawn.lower_bound(at - apart); it != drawn.end() && it->first <= at + apart; ++it)
-      for (const Run& other : it->second)
-        for (const Run& run : runs)
-          if (run.low - apart <= other.high && other.low - apart <= run.high) return false;
-  }
-  return true;
-}
-
-Place place_for(const ProfileCells& drawn, const ProfileCells& strip, int column, int apart, int hall,
-                int shift, bool left_first) {
-  for (const bool to_left : {left_first, !left_first})
-    if (const Place place{column, to_left}; is_free(drawn, strip, place, apart, hall)) return place;
-  for (int i = 1; i < kMostShifts; ++i)
-    if (const Place place{column + i * shift, false}; is_free(drawn, strip, place, apart, 0)) return place;
-  return {column, left_first};
-}
-
 CellMask mask_of(const ProfileCells& drawn, const std::string& file) {
   int low = 0, high = 0;
   bool any = false;
@@ -226,12 +195,6 @@ CellMask mask_of(const ProfileCells& drawn, const std::string& file) {
     for (const Run& r : runs)
       for (int z = r.low; z <= r.high; ++z) mask.set(x, z);
   return mask;
-}
-
-/// a, b, ... z, aa, ab, ...
-std::string letters(std::size_t i) {
-  std::string text(1, static_cast<char>('a' + i % 26));
-  return i < 26 ? text : letters(i / 26 - 1) + text;
 }
 
 }  // namespace
@@ -266,7 +229,7 @@ UnrolledProfile unrolled_profile(const core::VoxelMap& map, const PassageLines& 
     const PassagePoint& branch = lines.points[strip.points.front()];
     const double from_s = s_of[strip.points.front()].value_or(0.0);
     const int column = cell_of(from_s, cell_m);
-    Place place;
+    StripPlace place;
     if (is_first) {
       out.length_m = line.points.back().s_m - line.points.front().s_m;
     } else {
