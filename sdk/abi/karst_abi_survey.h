@@ -4,9 +4,9 @@
  * Ask the host for it: `host->extension(host, "karst.survey/1")` is a karst_survey_service_t, or NULL if the
  * host does not know it. A mission without a survey answers KARST_ERROR_UNAVAILABLE.
  *
- * A survey is what cavers have of a cave: stations, the legs between them, and the distances from the stations
- * to the walls. It may be old, wrong or incomplete: the map counts, and the survey is a hint. It does not
- * change during a mission. Positions: world frame, metres.
+ * A survey is what cavers have of a cave: stations, the legs between them, and the distances from the
+ * stations to the walls. It may be old, wrong or incomplete: the map counts, and the survey is a hint. It
+ * does not change during a mission. Positions: world frame, metres.
  */
 #ifndef KARST_ABI_SURVEY_H
 #define KARST_ABI_SURVEY_H
@@ -21,8 +21,8 @@ extern "C" {
 /* Where the survey has no distance to a wall, it counts as so many metres. */
 #define KARST_SURVEY_DEFAULT_WALL_M 1.5
 
-/* [frozen] Distances from a station to the walls: left and right of the leg, seen from its first station to its
-   second; up and down vertical. All are given: see KARST_SURVEY_DEFAULT_WALL_M. */
+/* [frozen] Distances from a station to the walls: left and right of the leg, seen from its first station to
+   its second; up and down vertical. All are given: see KARST_SURVEY_DEFAULT_WALL_M. */
 typedef struct karst_survey_size {
   double left_m, right_m, up_m, down_m;
 } karst_survey_size_t;
@@ -37,7 +37,7 @@ typedef struct karst_survey_leg {
 
 typedef uint32_t karst_survey_lead_kind_t;
 enum {
-  KARST_LEAD_END = 1,         /* a single leg ends here, and it is no entrance: a dead end, or not looked at */
+  KARST_LEAD_END = 1, /* a single leg ends here, and it is no entrance: a dead end, or not looked at */
   KARST_LEAD_CONTINUATION = 2 /* the surveyor noted that the cave goes on */
 };
 

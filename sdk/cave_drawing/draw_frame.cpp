@@ -13,8 +13,8 @@
 namespace karst::cave_drawing {
 namespace {
 
-constexpr double kWall_mm = 0.45, kThinWall_mm = 0.2, kUncertain_mm = 0.2, kHidden_mm = 0.25, kLeg_mm = 0.2, kPath_mm = 0.13,
-                 kGrid_mm = 0.1;
+constexpr double kWall_mm = 0.45, kThinWall_mm = 0.2, kUncertain_mm = 0.2, kHidden_mm = 0.25, kLeg_mm = 0.2,
+                 kPath_mm = 0.13, kGrid_mm = 0.1;
 constexpr double kSmallScale = 2500;  // beyond, walls are thinner, and stations have no room
 constexpr double kFine_mm = 0.05;     // lines are simplified by no more on paper
 constexpr double kName_mm = 2.4, kNumber_mm = 2.2;

@@ -78,8 +78,8 @@ class Covered {
 Extent extent_of(const Drawing& drawing, const std::string& file) {
   Covered covered(file);
   for (const auto& rings : drawing.spaces) covered.add(rings);
-  for (const auto* lines : {&drawing.walls, &drawing.uncertain_walls, &drawing.hidden_walls, &drawing.centreline,
-                            &drawing.paths, &drawing.splays, &drawing.links})
+  for (const auto* lines : {&drawing.walls, &drawing.uncertain_walls, &drawing.hidden_walls,
+                            &drawing.centreline, &drawing.paths, &drawing.splays, &drawing.links})
     covered.add(*lines);
   for (const Mark& m : drawing.marks) covered.add(m.at);
   return covered.extent();

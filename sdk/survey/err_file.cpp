@@ -43,7 +43,7 @@ std::vector<Loops::Traverse> read_err_file(const std::filesystem::path& file) {
       traverse.sigmas = sigmas;  // NOLINT
     while (std::getline(in, text) && !text.empty()) {
     }
-    if (read != 3) continue;  // a traverse of equates alone has no length
+    if (read != 3) continue;              // a traverse of equates alone has no length
     if (traverse.error_m == 0) continue;  // one that is on no loop is listed, too, and never moves
     if (traverse.length_m > 0) traverse.error_percent = 100 * traverse.error_m / traverse.length_m;
     traverses.push_back(std::move(traverse));

@@ -35,8 +35,8 @@ struct CaveFromSurvey {
 };
 
 /// Calls `progress(step, fraction done)` as it goes on. Throws core::InputError naming `file` if the part has
-/// no passage, if the start lies in none, or if it takes more triangles or memory than there may be. The same for the same survey,
-/// options and seed, to the byte.
+/// no passage, if the start lies in none, or if it takes more triangles or memory than there may be. The same
+/// for the same survey, options and seed, to the byte.
 CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& survey,
                                 const CaveOptions& options,
                                 const std::function<void(const char*, double)>& progress = {});

@@ -57,8 +57,8 @@ TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
 }
 INSTANTIATE_TEST_SUITE_P(Policies, EveryPolicy,
                          ::testing::Values("nearest_frontier", "lateral_frontier", "highest_frontier",
-                                           "unknown_ratio", "information_gain", "viewpoint_tour",
-                                           "deep_cave", "beyond_survey"));
+                                           "unknown_ratio", "information_gain", "viewpoint_tour", "deep_cave",
+                                           "beyond_survey"));
 
 // As it was: decisions turned the vehicle in flight faster than the tracker could follow, and it touched
 // rock.

@@ -1,4 +1,5 @@
-// A survey of Therion: refused with an InputError, or read. Whatever it inputs, it finds in the file's folder.
+// A survey of Therion: refused with an InputError, or read. Whatever it inputs, it finds in the file's
+// folder.
 #include "sdk/survey/network.h"
 #include "sdk/survey/therion_reader.h"
 #include "tests/fuzz/as_file.h"

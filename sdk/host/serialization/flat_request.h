@@ -3,8 +3,8 @@
 //
 // Data that a policy cannot see is left out: only the class of the map's cells is written, and only the
 // clearances of the roadmap, from which the reader builds the same one. A map may be written as its changes
-// since an earlier one, which the reader must still hold. A survey never changes: with such changes, it is the
-// one that the reader holds.
+// since an earlier one, which the reader must still hold. A survey never changes: with such changes, it is
+// the one that the reader holds.
 #pragma once
 #include <memory>
 #include <optional>

@@ -73,7 +73,7 @@ class Session {
   core::MotionLimits motion_;                    // of the request, for travel times
   const core::ImagedSurface* imaged_ = nullptr;  // null: no colour camera
   const core::RgbCameraModel* rgb_ = nullptr;
-  std::optional<core::UnimagedSurface> unimaged_;  // of this request; computed on first use
+  std::optional<core::UnimagedSurface> unimaged_;   // of this request; computed on first use
   const core::SurveyedPassages* survey_ = nullptr;  // null: the mission has no survey
   std::mutex kept_mutex_;
   std::map<const karst_map_t*, std::unique_ptr<Snapshot>> kept_;

@@ -56,8 +56,9 @@ TEST(Part, WhatIsNotThereIsNamedWithTheNearestName) {
   o.around = "cave.7";
   EXPECT_NE(error_of([&] { part_of("f.th", m.survey, o); }).find("no such station"), std::string::npos);
   o.around = "zzz";
-  EXPECT_NE(error_of([&] { part_of("f.th", m.survey, o); })
-                .find("no such station, nor one of a name like it; there is, for example, cave.0"),
+  EXPECT_NE(error_of([&] {
+              part_of("f.th", m.survey, o);
+            }).find("no such station, nor one of a name like it; there is, for example, cave.0"),
             std::string::npos);
   m.station("other.1", {0, 0, 5});
   o.around = "1";

@@ -106,13 +106,15 @@ TEST_F(FromSurveyCommand, WritesTheReportAsJson) {
 
 TEST_F(FromSurveyCommand, LoosePartsAndContradictionsAreInTheReport) {
   const std::string loose = folder_ + "/loose.th";
-  std::ofstream(loose) << "survey e\n  centreline\n    fix 1 0 0 0\n    data normal from to tape compass clino\n"
-                          "    1 2 10 0 0\n    2 3 10 90 0\n    3 4 10 0 0\n    8 9 10 0 0\n    equate 1 3\n"
-                          "  endcentreline\nendsurvey\n";
+  std::ofstream(loose)
+      << "survey e\n  centreline\n    fix 1 0 0 0\n    data normal from to tape compass clino\n"
+         "    1 2 10 0 0\n    2 3 10 90 0\n    3 4 10 0 0\n    8 9 10 0 0\n    equate 1 3\n"
+         "  endcentreline\nendsurvey\n";
   const std::string said = run({"cave", "from-survey", loose, "--out", out_, "--resolution", "0.4"});
   EXPECT_TRUE(has(said, "left out           1 part, 10 m in 1 leg, that no leg or equate ties to the rest"))
       << said;
-  EXPECT_TRUE(has(said, "loose.th: line 8: 1 leg from here on is tied to no fixed station: left out")) << said;
+  EXPECT_TRUE(has(said, "loose.th: line 8: 1 leg from here on is tied to no fixed station: left out"))
+      << said;
   EXPECT_TRUE(has(said, "check              1 traverse of loops")) << said;
   EXPECT_FALSE(has(said, " 0.00 m,   0.00 %")) << "3 to 4 is on no loop: " << said;
   const auto j = nlohmann::json::parse(
@@ -168,7 +170,10 @@ TEST_F(FromSurveyCommand, BadArgumentsAreNamedAndNothingIsWritten) {
   EXPECT_TRUE(has(error_of([&] { run_with({"--survey", "uper"}); }), "the nearest name is upper"));
   EXPECT_TRUE(has(error_of([&] { run_with({"--around", "upper.9"}); }), "no such station"));
   EXPECT_TRUE(has(error_of([&] { run_with({"--box", "0 0 0 1"}); }), "--box"));
-  EXPECT_TRUE(has(error_of([&] { run_with({"--start", "0 0"}); }), "command line, --start: start: expected \"x y z [heading_deg]\""));
+  EXPECT_TRUE(has(error_of([&] {
+                    run_with({"--start", "0 0"});
+                  }),
+                  "command line, --start: start: expected \"x y z [heading_deg]\""));
   EXPECT_TRUE(has(error_of([&] { run_with({"--start", "0 0 500"}); }), "--start: lies in no passage"));
   EXPECT_TRUE(has(error_of([&] { run_with({"--max-triangles", "1000"}); }), "--max-triangles 1000"));
   EXPECT_THROW(run_with({"--radius", "5"}), CLI::RequiresError);
