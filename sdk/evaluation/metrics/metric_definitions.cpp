@@ -88,7 +88,7 @@ constexpr std::array kDefinitions = {
     MetricDefinition{"unsurveyed_volume_m3", "m^3", more, nothing,
                      "explored volume that the mission's survey lacks"},
     MetricDefinition{"time_to_unsurveyed_50_s", "s", less, unknown,
-                     "time from take-off to 50 m^3 that the survey lacks, if they were reached"},
+                     "time from take-off to 50 m³ that the survey lacks, if they were reached"},
 };
 
 }  // namespace
