@@ -93,7 +93,7 @@ cave::TriangleMesh walls(const std::string& file, const std::vector<Tube>& tubes
                          const std::function<void(const char*, double)>& step, SurveyReport& report) {
   const auto noise_seed = static_cast<std::uint32_t>(core::Random::stream(options.seed, "roughness").bits());
   const PassageField field(tubes, {options.resolution_m, options.roughness_m, noise_seed});
-  report.blocks = field.block_count();
+  report.walls.blocks = field.block_count();
   step("sampling", 0.1);
   cave::Samples samples = samples_of(file, field, options);
   step("surface", 0.5);
@@ -110,16 +110,16 @@ cave::TriangleMesh walls(const std::string& file, const std::vector<Tube>& tubes
 }
 
 void add_findings(const PassageGraph& graph, const Passages& passages, SurveyReport& report) {
-  if (report.without_m + report.partly_m > 0.5 * report.passage_m)
+  if (report.dimensions.without_m + report.dimensions.partly_m > 0.5 * report.passage_m)
     report.findings.emplace_back("most of the passages' dimensions are guessed: the survey lacks them");
   if (report.parts.size() > 1)
     report.findings.push_back(format_text(
         "%zu parts are not connected: a flight stays in the one in which it starts", report.parts.size()));
-  if (report.widened_m > 0.1 * report.passage_m)
+  if (report.dimensions.widened_m > 0.1 * report.passage_m)
     report.findings.push_back(
         format_text("%.0f m of passage are narrower than the grid shows and were widened to %.2g m "
                     "(a finer --resolution)",
-                    report.widened_m, report.least_m));
+                    report.dimensions.widened_m, report.dimensions.least_m));
   if (graph.size() > 1 && passages.measured_half_width_m == 0 && passages.measured_up_m == 0)
     report.findings.emplace_back("the survey has no dimension at all: every passage is 2 m wide and high");
 }
@@ -152,14 +152,14 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
   step("passages", 0);
   CaveFromSurvey made;
   SurveyReport& report = made.report;
-  report.resolution_m = options.resolution_m;
-  report.roughness_m = options.roughness_m;
-  report.vehicle_width_m = options.vehicle_width_m;
-  report.least_m = kLeastCells * options.resolution_m;
+  report.walls.resolution_m = options.resolution_m;
+  report.walls.roughness_m = options.roughness_m;
+  report.obstacles.vehicle_width_m = options.vehicle_width_m;
+  report.dimensions.least_m = kLeastCells * options.resolution_m;
   const SurveyPart part = part_of(file, survey, options.part);
   report.offset_m = offset_of(survey, part);
   const PassageGraph graph = graph_of(survey, part, report.offset_m);
-  const Passages passages = passages_of(survey, part, graph, report.offset_m, report.least_m);
+  const Passages passages = passages_of(survey, part, graph, report.offset_m, report.dimensions.least_m);
   if (passages.tubes.empty())
     throw InputError(file, "", "no leg underground has a length: there is no passage to make");
   tell_of_passages(survey, part, graph, passages, report);
@@ -171,8 +171,8 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
       with_passage.push_back(made.stations.back().position_m);
       continue;
     }
-    ++report.stations_in_rock;
-    if (report.bare_stations.size() < 10) report.bare_stations.push_back(survey.stations[s].name);
+    ++report.walls.stations_in_rock;
+    if (report.walls.bare_stations.size() < 10) report.walls.bare_stations.push_back(survey.stations[s].name);
   }
   cave::TriangleMesh mesh;
   try {
@@ -186,16 +186,16 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
         e.what() + format_text(" (the widest reaches %.0f m from the leg at ", widest.reach_m()) +
             survey.stations[survey.legs[widest.leg()].from].name + "): choose a part: --survey, --around");
   }
-  report.triangles = mesh.triangles.size();
-  report.volume_m3 = cave::enclosed_volume_m3(mesh);
-  report.surface_m2 = surface_of(mesh);
+  report.walls.triangles = mesh.triangles.size();
+  report.walls.volume_m3 = cave::enclosed_volume_m3(mesh);
+  report.walls.surface_m2 = surface_of(mesh);
 
   step("start", 0.8);
   const cave::RayScene scene(std::move(mesh));
   if (options.start) check_start(file, scene, survey, made.stations, options.start->position);
   made.start = options.start ? options.start : start_in_survey(scene, survey, graph, passages);
   if (made.start)
-    report.within_reach_m =
+    report.obstacles.within_reach_m =
         within_reach_m(survey, graph, passages, options.vehicle_width_m, made.start->position);
   add_findings(graph, passages, report);
   if (survey.left_out.parts > 0)

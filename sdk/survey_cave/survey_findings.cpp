@@ -58,14 +58,14 @@ void tell_of_guesses(const Survey& survey, const Passages& passages, SurveyRepor
   for (const GuessedLeg& g : passages.guessed) {
     row(g.leg).without_m += g.without_m;
     row(g.leg).partly_m += g.partly_m;
-    report.without_m += g.without_m;
-    report.partly_m += g.partly_m;
+    report.dimensions.without_m += g.without_m;
+    report.dimensions.partly_m += g.partly_m;
   }
   for (auto& [name, guessed] : by_name) {
     guessed.name = name;
-    if (guessed.without_m + guessed.partly_m > 0) report.guessed.push_back(guessed);
+    if (guessed.without_m + guessed.partly_m > 0) report.dimensions.guessed.push_back(guessed);
   }
-  std::stable_sort(report.guessed.begin(), report.guessed.end(),
+  std::stable_sort(report.dimensions.guessed.begin(), report.dimensions.guessed.end(),
                    [](const GuessedSurvey& a, const GuessedSurvey& b) {
                      return a.without_m != b.without_m ? a.without_m > b.without_m : a.partly_m > b.partly_m;
                    });
@@ -93,8 +93,8 @@ void tell_of_passages(const Survey& survey, const SurveyPart& part, const Passag
     highest = std::max(highest, s.position_m.z());
     lowest = std::min(lowest, s.position_m.z());
     report.entrances += s.entrance ? 1u : 0u;
-    if (names_obstacle(s.comment)) report.blocked.push_back({s.name, s.comment});
-    if (s.continuation) report.continuations.push_back(s.name);
+    if (names_obstacle(s.comment)) report.obstacles.blocked.push_back({s.name, s.comment});
+    if (s.continuation) report.obstacles.continuations.push_back(s.name);
   }
   report.stations = part.stations.size();
   report.depth_m = highest - lowest;
@@ -104,18 +104,18 @@ void tell_of_passages(const Survey& survey, const SurveyPart& part, const Passag
   report.duplicate_m = part.duplicate_m;
   for (const Tube& t : passages.tubes) {
     report.passage_m += t.length_m();
-    if (survey.legs[t.leg()].underwater()) report.flooded_m += t.length_m();
-    report.narrow_m += narrow_m(t, report.vehicle_width_m);
+    if (survey.legs[t.leg()].underwater()) report.obstacles.flooded_m += t.length_m();
+    report.obstacles.narrow_m += narrow_m(t, report.obstacles.vehicle_width_m);
   }
   report.rest_m = std::max(0.0, part.whole_m - report.passage_m);
-  report.defaults_m = passages.defaults_m;
-  report.half_width_m = passages.measured_half_width_m;
-  report.up_m = passages.measured_up_m;
-  report.down_m = passages.measured_down_m;
-  report.splays_m = passages.splays_m;
-  report.shafts_m = passages.shafts_m;
-  report.widened_m = passages.widened_m;
-  report.sections_from_splays = passages.sections_from_splays;
+  report.dimensions.defaults_m = passages.defaults_m;
+  report.dimensions.half_width_m = passages.measured_half_width_m;
+  report.dimensions.up_m = passages.measured_up_m;
+  report.dimensions.down_m = passages.measured_down_m;
+  report.dimensions.splays_m = passages.splays_m;
+  report.dimensions.shafts_m = passages.shafts_m;
+  report.dimensions.widened_m = passages.widened_m;
+  report.dimensions.sections_from_splays = passages.sections_from_splays;
   tell_of_guesses(survey, passages, report);
   tell_of_parts(survey, graph, passages.tubes, report);
 }

@@ -43,53 +43,55 @@ std::string loop_text(const survey::Loops::Traverse& t) {
 void add_guesses(std::vector<std::string>& lines, const SurveyReport& r) {
   lines.push_back(format_text(
       "not measured       %.0f m of passage without dimensions, %.1f %%; %.0f m with some of them",
-      r.without_m, percent_of(r.without_m, r.passage_m), r.partly_m));
-  if (r.without_m + r.partly_m > 0)
+      r.dimensions.without_m, percent_of(r.dimensions.without_m, r.passage_m), r.dimensions.partly_m));
+  if (r.dimensions.without_m + r.dimensions.partly_m > 0)
     lines.push_back(format_text("  interpolated along the passages; %.0f m without any neighbour to go by",
-                                r.defaults_m));
-  add_rows(lines, r.guessed, [](const survey_cave::GuessedSurvey& g) {
+                                r.dimensions.defaults_m));
+  add_rows(lines, r.dimensions.guessed, [](const survey_cave::GuessedSurvey& g) {
     return format_text("%8.0f m without, %6.0f m partly, of %.0f m: ", g.without_m, g.partly_m, g.legs_m) +
            named(g.name);
   });
-  if (r.splays_m > 0)
+  if (r.dimensions.splays_m > 0)
     lines.push_back(
-        format_text("splays             %zu; they shape %.0f m of passage", r.splays, r.splays_m));
-  if (r.shafts_m > 0)
-    lines.push_back(format_text(
-        "shafts             %.0f m, whose front and back are guessed from left and right", r.shafts_m));
-  if (r.widened_m > 0)
+        format_text("splays             %zu; they shape %.0f m of passage", r.splays, r.dimensions.splays_m));
+  if (r.dimensions.shafts_m > 0)
+    lines.push_back(
+        format_text("shafts             %.0f m, whose front and back are guessed from left and right",
+                    r.dimensions.shafts_m));
+  if (r.dimensions.widened_m > 0)
     lines.push_back(
         format_text("widened            %.0f m of passage, to %.2g m: the grid shows nothing narrower",
-                    r.widened_m, r.least_m));
+                    r.dimensions.widened_m, r.dimensions.least_m));
 }
 
 void add_obstacles(std::vector<std::string>& lines, const SurveyReport& r) {
   lines.push_back(format_text("narrow             %.0f m of passage are narrower or lower than %.2g m",
-                              r.narrow_m, r.vehicle_width_m));
-  if (r.within_reach_m)
+                              r.obstacles.narrow_m, r.obstacles.vehicle_width_m));
+  if (r.obstacles.within_reach_m)
     lines.push_back(
         format_text("within reach       %.0f m, %.1f %% of the passages, from the start and through "
                     "nothing narrower",
-                    *r.within_reach_m, percent_of(*r.within_reach_m, r.passage_m)));
-  if (r.flooded_m > 0)
-    lines.push_back(format_text("flooded            %.0f m were dived; the cave has air there", r.flooded_m));
-  if (!r.blocked.empty())
-    lines.push_back("blocked            " + counted(r.blocked.size(), "station") +
+                    *r.obstacles.within_reach_m, percent_of(*r.obstacles.within_reach_m, r.passage_m)));
+  if (r.obstacles.flooded_m > 0)
+    lines.push_back(
+        format_text("flooded            %.0f m were dived; the cave has air there", r.obstacles.flooded_m));
+  if (!r.obstacles.blocked.empty())
+    lines.push_back("blocked            " + counted(r.obstacles.blocked.size(), "station") +
                     " whose comment names a sump or a choke; the cave is open there");
-  add_rows(lines, r.blocked, [](const survey_cave::Blocked& b) {
+  add_rows(lines, r.obstacles.blocked, [](const survey_cave::Blocked& b) {
     return b.station + ": " + std::string(core::first_characters(b.comment, 60));
   });
-  if (!r.continuations.empty())
-    lines.push_back("goes on            at " + counted(r.continuations.size(), "station"));
-  add_rows(lines, r.continuations, [](const std::string& name) { return name; });
+  if (!r.obstacles.continuations.empty())
+    lines.push_back("goes on            at " + counted(r.obstacles.continuations.size(), "station"));
+  add_rows(lines, r.obstacles.continuations, [](const std::string& name) { return name; });
   lines.push_back("connected          " + counted(r.parts.size(), "part"));
   if (r.parts.size() > 1)
     add_rows(lines, r.parts, [](const survey_cave::ConnectedPart& p) {
       return format_text("%8.0f m, %zu stations, such as ", p.legs_m, p.stations) + p.station;
     });
-  if (r.stations_in_rock > 0)
-    lines.push_back("in rock            " + counted(r.stations_in_rock, "station") +
-                    " whose legs have no length, such as " + r.bare_stations.front());
+  if (r.walls.stations_in_rock > 0)
+    lines.push_back("in rock            " + counted(r.walls.stations_in_rock, "station") +
+                    " whose legs have no length, such as " + r.walls.bare_stations.front());
 }
 
 std::string flags_of(const survey::Station& s) {
@@ -124,8 +126,8 @@ std::vector<std::string> survey_lines(const Survey& survey, const CaveFromSurvey
   lines.push_back(
       format_text("walls              %zu triangles, %.0f m2, closed; enclose %.0f m3; grid %g m, "
                   "roughness %g m; %.1f MB",
-                  r.triangles, r.surface_m2, r.volume_m3, r.resolution_m, r.roughness_m,
-                  static_cast<double>(mesh_bytes) / 1e6));
+                  r.walls.triangles, r.walls.surface_m2, r.walls.volume_m3, r.walls.resolution_m,
+                  r.walls.roughness_m, static_cast<double>(mesh_bytes) / 1e6));
   if (!r.offset_m.isZero())
     lines.push_back(format_text("origin             at \"%.0f %.0f %.0f\" of the survey", r.offset_m.x(),
                                 r.offset_m.y(), r.offset_m.z()));
@@ -164,37 +166,38 @@ ordered_json survey_json(const Survey& survey, const CaveFromSurvey& made, std::
                  {"loose_legs", survey.left_out.legs},
                  {"loose_legs_m", survey.left_out.legs_m},
                  {"offset_m", core::list(r.offset_m)},
-                 {"resolution_m", r.resolution_m},
-                 {"roughness_m", r.roughness_m},
-                 {"triangles", r.triangles},
+                 {"resolution_m", r.walls.resolution_m},
+                 {"roughness_m", r.walls.roughness_m},
+                 {"triangles", r.walls.triangles},
                  {"mesh_bytes", mesh_bytes},
-                 {"surface_m2", r.surface_m2},
-                 {"volume_m3", r.volume_m3},
-                 {"without_dimensions_m", r.without_m},
-                 {"partly_without_dimensions_m", r.partly_m},
-                 {"without_neighbours_m", r.defaults_m},
-                 {"median_half_width_m", r.half_width_m},
-                 {"median_up_m", r.up_m},
-                 {"median_down_m", r.down_m},
+                 {"surface_m2", r.walls.surface_m2},
+                 {"volume_m3", r.walls.volume_m3},
+                 {"without_dimensions_m", r.dimensions.without_m},
+                 {"partly_without_dimensions_m", r.dimensions.partly_m},
+                 {"without_neighbours_m", r.dimensions.defaults_m},
+                 {"median_half_width_m", r.dimensions.half_width_m},
+                 {"median_up_m", r.dimensions.up_m},
+                 {"median_down_m", r.dimensions.down_m},
                  {"splays", r.splays},
-                 {"sections_from_splays", r.sections_from_splays},
-                 {"shaped_by_splays_m", r.splays_m},
-                 {"shafts_m", r.shafts_m},
-                 {"widened_m", r.widened_m},
-                 {"least_width_m", r.least_m},
-                 {"vehicle_width_m", r.vehicle_width_m},
-                 {"narrow_m", r.narrow_m},
-                 {"flooded_m", r.flooded_m},
-                 {"stations_in_rock", r.stations_in_rock}};
-  j["within_reach_m"] = r.within_reach_m ? ordered_json(*r.within_reach_m) : ordered_json();
+                 {"sections_from_splays", r.dimensions.sections_from_splays},
+                 {"shaped_by_splays_m", r.dimensions.splays_m},
+                 {"shafts_m", r.dimensions.shafts_m},
+                 {"widened_m", r.dimensions.widened_m},
+                 {"least_width_m", r.dimensions.least_m},
+                 {"vehicle_width_m", r.obstacles.vehicle_width_m},
+                 {"narrow_m", r.obstacles.narrow_m},
+                 {"flooded_m", r.obstacles.flooded_m},
+                 {"stations_in_rock", r.walls.stations_in_rock}};
+  j["within_reach_m"] =
+      r.obstacles.within_reach_m ? ordered_json(*r.obstacles.within_reach_m) : ordered_json();
   j["guessed"] = ordered_json::array();
-  for (const survey_cave::GuessedSurvey& g : r.guessed)
+  for (const survey_cave::GuessedSurvey& g : r.dimensions.guessed)
     j["guessed"].push_back(
         {{"survey", g.name}, {"legs_m", g.legs_m}, {"without_m", g.without_m}, {"partly_m", g.partly_m}});
   j["blocked"] = ordered_json::array();
-  for (const survey_cave::Blocked& b : r.blocked)
+  for (const survey_cave::Blocked& b : r.obstacles.blocked)
     j["blocked"].push_back({{"station", b.station}, {"comment", b.comment}});
-  j["continuations"] = r.continuations;
+  j["continuations"] = r.obstacles.continuations;
   j["parts"] = ordered_json::array();
   for (const survey_cave::ConnectedPart& p : r.parts)
     j["parts"].push_back({{"station", p.station}, {"stations", p.stations}, {"legs_m", p.legs_m}});

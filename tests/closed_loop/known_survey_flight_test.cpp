@@ -24,6 +24,17 @@ std::string survey(const std::string& legs) {
          "  endcentreline\nendsurvey\n";
 }
 
+/// A cave with a branch, and a survey of its main passage alone.
+std::filesystem::path folder_with_a_fork(const std::string& name) {
+  const auto folder = fresh_folder(name);
+  std::ofstream(folder / "cave.th") << survey(std::string(kMain) + kBranch);
+  std::ofstream(folder / "known.th") << survey(kMain);
+  const Output made =
+      run_karst("cave from-survey " + (folder / "cave.th").string() + " --out " + (folder / "cave").string());
+  EXPECT_EQ(made.code, 0) << made.text;
+  return folder;
+}
+
 struct Flown {
   nlohmann::json metrics;
   std::string text;
@@ -40,12 +51,7 @@ Flown fly(const std::filesystem::path& folder, const std::string& name, const st
 
 TEST(KnownSurveyFlight, WithItTheFlightIsSoonerInWhatTheSurveyLacks) {
   SKIP_WITHOUT_SURVEX();
-  const auto folder = fresh_folder("known_survey_flight");
-  std::ofstream(folder / "cave.th") << survey(std::string(kMain) + kBranch);
-  std::ofstream(folder / "known.th") << survey(kMain);
-  const Output made =
-      run_karst("cave from-survey " + (folder / "cave.th").string() + " --out " + (folder / "cave").string());
-  ASSERT_EQ(made.code, 0) << made.text;
+  const auto folder = folder_with_a_fork("known_survey_flight");
   const std::string known = " --set survey.file=" + (folder / "known.th").string();
   const Flown with = fly(folder, "with", known),
               without = fly(folder, "without", known + " --set survey.hints=false");
@@ -72,12 +78,7 @@ TEST(KnownSurveyFlight, WithItTheFlightIsSoonerInWhatTheSurveyLacks) {
 
 TEST(KnownSurveyFlight, InProcessAndInAProcessOfItsOwnThePolicyKnowsTheSame) {
   SKIP_WITHOUT_SURVEX();
-  const auto folder = fresh_folder("known_survey_isolation");
-  std::ofstream(folder / "cave.th") << survey(std::string(kMain) + kBranch);
-  std::ofstream(folder / "known.th") << survey(kMain);
-  const Output made =
-      run_karst("cave from-survey " + (folder / "cave.th").string() + " --out " + (folder / "cave").string());
-  ASSERT_EQ(made.code, 0) << made.text;
+  const auto folder = folder_with_a_fork("known_survey_isolation");
   const std::string known = " --set survey.file=" + (folder / "known.th").string();
   fly(folder, "own", known + " --set policy.isolation=process --record-requests");
   fly(folder, "same", known + " --set policy.isolation=in_process");

@@ -51,7 +51,8 @@ TEST(CaveFromSurvey, AStraightPassageHasTheVolumeAndTheWallsOfItsSection) {
   const CaveFromSurvey shorter = made_of(straight_passage(4, 5, 1.5)),
                        longer = made_of(straight_passage(8, 5, 1.5));
   const double metre_m3 = test::superellipse_m2(3, 3);
-  EXPECT_NEAR(longer.report.volume_m3 - shorter.report.volume_m3, 20 * metre_m3, 0.02 * 20 * metre_m3)
+  EXPECT_NEAR(longer.report.walls.volume_m3 - shorter.report.walls.volume_m3, 20 * metre_m3,
+              0.02 * 20 * metre_m3)
       << "the ends are alike";
   for (const core::Vec3f& v : longer.mesh.vertices) {
     if (v.x() < 0 || v.x() > 40) continue;
@@ -91,7 +92,7 @@ TEST(CaveFromSurvey, ABendHasTheVolumeOfItsCentreLine) {
   bent.survey.stations[2].position_m = {12 + 12 * std::cos(0.8), 12 * std::sin(0.8), 0};
   bent.survey.sections[1].facing = {std::cos(0.4), std::sin(0.4), 0};
   bent.survey.sections[2].facing = {std::cos(0.8), std::sin(0.8), 0};
-  const double a = made_of(straight).report.volume_m3, b = made_of(bent).report.volume_m3;
+  const double a = made_of(straight).report.walls.volume_m3, b = made_of(bent).report.walls.volume_m3;
   // The section across the bend is the one measured: across the legs it is narrower by the cosine.
   EXPECT_NEAR(b, a, 0.06 * a);
 }
@@ -150,8 +151,8 @@ TEST(CaveFromSurvey, PassagesNarrowerThanTheGridStayConnectedAndAreToldOf) {
   m.survey.stations[1].position_m.y() = 2.3;  // not along the grid
   const CaveFromSurvey made = made_of(m, smooth(0.4));
   expect_closed(made, 1);
-  EXPECT_NEAR(made.report.widened_m, made.report.passage_m, 1e-6);
-  EXPECT_NEAR(made.report.narrow_m, 0, 1e-6) << "widened to 0.72 m, more than the vehicle's width";
+  EXPECT_NEAR(made.report.dimensions.widened_m, made.report.passage_m, 1e-6);
+  EXPECT_NEAR(made.report.obstacles.narrow_m, 0, 1e-6) << "widened to 0.72 m, more than the vehicle's width";
 }
 
 TEST(CaveFromSurvey, RoughnessMovesTheWallsByAtMostItsAmplitude) {
@@ -191,8 +192,8 @@ TEST(CaveFromSurvey, LegsWithoutLengthAndStationsAtOnePlaceAreNoTrouble) {
   m.leg(1, 1, 3);
   const CaveFromSurvey made = made_of(m);
   expect_closed(made, 1);
-  EXPECT_EQ(made.report.stations_in_rock, 2u);
-  EXPECT_EQ(made.report.bare_stations, (std::vector<std::string>{"lone.1", "lone.2"}));
+  EXPECT_EQ(made.report.walls.stations_in_rock, 2u);
+  EXPECT_EQ(made.report.walls.bare_stations, (std::vector<std::string>{"lone.1", "lone.2"}));
   EXPECT_NEAR(made.report.passage_m, 22, 1e-9);
 }
 
@@ -201,8 +202,8 @@ TEST(CaveFromSurvey, SectionsOfARunWithoutLegsAreThoseOfThePassageThroughTheirSt
   std::erase_if(m.survey.sections, [](const survey::Section& s) { return s.station == 2; });
   for (auto& s : m.survey.sections) s.run = 7;
   const CaveFromSurvey made = made_of(m);
-  EXPECT_EQ(made.report.half_width_m, 1.5);
-  EXPECT_EQ(made.report.defaults_m, 0) << "station 2 is between neighbours that were measured";
+  EXPECT_EQ(made.report.dimensions.half_width_m, 1.5);
+  EXPECT_EQ(made.report.dimensions.defaults_m, 0) << "station 2 is between neighbours that were measured";
 }
 
 TEST(CaveFromSurvey, PartsThatAreNotConnectedAreSurfacesOfTheirOwn) {
@@ -220,8 +221,8 @@ TEST(CaveFromSurvey, StartsNearAnEntranceIfThereIsRoom) {
   const CaveFromSurvey made = made_of(m);
   ASSERT_TRUE(made.start);
   EXPECT_NEAR(made.start->position.x(), 80, 6);
-  ASSERT_TRUE(made.report.within_reach_m);
-  EXPECT_NEAR(*made.report.within_reach_m, 80, 1e-6);
+  ASSERT_TRUE(made.report.obstacles.within_reach_m);
+  EXPECT_NEAR(*made.report.obstacles.within_reach_m, 80, 1e-6);
 }
 
 TEST(CaveFromSurvey, CoordinatesFarFromTheOriginAreMovedByWholeMetres) {

@@ -17,10 +17,10 @@ TEST(Findings, NarrowLegsAreFoundAndEndTheVehiclesReach) {
   m.survey.sections[2].dimensions = {0.1, 0.1, 1.0, 1.0};
   const MadePassages made = passages_made(m.survey);
   SurveyReport report;
-  report.vehicle_width_m = 0.6;
+  report.obstacles.vehicle_width_m = 0.6;
   tell_of_passages(m.survey, made.part, made.graph, made.passages, report);
   EXPECT_NEAR(report.passage_m, 40, 1e-9);
-  EXPECT_NEAR(report.narrow_m, 2 * 10 * 0.4 / 1.8, 1.1) << "2 m wide at 10 m, 0.2 m at 0";
+  EXPECT_NEAR(report.obstacles.narrow_m, 2 * 10 * 0.4 / 1.8, 1.1) << "2 m wide at 10 m, 0.2 m at 0";
   EXPECT_NEAR(within_reach_m(m.survey, made.graph, made.passages, 0.6, {5, 0, 0}), 10, 1e-9);
   EXPECT_NEAR(within_reach_m(m.survey, made.graph, made.passages, 0.1, {5, 0, 0}), 40, 1e-9);
 }
@@ -37,14 +37,14 @@ TEST(Findings, PartsFloodsAndBlocksAreTold) {
   ASSERT_EQ(report.parts.size(), 2u);
   EXPECT_NEAR(report.parts[0].legs_m, 20, 1e-9);
   EXPECT_EQ(report.parts[1].station, "far.1");
-  EXPECT_NEAR(report.flooded_m, 5, 1e-9);
+  EXPECT_NEAR(report.obstacles.flooded_m, 5, 1e-9);
   EXPECT_NEAR(report.depth_m, 30, 1e-9);
-  ASSERT_EQ(report.blocked.size(), 1u);
-  EXPECT_EQ(report.blocked[0].station, "far.2");
-  EXPECT_EQ(report.continuations, std::vector<std::string>{"cave.2"});
-  ASSERT_EQ(report.guessed.size(), 1u);
-  EXPECT_EQ(report.guessed[0].name, "far");
-  EXPECT_NEAR(report.guessed[0].without_m, 5, 1e-9);
+  ASSERT_EQ(report.obstacles.blocked.size(), 1u);
+  EXPECT_EQ(report.obstacles.blocked[0].station, "far.2");
+  EXPECT_EQ(report.obstacles.continuations, std::vector<std::string>{"cave.2"});
+  ASSERT_EQ(report.dimensions.guessed.size(), 1u);
+  EXPECT_EQ(report.dimensions.guessed[0].name, "far");
+  EXPECT_NEAR(report.dimensions.guessed[0].without_m, 5, 1e-9);
 }
 
 }  // namespace
