@@ -106,16 +106,6 @@ Sheet fitted_sheet(const Extent& extent, const SheetOptions& options, const std:
   return sheet;
 }
 
-Frame fitted_frame(const Extent& extent, double width_mm, double most_mm) {
-  Frame frame;
-  frame.width_mm = width_mm;
-  frame.height_mm = most_mm;
-  frame.scale = std::max(least_scale(extent, frame), 1.0);
-  frame.height_mm = std::min(most_mm, frame.mm_of(extent.high.y() - extent.low.y()) + 2 * kAround_mm);
-  put_in_the_middle(extent, frame);
-  return frame;
-}
-
 double grid_step_m(double scale, double least_mm) {
   for (double decade = 1;; decade *= 10)
     for (const double step : {1.0, 2.0, 5.0})

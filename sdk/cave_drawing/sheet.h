@@ -52,9 +52,6 @@ Extent extent_of(const Drawing& drawing, const std::string& file);
 /// 3, 4, 5 or 7.5 times a power of ten. Throws core::InputError if the scale that is asked for does not fit.
 Sheet fitted_sheet(const Extent& extent, const SheetOptions& options, const std::string& file);
 
-/// A frame of this width around the extent, at whatever scale that gives, and not higher than `most_mm`.
-Frame fitted_frame(const Extent& extent, double width_mm, double most_mm);
-
 /// The least of 1, 2, 5, 10, 20, ... m that is at least so many millimetres on paper.
 double grid_step_m(double scale, double least_mm);
 

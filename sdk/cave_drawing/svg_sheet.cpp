@@ -119,18 +119,4 @@ std::string svg_sheet(const Drawing& drawing, const CaveFacts& facts, const Shee
          side_names(drawing, sheet.frame) + title_block(drawing, facts, options, sheet, step_m) + "</svg>\n";
 }
 
-std::string svg_picture(const Drawing& drawing, double width_mm, double most_mm, const std::string& file) {
-  constexpr double kLeft_mm = 10, kBelow_mm = 12, kEdge_mm = 0.5;
-  Frame frame =
-      fitted_frame(extent_of(drawing, file), width_mm - kLeft_mm - kEdge_mm, most_mm - kBelow_mm - kEdge_mm);
-  frame.left_mm = kLeft_mm;
-  frame.top_mm = kEdge_mm;
-  const double step_m = grid_step_m(frame.scale, kGridLeast_mm), low = frame.top_mm + frame.height_mm;
-  return head(width_mm, low + kBelow_mm, view_title(drawing)) +
-         box(0, 0, width_mm, low + kBelow_mm, " fill=\"#ffffff\"") + inside_frame(drawing, frame, step_m) +
-         grid_numbers(frame, step_m) + side_names(drawing, frame) +
-         scale_bar({kLeft_mm + 1, low + 5}, frame.scale, 0.4 * frame.width_mm) +
-         text({kLeft_mm + frame.width_mm, low + 10}, view_title(drawing), {2.8, Anchor::end}) + "</svg>\n";
-}
-
 }  // namespace karst::cave_drawing

@@ -1,4 +1,4 @@
-// A drawing as a page to print, and as a picture inside an HTML page.
+// A drawing as a page to print.
 #pragma once
 #include <string>
 
@@ -11,9 +11,5 @@ namespace karst::cave_drawing {
 /// scale bar and, on a plan, the north arrow. Throws core::InputError that names `file`.
 std::string svg_sheet(const Drawing& drawing, const CaveFacts& facts, const SheetOptions& options,
                       const std::string& file);
-
-/// An SVG element of this width, and at most this height, for an HTML page: without a title block, with the
-/// scale bar in a corner. Throws as above.
-std::string svg_picture(const Drawing& drawing, double width_mm, double most_mm, const std::string& file);
 
 }  // namespace karst::cave_drawing

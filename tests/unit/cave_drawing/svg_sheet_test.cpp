@@ -166,15 +166,5 @@ TEST(SvgSheet, TheSameCaveGivesTheSameBytes) {
             svg_sheet(cross().extended, cross().facts, {}, "map"));
 }
 
-TEST(SvgSheet, APictureForAPageIsAsWideAsAskedFor) {
-  const CaveDrawings drawings = cross();
-  for (const Drawing* d : {&drawings.plan, &drawings.extended}) {
-    const ptree svg = drawn(svg_picture(*d, 180, 110, "map"));
-    EXPECT_EQ(said(svg, "width"), "180mm");
-    EXPECT_LE(std::stod(said(svg, "height")), 110.01);
-    expect_on_page(svg);
-  }
-}
-
 }  // namespace
 }  // namespace karst::cave_drawing
