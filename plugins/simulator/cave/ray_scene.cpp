@@ -78,13 +78,49 @@ struct PacketSearch {
   std::vector<double>* crossings;  // if not null: collects all ranges of a single ray instead
 };
 
+using Lanes = Eigen::Array<float, kPacket, 1>;
+
+struct LaneVectors {
+  Lanes x, y, z;
+
+  LaneVectors cross(const LaneVectors& o) const {
+    return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x};
+  }
+  Lanes dot(const LaneVectors& o) const { return x * o.x + y * o.y + z * o.z; }
+};
+
+/// Which rays of a whole packet may meet the triangle: all that do, and few others. The volumes of
+/// ray_triangle_range() in single precision: their error is below 12 epsilon |o a| |o b|, so signs that
+/// differ by more than `bound` differ in double precision as well.
+std::array<bool, kPacket> may_meet(const RTCRayN* rays, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  const auto lanes = [rays](int member) {
+    return Eigen::Map<const Lanes>(reinterpret_cast<const float*>(rays) + member * static_cast<int>(kPacket));
+  };
+  const LaneVectors o{lanes(0), lanes(1), lanes(2)}, d{lanes(4), lanes(5), lanes(6)};
+  const auto from = [&o](const Vec3f& p) -> LaneVectors { return {p.x() - o.x, p.y() - o.y, p.z() - o.z}; };
+  const LaneVectors oa = from(a), ob = from(b), oc = from(c);
+  const Lanes u = d.dot(oc.cross(ob)), v = d.dot(oa.cross(oc)), w = d.dot(ob.cross(oa));
+  const Lanes bound = 2e-6f * oa.dot(oa).max(ob.dot(ob)).max(oc.dot(oc));
+  const Eigen::Array<bool, kPacket, 1> mixed = u.min(v).min(w) < -bound && u.max(v).max(w) > bound;
+  std::array<bool, kPacket> may{};
+  for (unsigned k = 0; k < kPacket; ++k) may[k] = !mixed[k];
+  return may;
+}
+
 void meet_triangle(const RTCIntersectFunctionNArguments* args) {
   auto& search = *reinterpret_cast<PacketSearch*>(args->context);
-  const Corners t = corners(*static_cast<const TriangleMesh*>(args->geometryUserPtr), args->primID);
+  const TriangleMesh& mesh = *static_cast<const TriangleMesh*>(args->geometryUserPtr);
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  std::array<bool, kPacket> may;
+  may.fill(true);
+  if (args->N == kPacket) {
+    const auto& t = mesh.triangles[args->primID];
+    may = may_meet(rays, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  }
   for (unsigned k = 0; k < args->N; ++k) {
-    if (!args->valid[k]) continue;
+    if (!args->valid[k] || !may[k]) continue;
+    const Corners t = corners(mesh, args->primID);
     const Vec3 o(RTCRayN_org_x(rays, args->N, k), RTCRayN_org_y(rays, args->N, k),
                  RTCRayN_org_z(rays, args->N, k));
     const Vec3 d(RTCRayN_dir_x(rays, args->N, k), RTCRayN_dir_y(rays, args->N, k),

@@ -81,6 +81,48 @@ TEST(RayScene, PacketsEqualSingleRaysBitForBit) {
   }
 }
 
+/// Rays at corners and edges, also far from the origin, where single precision is coarse: the test that saves
+/// most triangles from double precision must not lose one.
+TEST(RayScene, FindsWhatAllTrianglesInDoublePrecisionGiveToTheLastBit) {
+  core::Random random(12);
+  for (const float away_m : {0.0f, 300.0f, 7000.0f}) {
+    auto mesh = tunnel_mesh(20, 3, 6);
+    for (Vec3f& v : mesh.vertices) v += Vec3f(away_m, -2 * away_m, away_m / 3);
+    const RayScene scene(mesh);
+    std::vector<Ray> rays;
+    for (const auto& t : mesh.triangles) {
+      const Vec3f from = Vec3f(away_m, -2 * away_m, away_m / 3) +
+                         Vec3f(static_cast<float>(random.uniform(5, 15)), 0.1f, -0.2f);
+      const auto part = static_cast<float>(std::round(random.uniform(0, 4))) / 4;
+      const Vec3f to = mesh.vertices[t[0]] + part * (mesh.vertices[t[1]] - mesh.vertices[t[0]]);
+      rays.push_back({from, (to - from).normalized()});
+    }
+    std::vector<Hit> hits(rays.size());
+    scene.cast(rays, 100, hits);
+    int hit = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      double best = 100;
+      std::optional<std::uint32_t> first;
+      for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+        const auto corner = [&](std::size_t c) -> Vec3 {
+          return mesh.vertices[mesh.triangles[k][c]].cast<double>();
+        };
+        const auto range = cave::ray_triangle_range(
+            rays[i].origin.cast<double>(), rays[i].direction.cast<double>(), corner(0), corner(1), corner(2));
+        if (!range || *range > best || (*range == best && first)) continue;
+        best = *range;
+        first = k;
+      }
+      ASSERT_EQ(hits[i].any(), first.has_value()) << "ray " << i;
+      if (!first) continue;
+      ++hit;
+      ASSERT_EQ(hits[i].triangle, *first) << "ray " << i;
+      ASSERT_EQ(hits[i].range_m, static_cast<float>(best)) << "ray " << i;
+    }
+    EXPECT_GT(hit, 300);
+  }
+}
+
 /// Rays at the very corners and along the edges of the triangles, where rounding decides who is met.
 TEST(RayScene, NoRaySlipsBetweenTwoTriangles) {
   const auto mesh = tunnel_mesh(20, 3, 8);
