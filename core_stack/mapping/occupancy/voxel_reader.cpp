@@ -36,4 +36,24 @@ CellCounts VoxelReader::count(const CellKey& low, const CellKey& high) const {
   return counts;
 }
 
+std::vector<Cell> VoxelReader::classes(const CellKey& low, const CellKey& high) const {
+  if (low.x > high.x || low.y > high.y || low.z > high.z) return {};
+  const auto span = [](std::int32_t a, std::int32_t b) { return static_cast<std::size_t>(b - a + 1); };
+  const std::size_t row = span(low.x, high.x), layer = row * span(low.y, high.y);
+  std::vector<Cell> out(layer * span(low.z, high.z), Cell::unknown);
+  for (const Block* b : blocks_in_box(blocks_, low, high)) {
+    const CellKey c = corner_of(b->id);
+    const CellKey from{std::max(c.x, low.x), std::max(c.y, low.y), std::max(c.z, low.z)};
+    const CellKey to{std::min(c.x + 7, high.x), std::min(c.y + 7, high.y), std::min(c.z + 7, high.z)};
+    for (std::int32_t z = from.z; z <= to.z; ++z)
+      for (std::int32_t y = from.y; y <= to.y; ++y) {
+        const auto cells = std::span(b->log_odds).subspan(local_of({from.x, y, z}), span(from.x, to.x));
+        Cell* const at = out.data() + (z - low.z) * static_cast<std::ptrdiff_t>(layer) +
+                         (y - low.y) * static_cast<std::ptrdiff_t>(row) + (from.x - low.x);
+        std::transform(cells.begin(), cells.end(), at, class_of);
+      }
+  }
+  return out;
+}
+
 }  // namespace karst::core

@@ -1,10 +1,11 @@
 #include "sdk/host/services/gain.h"
 
-#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "core_stack/mapping/occupancy/voxel_reader.h"
 #include "sdk/host/services/snapshot.h"
 
 namespace karst::host {
@@ -20,15 +21,16 @@ class Window {
   Window(const core::VoxelMap& map, const CellKey& center, std::int32_t radius)
       : corner_{center.x - radius, center.y - radius, center.z - radius},
         edge_(2 * radius + 1),
-        cells_(static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_) *
-                   static_cast<std::size_t>(edge_),
-               Cell::unknown) {
-    const CellKey high{center.x + radius, center.y + radius, center.z + radius};
-    map.for_each_in_box(corner_, high, [&](const CellKey& k, Cell c) { *at(k) = c; });
-  }
+        cells_(core::VoxelReader(map).classes(corner_,
+                                              {center.x + radius, center.y + radius, center.z + radius})) {}
 
   Cell* at(const CellKey& k) {
     return cells_.data() + (k.x - corner_.x) + stride(1) * (k.y - corner_.y) + stride(2) * (k.z - corner_.z);
+  }
+  CellKey key_of(const Cell* cell) const {
+    const auto index =
+        static_cast<std::int32_t>(cell - cells_.data());  // KARST_MAX_GAIN_RANGE_CELLS allows it
+    return {corner_.x + index % edge_, corner_.y + index / edge_ % edge_, corner_.z + index / edge_ / edge_};
   }
   /// From a cell to its neighbour along an axis.
   std::ptrdiff_t stride(int axis) const {
@@ -42,31 +44,45 @@ class Window {
   std::vector<Cell> cells_;
 };
 
-/// Calls visit(cell, key) for the window's cells that a ray passes (Amanatides and Woo, 1987) until it
-/// returns false. All lengths in cells; `direction` is unit.
+/// `value` if the mask is all ones, 0 if it is zero.
+double masked(double value, std::int64_t mask) {
+  return std::bit_cast<double>(std::bit_cast<std::int64_t>(value) & mask);
+}
+
+/// One axis of a walk. All lengths in cells.
+struct WalkAxis {
+  std::ptrdiff_t stride = 0;
+  double next = 0, period = 0;  // length to the next border, and between borders
+
+  WalkAxis(const Window& window, int axis, double from, double along)
+      : stride((along < 0 ? -1 : 1) * window.stride(axis)) {
+    const double floor = std::floor(from);
+    period = along == 0 ? std::numeric_limits<double>::infinity() : std::abs(1.0 / along);
+    next = along == 0 ? period : period * (along < 0 ? from - floor : floor + 1.0 - from);
+  }
+  /// Crosses the border if the mask is all ones; returns what to add to the cell.
+  std::ptrdiff_t cross(std::int64_t mask) {
+    next += masked(period, mask);
+    return stride & mask;
+  }
+};
+
+/// Calls visit(cell) for the window's cells that a ray passes (Amanatides and Woo, 1987) until it returns
+/// false. All lengths in cells; `direction` is unit.
 template <class Visit>
 void walk(Window& window, const Vec3& eye, const Vec3& direction, double furthest, Visit&& visit) {
-  std::array<std::int32_t, 3> key{}, step{};
-  std::array<std::ptrdiff_t, 3> stride{};
-  std::array<double, 3> next{}, period{};  // length to the next border of each axis, and between borders
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const double along = direction[axis], floor = std::floor(eye[axis]);
-    key[a] = static_cast<std::int32_t>(floor);
-    step[a] = along < 0 ? -1 : 1;
-    stride[a] = step[a] * window.stride(axis);
-    period[a] = along == 0 ? std::numeric_limits<double>::infinity() : std::abs(1.0 / along);
-    next[a] = along == 0 ? period[a] : period[a] * (along < 0 ? eye[axis] - floor : floor + 1.0 - eye[axis]);
-  }
-  Cell* cell = window.at({key[0], key[1], key[2]});
-  while (visit(*cell, key)) {
-    // Branchless: which border comes next cannot be predicted.
-    const std::size_t y_or_z = next[1] < next[2] ? 1 : 2;
-    const std::size_t a = next[0] < next[y_or_z] ? 0 : y_or_z;
-    if (next[a] > furthest) return;
-    cell += stride[a];
-    key[a] += step[a];
-    next[a] += period[a];
+  const auto floor_of = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
+  WalkAxis x(window, 0, eye.x(), direction.x()), y(window, 1, eye.y(), direction.y()),
+      z(window, 2, eye.z(), direction.z());
+  Cell* cell = window.at({floor_of(eye.x()), floor_of(eye.y()), floor_of(eye.z())});
+  while (visit(cell)) {
+    // Without a branch: which border comes next cannot be predicted.
+    const bool y_before_z = y.next < z.next;
+    const double y_or_z = y_before_z ? y.next : z.next;
+    const bool x_first = x.next < y_or_z;
+    if ((x_first ? x.next : y_or_z) > furthest) return;
+    const std::int64_t x_mask = -std::int64_t{x_first}, y_mask = -std::int64_t{y_before_z} & ~x_mask;
+    cell += x.cross(x_mask) + y.cross(y_mask) + z.cross(~(x_mask | y_mask));
   }
 }
 
@@ -153,14 +169,14 @@ std::uint64_t SensorRays::newly_seen(const core::VoxelMap& map, const karst_view
   Window window(map, map.key_of(T_world_sensor.position), static_cast<std::int32_t>(furthest) + 2);
   std::uint64_t count = 0;
   for (const Vec3& direction : directions_) {
-    walk(window, eye, T_world_sensor.orientation * direction, furthest,
-         [&](Cell& c, const std::array<std::int32_t, 3>& k) {
-           if (c != Cell::unknown) return c == Cell::free;
-           c = Cell::free;  // counted once; as transparent as before
-           const double away = (Vec3(k[0] + 0.5, k[1] + 0.5, k[2] + 0.5) - eye).norm();
-           if (away >= nearest && away <= furthest) ++count;
-           return true;
-         });
+    walk(window, eye, T_world_sensor.orientation * direction, furthest, [&](Cell* cell) {
+      if (*cell != Cell::unknown) return *cell == Cell::free;
+      *cell = Cell::free;  // counted once; as transparent as before
+      const CellKey k = window.key_of(cell);
+      const double away = (Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) - eye).norm();
+      if (away >= nearest && away <= furthest) ++count;
+      return true;
+    });
   }
   return count;
 }

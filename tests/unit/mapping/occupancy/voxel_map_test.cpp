@@ -122,6 +122,12 @@ TEST(VoxelMap, BoxesListAndCountTheirKnownCells) {
                         [&](const CellKey& k, Cell c) { EXPECT_TRUE(listed.emplace(k, c).second); });
     EXPECT_EQ(listed, expected);
     if (reach > 40) continue;
+    const std::vector<Cell> classes = VoxelReader(map).classes(low, high);
+    std::size_t index = 0;
+    for (CellKey k = low; k.z <= high.z; ++k.z)
+      for (k.y = low.y; k.y <= high.y; ++k.y)
+        for (k.x = low.x; k.x <= high.x; ++k.x) ASSERT_EQ(classes.at(index++), map.at(k));
+    EXPECT_EQ(classes.size(), index);
     const CellCounts counts = VoxelReader(map).count(low, high);
     const auto free =
         std::count_if(expected.begin(), expected.end(), [](auto& e) { return e.second == Cell::free; });
