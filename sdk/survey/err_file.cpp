@@ -10,11 +10,17 @@
 namespace karst::survey {
 namespace {
 
-/// First and last word of "1 - 2 = 3 - 4".
+/// First and last station of "1 - 2 = 3 - 4". cavern writes "<fixed point>" for some, and nothing for a
+/// station without a name.
 void set_ends(const std::string& stations, Loops::Traverse& traverse) {
-  traverse.from = stations.substr(0, stations.find(' '));
-  const std::size_t last = stations.find_last_of(' ');
-  traverse.to = last == std::string::npos ? stations : stations.substr(last + 1);
+  const auto name = [](const std::string& text) { return text.empty() ? "a station without a name" : text; };
+  const std::size_t first = std::min(stations.find(" - "), stations.find(" = "));
+  traverse.from = name(stations.substr(0, first));
+  const auto last_of = [&](const char* joint) {
+    const std::size_t at = stations.rfind(joint);
+    return at == std::string::npos ? 0 : at + 3;
+  };
+  traverse.to = name(stations.substr(std::max(last_of(" - "), last_of(" = "))));
 }
 
 }  // namespace

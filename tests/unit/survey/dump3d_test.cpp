@@ -85,6 +85,21 @@ TEST(ErrFile, TraversesAreSortedByTheirError) {
   EXPECT_TRUE(read_err_file(folder.path() / "none.err").empty());
 }
 
+TEST(ErrFile, EndsWithoutANameAndFixedPointsAreNamed) {
+  const Folder folder;
+  const auto traverses = read_err_file(folder.write(
+      "a.err",
+      "cave.1 - cave.2 - \nOriginal length   9.00m (  2 legs), moved   0.30m\n1\nH: 1 V: 1\n\n"
+      "<fixed point> - a-b = 4\nOriginal length   9.00m (  2 legs), moved   0.20m\n1\nH: 1 V: 1\n\n"
+      "1 - <fixed point>\nOriginal length   9.00m (  1 legs), moved   0.10m\n1\nH: 1 V: 1\n"));
+  ASSERT_EQ(traverses.size(), 3u);
+  EXPECT_EQ(traverses[0].from, "cave.1");
+  EXPECT_EQ(traverses[0].to, "a station without a name");
+  EXPECT_EQ(traverses[1].from, "<fixed point>");
+  EXPECT_EQ(traverses[1].to, "4");
+  EXPECT_EQ(traverses[2].to, "<fixed point>");
+}
+
 TEST(CavernMessages, AreReadWithTheirFileAndLine) {
   const auto messages = cavern_messages(
       "Survex 1.4.4\na.svx:5:18: error: Expecting numeric field\n *declination auto\n      ^\n"
