@@ -85,7 +85,7 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
   const FreeRuns free = free_runs(map, file);
   const Vec3 entrance = record.entrance.value_or(Vec3::Zero());
   const PassageLines lines =
-      passage_lines(map, record.entrance ? *record.entrance : roomiest_place(map, free), file);
+      passage_lines(map, record.entrance ? *record.entrance : roomiest_place(map, free), file, record.path);
   const double bearing = bearing_rad.value_or(longest_bearing(free));
 
   CaveDrawings out;

@@ -52,9 +52,10 @@ double PassageLines::length_m() const {
   return sum;
 }
 
-PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, const std::string& file) {
+PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, const std::string& file,
+                           std::span<const core::Vec3> flown) {
   core::WorkBudget work(kMostWork);
-  const std::optional<core::FreeParts> space = core::free_parts_around(map, start, work);
+  const std::optional<core::FreeParts> space = core::free_parts_around(map, start, work, flown);
   if (!space) throw core::InputError(file, "", "the map is too large to find its passages");
   PassageLines out;
   if (space->parts.empty() || space->start == core::kNoPart) return out;

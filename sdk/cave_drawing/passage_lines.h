@@ -1,6 +1,7 @@
 // The middle of a cave's passages as a graph of places: what an extended profile is unrolled along.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,10 @@ struct PassageLines {
 };
 
 /// The passages connected to the start (core_stack/planning/passages, of which this keeps the middle line).
-/// Without points if there is no room for a vehicle within 5 m of it. Throws core::InputError that names
+/// `flown` connects passages as well: a vehicle came through there. Without points if there is no room for a
+/// vehicle within 5 m of the start. Throws core::InputError that names
 /// `file` if the map is too large for it.
-PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, const std::string& file);
+PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, const std::string& file,
+                           std::span<const core::Vec3> flown = {});
 
 }  // namespace karst::cave_drawing

@@ -8,6 +8,7 @@
 
 #include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/passages/slice_graph.h"
+#include "sdk/survey_export/refined_line.h"
 
 namespace karst::survey_export {
 namespace {
@@ -24,20 +25,6 @@ constexpr double kMostExtension_m = 3.0;
 constexpr double kMostStep_m = 5.0;               // between two points of a line
 constexpr std::size_t kMostSearched = 1'000'000;  // cells, between two points
 constexpr std::uint32_t kNoNode = ~std::uint32_t{0};
-
-/// Moves `p` to the middle between what bounds the free space on both sides of a line through it.
-Vec3 centred(const core::VoxelMap& map, const Vec3& p, const Vec3& direction, double most_m) {
-  const double ahead_m = free_reach_m(map, p, direction), behind_m = free_reach_m(map, p, -direction);
-  const Vec3 moved = p + std::clamp(0.5 * (ahead_m - behind_m), -most_m, most_m) * direction;
-  return sees(map, p, moved) ? moved : p;
-}
-
-/// Two directions across a tangent, the first of them level.
-std::array<Vec3, 2> across(const Vec3& tangent) {
-  Vec3 side = tangent.cross(Vec3::UnitZ());
-  side = side.norm() > 0.1 ? side.normalized() : Vec3::UnitX();
-  return {side, side.cross(tangent).normalized()};
-}
 
 class Lines {
  public:
@@ -56,6 +43,9 @@ class Lines {
     start_group_ = group_of(slices_.slice_of[space_.start]);
     node(start_group_, LineNode::Kind::start);
     for (const SliceChain& c : core::chains_of(groups_)) add_chain(c);
+    for (std::uint32_t n = 0; n < out_.nodes.size(); ++n)
+      if (n == 0 || out_.nodes[n].kind == LineNode::Kind::junction) settle(n);
+    for (MiddleLine& line : out_.lines) join(line);
     order();
     return std::move(out_);
   }
@@ -119,13 +109,11 @@ class Lines {
       const auto begin = std::find(groups.begin(), groups.end(), start_group_);
       std::rotate(groups.begin(), begin == groups.end() ? groups.begin() : begin, groups.end());
       groups.push_back(groups.front());
-      center(groups, {false, false});
       return add_line(groups, {false, false});
     }
     const std::array<bool, 2> free_end{chain.junctions[0] == kNoGroup, chain.junctions[1] == kNoGroup};
     if (!free_end[0]) groups.insert(groups.begin(), chain.junctions[0]);
     if (!free_end[1]) groups.push_back(chain.junctions[1]);
-    center(groups, free_end);
     const auto at = std::find(groups.begin(), groups.end(), start_group_);
     if (at == groups.end() || at == groups.begin() || at + 1 == groups.end())
       return add_line(groups, free_end);
@@ -156,6 +144,7 @@ class Lines {
     MiddleLine line;
     for (const std::uint32_t g : groups) line.points.push_back(points_[g]);
     fill_flown(line.points);
+    line.points = refined_line(map_, line.points, free_end);
     std::array<LineNode::Kind, 2> kinds{LineNode::Kind::junction, LineNode::Kind::junction};
     for (const std::size_t side : {0u, 1u})
       if (free_end[side]) kinds[side] = kind_of_end(groups, side == 1);
@@ -169,36 +158,68 @@ class Lines {
       if (side == 0) std::reverse(line.points.begin(), line.points.end());
     }
     if (line.points.size() < 2) return;
-    join(line);
     out_.lines.push_back(std::move(line));
   }
 
-  /// Moves the points of a chain between the walls, and between floor and ceiling, across the chain, and
-  /// measures them there. Its junctions stay: other chains share them. (The narrowest line of a cross-section
-  /// may cut a corner.)
-  void center(const std::vector<std::uint32_t>& groups, std::array<bool, 2> free_end) {
-    constexpr int kRounds = 3;  // a better line has better directions
-    const std::size_t n = groups.size(), first = free_end[0] ? 0 : 1, end = n - (free_end[1] ? 0 : 1);
-    if (n < 2) return;
-    const auto at = [&](std::size_t i) -> const Vec3& { return points_[groups[i]].position; };
-    for (int round = 0; round < kRounds; ++round) {
-      std::vector<LinePoint> moved;
-      for (std::size_t i = first; i < end; ++i) {
-        const std::size_t from = i < 2 ? std::min<std::size_t>(i == 0 && n > 3 ? 1 : 0, n - 2) : i - 2;
-        const std::size_t to = i + 2 < n ? i + 2 : i + 1 == n && n > 3 ? n - 2 : n - 1;
-        moved.push_back(points_[groups[i]]);
-        const Vec3 along = at(to) - at(from);
-        if (along.norm() < 1e-3) continue;
-        LinePoint& p = moved.back();
-        const std::array<Vec3, 2> sides = across(along.normalized());
-        for (const Vec3& side : sides) p.position = centred(map_, p.position, side, 0.5 * band_m_);
-        p.width_m = free_reach_m(map_, p.position, sides[0]) + free_reach_m(map_, p.position, -sides[0]);
-        p.height_m = free_reach_m(map_, p.position, sides[1]) + free_reach_m(map_, p.position, -sides[1]);
-      }
-      for (std::size_t i = first; i < end; ++i) points_[groups[i]] = moved[i - first];
+  /// The end of a line at a junction.
+  struct Branch {
+    std::size_t line = 0;
+    bool is_last = false;  // it ends there
+  };
+
+  /// A branch without its points that lie in the openings of the others, where no width is its own: those
+  /// before the first of its usual width. From the junction on.
+  static std::vector<LinePoint> outside(std::vector<LinePoint> from_junction, double junction_width_m) {
+    constexpr double kUsual = 1.3;
+    std::vector<double> widths;
+    for (const LinePoint& p : from_junction) widths.push_back(p.width_m);
+    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    std::size_t first = 1;
+    while (first + 2 < from_junction.size()) {
+      const LinePoint& p = from_junction[first];
+      const double away_m = (p.position - from_junction.front().position).norm();
+      if (away_m > junction_width_m || (away_m > 0.5 * *middle && p.width_m < kUsual * *middle)) break;
+      ++first;
     }
-    for (const std::uint32_t g : groups)
-      if (node_of_[g] != kNoNode) out_.nodes[node_of_[g]].point = points_[g];
+    from_junction.erase(from_junction.begin() + 1,
+                        from_junction.begin() + static_cast<std::ptrdiff_t>(first));
+    return from_junction;
+  }
+
+  /// Puts a junction, or the start, where the axes of its branches meet: the place with the least sum of
+  /// squares of its distances to them, held to where it was by a small weight.
+  void settle(std::uint32_t node) {
+    constexpr double kHeld = 0.05;
+    constexpr std::size_t kAxisPoints = 5;
+    const LinePoint before = out_.nodes[node].point;
+    Eigen::Matrix3d a = kHeld * Eigen::Matrix3d::Identity();
+    Vec3 b = kHeld * before.position;
+    std::vector<Branch> branches;
+    for (std::size_t l = 0; l < out_.lines.size(); ++l)
+      for (const bool is_last : {false, true}) {
+        MiddleLine& line = out_.lines[l];
+        if (line.nodes[is_last ? 1 : 0] != node) continue;
+        if (is_last) std::reverse(line.points.begin(), line.points.end());
+        line.points = outside(std::move(line.points), std::max(before.width_m, 2 * band_m_));
+        const Vec3& near = line.points[1].position;
+        const Vec3& far = line.points[std::min(kAxisPoints, line.points.size() - 1)].position;
+        if (const Vec3 axis = far - near; axis.norm() > 1e-3) {
+          const Vec3 u = axis.normalized();
+          const Eigen::Matrix3d across_axis = Eigen::Matrix3d::Identity() - u * u.transpose();
+          a += across_axis;
+          b += across_axis * near;
+        }
+        if (is_last) std::reverse(line.points.begin(), line.points.end());
+        branches.push_back({l, is_last});
+      }
+    const Vec3 meeting = a.ldlt().solve(b);
+    if ((meeting - before.position).norm() > before.width_m || !sees(map_, before.position, meeting)) return;
+    out_.nodes[node].point.position = meeting;
+    for (const Branch& branch : branches) {
+      std::vector<LinePoint>& points = out_.lines[branch.line].points;
+      (branch.is_last ? points.back() : points.front()).position = meeting;
+    }
   }
 
   /// A slice or two that the trajectory did not touch, between flown ones, were passed.
@@ -290,7 +311,7 @@ class Lines {
 
 MiddleLines middle_lines(const core::VoxelMap& map, const Vec3& start, std::span<const Vec3> flown) {
   core::WorkBudget unlimited(std::numeric_limits<std::uint64_t>::max());
-  const std::optional<core::FreeParts> space = free_parts_around(map, start, unlimited);
+  const std::optional<core::FreeParts> space = free_parts_around(map, start, unlimited, flown);
   if (!space || space->parts.empty()) return {};
   return Lines(map, *space, flown).found();
 }

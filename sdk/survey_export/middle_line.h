@@ -38,8 +38,8 @@ struct MiddleLines {
   std::vector<MiddleLine> lines;  // in the order in which a surveyor reaches them from the start
 };
 
-/// The passages connected to `start`, a place where the vehicle stood or flew; `flown`: its trajectory. Empty
-/// if the map has no space with room for a vehicle within 5 m of it.
+/// The passages connected to `start`, a place where the vehicle stood or flew, by room for a vehicle or by
+/// its trajectory `flown`. Empty if the map has no space with room for a vehicle within 5 m of it.
 MiddleLines middle_lines(const core::VoxelMap& map, const core::Vec3& start,
                          std::span<const core::Vec3> flown);
 

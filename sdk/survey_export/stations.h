@@ -12,13 +12,14 @@ namespace karst::survey_export {
 struct StationOptions {
   double longest_leg_m = 10.0;
   /// A point of the line may be so far from the straight leg past it: a part of the passage's width, or this.
-  double least_bend_m = 0.5, bend_fraction = 0.15;
+  double least_bend_m = 0.2, bend_fraction = 0.05;
   /// So may its width and height be from those between the two stations.
   double least_change_m = 1.0, change_fraction = 0.35;
 };
 
 /// Indices of points of the line, the first and the last among them, with the fewest legs, and of those the
-/// most even ones. A leg joins two neighbouring points if nothing else will do.
+/// legs that are least off the line; of equal ones the most even. A leg joins two neighbouring points if
+/// nothing else will do.
 std::vector<std::size_t> stations_on(const core::VoxelMap& map, const MiddleLine& line,
                                      const StationOptions& options);
 

@@ -35,8 +35,9 @@ struct AllParts {
   std::vector<FreePart> parts;
   std::vector<std::uint32_t> first_of;  // of each known cube; one more at the end
 
-  AllParts(const KnownCubes& known, const PassageGrid& grid) {
-    const std::vector<BlockBits> room = known.with_room(grid.room);
+  AllParts(const KnownCubes& known, const PassageGrid& grid, std::span<const Vec3> flown) {
+    std::vector<BlockBits> room = known.with_room(grid.room);
+    known.add_path(flown, grid, room);
     for (std::uint32_t c = 0; c < known.size(); ++c) {
       first_of.push_back(static_cast<std::uint32_t>(parts.size()));
       for (BlockBits left = room[c]; left != 0; left &= ~parts.back().cells) {
@@ -169,12 +170,13 @@ std::uint32_t FreeParts::nearest(const Vec3& p) const {
   return nearest;
 }
 
-std::optional<FreeParts> free_parts_around(const VoxelMap& map, const Vec3& start, WorkBudget& work) {
+std::optional<FreeParts> free_parts_around(const VoxelMap& map, const Vec3& start, WorkBudget& work,
+                                           std::span<const Vec3> flown) {
   FreeParts space;
   space.grid = passage_grid(map.resolution_m());
   if (!work.spend(map.free_cells() + map.occupied_cells())) return std::nullopt;
   const KnownCubes known(map, space.grid);
-  const AllParts all(known, space.grid);
+  const AllParts all(known, space.grid, flown);
   if (!work.spend(kPartWork * all.parts.size())) return std::nullopt;
   const std::uint32_t first = nearest_to_start(all, start);
   if (first == kNoPart) return space;

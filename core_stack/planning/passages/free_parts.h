@@ -72,7 +72,8 @@ constexpr std::uint64_t kMaxPassageWork = 50'000'000;
 constexpr std::uint64_t kPartWork = 60, kSliceWork = 1000;
 
 /// The parts connected to the one nearest to `start`; none if there is none within 5 m of it. nullopt once
-/// `work` is exhausted.
-std::optional<FreeParts> free_parts_around(const VoxelMap& map, const Vec3& start, WorkBudget& work);
+/// `work` is exhausted. Cells on the path `flown` have room in any case: a vehicle has come through there.
+std::optional<FreeParts> free_parts_around(const VoxelMap& map, const Vec3& start, WorkBudget& work,
+                                           std::span<const Vec3> flown = {});
 
 }  // namespace karst::core

@@ -83,6 +83,22 @@ BlockBits KnownCubes::frontier(std::uint32_t cube) const {
   return touching & free_[cube];
 }
 
+void KnownCubes::add_path(std::span<const Vec3> path, const PassageGrid& grid,
+                          std::vector<BlockBits>& cells) const {
+  constexpr double kLongest_m = 1.0;  // of a step: farther, and the estimate has jumped
+  const int mask = edge_ - 1;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    if ((path[i] - path[i - 1]).norm() > kLongest_m) continue;
+    traverse(path[i - 1], path[i], grid.cell_m, [&](const CellKey& k) {
+      const std::uint32_t cube =
+          table_.find({k.x >> grid.cube_shift, k.y >> grid.cube_shift, k.z >> grid.cube_shift});
+      if (cube != TileTable::none)
+        cells[cube] |= BlockBits{1} << ((k.x & mask) | (k.y & mask) << 2 | (k.z & mask) << 4);
+      return true;
+    });
+  }
+}
+
 std::vector<BlockBits> KnownCubes::with_room(int cells) const {
   const auto not_free = [this](std::uint32_t c) { return all_ & ~free_[c]; };
   std::vector<BlockBits> blocked(size());

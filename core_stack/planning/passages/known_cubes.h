@@ -1,6 +1,7 @@
 // The known cells of a map as bitmaps of cubes, for FreeParts. Private to passages.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core_stack/planning/passages/free_parts.h"
@@ -24,6 +25,8 @@ class KnownCubes {
   /// For each cube, the cells that have room around them. Lonely cells that are not free, with free cells on
   /// all six sides, count as free.
   std::vector<BlockBits> with_room(int cells) const;
+  /// Adds the cells that a path leads through to `cells`, those of each cube, where anything is known.
+  void add_path(std::span<const Vec3> path, const PassageGrid& grid, std::vector<BlockBits>& cells) const;
   /// The cells on a face, moved to the place of those that touch them in the next cube.
   BlockBits across(BlockBits cells, std::size_t face) const {
     const std::size_t axis = face / 2;

@@ -53,6 +53,35 @@ void expect_sound(const core::VoxelMap& map, const FlownSurvey& flown) {
     EXPECT_FALSE(s.stations[i].entrance || s.stations[i].fixed || s.stations[i].surface);
 }
 
+double nearest_station_m(const FlownSurvey& flown, const Vec3& p) {
+  double nearest_m = 1e9;
+  for (const survey::Station& s : flown.survey.stations)
+    nearest_m = std::min(nearest_m, (s.position_m - p).norm());
+  return nearest_m;
+}
+
+double distance_m(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double part = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (p - a - part * (b - a)).norm();
+}
+double level_distance_m(Vec3 p, Vec3 a, Vec3 b) {
+  p.z() = a.z() = b.z() = 0;
+  return distance_m(p, a, b);
+}
+
+/// The largest distance of these places from the survey's legs.
+double farthest_from_legs_m(const FlownSurvey& flown, const std::vector<Vec3>& places) {
+  double farthest_m = 0;
+  for (const Vec3& p : places) {
+    double nearest_m = 1e9;
+    for (const survey::Leg& l : flown.survey.legs)
+      nearest_m = std::min(nearest_m, distance_m(p, flown.survey.stations[l.from].position_m,
+                                                 flown.survey.stations[l.to].position_m));
+    farthest_m = std::max(farthest_m, nearest_m);
+  }
+  return farthest_m;
+}
+
 TEST(FlownSurvey, AStraightTunnelHasItsStationsOnTheAxisAndItsWallsWithinACell) {
   const core::VoxelMap map = test::tunnel_map();
   const FlownSurvey flown = surveyed(map, test::tunnel_flight());
@@ -91,10 +120,37 @@ TEST(FlownSurvey, ABendHasAStation) {
   const std::vector<int> d = degrees(flown.survey);
   EXPECT_EQ(count(d, 1), 2u);
   EXPECT_EQ(count(d, 2), d.size() - 2);
-  double nearest = 100;
-  for (const survey::Station& s : flown.survey.stations)
-    nearest = std::min(nearest, (s.position_m - Vec3(18.5, 0, 1.5)).norm());
-  EXPECT_LT(nearest, 1.5);
+  EXPECT_LT(nearest_station_m(flown, {18.5, 0, 1.5}), 0.7);
+  EXPECT_LT(farthest_from_legs_m(flown, way({{2, -0.1, 1.5}, {18.5, -0.1, 1.5}, {18.5, 18, 1.5}})), 0.6);
+}
+
+TEST(FlownSurvey, BendsAreNotCut) {
+  // Legs of 10 m that turn by 30 to 60 degrees: a line halfway between the walls turns where they do.
+  const std::vector<Vec3> axis = {{0, 0, 1.5},   {10, 0, 1.5},  {18, 6, 1.5},   {27, 6.5, 1.5},
+                                  {32, 15, 1.5}, {41, 12, 1.5}, {50, 16.5, 1.5}};
+  const test::Inside cave = [&axis](const Vec3& p) {
+    double away_m = 100;
+    for (std::size_t i = 1; i < axis.size(); ++i)
+      away_m = std::min(away_m, level_distance_m(p, axis[i - 1], axis[i]));
+    return away_m < 1.7 && p.z() > 0 && p.z() < 3;
+  };
+  const core::VoxelMap map = carved(cave, {-3, -3, -1}, {53, 20, 4});
+  const FlownSurvey flown = surveyed(map, way(axis));
+  expect_sound(map, flown);
+  EXPECT_LT(farthest_from_legs_m(flown, way(axis)), 0.35);
+  EXPECT_LE(flown.survey.legs.size(), 16u);
+}
+
+TEST(FlownSurvey, AFlownPassageBelongsToItHoweverNarrowTheMapIsThere) {
+  const auto cave = test::any_of(
+      {box({0, -2, 0}, {12, 2, 3}), box({11, -0.45, 1}, {19, 0.45, 1.9}), box({18, -2, 0}, {30, 2, 3})});
+  const core::VoxelMap map = carved(cave, {-1, -3, -1}, {31, 3, 4});
+  const FlownSurvey not_flown = surveyed(map, way({{1, 0, 1.5}, {10, 0, 1.5}}));
+  for (const survey::Station& s : not_flown.survey.stations) EXPECT_LT(s.position_m.x(), 15);
+  const FlownSurvey flown = surveyed(map, way({{1, 0, 1.5}, {28, 0, 1.5}, {1, 0, 1.5}}));
+  expect_sound(map, flown);
+  EXPECT_LT(farthest_from_legs_m(flown, way({{2, 0, 1.5}, {28, 0, 1.5}})), 0.5);
+  for (const survey::Leg& l : flown.survey.legs) EXPECT_FALSE(l.approximate);
 }
 
 TEST(FlownSurvey, AChangeOfSizeHasAStation) {
@@ -118,7 +174,8 @@ TEST(FlownSurvey, AJunctionIsOneStationOfThreeBranches) {
   EXPECT_EQ(count(d, 1), 3u);
   for (std::size_t i = 0; i < d.size(); ++i)
     if (d[i] == 3) {
-      EXPECT_LT((flown.survey.stations[i].position_m - Vec3(14.9, 0, 1.5)).norm(), 2.0);
+      EXPECT_LT((flown.survey.stations[i].position_m - Vec3(14.9, 0, 1.5)).norm(), 0.4)
+          << "where the axes of the branches meet";
     }
   std::set<std::uint32_t> runs;
   for (const survey::Leg& l : flown.survey.legs) runs.insert(l.run);

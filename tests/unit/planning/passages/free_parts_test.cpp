@@ -106,6 +106,26 @@ TEST(FreeParts, AreNoneFarFromTheStart) {
   EXPECT_TRUE(parts_of(map, {std::nan(""), 0, 0}).parts.empty());
 }
 
+TEST(FreeParts, AreConnectedThroughATightPlaceIfAVehicleFlewThere) {
+  const VoxelMap map = map_of(either(either(box({0, 0, 0}, {8, 4, 3}), box({12, 0, 0}, {20, 4, 3})),
+                                     box({7, 1.7, 1.2}, {13, 2.3, 1.8})),
+                              {-1, -1, -1}, {21, 5, 4});
+  const auto most_x = [](const FreeParts& space) {
+    double most = -1e9;
+    for (const FreePart& part : space.parts) most = std::max(most, part.middle.x());
+    return most;
+  };
+  EXPECT_LT(most_x(parts_of(map, {1, 2, 1.5})), 9);
+  std::vector<Vec3> flown;
+  for (double x = 1; x < 19; x += 0.5) flown.emplace_back(x, 2, 1.5);
+  WorkBudget work(kMaxPassageWork);
+  EXPECT_GT(most_x(free_parts_around(map, {1, 2, 1.5}, work, flown).value()), 18);
+  const std::vector<Vec3> jump = {{1, 2, 1.5}, {19, 2, 1.5}};
+  WorkBudget again(kMaxPassageWork);
+  EXPECT_LT(most_x(free_parts_around(map, {1, 2, 1.5}, again, jump).value()), 9)
+      << "where the estimate jumped, nothing flew";
+}
+
 TEST(FreeParts, EndWithTheWorkAllowed) {
   const VoxelMap map = map_of(box({0, 0, 0}, {8, 4, 3}), kLow, kHigh);
   const std::uint64_t known = map.free_cells() + map.occupied_cells();
