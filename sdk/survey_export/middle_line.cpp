@@ -8,6 +8,7 @@
 
 #include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/passages/slice_graph.h"
+#include "sdk/survey_export/axes.h"
 #include "sdk/survey_export/refined_line.h"
 
 namespace karst::survey_export {
@@ -167,53 +168,43 @@ class Lines {
     bool is_last = false;  // it ends there
   };
 
-  /// A branch without its points that lie in the openings of the others, where no width is its own: those
-  /// before the first of its usual width. From the junction on.
-  static std::vector<LinePoint> outside(std::vector<LinePoint> from_junction, double junction_width_m) {
-    constexpr double kUsual = 1.3;
+  /// A branch, from the junction on, without its points in the openings of the others: those as near to the
+  /// junction as the branch is wide, and after them those that are wider than usual.
+  static std::vector<LinePoint> outside(std::vector<LinePoint> branch) {
+    constexpr double kUsual = 1.3, kFarthest = 2;
     std::vector<double> widths;
-    for (const LinePoint& p : from_junction) widths.push_back(p.width_m);
+    for (const LinePoint& p : branch) widths.push_back(p.width_m);
     const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
     std::nth_element(widths.begin(), middle, widths.end());
     std::size_t first = 1;
-    while (first + 2 < from_junction.size()) {
-      const LinePoint& p = from_junction[first];
-      const double away_m = (p.position - from_junction.front().position).norm();
-      if (away_m > junction_width_m || (away_m > 0.5 * *middle && p.width_m < kUsual * *middle)) break;
+    while (first + 2 < branch.size()) {
+      const double away_m = (branch[first].position - branch.front().position).norm();
+      if (away_m > *middle && (branch[first].width_m < kUsual * *middle || away_m > kFarthest * *middle))
+        break;
       ++first;
     }
-    from_junction.erase(from_junction.begin() + 1,
-                        from_junction.begin() + static_cast<std::ptrdiff_t>(first));
-    return from_junction;
+    branch.erase(branch.begin() + 1, branch.begin() + static_cast<std::ptrdiff_t>(first));
+    return branch;
   }
 
-  /// Puts a junction, or the start, where the axes of its branches meet: the place with the least sum of
-  /// squares of its distances to them, held to where it was by a small weight.
+  /// Puts a junction, or the start, where the axes of its branches meet.
   void settle(std::uint32_t node) {
-    constexpr double kHeld = 0.05;
-    constexpr std::size_t kAxisPoints = 5;
+    constexpr std::size_t kAxisPoints = 8;
     const LinePoint before = out_.nodes[node].point;
-    Eigen::Matrix3d a = kHeld * Eigen::Matrix3d::Identity();
-    Vec3 b = kHeld * before.position;
+    std::vector<Axis> axes;
     std::vector<Branch> branches;
     for (std::size_t l = 0; l < out_.lines.size(); ++l)
       for (const bool is_last : {false, true}) {
         MiddleLine& line = out_.lines[l];
         if (line.nodes[is_last ? 1 : 0] != node) continue;
         if (is_last) std::reverse(line.points.begin(), line.points.end());
-        line.points = outside(std::move(line.points), std::max(before.width_m, 2 * band_m_));
-        const Vec3& near = line.points[1].position;
-        const Vec3& far = line.points[std::min(kAxisPoints, line.points.size() - 1)].position;
-        if (const Vec3 axis = far - near; axis.norm() > 1e-3) {
-          const Vec3 u = axis.normalized();
-          const Eigen::Matrix3d across_axis = Eigen::Matrix3d::Identity() - u * u.transpose();
-          a += across_axis;
-          b += across_axis * near;
-        }
+        line.points = outside(std::move(line.points));
+        const auto branch = std::span<const LinePoint>(line.points).subspan(1);
+        if (branch.size() > 1) axes.push_back(axis_of(branch.first(std::min(kAxisPoints, branch.size()))));
         if (is_last) std::reverse(line.points.begin(), line.points.end());
         branches.push_back({l, is_last});
       }
-    const Vec3 meeting = a.ldlt().solve(b);
+    const Vec3 meeting = meeting_of(axes, before.position);
     if ((meeting - before.position).norm() > before.width_m || !sees(map_, before.position, meeting)) return;
     out_.nodes[node].point.position = meeting;
     for (const Branch& branch : branches) {

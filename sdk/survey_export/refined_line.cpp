@@ -7,6 +7,7 @@
 
 #include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/passages/cross_section.h"
+#include "sdk/survey_export/axes.h"
 
 namespace karst::survey_export {
 namespace {
@@ -19,6 +20,8 @@ std::array<Vec3, 2> across(const Vec3& tangent) {
   side = side.norm() > 0.1 ? side.normalized() : Vec3::UnitX();
   return {side, side.cross(tangent).normalized()};
 }
+
+constexpr double kSpacing_m = 0.5;
 
 /// How far to move along `side` from a place with these reaches to both sides. Where the space is much wider
 /// than the passage is around there (`half_m`), a side passage opens, and the nearer wall counts alone.
@@ -58,7 +61,7 @@ class Refinement {
   }
 
  private:
-  static constexpr double kSpacing_m = 0.5, kMostMove_m = 0.3;
+  static constexpr double kMostMove_m = 0.3;
   static constexpr std::size_t kTangent = 2, kAround = 8;  // points to either side
 
   /// The line's direction at a point; two directions across it, and how far the space reaches along each of
@@ -129,11 +132,131 @@ class Refinement {
   std::size_t first_ = 0, end_ = 0;  // the points that may move
 };
 
+double turn_rad(const Vec3& before, const Vec3& after) {
+  return std::atan2(before.cross(after).norm(), before.dot(after));
+}
+
+/// The median width of the points around each.
+std::vector<double> usual_widths(const std::vector<LinePoint>& points) {
+  constexpr std::size_t kAround = 12;
+  std::vector<double> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<double> widths;
+    for (std::size_t k = i < kAround ? 0 : i - kAround; k < std::min(points.size(), i + kAround + 1); ++k)
+      widths.push_back(points[k].width_m);
+    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    out.push_back(*middle);
+  }
+  return out;
+}
+
+/// Replaces the points in sharp bends, where rays across the line look along it, by one where the axes before
+/// and after the bend meet.
+class Bends {
+ public:
+  Bends(const core::VoxelMap& map, std::vector<LinePoint> points)
+      : map_(map), points_(std::move(points)), usual_m_(usual_widths(points_)) {}
+
+  std::vector<LinePoint> sharpened() const {
+    std::vector<LinePoint> out;
+    for (std::size_t i = 0; i < points_.size();) {
+      const std::size_t end = bend_end(i);
+      const std::optional<LinePoint> corner = end > i ? corner_of(i, end) : std::nullopt;
+      if (corner) {
+        out.push_back(*corner);
+        i = end;
+      } else {
+        for (const std::size_t next = std::max(end, i + 1); i < next; ++i) out.push_back(points_[i]);
+      }
+    }
+    return out;
+  }
+
+ private:
+  static constexpr std::size_t kLeastAxis = 4, kMostAxis = 8;  // points of which an axis is found
+
+  bool is_bend(std::size_t i) const {
+    constexpr double kUnusual = 1.25, kTurn_rad = 0.6;
+    constexpr std::size_t kStep = 2;
+    if (points_[i].width_m > kUnusual * usual_m_[i]) return true;
+    if (i < kStep || i + kStep >= points_.size()) return false;
+    return turn_rad(points_[i].position - points_[i - kStep].position,
+                    points_[i + kStep].position - points_[i].position) > kTurn_rad;
+  }
+  /// How many points before and after a bend the line is not yet on the axis.
+  std::size_t reach(std::size_t i) const { return static_cast<std::size_t>(0.5 * usual_m_[i] / kSpacing_m); }
+
+  /// One after the last point of the bend that begins at `first`; `first` if none does.
+  std::size_t bend_end(std::size_t first) const {
+    constexpr std::size_t kGap = 2;
+    const std::size_t turn = first + reach(first);
+    if (turn >= points_.size() || !is_bend(turn)) return first;
+    std::size_t last = turn;
+    for (std::size_t i = turn + 1; i < points_.size() && i - last <= kGap + 1; ++i)
+      if (is_bend(i)) last = i;
+    return std::min(last + 1 + reach(last), points_.size());
+  }
+
+  std::optional<LinePoint> corner_of(std::size_t first, std::size_t end) const {
+    constexpr double kLeast_rad = 0.35, kLongest = 4;
+    if (first < kLeastAxis || end + kLeastAxis > points_.size()) return std::nullopt;  // no axis on that side
+    const std::span<const LinePoint> all(points_);
+    const std::size_t from = first < kMostAxis ? 0 : first - kMostAxis;
+    const Axis before = axis_of(all.subspan(from, first - from)),
+               after = axis_of(all.subspan(end, std::min(kMostAxis, all.size() - end)));
+    const LinePoint &a = points_[first - 1], &b = points_[end];
+    const double usual_m = std::min(usual_m_[first - 1], usual_m_[end]);
+    if ((b.position - a.position).norm() > kLongest * usual_m ||
+        turn_rad(before.direction, after.direction) < kLeast_rad)
+      return std::nullopt;
+    const Vec3 halfway = 0.5 * (a.position + b.position);
+    const Vec3 meeting = meeting_of(std::array{before, after}, halfway);
+    if ((meeting - halfway).norm() > kLongest * usual_m || !sees(map_, a.position, meeting) ||
+        !sees(map_, meeting, b.position))
+      return std::nullopt;
+    LinePoint corner = a;
+    corner.position = meeting;
+    corner.flown = a.flown && b.flown;
+    return corner;
+  }
+
+  const core::VoxelMap& map_;
+  std::vector<LinePoint> points_;
+  std::vector<double> usual_m_;
+};
+
+/// Without its last points where they turn aside, into a corner of the end of the passage.
+void cut_turned_end(std::vector<LinePoint>& points) {
+  constexpr double kTurn_rad = 0.6;
+  constexpr std::size_t kAxis = 4;
+  if (points.size() < kAxis + 2) return;
+  const double usual_m = usual_widths(points)[points.size() - 1];
+  std::size_t first = points.size() - 1;  // from here on the line is no longer than the passage is wide
+  for (double tail_m = 0; first > kAxis; --first) {
+    tail_m += (points[first].position - points[first - 1].position).norm();
+    if (tail_m > usual_m) break;
+  }
+  for (std::size_t i = std::max(first, kAxis); i + 1 < points.size(); ++i) {
+    const Vec3 along = points[i].position - points[i - kAxis].position;
+    if (turn_rad(along, points.back().position - points[i].position) < kTurn_rad) continue;
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(i) + 1, points.end());
+    return;
+  }
+}
+
 }  // namespace
 
 std::vector<LinePoint> refined_line(const core::VoxelMap& map, const std::vector<LinePoint>& coarse,
                                     std::array<bool, 2> free_end) {
-  return Refinement(map, coarse, free_end).refined();
+  std::vector<LinePoint> points = Bends(map, Refinement(map, coarse, free_end).refined()).sharpened();
+  if (free_end[1]) cut_turned_end(points);
+  if (free_end[0]) {
+    std::reverse(points.begin(), points.end());
+    cut_turned_end(points);
+    std::reverse(points.begin(), points.end());
+  }
+  return points;
 }
 
 }  // namespace karst::survey_export
