@@ -301,6 +301,7 @@ void add_trials_command(CLI::App& app) {
 void add_results_command(CLI::App& app) {
   struct Arguments {
     std::string folder, csv, json, metric, paper;
+    PairSentences pairs;
     bool force = false;
   };
   auto args = std::make_shared<Arguments>();
@@ -323,6 +324,12 @@ void add_results_command(CLI::App& app) {
       ->add_option("--metric", args->metric,
                    "figure that the verdict is about; default: as the campaign declared")
       ->type_name(kMetric);
+  CLI::Option* all_pairs =
+      results_app->add_flag("--pairs", args->pairs.all, "say the verdict on each pair in a sentence");
+  results_app->add_option("--pairs-of", args->pairs.of, "only on the pairs of this contestant")
+      ->type_name("NAME")
+      ->check(not_empty())
+      ->excludes(all_pairs);
   CLI::Option* paper = results_app
                            ->add_option("--paper", args->paper,
                                         "folder for tables (LaTeX, Markdown), figures (SVG, PDF) and methods")
@@ -341,7 +348,7 @@ void add_results_command(CLI::App& app) {
       write_to(args->csv, [&](std::ostream& out) { campaign::write_csv(out, all.results, all.extras); });
     if (!args->json.empty())
       write_to(args->json, [&](std::ostream& out) { campaign::write_json(out, all.results, all.extras); });
-    if (args->csv.empty() && args->json.empty()) print_results(all.results, args->metric);
+    if (args->csv.empty() && args->json.empty()) print_results(all.results, args->metric, args->pairs);
   });
 }
 

@@ -11,6 +11,7 @@
 #include "core_stack/common/options.h"
 #include "sdk/campaign/paper/restricted_time.h"
 #include "sdk/campaign/verdict/figure_words.h"
+#include "sdk/campaign/verdict/overview.h"
 #include "sdk/campaign/verdict/verdict.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 #include "sdk/terminal/terminal.h"
@@ -57,6 +58,32 @@ void print_row(const CampaignResults& results, const campaign::RankedContestant&
   print_out("%s\n", line.c_str());
 }
 
+constexpr std::size_t kFew = 3;  // contestants whose pairs are three sentences
+
+void check_contestant(const CampaignResults& results, const std::string& name) {
+  if (name.empty()) return;
+  std::vector<std::string> names;
+  for (const auto& c : results.contestants) names.push_back(c.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  const std::string near = core::nearest_name(name, names);
+  throw core::InputError("--pairs-of", name,
+                         near.empty() ? "no such contestant; they are " + campaign::listed(names)
+                                      : "no such contestant; did you mean " + near + "?");
+}
+
+void print_overview(const CampaignResults& results, const campaign::Verdicts& verdicts) {
+  const evaluation::MetricDefinition& figure =
+      evaluation::metric_definitions()[static_cast<std::size_t>(verdicts.metric)];
+  print_wrapped(stdout, 2, "%s\n\n", verdicts.sentence.c_str());
+  print_out("%s, by place; contestants of one line are not told apart:\n",
+            campaign::subject_of(figure).c_str());
+  for (const std::string& line : campaign::ranking_lines(verdicts, results))
+    print_out("  %s\n", line.c_str());
+  print_out("\n%s\n", campaign::matrix_title(verdicts).c_str());
+  for (const std::string& line : campaign::matrix_lines(verdicts, results)) print_out("  %s\n", line.c_str());
+  print_out("\n");
+}
+
 }  // namespace
 
 void check_metric(const std::string& metric) {
@@ -68,15 +95,18 @@ void check_metric(const std::string& metric) {
                          "no such figure" + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
-void print_results(const CampaignResults& results, const std::string& asked) {
+void print_results(const CampaignResults& results, const std::string& asked, const PairSentences& pairs) {
   const std::string metric = asked.empty() ? results.metric : asked;
   check_metric(metric);
+  check_contestant(results, pairs.of);
   if (metric != results.metric)
     print_out("The campaign declared %s before it flew; what follows is about %s.\n", results.metric.c_str(),
               metric.c_str());
   campaign::VerdictOptions options;
   options.metric = metric;
   const campaign::Verdicts verdicts = campaign::compare_all(results, options);
+  const bool many = results.contestants.size() > kFew;
+  if (many) print_overview(results, verdicts);
   std::vector<std::string> figures = {metric};
   for (const std::string_view f : campaign::headline_figures())
     if (f != metric) figures.emplace_back(f);
@@ -96,9 +126,17 @@ void print_results(const CampaignResults& results, const std::string& asked) {
   if (unreached)
     print_out("> %.0f: no flight reached this coverage before the horizon of %.0f s.\n\n", results.horizon_s,
               results.horizon_s);
+  const auto concerns = [&](const campaign::Comparison& c) {
+    if (!pairs.of.empty())
+      return results.contestants[c.a].name == pairs.of || results.contestants[c.b].name == pairs.of;
+    return pairs.all || !many;
+  };
   for (const campaign::Comparison& c : verdicts.comparisons)
-    if (c.metric == verdicts.metric) print_wrapped(stdout, 2, "%s\n", c.sentence.c_str());
-  if (results.contestants.size() > 2) print_wrapped(stdout, 2, "\n%s\n", verdicts.sentence.c_str());
+    if (c.metric == verdicts.metric && concerns(c)) print_wrapped(stdout, 2, "%s\n", c.sentence.c_str());
+  if (!many && results.contestants.size() > 2) print_wrapped(stdout, 2, "\n%s\n", verdicts.sentence.c_str());
+  if (many && !pairs.all && pairs.of.empty())
+    print_out(
+        "karst results --pairs says each pair in a sentence, --pairs-of NAME those of one contestant.\n");
 }
 
 }  // namespace karst::tools

@@ -9,7 +9,15 @@ namespace karst::tools {
 /// Throws core::InputError with the most similar name if there is no such figure.
 void check_metric(const std::string& metric);
 
-/// Throws core::InputError if `metric` is not a figure.
-void print_results(const campaign::CampaignResults& results, const std::string& metric);
+/// The pairs of contestants whose verdict is printed as a sentence.
+struct PairSentences {
+  bool all = false;  // otherwise all pairs of up to three contestants, and of more only those of `of`
+  std::string of;    // a contestant's name
+};
+
+/// With more than three contestants, first the ranking in up to five lines and a matrix of all pairs. Throws
+/// core::InputError if `metric` is not a figure, or `pairs.of` no contestant.
+void print_results(const campaign::CampaignResults& results, const std::string& metric,
+                   const PairSentences& pairs = {});
 
 }  // namespace karst::tools

@@ -3,15 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include "core_stack/common/error.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
 #include "tests/unit/campaign/fake_campaign.h"
 
 namespace karst::tools {
 namespace {
 
-std::string printed(const campaign::CampaignResults& results) {
+std::string printed(const campaign::CampaignResults& results, const PairSentences& pairs = {}) {
   testing::internal::CaptureStdout();
-  print_results(results, "");
+  print_results(results, "", pairs);
   return testing::internal::GetCapturedStdout();
 }
 
@@ -30,6 +31,39 @@ TEST(ResultsText, SaysWhichTimesNoFlightReached) {
   EXPECT_NE(text.find("> 300: no flight reached this coverage before the horizon of 300 s."),
             std::string::npos)
       << text;
+}
+
+std::size_t occurrences(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(ResultsText, OfManyContestantsBeginsWithTheRankingAndTheMatrix) {
+  const std::string three = printed(test::fake_campaign(3, 2, 6)),
+                    five = printed(test::fake_campaign(5, 2, 6));
+  EXPECT_EQ(three.find("row less column"), std::string::npos) << three;
+  EXPECT_EQ(occurrences(three, "95 % CI"), 3u) << "each pair in a sentence";
+  const std::size_t ranking = five.find("by place"), matrix = five.find("row less column"),
+                    table = five.find("| place |");
+  ASSERT_NE(matrix, std::string::npos) << five;
+  EXPECT_LT(ranking, matrix);
+  EXPECT_LT(matrix, table);
+  EXPECT_LE(occurrences(five, "95 % CI"), 1u) << "the campaign's verdict alone";
+  EXPECT_NE(five.find("--pairs"), std::string::npos);
+}
+
+TEST(ResultsText, SentencesOfPairsAreThereOnDemand) {
+  const campaign::CampaignResults results = test::fake_campaign(5, 2, 6);
+  const std::size_t before = occurrences(printed(results), "95 % CI");
+  EXPECT_EQ(occurrences(printed(results, {true, ""}), "95 % CI"), before + 10);
+  EXPECT_EQ(occurrences(printed(results, {false, "policy_2"}), "95 % CI"), before + 4);
+  try {
+    printed(results, {false, "polici_2"});
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean policy_2?"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
