@@ -43,7 +43,7 @@ TEST(ResultsText, OfManyContestantsBeginsWithTheRankingAndTheMatrix) {
   const std::string three = printed(test::fake_campaign(3, 2, 6)),
                     five = printed(test::fake_campaign(5, 2, 6));
   EXPECT_EQ(three.find("row less column"), std::string::npos) << three;
-  EXPECT_EQ(occurrences(three, "95 % CI"), 3u) << "each pair in a sentence";
+  EXPECT_EQ(occurrences(three, "95 % CI"), 4u) << "each pair in a sentence, and the verdict";
   const std::size_t ranking = five.find("by place"), matrix = five.find("row less column"),
                     table = five.find("| place |");
   ASSERT_NE(matrix, std::string::npos) << five;
@@ -59,7 +59,7 @@ TEST(ResultsText, SentencesOfPairsAreThereOnDemand) {
   EXPECT_EQ(occurrences(printed(results, {true, ""}), "95 % CI"), before + 10);
   EXPECT_EQ(occurrences(printed(results, {false, "policy_2"}), "95 % CI"), before + 4);
   try {
-    printed(results, {false, "polici_2"});
+    print_results(results, "", {false, "polici_2"});
     FAIL();
   } catch (const core::InputError& e) {
     EXPECT_NE(std::string(e.what()).find("did you mean policy_2?"), std::string::npos) << e.what();
