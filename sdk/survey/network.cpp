@@ -11,7 +11,8 @@
 namespace karst::survey {
 namespace {
 
-constexpr double kSameFix_m = 0.01;  // also far less than a degree's last printed digit
+constexpr double kSameFix_m = 0.01;   // also far less than a degree's last printed digit
+constexpr double kSamePlace_m = 0.5;  // a leg so short may tie two names of one place
 
 class Builder {
  public:
@@ -131,9 +132,13 @@ class Builder {
         if (r.style == Style::no_survey && (from != to))
           readings_.log.note(r.source, "an unmeasured leg to a station that nothing else ties: left out");
       } else if (from == to) {
+        const double length_m = r.style == Style::no_survey ? 0 : r.vector_m().norm();
+        if (length_m > kSamePlace_m)
+          throw readings_.log.error(
+              r.source, core::format_text("both ends of this leg of %.2f m are equated: they are one station",
+                                          length_m));
         readings_.log.note(r.source,
-                           core::format_text("a leg of %.2f m whose ends are equated: left out",
-                                             r.style == Style::no_survey ? 0 : r.vector_m().norm()));
+                           core::format_text("a leg of %.2f m whose ends are equated: left out", length_m));
       } else {
         network_.legs.push_back(i);
         if (r.style != Style::no_survey) ++tying;

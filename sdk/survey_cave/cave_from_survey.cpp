@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -121,7 +122,28 @@ void add_findings(const PassageGraph& graph, const Passages& passages, SurveyRep
                     "(a finer --resolution)",
                     report.dimensions.widened_m, report.dimensions.least_m));
   if (graph.size() > 1 && passages.measured_half_width_m == 0 && passages.measured_up_m == 0)
-    report.findings.emplace_back("the survey has no dimension at all: every passage is 2 m wide and high");
+    report.findings.emplace_back("no dimension was measured here: every passage is 2 m wide and high");
+}
+
+/// What looks wrong, of the legs and sections in the part, and of the loops of which an end lies there.
+std::vector<std::string> checks_of(const survey::Survey& survey, const SurveyPart& part) {
+  std::vector<bool> in(survey.stations.size());
+  std::set<std::string> names;
+  for (const std::uint32_t s : part.stations) {
+    in[s] = true;
+    names.insert(survey.stations[s].name);
+    names.insert(survey.stations[s].aliases.begin(), survey.stations[s].aliases.end());
+  }
+  survey::Survey here = survey;
+  std::erase_if(here.legs, [&](const survey::Leg& l) { return !in[l.from] || !in[l.to]; });
+  std::erase_if(here.sections, [&](survey::Section& s) {
+    s.leg.reset();
+    return !in[s.station];
+  });
+  std::erase_if(here.loops.traverses, [&](const survey::Loops::Traverse& t) {
+    return !names.contains(t.from) && !names.contains(t.to);
+  });
+  return survey::survey_checks(here);
 }
 
 /// As a flight checks it: in a passage, most rays cross the walls an odd number of times.
@@ -202,7 +224,7 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
     report.findings.push_back(
         core::counted(survey.left_out.parts, "part") +
         " of the survey left out: no leg or equate ties it to the rest (see the notes)");
-  for (std::string& check : survey::survey_checks(survey)) report.findings.push_back(std::move(check));
+  for (std::string& check : checks_of(survey, part)) report.findings.push_back(std::move(check));
   made.mesh = scene.mesh();
   return made;
 }

@@ -9,6 +9,7 @@
 #include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/passages/slice_graph.h"
 #include "sdk/survey_export/axes.h"
+#include "sdk/survey_export/median.h"
 #include "sdk/survey_export/refined_line.h"
 
 namespace karst::survey_export {
@@ -174,12 +175,11 @@ class Lines {
     constexpr double kUsual = 1.3, kFarthest = 2;
     std::vector<double> widths;
     for (const LinePoint& p : branch) widths.push_back(p.width_m);
-    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-    std::nth_element(widths.begin(), middle, widths.end());
+    const double usual_m = median(std::move(widths));
     std::size_t first = 1;
     while (first + 2 < branch.size()) {
       const double away_m = (branch[first].position - branch.front().position).norm();
-      if (away_m > *middle && (branch[first].width_m < kUsual * *middle || away_m > kFarthest * *middle))
+      if (away_m > usual_m && (branch[first].width_m < kUsual * usual_m || away_m > kFarthest * usual_m))
         break;
       ++first;
     }

@@ -8,6 +8,7 @@
 #include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/passages/cross_section.h"
 #include "sdk/survey_export/axes.h"
+#include "sdk/survey_export/median.h"
 
 namespace karst::survey_export {
 namespace {
@@ -31,6 +32,7 @@ double to_middle_m(double ahead_m, double behind_m, double half_m) {
   return ahead_m > behind_m ? half_m - behind_m : ahead_m - half_m;
 }
 
+/// The line in steps of half a metre. Round by round, its points move to the middle.
 class Refinement {
  public:
   Refinement(const core::VoxelMap& map, const std::vector<LinePoint>& coarse, std::array<bool, 2> free_end)
@@ -108,9 +110,7 @@ class Refinement {
     std::vector<double> halves;
     for (std::size_t k = i < kAround ? 0 : i - kAround; k < std::min(crosses.size(), i + kAround + 1); ++k)
       halves.push_back(0.5 * (crosses[k].reaches[side][0] + crosses[k].reaches[side][1]));
-    const auto middle = halves.begin() + static_cast<std::ptrdiff_t>(halves.size() / 2);
-    std::nth_element(halves.begin(), middle, halves.end());
-    return *middle;
+    return median(std::move(halves));
   }
 
   /// Across the line to its middle, and along it halfway between the neighbours.
@@ -144,9 +144,7 @@ std::vector<double> usual_widths(const std::vector<LinePoint>& points) {
     std::vector<double> widths;
     for (std::size_t k = i < kAround ? 0 : i - kAround; k < std::min(points.size(), i + kAround + 1); ++k)
       widths.push_back(points[k].width_m);
-    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-    std::nth_element(widths.begin(), middle, widths.end());
-    out.push_back(*middle);
+    out.push_back(median(std::move(widths)));
   }
   return out;
 }

@@ -7,18 +7,12 @@
 #include <utility>
 
 #include "core_stack/planning/free_space/free_way.h"
+#include "sdk/survey_export/median.h"
 
 namespace karst::survey_export {
 namespace {
 
 using core::Vec3;
-
-/// A niche or a boulder changes no passage's size.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class Choice {
  public:

@@ -89,11 +89,16 @@ TEST(Adjust, ContradictoryFixesAreRefusedWithBothLines) {
   EXPECT_TRUE(says(said, "line 3")) << said;
 }
 
-TEST(Adjust, ALegBetweenEquatedStationsIsNoted) {
+TEST(Adjust, AnEquateThatContradictsALegIsRefused) {
+  const std::string said = adjustment_refusal(kNormal + "1 2 10 0 0\n2 3 4 0 0\nequate 2 3\n");
+  EXPECT_TRUE(says(said, "s.th: line 5: both ends of this leg of 4.00 m are equated")) << said;
+}
+
+TEST(Adjust, AShortLegBetweenEquatedStationsIsNoted) {
   SKIP_WITHOUT_SURVEX();
-  const Survey s = adjusted_lines(kNormal + "1 2 10 0 0\n2 3 4 0 0\nequate 2 3\n");
+  const Survey s = adjusted_lines(kNormal + "1 2 10 0 0\n2 3 0.3 0 0\nequate 2 3\n");
   EXPECT_EQ(s.legs.size(), 1u);
-  EXPECT_TRUE(notes_say(s.notes, "a leg of 4.00 m whose ends are equated"));
+  EXPECT_TRUE(notes_say(s.notes, "a leg of 0.30 m whose ends are equated"));
 }
 
 TEST(Adjust, ASurveyWithoutLegsIsRefused) {

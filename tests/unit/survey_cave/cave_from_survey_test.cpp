@@ -289,5 +289,21 @@ TEST(CaveFromSurvey, WhatLooksWrongInTheSurveyIsAFinding) {
   EXPECT_NE(findings[1].find("50.0 %"), std::string::npos) << findings[1];
 }
 
+TEST(CaveFromSurvey, WhatLooksWrongElsewhereIsNoFindingOfAPart) {
+  SurveyMaker m = straight_passage(4, 5, 1.5);
+  m.leg(4, m.station("far.1", {170, 0, 0}));  // 150 m
+  m.survey.loops.traverses.push_back({"far.1", "far.2", 2, 10, 5, 50, 40});
+  const auto says = [](const CaveFromSurvey& made, const std::string& part) {
+    return std::any_of(made.report.findings.begin(), made.report.findings.end(),
+                       [&](const std::string& f) { return f.find(part) != std::string::npos; });
+  };
+  CaveOptions o = smooth();
+  const CaveFromSurvey whole = made_of(m, o);
+  EXPECT_TRUE(says(whole, "50.0 %"));
+  EXPECT_TRUE(says(whole, "150"));
+  o.part.survey = "cave";
+  EXPECT_TRUE(made_of(m, o).report.findings.empty());
+}
+
 }  // namespace
 }  // namespace karst::survey_cave
