@@ -25,8 +25,7 @@ struct PassageLines {
 
 /// The passages connected to the start (core_stack/planning/passages, of which this keeps the middle line).
 /// `flown` connects passages as well: a vehicle came through there. Without points if there is no room for a
-/// vehicle within 5 m of the start. Throws core::InputError that names
-/// `file` if the map is too large for it.
+/// vehicle within 5 m of the start. Throws core::InputError that names `file` if the map is too large for it.
 PassageLines passage_lines(const core::VoxelMap& map, const core::Vec3& start, const std::string& file,
                            std::span<const core::Vec3> flown = {});
 

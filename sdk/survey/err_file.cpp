@@ -10,17 +10,22 @@
 namespace karst::survey {
 namespace {
 
-/// First and last station of "1 - 2 = 3 - 4". cavern writes "<fixed point>" for some, and nothing for a
-/// station without a name.
-void set_ends(const std::string& stations, Loops::Traverse& traverse) {
-  const auto name = [](const std::string& text) { return text.empty() ? "a station without a name" : text; };
-  const std::size_t first = std::min(stations.find(" - "), stations.find(" = "));
-  traverse.from = name(stations.substr(0, first));
-  const auto last_of = [&](const char* joint) {
-    const std::size_t at = stations.rfind(joint);
-    return at == std::string::npos ? 0 : at + 3;
+/// The stations of "1 - 2 = 3 - 4". cavern writes "<fixed point>" for some, and nothing for a station without
+/// a name.
+void set_stations(const std::string& text, Loops::Traverse& traverse) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min({text.find(" - ", begin), text.find(" = ", begin), text.size()});
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + 3;
+  }
+  const auto end_name = [](const std::string& name) {
+    return name.empty() ? "a station without a name" : name;
   };
-  traverse.to = name(stations.substr(std::max(last_of(" - "), last_of(" = "))));
+  traverse.from = end_name(names.front());
+  traverse.to = end_name(names.back());
+  std::erase_if(names, [](const std::string& name) { return name.empty() || name.starts_with('<'); });
+  traverse.stations = std::move(names);
 }
 
 }  // namespace
@@ -40,7 +45,7 @@ std::vector<Loops::Traverse> read_err_file(const std::filesystem::path& file) {
     if (stations.empty()) continue;
     if (!std::getline(in, text)) break;
     Loops::Traverse traverse;
-    set_ends(stations, traverse);
+    set_stations(stations, traverse);
     const int read = std::sscanf(text.c_str(), "Original length %lfm (%zu legs), moved %lfm",
                                  &traverse.length_m,  // NOLINT
                                  &traverse.legs, &traverse.error_m);

@@ -133,10 +133,12 @@ class Builder {
           readings_.log.note(r.source, "an unmeasured leg to a station that nothing else ties: left out");
       } else if (from == to) {
         const double length_m = r.style == Style::no_survey ? 0 : r.vector_m().norm();
-        if (length_m > kSamePlace_m)
+        if (length_m > kSamePlace_m && !r.duplicate)
           throw readings_.log.error(
-              r.source, core::format_text("both ends of this leg of %.2f m are equated: they are one station",
-                                          length_m));
+              r.source,
+              core::format_text("this leg of %.2f m contradicts an equate, which makes its ends ", length_m) +
+                  core::printable(readings_.stations[r.from].name) + " and " +
+                  core::printable(readings_.stations[r.to].name) + " one station");
         readings_.log.note(r.source,
                            core::format_text("a leg of %.2f m whose ends are equated: left out", length_m));
       } else {

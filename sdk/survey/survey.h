@@ -114,9 +114,10 @@ struct Loops {
     std::string from, to;  // names of its ends
     std::size_t legs = 0;
     double length_m = 0;
-    double error_m = 0;            // how far its far end moved against the measured one
-    double error_percent = 0;      // of the length
-    std::optional<double> sigmas;  // error over the one expected from the standard deviations
+    double error_m = 0;                      // how far its far end moved against the measured one
+    double error_percent = 0;                // of the length
+    std::optional<double> sigmas;            // error over the one expected from the standard deviations
+    std::vector<std::string> stations = {};  // that have a name, in order, its ends included
   };
   std::size_t count = 0;            // independent loops
   std::vector<Traverse> traverses;  // with an error of 0.01 m or more; the largest first

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -125,7 +126,7 @@ void add_findings(const PassageGraph& graph, const Passages& passages, SurveyRep
     report.findings.emplace_back("no dimension was measured here: every passage is 2 m wide and high");
 }
 
-/// What looks wrong, of the legs and sections in the part, and of the loops of which an end lies there.
+/// What looks wrong in the part: its legs, its sections, and the loops with two of its stations.
 std::vector<std::string> checks_of(const survey::Survey& survey, const SurveyPart& part) {
   std::vector<bool> in(survey.stations.size());
   std::set<std::string> names;
@@ -134,15 +135,17 @@ std::vector<std::string> checks_of(const survey::Survey& survey, const SurveyPar
     names.insert(survey.stations[s].name);
     names.insert(survey.stations[s].aliases.begin(), survey.stations[s].aliases.end());
   }
-  survey::Survey here = survey;
-  std::erase_if(here.legs, [&](const survey::Leg& l) { return !in[l.from] || !in[l.to]; });
-  std::erase_if(here.sections, [&](survey::Section& s) {
-    s.leg.reset();
-    return !in[s.station];
-  });
-  std::erase_if(here.loops.traverses, [&](const survey::Loops::Traverse& t) {
-    return !names.contains(t.from) && !names.contains(t.to);
-  });
+  survey::Survey here;
+  here.files = survey.files;
+  here.stations = survey.stations;
+  const auto both_in = [&](const survey::Leg& l) { return in[l.from] && in[l.to]; };
+  std::copy_if(survey.legs.begin(), survey.legs.end(), std::back_inserter(here.legs), both_in);
+  const auto section_in = [&](const survey::Section& s) { return in[s.station]; };
+  std::copy_if(survey.sections.begin(), survey.sections.end(), std::back_inserter(here.sections), section_in);
+  for (const survey::Loops::Traverse& t : survey.loops.traverses) {
+    const auto is_in = [&](const std::string& name) { return names.contains(name); };
+    if (std::count_if(t.stations.begin(), t.stations.end(), is_in) > 1) here.loops.traverses.push_back(t);
+  }
   return survey::survey_checks(here);
 }
 
@@ -224,7 +227,9 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
     report.findings.push_back(
         core::counted(survey.left_out.parts, "part") +
         " of the survey left out: no leg or equate ties it to the rest (see the notes)");
-  for (std::string& check : checks_of(survey, part)) report.findings.push_back(std::move(check));
+  const bool whole = part.stations.size() == survey.stations.size();
+  for (std::string& check : whole ? survey::survey_checks(survey) : checks_of(survey, part))
+    report.findings.push_back(std::move(check));
   made.mesh = scene.mesh();
   return made;
 }

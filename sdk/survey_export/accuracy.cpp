@@ -11,7 +11,7 @@ double Accuracy::leg_sd_m(double length_m) const {
 
 Accuracy accuracy_of(const evaluation::Table& localization,
                      const std::vector<evaluation::StampedPose>& estimate, double cell_m) {
-  constexpr double kMoved_m = 0.01;
+  constexpr double kMoved_m = 0.01, kJumped_m = 2;  // between scans: the estimate, and not the vehicle
   Accuracy out;
   out.cell_m = cell_m;
   const std::vector<double>* stamps_s = localization.column("stamp_s");
@@ -26,6 +26,7 @@ Accuracy accuracy_of(const evaluation::Table& localization,
     const double moved_m = (here - last).norm();
     if (moved_m < kMoved_m) continue;
     last = here;
+    if (!(moved_m < kJumped_m)) continue;
     variance_m2 += sigma_m * sigma_m;
     out.flown_m += moved_m;
     ++out.scans;

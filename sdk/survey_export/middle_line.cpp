@@ -204,8 +204,9 @@ class Lines {
         if (is_last) std::reverse(line.points.begin(), line.points.end());
         branches.push_back({l, is_last});
       }
-    const Vec3 meeting = meeting_of(axes, before.position);
-    if ((meeting - before.position).norm() > before.width_m || !sees(map_, before.position, meeting)) return;
+    Vec3 meeting = meeting_of(axes, before.position);
+    if ((meeting - before.position).norm() > before.width_m || !sees(map_, before.position, meeting))
+      meeting = before.position;
     out_.nodes[node].point.position = meeting;
     for (const Branch& branch : branches) {
       std::vector<LinePoint>& points = out_.lines[branch.line].points;

@@ -32,6 +32,10 @@ double to_middle_m(double ahead_m, double behind_m, double half_m) {
   return ahead_m > behind_m ? half_m - behind_m : ahead_m - half_m;
 }
 
+double turn_rad(const Vec3& before, const Vec3& after) {
+  return std::atan2(before.cross(after).norm(), before.dot(after));
+}
+
 /// The line in steps of half a metre. Round by round, its points move to the middle.
 class Refinement {
  public:
@@ -52,7 +56,9 @@ class Refinement {
       std::vector<LinePoint> moved = points_;
       for (std::size_t i = first_; i < end_; ++i) moved[i].position = moved_from(i, crosses);
       for (std::size_t i = first_; i < end_; ++i)
-        if (sees(map_, points_[i].position, moved[i].position)) points_[i].position = moved[i].position;
+        if (!sees(map_, points_[i].position, moved[i].position)) moved[i].position = points_[i].position;
+      take_back_folds(moved);
+      points_ = std::move(moved);
     }
     const std::vector<Cross> crosses = measured();
     for (std::size_t i = first_; i < end_; ++i) {
@@ -127,14 +133,34 @@ class Refinement {
     return p + (halfway - points_[i].position).dot(cross.along) * cross.along;
   }
 
+  /// Takes back moves that make a sharp turn sharper, their own or a neighbour's: such a line folds, since
+  /// then the next tangent points sideways.
+  void take_back_folds(std::vector<LinePoint>& moved) const {
+    constexpr double kSharp_rad = 0.9;
+    const auto turned_rad = [](const std::vector<LinePoint>& points, std::size_t i) {
+      return turn_rad(points[i].position - points[i - 1].position,
+                      points[i + 1].position - points[i].position);
+    };
+    const auto folds = [&](std::size_t i) {
+      if (i == 0 || i + 1 >= moved.size()) return false;
+      const double turn = turned_rad(moved, i);
+      return turn > kSharp_rad && turn > turned_rad(points_, i) + 1e-9;
+    };
+    for (bool changed = true; changed;) {  // each round takes back a move or is the last
+      changed = false;
+      for (std::size_t i = first_; i < end_; ++i) {
+        if (moved[i].position == points_[i].position) continue;
+        if (!folds(i) && !(i > 0 && folds(i - 1)) && !folds(i + 1)) continue;
+        moved[i].position = points_[i].position;
+        changed = true;
+      }
+    }
+  }
+
   const core::VoxelMap& map_;
   std::vector<LinePoint> points_;
   std::size_t first_ = 0, end_ = 0;  // the points that may move
 };
-
-double turn_rad(const Vec3& before, const Vec3& after) {
-  return std::atan2(before.cross(after).norm(), before.dot(after));
-}
 
 /// The median width of the points around each.
 std::vector<double> usual_widths(const std::vector<LinePoint>& points) {
@@ -158,12 +184,13 @@ class Bends {
 
   std::vector<LinePoint> sharpened() const {
     std::vector<LinePoint> out;
+    std::size_t straight = 0;  // the first point after the last bend
     for (std::size_t i = 0; i < points_.size();) {
       const std::size_t end = bend_end(i);
-      const std::optional<LinePoint> corner = end > i ? corner_of(i, end) : std::nullopt;
+      const std::optional<LinePoint> corner = end > i ? corner_of(i, end, straight) : std::nullopt;
       if (corner) {
         out.push_back(*corner);
-        i = end;
+        i = straight = end;
       } else {
         for (const std::size_t next = std::max(end, i + 1); i < next; ++i) out.push_back(points_[i]);
       }
@@ -196,11 +223,13 @@ class Bends {
     return std::min(last + 1 + reach(last), points_.size());
   }
 
-  std::optional<LinePoint> corner_of(std::size_t first, std::size_t end) const {
+  /// Of the bend from `first` to before `end`; the axis before it begins at `straight` or later.
+  std::optional<LinePoint> corner_of(std::size_t first, std::size_t end, std::size_t straight) const {
     constexpr double kLeast_rad = 0.35, kLongest = 4;
-    if (first < kLeastAxis || end + kLeastAxis > points_.size()) return std::nullopt;  // no axis on that side
+    if (first < straight + kLeastAxis || end + kLeastAxis > points_.size())
+      return std::nullopt;  // no axis on that side
     const std::span<const LinePoint> all(points_);
-    const std::size_t from = first < kMostAxis ? 0 : first - kMostAxis;
+    const std::size_t from = std::max(straight, first - std::min(first, kMostAxis));
     const Axis before = axis_of(all.subspan(from, first - from)),
                after = axis_of(all.subspan(end, std::min(kMostAxis, all.size() - end)));
     const LinePoint &a = points_[first - 1], &b = points_[end];
@@ -210,7 +239,9 @@ class Bends {
       return std::nullopt;
     const Vec3 halfway = 0.5 * (a.position + b.position);
     const Vec3 meeting = meeting_of(std::array{before, after}, halfway);
-    if ((meeting - halfway).norm() > kLongest * usual_m || !sees(map_, a.position, meeting) ||
+    const bool ahead =
+        (meeting - a.position).dot(before.direction) >= 0 && (b.position - meeting).dot(after.direction) >= 0;
+    if (!ahead || (meeting - halfway).norm() > kLongest * usual_m || !sees(map_, a.position, meeting) ||
         !sees(map_, meeting, b.position))
       return std::nullopt;
     LinePoint corner = a;

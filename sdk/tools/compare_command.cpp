@@ -314,22 +314,27 @@ void add_results_command(CLI::App& app) {
   results_app->add_option("campaign", args->folder, "a campaign's folder, or its store")
       ->type_name(kFile)
       ->required();
-  results_app->add_option("--csv", args->csv, "write a line a trial; - for standard output")
-      ->type_name(kFile)
-      ->check(not_empty());
-  results_app->add_option("--json", args->json, "write everything; - for standard output")
-      ->type_name(kFile)
-      ->check(not_empty());
+  CLI::Option* csv =
+      results_app->add_option("--csv", args->csv, "write a line a trial; - for standard output")
+          ->type_name(kFile)
+          ->check(not_empty());
+  CLI::Option* json = results_app->add_option("--json", args->json, "write everything; - for standard output")
+                          ->type_name(kFile)
+                          ->check(not_empty());
   results_app
       ->add_option("--metric", args->metric,
                    "figure that the verdict is about; default: as the campaign declared")
       ->type_name(kMetric);
   CLI::Option* all_pairs =
-      results_app->add_flag("--pairs", args->pairs.all, "say the verdict on each pair in a sentence");
+      results_app->add_flag("--pairs", args->pairs.all, "say the verdict on each pair in a sentence")
+          ->excludes(csv)
+          ->excludes(json);
   results_app->add_option("--pairs-of", args->pairs.of, "only on the pairs of this contestant")
       ->type_name("NAME")
       ->check(not_empty())
-      ->excludes(all_pairs);
+      ->excludes(all_pairs)
+      ->excludes(csv)
+      ->excludes(json);
   CLI::Option* paper = results_app
                            ->add_option("--paper", args->paper,
                                         "folder for tables (LaTeX, Markdown), figures (SVG, PDF) and methods")

@@ -143,8 +143,8 @@ void print(const RunSurvey& run, const WallMesh& walls, const ExportArguments& a
   if (sums.continuations > 0)
     print_out("  goes on at %s\n", core::counted(sums.continuations, "station").c_str());
   if (run.flown.blocked_legs > 0)
-    print_out("  not in sight of each other: %s\n",
-              core::counted(run.flown.blocked_legs, "pair of neighbours").c_str());
+    print_out("  neighbours that do not see each other: %s\n",
+              core::counted(run.flown.blocked_legs, "pair").c_str());
   print_wrapped(stdout, 2, "  %s\n", survey_export::accuracy_words(run.flown.accuracy).c_str());
   if (const core::Vec3& o = run.flown.offset_m; !o.isZero() && args.fix.empty())
     print_wrapped(stdout, 2,

@@ -136,7 +136,7 @@ void print_results(const CampaignResults& results, const std::string& asked, con
   if (!many && results.contestants.size() > 2) print_wrapped(stdout, 2, "\n%s\n", verdicts.sentence.c_str());
   if (many && !pairs.all && pairs.of.empty())
     print_out(
-        "karst results --pairs says each pair in a sentence, --pairs-of NAME those of one contestant.\n");
+        "With --pairs, karst results says each pair in a sentence; with --pairs-of NAME, those of one.\n");
 }
 
 }  // namespace karst::tools

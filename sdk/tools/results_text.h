@@ -11,8 +11,8 @@ void check_metric(const std::string& metric);
 
 /// The pairs of contestants whose verdict is printed as a sentence.
 struct PairSentences {
-  bool all = false;  // otherwise all pairs of up to three contestants, and of more only those of `of`
-  std::string of;    // a contestant's name
+  bool all = false;  // of more than three contestants; of fewer they are always there
+  std::string of;    // if not empty: only those of this contestant
 };
 
 /// With more than three contestants, first the ranking in up to five lines and a matrix of all pairs. Throws

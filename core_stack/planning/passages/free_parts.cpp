@@ -34,9 +34,11 @@ Vec3 middle_of(const PassageGrid& grid, const CellKey& cube, BlockBits cells) {
 struct AllParts {
   std::vector<FreePart> parts;
   std::vector<std::uint32_t> first_of;  // of each known cube; one more at the end
+  std::vector<char> has_room;           // by part: also without the flown path
 
   AllParts(const KnownCubes& known, const PassageGrid& grid, std::span<const Vec3> flown) {
-    std::vector<BlockBits> room = known.with_room(grid.room);
+    const std::vector<BlockBits> with_room = known.with_room(grid.room);
+    std::vector<BlockBits> room = with_room;
     known.add_path(flown, grid, room);
     for (std::uint32_t c = 0; c < known.size(); ++c) {
       first_of.push_back(static_cast<std::uint32_t>(parts.size()));
@@ -47,6 +49,7 @@ struct AllParts {
         const BlockBits free = part.cells & known.free(c);  // without lonely cells
         part.middle = middle_of(grid, part.cube, free != 0 ? free : part.cells);
         parts.push_back(part);
+        has_room.push_back((part.cells & with_room[c]) != 0);
       }
     }
     first_of.push_back(static_cast<std::uint32_t>(parts.size()));
@@ -85,15 +88,21 @@ std::vector<std::uint32_t> cubes_of(const AllParts& all) {
   return out;
 }
 
+/// A part that was flown only, such as the air above the launch site, if there is none with room.
 std::uint32_t nearest_to_start(const AllParts& all, const Vec3& start) {
-  std::uint32_t nearest = kNoPart;
-  double least = kStartWithin_m * kStartWithin_m;
-  for (std::uint32_t p = 0; p < all.parts.size(); ++p)
-    if (const double away = (all.parts[p].middle - start).squaredNorm(); away < least) {
-      least = away;
-      nearest = p;
+  for (const bool roomy : {true, false}) {
+    std::uint32_t nearest = kNoPart;
+    double least = kStartWithin_m * kStartWithin_m;
+    for (std::uint32_t p = 0; p < all.parts.size(); ++p) {
+      if (roomy && !all.has_room[p]) continue;
+      if (const double away = (all.parts[p].middle - start).squaredNorm(); away < least) {
+        least = away;
+        nearest = p;
+      }
     }
-  return nearest;
+    if (nearest != kNoPart) return nearest;
+  }
+  return kNoPart;
 }
 
 std::vector<char> connected_to(std::uint32_t first, const KnownCubes& known, const AllParts& all,

@@ -30,8 +30,10 @@ std::string unit_after(const evaluation::MetricDefinition& figure) {
   return figure.unit.empty() ? "" : " " + core::unit_text(figure.unit);
 }
 
-/// A group of contestants that no place tells apart.
+/// Contestants of which no two are shown to differ, or, in the last line, the rest.
 struct Line {
+  std::string groups;  // as RankedContestant has them
+  bool rest = false;
   int best = 0, worst = 0;
   std::vector<const RankedContestant*> members;
 };
@@ -39,12 +41,17 @@ struct Line {
 std::vector<Line> grouped(const std::vector<RankedContestant>& ranking, std::size_t most) {
   std::vector<Line> lines;
   for (const RankedContestant& place : ranking) {
-    const bool same = !lines.empty() && lines.back().best == place.best && lines.back().worst == place.worst;
-    if (!same && lines.size() < most) lines.push_back({place.best, place.worst, {}});
-    Line& line = lines.back();
-    line.best = std::min(line.best, place.best);
-    line.worst = std::max(line.worst, place.worst);
-    line.members.push_back(&place);
+    auto line = std::find_if(lines.begin(), lines.end(),
+                             [&](const Line& l) { return !l.rest && l.groups == place.groups; });
+    if (line == lines.end() && lines.size() < most) {
+      line = lines.insert(lines.end(), {place.groups, false, place.best, place.worst, {}});
+    } else if (line == lines.end()) {
+      line = lines.end() - 1;
+      line->rest = true;
+    }
+    line->best = std::min(line->best, place.best);
+    line->worst = std::max(line->worst, place.worst);
+    line->members.push_back(&place);
   }
   return lines;
 }
@@ -64,7 +71,7 @@ Cell cell_of(const Verdicts& verdicts, std::size_t row, std::size_t column) {
 }
 
 std::string difference_text(const Cell& cell, const evaluation::MetricDefinition& figure, int decimals) {
-  if (std::isnan(cell.difference)) return "-";
+  if (std::isnan(cell.difference)) return "? ";
   const std::string number = fixed_text(shown_value(figure, cell.difference), decimals);
   return (number.starts_with('-') ? "" : "+") + number + (cell.shown == 0 ? " " : "*");
 }
@@ -98,7 +105,7 @@ std::vector<std::string> ranking_lines(const Verdicts& verdicts, const CampaignR
     const std::string places = line.best == line.worst
                                    ? std::to_string(line.best)
                                    : std::to_string(line.best) + "-" + std::to_string(line.worst);
-    std::string text = padded(places, 6);
+    std::string text = padded(places, 6) + (line.rest ? "the rest: " : "");
     for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ", ") + names[i];
     lines.push_back(text);
   }
@@ -106,13 +113,24 @@ std::vector<std::string> ranking_lines(const Verdicts& verdicts, const CampaignR
 }
 
 std::string matrix_title(const Verdicts& verdicts) {
-  if (verdicts.ranking.size() > kMostDifferences)
-    return "Row against column: + shown better, - shown worse, . no difference shown";
   const evaluation::MetricDefinition& figure = primary_figure(verdicts);
-  const std::string unit = is_fraction(figure)          ? " in points"
-                           : unit_after(figure).empty() ? ""
-                                                        : " in" + unit_after(figure);
-  return "Differences" + unit + ", row less column; * a difference is shown";
+  const std::vector<RankedContestant>& ranking = verdicts.ranking;
+  bool gaps = false;
+  for (const RankedContestant& a : ranking)
+    for (const RankedContestant& b : ranking)
+      gaps = gaps || (&a != &b && std::isnan(cell_of(verdicts, a.contestant, b.contestant).difference));
+  const std::string missing = gaps ? "; ? no flights to compare" : "";
+  if (ranking.size() > kMostDifferences) {
+    const bool neutral = figure.better == evaluation::Better::neither;
+    return std::string("Row against column: + shown ") +
+           (neutral ? "more, - shown less" : "better, - shown worse") + ", . no difference shown" + missing;
+  }
+  const std::string unit = unit_after(figure);
+  return "Differences" +
+         (is_fraction(figure) ? " in points"
+          : unit.empty()      ? ""
+                              : " in" + unit) +
+         ", row less column; * a difference is shown" + missing;
 }
 
 std::vector<std::string> matrix_lines(const Verdicts& verdicts, const CampaignResults& results) {
@@ -137,11 +155,15 @@ std::vector<std::string> matrix_lines(const Verdicts& verdicts, const CampaignRe
         format_text("%2zu  ", i + 1) + padded(cut(results.contestants[ranking[i].contestant].name), width);
     for (std::size_t k = 0; k < ranking.size(); ++k) {
       const Cell cell = cell_of(verdicts, ranking[i].contestant, ranking[k].contestant);
-      const std::string mark = cell.shown > 0 ? "+" : cell.shown < 0 ? "-" : ".";
+      const std::string mark = std::isnan(cell.difference) ? "?"
+                               : cell.shown > 0            ? "+"
+                               : cell.shown < 0            ? "-"
+                                                           : ".";
       line += differences ? format_text("%*s", column,
                                         i == k ? ". " : difference_text(cell, figure, decimals).c_str())
                           : format_text("%*s", column - 1, i == k ? "" : mark.c_str());
     }
+    while (line.ends_with(' ')) line.pop_back();
     lines.push_back(line);
   }
   return lines;

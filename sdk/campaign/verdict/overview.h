@@ -7,8 +7,8 @@
 
 namespace karst::campaign {
 
-/// "1-2  deep_cave 63.1 %, information_gain 61.0 %": contestants of the same possible ranks share a line, and
-/// those beyond the last line are counted in it. At most `most` lines, best first.
+/// "1-2  deep_cave 63.1 %, information_gain 61.0 %": contestants of a line are not shown to differ. At most
+/// `most` lines, best first; if there are more, the last one says "the rest: " and has all others.
 std::vector<std::string> ranking_lines(const Verdicts& verdicts, const CampaignResults& results,
                                        std::size_t most = 5);
 

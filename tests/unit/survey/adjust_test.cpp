@@ -91,7 +91,10 @@ TEST(Adjust, ContradictoryFixesAreRefusedWithBothLines) {
 
 TEST(Adjust, AnEquateThatContradictsALegIsRefused) {
   const std::string said = adjustment_refusal(kNormal + "1 2 10 0 0\n2 3 4 0 0\nequate 2 3\n");
-  EXPECT_TRUE(says(said, "s.th: line 5: both ends of this leg of 4.00 m are equated")) << said;
+  EXPECT_TRUE(says(said,
+                   "s.th: line 5: this leg of 4.00 m contradicts an equate, which makes its ends s.2 and "
+                   "s.3 one station"))
+      << said;
 }
 
 TEST(Adjust, AShortLegBetweenEquatedStationsIsNoted) {

@@ -98,6 +98,8 @@ TEST(ErrFile, EndsWithoutANameAndFixedPointsAreNamed) {
   EXPECT_EQ(traverses[1].from, "<fixed point>");
   EXPECT_EQ(traverses[1].to, "4");
   EXPECT_EQ(traverses[2].to, "<fixed point>");
+  EXPECT_EQ(traverses[0].stations, (std::vector<std::string>{"cave.1", "cave.2"}));
+  EXPECT_EQ(traverses[1].stations, (std::vector<std::string>{"a-b", "4"}));
 }
 
 TEST(CavernMessages, AreReadWithTheirFileAndLine) {

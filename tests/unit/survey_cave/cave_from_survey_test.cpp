@@ -292,7 +292,7 @@ TEST(CaveFromSurvey, WhatLooksWrongInTheSurveyIsAFinding) {
 TEST(CaveFromSurvey, WhatLooksWrongElsewhereIsNoFindingOfAPart) {
   SurveyMaker m = straight_passage(4, 5, 1.5);
   m.leg(4, m.station("far.1", {170, 0, 0}));  // 150 m
-  m.survey.loops.traverses.push_back({"far.1", "far.2", 2, 10, 5, 50, 40});
+  m.survey.loops.traverses.push_back({"far.1", "far.2", 2, 10, 5, 50, 40, {"far.1", "cave.4", "far.2"}});
   const auto says = [](const CaveFromSurvey& made, const std::string& part) {
     return std::any_of(made.report.findings.begin(), made.report.findings.end(),
                        [&](const std::string& f) { return f.find(part) != std::string::npos; });
@@ -303,6 +303,9 @@ TEST(CaveFromSurvey, WhatLooksWrongElsewhereIsNoFindingOfAPart) {
   EXPECT_TRUE(says(whole, "150"));
   o.part.survey = "cave";
   EXPECT_TRUE(made_of(m, o).report.findings.empty());
+  m.survey.loops.traverses.push_back(
+      {"far.3", "far.4", 9, 10, 5, 50, 40, {"far.3", "cave.1", "cave.2", "far.4"}});
+  EXPECT_TRUE(says(made_of(m, o), "50.0 %")) << "legs of the part lie on that traverse";
 }
 
 }  // namespace

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include "core_stack/common/error.h"
@@ -139,6 +142,42 @@ TEST(FlownSurvey, BendsAreNotCut) {
   expect_sound(map, flown);
   EXPECT_LT(farthest_from_legs_m(flown, way(axis)), 0.35);
   EXPECT_LE(flown.survey.legs.size(), 16u);
+}
+
+TEST(FlownSurvey, InATightRoughMeanderTheLineDoesNotFold) {
+  std::vector<Vec3> axis = {{0, 0, 1.2}};
+  for (int i = 0; i < 14; ++i) axis.emplace_back(axis.back() + Vec3(2.2, i % 2 == 0 ? 1.8 : -1.8, 0));
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    std::mt19937 random(seed);  // by it, walls move by up to two cells
+    std::map<std::array<int, 3>, double> bumps;
+    const test::Inside cave = [&](const Vec3& p) {
+      double away_m = 100;
+      for (std::size_t i = 1; i < axis.size(); ++i)
+        away_m = std::min(away_m, level_distance_m(p, axis[i - 1], axis[i]));
+      const std::array<int, 3> place{static_cast<int>(std::floor(p.x() / 0.6)),
+                                     static_cast<int>(std::floor(p.y() / 0.6)),
+                                     static_cast<int>(std::floor(p.z() / 0.6))};
+      const auto [bump, is_new] = bumps.try_emplace(place, 0);
+      if (is_new) bump->second = 0.4 * static_cast<double>(random() % 100) / 100;
+      return away_m + bump->second < 1.2 && p.z() > 0 && p.z() < 2.4;
+    };
+    const core::VoxelMap map = carved(cave, {-3, -3, -1}, {35, 5, 4});
+    const FlownSurvey flown = surveyed(map, way(axis));
+    expect_sound(map, flown);
+    double length_m = 0;
+    for (const survey::Leg& l : flown.survey.legs) length_m += *l.length_m;
+    const double axis_m = 14 * std::hypot(2.2, 1.8);
+    EXPECT_LT(length_m, 1.15 * axis_m) << "seed " << seed;
+    EXPECT_GT(length_m, 0.75 * axis_m) << "seed " << seed;
+    const std::vector<survey::Station>& s = flown.survey.stations;
+    for (const survey::Leg& a : flown.survey.legs)
+      for (const survey::Leg& b : flown.survey.legs)
+        if (a.to == b.from) {
+          const Vec3 u = (s[a.to].position_m - s[a.from].position_m).normalized(),
+                     v = (s[b.to].position_m - s[b.from].position_m).normalized();
+          EXPECT_GT(u.dot(v), -0.7) << "seed " << seed << ": it turns back at " << s[a.to].name;
+        }
+  }
 }
 
 TEST(FlownSurvey, AFlownPassageBelongsToItHoweverNarrowTheMapIsThere) {

@@ -48,7 +48,7 @@ TEST(Overview, TheLastLineHoldsTheRest) {
   const CampaignResults results = known_campaign(9);
   const std::vector<std::string> lines = ranking_lines(verdicts_of(results), results, 3);
   ASSERT_EQ(lines.size(), 3u);
-  EXPECT_TRUE(lines[2].starts_with("4-9   D 50.")) << lines[2];
+  EXPECT_TRUE(lines[2].starts_with("4-9   the rest: D 50.")) << lines[2];
   EXPECT_NE(lines[2].find("I 25."), std::string::npos) << lines[2];
 }
 
@@ -63,7 +63,7 @@ TEST(Overview, TheMatrixHasEachPairTwiceWithOppositeSigns) {
     const std::vector<std::string> row = words(lines[i]);
     ASSERT_EQ(row.size(), 6u) << lines[i];
     EXPECT_EQ(row[0], std::to_string(i));
-    EXPECT_EQ(lines[i].size(), lines[0].size());
+    EXPECT_LE(lines[i].size(), lines[0].size());
     cells.emplace_back(row.begin() + 2, row.end());
   }
   for (std::size_t i = 0; i < 4; ++i) {

@@ -126,6 +126,14 @@ TEST(FreeParts, AreConnectedThroughATightPlaceIfAVehicleFlewThere) {
       << "where the estimate jumped, nothing flew";
 }
 
+TEST(FreeParts, BeginWhereThereIsRoomAlsoIfTheFlownPathBreaksOffAtTheLaunchSite) {
+  const VoxelMap map = map_of(box({0, 0, 0}, {8, 4, 3}), kLow, kHigh);
+  const std::vector<Vec3> flown = {{1, 2, 0.1}, {1, 2, 0.2}, {5, 2, 1.5}};  // then the estimate jumps
+  WorkBudget work(kMaxPassageWork);
+  const FreeParts space = free_parts_around(map, {1, 2, 0.1}, work, flown).value();
+  EXPECT_GE(space.parts.size(), parts_of(map, {1, 2, 1.5}).parts.size());
+}
+
 TEST(FreeParts, EndWithTheWorkAllowed) {
   const VoxelMap map = map_of(box({0, 0, 0}, {8, 4, 3}), kLow, kHigh);
   const std::uint64_t known = map.free_cells() + map.occupied_cells();
