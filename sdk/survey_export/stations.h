@@ -12,7 +12,7 @@ namespace karst::survey_export {
 struct StationOptions {
   double longest_leg_m = 10.0;
   /// A point of the line may be so far from the straight leg past it: a part of the passage's width, or this.
-  double least_bend_m = 0.2, bend_fraction = 0.05;
+  double least_bend_m = 0.15, bend_fraction = 0.04;
   /// So may its width and height be from those between the two stations.
   double least_change_m = 1.0, change_fraction = 0.35;
 };
