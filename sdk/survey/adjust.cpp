@@ -70,10 +70,17 @@ class Adjustment {
         positions_[*place] = node.position_m;
     survey_.loops.count = network_.loops;
     survey_.loops.traverses = read_err_file(run.err);
-    for (Loops::Traverse& t : survey_.loops.traverses)
-      for (std::string* end : {&t.from, &t.to})
-        if (const auto place = place_of_name(*end); place && *place < network_.stations.size())
-          *end = readings_.stations[network_.stations[*place]].name;
+    for (Loops::Traverse& t : survey_.loops.traverses) {
+      name(t.from);
+      name(t.to);
+      for (std::string& station : t.stations) name(station);
+    }
+  }
+
+  /// The survey's own name of what was written for cavern.
+  void name(std::string& station) const {
+    if (const auto place = place_of_name(station); place && *place < network_.stations.size())
+      station = readings_.stations[network_.stations[*place]].name;
   }
 
   void take(const CavernMessage& m, const std::vector<Source>& sources) {

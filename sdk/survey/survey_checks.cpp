@@ -1,9 +1,12 @@
 #include "sdk/survey/survey_checks.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "core_stack/common/counted.h"
+#include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/printable.h"
 
@@ -14,6 +17,33 @@ using core::format_text;
 
 std::string in_parentheses(const Survey& survey, const Source& source) {
   return source.line > 0 ? " (" + place_of(survey, source) + ")" : "";
+}
+
+/// Of the first leg of a traverse whose place in the file is known; else none.
+Source source_of(const Survey& survey, const Loops::Traverse& traverse) {
+  std::map<std::string, std::size_t> at;  // where in the traverse a station is named first
+  for (std::size_t i = 0; i < traverse.stations.size(); ++i) at.emplace(traverse.stations[i], i);
+  const auto place = [&](std::uint32_t station) {
+    const Station& s = survey.stations[station];
+    auto found = at.find(s.name);
+    for (const std::string& alias : s.aliases)
+      if (found == at.end()) found = at.find(alias);
+    return found == at.end() ? std::optional<std::size_t>() : found->second;
+  };
+  Source source;
+  std::size_t earliest = traverse.stations.size();
+  for (const Leg& leg : survey.legs) {
+    if (leg.source.line == 0) continue;
+    const auto a = place(leg.from), b = place(leg.to);
+    if (!a || !b || std::min(*a, *b) >= earliest) continue;
+    earliest = std::min(*a, *b);
+    source = leg.source;
+  }
+  return source;
+}
+
+std::string ends_of(const Loops::Traverse& traverse) {
+  return "from " + core::printable(traverse.from) + " to " + core::printable(traverse.to);
 }
 
 void check_loops(const Survey& survey, std::vector<std::string>& checks) {
@@ -31,7 +61,7 @@ void check_loops(const Survey& survey, std::vector<std::string>& checks) {
                      format_text(" of loops err by more than %g %%; the worst by %.1f %%, %.2f m on %.0f m",
                                  kWrongLoop_percent, worst->error_percent, worst->error_m, worst->length_m);
   if (worst->sigmas) text += format_text(", %.1f standard deviations", *worst->sigmas);
-  checks.push_back(text + ", from " + core::printable(worst->from) + " to " + core::printable(worst->to) +
+  checks.push_back(text + ", " + ends_of(*worst) + in_parentheses(survey, source_of(survey, *worst)) +
                    ": a reading or an equate is wrong");
 }
 
@@ -86,6 +116,19 @@ std::vector<std::string> survey_checks(const Survey& survey) {
   check_lengths(survey, checks);
   check_walls(survey, checks);
   return checks;
+}
+
+void refuse_torn_loops(const Survey& survey) {
+  for (const Loops::Traverse& t : survey.loops.traverses) {
+    if (t.error_m <= kTorn_m + kTorn * t.length_m) continue;
+    const Source source = source_of(survey, t);
+    throw core::InputError(
+        survey.files.at(source.file), source.line > 0 ? "line " + std::to_string(source.line) : "",
+        format_text(
+            "the legs %s are %.0f m long, and would have to move by %.0f m to fit what else is given: "
+            "a fix, an equate or the name of a station is wrong",
+            ends_of(t).c_str(), t.length_m, t.error_m));
+  }
 }
 
 }  // namespace karst::survey

@@ -19,4 +19,11 @@ constexpr double kFarWall_m = 50;
 /// sections underground only.
 std::vector<std::string> survey_checks(const Survey& survey);
 
+/// No slip in a reading moves the end of a traverse by more than twice its length; a fix or an equate of the
+/// wrong station does. Below 20 m, it may be a coarse fix of an entrance.
+constexpr double kTorn = 2, kTorn_m = 20;
+
+/// Throws core::InputError naming the first leg of a traverse whose error is beyond these.
+void refuse_torn_loops(const Survey& survey);
+
 }  // namespace karst::survey

@@ -8,6 +8,7 @@
 
 #include "core_stack/common/error.h"
 #include "sdk/survey/facing.h"
+#include "sdk/survey_export/median.h"
 #include "sdk/survey_export/middle_line.h"
 #include "sdk/survey_export/wall_distance.h"
 
@@ -140,11 +141,39 @@ class Builder {
 
   void measure_sections() {
     survey::set_facings(out_.survey);
-    for (survey::Section& s : out_.survey.sections) {
-      const Vec3& p = station(s.station).position_m;
-      s.dimensions =
-          across_passage(*input_.map, out_.survey, p, s.facing, dimensions_at(*input_.map, p, s.facing));
+    for (survey::Section& s : out_.survey.sections) s.dimensions = usual_dimensions(s);
+  }
+
+  /// The median of the distances at the station and along the legs before and behind: a niche, or a bend that
+  /// a ray looks along, is no width of the passage. None where fewer than half of the places have one.
+  survey::Dimensions usual_dimensions(const survey::Section& s) const {
+    constexpr double kAround_m = 1.0, kApart_m = 0.25;
+    const Vec3& at = station(s.station).position_m;
+    std::vector<survey::Dimensions> measured;
+    const auto measure = [&](const Vec3& p, const Vec3& facing) {
+      if (input_.map->at(p) != core::Cell::free) return;
+      measured.push_back(
+          across_passage(*input_.map, out_.survey, p, facing, dimensions_at(*input_.map, p, facing)));
+    };
+    measure(at, s.facing);
+    for (const Leg& leg : out_.survey.legs) {
+      if (leg.run != s.run || (leg.from != s.station && leg.to != s.station)) continue;
+      const Vec3 v = station(leg.to).position_m - station(leg.from).position_m;
+      const Vec3 level(v.x(), v.y(), 0);
+      const Vec3 facing = level.norm() > 0.1 * v.norm() ? level.normalized() : s.facing;
+      const Vec3 away = (leg.from == s.station ? v : -v).normalized();
+      for (double m = kApart_m; m <= std::min(kAround_m, 0.5 * v.norm()); m += kApart_m)
+        measure(at + m * away, facing);
     }
+    survey::Dimensions usual;
+    for (const auto distance : {&survey::Dimensions::left_m, &survey::Dimensions::right_m,
+                                &survey::Dimensions::up_m, &survey::Dimensions::down_m}) {
+      std::vector<double> known;
+      for (const survey::Dimensions& d : measured)
+        if (d.*distance) known.push_back(*(d.*distance));
+      if (2 * known.size() > measured.size()) usual.*distance = median(std::move(known));
+    }
+    return usual;
   }
 
   void mark_continuations() {

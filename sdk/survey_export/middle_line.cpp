@@ -92,10 +92,9 @@ class Lines {
 
   /// Towards the rock at the end of a passage; the last slice ends up to a band before it.
   std::optional<LinePoint> extended(const std::vector<LinePoint>& line) const {
+    constexpr std::size_t kAxisPoints = 8;
     if (line.size() < 2) return std::nullopt;
-    const Vec3 step = line.back().position - line[line.size() - 2].position;
-    if (step.norm() < 1e-3) return std::nullopt;
-    const Vec3 ahead = step.normalized();
+    const Vec3 ahead = axis_of(std::span(line).last(std::min(kAxisPoints, line.size()))).direction;
     const double reach_m = free_reach_m(map_, line.back().position, ahead);
     const double further_m = std::min(reach_m - kWallMargin_m, kMostExtension_m);
     if (further_m < kWallMargin_m) return std::nullopt;

@@ -202,8 +202,8 @@ class Bends {
   static constexpr std::size_t kLeastAxis = 4, kMostAxis = 8;  // points of which an axis is found
 
   bool is_bend(std::size_t i) const {
-    constexpr double kUnusual = 1.25, kTurn_rad = 0.4;
-    constexpr std::size_t kStep = 2;
+    constexpr double kUnusual = 1.25, kTurn_rad = 0.35;
+    constexpr std::size_t kStep = 4;
     if (points_[i].width_m > kUnusual * usual_m_[i]) return true;
     if (i < kStep || i + kStep >= points_.size()) return false;
     return turn_rad(points_[i].position - points_[i - kStep].position,

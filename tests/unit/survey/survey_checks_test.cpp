@@ -68,5 +68,28 @@ TEST(SurveyChecks, AnEquateThatContradictsTheLegsIsNamed) {
   EXPECT_TRUE(test::says(survey_checks(s)[0], "the worst by 70.7 %")) << survey_checks(s)[0];
 }
 
+TEST(SurveyChecks, ATraverseIsNamedWithThePlaceOfItsFirstLeg) {
+  SKIP_WITHOUT_SURVEX();
+  const Survey s = test::adjusted_lines("fix 1 0 0 0\n" + test::kNormal +
+                                        "0 1 5 0 0\n1 2 10 0 0\n2 3 10 90 0\n3 4 10 180 0\n4 1 3 270 0\n");
+  ASSERT_EQ(survey_checks(s).size(), 1u);
+  EXPECT_TRUE(test::says(survey_checks(s)[0], "from s.1 to s.1 (")) << survey_checks(s)[0];
+  const Source& source = s.legs[1].source;
+  EXPECT_TRUE(test::says(survey_checks(s)[0], "line " + std::to_string(source.line) + ")"))
+      << survey_checks(s)[0];
+}
+
+TEST(SurveyChecks, FixesFarApartOnAFewLegsAreRefusedWithTheirPlace) {
+  SKIP_WITHOUT_SURVEX();
+  const auto refusal = [](const std::string& north) {
+    return test::adjustment_refusal("fix 1 0 0 0\nfix 3 0 " + north + " 0\n" + test::kNormal +
+                                    "1 2 10 0 0\n2 3 10 0 0\n");
+  };
+  EXPECT_EQ(refusal("75"), "") << "a coarse fix";
+  const std::string text = refusal("500");
+  EXPECT_TRUE(test::says(text, "are 20 m long, and would have to move by 480 m")) << text;
+  EXPECT_TRUE(test::says(text, ": line ")) << text;
+}
+
 }  // namespace
 }  // namespace karst::survey

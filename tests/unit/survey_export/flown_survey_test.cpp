@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <set>
@@ -127,41 +128,105 @@ TEST(FlownSurvey, ABendHasAStation) {
   EXPECT_LT(farthest_from_legs_m(flown, way({{2, -0.1, 1.5}, {18.5, -0.1, 1.5}, {18.5, 18, 1.5}})), 0.6);
 }
 
+/// Along this axis, its floor and ceiling half the height below and above; by a seed other than 0, rock
+/// stands out by up to a cell.
+struct Passage {
+  std::vector<Vec3> axis;
+  double half_width_m = 1.7, half_height_m = 1.5;
+  unsigned seed = 0;
+
+  test::Inside inside() const {
+    auto random = std::make_shared<std::mt19937>(seed);
+    auto bumps = std::make_shared<std::map<std::array<int, 3>, double>>();
+    return [*this, random, bumps](const Vec3& p) {
+      double away_m = 100, up_m = 0;
+      for (std::size_t i = 1; i < axis.size(); ++i) {
+        const double m = level_distance_m(p, axis[i - 1], axis[i]);
+        if (m >= away_m) continue;
+        const Vec3 leg = axis[i] - axis[i - 1];
+        const double f = (p - axis[i - 1]).head<2>().dot(leg.head<2>()) / leg.head<2>().squaredNorm();
+        away_m = m;
+        up_m = p.z() - axis[i - 1].z() - std::clamp(f, 0.0, 1.0) * leg.z();
+      }
+      const std::array<int, 3> place{static_cast<int>(std::floor(p.x() / 0.6)),
+                                     static_cast<int>(std::floor(p.y() / 0.6)),
+                                     static_cast<int>(std::floor(p.z() / 0.6))};
+      const auto [bump, is_new] = bumps->try_emplace(place, 0);
+      if (is_new && seed != 0) bump->second = 0.2 * static_cast<double>((*random)() % 100) / 100;
+      return away_m + bump->second < half_width_m && std::abs(up_m) + bump->second < half_height_m;
+    };
+  }
+};
+
 TEST(FlownSurvey, BendsAreNotCut) {
   // Legs of 10 m that turn by 30 to 60 degrees: a line halfway between the walls turns where they do.
   const std::vector<Vec3> axis = {{0, 0, 1.5},   {10, 0, 1.5},  {18, 6, 1.5},   {27, 6.5, 1.5},
                                   {32, 15, 1.5}, {41, 12, 1.5}, {50, 16.5, 1.5}};
-  const test::Inside cave = [&axis](const Vec3& p) {
-    double away_m = 100;
-    for (std::size_t i = 1; i < axis.size(); ++i)
-      away_m = std::min(away_m, level_distance_m(p, axis[i - 1], axis[i]));
-    return away_m < 1.7 && p.z() > 0 && p.z() < 3;
-  };
-  const core::VoxelMap map = carved(cave, {-3, -3, -1}, {53, 20, 4});
+  const core::VoxelMap map = carved(Passage{axis}.inside(), {-3, -3, -1}, {53, 20, 4});
   const FlownSurvey flown = surveyed(map, way(axis));
   expect_sound(map, flown);
   EXPECT_LT(farthest_from_legs_m(flown, way(axis)), 0.35);
   EXPECT_LE(flown.survey.legs.size(), 16u);
 }
 
+TEST(FlownSurvey, ABendOf39DegreesInRoughRockIsNotCut) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const Eigen::AngleAxisd turned(0.3 * seed, Vec3::UnitZ());
+    const std::vector<Vec3> axis = {Vec3(0, 0, 1.5), turned * Vec3(10, -2.5, 1.5),
+                                    turned * Vec3(16.2, -10.3, 1.5)};
+    const core::VoxelMap map = carved(Passage{axis, 2, 1.5, seed}.inside(), {-22, -22, -1}, {22, 22, 4});
+    const FlownSurvey flown = surveyed(map, way(axis));
+    expect_sound(map, flown);
+    EXPECT_LT(farthest_from_legs_m(flown, {axis[1]}), 0.25) << seed;
+  }
+}
+
+TEST(FlownSurvey, AnEvenCurveIsNoCorner) {
+  for (const double radius_m : {5.0, 8.0}) {
+    std::vector<Vec3> axis = {{-8, 0, 1.5}};
+    for (int degree = 0; degree <= 90; degree += 3) {
+      const double a = degree * std::numbers::pi / 180;
+      axis.emplace_back(radius_m * std::sin(a), radius_m * (1 - std::cos(a)), 1.5);
+    }
+    axis.emplace_back(radius_m, radius_m + 8, 1.5);
+    const core::VoxelMap map =
+        carved(Passage{axis}.inside(), {-11, -3, -1}, {radius_m + 3, radius_m + 11, 4});
+    const FlownSurvey flown = surveyed(map, way(axis));
+    expect_sound(map, flown);
+    EXPECT_LT(farthest_from_legs_m(flown, way(axis)), 0.35) << radius_m;
+  }
+}
+
+TEST(FlownSurvey, TheLastLegInRoughRockGoesDownAsThePassageDoes) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const std::vector<Vec3> axis = {{0, 0, 1.5}, {17.3, 6.1, 1.5 - 0.03 * seed}};
+    const core::VoxelMap map = carved(Passage{axis, 1.7, 1.5, seed}.inside(), {-3, -3, -4}, {21, 9, 4});
+    const FlownSurvey flown = surveyed(map, way(axis));
+    expect_sound(map, flown);
+    const survey::Station& last = flown.survey.stations[flown.survey.legs.back().to];
+    const Vec3 off = last.position_m - axis[0], leg = axis[1] - axis[0];
+    const double slope = leg.z() / leg.head<2>().norm();
+    EXPECT_LT(std::abs(off.z() - slope * off.head<2>().norm()), 0.2) << seed;
+  }
+}
+
+TEST(FlownSurvey, ANicheBesideAStationIsNoWidth) {
+  // A tunnel with a niche of 3 m, 0.6 m wide, every 4 m on one side.
+  std::vector<test::Inside> parts = {test::tunnel()};
+  for (double x = 2; x < 29; x += 4) parts.push_back(box({x, 1, 0.6}, {x + 0.6, 5, 2.4}));
+  const core::VoxelMap map = carved(test::any_of(parts), {-1, -3, -1}, {31, 6, 4});
+  const FlownSurvey flown = surveyed(map, test::tunnel_flight());
+  for (const survey::Section& s : flown.survey.sections) {
+    ASSERT_TRUE(s.dimensions.left_m && s.dimensions.right_m);
+    EXPECT_NEAR(*s.dimensions.left_m + *s.dimensions.right_m, 4.2, 0.4);
+  }
+}
+
 TEST(FlownSurvey, InATightRoughMeanderTheLineDoesNotFold) {
   std::vector<Vec3> axis = {{0, 0, 1.2}};
   for (int i = 0; i < 14; ++i) axis.emplace_back(axis.back() + Vec3(2.2, i % 2 == 0 ? 1.8 : -1.8, 0));
   for (const unsigned seed : {1u, 2u, 3u}) {
-    std::mt19937 random(seed);  // by it, walls move by up to two cells
-    std::map<std::array<int, 3>, double> bumps;
-    const test::Inside cave = [&](const Vec3& p) {
-      double away_m = 100;
-      for (std::size_t i = 1; i < axis.size(); ++i)
-        away_m = std::min(away_m, level_distance_m(p, axis[i - 1], axis[i]));
-      const std::array<int, 3> place{static_cast<int>(std::floor(p.x() / 0.6)),
-                                     static_cast<int>(std::floor(p.y() / 0.6)),
-                                     static_cast<int>(std::floor(p.z() / 0.6))};
-      const auto [bump, is_new] = bumps.try_emplace(place, 0);
-      if (is_new) bump->second = 0.4 * static_cast<double>(random() % 100) / 100;
-      return away_m + bump->second < 1.2 && p.z() > 0 && p.z() < 2.4;
-    };
-    const core::VoxelMap map = carved(cave, {-3, -3, -1}, {35, 5, 4});
+    const core::VoxelMap map = carved(Passage{axis, 1.2, 1.2, seed}.inside(), {-3, -3, -1}, {35, 5, 4});
     const FlownSurvey flown = surveyed(map, way(axis));
     expect_sound(map, flown);
     double length_m = 0;
