@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "core_stack/common/counted.h"
@@ -35,7 +37,7 @@ Source source_of(const Survey& survey, const Loops::Traverse& traverse) {
   for (const Leg& leg : survey.legs) {
     if (leg.source.line == 0) continue;
     const auto a = place(leg.from), b = place(leg.to);
-    if (!a || !b || std::min(*a, *b) >= earliest) continue;
+    if (!a || !b || std::max(*a, *b) - std::min(*a, *b) != 1 || std::min(*a, *b) >= earliest) continue;
     earliest = std::min(*a, *b);
     source = leg.source;
   }
@@ -118,15 +120,23 @@ std::vector<std::string> survey_checks(const Survey& survey) {
   return checks;
 }
 
-void refuse_torn_loops(const Survey& survey) {
+void refuse_contradictory_fixes(const Survey& survey) {
+  std::set<std::string> fixed;
+  for (const Station& s : survey.stations)
+    if (s.fixed) {
+      fixed.insert(s.name);
+      fixed.insert(s.aliases.begin(), s.aliases.end());
+    }
   for (const Loops::Traverse& t : survey.loops.traverses) {
-    if (t.error_m <= kTorn_m + kTorn * t.length_m) continue;
+    if (!fixed.contains(t.from) || !fixed.contains(t.to) || t.from == t.to) continue;
+    if (t.error_m <= kWrongFix_m + kWrongFix * t.length_m) continue;
+    if (t.sigmas.value_or(kWrongLoop_sigmas + 1) <= kWrongLoop_sigmas) continue;
     const Source source = source_of(survey, t);
     throw core::InputError(
         survey.files.at(source.file), source.line > 0 ? "line " + std::to_string(source.line) : "",
         format_text(
-            "the legs %s are %.0f m long, and would have to move by %.0f m to fit what else is given: "
-            "a fix, an equate or the name of a station is wrong",
+            "the legs %s, both of them fixed, are %.0f m long, and would have to move by %.0f m: a fix, "
+            "an equate or the name of a station is wrong",
             ends_of(t).c_str(), t.length_m, t.error_m));
   }
 }

@@ -19,11 +19,12 @@ constexpr double kFarWall_m = 50;
 /// sections underground only.
 std::vector<std::string> survey_checks(const Survey& survey);
 
-/// No slip in a reading moves the end of a traverse by more than twice its length; a fix or an equate of the
-/// wrong station does. Below 20 m, it may be a coarse fix of an entrance.
-constexpr double kTorn = 2, kTorn_m = 20;
+/// Beyond twice the length of the legs between two fixed stations, and 20 m, no reading is to blame but a
+/// fix. Coordinates of entrances may be coarse: 20 m are not much for them.
+constexpr double kWrongFix = 2, kWrongFix_m = 20;
 
-/// Throws core::InputError naming the first leg of a traverse whose error is beyond these.
-void refuse_torn_loops(const Survey& survey);
+/// Throws core::InputError naming the first leg of a traverse between two fixed stations whose error is
+/// beyond these, and beyond what the standard deviations given with the fixes allow.
+void refuse_contradictory_fixes(const Survey& survey);
 
 }  // namespace karst::survey

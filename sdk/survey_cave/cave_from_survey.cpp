@@ -126,8 +126,9 @@ void add_findings(const PassageGraph& graph, const Passages& passages, SurveyRep
     report.findings.emplace_back("no dimension was measured here: every passage is 2 m wide and high");
 }
 
-/// What looks wrong in the part: its legs, its sections, and the loops with two of its stations.
-std::vector<std::string> checks_of(const survey::Survey& survey, const SurveyPart& part) {
+/// What the checks are about: legs and sections of the part, and loops with two of its stations or more.
+survey::Survey to_check(const survey::Survey& survey, const SurveyPart& part) {
+  if (part.stations.size() == survey.stations.size()) return survey;
   std::vector<bool> in(survey.stations.size());
   std::set<std::string> names;
   for (const std::uint32_t s : part.stations) {
@@ -146,7 +147,7 @@ std::vector<std::string> checks_of(const survey::Survey& survey, const SurveyPar
     const auto is_in = [&](const std::string& name) { return names.contains(name); };
     if (std::count_if(t.stations.begin(), t.stations.end(), is_in) > 1) here.loops.traverses.push_back(t);
   }
-  return survey::survey_checks(here);
+  return here;
 }
 
 /// As a flight checks it: in a passage, most rays cross the walls an odd number of times.
@@ -182,6 +183,8 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
   report.obstacles.vehicle_width_m = options.vehicle_width_m;
   report.dimensions.least_m = kLeastCells * options.resolution_m;
   const SurveyPart part = part_of(file, survey, options.part);
+  const survey::Survey checked = to_check(survey, part);
+  survey::refuse_contradictory_fixes(checked);
   report.offset_m = offset_of(survey, part);
   const PassageGraph graph = graph_of(survey, part, report.offset_m);
   const Passages passages = passages_of(survey, part, graph, report.offset_m, report.dimensions.least_m);
@@ -227,9 +230,7 @@ CaveFromSurvey cave_from_survey(const std::string& file, const survey::Survey& s
     report.findings.push_back(
         core::counted(survey.left_out.parts, "part") +
         " of the survey left out: no leg or equate ties it to the rest (see the notes)");
-  const bool whole = part.stations.size() == survey.stations.size();
-  for (std::string& check : whole ? survey::survey_checks(survey) : checks_of(survey, part))
-    report.findings.push_back(std::move(check));
+  for (std::string& check : survey::survey_checks(checked)) report.findings.push_back(std::move(check));
   made.mesh = scene.mesh();
   return made;
 }

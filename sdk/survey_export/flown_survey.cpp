@@ -145,9 +145,10 @@ class Builder {
   }
 
   /// The median of the distances at the station and along the legs before and behind: a niche, or a bend that
-  /// a ray looks along, is no width of the passage. None where fewer than half of the places have one.
+  /// a ray looks along, is no width of the passage. None where half of the places or more have none.
   survey::Dimensions usual_dimensions(const survey::Section& s) const {
     constexpr double kAround_m = 1.0, kApart_m = 0.25;
+    constexpr double kSteep = 0.5;  // level part of a leg's direction below which it is a shaft: 60 degrees
     const Vec3& at = station(s.station).position_m;
     std::vector<survey::Dimensions> measured;
     const auto measure = [&](const Vec3& p, const Vec3& facing) {
@@ -160,8 +161,8 @@ class Builder {
       if (leg.run != s.run || (leg.from != s.station && leg.to != s.station)) continue;
       const Vec3 v = station(leg.to).position_m - station(leg.from).position_m;
       const Vec3 level(v.x(), v.y(), 0);
-      const Vec3 facing = level.norm() > 0.1 * v.norm() ? level.normalized() : s.facing;
-      const Vec3 away = (leg.from == s.station ? v : -v).normalized();
+      if (level.norm() < kSteep * v.norm()) continue;  // up and down would be measured along it
+      const Vec3 facing = level.normalized(), away = (leg.from == s.station ? v : -v).normalized();
       for (double m = kApart_m; m <= std::min(kAround_m, 0.5 * v.norm()); m += kApart_m)
         measure(at + m * away, facing);
     }

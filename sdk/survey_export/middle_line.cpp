@@ -95,6 +95,7 @@ class Lines {
     constexpr std::size_t kAxisPoints = 8;
     if (line.size() < 2) return std::nullopt;
     const Vec3 ahead = axis_of(std::span(line).last(std::min(kAxisPoints, line.size()))).direction;
+    if (!(ahead.dot(line.back().position - line[line.size() - 2].position) > 0)) return std::nullopt;
     const double reach_m = free_reach_m(map_, line.back().position, ahead);
     const double further_m = std::min(reach_m - kWallMargin_m, kMostExtension_m);
     if (further_m < kWallMargin_m) return std::nullopt;
