@@ -97,7 +97,7 @@ Campaign from_words(const CompareArguments& args) {
   Campaign c;
   for (const std::string& who : args.who) c.contestants.push_back(campaign::parse_contestant(who));
   for (campaign::ContestantSpec& who : c.contestants)
-    if (!args.plugins.empty()) who.plugin = args.plugins.front();
+    if (who.plugin.empty() && !args.plugins.empty()) who.plugin = args.plugins.front();
   for (const std::string& cave : args.caves) c.caves.push_back(campaign::parse_cave(cave));
   for (std::int64_t s = 1; s <= 10; ++s) c.seeds.push_back(s);
   apply(args, c);
@@ -235,7 +235,8 @@ void add_compare_command(CLI::App& app) {
       "Started again, it goes on where it was stopped or killed; more seeds and contestants may be "
       "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");
   compare_app
-      ->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves")
+      ->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves: names, or files such as "
+                   "my_policy.py")
       ->type_name(kPolicyOrFile)
       ->required()
       ->check(not_empty());

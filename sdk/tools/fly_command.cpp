@@ -19,6 +19,7 @@
 #include "sdk/flight/cave_check.h"
 #include "sdk/flight/fly.h"
 #include "sdk/flight/run_files.h"
+#include "sdk/host/plugin/selection.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/interrupt.h"
@@ -296,7 +297,8 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
   add_mesh_options(*fly_app, args->mesh);
   fly_app
       ->add_option("--policy", args->overrides.policy,
-                   "exploration policy; see karst policy list; auto: selected for the cave")
+                   "exploration policy, or a file with one (my_policy.py); see karst policy list; auto: selected "
+                   "for the cave")
       ->type_name(kPolicy)
       ->check(not_empty());
   fly_app
@@ -354,6 +356,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
                         core::doc_path("docs/isolation.md"));
   fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
   fly_app->callback([args, choose = std::move(choose_policy)] {
+    host::take_policy_file(args->overrides.policy, args->plugins);
     if (const int code = fly(*args, choose); code != 0) throw CLI::RuntimeError(code);
   });
 }

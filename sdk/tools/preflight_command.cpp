@@ -16,6 +16,7 @@
 #include "sdk/preflight/preflight_json.h"
 #include "sdk/preflight/preflight_page.h"
 #include "sdk/preflight/preflight_words.h"
+#include "sdk/host/plugin/selection.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/mesh_options.h"
@@ -155,6 +156,7 @@ void add_preflight_command(CLI::App& app) {
   preflight_app->add_flag("--json", args->json, "Write JSON");
   preflight_app->add_flag("--quiet", args->quiet, "no progress on standard error");
   preflight_app->callback([args] {
+    host::take_policy_file(args->overrides.policy, args->look.plugins);
     if (const int code = run(*args); code != 0) throw CLI::RuntimeError(code);
   });
 }

@@ -12,6 +12,7 @@
 #include "core_stack/common/json_text.h"
 #include "sdk/host/load_policy.h"
 #include "sdk/host/serialization/request_log.h"
+#include "sdk/host/plugin/selection.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 
@@ -149,6 +150,7 @@ void add_request_replay_command(CLI::App& policy) {
                 "exit code 2 if an answer shown differs from the one recorded");
   app->add_flag("--json", args->json, "write JSON, with whole answers");
   app->callback([args] {
+    host::take_policy_file(args->policy, args->plugins);
     if (const int code = replay(*args); code != 0) throw CLI::RuntimeError(code);
   });
 }

@@ -64,8 +64,8 @@ tuning::TuneOptions options_of(const TuneArguments& args) {
   tuning::TuneOptions o = args.tune;
   o.search.method = tuning::search_method(args.method);
   o.policy = campaign::parse_contestant(args.policy);
-  o.policy.plugin = args.plugin;
-  o.axes = tuning::axes_of(listing_of(o.policy.policy, args.plugin), args.parameters);
+  if (o.policy.plugin.empty()) o.policy.plugin = args.plugin;
+  o.axes = tuning::axes_of(listing_of(o.policy.policy, o.policy.plugin), args.parameters);
   for (const auto& [key, value] : o.policy.parameters)  // parameters given by the user stay fixed
     std::erase_if(o.axes, [&key = key](const tuning::Axis& a) { return a.id == key; });
   if (o.axes.empty())

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -12,6 +13,7 @@
 #include "core_stack/common/options.h"
 #include "sdk/campaign/plan/profile.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
+#include "sdk/host/plugin/selection.h"
 
 namespace karst::campaign {
 namespace {
@@ -101,6 +103,14 @@ void refuse_other_blocks(const pt::ptree& tree, const std::string& source, const
   }
 }
 
+/// A contestant may name a file with a policy, such as my_policy.py, instead of a policy.
+void take_policy_file(ContestantSpec& c, const std::string& file) {
+  const std::optional<host::PolicyListing> found = host::policy_in_file(file);
+  if (!found) return;
+  c.policy = found->id;
+  c.plugin = file;
+}
+
 ContestantSpec read_contestant(pt::ptree block, const std::string& source) {
   ContestantSpec c;
   c.parameters = take_settings(block, "parameters", source, "contestant.");
@@ -117,6 +127,7 @@ ContestantSpec read_contestant(pt::ptree block, const std::string& source) {
   table.read(source, tree);
   if (c.policy.empty()) throw InputError(source, "contestant.policy", "is missing");
   c.plugin = core::beside(source, c.plugin);
+  if (const fs::path file = core::beside(source, c.policy); fs::exists(file)) take_policy_file(c, file.string());
   return c;
 }
 
@@ -184,6 +195,7 @@ ContestantSpec parse_contestant(const std::string& text) {
   c.policy = text.substr(0, colon);
   if (c.policy.empty())
     throw InputError("command line", text, "expected policy or policy:key=value,key=value");
+  take_policy_file(c, c.policy);
   std::istringstream rest(colon == std::string::npos ? "" : text.substr(colon + 1));
   for (std::string item; std::getline(rest, item, ',');) {
     const auto equals = item.find('=');

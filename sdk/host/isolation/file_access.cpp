@@ -15,6 +15,7 @@
 
 #include "core_stack/common/error.h"
 #include "sdk/host/isolation/descriptor.h"
+#include "sdk/host/plugin/script_file.h"
 
 namespace karst::host {
 namespace {
@@ -63,6 +64,7 @@ std::vector<std::filesystem::path> places_to_read(const std::filesystem::path& p
     for (std::string folder; std::getline(in, folder, ':');)
       if (!folder.empty()) places.emplace_back(folder);
   }
+  if (is_script(plugin)) places.push_back(own_libraries());
   std::error_code error;
   const std::filesystem::path file = std::filesystem::absolute(plugin, error);
   for (const std::filesystem::path& of : {file, std::filesystem::weakly_canonical(file, error)}) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "sdk/host/plugin/probe.h"
+#include "sdk/host/plugin/script_file.h"
 
 namespace karst::host {
 namespace {
@@ -34,8 +35,11 @@ std::vector<std::string> split_path(const std::string& text) {
 std::vector<std::string> plugins_in(const std::string& folder) {
   std::vector<std::string> out;
   std::error_code error;
-  for (const fs::directory_entry& e : fs::directory_iterator(folder, error))
-    if (e.path().extension() == ".so" && e.is_regular_file(error)) out.push_back(e.path().string());
+  for (const fs::directory_entry& e : fs::directory_iterator(folder, error)) {
+    const bool is_candidate =
+        e.path().extension() == ".so" || (is_script(e.path()) && may_hold_policy(e.path()));
+    if (is_candidate && e.is_regular_file(error)) out.push_back(e.path().string());
+  }
   std::sort(out.begin(), out.end());
   return out;
 }

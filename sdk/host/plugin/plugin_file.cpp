@@ -11,6 +11,7 @@
 #include "core_stack/common/input_file.h"
 #include "sdk/host/boundary/text.h"
 #include "sdk/host/plugin/process_state.h"
+#include "sdk/host/plugin/script_file.h"
 
 namespace karst::host {
 namespace {
@@ -85,6 +86,7 @@ bool belongs_to(const void* symbol, const std::string& path) {
 }  // namespace
 
 const karst_plugin_t& enter_plugin(const std::string& path) {
+  if (is_script(path)) return enter_script(path);
   const std::string file =
       std::filesystem::absolute(path).string();  // a bare name must not search LD_LIBRARY_PATH
   core::check_input(path, core::kMaxPluginBytes);

@@ -5,6 +5,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/options.h"
+#include "sdk/host/plugin/script_file.h"
 
 namespace karst::host {
 namespace {
@@ -44,6 +45,27 @@ PolicyListing find_policy(const std::string& name, const SearchPath& path) {
   const auto found = std::find_if(all.begin(), all.end(), offers);
   if (found == all.end()) throw core::InputError("policy", name, missing_text(name, all, path));
   return *found;
+}
+
+std::optional<PolicyListing> policy_in_file(const std::string& text) {
+  const std::filesystem::path file(text);
+  if (!is_script(file) && file.extension() != ".so") return std::nullopt;
+  if (!std::filesystem::exists(file)) throw core::InputError(text, "", "there is no such file");
+  const std::vector<PolicyListing> all = list_policies({{text}, {}});
+  if (all.empty()) throw core::InputError(text, "", "holds no policy");
+  if (!all.front().broken.empty()) throw core::InputError(text, "", all.front().broken);
+  if (all.size() == 1) return all.front();
+  std::vector<std::string> names;
+  for (const PolicyListing& p : all) names.push_back(p.id);
+  throw core::InputError(text, "",
+                         "holds several policies: name one of " + joined(names) + ", and give --plugin " + text);
+}
+
+void take_policy_file(std::string& policy, std::vector<std::string>& plugins) {
+  const std::optional<PolicyListing> found = policy_in_file(policy);
+  if (!found) return;
+  plugins.insert(plugins.begin(), policy);
+  policy = found->id;
 }
 
 Selection open_policy(const std::string& file, const std::string& name) {

@@ -1,0 +1,103 @@
+// What the host of a policy offers, for Python: the map of one request or a copy of it, paths, gains, drawings.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <karst/imaged.h>
+#include <karst/policy.h>
+#include <karst/survey.h>
+
+#include "sdk/python/binding/arrays.h"
+
+namespace karst::python {
+
+/// Whether decide() still runs. What is asked of a request that has ended would read freed memory.
+class Term {
+ public:
+  void end() { ended_ = true; }
+  void require() const {
+    if (ended_)
+      throw Error("this request has ended: keep what it said, or request.map.retained()", KARST_ERROR_STATE);
+  }
+
+ private:
+  bool ended_ = false;
+};
+
+/// The occupancy map. All calls release Python's lock while the host answers.
+class Map {
+ public:
+  Map(MapView view, std::shared_ptr<Term> term) : view_(std::move(view)), term_(std::move(term)) {}
+
+  py::dict info() const;
+  py::array cells(const Doubles& points) const;
+  py::array cast_rays(const Doubles& from, const Doubles& to, bool through_unknown) const;
+  py::array counts(const Doubles& low, const Doubles& high) const;
+  py::array surface(const Doubles& low, const Doubles& high) const;
+  py::array distances_to_rock(const Doubles& points, double limit_m) const;
+  py::tuple passages() const;
+  py::array passages_at(const Doubles& points) const;
+  Map retained() const;
+
+ private:
+  const MapView& view() const {
+    if (term_) term_->require();
+    return view_;
+  }
+
+  MapView view_;
+  std::shared_ptr<Term> term_;  // none: a copy, which lasts
+};
+
+/// The services of one request.
+class Services {
+ public:
+  Services(const karst_host_t* host, const Request& request, std::shared_ptr<Term> term)
+      : host_(host), request_(request), term_(std::move(term)) {}
+
+  Map map() const { return {request().map, term_}; }
+  py::array path_lengths(const Doubles& from, const Doubles& goals, double tolerance_m) const;
+  py::list paths(const Doubles& from, const Doubles& goals, double tolerance_m) const;
+  py::array newly_seen(std::size_t sensor, const Doubles& viewpoints, std::optional<double> max_range_m) const;
+  void draw_points(const Doubles& points, std::uint32_t rgb) const;
+  void draw_lines(const Doubles& from, const Doubles& to, std::uint32_t rgb) const;
+  void draw_text(const Doubles& at, const std::string& text, std::uint32_t rgb) const;
+  void log(const std::string& text, std::uint32_t level) const;
+  py::array_t<double> random(std::size_t count) const;
+  bool should_stop() const { return request().should_stop(); }
+
+  /// None if the mission has no survey: its legs, its leads.
+  py::object survey() const;
+  py::array survey_distances(const Doubles& points) const;
+  /// None if the vehicle carries no colour camera.
+  py::object imaging_camera() const;
+  py::array imaged_states(const Doubles& points) const;
+  py::array unimaged(const Doubles& low, const Doubles& high) const;
+  py::array newly_imaged(const Doubles& viewpoints) const;
+
+ private:
+  const Request& request() const {
+    term_->require();
+    return request_;
+  }
+  const karst_host_t* host() const {
+    term_->require();
+    return host_;
+  }
+  SurveyView known_survey() const;
+  ImagedView imaged() const;
+
+  const karst_host_t* host_;
+  const Request& request_;
+  std::shared_ptr<Term> term_;
+};
+
+/// Name, kind and field of view.
+py::dict sensor_fields(const Sensor& sensor);
+
+void bind_services(py::module_& module);
+
+}  // namespace karst::python
