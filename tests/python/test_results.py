@@ -22,7 +22,7 @@ def test_figures_and_settings(folder):
     assert run.mission["map"]["resolution"] == "0.5 m" and run.mission["cave"]["start"] == ""
     assert run.mission_text.startswith("seed 3")
     assert run.timing["simulated_s"] == 4.0
-    assert not run.is_flying and not run.is_team and run.robots == [] and run.problems == []
+    assert not run.is_locked and not run.is_team and run.robots == [] and run.problems == []
 
 
 def test_columns_have_units(folder):
@@ -135,7 +135,7 @@ def test_flight_that_was_cut_off(folder):
     assert str(folder / "events.jsonl") + ": line 10" in run.problems[0]
     assert run.explored["coverage"].isna().all() and run.explored["explored_m3"].tolist() == [10, 20]
     (folder / "run.lock").touch()
-    with pytest.raises(Error, match="still writes this folder"):
+    with pytest.raises(Error, match="a flight writes this folder, or was killed"):
         run.metrics
 
 

@@ -121,7 +121,7 @@ class Campaign:
             row = {k: v for k, v in trial.items() if k not in ("figures", "curve", "timing")}
             figures = {k: np.nan if v is None else v for k, v in trial["figures"].items()}
             rows.append({**row, **figures, **trial["timing"]})
-        table = pandas.DataFrame(rows)
+        table = pandas.DataFrame(rows, columns=None if rows else ["contestant", "cave", "seed", "status"])
         last = [c for c in ("machine", "binary_version", "mission_hash", "run_dir") if c in table]
         return table[[c for c in table if c not in last] + last]
 

@@ -16,7 +16,7 @@ BLACK, BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE = (
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 LINES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)))
 MARKS = ("o", "s", "^", "D", "v")
-ROCK, FREE, GREY = "#4d4d4d", "#e8e8e8", "#707070"
+ROCK, ROCK_ALONE, FREE, GREY = "#4d4d4d", "#bdbdbd", "#e8e8e8", "#707070"
 
 
 def axes_for(ax: Axes | None, width_in: float = 6.4, height_in: float = 3.6) -> Axes:

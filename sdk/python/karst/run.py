@@ -48,7 +48,7 @@ class Run:
         """The figures of docs/metrics.md: numbers, texts, and None where one is unknown."""
         file = self.folder / "metrics.json"
         if not file.exists():
-            why = "the flight still writes this folder" if self.is_flying else "the flight was cut off"
+            why = "a flight writes this folder, or was killed" if self.is_locked else "the flight was cut off"
             raise Error.at(file, "", f"is not there: {why}; karst report {self.folder} computes the figures")
         return read_json(file)
 
@@ -63,7 +63,7 @@ class Run:
         return read_text(self.folder / "mission.info")
 
     @property
-    def is_flying(self) -> bool:
+    def is_locked(self) -> bool:
         """Whether run.lock is there: a flight writes the folder, or was killed and left the file behind."""
         return (self.folder / "run.lock").exists()
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from .errors import Error
 from .plot_look import (
-    BLUE, COLOURS, FREE, GREEN, GREY, LINES, PURPLE, ROCK, VERMILION, axes_for, label_axes, legend_above,
+    BLUE, COLOURS, FREE, GREEN, GREY, LINES, PURPLE, ROCK, ROCK_ALONE, VERMILION, axes_for, label_axes, legend_above,
 )
 from .run import Run
 
@@ -157,7 +157,10 @@ def _draw_goals(run: Run, ax: Axes) -> None:
 
 
 def _draw_map_plan(run: Run, ax: Axes) -> None:
-    """Columns of cells as pixels: light where one is free, dark where the map has rock only."""
+    """Columns of cells as pixels: light where one is free, dark where the map has rock only.
+
+    A flight that was cut off has no free cells in its files: floor and ceiling then cover the path's place.
+    """
     resolution_m = run.map_resolution_m
     rock, free = [], []
     for robot in run.robots or [run]:
@@ -172,7 +175,7 @@ def _draw_map_plan(run: Run, ax: Axes) -> None:
     low, high = np.concatenate(columns).min(axis=0), np.concatenate(columns).max(axis=0) + 1
     image = np.ones((high[1] - low[1], high[0] - low[0], 4))
     image[..., 3] = 0  # unknown: transparent
-    for cells, colour in zip(columns, (ROCK, FREE)):
+    for cells, colour in zip(columns, (ROCK if free else ROCK_ALONE, FREE)):
         rgb = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
         image[cells[:, 1] - low[1], cells[:, 0] - low[0]] = [*rgb, 1]
     (left, bottom), (right, top) = low * resolution_m, high * resolution_m
