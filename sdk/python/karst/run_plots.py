@@ -8,7 +8,8 @@ import numpy as np
 
 from .errors import Error
 from .plot_look import (
-    BLUE, COLOURS, FREE, GREEN, GREY, LINES, PURPLE, ROCK, ROCK_ALONE, VERMILION, axes_for, label_axes, legend_above,
+    BLUE, COLOURS, FREE, GREEN, GREY, LINES, PURPLE, ROCK, ROCK_ALONE, VERMILION, axes_for, label_axes,
+    legend_above,
 )
 from .run import Run
 
