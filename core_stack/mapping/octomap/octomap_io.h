@@ -21,8 +21,7 @@ std::unique_ptr<octomap::OcTree> to_octree(const VoxelMap& map);
 void write_octomap(const VoxelMap& map, const std::string& stem);
 /// Occupied cells as a binary PLY of points (x y z float32). Throws InputError as above.
 void write_ply(const VoxelMap& map, const std::string& path);
-/// Reads a .bt or .ot file (its first line says which); throws InputError if it is truncated, damaged or
-/// neither. A .bt file holds classes only: its cells get the clamping values of MapOptions' defaults.
+/// Reads a .bt or .ot file as read_leaves (octomap_leaves.h) does.
 VoxelMap read_octomap(const std::string& path);
 
 }  // namespace karst::core

@@ -1,8 +1,14 @@
-"""The error of this module."""
+"""The one kind of error that this package raises on purpose."""
+
+from __future__ import annotations
+
+from os import PathLike
 
 
 class Error(Exception):
-    """A file, a call or a policy is wrong: the text says where, and why.
+    """Bad input, or a command that failed. The text names the file, the place in it and the reason."""
 
-    A service of the host that refuses a call raises it, and a policy may raise it to give up.
-    """
+    @classmethod
+    def at(cls, file: str | PathLike[str], place: str, reason: str) -> "Error":
+        """An error that reads "file: place: reason", as those of the karst program do."""
+        return cls(f"{file}: {place}: {reason}" if place else f"{file}: {reason}")
