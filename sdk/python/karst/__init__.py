@@ -17,20 +17,20 @@ A policy is a class in a file::
 World frame: x east, y north, z up. Metres, seconds, radians.
 """
 
-from karst import plots
-from karst._karst import abi as __abi__
-from karst._karst import version as __version__
-from karst.campaign import Campaign, Verdict
-from karst.environment import Environment
-from karst.errors import Error
-from karst.maps import read_map
-from karst.parameters import Boolean, Integer, Real, Text
-from karst.policy import Policy
-from karst.program import run_karst
-from karst.request import Cell, Event, EventKind, Fate, Map, Path, Request, Sensor, SensorKind, Survey
-from karst.results import load
-from karst.run import Run
-from karst.values import Explored, Fly, Goal, GoHome, Hold, Tour, goal_at
+from . import plots
+from ._karst import abi as __abi__
+from ._karst import version as __version__
+from .campaign import Campaign, Verdict
+from .environment import Environment
+from .errors import Error
+from .maps import read_map
+from .parameters import Boolean, Integer, Real, Text
+from .policy import Policy
+from .program import run_karst
+from .request import Cell, Event, EventKind, Fate, Map, Path, Request, Sensor, SensorKind, Survey
+from .results import load
+from .run import Run
+from .values import Explored, Fly, Goal, GoHome, Hold, Tour, goal_at
 
 __all__ = [
     "Boolean", "Campaign", "Cell", "Environment", "Error", "Event", "EventKind", "Explored", "Fate", "Fly",

@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from karst.errors import Error
-from karst.parameters import parameters_of
-from karst.policy import Policy
-from karst.request import Request, event_of
-from karst.values import answer_fields
+from .errors import Error
+from .parameters import parameters_of
+from .policy import Policy
+from .request import event_of
 
 _OWN = str(Path(__file__).parent)
 last_exception: BaseException | None = None  # for the bench, which raises from it
@@ -70,7 +69,7 @@ def init(policy: Policy, values: dict[str, Any]) -> None:
 
 
 def decide(policy: Policy, services: Any, fields: dict[str, Any]) -> tuple:
-    return answer_fields(policy.decide(Request(services, fields)))
+    return policy._answer(services, fields)
 
 
 def on_event(policy: Policy, kind: int, stamp_ns: int, goal: tuple, reason: str) -> None:

@@ -9,9 +9,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from karst import _hosted, _karst
-from karst.errors import Error
-from karst.policy import Policy
+from . import _hosted, _karst
+from .errors import Error
+from .policy import Policy
 
 _plugins: dict[str, Any] = {}  # by path: the host may open a file more than once
 
@@ -49,7 +49,7 @@ def policies_of(module: ModuleType) -> list[type[Policy]]:
         value
         for value in vars(module).values()
         if inspect.isclass(value) and issubclass(value, Policy) and value.__module__ == module.__name__
-        and "decide" in _names(value)
+        and _names(value) & {"decide", "_answer"}
     ]
     # A class from which another of the file derives is a base, and no policy of its own.
     own = [c for c in own if not any(c is not other and issubclass(other, c) for other in own)]

@@ -8,7 +8,7 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from karst.values import Goal
+from .values import Goal
 
 Points = np.ndarray | Sequence[Sequence[float]] | Sequence[float]
 
@@ -118,6 +118,10 @@ class Map:
 
     def __init__(self, binding: Any):
         self._map = binding
+
+    def info(self) -> dict[str, float]:
+        """resolution_m, revision, free_cells and occupied_cells at once."""
+        return self._map.info()
 
     @property
     def resolution_m(self) -> float:

@@ -29,11 +29,11 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from karst import _hosted, _karst
-from karst.errors import Error
-from karst.policy import Policy
-from karst.request import EventKind, Points
-from karst.values import Answer, Explored, Fly, GoHome, Goal, Hold, Tour
+from . import _hosted, _karst
+from .errors import Error
+from .policy import Policy
+from .request import EventKind, Points
+from .values import Answer, Explored, Fly, GoHome, Goal, Hold, Tour
 
 
 class Bench:
