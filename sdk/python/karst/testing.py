@@ -96,6 +96,10 @@ class Bench:
         """That goal failed."""
         _raising(self._bench.fail, int(kind), reason)
 
+    def tell(self, kind: EventKind, goal: Goal, reason: str = "") -> None:
+        """An event."""
+        _raising(self._bench.tell, int(kind), goal, reason)
+
     def saved(self) -> bytes:
         """What the policy's ``save`` keeps."""
         return _raising(self._bench.saved)
