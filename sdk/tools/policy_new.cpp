@@ -146,10 +146,11 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
     throw;
   }
   print_out("%s: starts as: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& e : fs::directory_iterator(folder)) files.push_back(e.path().filename());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) print_out("  %s\n", file.c_str());
+  const std::string ending(from->ending);
+  std::vector<std::string> files{name + ending, name + "_test" + ending};
+  if (is_compiled(*from)) files.emplace_back("CMakeLists.txt");
+  files.emplace_back("README.md");
+  for (const std::string& file : files) print_out("  %s\n", file.c_str());
   if (!is_compiled(*from)) {
     print_out("next, in that folder:\n  %s python %s_test.py\nREADME.md says how to fly it\n",
               karst_command().c_str(), name.c_str());
