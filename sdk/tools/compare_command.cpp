@@ -235,7 +235,8 @@ void add_compare_command(CLI::App& app) {
       "Started again, it goes on where it was stopped or killed; more seeds and contestants may be "
       "appended.\nExit code: 0 all trials flown (failed ones are results), 130 stopped, 1 otherwise.");
   compare_app
-      ->add_option("contestants", args->who, "CAMPAIGN.info, a campaign's folder, or policies with --caves: names, or files such as "
+      ->add_option("contestants", args->who,
+                   "CAMPAIGN.info, a campaign's folder, or policies with --caves: names, or files such as "
                    "my_policy.py")
       ->type_name(kPolicyOrFile)
       ->required()

@@ -296,9 +296,10 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
       ->check(not_empty());
   add_mesh_options(*fly_app, args->mesh);
   fly_app
-      ->add_option("--policy", args->overrides.policy,
-                   "exploration policy, or a file with one (my_policy.py); see karst policy list; auto: selected "
-                   "for the cave")
+      ->add_option(
+          "--policy", args->overrides.policy,
+          "exploration policy, or a file with one (my_policy.py); see karst policy list; auto: selected "
+          "for the cave")
       ->type_name(kPolicy)
       ->check(not_empty());
   fly_app

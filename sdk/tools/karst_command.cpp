@@ -23,13 +23,13 @@
 #include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/preflight_command.h"
+#include "sdk/tools/python_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/request_replay_command.h"
 #include "sdk/tools/root_command.h"
 #include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
-#include "sdk/tools/python_command.h"
 #include "sdk/tools/tune_command.h"
 
 namespace karst::tools {

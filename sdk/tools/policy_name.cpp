@@ -26,6 +26,12 @@ constexpr std::string_view kReserved =
     "while xor xor_eq "
     "all clean depend edit_cache help install list_install_components package package_source rebuild_cache "
     "test ";
+/// Words that cannot name a module of Python (its keywords that `kReserved` lacks), and the modules that a
+/// policy and its test import.
+constexpr std::string_view kNoModule =
+    " as assert async await def del elif except finally from global import in is lambda nonlocal pass raise "
+    "with "
+    "yield karst numpy ";
 constexpr std::size_t kLongest = 64;
 
 bool is_small(char c) { return c >= 'a' && c <= 'z'; }
@@ -43,6 +49,11 @@ std::string name_fault(const std::string& name) {
   for (const host::PolicyListing& p : host::list_policies(host::default_search_path()))
     if (p.broken.empty() && p.id == name) return "a policy of this name is there already: " + p.file;
   return "";
+}
+
+std::string module_name_fault(const std::string& name) {
+  if (kNoModule.find(" " + name + " ") == std::string_view::npos) return "";
+  return "is a word of Python, or a module that the policy needs; choose another name";
 }
 
 std::string class_name(const std::string& name) {

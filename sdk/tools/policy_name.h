@@ -8,6 +8,9 @@ namespace karst::tools {
 /// existing policy with that name.
 std::string name_fault(const std::string& name);
 
+/// The same for a file of Python: "" or why the name cannot be a module's.
+std::string module_name_fault(const std::string& name);
+
 /// For example DeepFirst for deep_first.
 std::string class_name(const std::string& name);
 

@@ -39,16 +39,15 @@ struct Template {
 constexpr std::string_view kSetting = "min_cells=20";
 
 std::array<Template, 5> templates() {
-  return {
-      {{"nearest", "flies to the nearest frontier", "my_nearest", ".cpp", nearest_policy(), nearest_test(),
-        kSetting},
-       {"tour", "a short tour over the nearest viewpoints", "my_tour", ".cpp", tour_policy(), tour_test(),
-        kSetting},
-       {"memory", "remembers across decisions: branch by branch", "my_memory", ".cpp", memory_policy(),
-        memory_test(), kSetting},
-       {"c", "in C: flies to the lowest frontier", "deepest", ".c", c_policy(), c_test(), "max_path=50"},
-       {"python", "in Python: flies to the nearest frontier", "my_nearest", ".py", python_policy(),
-        python_test(), kSetting}}};
+  return {{{"nearest", "flies to the nearest frontier", "my_nearest", ".cpp", nearest_policy(),
+            nearest_test(), kSetting},
+           {"tour", "a short tour over the nearest viewpoints", "my_tour", ".cpp", tour_policy(), tour_test(),
+            kSetting},
+           {"memory", "remembers across decisions: branch by branch", "my_memory", ".cpp", memory_policy(),
+            memory_test(), kSetting},
+           {"c", "in C: flies to the lowest frontier", "deepest", ".c", c_policy(), c_test(), "max_path=50"},
+           {"python", "in Python: flies to the nearest frontier", "my_nearest", ".py", python_policy(),
+            python_test(), kSetting}}};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -131,6 +130,8 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
   const std::array all = templates();
   const auto* const from =
       std::find_if(all.begin(), all.end(), [&](const Template& t) { return t.name == kind; });
+  if (const std::string fault = is_compiled(*from) ? "" : module_name_fault(name); !fault.empty())
+    throw InputError("karst policy new", name, fault);
   const fs::path folder = fs::path(dir) / name;
   std::error_code error;
   if (fs::exists(folder, error))

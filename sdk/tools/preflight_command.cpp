@@ -12,11 +12,11 @@
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/mission_file.h"
+#include "sdk/host/plugin/selection.h"
 #include "sdk/preflight/look.h"
 #include "sdk/preflight/preflight_json.h"
 #include "sdk/preflight/preflight_page.h"
 #include "sdk/preflight/preflight_words.h"
-#include "sdk/host/plugin/selection.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/mesh_options.h"
@@ -137,7 +137,8 @@ void add_preflight_command(CLI::App& app) {
       ->type_name(kPolicy)
       ->check(not_empty())
       ->capture_default_str();
-  preflight_app->add_option("--plugin", args->look.plugins, "file with policies (.so or .py) to look in first")
+  preflight_app
+      ->add_option("--plugin", args->look.plugins, "file with policies (.so or .py) to look in first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());

@@ -33,7 +33,8 @@ std::string interpreter(const fs::path& modules) {
   const fs::path modules = host::own_libraries() / "python";
   const std::string program = interpreter(modules);
   const char* const before = std::getenv("PYTHONPATH");
-  const std::string path = modules.string() + (before == nullptr || *before == 0 ? "" : ":" + std::string(before));
+  const std::string path =
+      modules.string() + (before == nullptr || *before == 0 ? "" : ":" + std::string(before));
   setenv("PYTHONPATH", path.c_str(), 1);
   setenv("KARST", fs::read_symlink("/proc/self/exe").c_str(), 0);
   std::vector<char*> argv{const_cast<char*>(program.c_str())};

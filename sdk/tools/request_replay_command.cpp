@@ -11,8 +11,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/host/load_policy.h"
-#include "sdk/host/serialization/request_log.h"
 #include "sdk/host/plugin/selection.h"
+#include "sdk/host/serialization/request_log.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 

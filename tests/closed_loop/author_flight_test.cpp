@@ -25,7 +25,8 @@ TEST_P(Tutorial, PrintsWhatItSays) {
                        fresh_folder("author_" + fs::path(document).stem().string()));
 }
 INSTANTIATE_TEST_SUITE_P(Documents, Tutorial,
-                         ::testing::Values("first_policy.md", "tutorials/1_nearest.md", "tutorials/2_tour.md",
+                         ::testing::Values("first_policy.md", "first_policy_python.md",
+                                           "tutorials/1_nearest.md", "tutorials/2_tour.md",
                                            "tutorials/3_memory.md"));
 
 /// Types the README of a new policy, word for word; `karst` is not on the path unless `bin` puts it there.
@@ -54,6 +55,29 @@ void type_the_readme(const std::string& karst, const std::string& bin, const fs:
   EXPECT_TRUE(bytes_of(folder / "work/deep_first/runs/first/trajectory.tum") ==
               bytes_of(folder / "work/deep_first/runs/second/trajectory.tum"))
       << "one policy, one mission, wherever the file lies";
+}
+
+TEST(NewPolicy, ReadmeHoldsInPython) {
+  if (!fs::exists(KARST_BINARY_DIR "/lib/karst/languages/py.so"))
+    GTEST_SKIP() << "skipped: built without Python";
+  const fs::path folder = fresh_folder("author_python");
+  Shell shell(folder, "/usr/bin");
+  ASSERT_EQ(shell.run(KARST_BINARY_DIR "/bin/karst policy new deep_first --template python --dir work").code,
+            0);
+  ASSERT_EQ(shell.run("cd work/deep_first").code, 0);
+  const auto blocks = blocks_of(bytes_of(folder / "work/deep_first/README.md"), "");
+  ASSERT_EQ(blocks.size(), 4u);
+  std::string all;
+  for (const auto& block : blocks)
+    for (const std::string& command : block) {
+      const Output out = shell.run(command);
+      ASSERT_EQ(out.code, 0) << command << "\n" << out.text;
+      all += out.text;
+    }
+  for (const char* said : {"passed: test_the_nearer", "deep_first 0.1.0", " 0 failed", "landed: deep_first"})
+    EXPECT_NE(all.find(said), std::string::npos) << said << "\n" << all;
+  EXPECT_TRUE(bytes_of(folder / "work/deep_first/runs/first/trajectory.tum") ==
+              bytes_of(folder / "work/deep_first/runs/second/trajectory.tum"));
 }
 
 TEST(NewPolicy, ReadmeHoldsForABuildTree) {

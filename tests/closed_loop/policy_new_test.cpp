@@ -53,6 +53,25 @@ TEST(PolicyNew, InCIsTheExampleInC) {
   EXPECT_EQ(readme.find("@"), std::string::npos) << "a place left unfilled";
 }
 
+TEST(PolicyNew, InPythonIsTheExampleInPython) {
+  const fs::path folder = fresh_folder("policy_new_python"),
+                 example = fs::path(KARST_SOURCE_DIR) / "examples/policies/python";
+  const Output out = policy_new("my_nearest --template python --dir " + folder.string(), folder);
+  ASSERT_EQ(out.code, 0) << out.text;
+  EXPECT_TRUE(out.says("python my_nearest_test.py")) << out.text;
+  for (const char* file : {"my_nearest.py", "my_nearest_test.py"})
+    EXPECT_EQ(bytes_of(folder / "my_nearest" / file), bytes_of(example / file)) << file;
+  EXPECT_FALSE(fs::exists(folder / "my_nearest/CMakeLists.txt"));
+  EXPECT_EQ(bytes_of(folder / "my_nearest/README.md").find("@"), std::string::npos)
+      << "a place left unfilled";
+  for (const char* name : {"lambda", "karst", "numpy"}) {
+    const Output refused =
+        policy_new(std::string(name) + " --template python --dir " + folder.string(), folder);
+    EXPECT_EQ(refused.code, 1) << name;
+    EXPECT_TRUE(refused.says("is a word of Python, or a module that the policy needs")) << refused.text;
+  }
+}
+
 // A name that is a word of the template's own code changes its texts only.
 TEST(PolicyNew, InCTakesAnyName) {
   const fs::path folder = fresh_folder("policy_new_c_named");

@@ -57,8 +57,8 @@ std::optional<PolicyListing> policy_in_file(const std::string& text) {
   if (all.size() == 1) return all.front();
   std::vector<std::string> names;
   for (const PolicyListing& p : all) names.push_back(p.id);
-  throw core::InputError(text, "",
-                         "holds several policies: name one of " + joined(names) + ", and give --plugin " + text);
+  throw core::InputError(
+      text, "", "holds several policies: name one of " + joined(names) + ", and give --plugin " + text);
 }
 
 void take_policy_file(std::string& policy, std::vector<std::string>& plugins) {

@@ -31,8 +31,7 @@ constexpr const char *kReal = "f8", *kVector = "(3,)f8", *kCount = "u4", *kWide 
 
 std::string shape_of(const Doubles& array) {
   std::string text = "(";
-  for (py::ssize_t i = 0; i < array.ndim(); ++i)
-    text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
   return text + (array.ndim() == 1 ? ",)" : ")");
 }
 

@@ -14,7 +14,8 @@ namespace karst::python {
 
 namespace py = pybind11;
 
-/// The numpy type of records of an ABI struct: its fields by name, at their places, without the reserved ones.
+/// The numpy type of records of an ABI struct: its fields by name, at their places, without the reserved
+/// ones.
 template <class Struct>
 py::dtype dtype_of();
 

@@ -62,8 +62,8 @@ struct Hosted {
 };
 Hosted& self_of(void* self) { return *static_cast<Hosted*>(self); }
 
-/// A class of policies: its table, descriptor, and the texts that they point to. Never freed: the host may ask
-/// for it until the process ends.
+/// A class of policies: its table, descriptor, and the texts that they point to. Never freed: the host may
+/// ask for it until the process ends.
 struct Entry {
   py::object type;
   std::string id, name, version, one_line;
@@ -75,8 +75,8 @@ struct Entry {
 
 constexpr std::size_t kMostPolicies = 256, kMostPlugins = 256;
 
-/// create() and policy() get no pointer by which they could know their class or plugin, so each has a function
-/// of its own.
+/// create() and policy() get no pointer by which they could know their class or plugin, so each has a
+/// function of its own.
 std::array<Entry*, kMostPolicies>& entries() {
   static std::array<Entry*, kMostPolicies> all{};
   return all;
@@ -112,8 +112,8 @@ const karst_policy_t* policy_of_plugin(std::uint32_t index) noexcept {
   return index < plugin.policies.size() ? &plugin.policies[index]->policy : nullptr;
 }
 
-using Create = void* (*)(const karst_host_t*, karst_error_t*)noexcept;
-using PolicyOf = const karst_policy_t* (*)(std::uint32_t)noexcept;
+using Create = void* (*)(const karst_host_t*, karst_error_t*) noexcept;
+using PolicyOf = const karst_policy_t* (*)(std::uint32_t) noexcept;
 template <std::size_t... I>
 std::array<Create, sizeof...(I)> all_creates(std::index_sequence<I...>) {
   return {&create_entry<I>...};
@@ -131,10 +131,14 @@ std::int32_t init(void* self, const karst_parameter_value_t* values, std::uint64
     for (std::uint64_t i = 0; i < count; ++i) {
       const karst_parameter_value_t& v = values[i];
       const py::str id = from_abi(v.id);
-      if (v.type == KARST_PARAMETER_TEXT) all[id] = from_abi(v.text);
-      else if (v.type == KARST_PARAMETER_BOOLEAN) all[id] = v.number != 0;
-      else if (v.type == KARST_PARAMETER_INTEGER) all[id] = static_cast<std::int64_t>(v.number);
-      else all[id] = v.number;
+      if (v.type == KARST_PARAMETER_TEXT)
+        all[id] = from_abi(v.text);
+      else if (v.type == KARST_PARAMETER_BOOLEAN)
+        all[id] = v.number != 0;
+      else if (v.type == KARST_PARAMETER_INTEGER)
+        all[id] = static_cast<std::int64_t>(v.number);
+      else
+        all[id] = v.number;
     }
     hosted().attr("init")(h.policy, all);
   });

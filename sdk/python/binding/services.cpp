@@ -34,8 +34,8 @@ Box box_of(const Doubles& low, const Doubles& high) { return {point_of(low, "low
 py::dict Map::info() const {
   const karst_map_info_t i = view().info();
   using namespace pybind11::literals;
-  return py::dict("resolution_m"_a = i.resolution_m, "revision"_a = i.revision,
-                  "free_cells"_a = i.free_cells, "occupied_cells"_a = i.occupied_cells);
+  return py::dict("resolution_m"_a = i.resolution_m, "revision"_a = i.revision, "free_cells"_a = i.free_cells,
+                  "occupied_cells"_a = i.occupied_cells);
 }
 
 py::array Map::cells(const Doubles& points) const {
@@ -203,8 +203,7 @@ py::dict sensor_fields(const Sensor& s) {
                   "position_in_body"_a = array_of(Vec3(s.T_body_sensor.position)),
                   "orientation_in_body"_a = array_of(s.T_body_sensor.orientation),
                   "min_range_m"_a = s.min_range_m, "max_range_m"_a = s.max_range_m,
-                  "horizontal_fov_rad"_a = s.horizontal_fov_rad,
-                  "low_elevation_rad"_a = s.low_elevation_rad,
+                  "horizontal_fov_rad"_a = s.horizontal_fov_rad, "low_elevation_rad"_a = s.low_elevation_rad,
                   "high_elevation_rad"_a = s.high_elevation_rad);
 }
 

@@ -1,4 +1,5 @@
-// What the host of a policy offers, for Python: the map of one request or a copy of it, paths, gains, drawings.
+// What the host of a policy offers, for Python: the map of one request or a copy of it, paths, gains,
+// drawings.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -61,7 +62,8 @@ class Services {
   Map map() const { return {request().map, term_}; }
   py::array path_lengths(const Doubles& from, const Doubles& goals, double tolerance_m) const;
   py::list paths(const Doubles& from, const Doubles& goals, double tolerance_m) const;
-  py::array newly_seen(std::size_t sensor, const Doubles& viewpoints, std::optional<double> max_range_m) const;
+  py::array newly_seen(std::size_t sensor, const Doubles& viewpoints,
+                       std::optional<double> max_range_m) const;
   void draw_points(const Doubles& points, std::uint32_t rgb) const;
   void draw_lines(const Doubles& from, const Doubles& to, std::uint32_t rgb) const;
   void draw_text(const Doubles& at, const std::string& text, std::uint32_t rgb) const;

@@ -1,5 +1,5 @@
-// Policies in files of Python: starts the interpreter in this process, once, and asks the module karst for the
-// policies of a file. All the rest is in the module.
+// Policies in files of Python: starts the interpreter in this process, once, and asks the module karst for
+// the policies of a file. All the rest is in the module.
 #include <Python.h>
 #include <dlfcn.h>
 #include <signal.h>
@@ -19,8 +19,9 @@ namespace fs = std::filesystem;
 /// Where this file lies: PREFIX/lib/karst/languages.
 fs::path own_folder() {
   Dl_info info{};
-  return dladdr(reinterpret_cast<const void*>(&own_folder), &info) != 0 ? fs::path(info.dli_fname).parent_path()
-                                                                        : fs::path();
+  return dladdr(reinterpret_cast<const void*>(&own_folder), &info) != 0
+             ? fs::path(info.dli_fname).parent_path()
+             : fs::path();
 }
 
 /// The same numbers on every processor and under any load: numpy and BLAS choose their kernels by what the
@@ -111,8 +112,8 @@ void fill(karst_error_t* error, const std::string& text) {
 
 }  // namespace
 
-extern "C" KARST_EXPORT const karst_plugin_t* karst_script_entry(karst_text_t file, karst_error_t* error)
-    KARST_NOEXCEPT {
+extern "C" KARST_EXPORT const karst_plugin_t* karst_script_entry(karst_text_t file,
+                                                                 karst_error_t* error) KARST_NOEXCEPT {
   try {
     static std::mutex starting;
     static bool started = false;
