@@ -12,5 +12,5 @@ karst_embed(${assets} HEADER sdk/campaign/report/report_assets.h NAMESPACE karst
 
 karst_library(karst_campaign_report
   report/report.cpp report/report_curves.cpp report/report_data.cpp report/report_figures.cpp
-  report/report_replay.cpp report/report_worst.cpp ${assets}
+  report/report_replay.cpp report/report_worst.cpp report/verdict_json.cpp ${assets}
   LINK karst_cave_drawing karst_evaluation karst_verdict nlohmann_json::nlohmann_json)

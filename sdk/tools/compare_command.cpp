@@ -18,6 +18,7 @@
 #include "sdk/campaign/plan/campaign.h"
 #include "sdk/campaign/plan/flight_times.h"
 #include "sdk/campaign/report/campaign_page.h"
+#include "sdk/campaign/report/verdict_json.h"
 #include "sdk/campaign/run/run_campaign.h"
 #include "sdk/campaign/run/slurm.h"
 #include "sdk/campaign/store/export.h"
@@ -354,7 +355,9 @@ void add_results_command(CLI::App& app) {
     if (!args->csv.empty())
       write_to(args->csv, [&](std::ostream& out) { campaign::write_csv(out, all.results, all.extras); });
     if (!args->json.empty())
-      write_to(args->json, [&](std::ostream& out) { campaign::write_json(out, all.results, all.extras); });
+      write_to(args->json, [&](std::ostream& out) {
+        campaign::write_json(out, all.results, all.extras, campaign::verdict_json(all.results, args->metric));
+      });
     if (args->csv.empty() && args->json.empty()) print_results(all.results, args->metric, args->pairs);
   });
 }

@@ -1,5 +1,6 @@
-// A decision of one policy in Python and of its twin in C++, with 100, 1,000 and 4,096 frontiers: in this process
-// and in a process of its own; and what the start of each takes. The twins are my_nearest of the tutorials.
+// A decision of one policy in Python and of its twin in C++, with 100, 1,000 and 4,096 frontiers: in this
+// process and in a process of its own; and what the start of each takes. The twins are my_nearest of the
+// tutorials.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -56,7 +57,8 @@ int main() {
     std::printf("%s\n", where);
     core::bench::Times start_compiled, start_script;
     for (int i = 0; i < kStarts; ++i)
-      for (const auto& [file, times] : {std::pair(&compiled, &start_compiled), std::pair(&script, &start_script)}) {
+      for (const auto& [file, times] :
+           {std::pair(&compiled, &start_compiled), std::pair(&script, &start_script)}) {
         const auto begin = Clock::now();
         loaded(*file, isolation);
         times->ms.push_back(elapsed_ms(begin));
@@ -69,7 +71,8 @@ int main() {
       core::bench::Times cpp, python;
       for (int i = 0; i < kDecisions; ++i) {
         ++question.request.sequence;
-        for (const auto& [policy, times] : {std::pair(in_cpp.get(), &cpp), std::pair(in_python.get(), &python)}) {
+        for (const auto& [policy, times] :
+             {std::pair(in_cpp.get(), &cpp), std::pair(in_python.get(), &python)}) {
           const auto begin = Clock::now();
           goals += policy->decide(question.request).goals.size();
           times->ms.push_back(elapsed_ms(begin));

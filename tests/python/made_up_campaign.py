@@ -5,42 +5,37 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import karst
+
 NAMES = ["far_first", "near|first"]
-TEXT = """\
-made: means over 1 cave, of the flights that all have flown
-
-| place | contestant | trials | failed | coverage_auc | coverage | restricted_t90_s | contacts |
-|---:|---|---:|---:|---:|---:|---:|---:|
-| 1 | far_first | 6 | 0 | 0.512 | 0.800 | 61.5 | 0.000 |
-| 2 | other | 6 | 1 | 0.400 | - | > 90.0 | 1.500 |
-
-> 90: no flight reached this coverage before the horizon of 90 s.
-
-far_first covers more than near|first: 11.2 points (95 % CI 8.0 to 14.0 points; 1 cave x 6 seeds, p = 0.031)
-"""
-RANKING = r"""**Table:** Contestants of campaign made by words (coverage\_auc): means over 1 cave.
-
-| Place | Contestant | Group | Flights | Failed | Coverage averaged over the flight (%) | 95 % CI (%) |
-| --: | :-- | :-- | --: | --: | --: | --: |
-| 1   | far\_first  | a | 6 | 0 | **51.20** | \[50.00, 52.40\] |
-| 1–2 | near\|first | b | 6 | 1 |     40.00 |                – |
-"""
-COMPARISONS = r"""**Table:** Pairs.
-
-| A | B | Pairs | Mean of A (%) | Mean of B (%) | A − B (percentage points) | CI | p | Rank | Shown better |
-| :-- | :-- | --: | --: | --: | --: | --: | --: | --: | :-- |
-| **far\_first** | near\|first | 6 | 51.2 | 40.0 | 11.2 | \[−8.00, 14.0\]† | \< 0.001 | −0.50 | far\_first |
-"""
-SCRIPT = """\
+TEXT = "far_first covers more than near|first: 11.2 points\n"
+VERDICT = {
+    "metric": "coverage_auc", "declared": "coverage_auc", "subject": "coverage averaged over the flight", "unit": "%",
+    "sentence": "far_first covers more than near|first: 11.2 points",
+    "means": {
+        "near|first": {"coverage_auc": 0.4, "coverage": None, "restricted_t90_s": 90.0},
+        "far_first": {"coverage_auc": 0.512, "coverage": 0.8, "restricted_t90_s": 61.5},
+    },
+    "ranking": [
+        {"contestant": "far_first", "best_place": 1, "worst_place": 1, "groups": "a", "trials": 6, "failed": 0,
+         "mean": 0.512, "low": 0.5, "high": 0.524},
+        {"contestant": "near|first", "best_place": 1, "worst_place": 2, "groups": "b", "trials": 6, "failed": 1,
+         "mean": 0.4, "low": None, "high": None},
+    ],
+    "pairs": [
+        {"a": "far_first", "b": "near|first", "pairs": 6, "mean_a": 0.512, "mean_b": 0.4, "difference": 0.112,
+         "low": -0.08, "high": 0.14, "p": 0.0004, "rank_biserial": -0.5, "better": "far_first",
+         "sentence": "far_first covers more than near|first: 11.2 points"},
+    ],
+}
+SCRIPT = f"""\
 #!/usr/bin/python3
 import pathlib, sys
 here = pathlib.Path(__file__).parent
-if "--json" in sys.argv:
+if "--version" in sys.argv:
+    print("karst {karst.__version__}")
+elif "--json" in sys.argv:
     print((here / "results.json").read_text())
-elif "--paper" in sys.argv:
-    folder = pathlib.Path(sys.argv[sys.argv.index("--paper") + 1])
-    for name in ("ranking.md", "comparisons.md"):
-        (folder / name).write_text((here / name).read_text())
 else:
     print((here / "results.txt").read_text(), end="")
 """
@@ -68,14 +63,13 @@ def write_campaign(folder: Path, program: Path) -> Path:
         "schema": "karst.results/1", "name": "made", "horizon_s": 90.0,
         "contestants": [{"name": n, "policy": n, "parameters": {}, "settings": {}} for n in NAMES],
         "caves": [{"name": "maze", "file": "maze.info", "start": "", "description": None}],
+        "verdict": VERDICT,
         "trials": trials,
     }
     program.parent.mkdir(exist_ok=True)
     for name, text in {
         "results.json": json.dumps(results),
         "results.txt": TEXT,
-        "ranking.md": RANKING,
-        "comparisons.md": COMPARISONS,
         program.name: SCRIPT,
     }.items():
         (program.parent / name).write_text(text, encoding="utf-8")

@@ -2,6 +2,7 @@
 
 import sys
 
+import karst
 import pytest
 from karst.errors import Error
 from karst.program import program, run_karst
@@ -9,9 +10,9 @@ from karst.program import program, run_karst
 module = sys.modules["karst.program"]  # karst.program may also be the function
 
 
-def script(path, text):
+def script(path, text, version=karst.__version__):
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.write_text(f'#!/bin/sh\n[ "$1" != --version ] || {{ echo "karst {version}"; exit 0; }}\n{text}\n')
     path.chmod(0o755)
     return path
 
@@ -41,6 +42,12 @@ def test_none_says_what_was_tried(elsewhere, monkeypatch):
         program()
     monkeypatch.setenv("KARST", "/no/such/karst")
     with pytest.raises(Error, match="KARST: /no/such/karst: is no program"):
+        program()
+
+
+def test_another_version_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv("KARST", str(script(tmp_path / "karst", "", "9.8.7")))
+    with pytest.raises(Error, match="karst: is version 9.8.7, and this module is"):
         program()
 
 

@@ -85,10 +85,12 @@ void write_csv(std::ostream& out, const CampaignResults& results, const std::vec
   }
 }
 
-void write_json(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras) {
+void write_json(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras,
+                const ordered_json& verdict) {
   ordered_json j{{"schema", "karst.results/1"},    {"name", results.name},
                  {"horizon_s", results.horizon_s}, {"contestants", ordered_json::array()},
-                 {"caves", ordered_json::array()}, {"trials", ordered_json::array()}};
+                 {"caves", ordered_json::array()}, {"verdict", verdict},
+                 {"trials", ordered_json::array()}};
   for (const ContestantEntry& c : results.contestants)
     j["contestants"].push_back({{"name", c.name},
                                 {"policy", c.policy},

@@ -1,6 +1,7 @@
 // Results for other tools: CSV with one line per trial, or everything as JSON.
 #pragma once
 #include <iosfwd>
+#include <nlohmann/json_fwd.hpp>
 
 #include "sdk/campaign/store/results.h"
 #include "sdk/campaign/store/store.h"
@@ -12,8 +13,9 @@ namespace karst::campaign {
 /// it (core_stack/common/csv_cell.h), lines end with LF, and unknown values are empty.
 void write_csv(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras);
 
-/// One object: `schema` "karst.results/1", the campaign, its contestants and caves, and `trials` with
-/// `figures` by name and `curve` as [time_s, explored_m3, coverage]; unknown values are null.
-void write_json(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras);
+/// One object: `schema` "karst.results/1", the campaign, its contestants and caves, `verdict` as given, and
+/// `trials` with `figures` by name and `curve` as [time_s, explored_m3, coverage]; unknown values are null.
+void write_json(std::ostream& out, const CampaignResults& results, const std::vector<TrialExtras>& extras,
+                const nlohmann::ordered_json& verdict);
 
 }  // namespace karst::campaign

@@ -6,7 +6,6 @@ karst computes means, intervals, tests and verdicts (docs/statistics.md). This m
 from __future__ import annotations
 
 import json
-import tempfile
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -17,17 +16,15 @@ import numpy as np
 
 from .errors import Error
 from .needed import needed
-from .printed_tables import cells_of, number_of, numbers_of
 from .program import run_karst
 from .run import Run
-from .tables import read_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
 STORE = "campaign.sqlite"
 RANKING_COLUMNS = [
-    "best_place", "worst_place", "contestant", "groups", "flights", "failed", "mean", "low", "high",
+    "best_place", "worst_place", "contestant", "groups", "trials", "failed", "mean", "low", "high",
 ]
 
 
@@ -35,8 +32,7 @@ RANKING_COLUMNS = [
 class Verdict:
     """A pair of contestants in one figure. Shares are fractions; other values have the figure's unit.
 
-    Values are as karst prints them in its tables, to two or three digits of the interval's width; NaN where
-    there is none.
+    NaN where there is no value.
     """
 
     a: str
@@ -48,7 +44,7 @@ class Verdict:
     difference: float  # a - b
     low: float  # 95 % confidence interval of the difference
     high: float
-    p: float  # after correction for all pairs of contestants; 0 below 0.001
+    p: float  # after correction for all pairs of contestants
     rank_biserial: float
     better: str | None  # who is shown to be better (or to have more, if more is neither better nor worse)
     sentence: str  # the verdict in words, with its uncertainty
@@ -68,19 +64,30 @@ class Campaign:
         if not is_campaign(self.folder):
             raise Error.at(self.folder, "", f"is no campaign's folder: it has no {STORE}")
         self._texts: dict[str | None, str] = {}  # by metric: what karst results prints
-        self._tables: dict[str | None, dict[str, str]] = {}  # by metric: files of --paper, by name
+        self._results: dict[str | None, dict] = {}  # by metric: all that it writes
 
     def __repr__(self) -> str:
         return f"Campaign({str(self.folder)!r})"
 
-    @cached_property
+    @property
     def results(self) -> dict:
-        """All that `karst results --json` writes: schema, name, horizon_s, contestants, caves, trials."""
-        text = run_karst(["results", self.folder, "--json", "-"])
-        try:
-            return json.loads(text)
-        except json.JSONDecodeError as e:
-            raise Error.at("karst results --json", f"line {e.lineno}", f"is no JSON: {e.msg}") from e
+        """All that `karst results --json` writes: schema, name, horizon_s, contestants, caves, verdict, trials."""
+        return self._results_about(None)
+
+    def _results_about(self, metric: str | None) -> dict:
+        if metric not in self._results:
+            text = run_karst(["results", self.folder, "--json", "-", *_option(metric)])
+            try:
+                self._results[metric] = json.loads(text)
+            except json.JSONDecodeError as e:
+                raise Error.at("karst results --json", f"line {e.lineno}", f"is no JSON: {e.msg}") from e
+        return self._results[metric]
+
+    def _verdict(self, metric: str | None) -> dict:
+        verdict = self._results_about(metric)["verdict"]
+        if verdict is None:
+            raise Error.at(self.folder, "", "no flight of it has ended yet")
+        return verdict
 
     @property
     def name(self) -> str:
@@ -102,10 +109,10 @@ class Campaign:
         """name, file, start, hash and description of each cave."""
         return self.results["caves"]
 
-    @cached_property
+    @property
     def metric(self) -> str:
         """The figure that decides, as the campaign declared it before it flew, such as "coverage_auc"."""
-        return self._metric_of(None)
+        return self._verdict(None)["declared"]
 
     @cached_property
     def trials(self) -> pd.DataFrame:
@@ -154,65 +161,39 @@ class Campaign:
         return self._texts[metric]
 
     def heading(self, metric: str | None = None) -> str:
-        """The figure in words with the unit in which karst prints it, such as "Final coverage (%)"."""
-        return self._paper(metric, "ranking.md")[0][5]
+        """The figure in words with the unit in which karst prints it, such as "final coverage (%)"."""
+        verdict = self._verdict(metric)
+        return verdict["subject"] + (f" ({verdict['unit']})" if verdict["unit"] else "")
 
     def table(self, metric: str | None = None) -> pd.DataFrame:
-        """The means that `karst results` prints, of the flights that all contestants flew, by place.
+        """Means of every figure, of the flights that all contestants flew; a row each, by place.
 
-        Columns: place ("1-3" if it is not certain), contestant, trials, failed, then the figures by their
-        names in docs/metrics.md. A restricted time is the horizon where no flight reached the coverage.
+        The index is the contestant; the columns are the figures by their names in docs/metrics.md.
         """
         pandas = needed("pandas", "reading a campaign's table")
-        header, *rows = cells_of(self.text(metric), f"karst results {self.folder}")
-        columns: dict[str, list] = {}
-        for i, name in enumerate(header):
-            cells = [row[i] for row in rows]
-            if name in ("place", "contestant"):
-                columns[name] = cells
-            elif name in ("trials", "failed"):
-                columns[name] = [int(c) for c in cells]
-            else:
-                columns[name] = [number_of(c) for c in cells]
-        return pandas.DataFrame(columns)
+        verdict = self._verdict(metric)
+        places = [place["contestant"] for place in verdict["ranking"]]
+        return pandas.DataFrame.from_dict(verdict["means"], orient="index").loc[places].astype(float)
 
     def ranking(self, metric: str | None = None) -> pd.DataFrame:
         """The contestants, best first.
 
-        Columns: best_place, worst_place, contestant, groups, flights, failed, mean, low, high. Contestants
+        Columns: best_place, worst_place, contestant, groups, trials, failed, mean, low, high. Contestants
         with a common letter in `groups` are not shown to differ. `mean` is over the caves, with equal weight,
         and low to high its 95 % confidence interval.
         """
         pandas = needed("pandas", "reading a campaign's ranking")
-        header, *rows = self._paper(metric, "ranking.md")
-        whole = _whole(header[5])
-        table = []
-        for place, contestant, group, flights, failed, mean, interval, *_ in rows:
-            places = [int(abs(n)) for n in numbers_of(place)]
-            low, high = _interval(interval, whole)
-            table.append((places[0], places[-1], contestant, group, int(flights), int(failed),
-                          number_of(mean) / whole, low, high))
-        return pandas.DataFrame(table, columns=RANKING_COLUMNS)
+        return pandas.DataFrame(self._verdict(metric)["ranking"], columns=RANKING_COLUMNS).astype(
+            {"mean": float, "low": float, "high": float}
+        )
 
     def verdicts(self, metric: str | None = None) -> list[Verdict]:
         """The verdict on each pair of contestants; empty for a single contestant."""
-        if len(self.contestants) < 2:
-            return []
-        header, *rows = self._paper(metric, "comparisons.md")
-        about = self._metric_of(metric)
-        sentences = _after_table(self.text(metric))[: len(rows)]
-        if len(sentences) < len(rows):
-            raise Error.at(f"karst results {self.folder} --pairs", "", "says no sentence on some pair")
-        whole, verdicts = _whole(header[3]), []
-        for row, sentence in zip(rows, sentences):
-            a, b, pairs, mean_a, mean_b, difference, interval, p, rank, better = row
-            low, high = _interval(interval, whole)
-            verdicts.append(Verdict(
-                a, b, about, int(pairs), number_of(mean_a) / whole, number_of(mean_b) / whole,
-                number_of(difference) / whole, low, high, 0.0 if p.startswith("<") else number_of(p),
-                number_of(rank), better if better in (a, b) else None, sentence,
-            ))
-        return verdicts
+        verdict = self._verdict(metric)
+        return [
+            Verdict(metric=verdict["metric"], **{k: np.nan if v is None and k != "better" else v for k, v in pair.items()})
+            for pair in verdict["pairs"]
+        ]
 
     def verdict(self, a: str, b: str, metric: str | None = None) -> Verdict:
         """The verdict on two contestants, as a minus b. Raises Error if there is no such pair."""
@@ -227,31 +208,7 @@ class Campaign:
 
     def sentence(self, metric: str | None = None) -> str:
         """The verdict on the whole campaign in one sentence."""
-        text, count = self.text(metric), len(self.contestants)
-        if count < 2:
-            return "nothing to compare: a verdict needs two contestants"
-        if count > 3:  # then karst begins with it
-            lines = text.split("\n")
-            return lines[1] if lines[0].startswith("The campaign declared") else lines[0]
-        return _after_table(text)[-1]
-
-    def _metric_of(self, metric: str | None) -> str:
-        if metric is not None:
-            return metric
-        self._paper(None, "ranking.md")
-        caption = self._tables[None]["ranking.md"].split("\n")[0].replace("\\", "")
-        # "Contestants of campaign NAME by WORDS (METRIC): means over ..."
-        return caption.partition("): means over")[0].rpartition("(")[2]
-
-    def _paper(self, metric: str | None, name: str) -> list[list[str]]:
-        """The cells of a table that karst writes for a paper: the only ones with intervals and p."""
-        if metric not in self._tables:
-            with tempfile.TemporaryDirectory(prefix="karst_") as folder:
-                run_karst(["results", self.folder, "--paper", folder, "--force", *_option(metric)])
-                self._tables[metric] = {f.name: read_text(f) for f in Path(folder).glob("*.md")}
-        if name not in self._tables[metric]:
-            raise Error.at(f"karst results {self.folder} --paper", name, "was not written")
-        return cells_of(self._tables[metric][name], f"karst results {self.folder} --paper: {name}")
+        return self._verdict(metric)["sentence"]
 
 
 def is_campaign(folder: Path) -> bool:
@@ -261,20 +218,3 @@ def is_campaign(folder: Path) -> bool:
 
 def _option(metric: str | None) -> list[str]:
     return [] if metric is None else ["--metric", metric]
-
-
-def _whole(heading: str) -> float:
-    """What a printed value is divided by: tables for papers have shares in percent."""
-    return 100.0 if heading.endswith("(%)") else 1.0
-
-
-def _interval(cell: str, whole: float) -> tuple[float, float]:
-    numbers = numbers_of(cell)[:2]
-    return (numbers[0] / whole, numbers[1] / whole) if len(numbers) == 2 else (np.nan, np.nan)
-
-
-def _after_table(text: str) -> list[str]:
-    """The sentences below the table of means, without its notes."""
-    lines = text.split("\n")
-    last = max((i for i, line in enumerate(lines) if line.startswith("|")), default=-1)
-    return [line for line in lines[last + 1 :] if line and not line.startswith(">")]

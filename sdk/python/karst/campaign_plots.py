@@ -104,7 +104,7 @@ def ranking(campaign: Campaign, metric: str | None = None, ax: Axes | None = Non
         ax.annotate(place.groups, (1.01, row), xycoords=("axes fraction", "data"), va="center", color=GREY)
     ax.set_yticks(range(len(table)), table["contestant"])
     ax.set_ylim(len(table) - 0.5, -0.5)
-    label_axes(ax, heading[0].lower() + heading[1:], "")
+    label_axes(ax, heading, "")
     return ax
 
 
@@ -119,7 +119,6 @@ def _scale(heading: str) -> float:
 
 
 def _difference_label(heading: str, a: str, b: str) -> str:
-    heading = heading[0].lower() + heading[1:]
     if heading.endswith("(%)"):
         heading = heading[:-3] + "(percentage points)"
     return f"{heading}\n{a} minus {b}"

@@ -89,9 +89,10 @@ TEST(Export, TheJsonHoldsEverything) {
   const fs::path store = small_store("json");
   std::ostringstream out;
   const auto [results, extras] = read_with_extras(store);
-  write_json(out, results, extras);
+  write_json(out, results, extras, {{"metric", "coverage"}});
   const auto json = nlohmann::json::parse(out.str());
   EXPECT_EQ(json["schema"], "karst.results/1");
+  EXPECT_EQ(json["verdict"]["metric"], "coverage");
   ASSERT_EQ(json["trials"].size(), 3u);
   const auto& t = json["trials"][1];
   EXPECT_EQ(t["contestant"], "high");
