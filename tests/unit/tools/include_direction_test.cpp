@@ -51,6 +51,10 @@ TEST(IncludeDirection, TheAbiIsPlainC) {
 TEST(IncludeDirection, TheCppFaceKnowsTheAbiOnly) {
   expect_none("sdk/include", {"core_stack/", "plugins/", "sdk/", "Eigen", "octomap", "boost"});
 }
+TEST(IncludeDirection, PythonKnowsTheSdkAndTheReaderOfMapFiles) {
+  expect_none("sdk/python", {"plugins/", "policies/", "sdk/host", "sdk/tools", "sdk/evaluation",
+                             "core_stack/mission", "core_stack/planning"});
+}
 TEST(IncludeDirection, TheCoreKnowsNeitherAbiNorSimulatorNorPolicies) {
   expect_none("core_stack", {"sdk/", "plugins/", "policies/", "karst"});
 }
