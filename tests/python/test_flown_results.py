@@ -115,7 +115,7 @@ def test_verdict_agrees_with_the_trials(campaign):
 
 
 def test_unknown_metric(campaign):
-    with pytest.raises(Error, match="no such figure"):
+    with pytest.raises(Error, match="there is no figure called coverag"):
         campaign.ranking("coverag")
 
 

@@ -1,5 +1,7 @@
 """Flies to the frontier with the shortest way to it."""
 
+import numpy as np
+
 import karst
 
 
@@ -14,4 +16,6 @@ class MyNearest(karst.Policy):
         near = near[near["cells"] >= self.min_cells]
         if len(near) == 0:
             return karst.Explored("no frontier can be reached")
-        return [karst.goal_at(f, -f["path_length_m"], f"{f['path_length_m']:.1f} m away") for f in near[:10]]
+        score = -near["path_length_m"]
+        best = np.lexsort((near["id"], -score))[:10]  # a fixed order where scores are equal
+        return [karst.goal_at(near[i], score[i], f"{near['path_length_m'][i]:.1f} m away") for i in best]
