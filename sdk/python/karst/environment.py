@@ -219,6 +219,7 @@ class Environment(_Base):
         )
         theirs.close()
         self._pipe = ours
+        self._has_folder = False
 
     def _give_up(self) -> None:
         if self._pipe is not None:
@@ -229,6 +230,8 @@ class Environment(_Base):
             self._flight.wait()
             self._flight = None
             self._said.close()
+            if self._has_folder:  # else the lock may be that of another flight
+                (self.run_folder / "run.lock").unlink(missing_ok=True)
         self._request = None
 
     def _receive(self) -> bool:
@@ -237,6 +240,7 @@ class Environment(_Base):
             _, fields = self._pipe.recv()
         except (EOFError, OSError):
             return False
+        self._has_folder = True
         self._request = Request(_remote.RemoteServices(self._pipe), fields)
         info = self._request.map.info()
         self._request.free_cells, self._request.resolution_m = info["free_cells"], info["resolution_m"]

@@ -66,6 +66,8 @@ class Bench:
     def __setattr__(self, name: str, value: Any) -> None:
         if not hasattr(self._bench, name):
             raise AttributeError(f"a bench has no {name}")
+        if name == "frontiers":
+            value = _records(value, self._bench.frontiers.dtype)
         setattr(self._bench, name, value)
 
     def place(self, letter: str) -> np.ndarray:
@@ -108,6 +110,17 @@ class Bench:
     def log(self) -> list[str]:
         """The lines that the policy logged."""
         return self._bench.log
+
+
+def _records(rows: Any, dtype: np.dtype) -> np.ndarray:
+    """With the padding that numpy drops when it joins arrays."""
+    rows = np.asarray(rows)
+    if rows.dtype.names != dtype.names:
+        raise Error("frontiers is an array as bench.frontiers gives it")
+    out = np.zeros(rows.shape, dtype)
+    for name in dtype.names:
+        out[name] = rows[name]
+    return out
 
 
 def _text(name: str, value: Any, parameter: Any) -> str:
