@@ -50,9 +50,9 @@ def karst(*arguments, timeout_s=120, **environment) -> subprocess.CompletedProce
                           errors="replace", stdin=subprocess.DEVNULL, timeout=timeout_s, check=False, env=env)
 
 
-def fly(cave, policy, folder, *options, time_s=17, settings=SHORT, **environment) -> Flight:
+def fly(cave, policy, folder, *options, time_s=17, settings=SHORT, threads=1, **environment) -> Flight:
     command = ["fly", "--cave", cave, "--policy", policy, "--time", f"{time_s} s", "--out", folder, "--force",
-               "--no-report", "--threads", "1", "--cave-cache", Path(cave).parent / "cache", *options]
+               "--no-report", "--threads", threads, "--cave-cache", Path(cave).parent / "cache", *options]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
     done = karst(*command, **environment)

@@ -50,7 +50,7 @@ def test_the_policy_decides(flown):
 def test_same_bytes(small_cave, twin, flown, tmp_path, language, options, threads):
     """In Python or C++, in a process of its own or in karst's, on one thread or on four."""
     flight = fly(small_cave, PYTHON if language == "python" else twin, tmp_path / "run", *options,
-                 "--threads", threads, time_s=30, settings=SETTINGS)
+                 threads=threads, time_s=30, settings=SETTINGS)
     assert flight.code == 0, flight.err
     for name in SAME:
         assert (flight.folder / name).read_bytes() == (flown.folder / name).read_bytes(), name

@@ -1,6 +1,8 @@
 """Policies in Python on the bench: what they are given, what they may answer, and what is said of mistakes."""
 
 import textwrap
+import threading
+import time
 
 import karst
 import karst.testing
@@ -417,6 +419,32 @@ def test_a_request_that_has_ended_is_refused():
         kept[0][0].map.cells([0, 0, 0])
 
 
+def test_a_request_does_not_end_while_a_thread_asks():
+    """The host may free its map then; a question on a thread of the policy's own would read on in it."""
+    points = np.random.default_rng(3).uniform(0, 5, (200_000, 3))  # half a second
+    told, threads = [], []
+
+    def decide(request):
+        begun = threading.Event()
+
+        def ask():
+            begun.set()
+            told.append(request.map.distances_to_rock(points, 6.0))
+
+        threads.append(threading.Thread(target=ask))
+        threads[0].start()
+        begun.wait()
+        time.sleep(0.01)
+        return karst.Hold("asked")
+
+    bench = bench_of(decide)
+    bench.decide()
+    threads[0].join(0.2)  # to write down what it was told
+    answered = len(told)
+    threads[0].join()
+    assert answered == len(told) == 1
+
+
 # -- The map and the paths, against the drawing
 
 
@@ -479,10 +507,10 @@ def test_passages():
     assert len(passages) == 1 and len(ends) == 2
     assert passages["ends"].dtype == np.uint32 and sorted(passages["ends"][0]) == [0, 1]
     assert ends["from_start_m"][0] < ends["from_start_m"][1] == pytest.approx(18)
-    assert ends["kind"].tolist() == [2, 2] and passages["volume_m3"].sum() + ends["volume_m3"].sum() == pytest.approx(19)
+    assert ends["kind"].tolist() == [2, 2] and passages["volume_m3"].tolist() == [19]
     assert passages["mean_width_m"][0] == pytest.approx(1) and passages["middle"].shape == (1, 3)
     at = asked(lambda r: r.map.passages_at([[10.5, 1.5, 0.5], [50, 50, 50]]), drawing)
-    assert at["passage"].tolist() == [0, 0xFFFFFFFF] and at["from_start_m"][0] == pytest.approx(9)
+    assert at["passage"].tolist() == [0, 0xFFFFFFFF] and at["from_start_m"][0] == pytest.approx(9, abs=1)
 
 
 def shortest(start, goal):
