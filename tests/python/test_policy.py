@@ -311,8 +311,7 @@ def test_save_restore_restart():
 
 
 def test_events_of_later_versions_are_numbers():
-    event = _hosted.event_of(99, 5, ([1, 2, 3], 0.0, 0.5, 0.0, 0, 0.0, ""), "new") if hasattr(_hosted, "event_of") else (
-        karst.request.event_of(99, 5, ([1, 2, 3], 0.0, 0.5, 0.0, 0, 0.0, ""), "new"))
+    event = _hosted.event_of(99, 5, ([1, 2, 3], 0.0, 0.5, 0.0, 0, 0.0, ""), "new")
     assert event.kind == 99 and event.reason == "new" and event.stamp_ns == 5
 
 
@@ -581,7 +580,7 @@ def test_batches_of_one_are_those_of_many():
                      lambda r, p: r.map.cast_rays(r.position, p), lambda r, p: r.map.counts(p, np.add(p, 1))):
         many = asked(lambda r: question(r, points))
         for i, point in enumerate(points):
-            one, = asked(lambda r: question(r, point)), 
+            one = asked(lambda r: question(r, point))
             assert one.shape[0] == 1 and one.dtype == many.dtype
             np.testing.assert_array_equal(one[0], many[i])
 
@@ -656,7 +655,7 @@ def test_a_file_with_a_class(opened):
     policy, = opened(NEAR)
     said = _hosted.description_of(policy)
     assert (said["id"], said["name"], said["version"], said["one_line"]) == ("mine", "mine", "0.1.0", "Flies near.")
-    assert bench_of(None) is not None and karst.testing.Bench(policy, RING).decide().reason.endswith("mine")
+    assert karst.testing.Bench(policy, RING).decide().reason.endswith("mine")
 
 
 def test_a_function_is_a_policy(opened):
