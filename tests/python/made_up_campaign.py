@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import karst
+
 NAMES = ["far_first", "near|first"]
 TEXT = """\
 made: means over 1 cave, of the flights that all have flown
@@ -34,6 +36,9 @@ COMPARISONS = r"""**Table:** Pairs.
 SCRIPT = """\
 #!/usr/bin/python3
 import pathlib, sys
+if sys.argv[1:] == ["--version"]:
+    print("karst VERSION")
+    sys.exit()
 here = pathlib.Path(__file__).parent
 if "--json" in sys.argv:
     print((here / "results.json").read_text())
@@ -76,7 +81,7 @@ def write_campaign(folder: Path, program: Path) -> Path:
         "results.txt": TEXT,
         "ranking.md": RANKING,
         "comparisons.md": COMPARISONS,
-        program.name: SCRIPT,
+        program.name: SCRIPT.replace("VERSION", karst.__version__),
     }.items():
         (program.parent / name).write_text(text, encoding="utf-8")
     program.chmod(0o755)

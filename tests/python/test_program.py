@@ -2,6 +2,7 @@
 
 import sys
 
+import karst
 import pytest
 from karst.errors import Error
 from karst.program import program, run_karst
@@ -11,7 +12,7 @@ module = sys.modules["karst.program"]  # karst.program may also be the function
 
 def script(path, text):
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.write_text(f'#!/bin/sh\n[ "$1" = --version ] && echo "karst {karst.__version__}" && exit\n{text}\n')
     path.chmod(0o755)
     return path
 
