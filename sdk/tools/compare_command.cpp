@@ -138,11 +138,14 @@ void print_too_short(const campaign::Plan& plan) {
 
 /// A campaign file says by itself what flies where.
 void refuse_file_among_policies(const CompareArguments& args) {
-  for (const std::string& who : args.who)
-    if (fs::path(who).extension() == ".info" || campaign::is_campaign(who))
+  for (const std::string& who : args.who) {
+    const std::string ending = fs::path(who).extension().string();
+    const bool is_policy = ending == ".py" || ending == ".so";
+    if (ending == ".info" || (!is_policy && campaign::is_campaign(who)))
       throw InputError(who, "",
                        "is a campaign's file or folder, which stands alone: give it without further "
                        "policies and without --caves");
+  }
 }
 
 int compare(const CompareArguments& args) {

@@ -107,8 +107,8 @@ void refuse_other_blocks(const pt::ptree& tree, const std::string& source, const
 void take_policy_file(ContestantSpec& c, const std::string& file) {
   const std::optional<host::PolicyListing> found = host::policy_in_file(file);
   if (!found) return;
+  c.plugin = file;  // which may be c.policy itself
   c.policy = found->id;
-  c.plugin = file;
 }
 
 ContestantSpec read_contestant(pt::ptree block, const std::string& source) {

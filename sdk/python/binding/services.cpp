@@ -8,17 +8,20 @@
 namespace karst::python {
 namespace {
 
-/// Runs `work` without Python's lock: other threads of Python go on.
+/// Runs `work` without Python's lock: other threads of Python go on. The request, if it is of one, does not
+/// end meanwhile.
 template <class Work>
-auto unlocked(Work work) {
+auto unlocked(const std::shared_ptr<Term>& term, Work work) {
   const py::gil_scoped_release released;
+  std::shared_lock<std::shared_mutex> held;
+  if (term) held = term->held();
   return work();
 }
 
 std::vector<karst_segment_t> segments_of(const Doubles& from, const Doubles& to) {
-  const std::vector<Vec3> a = points_of(from, "from"), b = points_of(to, "to");
+  const std::vector<Vec3> a = points_of(from, "start"), b = points_of(to, "end");
   if (a.size() != b.size() && a.size() != 1)
-    throw Error("from has " + std::to_string(a.size()) + " rows and to " + std::to_string(b.size()) +
+    throw Error("start has " + std::to_string(a.size()) + " rows and end has " + std::to_string(b.size()) +
                     ": as many, or one place to begin all",
                 KARST_ERROR_ARGUMENT);
   std::vector<karst_segment_t> out;
@@ -40,14 +43,14 @@ py::dict Map::info() const {
 
 py::array Map::cells(const Doubles& points) const {
   const std::vector<Vec3> at = points_of(points, "points");
-  const std::vector<Cell> found = unlocked([&] { return view().cells(at); });
+  const std::vector<Cell> found = unlocked(term_, [&] { return view().cells(at); });
   return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(found.size()),
                                    reinterpret_cast<const std::uint8_t*>(found.data()));
 }
 
 py::array Map::cast_rays(const Doubles& from, const Doubles& to, bool through_unknown) const {
   const std::vector<karst_segment_t> rays = segments_of(from, to);
-  return records(unlocked([&] { return view().cast(rays, through_unknown); }));
+  return records(unlocked(term_, [&] { return view().cast(rays, through_unknown); }));
 }
 
 py::array Map::counts(const Doubles& low, const Doubles& high) const {
@@ -56,7 +59,7 @@ py::array Map::counts(const Doubles& low, const Doubles& high) const {
     throw Error("low and high must have as many rows: a box each", KARST_ERROR_ARGUMENT);
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < lows.size(); ++i) boxes.push_back({lows[i], highs[i]});
-  const std::vector<karst_cell_counts_t> found = unlocked([&] { return view().counts(boxes); });
+  const std::vector<karst_cell_counts_t> found = unlocked(term_, [&] { return view().counts(boxes); });
   static_assert(sizeof(karst_cell_counts_t) == 3 * sizeof(std::uint64_t), "unknown, free, occupied");
   const std::uint64_t* first = found.empty() ? nullptr : &found.front().unknown;
   return py::array_t<std::uint64_t>({static_cast<py::ssize_t>(found.size()), py::ssize_t{3}}, first);
@@ -64,17 +67,17 @@ py::array Map::counts(const Doubles& low, const Doubles& high) const {
 
 py::array Map::surface(const Doubles& low, const Doubles& high) const {
   const Box box = box_of(low, high);
-  return array_of(unlocked([&] { return view().surface(box); }));
+  return array_of(unlocked(term_, [&] { return view().surface(box); }));
 }
 
 py::array Map::distances_to_rock(const Doubles& points, double limit_m) const {
   const std::vector<Vec3> at = points_of(points, "points");
-  return numbers(unlocked([&] { return view().distances_to_rock(at, limit_m); }));
+  return numbers(unlocked(term_, [&] { return view().distances_to_rock(at, limit_m); }));
 }
 
 py::tuple Map::passages() const {
   // As the host has them: indices of ends as pairs.
-  const Passages found = unlocked([&] { return view().passages(); });
+  const Passages found = unlocked(term_, [&] { return view().passages(); });
   std::vector<karst_passage_t> passages;
   for (const Passage& p : found.passages)
     passages.push_back({{static_cast<std::uint32_t>(p.from), static_cast<std::uint32_t>(p.to)},
@@ -103,7 +106,7 @@ py::tuple Map::passages() const {
 
 py::array Map::passages_at(const Doubles& points) const {
   const std::vector<Vec3> at = points_of(points, "points");
-  const std::vector<PassagePlace> found = unlocked([&] { return view().passages_at(at); });
+  const std::vector<PassagePlace> found = unlocked(term_, [&] { return view().passages_at(at); });
   const auto index = [](std::size_t i) {
     return i == PassagePlace::none ? KARST_NO_PASSAGE : static_cast<std::uint32_t>(i);
   };
@@ -114,19 +117,19 @@ py::array Map::passages_at(const Doubles& points) const {
 }
 
 Map Map::retained() const {
-  return {unlocked([&] { return view().retained(); }), nullptr};
+  return {unlocked(term_, [&] { return view().retained(); }), nullptr};
 }
 
 py::array Services::path_lengths(const Doubles& from, const Doubles& goals, double tolerance_m) const {
   const Vec3 start = point_of(from, "start");
   const std::vector<Vec3> to = points_of(goals, "goals");
-  return numbers(unlocked([&] { return request().path_lengths(start, to, tolerance_m); }));
+  return numbers(unlocked(term_, [&] { return request().path_lengths(start, to, tolerance_m); }));
 }
 
 py::list Services::paths(const Doubles& from, const Doubles& goals, double tolerance_m) const {
   const Vec3 start = point_of(from, "start");
   const std::vector<Vec3> to = points_of(goals, "goals");
-  const std::vector<Path> found = unlocked([&] { return request().paths(start, to, tolerance_m); });
+  const std::vector<Path> found = unlocked(term_, [&] { return request().paths(start, to, tolerance_m); });
   py::list out;
   for (const Path& p : found)
     out.append(py::make_tuple(array_of(p.points), p.length_m, p.clearance_m, p.time_s));
@@ -141,7 +144,7 @@ py::array Services::newly_seen(std::size_t sensor, const Doubles& viewpoints,
   Sensor with = request().sensors[sensor];
   if (max_range_m) with.max_range_m = *max_range_m;
   const std::vector<Viewpoint> from = viewpoints_of(viewpoints);
-  return numbers(unlocked([&] { return request().newly_seen(with, from); }));
+  return numbers(unlocked(term_, [&] { return request().newly_seen(with, from); }));
 }
 
 void Services::draw_points(const Doubles& points, std::uint32_t rgb) const {

@@ -3,8 +3,11 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 
 #include <karst/imaged.h>
@@ -18,14 +21,26 @@ namespace karst::python {
 /// Whether decide() still runs. What is asked of a request that has ended would read freed memory.
 class Term {
  public:
-  void end() { ended_ = true; }
+  /// Waits for what other threads of the policy are asking.
+  void end() {
+    const py::gil_scoped_release they_may_end;
+    const std::unique_lock none_asks(asking_);
+    ended_ = true;
+  }
+  /// It does not end while this is held. Not to be taken under Python's lock: end() may wait.
+  std::shared_lock<std::shared_mutex> held() const {
+    std::shared_lock lock(asking_);
+    require();
+    return lock;
+  }
   void require() const {
     if (ended_)
       throw Error("this request has ended: keep what it said, or request.map.retained()", KARST_ERROR_STATE);
   }
 
  private:
-  bool ended_ = false;
+  mutable std::shared_mutex asking_;
+  std::atomic<bool> ended_ = false;
 };
 
 /// The occupancy map. All calls release Python's lock while the host answers.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import pickle
 import random
+import re
 import sys
 import traceback
 from pathlib import Path
@@ -24,13 +25,19 @@ last_exception: BaseException | None = None  # for the bench, which raises from 
 def description_of(policy: type[Policy]) -> dict[str, Any]:
     """What the class says of itself, as the ABI has it."""
     id = vars(policy).get("id") or policy_id(policy)
+    name = vars(policy).get("name", id)
+    for what, text in (("id", id), ("name", name), ("version", policy.version)):
+        if not isinstance(text, str):
+            raise Error(f"the {what} of {policy.__name__} is {text!r}, not a text")
+    if not re.fullmatch("[a-z][a-z0-9_]*", id):
+        raise Error(f"{id!r} is no id of a policy: small letters, digits and _, the first one a letter, are allowed")
     doc = inspect.getdoc(policy)
     if doc == inspect.getdoc(Policy):
         doc = None
     doc = doc or sys.modules[policy.__module__].__doc__ or ""
     return {
         "id": id,
-        "name": vars(policy).get("name", id),
+        "name": name,
         "version": policy.version,
         "one_line": doc.strip().split("\n")[0],
         "parameters": [p.declaration() for p in parameters_of(policy)],
@@ -92,18 +99,27 @@ def told_of(exception: BaseException) -> tuple[str, list[str]]:
     """One line that says what was raised and where, and the traceback. Prints it as well."""
     global last_exception
     last_exception = exception
-    lines = [
-        line
-        for part in traceback.format_exception(exception)
-        if f'File "{_OWN}' not in part
-        for line in part.rstrip("\n").split("\n")
-    ]
+    parts = [part for part in traceback.format_exception(exception) if f'File "{_OWN}' not in part]
+    if not any(part.startswith("  File") for part in parts):  # all of it is karst's own: what was raised says it
+        parts = [part for part in parts if not part.startswith("Traceback")]
+    lines = [_readable(line) for part in parts for line in part.rstrip("\n").split("\n")]
     print("\n".join(lines), file=sys.stderr, flush=True)
-    return _line(exception), lines
+    return _readable(_line(exception)), lines
+
+
+def _readable(text: str) -> str:
+    """Without lone surrogates, which no text of the host can hold."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _line(exception: BaseException) -> str:
-    text = str(exception).split("\n")[0]
+    try:
+        text = str(exception).split("\n")[0]
+    except Exception:
+        text = "its text cannot be shown"
+    call, wrong, _ = text.partition("(): incompatible function arguments")  # of the binding
+    if wrong:
+        text = f"{call}() takes no such arguments"
     kind = "" if isinstance(exception, Error) else type(exception).__name__
     what = ": ".join(part for part in (kind, text) if part)
     if isinstance(exception, SyntaxError) and exception.filename:

@@ -11,6 +11,7 @@ import os
 from multiprocessing.connection import Connection
 from typing import Any
 
+from karst import _hosted
 from karst.errors import Error
 from karst.policy import Policy
 
@@ -43,6 +44,8 @@ def _said(services: Any, of: str, name: str, arguments: tuple) -> tuple[str, Any
         return "said", getattr(asked, name)(*arguments)
     except Error as e:
         return "refused", str(e)
+    except Exception as e:  # such as wrong types: the environment waits for an answer all the same
+        return "refused", _hosted.told_of(e)[0]
 
 
 class RemoteServices:
@@ -58,13 +61,18 @@ class RemoteServices:
     def ask(self, of: str, name: str, arguments: tuple) -> Any:
         if self.ended:
             raise Error("this request has ended: ask before the next step")
-        self._pipe.send(("ask", of, name, arguments))
-        kind, value = self._pipe.recv()
+        try:
+            self._pipe.send(("ask", of, name, arguments))
+            kind, value = self._pipe.recv()
+        except (EOFError, OSError):
+            raise Error("the flight has ended") from None
         if kind == "refused":
             raise Error(value)
         return value
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):  # copy, pickle and the like look for such names
+            raise AttributeError(name)
         return lambda *arguments: self.ask("services", name, arguments)
 
 
@@ -78,4 +86,6 @@ class RemoteMap:
         raise Error("an environment keeps no copy of a map")
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
         return lambda *arguments: self._services.ask("map", name, arguments)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+import io
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -14,6 +15,11 @@ from .errors import Error
 from .policy import Policy
 
 _plugins: dict[str, Any] = {}  # by path: the host may open a file more than once
+
+# The process has no locale, and what a policy prints goes into a pipe: each line at once, whatever is in it.
+for _stream in (sys.stdout, sys.stderr):
+    if isinstance(_stream, io.TextIOWrapper):
+        _stream.reconfigure(encoding="utf-8", errors="backslashreplace", line_buffering=True)
 
 
 def plugin_of_file(path: str) -> Any:
@@ -26,12 +32,12 @@ def plugin_of_file(path: str) -> Any:
 
 def module_of(path: str) -> ModuleType:
     """Runs the file as a module. Modules beside it can be imported."""
+    name = Path(path).stem
+    if _is_taken(name, path):
+        name = f"karst_policy_{len(_plugins)}_{name.replace('.', '_')}"
     folder = str(Path(path).parent)
     if folder not in sys.path:
         sys.path.append(folder)
-    name = Path(path).stem
-    if name in sys.modules:  # a policy named as a module of Python's, or the same name in another folder
-        name = f"karst_policy_{len(_plugins)}_{name}"
     spec = importlib.util.spec_from_file_location(name, path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses and pickle look there
@@ -43,12 +49,23 @@ def module_of(path: str) -> ModuleType:
     return module
 
 
+def _is_taken(name: str, path: str) -> bool:
+    """Whether another module has the name: one of Python's, which others may import later, or another policy."""
+    if name in sys.modules or "." in name:
+        return True
+    try:
+        found = importlib.util.find_spec(name)
+    except (ImportError, ValueError):
+        return False
+    return found is not None and found.origin != path
+
+
 def policies_of(module: ModuleType) -> list[type[Policy]]:
     """The classes of policies that the file itself defines; else its function `decide`."""
     own = [
         value
-        for value in vars(module).values()
-        if inspect.isclass(value) and issubclass(value, Policy) and value.__module__ == module.__name__
+        for value in dict.fromkeys(v for v in vars(module).values() if inspect.isclass(v))  # once under two names
+        if issubclass(value, Policy) and value.__module__ == module.__name__
         and _names(value) & {"decide", "_answer"}
     ]
     # A class from which another of the file derives is a base, and no policy of its own.

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+from dataclasses import fields
 from multiprocessing.connection import Connection, Pipe
 from pathlib import Path
 from typing import Any, Callable, Mapping, Sequence
@@ -19,7 +20,7 @@ from .observation import observation_of, observation_space, offered_frontiers
 from .program import program
 from .request import Request
 from .spaces import Discrete
-from .values import Answer, Explored, Fly, Goal, GoHome, Hold, Tour, answer_fields, goal_at
+from .values import EXPLORED, GO_HOME, Answer, Explored, Fly, Goal, GoHome, Hold, Tour, answer_fields, goal_at
 
 try:
     from gymnasium import Env as _Base
@@ -158,14 +159,30 @@ class Environment(_Base):
         return self._observation, self._info()
 
     def step_begin(self, action: Action) -> None:
+        self._send(self._fields_of(action))
+
+    def _fields_of(self, action: Action) -> tuple:
+        """As the flight takes them. Raises Error if the action is none, and then nothing has happened."""
         if self._request is None or self._pipe is None:
             raise Error("there is no flight: reset() begins one")
-        answer = self._answer_of(action)
-        fields = answer_fields(answer)
-        self._ended_by_caller = isinstance(answer, (Explored, GoHome))
+        try:
+            outcome, in_order, reason, goals = answer_fields(self._answer_of(action))
+        except (TypeError, ValueError) as e:
+            raise Error(str(e)) from None
+        for i, goal in enumerate(goals):
+            if not np.isfinite(np.asarray(goal.position, float)).all():
+                raise Error(f"goal {i}: its position is not finite")
+        # A class of the caller's own would be unknown there.
+        return outcome, in_order, reason, [Goal(**{f.name: getattr(g, f.name) for f in fields(Goal)}) for g in goals]
+
+    def _send(self, answer: tuple) -> None:
+        self._ended_by_caller = answer[0] in (EXPLORED, GO_HOME)
         self._before = self._request
         self._request._services.ended = True
-        self._pipe.send(("answer", *fields))
+        try:
+            self._pipe.send(("answer", *answer))
+        except OSError:
+            pass  # the flight is over: step_end says why
 
     def step_end(self) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
         if self._receive():
@@ -190,7 +207,9 @@ class Environment(_Base):
             "--policy", str(Path(_remote.__file__)), "--in-process", "--threads", "1", "--quiet", "--no-report",
             "--force", "--out", str(self.run_folder), "--cave-cache", str(self._runs / "caves"),
         ]
-        for key, value in ({"simulator.vehicle": self.vehicle} | self._settings).items():
+        # While the caller thinks, the flight waits: an hour, and not the minute that a policy has.
+        fixed = {"simulator.vehicle": self.vehicle, "policy.hang_limit": "3600 s"}
+        for key, value in (fixed | self._settings).items():
             command += ["--set", f"{key}={value}"]
         self._runs.mkdir(parents=True, exist_ok=True)
         self._said = tempfile.TemporaryFile()
@@ -200,6 +219,7 @@ class Environment(_Base):
         )
         theirs.close()
         self._pipe = ours
+        self._has_folder = False
 
     def _give_up(self) -> None:
         if self._pipe is not None:
@@ -210,6 +230,8 @@ class Environment(_Base):
             self._flight.wait()
             self._flight = None
             self._said.close()
+            if self._has_folder:  # else the lock may be that of another flight
+                (self.run_folder / "run.lock").unlink(missing_ok=True)
         self._request = None
 
     def _receive(self) -> bool:
@@ -218,6 +240,7 @@ class Environment(_Base):
             _, fields = self._pipe.recv()
         except (EOFError, OSError):
             return False
+        self._has_folder = True
         self._request = Request(_remote.RemoteServices(self._pipe), fields)
         info = self._request.map.info()
         self._request.free_cells, self._request.resolution_m = info["free_cells"], info["resolution_m"]
@@ -246,6 +269,8 @@ class Environment(_Base):
         if isinstance(action, (Fly, Tour, Hold, Explored, GoHome, Goal)):
             return action
         near = offered_frontiers(self._request, self.max_frontiers)
+        if isinstance(action, np.ndarray) and action.ndim == 0:
+            action = action.item()
         if isinstance(action, (int, np.integer)):
             return goal_at(near[_row(action, near)])
         place = np.asarray(action) if not _holds_goals(action) else None
@@ -272,9 +297,13 @@ class Environments:
 
     def step(self, actions: Sequence[Action | None]) -> list[tuple | None]:
         """As each one's step. None instead of an action leaves that environment as it is, and gives None."""
-        for e, action in zip(self.environments, actions, strict=True):
-            if action is not None:
-                e.step_begin(action)
+        answers = [
+            None if action is None else e._fields_of(action)  # all of them before one flies on: any may be wrong
+            for e, action in zip(self.environments, actions, strict=True)
+        ]
+        for e, answer in zip(self.environments, answers):
+            if answer is not None:
+                e._send(answer)
         return [None if a is None else e.step_end() for e, a in zip(self.environments, actions)]
 
     def close(self) -> None:

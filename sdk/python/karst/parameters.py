@@ -12,7 +12,7 @@ class _Parameter:
 
     def __init__(self, default: Any, help: str):
         self.default = default
-        self.help = help
+        self.help = str(help)
         self.name = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -97,4 +97,6 @@ def parameters_of(policy: type) -> list[_Parameter]:
         for name, value in vars(base).items():
             if isinstance(value, _Parameter):
                 found[name] = value
+            else:
+                found.pop(name, None)  # a class may fix a parameter of its base
     return list(found.values())

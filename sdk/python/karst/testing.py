@@ -33,6 +33,7 @@ import numpy as np
 
 from . import _hosted, _karst
 from .errors import Error
+from .parameters import Text, parameters_of
 from .policy import Policy
 from .request import EventKind, Points
 from .values import Answer, Explored, Fly, GoHome, Goal, Hold, Tour
@@ -57,7 +58,8 @@ class Bench:
         parameters: Mapping[str, Any] | None = None,
     ):
         layers = [drawing] if isinstance(drawing, str) else list(drawing)
-        values = [(name, _text(value)) for name, value in (parameters or {}).items()]
+        kinds = {p.name: p for p in parameters_of(policy)}
+        values = [(name, _text(name, value, kinds.get(name))) for name, value in (parameters or {}).items()]
         object.__setattr__(self, "_bench", _raising(_karst.Bench, policy, resolution_m, layers, values))
 
     def __getattr__(self, name: str) -> Any:
@@ -66,6 +68,8 @@ class Bench:
     def __setattr__(self, name: str, value: Any) -> None:
         if not hasattr(self._bench, name):
             raise AttributeError(f"a bench has no {name}")
+        if name == "frontiers":
+            value = _records(value, self._bench.frontiers.dtype)
         setattr(self._bench, name, value)
 
     def place(self, letter: str) -> np.ndarray:
@@ -114,7 +118,22 @@ class Bench:
         return self._bench.log
 
 
-def _text(value: Any) -> str:
+def _records(rows: Any, dtype: np.dtype) -> np.ndarray:
+    """With the padding that numpy drops when it joins arrays."""
+    rows = np.asarray(rows)
+    if rows.dtype.names != dtype.names:
+        raise Error("frontiers is an array as bench.frontiers gives it")
+    out = np.zeros(rows.shape, dtype)
+    for name in dtype.names:
+        out[name] = rows[name]
+    return out
+
+
+def _text(name: str, value: Any, parameter: Any) -> str:
+    """As the bench takes it: what is no number would count as 0."""
+    if not isinstance(parameter, Text) and not isinstance(value, (bool, int, float, np.number)):
+        if parameter is not None and value not in ("true", "false"):
+            raise Error(f"the parameter {name} is {value!r}, not a number")
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -89,46 +89,75 @@ class GoHome:
 Answer = Fly | Tour | Hold | Explored | GoHome | Goal | Iterable[Goal]
 
 # Numbers of the ABI (karst_abi_types.h).
-_GOALS, _HOLD, _EXPLORED, _GO_HOME = 1, 2, 3, 4
+GOALS, HOLD, EXPLORED, GO_HOME = 1, 2, 3, 4
 
 
 def answer_fields(answer: Answer) -> tuple[int, bool, str, list[Goal]]:
-    """Outcome, whether the goals are in order, reason and goals, as the ABI has them. Raises TypeError."""
+    """Outcome, whether the goals are in order, reason and goals, as the ABI has them.
+
+    Raises TypeError or ValueError with what is wrong. Numbers that are not finite are left to the host, which
+    drops such goals.
+    """
     if isinstance(answer, Hold):
-        return _HOLD, False, answer.reason, []
+        return HOLD, False, _text(answer.reason, "reason"), []
     if isinstance(answer, Explored):
-        return _EXPLORED, False, answer.reason, []
+        return EXPLORED, False, _text(answer.reason, "reason"), []
     if isinstance(answer, GoHome):
-        return _GO_HOME, False, answer.reason, []
+        return GO_HOME, False, _text(answer.reason, "reason"), []
     if isinstance(answer, (Fly, Tour)):
-        return _GOALS, isinstance(answer, Tour), answer.reason, _goals(answer.goals)
+        if not isinstance(answer.goals, Iterable):
+            raise TypeError(f"karst.{type(answer).__name__} takes a list of goals, not {_what(answer.goals)}")
+        return GOALS, isinstance(answer, Tour), _text(answer.reason, "reason"), _goals(answer.goals)
     if isinstance(answer, Goal):
-        return _GOALS, False, "", [answer]
+        return GOALS, False, "", _goals([answer])
     if isinstance(answer, (list, tuple)) or hasattr(answer, "__next__"):
-        return _GOALS, False, "", _goals(answer)
-    raise TypeError(
-        f"decide() returned {_what(answer)}: goals, karst.Hold, karst.Explored or karst.GoHome are expected"
-    )
+        return GOALS, False, "", _goals(answer)
+    raise TypeError(f"an answer is goals, karst.Hold, karst.Explored or karst.GoHome, not {_what(answer)}")
 
 
 def _goals(goals: Iterable[Goal]) -> list[Goal]:
     goals = list(goals)
     for i, goal in enumerate(goals):
         if not isinstance(goal, Goal):
-            raise TypeError(f"goal {i} that decide() returned is {_what(goal)}, not a karst.Goal")
+            raise TypeError(f"goal {i} is {_what(goal)}, not a karst.Goal")
         for name in ("heading_rad", "tolerance_m", "max_speed_mps", "score"):
-            if not isinstance(getattr(goal, name), (int, float, np.number)):
-                raise TypeError(f"goal {i}: {name} is {_what(getattr(goal, name))}, not a number")
+            number = getattr(goal, name)
+            if not isinstance(number, (int, float, np.integer, np.floating)):
+                raise TypeError(f"goal {i}: {name} is {_what(number)}, not a number")
+            if isinstance(number, int) and abs(number) > 1 << 1000:
+                raise ValueError(f"goal {i}: {name} is too large")
         if not isinstance(goal.frontier_id, (int, np.integer)):
             raise TypeError(f"goal {i}: frontier_id is {_what(goal.frontier_id)}, not a whole number")
-        if not isinstance(goal.why, str):
-            raise TypeError(f"goal {i}: why is {_what(goal.why)}, not a text")
-        if np.shape(goal.position) != (3,):
-            raise TypeError(f"goal {i}: position has the shape {np.shape(goal.position)}, not (3,)")
+        if not 0 <= goal.frontier_id < 1 << 32:
+            raise ValueError(f"goal {i}: frontier_id is {goal.frontier_id}, not in 0 to {(1 << 32) - 1}")
+        _text(goal.why, f"goal {i}: why")
+        _check_position(goal.position, f"goal {i}: position")
     if not goals:
-        raise ValueError("decide() returned no goal: say why with karst.Explored, karst.Hold or karst.GoHome")
+        raise ValueError("there is no goal: say why with karst.Explored, karst.Hold or karst.GoHome")
     return goals
 
 
+def _check_position(position: object, name: str) -> None:
+    try:
+        array = position if isinstance(position, np.ndarray) else np.asarray(position)
+    except ValueError:  # rows of different lengths
+        raise TypeError(f"{name} is {_what(position)}, not three numbers") from None
+    if array.shape != (3,):
+        raise TypeError(f"{name} has the shape {array.shape}, not (3,)")
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} holds something else than numbers")
+
+
+def _text(value: object, name: str) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is {_what(value)}, not a text")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{name} holds a character that is none: a lone surrogate") from None
+    return value
+
+
 def _what(value: object) -> str:
-    return "None" if value is None else f"a {type(value).__name__}"
+    name = type(value).__name__
+    return "None" if value is None else f"{'an' if name[0] in 'aeiou' else 'a'} {name}"

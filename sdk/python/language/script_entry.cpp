@@ -60,6 +60,12 @@ std::string start_python() {
   // Extension modules such as numpy's do not link libpython: its symbols must be there for all.
   dlopen(KARST_LIBPYTHON, RTLD_NOW | RTLD_GLOBAL);
   make_arithmetic_repeatable();
+  PyPreConfig before;
+  PyPreConfig_InitIsolatedConfig(&before);
+  before.utf8_mode =
+      1;  // names and contents of files and what is printed: without a locale it would be ASCII
+  if (const PyStatus status = Py_PreInitialize(&before); PyStatus_Exception(status))
+    return std::string("Python cannot be started: ") + (status.err_msg == nullptr ? "" : status.err_msg);
   PyConfig config;
   PyConfig_InitIsolatedConfig(&config);  // no signal handlers, no locale, no environment of the user's
   config.use_hash_seed = 1;              // sets of strings have the same order each time

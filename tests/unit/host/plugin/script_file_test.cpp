@@ -40,7 +40,8 @@ std::string refusal(const std::string& file) {
 
 TEST_F(ScriptFile, IsKnownByItsEnding) {
   EXPECT_TRUE(is_script("mine.py"));
-  for (const char* other : {"mine.so", "mine", "mine.pyc", "mine.py.txt"}) EXPECT_FALSE(is_script(other)) << other;
+  for (const char* other : {"mine.so", "mine", "mine.pyc", "mine.py.txt"})
+    EXPECT_FALSE(is_script(other)) << other;
 }
 
 TEST_F(ScriptFile, InAFolderOnlyWhatDefinesAPolicyIsOpened) {
@@ -60,8 +61,9 @@ TEST_F(ScriptFile, ANameIsNoFile) {
 
 TEST_F(ScriptFile, AFileWithOnePolicyGivesItsName) {
   if (!has_python()) GTEST_SKIP() << "skipped: built without Python";
-  const std::string file =
-      write("far.py", "import karst\n\nclass Far(karst.Policy):\n    '''Far.'''\n    def decide(self, r):\n        return []\n");
+  const std::string file = write("far.py",
+                                 "import karst\n\nclass Far(karst.Policy):\n    '''Far.'''\n    def "
+                                 "decide(self, r):\n        return []\n");
   std::string policy = file;
   std::vector<std::string> plugins{"other.so"};
   take_policy_file(policy, plugins);
