@@ -9,12 +9,15 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 from setuptools import setup
 from setuptools.command.build_py import build_py
 from setuptools.dist import Distribution
 
+# Not in this folder, which may belong to root.
+WORK = tempfile.mkdtemp(prefix="karst-pip-")
 VERSION = "0.1.0"
 COMPILED = ("_karst", "_maps")
 
@@ -59,4 +62,5 @@ setup(
     extras_require={"plots": ["matplotlib", "pandas"]},
     cmdclass={"build_py": WithCompiled},
     distclass=Compiled,
+    options={"build": {"build_base": WORK}, "egg_info": {"egg_base": WORK}},
 )

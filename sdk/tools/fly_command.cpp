@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/shell_word.h"
@@ -94,7 +95,12 @@ void print_broken_policies(const std::vector<evaluation::Ending>& endings, const
     if (failed)
       print_error("karst: the policy %sfailed at %.1f s, and the fallback took over: %s\n",
                   team ? ("of " + robot + " ").c_str() : "", failed->time_s, failed->why.c_str());
-    if (restart || failed)
+    const evaluation::LostDecisions& lost = endings[i].lost_decisions;
+    if (lost.count > 0 && !failed)
+      print_error("karst: the policy %sfailed in %s, the last time: %s\n",
+                  team ? ("of " + robot + " ").c_str() : "", core::counted(lost.count, "decision").c_str(),
+                  lost.last.c_str());
+    if (restart || failed || lost.count > 0)
       print_way_to_debug(team ? run_dir / ("robot_" + std::to_string(i + 1)) : run_dir, args);
   }
 }

@@ -206,7 +206,7 @@ def test_recursion_without_a_limit(drawer):
 
 
 @pytest.mark.parametrize("answer, why", [
-    ("'north'", "TypeError: an answer is goals, karst.Hold, karst.Explored or karst.GoHome, not a str"),
+    ("'north'", "TypeError: an answer is goals, karst.Tour, karst.Hold, karst.Explored or karst.GoHome, not a str"),
     ("karst.Goal([1, 2])", "TypeError: goal 0: position has the shape (2,), not (3,)"),
     ("karst.Goal([float('nan')] * 3)", "no goal was well formed: goal 1: its position is not finite"),
     ("karst.Hold('two\\nlines\\x07')", "its reason has control characters or more than one line"),

@@ -180,11 +180,11 @@ def test_long_texts_and_many_goals_are_cut_and_told():
 
 
 @pytest.mark.parametrize("answer, why", [
-    (None, "TypeError: an answer is goals, karst.Hold, karst.Explored or karst.GoHome, not None"),
+    (None, "TypeError: an answer is goals, karst.Tour, karst.Hold, karst.Explored or karst.GoHome, not None"),
     ("abc", "not a str"),
     (3, "not an int"),
     ({}, "not a dict"),
-    (np.zeros((2, 3)), "not a ndarray"),
+    (np.zeros((2, 3)), "not rows of frontiers"),
     ([], "ValueError: there is no goal: say why with karst.Explored, karst.Hold or karst.GoHome"),
     (karst.Fly([]), "there is no goal"),
     (karst.Fly(None), "karst.Fly takes a list of goals, not None"),
@@ -608,7 +608,7 @@ def test_more_items_than_one_call_of_the_host_takes():
     (lambda r: r.map.distances_to_rock([1, 1, 1], 0), r"limit_m is not in \(0, 100\] m"),
     (lambda r: r.path_lengths([[1, 2, 3]] * 2, [1, 2, 3]), "start must be one place"),
     (lambda r: r.newly_seen([1, 2, 3]), r"viewpoints must have the shape \(n, 4\) or \(4,\)"),
-    (lambda r: r.newly_seen([1, 2, 3, 0], sensor=1), "the vehicle has 1 sensors, the first is 0"),
+    (lambda r: r.newly_seen([1, 2, 3, 0], sensor=1), "there is no sensor 1: the vehicle has 1, and the first is sensor 0"),
     (lambda r: r.survey_distances([1, 2, 3]), "the mission has no survey"),
     (lambda r: r.imaged_states([1, 2, 3]), "the vehicle carries no colour camera"),
     (lambda r: r.random(-1), r"random\(\) takes no such arguments"),
@@ -737,3 +737,37 @@ def test_drawings_that_are_none():
         else:
             with pytest.raises(Exception, match="no cell is named s"):
                 karst.testing.Bench(Tunable, drawing).place("s")
+
+
+class Looks(karst.Policy):
+    """Counts what it would see."""
+
+    weight = karst.Real(1.0, 0, 10, "m", "a weight")
+    side = karst.Text("left", "a side", ["left", "right"])
+
+    def decide(self, request):
+        here = [*request.position, 0.0]
+        self.seen = request.newly_seen(here), request.newly_seen(here, max_range_m=None)
+        return karst.Hold()
+
+
+def test_a_view_is_no_longer_than_the_sensors_and_ten_metres_by_default():
+    import dataclasses
+
+    bench = karst.testing.Bench(Looks, "?????\n??s??\n?????")
+    bench.position = bench.place("s")
+    bench.sensors = [dataclasses.replace(bench.sensors[0], max_range_m=4.0)]
+    assert [s.max_range_m for s in bench.sensors] == [4.0] and bench.sensors[0].kind == karst.SensorKind.LIDAR
+    bench.decide()
+    bench.sensors = []
+    with pytest.raises(karst.Error, match="the vehicle has no sensor"):
+        bench.decide()
+
+
+@pytest.mark.parametrize("values, said", [
+    ({"weight": 11}, "weight is 11, not in 0 to 10"),
+    ({"side": "up"}, "side is 'up', not one of left, right"),
+])
+def test_the_bench_refuses_values_that_no_flight_allows(values, said):
+    with pytest.raises(karst.Error, match=said):
+        karst.testing.Bench(Looks, "...", parameters=values)

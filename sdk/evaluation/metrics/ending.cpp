@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/format_text.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 
@@ -201,10 +202,26 @@ std::optional<FailedPolicy> failed_policy(const RunRecord& run) {
   return std::nullopt;
 }
 
+LostDecisions lost_decisions(const RunRecord& run) {
+  LostDecisions lost;
+  for (const nlohmann::json& e : run.events) {
+    const auto decision = event::as<event::Decision>(e);
+    if (!decision) continue;
+    const std::string failed = decision->policy + " failed: ";
+    if (!decision->reason.starts_with(failed)) continue;
+    ++lost.count;
+    lost.last = decision->reason.substr(failed.size());
+  }
+  return lost;
+}
+
 /// "; the policy crashed and was started once more"; "" if nothing happened to it.
 std::string trouble_text(const Ending& ending) {
   if (ending.failed_policy) return "; the policy failed, and the fallback took over";
-  return ending.restart ? "; the policy " + ending.restart->what + " and was started once more" : "";
+  if (ending.restart) return "; the policy " + ending.restart->what + " and was started once more";
+  return ending.lost_decisions.count == 0
+             ? ""
+             : "; the policy failed in " + core::counted(ending.lost_decisions.count, "decision");
 }
 
 }  // namespace
@@ -216,6 +233,7 @@ Ending ending_of(const RunRecord& run, const EndFigures& figures) {
   Ending ending;
   ending.failed_policy = failed_policy(run);
   ending.restart = policy_restart(run);
+  ending.lost_decisions = lost_decisions(run);
   ending.as_meant = (end && end->outcome == MissionOutcome::replayed) ||
                     completed(run, course.as_relay ? std::nullopt : figures.landing_error_m);
   ending.sentence = end ? of_outcome(course, *end, outcome_time_s(run), figures)
@@ -245,8 +263,8 @@ Ending joint_ending(const std::vector<Ending>& robots) {
   }
   if (joint.as_meant) joint.sentence = "all " + std::to_string(robots.size()) + " robots flew as planned";
   for (std::size_t i = 0; i < robots.size(); ++i)
-    if (robots[i].as_meant && (robots[i].failed_policy || robots[i].restart))
-      joint.sentence += "; robot " + std::to_string(i + 1) + trouble_text(robots[i]).replace(0, 1, ":");
+    if (const std::string trouble = trouble_text(robots[i]); robots[i].as_meant && !trouble.empty())
+      joint.sentence += "; robot " + std::to_string(i + 1) + ":" + trouble.substr(1);
   return joint;
 }
 

@@ -15,6 +15,13 @@ struct FailedPolicy {
   std::string why;
 };
 
+/// Decisions that the policy gave no answer to, because of an exception for example. The vehicle held its
+/// course.
+struct LostDecisions {
+  std::size_t count = 0;
+  std::string last;  // what was wrong, and at which request
+};
+
 struct Ending {
   /// Whether the mission went as planned: like completed(), but a landing as a relay counts, too, and so does
   /// a recording that was replayed to its end.
@@ -24,6 +31,7 @@ struct Ending {
   std::string sentence;
   std::optional<FailedPolicy> failed_policy = {};
   std::optional<PolicyRestart> restart = {};  // the policy's, after a crash and the like
+  LostDecisions lost_decisions = {};
 };
 
 /// The key of mission.info with the time that is kept for after the way home.

@@ -154,7 +154,10 @@ std::string parameters_fault(const karst_policy_descriptor_t& d) {
   for (std::uint32_t i = 0; i < d.parameter_count; ++i) {
     std::string fault = parameter_fault(d.parameters[i]);
     if (fault.empty() && !seen.insert(string_of(d.parameters[i].id)).second) fault = "the id is given twice";
-    if (!fault.empty()) return id + ": parameter " + std::to_string(i) + ": " + fault;
+    if (fault.empty()) continue;
+    const std::string name = string_of(d.parameters[i].id);
+    return id + ": parameter " + std::to_string(i) + (is_identifier(name) ? " (" + name + "): " : ": ") +
+           fault;
   }
   return "";
 }

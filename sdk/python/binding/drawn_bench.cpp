@@ -2,7 +2,7 @@
 
 #include <pybind11/stl.h>
 
-#include <memory>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +11,7 @@
 
 #include "sdk/python/binding/arrays.h"
 #include "sdk/python/binding/policy_table.h"
+#include "sdk/python/binding/services.h"
 
 namespace karst::python {
 namespace {
@@ -53,6 +54,30 @@ class DrawnBench {
     bench_.frontiers.clear();
     for (py::ssize_t i = 0; i < whole.size(); ++i) bench_.frontiers.push_back(from_abi(first[i]));
   }
+  py::list sensors() const {
+    py::list all;
+    for (const Sensor& s : bench_.sensors) all.append(sensor_fields(s));
+    return all;
+  }
+  void set_sensors(const std::vector<py::dict>& all) {
+    names_.clear();
+    std::vector<Sensor> made;
+    for (const py::dict& d : all) {
+      Sensor s{};
+      names_.push_back(d["name"].cast<std::string>());
+      s.kind = d["kind"].cast<karst_sensor_kind_t>();
+      s.T_body_sensor.position = point_of(d["position_in_body"].cast<Doubles>(), "position_in_body");
+      const auto q = d["orientation_in_body"].cast<std::array<double, 4>>();
+      s.T_body_sensor.orientation = {q[0], q[1], q[2], q[3]};
+      const auto number = [&](const char* key) { return d[key].cast<double>(); };
+      s.min_range_m = number("min_range_m"), s.max_range_m = number("max_range_m");
+      s.horizontal_fov_rad = number("horizontal_fov_rad");
+      s.low_elevation_rad = number("low_elevation_rad"), s.high_elevation_rad = number("high_elevation_rad");
+      made.push_back(s);
+    }
+    for (std::size_t i = 0; i < made.size(); ++i) made[i].name = to_abi(names_[i]);
+    bench_.sensors = made;
+  }
   py::tuple decide() {
     const Decision d = bench_.decide();
     py::list goals;
@@ -74,6 +99,7 @@ class DrawnBench {
  private:
   DrawnMap map_;
   Bench bench_;
+  std::vector<std::string> names_;  // of the sensors, if the test set them
 };
 
 /// A field of the bench that is a vector of three numbers.
@@ -106,10 +132,12 @@ void bind_bench(py::module_& module) {
   bind_number<&Bench::battery_seconds_left>(c, "battery_seconds_left");
   bind_number<&Bench::mission_seconds_left>(c, "mission_seconds_left");
   c.def_property("frontiers", &DrawnBench::frontiers, &DrawnBench::set_frontiers);
+  c.def_property("sensors", &DrawnBench::sensors, &DrawnBench::set_sensors);
   c.def("place", &DrawnBench::place);
   c.def("offer", [](DrawnBench& b, std::uint32_t id, const Doubles& viewpoint, const Doubles& centroid,
                     std::uint32_t cells) {
-    b.bench().offer(id, point_of(viewpoint, "viewpoint"), point_of(centroid, "centroid"), cells);
+    const Vec3 from = point_of(viewpoint, "viewpoint"), middle = point_of(centroid, "centroid");
+    b.bench().offer(id, from, middle, cells);
   });
   c.def("offer_drawn", [](DrawnBench& b, std::uint32_t min_cells) { b.bench().offer_drawn(min_cells); });
   c.def("decide", &DrawnBench::decide);

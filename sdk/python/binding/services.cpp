@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -138,11 +139,14 @@ py::list Services::paths(const Doubles& from, const Doubles& goals, double toler
 
 py::array Services::newly_seen(std::size_t sensor, const Doubles& viewpoints,
                                std::optional<double> max_range_m) const {
-  if (sensor >= request().sensors.size())
-    throw Error("the vehicle has " + std::to_string(request().sensors.size()) + " sensors, the first is 0",
+  const std::size_t count = request().sensors.size();
+  if (sensor >= count)
+    throw Error(count == 0 ? "the vehicle has no sensor"
+                           : "there is no sensor " + std::to_string(sensor) + ": the vehicle has " +
+                                 std::to_string(count) + ", and the first is sensor 0",
                 KARST_ERROR_ARGUMENT);
   Sensor with = request().sensors[sensor];
-  if (max_range_m) with.max_range_m = *max_range_m;
+  if (max_range_m) with.max_range_m = std::min(*max_range_m, with.max_range_m);
   const std::vector<Viewpoint> from = viewpoints_of(viewpoints);
   return numbers(unlocked(term_, [&] { return request().newly_seen(with, from); }));
 }

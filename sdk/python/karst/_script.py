@@ -77,6 +77,9 @@ def policies_of(module: ModuleType) -> list[type[Policy]]:
         return own
     if inspect.isfunction(getattr(module, "decide", None)):
         return [_from_function(module)]
+    for value in vars(module).values():
+        if inspect.isclass(value) and issubclass(value, Policy) and value.__module__ == module.__name__:
+            raise Error(f"holds no policy: the class {value.__name__} has no decide(self, request)")
     raise Error("holds no policy: a class that derives from karst.Policy, or a function decide(request)")
 
 

@@ -81,6 +81,11 @@ class Sensor:
     low_elevation_rad: float
     high_elevation_rad: float
 
+    @classmethod
+    def of(cls, fields: dict[str, Any]) -> Sensor:
+        """As the module's part in C++ gives it."""
+        return cls(**fields | {"kind": _member(SensorKind, fields["kind"])})
+
 
 @dataclass(frozen=True)
 class Path:
@@ -233,7 +238,7 @@ class Request:
         self.__dict__.update(fields)
         self._services = services
         self.last_fate = _member(Fate, fields["last_fate"])
-        self.sensors = [Sensor(**s | {"kind": _member(SensorKind, s["kind"])}) for s in fields["sensors"]]
+        self.sensors = [Sensor.of(s) for s in fields["sensors"]]
         self.map = Map(services.map())
 
     @property
@@ -262,10 +267,12 @@ class Request:
         """A path to each goal with its points: one search each, so ask for the few that matter."""
         return [Path(*p) for p in self._services.paths(start, goals, tolerance_m)]
 
-    def newly_seen(self, viewpoints: Points, sensor: int = 0, max_range_m: float | None = None) -> np.ndarray:
+    def newly_seen(self, viewpoints: Points, sensor: int = 0, max_range_m: float | None = 10.0) -> np.ndarray:
         """Unknown cells that a sensor would see from each of (n, 4) viewpoints x, y, z, heading: (n,) uint64.
 
-        The cost grows with the cube of the range: a shorter one counts near cells only.
+        Rays pass through unknown cells, up to ``max_range_m`` or the sensor's own range, whichever is shorter;
+        None: to the sensor's own. Cost and count grow with the cube of the range: a LiDAR's 50 m take seconds.
+        ``sensor``: its place in ``sensors``. Raises karst.Error if the vehicle has no such sensor.
         """
         return self._services.newly_seen(sensor, viewpoints, max_range_m)
 
@@ -310,7 +317,7 @@ class Request:
         if camera is None:
             return None
         fields, incidence_rad, period_s = camera
-        return Sensor(**fields | {"kind": _member(SensorKind, fields["kind"])}), incidence_rad, period_s
+        return Sensor.of(fields), incidence_rad, period_s
 
     def imaged_states(self, points: Points) -> np.ndarray:
         """Whether the surface cell at each point was imaged (karst_abi_imaged.h). Raises without a camera."""

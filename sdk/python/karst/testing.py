@@ -25,6 +25,7 @@ policy is called through the same tables as in a flight.
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 import traceback
 from typing import Any, Mapping, Sequence
@@ -33,9 +34,9 @@ import numpy as np
 
 from . import _hosted, _karst
 from .errors import Error
-from .parameters import Text, parameters_of
+from .parameters import Integer, Real, Text, parameters_of
 from .policy import Policy
-from .request import EventKind, Points
+from .request import EventKind, Points, Sensor
 from .values import Answer, Explored, Fly, GoHome, Goal, Hold, Tour
 
 
@@ -48,6 +49,10 @@ class Bench:
     These attributes are the content of the next request: ``position``, ``start``, ``direction_of_flight``,
     ``last_goal`` ((3,), m), ``heading_rad``, ``time_s``, ``seconds_before_homing``, ``battery_fraction``,
     ``battery_seconds_left``, ``mission_seconds_left``, and ``frontiers``, a record array as in a request.
+
+    ``sensors`` is a list of karst.Sensor; by default a LiDAR of 50 m. Their views are counted cell by cell here: a
+    shorter range saves much time, ``bench.sensors = [dataclasses.replace(bench.sensors[0], max_range_m=8)]``.
+    Cells outside the drawing are unknown, also above and below a single layer.
     """
 
     def __init__(
@@ -63,6 +68,8 @@ class Bench:
         object.__setattr__(self, "_bench", _raising(_karst.Bench, policy, resolution_m, layers, values))
 
     def __getattr__(self, name: str) -> Any:
+        if name == "sensors":
+            return [Sensor.of(fields) for fields in self._bench.sensors]
         return getattr(self._bench, name)
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -70,6 +77,8 @@ class Bench:
             raise AttributeError(f"a bench has no {name}")
         if name == "frontiers":
             value = _records(value, self._bench.frontiers.dtype)
+        if name == "sensors":
+            value = [dataclasses.asdict(sensor) for sensor in value]
         setattr(self._bench, name, value)
 
     def place(self, letter: str) -> np.ndarray:
@@ -130,7 +139,12 @@ def _records(rows: Any, dtype: np.dtype) -> np.ndarray:
 
 
 def _text(name: str, value: Any, parameter: Any) -> str:
-    """As the bench takes it: what is no number would count as 0."""
+    """As the bench takes it. A value that no flight would allow is an error, as there."""
+    if isinstance(parameter, (Integer, Real)) and isinstance(value, (int, float, np.number)):
+        if not parameter.low <= value <= parameter.high:
+            raise Error(f"the parameter {name} is {value}, not in {parameter.low:g} to {parameter.high:g}")
+    if isinstance(parameter, Text) and parameter.choices and value not in parameter.choices:
+        raise Error(f"the parameter {name} is {value!r}, not one of {', '.join(parameter.choices)}")
     if not isinstance(parameter, Text) and not isinstance(value, (bool, int, float, np.number)):
         if parameter is not None and value not in ("true", "false"):
             raise Error(f"the parameter {name} is {value!r}, not a number")

@@ -112,12 +112,17 @@ def answer_fields(answer: Answer) -> tuple[int, bool, str, list[Goal]]:
         return GOALS, False, "", _goals([answer])
     if isinstance(answer, (list, tuple)) or hasattr(answer, "__next__"):
         return GOALS, False, "", _goals(answer)
-    raise TypeError(f"an answer is goals, karst.Hold, karst.Explored or karst.GoHome, not {_what(answer)}")
+    expected = "goals, karst.Tour, karst.Hold, karst.Explored or karst.GoHome"
+    if isinstance(answer, (np.void, np.ndarray)):
+        raise TypeError(f"an answer is {expected}, not rows of frontiers: karst.goal_at makes a goal of each")
+    raise TypeError(f"an answer is {expected}, not {_what(answer)}")
 
 
 def _goals(goals: Iterable[Goal]) -> list[Goal]:
     goals = list(goals)
     for i, goal in enumerate(goals):
+        if isinstance(goal, np.void):
+            raise TypeError(f"goal {i} is a row of frontiers: karst.goal_at makes a goal of it")
         if not isinstance(goal, Goal):
             raise TypeError(f"goal {i} is {_what(goal)}, not a karst.Goal")
         for name in ("heading_rad", "tolerance_m", "max_speed_mps", "score"):

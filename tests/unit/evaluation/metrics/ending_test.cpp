@@ -312,6 +312,23 @@ TEST(Ending, NamesAPolicyThatFailedOnTheWay) {
             "home because nothing was left to explore; the policy failed, and the fallback took over");
 }
 
+// An exception in a decision or two was told by a line of the log alone.
+TEST(Ending, CountsDecisionsThatThePolicyFailed) {
+  const auto decision = [](double t, const std::string& reason) {
+    return line(t, event::Decision{core::Outcome::hold, "mine", reason});
+  };
+  const Ending e = ending(
+      explores() + decision(5, "mine failed: decide(): KeyError: 'x' (mine.py, line 3), request 4 at 5.0 s") +
+      decision(6, "the goal is near") +
+      decision(7, "mine failed: decide(): ValueError: y, request 6 at 7.0 s") + home(64, "explored: ") +
+      land(90) + landed(92));
+  EXPECT_EQ(e.lost_decisions.count, 2u);
+  EXPECT_EQ(e.lost_decisions.last, "decide(): ValueError: y, request 6 at 7.0 s");
+  EXPECT_EQ(e.sentence, "home because nothing was left to explore; the policy failed in 2 decisions");
+  EXPECT_TRUE(e.as_meant);
+  EXPECT_EQ(ending(explores() + landed(92)).lost_decisions.count, 0u);
+}
+
 std::string restarted(const std::string& why) {
   return line(8.7, event::Log{"warning: half_visits broke, and was started once more: " + why});
 }
