@@ -210,6 +210,7 @@ class Environment(_Base):
             self._flight.wait()
             self._flight = None
             self._said.close()
+            (self.run_folder / "run.lock").unlink(missing_ok=True)  # of a flight that was killed
         self._request = None
 
     def _receive(self) -> bool:
