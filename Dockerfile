@@ -7,7 +7,7 @@ WORKDIR /karst
 RUN apt-get update && apt-get install -y --no-install-recommends make
 # Before the sources: a change of theirs installs nothing again.
 COPY .ci .ci
-RUN .ci/install && .ci/install deb
+RUN .ci/install build && .ci/install deb
 COPY . .
 RUN make deb
 

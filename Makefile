@@ -17,10 +17,10 @@ help:
 	@echo "make fuzz     every reader of files under libFuzzer, FUZZ_SECONDS=30 each"
 	@echo "make docs     the documentation as a site with search and the reference of the headers; no dead links"
 	@echo "make install  into PREFIX (/usr/local)"
-	@echo "make deb      Debian packages karst, karst-sdk and karst-doc, in $(BUILD)/packages (docs/install.md)"
+	@echo "make deb      Debian packages karst, karst-sdk, karst-python and karst-doc, in $(BUILD)/packages (docs/install.md)"
 
 build:
-	@.ci/install
+	@.ci/install build
 	@cmake -S . -B $(BUILD) -G Ninja -DKARST_TESTS=OFF -DKARST_FLIGHT_ONLY=OFF $(CMAKE_FLAGS) >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 

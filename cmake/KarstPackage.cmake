@@ -48,8 +48,22 @@ Tutorials, guides, reference and measured results of karst, which flies
 exploration policies for cave-flying UAVs, and example missions, campaigns and
 policies.")
 
+if(TARGET karst_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME karst-python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "karst (= ${PROJECT_VERSION}), python3, python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION
+"policies in Python for karst, its results as arrays, and an environment
+With this package, karst flies exploration policies that are a class in a file of
+Python. The module karst tests them, reads flights and campaigns as arrays and
+data frames, plots them, and offers an environment to learn policies in.")
+endif()
+
 # Each package says under which license it is, where Debian's tools look.
-foreach(part karst sdk doc)
+foreach(part ${CPACK_COMPONENTS_ALL})
   string(TOUPPER ${part} upper)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/copyright COMPONENT ${part}
           DESTINATION share/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})

@@ -8,6 +8,7 @@
 #include "sdk/check/tests.h"
 #include "sdk/host/boundary/call_plugin.h"
 #include "sdk/host/boundary/text.h"
+#include "sdk/host/plugin/script_file.h"
 
 namespace karst::check {
 namespace {
@@ -63,6 +64,7 @@ void parameters(Context& c) {
 }
 
 void exports(Context& c) {
+  if (host::is_script(c.file)) throw NotApplicable{"it is no shared object"};
   std::vector<std::string> names;
   try {
     names = exported_symbols(c.file);

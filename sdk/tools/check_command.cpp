@@ -163,7 +163,7 @@ void write_answers(const CheckArguments& args) {
 }
 
 void add_common(CLI::App& app, CheckArguments& args) {
-  app.add_option("file", args.options.file, "policy plugin (.so)")->type_name(kFile)->check(not_empty());
+  app.add_option("file", args.options.file, "policy plugin (.so) or file of Python (.py)")->type_name(kFile)->check(not_empty());
   app.add_option("--policy", args.options.policy, "only this policy of the file")->check(not_empty());
   app.add_option("--seed", args.options.seed, "seed of caves, flights and damage; default 1")
       ->type_name("UINT")

@@ -251,7 +251,7 @@ void add_compare_command(CLI::App& app) {
   compare_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
       ->type_name(kSetting)
       ->allow_extra_args(false);
-  compare_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+  compare_app->add_option("--plugin", args->plugins, "file with policies (.so or .py) to look in first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->expected(1);

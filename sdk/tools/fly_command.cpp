@@ -306,7 +306,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
                    "file with a policy and its parameters (" + core::doc_path("docs/tune.md") + ")")
       ->type_name(kFile)
       ->check(not_empty());
-  fly_app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+  fly_app->add_option("--plugin", args->plugins, "file with policies (.so or .py) to look in first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());

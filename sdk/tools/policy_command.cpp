@@ -89,7 +89,7 @@ CLI::App& add_policy_command(CLI::App& app) {
   add_policy_new(*policy);
   CLI::App* list =
       policy->add_subcommand("list", "List policies, and plugins that are broken with the reason");
-  list->add_option("--plugin", args->plugins, "plugin file (.so) to look at first")
+  list->add_option("--plugin", args->plugins, "file with policies (.so or .py) to look at first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/output_file.h"
@@ -37,7 +38,7 @@ struct Template {
 
 constexpr std::string_view kSetting = "min_cells=20";
 
-std::array<Template, 4> templates() {
+std::array<Template, 5> templates() {
   return {
       {{"nearest", "flies to the nearest frontier", "my_nearest", ".cpp", nearest_policy(), nearest_test(),
         kSetting},
@@ -45,7 +46,9 @@ std::array<Template, 4> templates() {
         kSetting},
        {"memory", "remembers across decisions: branch by branch", "my_memory", ".cpp", memory_policy(),
         memory_test(), kSetting},
-       {"c", "in C: flies to the lowest frontier", "deepest", ".c", c_policy(), c_test(), "max_path=50"}}};
+       {"c", "in C: flies to the lowest frontier", "deepest", ".c", c_policy(), c_test(), "max_path=50"},
+       {"python", "in Python: flies to the nearest frontier", "my_nearest", ".py", python_policy(),
+        python_test(), kSetting}}};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -96,8 +99,10 @@ std::string cmake_of(const Template& from, const std::string& name) {
                              : renamed(policy_cmake(), "my_nearest", name);
 }
 
+bool is_compiled(const Template& from) { return from.ending != ".py"; }
+
 std::string readme_of(const Template& from, const std::string& name) {
-  std::string text = renamed(policy_readme(), "my_nearest", name);
+  std::string text = renamed(is_compiled(from) ? policy_readme() : python_readme(), "my_nearest", name);
   text = replaced(text, "@ending@", std::string(from.ending));
   text = replaced(text, "@setting@", std::string(from.setting));
   // For a debugger: without class or file the name would fit functions of karst, too.
@@ -107,11 +112,13 @@ std::string readme_of(const Template& from, const std::string& name) {
 
 void write_folder(const fs::path& folder, const Template& from, const std::string& name,
                   const std::string& sdk) {
-  std::string cmake = cmake_of(from, name);
-  if (!sdk.empty())
-    cmake = replaced(cmake, "find_package(karst REQUIRED)",
-                     "find_package(karst REQUIRED HINTS [==[" + sdk + "]==])");
-  write(folder / "CMakeLists.txt", cmake);
+  if (is_compiled(from)) {
+    std::string cmake = cmake_of(from, name);
+    if (!sdk.empty())
+      cmake = replaced(cmake, "find_package(karst REQUIRED)",
+                       "find_package(karst REQUIRED HINTS [==[" + sdk + "]==])");
+    write(folder / "CMakeLists.txt", cmake);
+  }
   write(folder / "README.md", readme_of(from, name));
   const std::string id(from.id), ending(from.ending);
   write(folder / (name + ending), renamed(from.policy, id, name));
@@ -139,10 +146,15 @@ void write_policy(const std::string& name, const std::string& dir, const std::st
     throw;
   }
   print_out("%s: starts as: %s\n", folder.lexically_normal().c_str(), std::string(from->help).c_str());
-  const std::string ending(from->ending);
-  for (const std::string& file :
-       {name + ending, name + "_test" + ending, std::string("CMakeLists.txt"), std::string("README.md")})
-    print_out("  %s\n", file.c_str());
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& e : fs::directory_iterator(folder)) files.push_back(e.path().filename());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) print_out("  %s\n", file.c_str());
+  if (!is_compiled(*from)) {
+    print_out("next, in that folder:\n  %s python %s_test.py\nREADME.md says how to fly it\n",
+              karst_command().c_str(), name.c_str());
+    return;
+  }
   print_out(
       "next, in that folder:\n  cmake -S . -B build && cmake --build build && ctest --test-dir build\n"
       "README.md says how to fly it\n");

@@ -20,7 +20,12 @@ std::string_view c_policy();
 std::string_view c_test();
 std::string_view c_cmake();
 
-// Common to all of them; the text names my_nearest.
+// From examples/policies/python.
+std::string_view python_policy();
+std::string_view python_test();
+std::string_view python_readme();
+
+// Common to those that are compiled; the text names my_nearest.
 std::string_view policy_readme();
 
 }  // namespace karst::tools

@@ -137,7 +137,7 @@ void add_preflight_command(CLI::App& app) {
       ->type_name(kPolicy)
       ->check(not_empty())
       ->capture_default_str();
-  preflight_app->add_option("--plugin", args->look.plugins, "policy plugin file (.so) to look in first")
+  preflight_app->add_option("--plugin", args->look.plugins, "file with policies (.so or .py) to look in first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());

@@ -136,7 +136,7 @@ void add_request_replay_command(CLI::App& policy) {
   app->add_option("--policy", args->policy, "another policy than the one recorded")
       ->type_name(kPolicy)
       ->check(not_empty());
-  app->add_option("--plugin", args->plugins, "policy plugin file (.so) to look in first")
+  app->add_option("--plugin", args->plugins, "file with policies (.so or .py) to look in first")
       ->type_name(kFile)
       ->allow_extra_args(false)
       ->check(not_empty());

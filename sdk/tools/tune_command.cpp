@@ -232,7 +232,7 @@ void add_tune_command(CLI::App& app) {
   tune_app->add_option("--set", args->settings, "key=value for all; see karst fly --keys")
       ->type_name(kSetting)
       ->allow_extra_args(false);
-  tune_app->add_option("--plugin", args->plugin, "policy plugin file (.so) to look in first")
+  tune_app->add_option("--plugin", args->plugin, "file with policies (.so or .py) to look in first")
       ->type_name(kFile)
       ->check(not_empty());
   tune_app->add_option("--out", args->out, "folder for the preset, the table and the stores")

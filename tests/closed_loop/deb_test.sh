@@ -16,7 +16,7 @@ rm -rf "$work" && mkdir -p "$work"
   skip "$mirror cannot be reached"
 
 "$source/.ci/deb" "$binary" "$work/packages"
-for package in karst_*_amd64 karst-sdk_*_all karst-doc_*_all; do
+for package in karst_*_amd64 karst-python_*_amd64 karst-sdk_*_all karst-doc_*_all; do
   ls "$work/packages"/$package.deb > /dev/null
 done
 contents() { dpkg-deb --contents "$work/packages"/$1.deb | awk '{print $6}'; }
@@ -30,10 +30,12 @@ dpkg-deb --fsys-tarfile "$work/packages"/karst_*.deb | tar -xO ./usr/share/man/m
   grep -qF "/usr/share/doc/karst/examples/missions" || { echo "karst-fly(1) does not name the packaged examples"; exit 1; }
 has 'karst-sdk_*' ./usr/include/karst/policy.h
 has 'karst-sdk_*' ./usr/lib/cmake/karst/karstConfig.cmake
+has 'karst-python_*' ./usr/lib/karst/languages/py.so
+has 'karst-python_*' ./usr/lib/karst/python/karst/policy.py
 has 'karst-doc_*' ./usr/share/doc/karst/docs/README.md
 has 'karst-doc_*' ./usr/share/doc/karst/examples/missions/demo.info
-for package in karst karst-sdk karst-doc; do has "${package}_*" "./usr/share/doc/$package/copyright"; done
-for package in 'karst_*' 'karst-sdk_*' 'karst-doc_*'; do
+for package in karst karst-python karst-sdk karst-doc; do has "${package}_*" "./usr/share/doc/$package/copyright"; done
+for package in 'karst_*' 'karst-python_*' 'karst-sdk_*' 'karst-doc_*'; do
   if contents "$package" | grep -vE '^\./(usr/.*)?$'; then echo "these files are not below /usr"; exit 1; fi
 done
 depends=$(dpkg-deb --field "$work/packages"/karst_*.deb Depends)
@@ -69,6 +71,13 @@ in_root "cd /tmp && karst fly --quiet --cave cave.info --policy nearest_frontier
 grep -q "^landed: " "$work/fly.log" || { echo "it did not land"; exit 1; }
 test -s "$work/root/tmp/run/report.html"
 since "the first flight and its report are done"
+
+in_root "cd /tmp && karst policy new mine --template python && cd mine && karst python mine_test.py &&
+  python3 -c 'import karst; print(karst.load(\"/tmp/run\").metrics[\"outcome\"])' &&
+  karst policy check mine.py && karst fly --quiet --no-report --cave /tmp/cave.info --policy mine.py --time 60s --out run" \
+  > "$work/python.log" 2>&1 || { cat "$work/python.log"; exit 1; }
+grep -q "^landed: " "$work/python.log" || { cat "$work/python.log"; echo "the policy in Python did not land"; exit 1; }
+since "a policy in Python is written, tested and flown"
 
 in_root "apt-get update && apt-get install -y --no-install-recommends cmake g++ make" > "$work/apt.log" 2>&1 ||
   { cat "$work/apt.log"; exit 1; }

@@ -39,13 +39,15 @@ fs::path own_libraries() {
              : folder.parent_path() / "lib/karst";
 }
 
+std::string without_python() {
+  return "this karst has no Python: install the package karst-python, or build karst where pybind11-dev, "
+         "python3-dev and python3-numpy are installed";
+}
+
 const karst_plugin_t& enter_script(const std::string& path) {
   core::check_input(path, kMaxScriptBytes);
   const fs::path language = language_of(path);
-  if (!fs::exists(language))
-    throw InputError(path, "",
-                     "this karst opens no files of Python: install the package karst-python, or build karst "
-                     "where pybind11-dev and libpython3-dev are");
+  if (!fs::exists(language)) throw InputError(path, "", without_python());
   void* handle = dlopen(language.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr)
     throw InputError(path, "", "its language cannot be opened: " + std::string(dlerror()));

@@ -13,6 +13,9 @@ bool is_script(const std::filesystem::path& file);
 /// PREFIX/lib/karst, of the program that runs: there are the languages and what they need.
 std::filesystem::path own_libraries();
 
+/// Why there is no Python, and what to do.
+std::string without_python();
+
 /// Opens the file's language, and the file by it. Throws core::InputError with file, line and reason: no such
 /// language, not a file, a fault in it, no policy in it.
 const karst_plugin_t& enter_script(const std::string& path);

@@ -61,6 +61,9 @@ class DrawnBench {
                                   g.frontier_id, g.score, g.why));
     return py::make_tuple(d.outcome, d.in_order, d.reason, goals);
   }
+  void tell(karst_event_kind_t kind, const py::object& goal, const std::string& reason) {
+    bench_.tell(kind, goal_of(goal), reason);
+  }
   py::bytes saved() {
     const std::vector<unsigned char> bytes = bench_.saved();
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -114,6 +117,7 @@ void bind_bench(py::module_& module) {
   c.def("fail", [](DrawnBench& b, karst_event_kind_t kind, const std::string& reason) {
     b.bench().fail(kind, reason);
   });
+  c.def("tell", &DrawnBench::tell);
   c.def("saved", &DrawnBench::saved);
   c.def("restart", &DrawnBench::restart);
   c.def_property_readonly("log", &DrawnBench::log);

@@ -165,18 +165,6 @@ py::dict request_fields(const karst_request_t& r, const Request& view) {
       "mission_seconds_left"_a = view.mission_seconds_left);
 }
 
-Goal goal_of(const py::handle& o) {
-  Goal g;
-  g.position = point_of(o.attr("position").cast<Doubles>(), "the position of a goal");
-  g.heading_rad = o.attr("heading_rad").cast<double>();
-  g.tolerance_m = o.attr("tolerance_m").cast<double>();
-  g.max_speed_mps = o.attr("max_speed_mps").cast<double>();
-  g.frontier_id = o.attr("frontier_id").cast<std::uint32_t>();
-  g.score = o.attr("score").cast<double>();
-  g.why = o.attr("why").cast<std::string>();
-  return g;
-}
-
 std::int32_t decide(void* self, const karst_request_t* r, const karst_decision_sink_t* sink,
                     karst_error_t* error) noexcept {
   Hosted& h = self_of(self);
@@ -304,6 +292,18 @@ Entry* entry_of(const py::object& type) {
 }
 
 }  // namespace
+
+Goal goal_of(const py::handle& o) {
+  Goal g;
+  g.position = point_of(o.attr("position").cast<Doubles>(), "the position of a goal");
+  g.heading_rad = o.attr("heading_rad").cast<double>();
+  g.tolerance_m = o.attr("tolerance_m").cast<double>();
+  g.max_speed_mps = o.attr("max_speed_mps").cast<double>();
+  g.frontier_id = o.attr("frontier_id").cast<std::uint32_t>();
+  g.score = o.attr("score").cast<double>();
+  g.why = o.attr("why").cast<std::string>();
+  return g;
+}
 
 const karst_plugin_t* plugin_of(const std::vector<py::object>& classes) {
   static const std::array<PolicyOf, kMostPlugins> policies =

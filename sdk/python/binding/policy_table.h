@@ -16,4 +16,7 @@ namespace py = pybind11;
 /// no room for more (256 policies).
 const karst_plugin_t* plugin_of(const std::vector<py::object>& classes);
 
+/// A goal of Python (karst.Goal).
+Goal goal_of(const py::handle& goal);
+
 }  // namespace karst::python

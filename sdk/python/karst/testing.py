@@ -25,6 +25,8 @@ policy is called through the same tables as in a flight.
 
 from __future__ import annotations
 
+import sys
+import traceback
 from typing import Any, Mapping, Sequence
 
 import numpy as np
@@ -94,6 +96,10 @@ class Bench:
         """That goal failed."""
         _raising(self._bench.fail, int(kind), reason)
 
+    def tell(self, kind: EventKind, goal: Goal, reason: str = "") -> None:
+        """An event."""
+        _raising(self._bench.tell, int(kind), goal, reason)
+
     def saved(self) -> bytes:
         """What the policy's ``save`` keeps."""
         return _raising(self._bench.saved)
@@ -119,3 +125,19 @@ def _raising(call: Any, *arguments: Any) -> Any:
         return call(*arguments)
     except Error as e:
         raise e from _hosted.last_exception
+
+
+def main() -> None:
+    """Runs the functions ``test_...`` of the program, says how each went, and ends it with an exit code."""
+    failures = 0
+    for name, test in list(vars(sys.modules["__main__"]).items()):
+        if not name.startswith("test_") or not callable(test):
+            continue
+        try:
+            test()
+            print(f"passed: {name}")
+        except Exception:
+            failures += 1
+            print(f"FAILED: {name}")
+            traceback.print_exc()
+    sys.exit(1 if failures else 0)

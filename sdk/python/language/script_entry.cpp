@@ -2,6 +2,7 @@
 // policies of a file. All the rest is in the module.
 #include <Python.h>
 #include <dlfcn.h>
+#include <signal.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -63,6 +64,7 @@ std::string start_python() {
   config.use_hash_seed = 1;              // sets of strings have the same order each time
   config.hash_seed = 0;
   config.write_bytecode = 0;
+  config.buffered_stdio = 0;  // what a policy prints before a crash must not be lost
   const PyStatus program = PyConfig_SetBytesString(&config, &config.executable, KARST_PYTHON);
   const PyStatus status = PyStatus_Exception(program) ? program : Py_InitializeFromConfig(&config);
   PyConfig_Clear(&config);
@@ -79,6 +81,11 @@ std::string start_python() {
                          "    warnings.simplefilter('ignore')\n"
                          "    import numpy\n") != 0)
     return "numpy cannot be imported";
+  // Python's module signal takes Ctrl-C over when it is first imported, by whatever module.
+  struct sigaction interrupt {};
+  sigaction(SIGINT, nullptr, &interrupt);
+  Py_XDECREF(PyImport_ImportModule("signal"));
+  sigaction(SIGINT, &interrupt, nullptr);
   PyEval_SaveThread();  // each call takes the lock for itself
   return "";
 }
