@@ -10,7 +10,6 @@ volume over the flight time, as coverage_auc has it, over that of the starting w
 
 import argparse
 import json
-import os
 import resource
 import time
 from pathlib import Path
@@ -59,11 +58,12 @@ def shares(n):
     return raw / raw.sum()
 
 
-def train(groups, *, generations=8, minutes=np.inf, population=10, sigma=0.5, decay=0.92, flights=2, seed=1,
-          episode_s=EPISODE_S, report=print):
+def train(groups, *, generations=8, minutes=np.inf, population=10, sigma=0.7, decay=0.9, flights=2, seed=1,
+          episode_s=EPISODE_S, report=print, keep=None):
     """Weights, and a row for each generation. ``flights``: caves that each candidate flies through.
 
     ``minutes``: no generation begins that would not end within this time of the processor, as far as known.
+    ``keep``: called with weights and rows after each generation.
     """
     rng = np.random.default_rng(seed)
     mean, curve, begin_s, flown = NEAREST_ONLY.copy(), [], cpu_s(), 0
@@ -96,6 +96,8 @@ def train(groups, *, generations=8, minutes=np.inf, population=10, sigma=0.5, de
             report(f"generation {generation + 1}: {100 * gains.mean():+.1f} % on average, "
                    f"{100 * gains.max():+.1f} % the best; {flown} flights, {curve[-1]['cpu_minutes']:.1f} min")
             sigma *= decay
+            if keep is not None:
+                keep(mean, curve)
     return mean, curve
 
 
@@ -103,6 +105,38 @@ def cpu_s():
     """Processor time of this process and of the flights that have ended."""
     return sum(u.ru_utime + u.ru_stime
                for u in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+
+
+def policy_text(weights):
+    """The file of a policy with these weights: it needs frontier_features.py beside it."""
+    numbers = "".join(f'    "{name}": {weight!r},\n' for name, weight in weights.items())
+    return f'''"""A linear policy whose weights were learned: see train.py and learning_a_policy.ipynb."""
+
+import numpy as np
+
+import karst
+from frontier_features import NAMES, Features, decide
+
+WEIGHTS = {{
+{numbers}}}
+
+
+class LearnedFrontier(karst.Policy):
+    """Flies to the frontier with the highest weighted sum of features; the weights were learned."""
+
+    def __init__(self):
+        self.features = Features()
+        self.weights = np.array([WEIGHTS[name] for name in NAMES])
+
+    def decide(self, request):
+        return decide(self.features, self.weights, request)
+
+    def save(self):
+        return self.features.flown
+
+    def restore(self, saved):
+        self.features.flown = saved
+'''
 
 
 def main():
@@ -114,23 +148,25 @@ def main():
     parser.add_argument("--out", default="learned_weights.json")
     a = parser.parse_args()
     begin = time.time()
-    settings = {"population": 10, "sigma": 0.5, "decay": 0.92, "flights": 2, "seed": a.seed}
+    settings = {"population": 10, "sigma": 0.7, "decay": 0.9, "flights": 2, "seed": a.seed}
     groups = caves(a.caves)
 
     def report(line):
         print(line, flush=True)
 
-    weights, curve = train(groups, generations=a.generations, minutes=a.minutes, report=report, **settings)
-    record = {
-        "weights": dict(zip(NAMES, np.round(weights, 4).tolist())),
-        "start": dict(zip(NAMES, NEAREST_ONLY.tolist())),
-        "settings": settings | {"presets": PRESETS, "cave_seeds": CAVE_SEEDS, "flight_s": FLIGHT_S,
-                                "episode_s": EPISODE_S, "vehicle": "lidar_uav", "karst": karst.__version__},
-        "budget": {"flights": curve[-1]["flights"], "cpu_minutes": curve[-1]["cpu_minutes"],
-                   "wall_minutes": round((time.time() - begin) / 60, 1), "cores": os.cpu_count()},
-        "curve": curve,
-    }
-    Path(a.out).write_text(json.dumps(record, indent=1) + "\n")
+    def keep(weights, curve):
+        record = {
+            "weights": dict(zip(NAMES, np.round(weights, 4).tolist())),
+            "start": dict(zip(NAMES, NEAREST_ONLY.tolist())),
+            "settings": settings | {"presets": PRESETS, "cave_seeds": CAVE_SEEDS, "flight_s": FLIGHT_S,
+                                    "episode_s": EPISODE_S, "vehicle": "lidar_uav", "karst": karst.__version__},
+            "budget": {"flights": curve[-1]["flights"], "cpu_minutes": curve[-1]["cpu_minutes"],
+                       "wall_minutes": round((time.time() - begin) / 60, 1), "cores": 1},
+            "curve": curve,
+        }
+        Path(a.out).write_text(json.dumps(record, indent=1) + "\n")
+
+    train(groups, generations=a.generations, minutes=a.minutes, report=report, keep=keep, **settings)
 
 
 if __name__ == "__main__":
