@@ -37,16 +37,17 @@ class Features:
         there = near["viewpoint"] - request.position
         straight_m = np.maximum(np.linalg.norm(there, axis=1), 1e-9)
         turn = 0.5 * (1 - there @ request.direction_of_flight / straight_m)
-        known = request.last_fate == karst.Fate.UNDER_WAY
-        under_way = known & (np.linalg.norm(near["viewpoint"] - request.last_goal, axis=1) < SAME_PLACE_M)
+        flies_to_goal = request.last_fate == karst.Fate.UNDER_WAY
+        under_way = flies_to_goal & (np.linalg.norm(near["viewpoint"] - request.last_goal, axis=1) < SAME_PLACE_M)
         around = near["unknown_cells"] + near["free_cells"].astype(float)
         off_path_m = np.linalg.norm(near["centroid"][:, None] - self.flown, axis=2).min(axis=1)
         gain_m3 = self._gain_m3(request, near)
         time_s = 1.5 + near["path_length_m"] / (0.75 * request.max_speed_mps) + 3 * turn
         from_start_m = request.path_lengths(
             request.start_position, np.vstack([near["viewpoint"], request.position]), request.clearance_m)
-        deeper_m = from_start_m[:-1] - from_start_m[-1]
-        deeper_m = np.where(np.isfinite(deeper_m), deeper_m, 0.0)
+        known = np.isfinite(from_start_m)
+        deeper_m = np.where(known, from_start_m, 0.0)[:-1] - np.where(known, from_start_m, 0.0)[-1]
+        deeper_m = np.where(known[:-1] & known[-1], deeper_m, 0.0)
         return np.column_stack([
             near["path_length_m"] / 10,
             turn,

@@ -53,7 +53,7 @@ def markdown(notebook, name, pictures):
         elif cell.cell_type == "code":
             parts.append(f"```python\n{cell.source.rstrip()}\n```")
             for output in merged(cell.outputs):
-                parts += shown(output, name, pictures, files)
+                parts += shown(output, name, pictures, files, cell.metadata.get("alt", "Plot"))
     return "\n\n".join(part for part in parts if part) + "\n", files
 
 
@@ -74,7 +74,7 @@ def linked(text):
     return text.replace(f"]({ROOT_LINK}docs/", "](../")
 
 
-def shown(output, name, pictures, files):
+def shown(output, name, pictures, files, alternative):
     """An output as Markdown: a picture, a table or text."""
     if output.output_type == "stream":
         return [fenced(output.text)] if output.name == "stdout" else []
@@ -82,16 +82,12 @@ def shown(output, name, pictures, files):
     if "image/png" in data:
         file = f"{name}_{len(files) + 1}.png"
         files[file] = base64.b64decode(data["image/png"])
-        return [f"![{alternative(output, file)}]({pictures}/{file})"]
+        return [f"![{alternative}]({pictures}/{file})"]
     if "text/html" in data and "<table" in data["text/html"]:
         return [table(data["text/html"])]
     if "text/markdown" in data:
         return [data["text/markdown"]]
     return [fenced(data["text/plain"])] if "text/plain" in data else []
-
-
-def alternative(output, file):
-    return output.get("metadata", {}).get("alt", f"Plot: {Path(file).stem.replace('_', ' ')}")
 
 
 def fenced(text):

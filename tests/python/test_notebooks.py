@@ -100,3 +100,15 @@ def test_notebooks_are_kept_without_output():
     for name in to_docs.NAMES:
         for cell in json.loads((NOTEBOOKS / f"{name}.ipynb").read_text())["cells"]:
             assert cell["cell_type"] != "code" or (cell["outputs"] == [] and cell["execution_count"] is None)
+
+
+def test_the_pages_have_the_cells_of_the_notebooks():
+    """`examples/notebooks/to_docs.py` makes the pages anew."""
+    for name in to_docs.NAMES:
+        page = (NOTEBOOKS.parents[1] / f"docs/notebooks/{name}.md").read_text()
+        for cell in json.loads((NOTEBOOKS / f"{name}.ipynb").read_text())["cells"]:
+            source = "".join(cell["source"]).rstrip()
+            shown = to_docs.linked(source) if cell["cell_type"] == "markdown" else f"```python\n{source}\n```"
+            assert shown in page, f"docs/notebooks/{name}.md is older than {name}.ipynb"
+        for picture in re.findall(r"\]\((images/[^)]+)\)", page):
+            assert (NOTEBOOKS.parents[1] / "docs/notebooks" / picture).exists()
