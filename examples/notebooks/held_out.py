@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Compares the learned policy with nearest_frontier in caves that the training did not use.
 
-    held_out.py [--out held_out.json] [--folder runs/held_out] [--jobs 2]
+    held_out.py [--out held_out.json] [--jobs 2]
 
 Presets that the training used come with other seeds, and three presets are new. Caves, seeds, flight time and figure
 stand here, so that they were decided before the flights.
@@ -14,26 +14,31 @@ from pathlib import Path
 
 import karst
 
-CAVES = {"medium": 901, "vertical": 902, "maze": 903, "small": 904, "tight": 905, "large": 906}
+CAVES = {"medium": 921, "vertical": 922, "maze": 923, "small": 924, "tight": 925, "large": 926}
 SEEDS = 4
 FLIGHT_S = 180
 METRIC = "coverage_auc"
 POLICY, BASELINE = "learned_frontier", "nearest_frontier"
 
 
-def compare(folder, caves=CAVES, seeds=SEEDS, flight_s=FLIGHT_S, jobs=1, caves_in="caves/held_out"):
-    """The campaign, flown or gone on with."""
-    files = []
+def campaign_text(caves, seeds, flight_s):
+    """A campaign file. Its paths are relative to it."""
+    files = "".join(f"cave {{ file caves/held_out/{preset}-{seed}.info }}\n" for preset, seed in caves.items())
+    return (f'flight_time "{flight_s} s"\nseeds {seeds}\nmetric {METRIC}\n'
+            f"contestant {{ policy {POLICY}.py }}\ncontestant {{ policy {BASELINE} }}\n{files}")
+
+
+def compare(name, caves=CAVES, seeds=SEEDS, flight_s=FLIGHT_S, jobs=1):
+    """The campaign of that name, flown or gone on with."""
     for preset, seed in caves.items():
-        stem = Path(caves_in, f"{preset}-{seed}")
+        stem = Path(f"caves/held_out/{preset}-{seed}")
         stem.parent.mkdir(parents=True, exist_ok=True)
         if not stem.with_suffix(".info").exists():
             karst.run_karst(["cave", "generate", "--preset", preset, "--seed", str(seed), "--out", stem])
-        files.append(stem.with_suffix(".info"))
-    karst.run_karst(["compare", f"{POLICY}.py", BASELINE, "--caves", *files, "--seeds", str(seeds), "--time",
-                     f"{flight_s} s", "--metric", METRIC, "--jobs", str(jobs), "--keep", "figures", "--quiet",
-                     "--out", folder])
-    return karst.load(folder)
+    Path(f"{name}.info").write_text(campaign_text(caves, seeds, flight_s))
+    karst.run_karst(["compare", f"{name}.info", "--jobs", str(jobs), "--keep", "figures", "--quiet",
+                     "--out", f"runs/{name}"])
+    return karst.load(f"runs/{name}")
 
 
 def record(campaign):
@@ -51,10 +56,9 @@ def record(campaign):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", default="held_out.json")
-    parser.add_argument("--folder", default="runs/held_out")
     parser.add_argument("--jobs", type=int, default=1)
     a = parser.parse_args()
-    found = record(compare(a.folder, jobs=a.jobs))
+    found = record(compare("held_out", jobs=a.jobs))
     Path(a.out).write_text(json.dumps(found, indent=1) + "\n")
     print(found["sentence"])
 
