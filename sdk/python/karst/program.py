@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import os
+import re
 import shutil
 import signal
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
+from ._karst import version
 from .errors import Error
 
 
@@ -16,8 +19,27 @@ def program() -> Path:
     """The karst program to run.
 
     It is the one that the environment variable KARST names, else the one that was installed with this
-    package, else the one on the PATH. Raises Error, which says where it was looked for.
+    package, else the one on the PATH. Raises Error, which says where it was looked for, or that it is of
+    another version than this module.
     """
+    found = _found()
+    said = _version_of(str(found))
+    if said != version:
+        raise Error.at(found, "", f"is version {said}, and this module is {version}: install one of them anew")
+    return found
+
+
+@functools.cache
+def _version_of(file: str) -> str:
+    try:
+        said = subprocess.run([file, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    except OSError as e:
+        raise Error.at(file, "", f"cannot be run: {e.strerror}") from e
+    number = re.search(r"\d+\.\d+\.\d+", said.stdout)
+    return number[0] if number else "unknown"
+
+
+def _found() -> Path:
     named = os.environ.get("KARST")
     if named:
         found = shutil.which(named)
