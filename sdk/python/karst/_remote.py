@@ -43,6 +43,8 @@ def _said(services: Any, of: str, name: str, arguments: tuple) -> tuple[str, Any
         return "said", getattr(asked, name)(*arguments)
     except Error as e:
         return "refused", str(e)
+    except Exception as e:  # a wrong argument is the caller's: this decision goes on
+        return "refused", f"{type(e).__name__}: {e}"
 
 
 class RemoteServices:

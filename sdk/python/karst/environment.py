@@ -158,11 +158,19 @@ class Environment(_Base):
         return self._observation, self._info()
 
     def step_begin(self, action: Action) -> None:
+        self._send(*self._checked(action))
+
+    def _checked(self, action: Action) -> tuple[bool, tuple]:
+        """Whether the action ends the exploration, and the answer as the ABI has it."""
         if self._request is None or self._pipe is None:
             raise Error("there is no flight: reset() begins one")
+        if self._request._services.ended:
+            raise Error("a step is under way: step_end() ends it")
         answer = self._answer_of(action)
-        fields = answer_fields(answer)
-        self._ended_by_caller = isinstance(answer, (Explored, GoHome))
+        return isinstance(answer, (Explored, GoHome)), answer_fields(answer)
+
+    def _send(self, ends: bool, fields: tuple) -> None:
+        self._ended_by_caller = ends
         self._before = self._request
         self._request._services.ended = True
         self._pipe.send(("answer", *fields))
@@ -272,10 +280,15 @@ class Environments:
         return [e.reset_end() for e in self.environments]
 
     def step(self, actions: Sequence[Action | None]) -> list[tuple | None]:
-        """As each one's step. None instead of an action leaves that environment as it is, and gives None."""
-        for e, action in zip(self.environments, actions, strict=True):
-            if action is not None:
-                e.step_begin(action)
+        """As each one's step. None instead of an action leaves that environment as it is, and gives None.
+
+        If one of the actions is none, Error is raised and no environment has taken a step.
+        """
+        pairs = list(zip(self.environments, actions, strict=True))
+        answers = [None if action is None else e._checked(action) for e, action in pairs]
+        for e, answer in zip(self.environments, answers):
+            if answer is not None:
+                e._send(*answer)
         return [None if a is None else e.step_end() for e, a in zip(self.environments, actions)]
 
     def close(self) -> None:
