@@ -15,7 +15,7 @@ from pathlib import Path
 import karst
 
 CAVES = {"medium": 921, "vertical": 922, "maze": 923, "small": 924, "tight": 925, "large": 926}
-SEEDS = 4
+SEEDS = 3
 FLIGHT_S = 180
 METRIC = "coverage_auc"
 POLICY, BASELINE = "learned_frontier", "nearest_frontier"
