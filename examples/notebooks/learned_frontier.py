@@ -7,15 +7,15 @@ from frontier_features import NAMES, Features, decide
 
 WEIGHTS = {
     "path": -1.0,
-    "turn": -0.1228,
-    "under_way": 0.0401,
-    "unknown": -0.567,
-    "size": 0.3405,
-    "gain": 0.1518,
-    "rate": -0.0749,
-    "off_path": -0.0035,
-    "deeper": 0.3283,
-    "up": 0.3514,
+    "turn": -0.683,
+    "under_way": -0.5096,
+    "unknown": -0.5721,
+    "size": 1.1086,
+    "gain": 0.8004,
+    "rate": -0.8677,
+    "off_path": 1.1139,
+    "deeper": 0.8942,
+    "up": 0.08,
 }
 
 
