@@ -21,7 +21,7 @@ from . import plots
 from ._karst import abi as __abi__
 from ._karst import version as __version__
 from .campaign import Campaign, Verdict
-from .environment import Environment
+from .environment import Environment, Environments
 from .errors import Error
 from .maps import read_map
 from .parameters import Boolean, Integer, Real, Text
@@ -33,7 +33,7 @@ from .run import Run
 from .values import Explored, Fly, Goal, GoHome, Hold, Tour, goal_at
 
 __all__ = [
-    "Boolean", "Campaign", "Cell", "Environment", "Error", "Event", "EventKind", "Explored", "Fate", "Fly",
-    "GoHome", "Goal", "Hold", "Integer", "Map", "Path", "Policy", "Real", "Request", "Run", "Sensor",
+    "Boolean", "Campaign", "Cell", "Environment", "Environments", "Error", "Event", "EventKind", "Explored", "Fate",
+    "Fly", "GoHome", "Goal", "Hold", "Integer", "Map", "Path", "Policy", "Real", "Request", "Run", "Sensor",
     "SensorKind", "Survey", "Text", "Tour", "Verdict", "goal_at", "load", "plots", "read_map", "run_karst",
 ]

@@ -165,6 +165,8 @@ class Environment(_Base):
         """As the flight takes them. Raises Error if the action is none, and then nothing has happened."""
         if self._request is None or self._pipe is None:
             raise Error("there is no flight: reset() begins one")
+        if self._request._services.ended:
+            raise Error("a step is under way: step_end() ends it")
         try:
             outcome, in_order, reason, goals = answer_fields(self._answer_of(action))
         except (TypeError, ValueError) as e:
