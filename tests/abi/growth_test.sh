@@ -49,7 +49,7 @@ plugin="-std=c++17 -O0 -Wall -Wextra -Werror -fPIC -shared -fvisibility=hidden"
 "$cxx" $plugin $includes careful.cpp -o careful.so
 "$cxx" $plugin -I"$source/sdk/abi" -I"$source/sdk/include" "$source/tests/abi/kept/1.0/right_hand.cpp" -o old.so
 "$cxx" -std=c++20 -O0 -Wall $includes -DKARST_VERSION_MAJOR=0 -DKARST_VERSION_MINOR=1 -DKARST_VERSION_PATCH=0 \
-  copy/tests/abi/growth/host_1_1.cpp copy/sdk/host/plugin/plugin_file.cpp copy/core_stack/common/input_file.cpp copy/sdk/host/plugin/process_state.cpp copy/sdk/host/boundary/text.cpp \
+  copy/tests/abi/growth/host_1_1.cpp copy/sdk/host/plugin/plugin_file.cpp copy/sdk/host/plugin/script_file.cpp copy/core_stack/common/input_file.cpp copy/sdk/host/plugin/process_state.cpp copy/sdk/host/boundary/text.cpp \
   -o host_1_1 -ldl -lm
 
 answer() { ./host_1_1 "$1" "$2" > answer.txt || { cat answer.txt; fail "$1 was not asked"; }; }
