@@ -9,6 +9,7 @@ followed by other values: see `execute`.
 
 import argparse
 import base64
+import os
 import re
 import shutil
 import tempfile
@@ -39,6 +40,7 @@ def execute(name, folder, timeout_s=1800, **parameters):
         at = next(i for i, cell in enumerate(notebook.cells) if "parameters" in cell.metadata.get("tags", []))
         text = "\n".join(f"{key} = {value!r}" for key, value in parameters.items())
         notebook.cells.insert(at + 1, nbformat.v4.new_code_cell(text))
+    os.environ.pop("MPLBACKEND", None)  # with it, a plot is no output of its cell
     NotebookClient(notebook, timeout=timeout_s, kernel_name="python3",
                    resources={"metadata": {"path": str(folder)}}).execute()
     return notebook
