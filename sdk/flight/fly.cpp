@@ -215,9 +215,9 @@ std::vector<PolicyPrinted> MissionFlight::printed() const {
   for (std::size_t i = 0; i < loaded_.outputs.size(); ++i) {
     const host::PolicyOutput& output = *loaded_.outputs[i];
     if (!output.empty())
-      all.push_back({loaded_.policies[i]->name(),
+      all.push_back({i, loaded_.policies[i]->name(),
                      member_run_dir(request_.run_dir, mission_, i) / host::kPolicyOutputName,
-                     output.before_break(), output.problem()});
+                     output.before_break(), output.last_lines(), output.problem()});
   }
   return all;
 }

@@ -24,9 +24,11 @@ LoadedPolicies load_policies(const std::vector<Mission>& members, const FlightRe
 
 /// What a vehicle's policy printed in its own process.
 struct PolicyPrinted {
+  std::size_t vehicle = 0;
   std::string policy;
   std::filesystem::path file;
   std::string before_break;  // the last lines before the process broke; "" if it did not
+  std::string last_lines;    // of the whole flight
   std::string problem;       // why the file is incomplete; "" if it is not
 };
 

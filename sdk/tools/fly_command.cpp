@@ -105,10 +105,13 @@ void print_broken_policies(const std::vector<evaluation::Ending>& endings, const
   }
 }
 
-/// On standard error as well: a crash that the vehicle survived is the author's to look into.
-void print_last_output(const std::vector<flight::PolicyPrinted>& printed) {
+/// On standard error as well: a crash that the vehicle survived, and the traceback of an exception, are the
+/// author's to look into.
+void print_last_output(const std::vector<flight::PolicyPrinted>& printed,
+                       const std::vector<evaluation::Ending>& endings) {
   for (const flight::PolicyPrinted& p : printed) {
-    flight::show_last_lines(p.policy, p.before_break);
+    const bool lost = p.vehicle < endings.size() && endings[p.vehicle].lost_decisions.count > 0;
+    flight::show_last_lines(p.policy, p.before_break.empty() && lost ? p.last_lines : p.before_break);
     if (!p.problem.empty()) print_error("karst: %s\n", p.problem.c_str());
   }
 }
@@ -260,7 +263,7 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
       print_flight(outcome, request);
   }
   print_broken_policies(outcome.endings, request.run_dir, args);
-  print_last_output(outcome.printed);
+  print_last_output(outcome.printed, outcome.endings);
   if (!outcome.record_problem.empty())
     print_wrapped(stderr, 7, "karst: %s\nkarst: the %s record is incomplete: %s\n",
                   outcome.record_problem.c_str(), flight::is_team(mission) ? "flights'" : "flight's",
