@@ -42,7 +42,9 @@ def failed_three_times(flight: Flight, why: str) -> None:
     own = [d for d in flight.of("decision") if d["policy"] == "mine"]
     assert [d["outcome"] for d in own] == ["hold", "hold"]
     assert all(why in d["reason"] and f"request {i + 1} at" in d["reason"] for i, d in enumerate(own)), own
-    lines = [line for line in flight.err.splitlines() if why in line]
+    told = [line for line in flight.err.splitlines() if why in line]
+    lines = [line for line in told if line.startswith("karst: ")]
+    assert all(line.startswith(("karst: ", "  | ")) for line in told)  # the rest is what the policy printed
     assert len(lines) == 1 and "mine failed 3 times in a row" in lines[0] and "request 3 at" in lines[0]
     assert any(e["action"] == "fallback" and why in e["reason"] for e in flight.of("safety"))
     assert any(d["policy"] == "fallback" for d in flight.of("decision"))
