@@ -10,7 +10,7 @@ import karst
 NAMES = ["far_first", "near|first"]
 TEXT = "far_first covers more than near|first: 11.2 points\n"
 VERDICT = {
-    "metric": "coverage_auc", "declared": "coverage_auc", "subject": "coverage averaged over the flight", "unit": "%",
+    "metric": "coverage_auc", "declared": "coverage_auc", "subject": "coverage averaged over the flight", "unit": "", "is_fraction": True,
     "sentence": "far_first covers more than near|first: 11.2 points",
     "means": {
         "near|first": {"coverage_auc": 0.4, "coverage": None, "restricted_t90_s": 90.0},

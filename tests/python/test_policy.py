@@ -771,3 +771,29 @@ def test_a_view_is_no_longer_than_the_sensors_and_ten_metres_by_default():
 def test_the_bench_refuses_values_that_no_flight_allows(values, said):
     with pytest.raises(karst.Error, match=said):
         karst.testing.Bench(Looks, "...", parameters=values)
+
+
+class Keeps(karst.Policy):
+    """Keeps a copy of the map, and itself, for longer than it lives."""
+
+    left = []
+
+    def decide(self, request):
+        self.mine = self.decide  # a cycle: Python collects it some time later
+        Keeps.left.append(request.map.retained())
+        return karst.Hold()
+
+
+def test_a_kept_map_ends_with_its_policy():
+    import gc
+
+    bench = karst.testing.Bench(Keeps, "...")
+    bench.decide()
+    kept = Keeps.left[-1]
+    assert kept.cells([0.5, 0.5, 0.5])[0] == karst.Cell.FREE
+    del bench
+    gc.collect()
+    with pytest.raises(karst.Error, match="the policy that kept this map has ended"):
+        kept.cells([0.5, 0.5, 0.5])
+    Keeps.left.clear()
+    gc.collect()

@@ -127,7 +127,8 @@ ContestantSpec read_contestant(pt::ptree block, const std::string& source) {
   table.read(source, tree);
   if (c.policy.empty()) throw InputError(source, "contestant.policy", "is missing");
   c.plugin = core::beside(source, c.plugin);
-  if (const fs::path file = core::beside(source, c.policy); fs::exists(file))
+  std::error_code error;
+  if (const fs::path file = core::beside(source, c.policy); fs::exists(file, error))
     take_policy_file(c, file.string());
   return c;
 }

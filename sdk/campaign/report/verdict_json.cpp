@@ -82,10 +82,9 @@ ordered_json verdict_json(const CampaignResults& results, const std::string& met
       evaluation::metric_definitions()[static_cast<std::size_t>(verdicts.metric)];
   const std::vector<evaluation::Differences> by_contestant = comparable_figures(results, verdicts.metric);
   ordered_json out{
-      {"metric", options.metric},         {"declared", results.metric},
-      {"subject", subject_of(figure)},    {"unit", is_fraction(figure) ? "%" : std::string(figure.unit)},
-      {"sentence", verdicts.sentence},    {"means", means_of(results)},
-      {"ranking", ordered_json::array()}, {"pairs", ordered_json::array()}};
+      {"metric", options.metric},   {"declared", results.metric},         {"subject", subject_of(figure)},
+      {"unit", figure.unit},        {"is_fraction", is_fraction(figure)}, {"sentence", verdicts.sentence},
+      {"means", means_of(results)}, {"ranking", ordered_json::array()},   {"pairs", ordered_json::array()}};
   for (const RankedContestant& place : verdicts.ranking)
     out["ranking"].push_back(place_row(results, place,
                                        mean_interval(by_contestant[place.contestant], options,

@@ -8,7 +8,7 @@
 namespace karst::campaign {
 
 /// The verdict about one figure; `metric` "" is the one that the campaign declared: `metric`, `declared`,
-/// `subject` and `unit` (in words; "%" for shares), `sentence`, `means` (by contestant and figure, of what
+/// `subject` (in words), `unit`, `is_fraction`, `sentence`, `means` (by contestant and figure, of what
 /// all of them flew), `ranking` (best first: contestant, best_place, worst_place, groups, trials, failed,
 /// mean, low, high) and `pairs` (a, b, pairs, mean_a, mean_b, difference, low, high, p, rank_biserial,
 /// better, sentence). Values in the figure's own unit, shares as fractions; null for what is not known. Null

@@ -32,6 +32,9 @@ std::vector<std::string> split_path(const std::string& text) {
   return out;
 }
 
+/// A file that was named gets so many times as long to open as one that was found: it may load a model.
+constexpr double kNamed = 4;
+
 std::vector<std::string> plugins_in(const std::string& folder) {
   std::vector<std::string> out;
   std::error_code error;
@@ -74,7 +77,8 @@ std::vector<PolicyListing> list_policies(const SearchPath& path) {
     std::error_code error;
     const fs::path real = fs::weakly_canonical(file, error);
     if (!seen.emplace(error ? file : real.string(), true).second) continue;
-    for (PolicyListing& p : probe(file, path.probe_limit_s)) {
+    const bool is_named = std::find(path.files.begin(), path.files.end(), file) != path.files.end();
+    for (PolicyListing& p : probe(file, (is_named ? kNamed : 1) * path.probe_limit_s)) {
       if (p.broken.empty()) {
         const auto [first, is_new] = first_file.emplace(p.id, p.file);
         if (!is_new) p.shadowed_by = first->second;

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/json_text.h"
 #include "sdk/host/boundary/text.h"
 #include "sdk/host/plugin/parameters.h"
@@ -85,6 +86,7 @@ PolicyListing from_json(const std::string& file, const std::string& abi, const j
 }
 
 [[noreturn]] void run_child(const std::string& file, int out) {
+  setpgid(0, 0);  // with all that it may start
   const int null = open("/dev/null", O_RDWR);
   dup2(null, STDIN_FILENO);
   dup2(null, STDOUT_FILENO);
@@ -147,7 +149,10 @@ std::vector<PolicyListing> probe(const std::string& file, double limit_s) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!in_time) return broken(file, "did not say what it is in time: opening it hangs");
+  kill(-child, SIGKILL);  // what it left behind
+  if (!in_time)
+    return broken(file,
+                  core::format_text("did not say what it is in time (%g s): opening it hangs", limit_s));
   if (WIFSIGNALED(status))
     return broken(file, std::string("crashes when opened: ") + strsignal(WTERMSIG(status)));
   const json said = core::json_of(text);

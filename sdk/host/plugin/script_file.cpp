@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <fstream>
-#include <regex>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
@@ -64,9 +63,10 @@ bool may_hold_policy(const fs::path& file) {
   std::error_code error;
   if (fs::file_size(file, error) > kMaxScriptBytes || error) return false;
   std::ifstream in(file);
-  static const std::regex policy(R"(^class\s+\w+\s*\(.*\bPolicy\b.*\)\s*:|^def\s+decide\s*\()");
   for (std::string line; std::getline(in, line);)
-    if (line.size() < 1000 && std::regex_search(line, policy)) return true;
+    if ((line.starts_with("class ") && line.find("Policy") != std::string::npos) ||
+        line.starts_with("def decide("))
+      return true;
   return false;
 }
 

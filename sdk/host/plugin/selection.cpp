@@ -50,7 +50,8 @@ PolicyListing find_policy(const std::string& name, const SearchPath& path) {
 std::optional<PolicyListing> policy_in_file(const std::string& text) {
   const std::filesystem::path file(text);
   if (!is_script(file) && file.extension() != ".so") return std::nullopt;
-  if (!std::filesystem::exists(file)) throw core::InputError(text, "", "there is no such file");
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw core::InputError(text, "", "there is no such file");
   const std::vector<PolicyListing> all = list_policies({{text}, {}});
   if (all.empty()) throw core::InputError(text, "", "holds no policy");
   if (!all.front().broken.empty()) throw core::InputError(text, "", all.front().broken);

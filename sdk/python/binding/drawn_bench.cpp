@@ -60,11 +60,11 @@ class DrawnBench {
     return all;
   }
   void set_sensors(const std::vector<py::dict>& all) {
-    names_.clear();
+    std::vector<std::string> names;
     std::vector<Sensor> made;
     for (const py::dict& d : all) {
       Sensor s{};
-      names_.push_back(d["name"].cast<std::string>());
+      names.push_back(d["name"].cast<std::string>());
       s.kind = d["kind"].cast<karst_sensor_kind_t>();
       s.T_body_sensor.position = point_of(d["position_in_body"].cast<Doubles>(), "position_in_body");
       const auto q = d["orientation_in_body"].cast<std::array<double, 4>>();
@@ -75,8 +75,9 @@ class DrawnBench {
       s.low_elevation_rad = number("low_elevation_rad"), s.high_elevation_rad = number("high_elevation_rad");
       made.push_back(s);
     }
-    for (std::size_t i = 0; i < made.size(); ++i) made[i].name = to_abi(names_[i]);
+    for (std::size_t i = 0; i < made.size(); ++i) made[i].name = to_abi(names[i]);
     bench_.sensors = made;
+    names_.swap(names);  // the texts stay where they are
   }
   py::tuple decide() {
     const Decision d = bench_.decide();

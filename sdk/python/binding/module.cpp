@@ -12,7 +12,8 @@ PYBIND11_MODULE(_karst, module) {
   module.attr("version") = KARST_VERSION;
   module.attr("abi") = std::to_string(KARST_ABI_MAJOR) + "." + std::to_string(KARST_ABI_MINOR);
   // The text of karst::Error is for karst.Error, so that a policy can catch it.
-  static py::object error = py::module_::import("karst.errors").attr("Error");
+  // Never freed: at the end of the process there is no Python to do so.
+  static const py::object& error = *new py::object(py::module_::import("karst.errors").attr("Error"));
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

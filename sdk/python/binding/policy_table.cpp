@@ -59,6 +59,7 @@ std::int32_t guarded(const karst_host_t* host, karst_error_t* error, F&& f) noex
 struct Hosted {
   const karst_host_t* host = nullptr;
   py::object policy;
+  std::shared_ptr<KeptMaps> maps = std::make_shared<KeptMaps>();
 };
 Hosted& self_of(void* self) { return *static_cast<Hosted*>(self); }
 
@@ -179,7 +180,7 @@ std::int32_t decide(void* self, const karst_request_t* r, const karst_decision_s
       Term& term;
       ~Ending() { term.end(); }
     } ending{*term};
-    const py::object services = py::cast(Services(h.host, view, term));
+    const py::object services = py::cast(Services(h.host, view, term, h.maps));
     const py::tuple answer = hosted().attr("decide")(h.policy, services, request_fields(*r, view));
     Decision decision;
     decision.outcome = answer[0].cast<karst_outcome_t>();
@@ -215,7 +216,10 @@ void deactivate(void* self) noexcept {
 
 void destroy(void* self) noexcept {
   karst_error_t ignored{};
-  guarded(self_of(self).host, &ignored, [&] { delete &self_of(self); });
+  guarded(self_of(self).host, &ignored, [&] {
+    self_of(self).maps->end();
+    delete &self_of(self);
+  });
 }
 
 std::int32_t save(void* self, const karst_state_sink_t* sink, karst_error_t* error) noexcept {

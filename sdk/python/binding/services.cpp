@@ -118,7 +118,9 @@ py::array Map::passages_at(const Doubles& points) const {
 }
 
 Map Map::retained() const {
-  return {unlocked(term_, [&] { return view().retained(); }), nullptr};
+  Map copy(unlocked(term_, [&] { return view().retained(); }), std::make_shared<Term>(), kept_);
+  kept_->add(copy.view_, copy.term_);
+  return copy;
 }
 
 py::array Services::path_lengths(const Doubles& from, const Doubles& goals, double tolerance_m) const {

@@ -9,6 +9,8 @@
 #include <optional>
 #include <shared_mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <karst/imaged.h>
 #include <karst/policy.h>
@@ -18,14 +20,14 @@
 
 namespace karst::python {
 
-/// Whether decide() still runs. What is asked of a request that has ended would read freed memory.
+/// For how long the host answers: while decide() runs, for example. Later questions would read freed memory.
 class Term {
  public:
-  /// Waits for what other threads of the policy are asking.
-  void end() {
+  /// Waits for what other threads of the policy are asking. `why` is what later questions are told.
+  void end(const char* why = "this request has ended: keep what it said, or request.map.retained()") {
     const py::gil_scoped_release they_may_end;
     const std::unique_lock none_asks(asking_);
-    ended_ = true;
+    ended_ = why;
   }
   /// It does not end while this is held. Not to be taken under Python's lock: end() may wait.
   std::shared_lock<std::shared_mutex> held() const {
@@ -34,19 +36,40 @@ class Term {
     return lock;
   }
   void require() const {
-    if (ended_)
-      throw Error("this request has ended: keep what it said, or request.map.retained()", KARST_ERROR_STATE);
+    if (const char* why = ended_) throw Error(why, KARST_ERROR_STATE);
   }
 
  private:
   mutable std::shared_mutex asking_;
-  std::atomic<bool> ended_ = false;
+  std::atomic<const char*> ended_ = nullptr;
+};
+
+/// The copies of maps that a policy keeps. The host takes them back when the policy ends: Python may hold its
+/// objects for longer.
+class KeptMaps {
+ public:
+  void add(const std::shared_ptr<MapView>& view, const std::shared_ptr<Term>& term) {
+    const std::lock_guard lock(adding_);
+    all_.push_back({view, term});
+  }
+  void end() {
+    for (const auto& [view, term] : all_) {
+      term->end("the policy that kept this map has ended");
+      if (const std::shared_ptr<MapView> left = view.lock()) *left = MapView();
+    }
+    all_.clear();
+  }
+
+ private:
+  std::mutex adding_;
+  std::vector<std::pair<std::weak_ptr<MapView>, std::shared_ptr<Term>>> all_;
 };
 
 /// The occupancy map. All calls release Python's lock while the host answers.
 class Map {
  public:
-  Map(MapView view, std::shared_ptr<Term> term) : view_(std::move(view)), term_(std::move(term)) {}
+  Map(MapView view, std::shared_ptr<Term> term, std::shared_ptr<KeptMaps> kept)
+      : view_(std::make_shared<MapView>(std::move(view))), term_(std::move(term)), kept_(std::move(kept)) {}
 
   py::dict info() const;
   py::array cells(const Doubles& points) const;
@@ -60,21 +83,23 @@ class Map {
 
  private:
   const MapView& view() const {
-    if (term_) term_->require();
-    return view_;
+    term_->require();
+    return *view_;
   }
 
-  MapView view_;
-  std::shared_ptr<Term> term_;  // none: a copy, which lasts
+  std::shared_ptr<MapView> view_;
+  std::shared_ptr<Term> term_;  // of the request; of a copy, of the policy
+  std::shared_ptr<KeptMaps> kept_;
 };
 
 /// The services of one request.
 class Services {
  public:
-  Services(const karst_host_t* host, const Request& request, std::shared_ptr<Term> term)
-      : host_(host), request_(request), term_(std::move(term)) {}
+  Services(const karst_host_t* host, const Request& request, std::shared_ptr<Term> term,
+           std::shared_ptr<KeptMaps> kept)
+      : host_(host), request_(request), term_(std::move(term)), kept_(std::move(kept)) {}
 
-  Map map() const { return {request().map, term_}; }
+  Map map() const { return {request().map, term_, kept_}; }
   py::array path_lengths(const Doubles& from, const Doubles& goals, double tolerance_m) const;
   py::list paths(const Doubles& from, const Doubles& goals, double tolerance_m) const;
   py::array newly_seen(std::size_t sensor, const Doubles& viewpoints,
@@ -110,6 +135,7 @@ class Services {
   const karst_host_t* host_;
   const Request& request_;
   std::shared_ptr<Term> term_;
+  std::shared_ptr<KeptMaps> kept_;
 };
 
 /// Name, kind and field of view.

@@ -66,6 +66,8 @@ class RemoteServices:
             kind, value = self._pipe.recv()
         except (EOFError, OSError):
             raise Error("the flight has ended") from None
+        except Exception as e:  # nothing was sent
+            raise Error(f"{name}() takes no such arguments: {e}") from None
         if kind == "refused":
             raise Error(value)
         return value

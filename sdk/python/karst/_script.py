@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.machinery
 import importlib.util
 import inspect
+import os
 import io
 import sys
 from pathlib import Path
@@ -24,7 +26,7 @@ for _stream in (sys.stdout, sys.stderr):
 
 def plugin_of_file(path: str) -> Any:
     """A capsule with the plugin. Raises Error with what the host says after the file's name."""
-    key = str(Path(path).resolve())
+    key = os.path.abspath(path)  # not what a link leads to: the policy is named by the file that was given
     if key not in _plugins:
         _plugins[key] = _karst.plugin_of(policies_of(module_of(key)))
     return _plugins[key]
@@ -38,7 +40,8 @@ def module_of(path: str) -> ModuleType:
     folder = str(Path(path).parent)
     if folder not in sys.path:
         sys.path.append(folder)
-    spec = importlib.util.spec_from_file_location(name, path)
+    loader = importlib.machinery.SourceFileLoader(name, path)  # whatever a link to it ends in
+    spec = importlib.util.spec_from_file_location(name, path, loader=loader)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses and pickle look there
     try:

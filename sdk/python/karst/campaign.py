@@ -163,7 +163,8 @@ class Campaign:
     def heading(self, metric: str | None = None) -> str:
         """The figure in words with the unit in which karst prints it, such as "final coverage (%)"."""
         verdict = self._verdict(metric)
-        return verdict["subject"] + (f" ({verdict['unit']})" if verdict["unit"] else "")
+        unit = "%" if verdict["is_fraction"] else verdict["unit"]
+        return verdict["subject"] + (f" ({unit})" if unit else "")
 
     def table(self, metric: str | None = None) -> pd.DataFrame:
         """Means of every figure, of the flights that all contestants flew; a row each, by place.

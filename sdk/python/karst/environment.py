@@ -273,6 +273,8 @@ class Environment(_Base):
         near = offered_frontiers(self._request, self.max_frontiers)
         if isinstance(action, np.ndarray) and action.ndim == 0:
             action = action.item()
+        if isinstance(action, (bool, np.bool_)):
+            raise Error("an action is a frontier's number, not true or false")
         if isinstance(action, (int, np.integer)):
             return goal_at(near[_row(action, near)])
         place = np.asarray(action) if not _holds_goals(action) else None

@@ -4,11 +4,14 @@
 #include <dlfcn.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "sdk/abi/karst_abi_script.h"
 
@@ -86,8 +89,10 @@ std::string start_python() {
   if (PyRun_SimpleString("import warnings\n"
                          "with warnings.catch_warnings():\n"
                          "    warnings.simplefilter('ignore')\n"
-                         "    import numpy\n") != 0)
-    return "numpy cannot be imported";
+                         "    import numpy\n") != 0) {
+    PyEval_SaveThread();
+    return "numpy cannot be imported: install python3-numpy";
+  }
   // Python's module signal takes Ctrl-C over when it is first imported, by whatever module.
   struct sigaction interrupt {};
   sigaction(SIGINT, nullptr, &interrupt);
@@ -99,8 +104,9 @@ std::string start_python() {
 
 const karst_plugin_t* plugin_of(const std::string& file, std::string& fault) {
   PyObject* const module = PyImport_ImportModule("karst._script");
-  PyObject* const capsule =
-      module == nullptr ? nullptr : PyObject_CallMethod(module, "plugin_of_file", "s", file.c_str());
+  PyObject* const capsule = module == nullptr ? nullptr
+                                              : PyObject_CallMethod(module, "plugin_of_file", "N",
+                                                                    PyUnicode_DecodeFSDefault(file.c_str()));
   const void* plugin = capsule == nullptr ? nullptr : PyCapsule_GetPointer(capsule, "karst_plugin_t");
   if (plugin == nullptr) fault = exception_text();
   Py_XDECREF(capsule), Py_XDECREF(module);
@@ -122,12 +128,11 @@ extern "C" KARST_EXPORT const karst_plugin_t* karst_script_entry(karst_text_t fi
                                                                  karst_error_t* error) KARST_NOEXCEPT {
   try {
     static std::mutex starting;
-    static bool started = false;
+    static bool tried = false;
+    static std::string& failure = *new std::string;
     const std::lock_guard lock(starting);
-    if (!started) {
-      if (const std::string fault = start_python(); !fault.empty()) return fill(error, fault), nullptr;
-      started = true;
-    }
+    if (!std::exchange(tried, true)) failure = start_python();
+    if (!failure.empty()) return fill(error, failure), nullptr;
     const PyGILState_STATE locked = PyGILState_Ensure();
     std::string fault;
     const karst_plugin_t* const plugin = plugin_of(std::string(file.data, file.length), fault);
