@@ -107,8 +107,7 @@ void described(Context& c) {
 std::vector<Test> entry_tests() {
   return {
       {"entry.opens", Level::basic, Of::file_gate,
-       "The file opens as a shared object, neither crashing nor ending the process, and its entry answers.",
-       opens},
+       "The file opens, neither crashing nor ending the process, and its entry answers.", opens},
       {"entry.handshake", Level::basic, Of::file_gate,
        "It was built for this ABI's major and for no newer minor.", handshake},
       {"entry.tables", Level::basic, Of::file_gate,

@@ -80,6 +80,18 @@ inline Frontier from_abi(const karst_frontier_cluster_t& c) {
           c.normal,       c.unknown_cells, c.free_cells, c.viewpoint.position, c.viewpoint.heading_rad,
           c.path_length_m};
 }
+inline karst_frontier_cluster_t to_abi(const Frontier& f) {
+  return {f.id,
+          f.cells,
+          f.centroid,
+          {f.low, f.high},
+          f.normal,
+          f.unknown_cells,
+          f.free_cells,
+          {f.viewpoint, f.viewpoint_heading_rad},
+          f.path_length_m,
+          {0, 0}};
+}
 
 /// A clear path through the map.
 struct Path {

@@ -33,17 +33,7 @@ class DrawnBench {
   }
   py::array frontiers() const {
     std::vector<karst_frontier_cluster_t> all;
-    for (const Frontier& f : bench_.frontiers)
-      all.push_back({f.id,
-                     f.cells,
-                     f.centroid,
-                     {f.low, f.high},
-                     f.normal,
-                     f.unknown_cells,
-                     f.free_cells,
-                     {f.viewpoint, f.viewpoint_heading_rad},
-                     f.path_length_m,
-                     {0, 0}});
+    for (const Frontier& f : bench_.frontiers) all.push_back(to_abi(f));
     return records(all);
   }
   void set_frontiers(const py::array& array) {

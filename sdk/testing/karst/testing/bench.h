@@ -100,17 +100,7 @@ class Bench {
   /// Requests one decision. Throws Error if the policy fails.
   Decision decide() {
     std::vector<karst_frontier_cluster_t> clusters;
-    for (const Frontier& f : frontiers)
-      clusters.push_back({f.id,
-                          f.cells,
-                          f.centroid,
-                          {f.low, f.high},
-                          f.normal,
-                          f.unknown_cells,
-                          f.free_cells,
-                          {f.viewpoint, f.viewpoint_heading_rad},
-                          f.path_length_m,
-                          {0, 0}});
+    for (const Frontier& f : frontiers) clusters.push_back(to_abi(f));
     host_.now_ns = static_cast<std::int64_t>(time_s * 1e9);
     host_.start = start;
     host_.survey = survey;
