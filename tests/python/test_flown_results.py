@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from karst.errors import Error
 from karst.maps import read_map
-from karst.printed_tables import cells_of, number_of
 from karst.program import program, run_karst
 from karst.results import load
 
@@ -38,15 +37,15 @@ def campaign(cave):
 
 
 def test_figures_are_those_of_karst_table(run):
-    header, row, *_ = cells_of(run_karst(["table", run.folder]), "karst table")
-    printed = dict(zip(header, row))
+    header, _, row, *_ = (line.split("|")[1:-1] for line in run_karst(["table", run.folder]).split("\n") if "|" in line)
+    printed = {name.strip(): cell.strip(" *") for name, cell in zip(header, row)}
     for name, key, factor in (
         ("explored m³", "explored_volume_m3", 1),
         ("coverage %", "coverage", 100),
         ("path m", "path_length_m", 1),
         ("battery %", "battery_left", 100),
     ):
-        assert number_of(printed[name]) == pytest.approx(factor * run.metrics[key], abs=0.51)
+        assert float(printed[name]) == pytest.approx(factor * run.metrics[key], abs=0.51)
 
 
 def test_tables_agree_with_the_figures(run):
