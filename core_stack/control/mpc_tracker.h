@@ -4,20 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "core_stack/localization/state.h"
 #include "core_stack/planning/trajectory/trajectory.h"
+#include "core_stack/vehicle/command.h"
 
 namespace karst::core {
-
-struct Reference {
-  TimeNs stamp = 0;
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity_mps = Vec3::Zero();
-  Vec3 acceleration_mps2 = Vec3::Zero();
-  Vec3 jerk_mps3 = Vec3::Zero();
-  double heading_rad = 0;
-  double heading_rate_radps = 0;
-};
 
 struct MpcOptions {
   std::int64_t steps = 40;

@@ -2,7 +2,7 @@
 // frames; gives attitude rate and thrust to the autopilot.
 #pragma once
 #include "core_stack/control/mpc_tracker.h"
-#include "core_stack/vehicle/messages.h"
+#include "core_stack/vehicle/command.h"
 
 namespace karst::core {
 

@@ -1,23 +1,15 @@
-// The state estimate and its recent history: scans and poses arrive late and are matched at their stamp.
+// The recent history of the state estimate: scans and poses arrive late and are matched at their stamp.
 #pragma once
 #include <boost/circular_buffer.hpp>
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
 #include "core_stack/common/time.h"
+#include "core_stack/vehicle/command.h"
 
 namespace karst::core {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-struct State {
-  TimeNs stamp = 0;
-  Vec3 position = Vec3::Zero();         // world frame
-  Vec3 velocity_mps = Vec3::Zero();     // world frame
-  Quat orientation = Quat::Identity();  // body to world
-  Vec3 body_rate_radps = Vec3::Zero();  // body frame
-  Pose pose() const { return {position, orientation}; }
-};
 
 enum class Health { good, degraded, lost };
 

@@ -51,7 +51,8 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       objects_(onboard_, team),
       safety_(options.safety),
       control_watch_(kControlMissed),
-      supervision_watch_(kSupervisionMissed) {
+      supervision_watch_(kSupervisionMissed),
+      authority_(onboard_.vehicle.authority) {
   if (team) onboard_.map.while_idle().join(team->homing(), team->options().claim_radius_m);
 }
 
@@ -99,7 +100,8 @@ MissionResult MissionControl::run(const Watch& watch) {
 
 void MissionControl::fly(const Watch& watch) {
   begin(watch);
-  advance(from_seconds(onboard_.options.mission.max_flight_time_s + kOverdue_s));
+  while (advance(latest_end())) {  // later by the time it waits for a pilot
+  }
 }
 
 void MissionControl::begin(const Watch& watch) {
@@ -115,6 +117,10 @@ void MissionControl::begin(const Watch& watch) {
   onboard_.executive.every("watch", kSecond, kSecond, [this] { report_to_watcher(); });
 }
 
+TimeNs MissionControl::latest_end() const {
+  return endurance_.begun() + from_seconds(onboard_.options.mission.max_flight_time_s + kOverdue_s);
+}
+
 /// Whatever fails, the steps continue: the vehicle must land.
 bool MissionControl::advance(TimeNs until) {
   while (!result_) {
@@ -127,7 +133,7 @@ bool MissionControl::advance(TimeNs until) {
       land_now("an unknown exception");
     }
   }
-  return !result_ && now() < from_seconds(onboard_.options.mission.max_flight_time_s + kOverdue_s);
+  return !result_ && now() < latest_end();
 }
 
 /// A file that cannot be written does not prevent the others from being written.
@@ -249,6 +255,7 @@ void MissionControl::supervise() {
 void MissionControl::fly_phase() {
   switch (phase()) {
     case Phase::standby:
+      if (authority_ != Authority::core) return endurance_.begin(now());
       if (now() - phases_.since() < kSettling || (team_ && !team_->sharing.airspace_clear())) break;
       take_off_.begin();
       enter(Phase::takeoff, "");
@@ -269,6 +276,9 @@ void MissionControl::fly_phase() {
       break;
     case Phase::land:
       land();
+      break;
+    case Phase::manual:
+      onboard_.flight.hover_here(now());
       break;
     case Phase::done:
     case Phase::replay:
@@ -311,18 +321,59 @@ bool MissionControl::found_again() const {
 void MissionControl::land() {
   if (standing_) return touch_down(now());  // it had not left the ground
   if (found_again()) {
-    lands_lost_ = false;
-    // The cause of the landing is over: an action that outlives its cause would make it land again.
-    safety_ = SafetySupervisor(onboard_.options.safety);
-    verdict_ = {};
-    path_.obey(SafetyAction::none);
-    onboard_.flight.break_off_landing(now());
+    forget_causes();
+    onboard_.flight.hover_here(now());
     return return_home_.begin("the pose is known again");
   }
   if (!onboard_.flight.at_rest(now())) return;
   // Descend until ground contact; the height above ground is known no better than the map.
   const MissionOptions& o = onboard_.options.mission;
   onboard_.flight.climb(now(), -(o.takeoff_height_m + 0.5), o.landing_speed_mps);
+}
+
+/// Whatever slowed or stopped it is over: an action that outlives its cause would stop it again.
+void MissionControl::forget_causes() {
+  lands_lost_ = false;
+  safety_ = SafetySupervisor(onboard_.options.safety);
+  verdict_ = {};
+  path_.obey(SafetyAction::none);
+}
+
+void MissionControl::on_authority(TimeNs, Authority who, const std::string& reason) {
+  if (result_ || who == authority_) return;
+  authority_ = who;
+  onboard_.recorder.write(now(), event::Authority{who, reason});
+  if (emergency_ || phases_.in(Phase::standby)) return;
+  if (who == Authority::core)
+    take_over();
+  else
+    let_go(reason);
+}
+
+/// Another steers. The vehicle still localizes and maps, and is ready to hover wherever it is.
+void MissionControl::let_go(const std::string& reason) {
+  onboard_.flight.let_go();
+  if (phases_.in(Phase::manual)) return;
+  resumes_exploring_ = !phases_.in(Phase::home) && !phases_.in(Phase::land);
+  path_.brake(now());  // nothing that was planned before is flown later
+  onboard_.flight.hover_here(now());
+  goals_.drop_next(GoalFate::superseded, reason, now());
+  goals_.close_goal(GoalFate::superseded, reason, now());
+  enter(Phase::manual, reason);
+}
+
+void MissionControl::take_over() {
+  if (!phases_.in(Phase::manual)) return;
+  forget_causes();
+  path_.unblock();
+  onboard_.flight.take_over(now());
+  if (!flown_path_.begun()) {  // the pilot has taken off
+    const Vec3 here = onboard_.flight.reference().position;
+    flown_path_.begin(here);
+    return_home_.set_home(here);
+  }
+  if (resumes_exploring_) return enter(Phase::explore, "the core steers again");
+  return_home_.begin("the core steers again");
 }
 
 MapQuestion MissionControl::map_question() const {
@@ -352,7 +403,8 @@ void MissionControl::on_map(const MapNews& news) {
 }
 
 void MissionControl::keep_safe() {
-  if (phases_.in(Phase::standby) || phases_.in(Phase::land) || phases_.in(Phase::done))
+  if (phases_.in(Phase::standby) || phases_.in(Phase::land) || phases_.in(Phase::done) ||
+      phases_.in(Phase::manual))
     return sensors_.see_nothing_needed();
   const Flight& flight = onboard_.flight;
   SafetyObservation o;
@@ -429,6 +481,11 @@ void MissionControl::on_ground(TimeNs stamp) {
   if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
+void MissionControl::on_lift_off(TimeNs) {
+  standing_ = false;
+  if (phases_.in(Phase::standby)) let_go("the pilot takes off");
+}
+
 void MissionControl::switch_off_motors(TimeNs stamp) {
   onboard_.flight.disarm();
   vehicle_.command(onboard_.flight.control(stamp));
@@ -452,6 +509,8 @@ void MissionControl::finish_on_ground() {
   const std::string place = std::to_string(off_m).substr(0, 5) + " m from the start";
   if (emergency_)
     finish(MissionOutcome::aborted, *emergency_ + ": on the ground " + place);
+  else if (phases_.in(Phase::manual))
+    finish(MissionOutcome::aborted, std::string("landed by the ") + name_of(authority_) + ", " + place);
   else if (!phases_.in(Phase::land))
     finish(MissionOutcome::contact, std::string("touched the ground in phase ") + name_of(phase()));
   else if (off_m < 1.0)

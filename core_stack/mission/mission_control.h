@@ -2,6 +2,7 @@
 // paths into commands. Whatever happens, the vehicle returns home and lands.
 //
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done       (state/phase.cpp)
+//   and manual, while the pilot or the autopilot steers
 //
 // Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
 // PathExecution, Steering, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class
@@ -80,7 +81,8 @@ class MissionControl final : public VehicleSink {
   }
   void on_battery(const BatteryStatus& s) override { endurance_.note(s); }
   void on_ground(TimeNs stamp) override;
-  void on_lift_off(TimeNs) override { standing_ = false; }
+  void on_lift_off(TimeNs stamp) override;
+  void on_authority(TimeNs stamp, Authority who, const std::string& reason) override;
   void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) override;
 
  private:
@@ -96,6 +98,7 @@ class MissionControl final : public VehicleSink {
   Exploration::Wiring exploration_wiring();
   ReturnHome::Wiring home_wiring();
 
+  TimeNs latest_end() const;
   void control();
   void supervise();
   void fly_phase();
@@ -109,6 +112,9 @@ class MissionControl final : public VehicleSink {
   void land_here(const std::string& reason);
   void land();
   bool found_again() const;
+  void let_go(const std::string& reason);
+  void take_over();
+  void forget_causes();
   MapQuestion map_question() const;
   void on_map(const MapNews& news);
   void record();
@@ -140,6 +146,8 @@ class MissionControl final : public VehicleSink {
   Watch watch_;
   int overruns_ = 0;  // of the executive, as last recorded
   bool standing_ = true;
+  Authority authority_;                   // who steers
+  bool resumes_exploring_ = true;         // when the core steers again
   bool lands_lost_ = false;               // for want of a pose
   std::optional<std::string> emergency_;  // why it lands at once, if it does
   std::optional<MissionResult> result_;

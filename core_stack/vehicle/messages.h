@@ -1,4 +1,4 @@
-// What a vehicle's sensors say and what it is told. Every message carries the time of measurement.
+// What a vehicle's sensors say. Every message carries the time of measurement.
 #pragma once
 #include <memory>
 #include <string>
@@ -81,13 +81,6 @@ struct BatteryStatus {
   double fraction_left = 1;
   double power_w = 0;
   double seconds_left = 0;  // at the recent mean power
-};
-
-/// The command to the autopilot: attitude rate in the body frame and collective thrust.
-struct AttitudeRateCommand {
-  Vec3 body_rate_radps = Vec3::Zero();
-  double thrust_n = 0;
-  bool armed = false;
 };
 
 }  // namespace karst::core

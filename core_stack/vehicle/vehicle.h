@@ -1,4 +1,4 @@
-// The interface to what carries the core stack: a simulator, a replay, one day a real autopilot.
+// The interface to what carries the core stack: a simulator, a replay, an autopilot.
 #pragma once
 #include <functional>
 #include <memory>
@@ -6,6 +6,8 @@
 
 #include "core_stack/common/executive.h"
 #include "core_stack/common/options.h"
+#include "core_stack/vehicle/authority.h"
+#include "core_stack/vehicle/command.h"
 #include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/messages.h"
 #include "core_stack/vehicle/mission_outcome.h"
@@ -13,6 +15,14 @@
 #include "core_stack/vehicle/rgb_camera_model.h"
 
 namespace karst::core {
+
+/// Something that must hold of a vehicle before the core may fly it, such as a parameter of its autopilot.
+struct VehicleCheck {
+  std::string name;      // "COM_OF_LOSS_T"
+  std::string required;  // "at most 1 s"
+  std::string found;     // "5 s"; "" if the vehicle did not answer
+  bool holds = false;
+};
 
 /// What the core stack must know of a vehicle before it flies.
 struct VehicleDescription {
@@ -26,6 +36,7 @@ struct VehicleDescription {
   std::shared_ptr<const RgbCameraModel> rgb;  // null: none
   bool pose_sensor = false;                   // its poses come by themselves
   bool detects_objects = false;               // it looks for objects of interest
+  Authority authority = Authority::core;      // who steers it at the start
   Pose T_world_start;  // the pose it stands at before take-off, in the mission's world frame
 };
 
@@ -46,6 +57,9 @@ class VehicleSink {
   virtual void on_ground(TimeNs stamp) = 0;
   /// It has left the ground.
   virtual void on_lift_off(TimeNs stamp) = 0;
+  /// Another steers the vehicle from now on: the core's commands have an effect only while it is the core. A
+  /// vehicle that never says so is steered by whom its description names.
+  virtual void on_authority(TimeNs, Authority, const std::string&) {}
   /// Nothing more will come from this vehicle (crash, empty battery, end of a recording).
   virtual void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) = 0;
 };
@@ -60,7 +74,9 @@ class Vehicle {
   virtual VehicleDescription description() const = 0;
   /// Registers the vehicle's periodic work. `sink` outlives the executive's run.
   virtual void start(Executive& executive, VehicleSink& sink) = 0;
-  virtual void command(const AttitudeRateCommand&) = 0;
+  virtual void command(const Command&) = 0;
+  /// What must hold before it may fly, with what was found. After `start`, once the vehicle has answered.
+  virtual std::vector<VehicleCheck> checks() const { return {}; }
   /// Called once after the run, to close files.
   virtual void finish() {}
 };

@@ -160,8 +160,8 @@ void SimulatedVehicle::schedule_sensors() {
   every(10 * kMillisecond, 0, [this] { log_truth(); });
 }
 
-void SimulatedVehicle::command(const core::AttitudeRateCommand& c) {
-  quadrotor_.command = c;
+void SimulatedVehicle::command(const core::Command& c) {
+  quadrotor_.command = c.rates;
   commanded_at_ = executive_ ? now() : 0;
   taken_over_ = false;
 }

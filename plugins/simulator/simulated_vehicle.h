@@ -28,7 +28,7 @@ class SimulatedVehicle final : public core::Vehicle {
 
   core::VehicleDescription description() const override { return description_; }
   void start(core::Executive& executive, core::VehicleSink& sink) override;
-  void command(const core::AttitudeRateCommand& c) override;
+  void command(const core::Command& c) override;
   void finish() override;
 
   // For flights of several vehicles; to be called between two steps of the executive.

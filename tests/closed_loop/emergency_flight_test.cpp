@@ -187,7 +187,7 @@ class StarvedVehicle final : public Vehicle {
   void start(Executive& executive, VehicleSink& sink) override {
     vehicle_.start(executive, sink_.emplace(sink, starving_));
   }
-  void command(const AttitudeRateCommand& c) override { vehicle_.command(c); }
+  void command(const Command& c) override { vehicle_.command(c); }
   void finish() override { vehicle_.finish(); }
 
  private:

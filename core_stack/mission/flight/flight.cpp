@@ -8,7 +8,7 @@ namespace karst::core {
 namespace {
 
 constexpr double kControlPeriod_s = 0.01;
-constexpr double kOffGround_m = 0.15;
+constexpr double kOffGround_m = 0.15, kGravity_mps2 = 9.81;
 constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: then predicted samples replace the IMU
 
 /// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
@@ -46,19 +46,31 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       emergency_landing_(options.motion, options.mission.landing_speed_mps) {
   emergency_.max_acceleration_mps2 = kEmergencyFraction * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
+  ground_m_ = start.position.z();
   trajectory_.samples = {{start.position, heading_of(start.orientation)}};
   tracker_.reset(0, start.position, heading_of(start.orientation));
 }
 
-AttitudeRateCommand Flight::control(TimeNs now) {
-  if (motors_ != Motors::armed) return {};
+Command Flight::command(TimeNs now) const {
+  return {command_, tracker_.reference(), state(), estimator_.health(now) != Health::lost};
+}
+
+Command Flight::control(TimeNs now) {
+  if (motors_ != Motors::armed) {
+    command_ = {};
+    return command(now);
+  }
+  if (!steers_) {
+    command_ = {Vec3::Zero(), mass_.mass_kg() * kGravity_mps2, true};
+    return command(now);
+  }
   if (now - estimator_.last_imu() > kImuMissed) estimator_.bridge(expected_imu(now));
   mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
   controller_.set_mass_kg(mass_.mass_kg());
   const Trajectory& wanted = emergency_landing_.begun() ? emergency_landing_.trajectory(now) : trajectory_;
   command_ = controller_.update(state(), tracker_.step(wanted, now), kControlPeriod_s);
   command_.armed = true;
-  return command_;
+  return command(now);
 }
 
 /// The IMU measurement expected if the vehicle follows its commands.
@@ -108,15 +120,26 @@ TimeNs Flight::time_nearest(const Vec3& p) const {
   return trajectory_.start + trajectory_.period * static_cast<TimeNs>(nearest - samples.begin());
 }
 
+/// Begins from the estimate: it has converged at rest, and the declared pose may differ.
+void Flight::arm(TimeNs now) {
+  tracker_.reset(now, state().position, heading_of(state().orientation));
+  controller_.reset();
+  mass_.reset();
+  motors_ = Motors::armed;
+}
+
+void Flight::take_over(TimeNs now) {
+  if (motors_ == Motors::off) return;
+  arm(now);
+  hover_here(now);
+  steers_ = true;
+}
+
 void Flight::climb(TimeNs now, double height_m, double speed_mps) {
   if (motors_ == Motors::off) return;
   if (motors_ == Motors::idle) {
-    // The estimate has converged at rest: begin from it, not from the declared pose.
-    tracker_.reset(now, state().position, heading_of(state().orientation));
-    controller_.reset();
-    mass_.reset();
     ground_m_ = state().position.z();
-    motors_ = Motors::armed;
+    arm(now);
   }
   const Vec3 from = reference().position;
   MotionLimits slow = limits_;
@@ -161,8 +184,8 @@ void Flight::land_now(TimeNs now, double max_path_m) noexcept {
   emergency_landing_.begin(trajectory_, now, max_path_m);
 }
 
-/// The newly found pose may place the reference beside the descent line: hover at the current state.
-void Flight::break_off_landing(TimeNs now) {
+/// At the current state, and not at the reference: a newly found pose may place that elsewhere.
+void Flight::hover_here(TimeNs now) {
   const TrajectorySample here{state().position, heading_of(state().orientation)};
   Trajectory hover;
   hover.start = now;

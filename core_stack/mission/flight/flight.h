@@ -47,7 +47,7 @@ class Flight {
   void on_magnetometer(const MagnetometerSample& s) { estimator_.on_magnetometer(s); }
 
   /// One control cycle, every 10 ms. Disarmed until the first `follow` or `climb`.
-  AttitudeRateCommand control(TimeNs now);
+  Command control(TimeNs now);
 
   void follow(const Course& course);
   /// Follows a trajectory along the path that was prepared beforehand on the map lane.
@@ -67,8 +67,12 @@ class Flight {
   /// Brakes, flies that path unless it is longer than `max_path_m`, and descends vertically. Ignores all
   /// later commands. Allocates no memory.
   void land_now(TimeNs now, double max_path_m = std::numeric_limits<double>::infinity()) noexcept;
-  /// Cancels the landing: hovers in place and accepts commands again.
-  void break_off_landing(TimeNs now);
+  /// Hovers where it is, whatever it followed before, also a landing.
+  void hover_here(TimeNs now);
+  /// Another steers: the commands are those of a hover, and change nothing in the controllers.
+  void let_go() noexcept { steers_ = false; }
+  /// Steers again, or for the first time in the air, from a hover where it is.
+  void take_over(TimeNs now);
   /// Switches the motors off for good; only on the ground.
   void disarm() noexcept;
 
@@ -108,6 +112,8 @@ class Flight {
   CommittedSegment committed_segment(TimeNs t, double length_m) const;
   Vec3 velocity_at(TimeNs t) const;
   ImuSample expected_imu(TimeNs now) const;
+  Command command(TimeNs now) const;
+  void arm(TimeNs now);
   Departure departure_at(TimeNs t) const;
 
   MotionLimits limits_, emergency_;  // for paths, and for braking
@@ -125,6 +131,7 @@ class Flight {
   EmergencyLanding emergency_landing_;
   enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: the motors never run again
   bool braking_ = false;                                          // a braking trajectory is never slowed down
+  bool steers_ = true;                                            // false: another does
 };
 
 }  // namespace karst::core

@@ -13,13 +13,17 @@ class Endurance {
   }
   void note(const BatteryStatus& battery) { battery_ = battery; }
   const BatteryStatus& battery() const { return battery_; }
+  /// The flight time allowed counts from `now` on: it waited for a pilot.
+  void begin(TimeNs now) { begin_ = now; }
+  TimeNs begun() const { return begin_; }
   /// Of the mission's maximum flight time.
-  double mission_seconds_left(TimeNs now) const { return max_flight_time_s_ - seconds(now); }
+  double mission_seconds_left(TimeNs now) const { return max_flight_time_s_ - seconds(now - begin_); }
   /// Limited by the battery and by the mission's maximum flight time.
   double seconds_left(TimeNs now) const { return std::min(battery_.seconds_left, mission_seconds_left(now)); }
 
  private:
   double max_flight_time_s_;
+  TimeNs begin_ = 0;
   BatteryStatus battery_;
 };
 

@@ -24,6 +24,7 @@
 #include "core_stack/mission/state/safety_action.h"
 #include "core_stack/objects/object_state.h"
 #include "core_stack/planning/trajectory/trajectory_kind.h"
+#include "core_stack/vehicle/authority.h"
 #include "core_stack/vehicle/mission_outcome.h"
 #include "core_stack/vehicle/object_detection.h"
 
@@ -199,6 +200,15 @@ struct Safety {
   }
 };
 
+struct Authority {
+  static constexpr const char* kKind = "authority";
+  core::Authority who{};
+  std::string reason;
+  static constexpr auto fields() {
+    return std::make_tuple(Field{"who", &Authority::who}, Field{"reason", &Authority::reason});
+  }
+};
+
 struct Overrun {
   static constexpr const char* kKind = "overrun";
   int count = 0;
@@ -290,7 +300,7 @@ struct Outcome {
 };
 
 using Event = std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log,
-                           Homing, Safety, Overrun, Localization, Landing, Drop, Team, Outcome>;
+                           Homing, Safety, Authority, Overrun, Localization, Landing, Drop, Team, Outcome>;
 
 /// The line without its end: {"t": ..., "kind": ..., and the fields by name}.
 std::string line_of(TimeNs t, const Event& event);

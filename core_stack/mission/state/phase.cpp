@@ -19,6 +19,9 @@ constexpr std::array kTransitions{
         "just suffices, or the record cannot be written"},
     Transition{Phase::home, Phase::land, "it hovers where it lands, or no way leads there"},
     Transition{Phase::land, Phase::home, "the pose is known again, for want of which it came down"},
+    Transition{{}, Phase::manual, "the pilot or the autopilot steers"},
+    Transition{Phase::manual, Phase::explore, "the core steers again, and had not turned back"},
+    Transition{Phase::manual, Phase::home, "the core steers again, and had turned back"},
     Transition{{}, Phase::land, "the safety supervisor, an error or the operator ends the flight"},
     Transition{{}, Phase::done, "it stands, or is lost"},
 };

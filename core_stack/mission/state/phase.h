@@ -8,7 +8,17 @@
 
 namespace karst::core {
 
-enum class Phase { standby, takeoff, look, explore, home, land, done, replay };  // replay: all of a recording
+enum class Phase {
+  standby,
+  takeoff,
+  look,
+  explore,
+  home,
+  land,
+  manual,  // the pilot or the autopilot steers
+  done,
+  replay  // all of a recording
+};
 constexpr auto names_of(Phase) {
   using enum Phase;
   return std::to_array<Named<Phase>>({{standby, "standby"},
@@ -17,6 +27,7 @@ constexpr auto names_of(Phase) {
                                       {explore, "explore"},
                                       {home, "home"},
                                       {land, "land"},
+                                      {manual, "manual"},
                                       {done, "done"},
                                       {replay, "replay"}});
 }
@@ -35,6 +46,7 @@ constexpr PhaseTraits traits_of(Phase phase) {
     case Phase::land:
       return {.airborne = true};
     case Phase::look:
+    case Phase::manual:
       return {.airborne = true, .above_ground = true};
     case Phase::explore:
       return {.airborne = true, .above_ground = true, .flies_by_map = true, .explores = true};

@@ -31,6 +31,7 @@ TeamPhase phase_for_team(Phase phase) {
       return TeamPhase::standby;
     case Phase::takeoff:
     case Phase::land:
+    case Phase::manual:
       return TeamPhase::landing;  // in both it cannot stop for others
     case Phase::look:
     case Phase::explore:

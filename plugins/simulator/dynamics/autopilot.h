@@ -1,6 +1,6 @@
 // The autopilot's attitude-rate controller, between the core stack's command and the motors.
 #pragma once
-#include "core_stack/vehicle/messages.h"
+#include "core_stack/vehicle/command.h"
 #include "plugins/simulator/dynamics/motors.h"
 
 namespace karst::sim {

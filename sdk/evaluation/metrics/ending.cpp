@@ -139,6 +139,8 @@ std::string doing(const Course& c) {
       return " on the way home";
     case core::Phase::land:
       return " while landing";
+    case core::Phase::manual:
+      return " while another steered it";
     case core::Phase::standby:
     case core::Phase::done:
       return " before take-off";

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/random.h"
 #include "core_stack/localization/state.h"
+#include "core_stack/vehicle/command.h"
 #include "core_stack/vehicle/messages.h"
 
 namespace karst::core::test {

@@ -22,7 +22,7 @@ class LostVehicle final : public core::Vehicle {
     executive.at(lost_after_,
                  [&sink, t = lost_after_] { sink.on_lost(t, core::MissionOutcome::contact, "hit a rock"); });
   }
-  void command(const core::AttitudeRateCommand&) override {}
+  void command(const core::Command&) override {}
 
  private:
   TimeNs lost_after_;

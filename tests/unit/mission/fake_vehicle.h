@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -56,16 +57,22 @@ class FakeVehicle final : public Vehicle {
 
   // What a test may change in flight.
   bool imu_works = true, pose_sensor_works = true, lidar_works = true;
-  double battery_s = 120;              // left now
-  double load_kg = 0;                  // that the description does not know of
-  Vec3 wind_push_mps2 = Vec3::Zero();  // world frame
+  double battery_s = 120;                          // left now
+  double load_kg = 0;                              // that the description does not know of
+  Vec3 wind_push_mps2 = Vec3::Zero();              // world frame
+  std::optional<AttitudeRateCommand> pilot_rates;  // in place of the core's
 
   const Pose& pose() const { return pose_; }
   const Vec3& velocity_mps() const { return velocity_mps_; }
   const AttitudeRateCommand& commanded() const { return command_; }
 
   VehicleDescription description() const override { return description_; }
-  void command(const AttitudeRateCommand& command) override { command_ = command; }
+  void command(const Command& command) override {
+    if (!pilot_rates) command_ = command.rates;
+    told_ = command;
+  }
+  const Command& told() const { return told_; }
+  void steered_by(Authority who) { description_.authority = who; }
   void start(Executive& executive, VehicleSink& sink) override {
     executive.at(0, [&sink] { sink.on_ground(0); });
     executive.every("vehicle", kTick, kTick, [this, &executive, &sink] {
@@ -96,6 +103,7 @@ class FakeVehicle final : public Vehicle {
 
   /// Returns the specific force in the body frame.
   Vec3 move(TimeNs now, VehicleSink& sink) {
+    if (pilot_rates) command_ = *pilot_rates;
     const double dt_s = seconds(kTick), thrust_n = command_.armed ? command_.thrust_n : 0;
     if (standing_ && thrust_n <= mass_kg() * kGravity_mps2) return {0, 0, kGravity_mps2};
     if (std::exchange(standing_, false)) sink.on_lift_off(now);
@@ -141,6 +149,7 @@ class FakeVehicle final : public Vehicle {
   std::vector<Room> rooms_;
   VehicleDescription description_;
   AttitudeRateCommand command_;
+  Command told_;
   Pose pose_;
   Vec3 velocity_mps_ = Vec3::Zero();
   bool standing_ = true, crashed_ = false;

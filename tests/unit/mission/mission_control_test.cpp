@@ -367,5 +367,79 @@ TEST_F(MissionControlTest, BrakesForWhatPushesItOffItsPathOnTheWayHomeWithADegra
   EXPECT_EQ(std::count(all.begin(), all.end(), "brake: far from the reference"), 1);
 }
 
+/// As an autopilot in a hold: level, against gravity, braking.
+AttitudeRateCommand hold(const FakeVehicle& vehicle) {
+  const Vec3 tilt = vehicle.pose().orientation * Vec3::UnitZ();
+  const Vec3 to = (Vec3(0, 0, 9.81) - 2 * vehicle.velocity_mps()).normalized();
+  return {6 * (vehicle.pose().orientation.conjugate() * tilt.cross(to)),
+          vehicle.description().mass_kg * (9.81 - 2 * vehicle.velocity_mps().z()) / tilt.z(), true};
+}
+
+TEST_F(MissionControlTest, WaitsForThePilotAndTheTimeAllowedCountsFromThen) {
+  options.mission.max_flight_time_s = 40;
+  vehicle.battery_s = 1e4;
+  vehicle.steered_by(Authority::pilot);
+  const MissionResult result = fly([&](MissionControl& mission) {
+    if (executive.now() == 700 * kSecond)
+      mission.on_authority(executive.now(), Authority::core, "handed over");
+    if (executive.now() < 700 * kSecond) EXPECT_EQ(mission.phase(), Phase::standby);
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(told("authority", "who", "reason"), Texts{"core: handed over"});
+  EXPECT_GT(executive.now(), 710 * kSecond);
+  EXPECT_LT(executive.now(), 760 * kSecond);
+}
+
+TEST_F(MissionControlTest, ThePilotTakesOverAndGivesBackWhileExploringAndOnTheWayHome) {
+  vehicle.battery_s = 90;
+  TimeNs taken = 0;
+  int times = 0;
+  double farthest_off_m = 0;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    const TimeNs now = executive.now();
+    const bool first = times == 0 && mission.phase() == Phase::explore && vehicle.pose().position.x() > 6;
+    const bool second = times == 1 && mission.phase() == Phase::home && vehicle.velocity_mps().norm() > 0.5;
+    if (first || second) {
+      taken = now;
+      ++times;
+      vehicle.pilot_rates = hold(vehicle);
+      mission.on_authority(now, Authority::pilot, "mode stabilized");
+    }
+    if (!vehicle.pilot_rates) return;
+    EXPECT_EQ(mission.phase(), Phase::manual);
+    vehicle.pilot_rates = hold(vehicle);
+    farthest_off_m =
+        std::max(farthest_off_m, (vehicle.told().reference.position - vehicle.pose().position).norm());
+    if (now - taken < 5 * kSecond) return;
+    vehicle.pilot_rates.reset();
+    mission.on_authority(now, Authority::core, "mode offboard");
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
+  EXPECT_EQ(result.reason, "at the start");
+  EXPECT_EQ(times, 2);
+  EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "manual", "explore", "home", "manual", "home",
+                             "land", "done"}));
+  EXPECT_LT(farthest_off_m, 0.5) << "the reference stays with the vehicle";
+}
+
+TEST_F(MissionControlTest, LandedByTheAutopilotIsAborted) {
+  bool failsafe = false;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    if (!failsafe && mission.phase() == Phase::explore && vehicle.pose().position.x() > 4) {
+      failsafe = true;
+      mission.on_authority(executive.now(), Authority::autopilot, "battery failsafe: land");
+    }
+    if (!failsafe) return;
+    vehicle.pilot_rates = hold(vehicle);
+    vehicle.pilot_rates->thrust_n -= vehicle.description().mass_kg * 2 * 0.5;  // comes down at 0.5 m/s
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::aborted);
+  EXPECT_TRUE(result.reason.starts_with("landed by the autopilot")) << result.reason;
+  EXPECT_TRUE(result.stands);
+  EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "manual", "done"}));
+  EXPECT_FALSE(vehicle.told().rates.armed);
+}
+
 }  // namespace
 }  // namespace karst::core

@@ -21,11 +21,11 @@ struct IdealFlight {
 
 TEST(Flight, IsDisarmedUntilItClimbs) {
   IdealFlight f;
-  EXPECT_FALSE(f.flight.control(10 * kMillisecond).armed);
+  EXPECT_FALSE(f.flight.control(10 * kMillisecond).rates.armed);
   f.flight.climb(10 * kMillisecond, 1.0, 0.5);
-  EXPECT_TRUE(f.flight.control(20 * kMillisecond).armed);
+  EXPECT_TRUE(f.flight.control(20 * kMillisecond).rates.armed);
   f.flight.disarm();
-  EXPECT_FALSE(f.flight.control(30 * kMillisecond).armed);
+  EXPECT_FALSE(f.flight.control(30 * kMillisecond).rates.armed);
 }
 
 TEST(Flight, MotorsThatWereSwitchedOffStayOff) {
@@ -36,7 +36,7 @@ TEST(Flight, MotorsThatWereSwitchedOffStayOff) {
   f.flight.climb(f.now, 1.0, 0.5);
   f.flight.follow({.points = {Vec3::Zero(), Vec3(5, 0, 0)}, .start = f.now});
   f.flight.land_now(f.now);
-  EXPECT_FALSE(f.flight.control(f.now + 10 * kMillisecond).armed);
+  EXPECT_FALSE(f.flight.control(f.now + 10 * kMillisecond).rates.armed);
   EXPECT_FALSE(f.flight.airborne());
 }
 
@@ -84,7 +84,7 @@ TEST(Flight, ThatBreaksOffItsLandingHoversWhereThePoseFoundAgainSaysNotWhereTheR
     pose.T_world_body.position = found;
     f.flight.on_pose(pose);
   }
-  f.flight.break_off_landing(f.now);
+  f.flight.hover_here(f.now);
   const Vec3 here = f.flight.state().position;
   EXPECT_LT((here - found).norm(), 0.1);
   EXPECT_TRUE(f.flight.at_rest(f.now));

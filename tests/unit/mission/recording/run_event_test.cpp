@@ -121,8 +121,9 @@ TEST(RunEvent, FieldsMadeIntoTextBeforeMakeTheSameLine) {
 }
 
 TEST(RunEvent, AMalformedLineIsAnErrorThatNamesKindAndField) {
-  EXPECT_EQ(error_of(R"({"kind": "phase", "phase": "dive"})"),
-            "phase: phase: expected one of standby, takeoff, look, explore, home, land, done, replay");
+  EXPECT_EQ(
+      error_of(R"({"kind": "phase", "phase": "dive"})"),
+      "phase: phase: expected one of standby, takeoff, look, explore, home, land, manual, done, replay");
   EXPECT_EQ(error_of(R"({"kind": "phase", "reason": ""})"), "phase: phase: expected that it is there");
   EXPECT_EQ(error_of(R"({"kind": "goal", "state": "accepted", "position": [1, 2]})"),
             "goal: position: expected a point [x, y, z]");

@@ -10,14 +10,14 @@
 namespace karst::core {
 namespace {
 
-constexpr Phase kAll[] = {Phase::standby, Phase::takeoff, Phase::look, Phase::explore,
-                          Phase::home,    Phase::land,    Phase::done};
+constexpr Phase kAll[] = {Phase::standby, Phase::takeoff, Phase::look,   Phase::explore,
+                          Phase::home,    Phase::land,    Phase::manual, Phase::done};
 
 TEST(PhaseMachine, GoesFromPhaseToPhaseAsTheMissionDoesAndNoOtherWay) {
   const std::set<std::pair<Phase, Phase>> allowed{
       {Phase::standby, Phase::takeoff}, {Phase::takeoff, Phase::look}, {Phase::takeoff, Phase::explore},
       {Phase::look, Phase::explore},    {Phase::explore, Phase::home}, {Phase::land, Phase::home},
-      {Phase::standby, Phase::standby}};
+      {Phase::manual, Phase::explore},  {Phase::manual, Phase::home},  {Phase::standby, Phase::standby}};
   const std::map<Phase, std::vector<Phase>> path_there{
       {Phase::standby, {}},
       {Phase::takeoff, {Phase::takeoff}},
@@ -25,13 +25,14 @@ TEST(PhaseMachine, GoesFromPhaseToPhaseAsTheMissionDoesAndNoOtherWay) {
       {Phase::explore, {Phase::takeoff, Phase::explore}},
       {Phase::home, {Phase::takeoff, Phase::explore, Phase::home}},
       {Phase::land, {Phase::land}},
+      {Phase::manual, {Phase::manual}},
       {Phase::done, {Phase::done}}};
   for (const Phase from : kAll) {
     for (const Phase to : kAll) {
       PhaseMachine m;
       for (const Phase p : path_there.at(from)) m.enter(p, 1);
-      const bool ends = to == Phase::land || to == Phase::done;  // from whatever phase it is
-      if (ends || allowed.contains({from, to})) {
+      const bool always = to == Phase::land || to == Phase::manual || to == Phase::done;
+      if (always || allowed.contains({from, to})) {
         EXPECT_NO_THROW(m.enter(to, 7)) << name_of(from) << " -> " << name_of(to);
         EXPECT_TRUE(m.in(to));
         EXPECT_EQ(m.since(), 7);
