@@ -477,13 +477,17 @@ void MissionControl::record() {
 
 void MissionControl::on_ground(TimeNs stamp) {
   standing_ = true;
+  if (phases_.in(Phase::manual) && !flown_path_.begun()) {  // set down again before it was handed over
+    onboard_.flight.stand_down();
+    return enter(Phase::standby, "on the ground again");
+  }
   const bool takes_off = !flown_path_.begun() && !phases_.in(Phase::land);  // it may touch the ground again
   if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);
 }
 
 void MissionControl::on_lift_off(TimeNs) {
   standing_ = false;
-  if (phases_.in(Phase::standby)) let_go("the pilot takes off");
+  if (phases_.in(Phase::standby) && authority_ != Authority::core) let_go("the pilot takes off");
 }
 
 void MissionControl::switch_off_motors(TimeNs stamp) {

@@ -195,6 +195,12 @@ void Flight::hover_here(TimeNs now) {
   tracker_.reset(now, here.position, here.heading_rad);
 }
 
+void Flight::stand_down() noexcept {
+  if (motors_ == Motors::armed) motors_ = Motors::idle;
+  trajectory_.samples.resize(1);
+  steers_ = true;
+}
+
 void Flight::disarm() noexcept {
   motors_ = Motors::off;
   trajectory_.samples.resize(1);

@@ -73,6 +73,8 @@ class Flight {
   void let_go() noexcept { steers_ = false; }
   /// Steers again, or for the first time in the air, from a hover where it is.
   void take_over(TimeNs now);
+  /// As before the first take-off; only on the ground.
+  void stand_down() noexcept;
   /// Switches the motors off for good; only on the ground.
   void disarm() noexcept;
 

@@ -20,6 +20,7 @@ constexpr std::array kTransitions{
     Transition{Phase::home, Phase::land, "it hovers where it lands, or no way leads there"},
     Transition{Phase::land, Phase::home, "the pose is known again, for want of which it came down"},
     Transition{{}, Phase::manual, "the pilot or the autopilot steers"},
+    Transition{Phase::manual, Phase::standby, "the pilot has set it down again before the first hand-over"},
     Transition{Phase::manual, Phase::explore, "the core steers again, and had not turned back"},
     Transition{Phase::manual, Phase::home, "the core steers again, and had turned back"},
     Transition{{}, Phase::land, "the safety supervisor, an error or the operator ends the flight"},

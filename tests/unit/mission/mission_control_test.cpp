@@ -423,6 +423,32 @@ TEST_F(MissionControlTest, ThePilotTakesOverAndGivesBackWhileExploringAndOnTheWa
   EXPECT_LT(farthest_off_m, 0.5) << "the reference stays with the vehicle";
 }
 
+TEST_F(MissionControlTest, ThePilotTakesOffSetsItDownTakesOffAgainAndHandsOverInTheAir) {
+  vehicle.steered_by(Authority::pilot);
+  const auto flies = [&](double climb_mps) {
+    vehicle.pilot_rates = hold(vehicle);
+    vehicle.pilot_rates->thrust_n += vehicle.description().mass_kg * 2 * climb_mps;
+  };
+  const MissionResult result = fly([&](MissionControl& mission) {
+    const double t = seconds(executive.now());
+    if (t < 3) return;
+    if (t < 5) return flies(0.5);
+    if (t < 9) return flies(-0.5);  // on the ground at 7 s
+    if (t < 10) {
+      EXPECT_EQ(mission.phase(), Phase::standby);
+      return flies(-0.5);
+    }
+    if (t < 12) return flies(0.5);
+    if (vehicle.pilot_rates) {
+      EXPECT_EQ(mission.phase(), Phase::manual);
+      vehicle.pilot_rates.reset();
+      mission.on_authority(executive.now(), Authority::core, "mode offboard");
+    }
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed) << result.reason;
+  EXPECT_EQ(phases(), (Texts{"standby", "manual", "standby", "manual", "explore", "home", "land", "done"}));
+}
+
 TEST_F(MissionControlTest, LandedByTheAutopilotIsAborted) {
   bool failsafe = false;
   const MissionResult result = fly([&](MissionControl& mission) {
