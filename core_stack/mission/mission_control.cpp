@@ -414,6 +414,10 @@ void MissionControl::keep_safe() {
   if (phases_.under_way()) o.hull_clearance_m = sensors_.hull_clearance_m();  // not during lift-off
   o.blind_s = seconds(sensors_.blind_for());
   o.battery_s = endurance_.battery().seconds_left;
+  if (const auto& region = onboard_.options.region; region && flown_path_.begun()) {
+    const Vec3& here = flight.state().position;
+    if (region->depth_m(here) < onboard_.vehicle.radius_m) o.outside = region->nearest_part(here);
+  }
   const SafetyVerdict before = std::exchange(verdict_, safety_.judge(o));
   note_verdict(before);
   path_.obey(verdict_.action);

@@ -127,6 +127,16 @@ std::string grid_lines(const Frame& frame, double step_m) {
   return out + "</g>\n";
 }
 
+/// A region may be much larger than the cave: its border is cut at the frame.
+std::string borders_of(const Drawing& drawing, const Frame& frame) {
+  if (drawing.borders.empty()) return "";
+  const std::string name = std::string("frame-") + core::name_of(drawing.view);  // a page may have several
+  return "<clipPath id=\"" + name + "\">" +
+         box(frame.left_mm, frame.top_mm, frame.width_mm, frame.height_mm, "") +
+         "</clipPath>\n<g clip-path=\"url(#" + name + ")\">\n" +
+         lines_of("borders", drawing.borders, frame, stroke("#000000", kLeg_mm, "3 0.8 0.6 0.8")) + "</g>\n";
+}
+
 }  // namespace
 
 std::string grid_numbers(const Frame& frame, double step_m) {
@@ -157,6 +167,7 @@ std::string inside_frame(const Drawing& drawing, const Frame& frame, double step
   out += lines_of("hidden", drawing.hidden_walls, frame, stroke("#707070", kHidden_mm, "1.2 0.8") + round);
   out += lines_of("splays", drawing.splays, frame, stroke("#909090", kPath_mm));
   out += lines_of("path", drawing.paths, frame, stroke("#404040", kPath_mm) + round);
+  out += borders_of(drawing, frame);
   out += lines_of("links", drawing.links, frame, stroke("#404040", kLeg_mm, "0.6 0.9"));
   out += lines_of("legs", drawing.centreline, frame, stroke("#303030", kLeg_mm) + round);
   out += lines_of("uncertain", drawing.uncertain_walls, frame, stroke("#000000", kUncertain_mm, "2 1.2"));

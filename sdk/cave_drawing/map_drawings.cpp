@@ -75,6 +75,26 @@ Vec3 end_of(const core::VoxelMap& map, const PassageLines& lines, const PassageP
   return last.middle + std::min(kFarthestEnd_m, core::free_reach_m(map, last.middle, ahead)) * ahead;
 }
 
+/// The outline from above, and from the side the outermost of its corners between its heights. A height that
+/// the mission left open ends with the map.
+void draw_border(const core::Prism& prism, const FreeRuns& free, const Vec3& entrance, double bearing,
+                 CaveDrawings& out) {
+  const double low_m = std::max(prism.low_m, free.low_z * free.cell_m),
+               high_m = std::min(prism.high_m, (free.high_z + 1) * free.cell_m);
+  Line from_above(prism.outline.begin(), prism.outline.end());
+  from_above.push_back(from_above.front());
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const Point& corner : prism.outline) {
+    const double along = projected({corner.x(), corner.y(), 0}, entrance, bearing).x();
+    first = std::min(first, along);
+    last = std::max(last, along);
+  }
+  const double low = low_m - entrance.z(), high = high_m - entrance.z();
+  out.plan.borders.push_back(std::move(from_above));
+  if (low < high)
+    out.projected.borders.push_back({{first, low}, {last, low}, {last, high}, {first, high}, {first, low}});
+}
+
 double floor_m(const PassagePoint& p) { return p.middle.z() - 0.5 * p.height_m; }
 
 }  // namespace
@@ -128,6 +148,11 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
     }
     out.plan.paths.push_back(std::move(from_above));
     out.projected.paths.push_back(std::move(from_aside));
+  }
+  if (record.region) {
+    const core::FlightRegion::Limits& limits = record.region->limits();
+    if (limits.keep_in) draw_border(*limits.keep_in, free, entrance, bearing, out);
+    for (const core::Prism& prism : limits.keep_out) draw_border(prism, free, entrance, bearing, out);
   }
   out.facts = {record.name,  record.date,  record.from,         std::nullopt,
                std::nullopt, std::nullopt, map.free_volume_m3()};

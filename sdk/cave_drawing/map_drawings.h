@@ -1,11 +1,13 @@
 // The three drawings of a map, with what is known of the flight that made it.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mapping/region/flight_region.h"
 #include "sdk/cave_drawing/drawing.h"
 
 namespace karst::cave_drawing {
@@ -20,6 +22,7 @@ struct FlightRecord {
   std::optional<core::Vec3> entrance;  // where heights are zero
   std::vector<core::Vec3> path;
   std::vector<Find> finds;
+  std::shared_ptr<const core::FlightRegion> region;  // of the mission; null: none
 };
 
 /// Without an entrance, heights are those of the map, and the extended profile begins in its roomiest place.

@@ -6,6 +6,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_file.h"
+#include "core_stack/mapping/region/region_keys.h"
 #include "sdk/evaluation/record/poses.h"
 #include "sdk/evaluation/record/run_record.h"
 
@@ -35,6 +36,15 @@ std::vector<Find> finds_of(const fs::path& file) {
   return finds;
 }
 
+/// A run without a readable mission is drawn without its region.
+std::shared_ptr<const core::FlightRegion> region_of_run(const fs::path& mission) {
+  try {
+    return core::region_in(mission.string(), core::read_info(mission.string()));
+  } catch (const core::InputError&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 FlightRecord flight_record(const fs::path& run) {
@@ -43,6 +53,7 @@ FlightRecord flight_record(const fs::path& run) {
   std::vector<std::string> problems;  // what is missing is left out
   for (const evaluation::Setting& s : evaluation::read_settings(run / "mission.info", problems))
     if (s.key == "cave.file") record.name = fs::path(s.value).stem().string();
+  record.region = region_of_run(run / "mission.info");
   if (record.name.empty()) record.name = fs::absolute(run).lexically_normal().filename().string();
   for (const evaluation::StampedPose& pose : evaluation::read_tum(run / "trajectory.tum", problems))
     record.path.push_back(pose.T_world_body.position);

@@ -8,12 +8,14 @@
 #include "core_stack/common/json_file.h"
 #include "core_stack/common/options.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mapping/region/region_keys.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/cave_drawing/report_drawings.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/reachable/imaged_rock.h"
 #include "sdk/evaluation/reachable/reachable_file.h"
+#include "sdk/evaluation/reachable/reachable_in_region.h"
 #include "sdk/evaluation/reachable/surface.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/evaluation/report/report.h"
@@ -30,6 +32,11 @@ namespace fs = std::filesystem;
 /// Radius of the search for the rock nearest to a map cell; a cell farther away counts as wrong.
 constexpr double kRockSearch_m = 20.0;
 
+std::shared_ptr<const core::FlightRegion> region_of_run(const fs::path& run_dir) {
+  const std::string file = (run_dir / "mission.info").string();
+  return core::region_in(file, core::read_info(file));
+}
+
 double cell_size_m(const fs::path& run_dir) {
   core::MapOptions map;
   core::OptionTable table;
@@ -42,12 +49,15 @@ double cell_size_m(const fs::path& run_dir) {
 
 /// Ground truth from the cave's mesh. Its functions own the cave that they query.
 evaluation::Truth truth_of(const Finishing& how, double resolution_m,
+                           const std::shared_ptr<const core::FlightRegion>& region,
                            const std::vector<evaluation::PicturePose>& pictures) {
   const auto cave = std::make_shared<cave::Cave>(cave::load_cave(how.cave, how.start, how.mesh));
   evaluation::ReachableOptions options;  // its clearance is not the mission's: coverage compares missions
   options.resolution_m = resolution_m;
-  const auto reachable = std::make_shared<evaluation::Reachable>(evaluation::find_reachable_once(
-      cave->scene.mesh(), cave->description.start.position, options, how.cave, how.cave_cache));
+  const core::Vec3& start = cave->description.start.position;
+  const auto reachable = std::make_shared<evaluation::Reachable>(
+      evaluation::find_reachable_once(cave->scene.mesh(), start, options, how.cave, how.cave_cache));
+  if (region) *reachable = evaluation::reachable_in_region(*reachable, *region, start, how.cave);
   evaluation::Truth truth;
   truth.reachable_volume_m3 = reachable->volume_m3();
   truth.is_reachable = [reachable, resolution_m](const core::Vec3& p) {
@@ -81,7 +91,7 @@ evaluation::Truth truth_if_known(const fs::path& run_dir, const Finishing& how,
                                  std::vector<std::string>& problems, bool& lost_cave) {
   if (how.cave.empty()) return {};
   try {
-    return truth_of(how, cell_size_m(run_dir),
+    return truth_of(how, cell_size_m(run_dir), region_of_run(run_dir),
                     evaluation::read_picture_poses(run_dir / "ground_truth_frames.csv", problems));
   } catch (const core::InputError& e) {
     lost_cave = true;

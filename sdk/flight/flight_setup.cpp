@@ -74,7 +74,10 @@ Vehicles make_vehicles(const Mission& mission, const std::vector<Mission>& membe
     vehicles.world = make_world(mission, members, run_dir);
   else
     vehicles.alone = mission.vehicle_plugin->create(vehicle_setup(mission, run_dir));
-  for (std::size_t i = 0; i < members.size(); ++i) core::check(mission.core, vehicles[i].description());
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    core::check(mission.core, vehicles[i].description());
+    core::check_region(mission.file, mission.core, vehicles[i].description());
+  }
   return vehicles;
 }
 

@@ -22,6 +22,7 @@ using core::OptionTable;
 
 constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
                      *kSelection = "policy.selection";
+constexpr const char *kSurveySection = "survey", *kRegionSection = "region";
 constexpr const char *kPolicyVersion = "policy.version", *kKarstVersion = "karst.version";
 
 struct AutoKeys {
@@ -51,6 +52,7 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
     s.add("hints", m.survey.hints,
           "tell the policy of it; false: only what the survey lacks is counted, for comparisons");
   });
+  t.section(kRegionSection, m.region);
   t.under("policy", [&m, auto_keys](OptionTable& p) {
     p.add("name", m.policy, {},
           "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");
@@ -81,7 +83,6 @@ void describe_radio(OptionTable& table, core::VehiclePlugin& plugin) {
     table.under("radio", [teams](OptionTable& t) { teams->describe_radio(t); });
 }
 
-constexpr const char* kSurveySection = "survey";
 
 /// The sections that apply to teams only.
 constexpr const char* kTeamSections[] = {"team", "homing", "radio"};
@@ -200,6 +201,8 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
       throw InputError(m.file, "survey.offset", "is of no use without survey.file");
     m.resolved.erase(kSurveySection);
   }
+  m.core.region = core::region_of(m.file, m.region);
+  if (!m.core.region) m.resolved.erase(kRegionSection);
   return m;
 }
 

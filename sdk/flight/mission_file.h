@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core_stack/common/enum_names.h"
+#include "core_stack/mapping/region/region_keys.h"
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/vehicle.h"
@@ -46,6 +47,7 @@ struct Mission {
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   core::MeshKeys mesh;  // of a cave that is a bare mesh
   SurveyKeys survey;
+  core::RegionKeys region;
   std::int64_t seed = 1, policy_stream = 0;
   PolicyIsolation policy_isolation = PolicyIsolation::where_possible;
   double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/planning/free_space/free_tiles.h"
 
 namespace karst::core {
@@ -16,6 +17,15 @@ std::optional<CellKey> first_below(const VoxelMap& map, CellKey k, int most) {
   for (int i = 0; i <= most; ++i, --k.z)
     if (map.at(k) != Cell::free) return k;
   return std::nullopt;
+}
+
+/// Whether the hull stays in the map's region while it comes down from `top` to `ground_z_m`.
+bool descends_inside(const VoxelMap& map, const Vec3& top, double ground_z_m, double radius_m) {
+  if (!map.region()) return true;
+  const double step_m = map.resolution_m() / 2;
+  for (double z = top.z(); z > ground_z_m + radius_m; z -= step_m)
+    if (map.region()->depth_m({top.x(), top.y(), z}) < radius_m) return false;
+  return map.region()->depth_m({top.x(), top.y(), std::min(top.z(), ground_z_m + radius_m)}) >= radius_m;
 }
 
 /// The slope of the fitted plane, and the range of heights above it.
@@ -90,6 +100,7 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
   if (!floor || floor->z == top.z) return out;
   if (map.at(*floor) != Cell::occupied) return refused(GroundVerdict::unknown);
   out.ground = {place.x(), place.y(), map.center_of(*floor).z() + res / 2};
+  if (!descends_inside(map, place, out.ground.z(), vehicle_radius_m)) return refused(GroundVerdict::obstructed);
   // Ground may drop by the full step and slope; farther down it does not count.
   const double fall_m =
       options.max_step_m + 2 * radius_m * std::tan(options.max_slope_deg * std::numbers::pi / 180);

@@ -6,6 +6,7 @@
 
 #include "core_stack/mapping/occupancy/packed_cell.h"
 #include "core_stack/mapping/occupancy/voxel_reader.h"
+#include "core_stack/mapping/region/flight_region.h"
 
 namespace karst::core {
 namespace {
@@ -18,12 +19,17 @@ void sort_unique(std::vector<Key>& keys) {
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
+/// Whether the region leaves the cell to be explored: what lies outside of it is nothing to look for.
+bool explorable(const VoxelMap& map, const CellKey& k) {
+  return !map.region() || map.region()->contains(map.center_of(k));
+}
+
 /// The cells around a cell, with one reader per direction: between neighbouring cells it stays in its block.
 class FaceReaders {
  public:
-  explicit FaceReaders(const VoxelMap& map) : readers_(kFaces.size(), VoxelReader(map)) {}
+  explicit FaceReaders(const VoxelMap& map) : map_(map), readers_(kFaces.size(), VoxelReader(map)) {}
   bool unknown(const CellKey& k, std::size_t face) {
-    return readers_[face].at(k + kFaces[face]) == Cell::unknown;
+    return readers_[face].at(k + kFaces[face]) == Cell::unknown && explorable(map_, k + kFaces[face]);
   }
   bool any_unknown(const CellKey& k) {
     for (std::size_t face = 0; face < kFaces.size(); ++face)
@@ -32,6 +38,7 @@ class FaceReaders {
   }
 
  private:
+  const VoxelMap& map_;
   std::vector<VoxelReader> readers_;
 };
 
@@ -136,7 +143,7 @@ std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<cons
   FaceReaders faces(map);
   for (const PackedCell candidate : candidates) {
     const CellKey k = unpack(candidate);
-    const bool now = reader.at(k) == Cell::free && faces.any_unknown(k);
+    const bool now = reader.at(k) == Cell::free && faces.any_unknown(k) && explorable(map, k);
     const bool before = is_frontier(k);
     if (!now && !before) continue;
     const CellKey t = tile_of(k);

@@ -1,5 +1,5 @@
 // Frontiers: free cells with an unknown face neighbour, kept up to date from the map's changes and grouped
-// into clusters of bounded size.
+// into clusters of bounded size. If the map is confined to a region, both cells must lie inside.
 //
 // Space is cut into tiles of a few metres; a cluster is a 26-connected component of frontier cells within one
 // tile. Only tiles touched by a change are clustered again. An update's cost therefore depends on the

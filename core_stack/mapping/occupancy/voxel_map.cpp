@@ -3,6 +3,7 @@
 #include "core_stack/mapping/occupancy/cell_walk.h"
 #include "core_stack/mapping/occupancy/voxel_reader.h"
 #include "core_stack/mapping/occupancy/voxel_storage.h"
+#include "core_stack/mapping/region/flight_region.h"
 
 namespace karst::core {
 namespace {
@@ -70,6 +71,14 @@ Cell VoxelMap::at(const CellKey& k) const {
 std::optional<float> VoxelMap::log_odds(const CellKey& k) const {
   if (at(k) == Cell::unknown) return std::nullopt;
   return static_cast<float>(storage_->blocks.find(block_of(k))->log_odds[local_of(k)]) / kLogOddsScale;
+}
+
+void VoxelMap::confine(std::shared_ptr<const FlightRegion> region) { storage_->region = std::move(region); }
+
+const FlightRegion* VoxelMap::region() const { return storage_->region.get(); }
+
+bool VoxelMap::may_fly(const CellKey& k) const {
+  return at(k) == Cell::free && (!storage_->region || storage_->region->may_fly(center_of(k)));
 }
 
 std::size_t VoxelMap::free_cells() const { return storage_->free_cells; }

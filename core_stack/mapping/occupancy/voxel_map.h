@@ -18,6 +18,8 @@
 
 namespace karst::core {
 
+class FlightRegion;
+
 enum class Cell : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
 struct CellKey {
@@ -74,6 +76,13 @@ class VoxelMap {
   /// Gives every cell of a cube the same log-odds, clamped to the storable range (+-7.9); for maps read from
   /// storage or drawn by hand. Cells of the cube outside the world are ignored.
   void assign(const CellKey& low, std::int32_t edge_cells, float log_odds);
+
+  /// Confines the vehicle to a region from now on; null: everywhere. Cells keep their class, and the map grows
+  /// beyond the region. Only what asks where it may fly takes note.
+  void confine(std::shared_ptr<const FlightRegion> region);
+  const FlightRegion* region() const;  // null: everywhere
+  /// Whether a path may count the cell as free: it is free, and its centre lies in the region with its margin.
+  bool may_fly(const CellKey& k) const;
 
   std::size_t free_cells() const;
   std::size_t occupied_cells() const;

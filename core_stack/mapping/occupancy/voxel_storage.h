@@ -1,5 +1,7 @@
 // Storage of VoxelMap; private to mapping.
 #pragma once
+#include <memory>
+
 #include "core_stack/mapping/occupancy/voxel_blocks.h"
 
 namespace karst::core {
@@ -12,6 +14,7 @@ struct VoxelMap::Storage {
   BlockTable blocks;
   std::size_t free_cells = 0, occupied_cells = 0;
   std::uint64_t revision = 0;
+  std::shared_ptr<const FlightRegion> region;
 
   /// Sets a cell's value; updates the counts, the block's revision and the list of changes.
   void set(Block& b, const CellKey& corner, std::uint32_t local, std::int16_t value,

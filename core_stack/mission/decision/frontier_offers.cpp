@@ -100,6 +100,9 @@ void FrontierOffers::measure_paths(std::vector<FrontierOffer>& offers, const Off
   const std::vector<double> lengths =
       query.roadmap->roadmap().distances(map, query.from, viewpoints, map.resolution_m());
   for (std::size_t i = 0; i < offers.size(); ++i) offers[i].path_length_m = lengths[i];
+  std::erase_if(offers, [&](const FrontierOffer& o) {
+    return std::isfinite(o.path_length_m) && world_->too_far_from_home(*query.roadmap, o.viewpoint);
+  });
 }
 
 /// Returns the cached viewpoint if nothing has changed near the cluster.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core_stack/homing/path_home/home.h"
+#include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/planning/search/grid_planner.h"
 
 namespace karst::core {
@@ -82,7 +83,12 @@ std::optional<std::string> GoalSelection::objection(const GoalQuery& query, cons
   if (const auto why = too_slow(goal, motion_)) return why;
   if (map.at(p) != Cell::free)
     return map.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
-  if (!is_clear(map, p, query.roadmap->clearance_m())) return "it is too near to rock or unknown space";
+  if (map.region() && !map.region()->may_fly(p)) return "it lies outside " + map.region()->nearest_part(p);
+  if (!is_clear(map, p, query.roadmap->clearance_m()))
+    return map.region() && map.region()->depth_m(p) - map.region()->limits().margin_m <
+                               query.roadmap->clearance_m() + map.resolution_m()
+               ? "it is too near to the border of " + map.region()->nearest_part(p) + ", rock or unknown space"
+               : "it is too near to rock or unknown space";
   if (const auto why = ledger_->closed(map, p, query.rules)) return "it was tried before: " + *why;
   return std::nullopt;
 }

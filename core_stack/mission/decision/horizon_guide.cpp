@@ -34,7 +34,13 @@ std::optional<HorizonPlan> HorizonGuide::plan(WorldModel& world, HorizonQuery qu
   query.worth_s_per_m3 =
       exploring_s ? kWorth * std::max(kShortest_s, *exploring_s) / std::max(kLeast_m3, map.free_volume_m3())
                   : 0;
-  return plan_horizon(map, usual.roadmap(), to_goal_, rays_, query);
+  std::optional<HorizonPlan> found = plan_horizon(map, usual.roadmap(), to_goal_, rays_, query);
+  if (found && map.region()) {
+    std::vector<Vec3> flown;
+    for (const TrajectorySample& s : found->samples) flown.push_back(s.position);
+    if (world.leads_too_far(usual, flown)) return std::nullopt;
+  }
+  return found;
 }
 
 }  // namespace karst::core

@@ -1,5 +1,6 @@
 #include "core_stack/mission/flight/safety.h"
 
+#include <string>
 #include <utility>
 
 namespace karst::core {
@@ -7,6 +8,7 @@ namespace {
 
 constexpr TimeNs kKept = kSecond;
 constexpr const char* kBlindForLong = "no sensor sees the cave any more";
+const std::string kOutside = "the vehicle is outside ";
 
 }  // namespace
 
@@ -23,6 +25,7 @@ SafetyVerdict SafetySupervisor::on_motion(const SafetyObservation& o) const {
     return {SafetyAction::slow, "the state estimate is degraded: " + why};
   if (o.hull_clearance_m && *o.hull_clearance_m < options_.hull_clearance_m)
     return {SafetyAction::slow, "close to rock"};
+  if (!o.outside.empty()) return {SafetyAction::slow, kOutside + o.outside};
   return {};
 }
 
@@ -30,6 +33,7 @@ std::optional<std::string> SafetySupervisor::why_home(const SafetyObservation& o
   if (degraded_since_ && seconds(o.now - *degraded_since_) > options_.degraded_home_s)
     return "the state estimate stays degraded";
   if (o.blind_s > options_.blind_home_s) return kBlindForLong;
+  if (!o.outside.empty()) return kOutside + o.outside;
   return std::nullopt;
 }
 

@@ -21,6 +21,7 @@ struct SafetyObservation {
   std::optional<double> hull_clearance_m;  // to the nearest obstacle's surface in the map, if one is near
   double blind_s = 0;                      // since the last scan or image was inserted into the map
   double battery_s = 0;                    // remaining
+  std::string outside = {};                // of which part of its region the hull is; "": inside
 };
 
 struct SafetyVerdict {

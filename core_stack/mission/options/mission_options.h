@@ -8,6 +8,7 @@
 #include "core_stack/mapping/frontiers/frontiers.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
 #include "core_stack/mapping/prior/surveyed_passages.h"
+#include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/mission/options/safety_options.h"
 #include "core_stack/objects/object_options.h"
 #include "core_stack/perception/intensity_filter.h"
@@ -57,10 +58,15 @@ struct CoreOptions {
   TeamOptions team;  // described separately: a single vehicle has none
   HomingOptions homing;
   KnownSurvey survey;
+  std::shared_ptr<const FlightRegion> region;  // null: it may fly everywhere; described by RegionKeys
 };
 void describe(OptionTable& t, CoreOptions& o);
 
 /// Throws InputError if individually valid settings contradict each other or do not fit the vehicle.
 void check(const CoreOptions& o, const VehicleDescription& vehicle);
+
+/// Throws InputError with `source` if the region leaves no room for the vehicle where it stands, above that, or
+/// where it hovers after take-off.
+void check_region(const std::string& source, const CoreOptions& o, const VehicleDescription& vehicle);
 
 }  // namespace karst::core

@@ -61,12 +61,26 @@ void ReturnHome::on_estimate(const HomeEstimate& estimate) {
   const double seconds_left = parts_.endurance.seconds_left(onboard_.now());
   distance_m_ = estimate.length_m;
   const double slack_s = home_slack_s(seconds_left, estimate.time_s, o.home_margin, o.home_reserve_s);
+  if (leads_too_far(estimate)) return;
   if (!return_trigger_.due(slack_s)) return;
   const bool by_time = seconds_left < parts_.endurance.battery().seconds_left;
   onboard_.recorder.write(onboard_.now(), event::Homing{by_time ? "time limit" : "battery", distance_m_,
                                                         seconds_left, seconds_left - slack_s});
   begin(by_time ? "the time allowed only just suffices for the way home"
                 : "the battery only just suffices for the way home");
+}
+
+/// Goals and paths keep the limit; but a passage may turn out closed, and the vehicle may drift.
+bool ReturnHome::leads_too_far(const HomeEstimate& estimate) {
+  constexpr double kTolerance_m = 1;
+  const auto& region = onboard_.options.region;
+  if (!region || !region->limits().max_home_m || !estimate.by_map ||
+      estimate.length_m <= *region->limits().max_home_m + kTolerance_m)
+    return false;
+  constexpr const char* kReason = "the way home is longer than region.max_home_distance";
+  onboard_.recorder.write(onboard_.now(), event::Safety{SafetyAction::home, kReason});
+  begin(kReason);
+  return true;
 }
 
 void ReturnHome::step() {

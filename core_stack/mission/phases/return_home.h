@@ -56,6 +56,7 @@ class ReturnHome {
 
  private:
   void on_estimate(const HomeEstimate& estimate);
+  bool leads_too_far(const HomeEstimate& estimate);
   void arrive();
   void find_path();
   void plan();

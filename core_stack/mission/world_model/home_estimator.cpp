@@ -47,7 +47,7 @@ HomeEstimate HomeEstimator::to_start(const Vec3& from, double flown_m) {
   if (const ClearanceRoadmap* const narrow = world_->narrow_if_made())
     if (const auto length_m = narrow->home_length_m(map, from))
       return {*length_m, extra_time_s(narrow->path_home(map, from)) + time_home_s(*length_m)};
-  return {flown_m, time_home_s(flown_m)};
+  return {flown_m, time_home_s(flown_m), false};
 }
 
 /// Uses narrow passages only if there is no other path home: a passage that was flown may look narrower

@@ -13,6 +13,7 @@ namespace karst::core {
 
 struct HomeEstimate {
   double length_m = 0, time_s = 0;
+  bool by_map = true;  // else the flown path stands in for it
 };
 
 class HomeEstimator {

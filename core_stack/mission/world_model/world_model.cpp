@@ -1,5 +1,9 @@
 #include "core_stack/mission/world_model/world_model.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/planning/planner.h"
 #include "core_stack/planning/search/grid_planner.h"
 
@@ -25,6 +29,7 @@ WorldModel::WorldModel(const CoreOptions& options, const VehicleDescription& veh
       narrow_clearance_m_(narrow_clearance_m(options.planning, vehicle.radius_m)),
       home_(vehicle.T_world_start.position + Vec3(0, 0, options.mission.takeoff_height_m)) {
   if (survey_.passages) unsurveyed_.emplace(survey_.passages);
+  map_.confine(options.region);
 }
 
 std::vector<CellChange> WorldModel::integrate(const std::vector<Ray>& rays) {
@@ -76,7 +81,33 @@ Path WorldModel::plan(const ClearanceRoadmap& on, const Vec3& from, const Vec3& 
       path = plan_along(map_, on.roadmap(), raw, on.planning());
   if (!path.found()) path = core::plan(map_, on.roadmap(), from, to, on.planning());
   if (on.passages() == Passages::narrow) mark_narrow_places(map_, usual_.clearance_m(), path);
+  if (path.found() && to != home_ && leads_too_far(on, path.points)) {
+    path = Path{};
+    path.reason = "it leads farther from home than region.max_home_distance";
+  }
   return path;
+}
+
+bool WorldModel::too_far_from_home(const ClearanceRoadmap& on, const Vec3& p) const {
+  if (!map_.region() || !map_.region()->limits().max_home_m) return false;
+  const std::optional<double> length_m = on.home_length_m(map_, p);
+  return !length_m || *length_m > *map_.region()->limits().max_home_m;
+}
+
+/// Where the path home is not known for the moment, near an obstacle, the places beside it decide. A vehicle
+/// that is too far already may go no farther.
+bool WorldModel::leads_too_far(const ClearanceRoadmap& on, const std::vector<Vec3>& points) const {
+  if (!map_.region() || !map_.region()->limits().max_home_m || points.empty()) return false;
+  constexpr double kSpacing_m = 1.0;
+  const double most_m = std::max(*map_.region()->limits().max_home_m,
+                                 on.home_length_m(map_, points.front()).value_or(0) + kSpacing_m);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vec3 along = points[i] - points[i - 1];
+    const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / kSpacing_m)));
+    for (int k = 1; k <= pieces; ++k)
+      if (on.home_length_m(map_, points[i - 1] + along * k / pieces).value_or(0) > most_m) return true;
+  }
+  return too_far_from_home(on, points.back());
 }
 
 Path WorldModel::plan_to(const Vec3& from, const Vec3& to) {

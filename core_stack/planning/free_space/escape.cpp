@@ -15,7 +15,8 @@ std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& fre
   const double res = free.resolution_m(), radius_m = 2 * clearance_m + 2 * res;
   free.load_near(map, start, radius_m + clearance_m);
   const CellKey first = free.key_of(start);
-  if (!free.at(first)) return std::nullopt;
+  if (!free.at(first))
+    return map.at(first) == Cell::free ? path_back_inside(map, free, start, clearance_m) : std::nullopt;
 
   std::map<CellKey, Visit> visits{{first, {0, free.nearest(start, clearance_m).distance_m, first}}};
   std::set<std::pair<double, CellKey>> open{{0.0, first}};
@@ -45,6 +46,56 @@ std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& fre
       if (known != visits.end()) open.erase({known->second.length_m, n});
       visits[n] = {length, distance, k};
       open.insert({length, n});
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles& free, const Vec3& start,
+                                                  double clearance_m) {
+  constexpr double kLongest_m = 15;
+  struct Visit {
+    double length_m;
+    CellKey parent;
+  };
+  FreeTiles anywhere(free.resolution_m(), Confined::no);
+  const auto load = [&](const Vec3& p) {
+    free.load_near(map, p, 2 * clearance_m);
+    anywhere.load_near(map, p, 2 * clearance_m);
+  };
+  load(start);
+  const CellKey first = free.key_of(start);
+  if (!anywhere.at(first)) return std::nullopt;
+  // Between two cells the distance may fall by a fraction of a cell below the distance at either.
+  const double kept_m = std::min(
+      clearance_m,
+      std::max(0.0, anywhere.nearest(start, clearance_m).distance_m - 0.25 * free.resolution_m()));
+
+  std::map<CellKey, Visit> visits{{first, {0, first}}};
+  std::set<std::pair<double, CellKey>> open{{0.0, first}};
+  while (!open.empty()) {
+    const auto [length_m, k] = *open.begin();
+    open.erase(open.begin());
+    const Vec3 p = k == first ? start : free.center_of(k);
+    load(p);
+    if (!(k == first) && free.is_clear(p, clearance_m)) {
+      std::vector<Vec3> out;
+      for (CellKey c = k; !(c == first); c = visits.at(c).parent) out.push_back(free.center_of(c));
+      out.push_back(start);
+      std::reverse(out.begin(), out.end());
+      return out;
+    }
+    for (int i = 0; i < 27; ++i) {
+      const CellKey n = k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      const Vec3 q = free.center_of(n);
+      const double further_m = length_m + (q - p).norm();
+      const auto known = visits.find(n);
+      if (n == first || further_m > kLongest_m || (known != visits.end() && known->second.length_m <= further_m) ||
+          !anywhere.segment_clear(p, q, kept_m))
+        continue;
+      if (known != visits.end()) open.erase({known->second.length_m, n});
+      visits[n] = {further_m, k};
+      open.insert({further_m, n});
     }
   }
   return std::nullopt;

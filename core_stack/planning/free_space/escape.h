@@ -10,8 +10,14 @@ namespace karst::core {
 
 /// The shortest path from `start`, which must lie in a free cell, to the centre of a clear cell within about
 /// two clearances. It leads through free cells whose distance to the nearest obstacle never decreases. It
-/// begins with `start`. Nothing if there is none.
+/// begins with `start`. Nothing if there is none. From outside the map's region it is the way back inside.
 std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& free, const Vec3& start,
                                              double clearance_m);
+
+/// The shortest path from `start`, in a free cell outside the map's region, to the centre of a clear cell
+/// inside, at most 15 m long. All of it keeps the clearance from rock and unknown cells, or as much as `start`
+/// has. It begins with `start`. Nothing if there is none.
+std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles& free, const Vec3& start,
+                                                  double clearance_m);
 
 }  // namespace karst::core

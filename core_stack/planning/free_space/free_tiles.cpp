@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/planning/free_space/segment_rows.h"
 
 namespace karst::core {
@@ -16,6 +17,20 @@ struct Offset {
   int dy, dz;
   double distance;
 };
+
+/// Clears the cells of the tile at `corner` that the vehicle must not fly in.
+void confine(TileBits& tile, const FlightRegion& region, const CellKey& corner, double resolution_m) {
+  const auto center_of = [&](const CellKey& k) {
+    return Vec3((Vec3(k.x, k.y, k.z).array() + 0.5) * resolution_m);
+  };
+  // The depth changes by no more than the distance: mostly the tile's centre decides for all of its cells.
+  const Vec3 last = center_of(corner + CellKey{kTileX - 1, kTileY - 1, kTileZ - 1}), first = center_of(corner);
+  const double beyond_m = region.depth_m((first + last) / 2) - region.limits().margin_m;
+  if (beyond_m >= (last - first).norm() / 2) return;
+  for (std::uint32_t i = 0; i < kTileCells; ++i)
+    if (tile[i >> 5] >> (i & 31) & 1 && !region.may_fly(center_of(cell_in_tile(corner, i))))
+      tile[i >> 5] &= ~(1u << (i & 31));
+}
 
 /// Offsets of the rows around a cell, nearest first.
 std::vector<Offset> rows_by_distance() {
@@ -57,6 +72,7 @@ void FreeTiles::load(const VoxelMap& map, const CellKey& low, const CellKey& hig
                             [&tile](const CellKey& k, Cell c) {
                               if (c == Cell::free) tile[row_of(k.y, k.z)] |= 1u << (k.x & 31);
                             });
+        if (map.region() && confined_) confine(tile, *map.region(), corner, resolution_m_);
       }
 }
 
@@ -70,7 +86,7 @@ void FreeTiles::refresh(const VoxelMap& map, const CellKey& k) {
   if (i == TileTable::none) return load(map, k, k);
   std::uint32_t& r = (*tiles_[i])[row_of(k.y, k.z)];
   const std::uint32_t bit = 1u << (k.x & 31);
-  r = map.at(k) == Cell::free ? r | bit : r & ~bit;
+  r = (confined_ ? map.may_fly(k) : map.at(k) == Cell::free) ? r | bit : r & ~bit;
 }
 
 const TileBits& FreeTiles::bits(const TileKey& t) const {

@@ -1,4 +1,5 @@
-// The map's free cells as bitmaps, and clearance queries on them.
+// The map's free cells as bitmaps, and clearance queries on them. If the map is confined to a region, cells
+// outside of it count as obstacles here, and so in every path.
 //
 // Obstacles are occupied cells, and unknown cells that touch free ones. For a point in a free cell, clearance
 // from these equals clearance from all cells that are not free: a step along an axis from such a cell towards
@@ -61,9 +62,13 @@ struct NearestObstacle {
   Vec3 center;  // of the obstacle cell; not set if there is none within the limit
 };
 
+/// Whether the map's region limits the free cells.
+enum class Confined { yes, no };
+
 class FreeTiles {
  public:
-  explicit FreeTiles(double resolution_m) : resolution_m_(resolution_m) {}
+  explicit FreeTiles(double resolution_m, Confined confined = Confined::yes)
+      : resolution_m_(resolution_m), confined_(confined == Confined::yes) {}
 
   /// Reads the tiles that touch the closed box of cells and have not been read yet. Cells never read count as
   /// unknown.
@@ -95,6 +100,7 @@ class FreeTiles {
   const TileBits& bits(const TileKey& t) const;
 
   double resolution_m_;
+  bool confined_;
   TileTable table_;
   std::vector<std::unique_ptr<TileBits>> tiles_;
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core_stack/mapping/region/flight_region.h"
+
 namespace karst::core {
 namespace {
 
@@ -53,6 +55,28 @@ ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m)
   seen_by_.assign(cells_.size(), 0);
   map.for_each_in_box(low_, {middle.x + half, middle.y + half, middle.z + half},
                       [this](const CellKey& k, Cell c) { cells_[index_of(k)] = c; });
+  if (map.region()) leave_out_beyond(*map.region());
+}
+
+/// Nothing is gained by seeing unknown cells outside the region: they count as free.
+void ViewMap::leave_out_beyond(const FlightRegion& region) {
+  constexpr std::int32_t kBlock = 8;
+  const auto center_of = [this](std::int32_t x, std::int32_t y, std::int32_t z, double half) {
+    return Vec3(Vec3(low_.x + x + half, low_.y + y + half, low_.z + z + half) * resolution_m_);
+  };
+  const double radius_m = std::sqrt(3.0) / 2 * kBlock * resolution_m_;
+  for (std::int32_t z = 0; z < edge_; z += kBlock)
+    for (std::int32_t y = 0; y < edge_; y += kBlock)
+      for (std::int32_t x = 0; x < edge_; x += kBlock) {
+        // The depth changes by no more than the distance.
+        if (region.depth_m(center_of(x, y, z, 0.5 * kBlock)) >= radius_m) continue;
+        for (std::int32_t w = z; w < std::min(z + kBlock, edge_); ++w)
+          for (std::int32_t v = y; v < std::min(y + kBlock, edge_); ++v)
+            for (std::int32_t u = x; u < std::min(x + kBlock, edge_); ++u) {
+              Cell& cell = cells_[index_of(low_ + CellKey{u, v, w})];
+              if (cell == Cell::unknown && !region.contains(center_of(u, v, w, 0.5))) cell = Cell::free;
+            }
+      }
 }
 
 std::size_t ViewMap::index_of(const CellKey& k) const {

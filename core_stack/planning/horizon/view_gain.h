@@ -40,6 +40,7 @@ class ViewMap {
   static constexpr double kExpected_m = 1.5;
 
  private:
+  void leave_out_beyond(const FlightRegion& region);
   std::size_t index_of(const CellKey& k) const;
 
   double resolution_m_;

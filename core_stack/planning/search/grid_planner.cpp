@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "core_stack/common/format_text.h"
+#include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/planning/free_space/escape.h"
 #include "core_stack/planning/free_space/segment_rows.h"
 #include "core_stack/planning/search/grid_search.h"
@@ -19,7 +21,12 @@ std::string what_blocks(const VoxelMap& map, const FreeTiles& free, const Vec3& 
   const auto class_name = [](Cell c) { return c == Cell::occupied ? "occupied" : "unknown"; };
   if (map.at(p) != Cell::free)
     return std::string("the ") + place + " lies in an " + class_name(map.at(p)) + " cell";
+  if (!map.may_fly(map.key_of(p)))
+    return std::string("the ") + place + " lies outside " + map.region()->nearest_part(p) + " and its margin";
   const NearestObstacle o = free.nearest(p, clearance_m);
+  if (map.at(o.center) == Cell::free)
+    return format_text("%s is %.2f m from the %s, less than the clearance of %.2f m",
+                       map.region()->nearest_part(o.center).c_str(), o.distance_m, place, clearance_m);
   char text[160];
   std::snprintf(text, sizeof text, "%s cell %.2f m from the %s, less than the clearance of %.2f m",
                 class_name(map.at(o.center)), o.distance_m, place, clearance_m);
@@ -105,14 +112,23 @@ bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double cle
   if (!within_world(a) || !within_world(b)) return false;
   const double res = map.resolution_m();
   const Vec3 half = Vec3::Constant(0.5);
+  // Near the region's border each cell is asked: the depth changes by no more than the distance.
+  const double reach_m = (b - a).norm() / 2 + clearance_m + res;
+  const bool at_border = map.region() && !(map.region()->depth_m((a + b) / 2) >=
+                                           map.region()->limits().margin_m + reach_m);
+  const auto free = [&](const CellKey& k) { return at_border ? map.may_fly(k) : map.at(k) == Cell::free; };
   const bool near_free =
       all_rows_near_segment(a / res - half, b / res - half, clearance_m / res,
-                            [&map](std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) {
+                            [&free](std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) {
                               for (std::int32_t x = x_low; x <= x_high; ++x)
-                                if (map.at(CellKey{x, y, z}) != Cell::free) return false;
+                                if (!free(CellKey{x, y, z})) return false;
                               return true;
                             });
-  return near_free && (clearance_m > 0.87 * res || !map.first_not_free(a, b));
+  if (!near_free || clearance_m > 0.87 * res) return near_free;
+  if (map.first_not_free(a, b)) return false;
+  bool passed_free = true;
+  if (at_border) traverse(a, b, res, [&](const CellKey& k) { return passed_free = free(k); });
+  return passed_free;
 }
 
 bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m) {

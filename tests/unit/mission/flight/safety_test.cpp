@@ -54,6 +54,17 @@ TEST(Safety, EachCauseHasItsAction) {
   EXPECT_EQ(action([](auto& o) { o.hull_clearance_m = 0.05; }), A::slow);
 }
 
+TEST(Safety, OutsideItsRegionTheVehicleGoesHomeSlowly) {
+  SafetySupervisor s{SafetyOptions{}};
+  SafetyObservation o = well(1);
+  o.outside = "region.keep_in";
+  const SafetyVerdict v = s.judge(o);
+  EXPECT_EQ(v.action, SafetyAction::slow);
+  EXPECT_EQ(v.reason, "the vehicle is outside region.keep_in");
+  EXPECT_EQ(v.go_home, v.reason);
+  EXPECT_FALSE(s.judge(well(1.1)).go_home);
+}
+
 TEST(Safety, AnEstimateThatStaysDegradedEndsTheExploration) {
   SafetySupervisor s{SafetyOptions{}};
   for (double t = 0; t < 5.25; t += 0.1) {

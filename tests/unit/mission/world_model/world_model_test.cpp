@@ -33,6 +33,43 @@ TEST(WorldModel, TakesRaysIntoTheMapAndItsFrontiers) {
   EXPECT_EQ(world.frontiers().cell_count(), frontier_cells);
 }
 
+CoreOptions within(const FlightRegion::Limits& limits) {
+  CoreOptions options;
+  options.region = std::make_shared<const FlightRegion>(limits);
+  return options;
+}
+
+TEST(WorldModel, PlansNothingOutOfTheRegionButMapsIt) {
+  FlightRegion::Limits limits;
+  limits.keep_in = box({-1, -1, -1}, {6, 9, 9});
+  limits.margin_m = 0.5;
+  WorldModel world = mapped(room_open_to_x(), within(limits));
+  EXPECT_EQ(world.map().free_cells(), mapped(room_open_to_x()).map().free_cells());
+  EXPECT_EQ(world.frontiers().cell_count(), 0u);  // the open side lies outside
+  const Path out = world.plan(world.usual(), kHere, {7, 3, 1.4});
+  EXPECT_EQ(out.status, PlanStatus::goal_blocked);
+  EXPECT_NE(out.reason.find("outside region.keep_in"), std::string::npos) << out.reason;
+  EXPECT_TRUE(world.plan(world.usual(), kHere, {4.5, 3, 1.4}).found());
+}
+
+TEST(WorldModel, PlansNoPathFartherFromHomeThanAllowed) {
+  VoxelMap hall{MapOptions{}};
+  carve_box(hall, Vec3(0, 0, 0), Vec3(30, 6, 4));
+  FlightRegion::Limits limits;
+  limits.max_home_m = 12;
+  WorldModel world = mapped(hall, within(limits));
+  world.set_home(kHere);
+  EXPECT_TRUE(world.plan(world.usual(), kHere, {13, 3, 1.4}).found());
+  const Path far = world.plan(world.usual(), kHere, {17, 3, 1.4});
+  EXPECT_FALSE(far.found());
+  EXPECT_NE(far.reason.find("region.max_home_distance"), std::string::npos);
+  EXPECT_FALSE(world.too_far_from_home(world.usual(), {14, 3, 1.4}));
+  EXPECT_TRUE(world.too_far_from_home(world.usual(), {16, 3, 1.4}));
+  // From beyond, home is near enough, and so is what lies nearer to it.
+  EXPECT_TRUE(world.plan(world.usual(), {20, 3, 1.4}, kHere).found());
+  EXPECT_TRUE(world.plan(world.usual(), {20, 3, 1.4}, {12, 3, 1.4}).found());
+}
+
 TEST(WorldModel, CountsWhatTheSurveyLacksWhetherThePolicyIsToldOrNot) {
   EXPECT_FALSE(mapped(room_open_to_x()).unsurveyed_m3());
   const PassageSize size{1, 1, 1, 1};
