@@ -107,8 +107,8 @@ TEST(RegionFlight, ItFliesNoFartherFromHomeThanAllowed) {
 TEST(RegionFlight, WindAtTheBorderDoesNotBlowItOut) {
   const std::string cave = passage_cave(fresh_folder("region_wind_cave"));
   const Flown f = fly("wind", cave,
-                      "--set 'region.keep_in=box -6 -6 -2 14 6 6' --set simulator.wind.draught_east=4 "
-                      "--set simulator.wind.gust=1.5 --set mission.max_flight_time=80s");
+                      "--set 'region.keep_in=box -6 -6 -2 14 6 6' --set simulator.draught_east=4 "
+                      "--set simulator.gust=1.5 --set mission.max_flight_time=80s");
   expect_kept(f);
   EXPECT_GT(farthest_x(f), 9);
 }

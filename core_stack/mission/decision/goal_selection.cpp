@@ -81,9 +81,9 @@ std::optional<std::string> GoalSelection::objection(const GoalQuery& query, cons
   if (!p.allFinite()) return "its position is not finite";
   if (std::isinf(goal.heading_rad)) return "its heading is not finite";
   if (const auto why = too_slow(goal, motion_)) return why;
+  if (map.region() && !map.region()->may_fly(p)) return "it lies outside " + map.region()->nearest_part(p);
   if (map.at(p) != Cell::free)
     return map.at(p) == Cell::occupied ? "it lies in an occupied cell" : "it lies in unknown space";
-  if (map.region() && !map.region()->may_fly(p)) return "it lies outside " + map.region()->nearest_part(p);
   if (!is_clear(map, p, query.roadmap->clearance_m()))
     return map.region() && map.region()->depth_m(p) - map.region()->limits().margin_m <
                                query.roadmap->clearance_m() + map.resolution_m()

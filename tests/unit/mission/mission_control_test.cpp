@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <utility>
 
 #include "core_stack/common/json_text.h"
@@ -367,12 +368,12 @@ TEST_F(MissionControlTest, BrakesForWhatPushesItOffItsPathOnTheWayHomeWithADegra
   EXPECT_EQ(std::count(all.begin(), all.end(), "brake: far from the reference"), 1);
 }
 
-/// As an autopilot in a hold: level, against gravity, braking.
-AttitudeRateCommand hold(const FakeVehicle& vehicle) {
+/// As an autopilot in a hold, or at a speed: against gravity, braking.
+AttitudeRateCommand hold(const FakeVehicle& vehicle, const Vec3& wanted_mps = Vec3::Zero()) {
   const Vec3 tilt = vehicle.pose().orientation * Vec3::UnitZ();
-  const Vec3 to = (Vec3(0, 0, 9.81) - 2 * vehicle.velocity_mps()).normalized();
+  const Vec3 to = (Vec3(0, 0, 9.81) - 2 * (vehicle.velocity_mps() - wanted_mps)).normalized();
   return {6 * (vehicle.pose().orientation.conjugate() * tilt.cross(to)),
-          vehicle.description().mass_kg * (9.81 - 2 * vehicle.velocity_mps().z()) / tilt.z(), true};
+          vehicle.description().mass_kg * (9.81 - 2 * (vehicle.velocity_mps() - wanted_mps).z()) / tilt.z(), true};
 }
 
 TEST_F(MissionControlTest, WaitsForThePilotAndTheTimeAllowedCountsFromThen) {
@@ -465,6 +466,78 @@ TEST_F(MissionControlTest, LandedByTheAutopilotIsAborted) {
   EXPECT_TRUE(result.stands);
   EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "manual", "done"}));
   EXPECT_FALSE(vehicle.told().rates.armed);
+}
+
+/// Of the corridor, up to x = 9.
+std::shared_ptr<const FlightRegion> part_of_the_corridor() {
+  FlightRegion::Limits limits;
+  limits.keep_in = box({-5, -5, -2}, {9, 5, 6});
+  limits.margin_m = 0.5;
+  return std::make_shared<const FlightRegion>(limits);
+}
+
+TEST_F(MissionControlTest, FliesToNoGoalOutsideItsRegionAndSaysWhy) {
+  options.region = part_of_the_corridor();
+  vehicle.battery_s = 60;
+  policy.script = [](const DecisionRequest&) {
+    Decision both = fly_to(kFar_m);
+    both.goals.push_back(fly_to(7).goals.front());
+    return both;
+  };
+  double farthest_m = 0;
+  std::set<std::string> reasons;
+  const MissionResult result =
+      fly([&](MissionControl&) { farthest_m = std::max(farthest_m, vehicle.pose().position.x()); });
+  for (const PolicyEvent& e : policy.heard)
+    if (e.kind == PolicyEvent::Kind::goal_rejected) reasons.insert(e.reason);
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_GT(farthest_m, 6.5);
+  EXPECT_LT(farthest_m, 9 - vehicle.description().radius_m);
+  EXPECT_EQ(reasons, std::set<std::string>{"it lies outside region.keep_in"});
+}
+
+TEST_F(MissionControlTest, BlownOutOfItsRegionItFliesBackInsideAndHome) {
+  options.region = part_of_the_corridor();
+  policy.script = [](const DecisionRequest& r) { return fly_to(r.state.position.x() > 5 ? 2 : 7); };
+  std::optional<TimeNs> pushed;
+  double farthest_m = 0;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    farthest_m = std::max(farthest_m, vehicle.pose().position.x());
+    if (mission.phase() == Phase::explore && vehicle.pose().position.x() > 6 && !pushed)
+      pushed = executive.now();
+    const TimeNs since = executive.now() - pushed.value_or(executive.now());
+    vehicle.wind_push_mps2 = {since > 0 && since < 2 * kSecond ? 12.0 : 0.0, 0, 0};
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_GT(farthest_m, 9);
+  EXPECT_EQ(homing_reason(), "the vehicle is outside region.keep_in");
+  EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
+}
+
+TEST_F(MissionControlTest, HandedOverOutsideItsRegionItFliesBackInsideAndHome) {
+  options.region = part_of_the_corridor();
+  policy.script = [](const DecisionRequest& r) { return fly_to(r.state.position.x() > 5 ? 2 : 7); };
+  bool over = false;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    if (over) return;
+    if (!vehicle.pilot_rates && mission.phase() == Phase::explore && vehicle.pose().position.x() > 6)
+      mission.on_authority(executive.now(), Authority::pilot, "mode stabilized");
+    if (mission.phase() != Phase::manual) return;
+    const bool flies_on = vehicle.pose().position.x() < 11;
+    vehicle.pilot_rates = hold(vehicle, Vec3(flies_on ? 1 : 0, -0.3 * vehicle.pose().position.y(), 0));
+    if (flies_on || vehicle.velocity_mps().norm() > 0.1) return;
+    over = true;
+    vehicle.pilot_rates.reset();
+    mission.on_authority(executive.now(), Authority::core, "mode offboard");
+  });
+  EXPECT_TRUE(over);
+  EXPECT_EQ(result.outcome, MissionOutcome::landed);
+  EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "manual", "explore", "home", "land", "done"}));
+  EXPECT_EQ(homing_reason(), "the vehicle is outside region.keep_in");
+  EXPECT_EQ(told("safety", "reason").front(), "the vehicle is outside region.keep_in");
+  EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "core_stack/mapping/region/flight_region.h"
+
 namespace karst::core {
 namespace {
 
@@ -45,6 +47,22 @@ TEST(DescentPath, LeadsToWhereItIsToLandIfThatIsNearAndInSight) {
   for (int y = -40; y < 40; ++y)
     for (int z = -40; z < 20; ++z) map.assign({4, y, z}, 1, 2.0f);
   EXPECT_EQ(descent_path(map, {from, {}, kRadius_m, near}).back().y(), 0.1) << "a wall is between";
+}
+
+TEST(DescentPath, LeadsToGroundWithinTheRegionOnly) {
+  VoxelMap map = hall([](double, double) { return -2.0; });
+  FlightRegion::Limits limits;
+  limits.margin_m = 0.5;
+  limits.keep_out = {box({-2, -2, -9}, {2, 2, -1})};  // below it
+  map.confine(std::make_shared<const FlightRegion>(limits));
+  const Vec3 from(0.1, 0.1, 0.1);
+  const auto path = descent_path(map, {from, {}, kRadius_m, {}});
+  ASSERT_EQ(path.size(), 2u);
+  for (double z = from.z(); z > -2 + kRadius_m; z -= 0.05)
+    EXPECT_GE(map.region()->depth_m({path.back().x(), path.back().y(), z}), kRadius_m);
+  limits.keep_in = box({-20, -20, -1.8}, {20, 20, 9});  // above all ground
+  map.confine(std::make_shared<const FlightRegion>(limits));
+  EXPECT_TRUE(descent_path(map, {from, {}, kRadius_m, {}}).empty());
 }
 
 TEST(DescentPath, LeadsAsideFromASlopeThatThrowsAVehicleOver) {

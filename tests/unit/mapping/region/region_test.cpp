@@ -31,7 +31,7 @@ Prism random_prism(Random& random) {
 }
 
 /// By the winding number, where depth_in counts crossings.
-bool inside(const Prism& prism, const Vec3& p) {
+bool is_inside(const Prism& prism, const Vec3& p) {
   double turned = 0;
   for (std::size_t i = 0; i < prism.outline.size(); ++i) {
     const Eigen::Vector2d a = prism.outline[i] - p.head<2>(),
@@ -53,7 +53,7 @@ double sampled_distance(const Prism& prism, const Vec3& p, double step_m) {
     }
   }
   const Vec3 level(p.x(), p.y(), (prism.low_m + prism.high_m) / 2);
-  if (inside(prism, level))
+  if (is_inside(prism, level))
     least = std::min({least, std::abs(p.z() - prism.low_m), std::abs(p.z() - prism.high_m)});
   return least;
 }
@@ -68,7 +68,7 @@ TEST(Prism, DepthIsTheDistanceFromItsSurfaceWithTheSignOfTheSide) {
                    random.uniform(-8, 14));
       const double depth = depth_in(prism, p), sampled = sampled_distance(prism, p, 0.02);
       RC_ASSERT(std::abs(std::abs(depth) - sampled) < 0.02);
-      if (sampled > 1e-6) RC_ASSERT((depth > 0) == inside(prism, p));
+      if (sampled > 1e-6) RC_ASSERT((depth > 0) == is_inside(prism, p));
     }
   }));
 }
