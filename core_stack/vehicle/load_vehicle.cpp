@@ -13,6 +13,8 @@ namespace {
 
 constexpr const char* kPrefix = "libkarst_vehicle_";
 
+}  // namespace
+
 std::vector<std::string> vehicles_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -23,8 +25,6 @@ std::vector<std::string> vehicles_in(const std::filesystem::path& folder) {
   std::sort(names.begin(), names.end());
   return names;
 }
-
-}  // namespace
 
 VehiclePlugin& load_vehicle(const std::string& name, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / (kPrefix + name + ".so");

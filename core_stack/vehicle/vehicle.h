@@ -89,6 +89,7 @@ struct VehicleSetup {
   double climb_m = 0;   // by which it will rise from where it stands, before anything is known
   std::uint64_t seed = 1;
   MeshKeys mesh = {};  // of a cave that is a bare mesh
+  Clock clock = Clock::lockstep;  // of the executive that it will be started in
 };
 
 /// A vehicle plugin's factory. `options()` describes the section of the mission file that bears the

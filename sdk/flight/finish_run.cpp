@@ -2,6 +2,8 @@
 
 #include <boost/property_tree/ptree.hpp>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -115,7 +117,50 @@ void write_team_telemetry(const evaluation::TeamRecord& team) {
   evaluation::write_whole_file(team.directory / "telemetry.csv", text);
 }
 
+/// The keys of the cave's mesh, as far as the run recorded them.
+core::MeshKeys recorded_mesh_keys(const fs::path& file, const boost::property_tree::ptree& mission) {
+  core::MeshKeys keys;
+  core::OptionTable table;
+  table.section("cave", keys);
+  for (const auto& row : table.rows())
+    if (const auto value = mission.get_optional<std::string>(row.key))
+      table.set(file.string(), row.key, *value);
+  return keys;
+}
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What a simulated vehicle writes (plugins/simulator/truth_log.h).
+constexpr const char* kTruthFiles[] = {"ground_truth.tum", "truth.csv", "truth_events.jsonl",
+                                       "ground_truth_frames.csv", "truth_objects.jsonl"};
+
 }  // namespace
+
+Finishing recorded_cave(const fs::path& mission_info, Report report) {
+  const auto info = core::read_info(mission_info.string());
+  Finishing how{info.get("cave.file", ""), info.get("cave.start", "")};
+  how.report = report;
+  how.mesh = recorded_mesh_keys(mission_info, info);
+  return how;
+}
+
+void take_truth(const fs::path& run_dir, const fs::path& truth, Report report) {
+  if (!fs::is_regular_file(truth / "ground_truth.tum"))
+    throw core::InputError(truth.string(), "", "holds no ground_truth.tum: is it a folder of karst vehicle serve --truth?");
+  const Finishing how = recorded_cave(truth / "mission.info", report);
+  for (const char* file : kTruthFiles) {
+    if (!fs::is_regular_file(truth / file)) continue;
+    std::error_code error;
+    if (fs::exists(run_dir / file) && bytes_of(run_dir / file) != bytes_of(truth / file))
+      throw core::InputError((run_dir / file).string(), "", "is there, and differs from that of " + truth.string());
+    fs::copy_file(truth / file, run_dir / file, fs::copy_options::overwrite_existing, error);
+    if (error) throw core::InputError((run_dir / file).string(), "", "cannot be written: " + error.message());
+  }
+  finish_run(run_dir, how);
+}
 
 nlohmann::json finish_run(const fs::path& run_dir, const Finishing& how) {
   std::vector<std::string> problems, run_problems;

@@ -17,6 +17,13 @@ struct Finishing {
   core::MeshKeys mesh = {};               // of a cave that is a bare mesh
 };
 
+/// The cave of the mission that a folder recorded, as far as its mission.info names it.
+Finishing recorded_cave(const std::filesystem::path& mission_info, Report report = Report::written);
+
+/// Completes a run with the ground truth that the vehicle's own process wrote into `truth` (karst vehicle serve), and
+/// evaluates it again. Throws core::InputError if that folder has none, or the run has other truth already.
+void take_truth(const std::filesystem::path& run_dir, const std::filesystem::path& truth, Report report);
+
 /// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics.
 nlohmann::json finish_run(const std::filesystem::path& run_dir, const Finishing& how);
 

@@ -23,17 +23,6 @@ Mission mission_of_member(const Mission& team, std::size_t member) {
   return m;
 }
 
-core::VehicleSetup vehicle_setup(const Mission& mission, const fs::path& run_dir) {
-  core::VehicleSetup setup;
-  setup.cave = mission.cave;
-  setup.start = mission.start;
-  setup.mesh = mission.mesh;
-  setup.run_dir = run_dir.string();
-  setup.climb_m = mission.core.mission.takeoff_height_m;
-  setup.seed = static_cast<std::uint64_t>(mission.seed);
-  return setup;
-}
-
 std::unique_ptr<sim::SimulatedWorld> make_world(const Mission& mission, const std::vector<Mission>& members,
                                                 const fs::path& run_dir) {
   auto* plugin = dynamic_cast<sim::SimulatedWorldPlugin*>(mission.vehicle_plugin);
@@ -50,6 +39,18 @@ std::unique_ptr<sim::SimulatedWorld> make_world(const Mission& mission, const st
 }
 
 }  // namespace
+
+core::VehicleSetup vehicle_setup(const Mission& mission, const fs::path& run_dir, core::Clock clock) {
+  core::VehicleSetup setup;
+  setup.cave = mission.cave;
+  setup.start = mission.start;
+  setup.mesh = mission.mesh;
+  setup.run_dir = run_dir.string();
+  setup.climb_m = mission.core.mission.takeoff_height_m;
+  setup.seed = static_cast<std::uint64_t>(mission.seed);
+  setup.clock = clock;
+  return setup;
+}
 
 std::vector<Mission> missions_of_members(const Mission& mission) {
   if (!is_team(mission)) return {mission};
@@ -68,12 +69,13 @@ core::MissionKey radio_key(const Mission& mission) {
   return file.empty() ? core::key_of_seed(static_cast<std::uint64_t>(mission.seed)) : core::read_key(file);
 }
 
-Vehicles make_vehicles(const Mission& mission, const std::vector<Mission>& members, const fs::path& run_dir) {
+Vehicles make_vehicles(const Mission& mission, const std::vector<Mission>& members, const fs::path& run_dir,
+                       core::Clock clock) {
   Vehicles vehicles;
   if (is_team(mission))
     vehicles.world = make_world(mission, members, run_dir);
   else
-    vehicles.alone = mission.vehicle_plugin->create(vehicle_setup(mission, run_dir));
+    vehicles.alone = mission.vehicle_plugin->create(vehicle_setup(mission, run_dir, clock));
   for (std::size_t i = 0; i < members.size(); ++i) {
     core::check(mission.core, vehicles[i].description());
     core::check_region(mission.file, mission.core, vehicles[i].description());

@@ -53,7 +53,11 @@ struct Vehicles {
 /// Creates the vehicles at the cave's start, recording into `run_dir` unless that is "". Throws
 /// core::InputError on a bad cave or start, and for a vehicle that cannot fly the mission.
 Vehicles make_vehicles(const Mission& mission, const std::vector<Mission>& members,
-                       const std::filesystem::path& run_dir);
+                       const std::filesystem::path& run_dir, core::Clock clock = core::Clock::lockstep);
+
+/// What the mission's vehicle is set up with.
+core::VehicleSetup vehicle_setup(const Mission& mission, const std::filesystem::path& run_dir,
+                                 core::Clock clock = core::Clock::lockstep);
 
 /// Throws core::InputError if it cannot be written.
 void write_mission(const std::filesystem::path& file, const boost::property_tree::ptree& mission);

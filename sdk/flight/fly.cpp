@@ -94,7 +94,7 @@ boost::property_tree::ptree MissionFlight::as_flown(const Mission& mission) cons
 }
 
 void MissionFlight::check(const fs::path& mission_file) const {
-  make_vehicles(mission_, members_, "");  // checks the cave and the starts
+  make_vehicles(mission_, members_, "", request_.clock);  // checks the cave and the starts
   write_mission(mission_file, as_asked(mission_));
 }
 
@@ -109,7 +109,7 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
     if (own != run_dir) r.own_claims.push_back(std::make_unique<RunClaim>(own));
     r.recorders.push_back(std::make_unique<core::Recorder>(own));
   }
-  r.vehicles = make_vehicles(mission_, members_, run_dir);
+  r.vehicles = make_vehicles(mission_, members_, run_dir, request_.clock);
   write_mission(run_dir / "mission.info", as_flown(mission_));
   if (r.vehicles.world) {
     for (std::size_t i = 0; i < members_.size(); ++i) {

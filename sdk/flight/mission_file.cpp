@@ -161,6 +161,9 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   for (const auto& [key, value] : settings)
     if (key == "vehicle") m.vehicle = value;
   m.vehicle_plugin = &core::load_vehicle(m.vehicle, core::plugin_root() / "vehicles");
+  // The same file serves a mission of another vehicle: that one's section has no meaning then.
+  for (const std::string& other : core::vehicles_in(core::plugin_root() / "vehicles"))
+    if (other != m.vehicle) tree.erase(other);
   OptionTable table;
   describe_mission(table, m);
   table.under(m.vehicle, [&m](OptionTable& t) { m.vehicle_plugin->describe_options(t); });

@@ -13,6 +13,7 @@
 #include "sdk/evaluation/accuracy/map_reference.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/evaluation/report/report.h"
+#include "sdk/flight/finish_run.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 
@@ -115,6 +116,14 @@ void evaluate(const EvaluateArguments& args) {
   ordered_json result{{"schema", "karst.evaluation/1"}};
 
   std::string truth_file = args.truth;
+  std::string reference = args.reference;
+  const bool truth_of_vehicle = fs::is_directory(args.truth);
+  if (truth_of_vehicle) {
+    if (!is_run) throw core::InputError(args.truth, "", "a folder of truth completes a run directory only");
+    flight::take_truth(run, args.truth, fs::is_regular_file(run / "report.html") ? flight::Report::written : flight::Report::none);
+    truth_file.clear();
+    if (reference.empty()) reference = cave_of(args.truth);
+  }
   if (truth_file.empty() && is_run && fs::is_regular_file(run / "ground_truth.tum"))
     truth_file = (run / "ground_truth.tum").string();
   result["trajectory"] = nullptr;
@@ -122,7 +131,7 @@ void evaluate(const EvaluateArguments& args) {
     const std::string estimate_file = is_run ? (run / "trajectory.tum").string() : args.run;
     const auto estimate = evaluation::read_poses(estimate_file, {}, problems);
     const auto truth = evaluation::read_poses(truth_file, estimate, problems);
-    options.own_frame = !args.truth.empty();
+    options.own_frame = !args.truth.empty() && !truth_of_vehicle;
     if (is_run) options.time_origin_s = settings_of(run).get("replay.time_origin", 0.0);
     result["trajectory"] = evaluation::trajectory_evaluation(truth, estimate, options, truth_file);
   }
@@ -131,7 +140,7 @@ void evaluate(const EvaluateArguments& args) {
   if (map_file.empty() && is_run)
     for (const char* name : {"map.ply", "map.bt"})
       if (fs::is_regular_file(run / name)) map_file = (run / name).string();
-  const std::string reference = args.reference.empty() && is_run ? cave_of(run) : args.reference;
+  if (reference.empty() && is_run) reference = cave_of(run);
   result["map"] = nullptr;
   if (!reference.empty()) {
     if (map_file.empty()) throw core::InputError(args.run, "", "has no map to compare; name one with --map");
@@ -175,7 +184,8 @@ void add_evaluate_command(CLI::App& app) {
       ->type_name(kFile)
       ->required()
       ->check(not_empty());
-  command->add_option("--truth", args->truth, "true poses; default: the run's ground_truth.tum")
+  command->add_option("--truth", args->truth, "true poses, or a folder of karst vehicle serve --truth, which completes the run; default: the run's "
+                   "ground_truth.tum")
       ->type_name(kFile)
       ->check(not_empty());
   command

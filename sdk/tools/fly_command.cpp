@@ -45,7 +45,8 @@ struct FlyArguments {
 
 /// runs/POLICY-CAVE-SEED, with a number appended if that exists.
 fs::path default_run_dir(const flight::Mission& m) {
-  const std::string name = m.policy + "-" + fs::path(m.cave).stem().string() + "-" + std::to_string(m.seed);
+  const std::string where = m.cave.empty() ? m.vehicle : fs::path(m.cave).stem().string();
+  const std::string name = m.policy + "-" + where + "-" + std::to_string(m.seed);
   fs::path dir = fs::path("runs") / name;
   for (int i = 2; fs::exists(dir); ++i) dir = fs::path("runs") / (name + "-" + std::to_string(i));
   return dir;
@@ -240,7 +241,9 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
     std::fputs(flight::mission_help("simulator").c_str(), stdout);
     return 0;
   }
-  if (args.mission_file.empty() && args.overrides.cave.empty())
+  const auto names_vehicle = [](const std::string& setting) { return setting.starts_with("vehicle="); };
+  if (args.mission_file.empty() && args.overrides.cave.empty() &&
+      std::none_of(args.overrides.settings.begin(), args.overrides.settings.end(), names_vehicle))
     throw core::InputError("karst fly", "", "needs a MISSION file or --cave FILE; see karst fly --help");
   const flight::Mission mission = mission_of(args, choose_policy);
   make_cave_cache(args.cave_cache);

@@ -31,6 +31,7 @@
 #include "sdk/tools/select_command.h"
 #include "sdk/tools/table_command.h"
 #include "sdk/tools/tune_command.h"
+#include "sdk/tools/vehicle_command.h"
 
 namespace karst::tools {
 namespace {
@@ -69,6 +70,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_export_command(*app);
   add_select_command(*app);
   add_tune_command(*app);
+  add_vehicle_command(*app);
   add_python_command(*app);
   add_help_commands(*app);
   add_help_of_all(*app);

@@ -53,17 +53,6 @@ void report_team(const fs::path& run, const flight::Finishing& how) {
   print_out("%s\n", (run / written).c_str());
 }
 
-/// The keys of the cave's mesh, as far as the run recorded them.
-core::MeshKeys recorded_mesh_keys(const fs::path& file, const boost::property_tree::ptree& mission) {
-  core::MeshKeys keys;
-  core::OptionTable table;
-  table.section("cave", keys);
-  for (const auto& row : table.rows())
-    if (const auto value = mission.get_optional<std::string>(row.key))
-      table.set(file.string(), row.key, *value);
-  return keys;
-}
-
 }  // namespace
 
 void add_report_command(CLI::App& app, CampaignPage campaign_page) {
@@ -97,12 +86,8 @@ void add_report_command(CLI::App& app, CampaignPage campaign_page) {
     if (!fs::exists(run / "mission.info"))
       throw core::InputError(args->run, "",
                              "no run directory, as it holds no mission.info, nor a campaign's folder");
-    const auto info = core::read_info((run / "mission.info").string());
-    const flight::Finishing how{info.get("cave.file", ""),
-                                info.get("cave.start", ""),
-                                args->no_report ? flight::Report::none : flight::Report::written,
-                                {},
-                                recorded_mesh_keys(run / "mission.info", info)};
+    const flight::Finishing how = flight::recorded_cave(
+        run / "mission.info", args->no_report ? flight::Report::none : flight::Report::written);
     if (evaluation::is_team(run)) {
       report_team(run, how);
       return;

@@ -1,0 +1,152 @@
+#include "plugins/socket/real_time_vehicle.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace karst::socket {
+
+using core::kMillisecond;
+using core::TimeNs;
+
+namespace {
+
+constexpr TimeNs kStep = 2 * kMillisecond;
+constexpr TimeNs kPingPeriod = 100 * kMillisecond, kFirstPings = 10 * kMillisecond;
+constexpr int kQuickPings = 16;             // at the start, until the offset is known well
+constexpr std::size_t kMessagesAStep = 64;  // so that no vehicle can hold up the control
+
+/// Where a message has its stamp; null for those without.
+struct StampOf {
+  TimeNs* operator()(auto&) const { return nullptr; }
+  TimeNs* operator()(Depth& m) const { return &m.image.stamp; }
+  TimeNs* operator()(Objects& m) const { return &m.look.stamp; }
+  template <class M>
+  requires requires(M& m) {
+    m.stamp;
+  }
+  TimeNs* operator()(M& m) const { return &m.stamp; }
+};
+
+std::string in_seconds(TimeNs t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", core::seconds(t));
+  return text;
+}
+
+}  // namespace
+
+RealTimeVehicle::RealTimeVehicle(std::unique_ptr<VehicleLink> link, Wait patience, const SilenceLimits& limits)
+    : link_(std::move(link)), patience_(patience), limits_(limits), steers_(link_->description().authority) {}
+
+void RealTimeVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
+  executive_ = &executive;
+  sink_ = &sink;
+  heard_at_ = executive.now();
+  executive.every("vehicle messages", executive.now() + kStep, kStep, [this] { step(); });
+  try {
+    link_->stream().queue(Start{});
+    if (!link_->stream().flush(patience_)) throw LinkError("the vehicle takes no more messages");
+  } catch (const LinkError& e) {
+    lose(e.what());
+  }
+}
+
+void RealTimeVehicle::step() {
+  clock_.note_step(executive_->now());
+  if (lost_) return;
+  try {
+    for (std::size_t i = 0; i < kMessagesAStep && !lost_; ++i) {
+      std::optional<ToCore> message = link_->receive(Wait(0));
+      if (!message) break;
+      take(std::move(*message));
+    }
+    if (clock_.now() >= next_ping_) ping();
+    link_->stream().flush(Wait(0));
+  } catch (const LinkError& e) {
+    lose(e.what());
+  }
+  judge_silence();
+}
+
+void RealTimeVehicle::take(ToCore message) {
+  if (const auto* pong = std::get_if<Pong>(&message))
+    return offset_.add({pong->ping_sent, clock_.now(), pong->received, pong->sent});
+  if (auto* checks = std::get_if<Checks>(&message)) {
+    checks_ = std::move(checks->checks);
+    return;
+  }
+  if (TimeNs* stamp = std::visit(StampOf{}, message)) {
+    // Before the first round trip nothing is known of the vehicle's clock: only what it is and does counts.
+    *stamp = offset_.known() ? std::min(*stamp - offset_.offset(clock_.now()), executive_->now()) : executive_->now();
+    const bool measured = !std::holds_alternative<Ground>(message) && !std::holds_alternative<LiftOff>(message) &&
+                          !std::holds_alternative<AuthorityChange>(message) &&
+                          !std::holds_alternative<Lost>(message) &&
+                          !std::holds_alternative<core::BatteryStatus>(message);
+    if (measured && !offset_.known()) return;
+  }
+  if (const auto* change = std::get_if<AuthorityChange>(&message)) steers_ = change->who;
+  if (std::holds_alternative<Lost>(message)) lost_ = true;
+  deliver(std::move(message), link_->description(), *sink_);
+}
+
+void RealTimeVehicle::ping() {
+  const TimeNs now = clock_.now();
+  link_->stream().queue(Ping{now});
+  next_ping_ = now + (++pings_ < kQuickPings ? kFirstPings : kPingPeriod);
+}
+
+void RealTimeVehicle::judge_silence() {
+  if (lost_) return;
+  const TimeNs now = executive_->now();
+  if (link_->heard()) {
+    heard_at_ = now;
+    if (std::exchange(silent_, false)) sink_->on_authority(now, steers_, "the vehicle is heard again");
+    return;
+  }
+  const TimeNs silence = now - heard_at_;
+  if (!silent_ && silence >= limits_.autopilot_steers) {
+    silent_ = true;
+    sink_->on_authority(now, core::Authority::autopilot,
+                        "no message from the vehicle for " + in_seconds(limits_.autopilot_steers));
+  }
+  if (silence >= limits_.vehicle_is_lost)
+    lose("no message from the vehicle for " + in_seconds(limits_.vehicle_is_lost));
+}
+
+/// What cannot be sent at once is not sent at all: the next command is newer.
+void RealTimeVehicle::command(const core::Command& c) {
+  if (lost_ || link_->stream().backlog_bytes() > 0) return;
+  core::Command sent = c;
+  if (offset_.known()) {
+    const TimeNs ahead = offset_.offset(clock_.now());
+    sent.reference.stamp += ahead;
+    sent.state.stamp += ahead;
+  }
+  try {
+    link_->stream().queue(sent);
+    link_->stream().flush(Wait(0));
+  } catch (const LinkError& e) {
+    lose(e.what());
+  }
+}
+
+std::vector<core::VehicleCheck> RealTimeVehicle::checks() const {
+  std::vector<core::VehicleCheck> all = checks_;
+  const TimeNs error = offset_.error_bound(clock_.now());
+  constexpr TimeNs kMostError = 5 * kMillisecond;
+  all.push_back({"clock offset", "known to 5 ms",
+                 offset_.known() ? in_seconds(error) : "", offset_.known() && error <= kMostError});
+  return all;
+}
+
+void RealTimeVehicle::finish() {
+  if (!lost_) link_->leave("the mission is over");
+}
+
+void RealTimeVehicle::lose(const std::string& reason) {
+  if (lost_) return;
+  lost_ = true;
+  sink_->on_lost(executive_->now(), core::MissionOutcome::lost, link_->address() + ": " + reason);
+}
+
+}  // namespace karst::socket

@@ -1,0 +1,52 @@
+// A vehicle in another process, or on another computer, with a clock of its own.
+//
+// Messages are read in a short periodic step. The stamps are converted to the core's clock (clock_offset.h), and are
+// never later than the step that reads them. Pings go out ten times a second and serve as the heartbeat, too.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "plugins/socket/clock_offset.h"
+#include "plugins/socket/machine_clock.h"
+#include "plugins/socket/vehicle_link.h"
+
+namespace karst::socket {
+
+/// What is concluded from silence. By then the vehicle comes down by itself, if it hears no commands either.
+struct SilenceLimits {
+  core::TimeNs autopilot_steers = core::kSecond;  // longer than core::kCommandTimeout
+  core::TimeNs vehicle_is_lost = 10 * core::kSecond;
+};
+
+class RealTimeVehicle final : public core::Vehicle {
+ public:
+  RealTimeVehicle(std::unique_ptr<VehicleLink> link, Wait patience, const SilenceLimits& limits);
+
+  core::VehicleDescription description() const override { return link_->description(); }
+  void start(core::Executive& executive, core::VehicleSink& sink) override;
+  void command(const core::Command& c) override;
+  std::vector<core::VehicleCheck> checks() const override;
+  void finish() override;
+
+ private:
+  void step();
+  void take(ToCore message);
+  void ping();
+  void judge_silence();
+  void lose(const std::string& reason);
+
+  std::unique_ptr<VehicleLink> link_;
+  Wait patience_;
+  SilenceLimits limits_;
+  core::Executive* executive_ = nullptr;
+  core::VehicleSink* sink_ = nullptr;
+  std::vector<core::VehicleCheck> checks_;
+  MachineClock clock_;
+  ClockOffset offset_;
+  core::TimeNs next_ping_ = 0, heard_at_ = 0;
+  int pings_ = 0;
+  core::Authority steers_ = core::Authority::core;  // as the vehicle says
+  bool silent_ = false, lost_ = false;
+};
+
+}  // namespace karst::socket
