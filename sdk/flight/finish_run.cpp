@@ -1,10 +1,12 @@
 #include "sdk/flight/finish_run.h"
 
+#include <boost/property_tree/info_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_file.h"
@@ -133,6 +135,19 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// The options of the vehicle's own mission: some metrics need its battery. A mission of another vehicle ignores them.
+void add_vehicle_section(const fs::path& mission_info, const fs::path& vehicle_mission_info) {
+  const auto vehicle = core::read_info(vehicle_mission_info.string());
+  const std::string name = vehicle.get("vehicle", "");
+  const auto section = vehicle.get_child_optional(name);
+  if (name.empty() || !section) return;
+  auto mission = core::read_info(mission_info.string());
+  mission.put_child(name, *section);
+  std::ostringstream text;
+  boost::property_tree::write_info(text, mission);
+  evaluation::write_whole_file(mission_info, text.str());
+}
+
 /// What a simulated vehicle writes (plugins/simulator/truth_log.h).
 constexpr const char* kTruthFiles[] = {"ground_truth.tum", "truth.csv", "truth_events.jsonl",
                                        "ground_truth_frames.csv", "truth_objects.jsonl"};
@@ -159,6 +174,7 @@ void take_truth(const fs::path& run_dir, const fs::path& truth, Report report) {
     fs::copy_file(truth / file, run_dir / file, fs::copy_options::overwrite_existing, error);
     if (error) throw core::InputError((run_dir / file).string(), "", "cannot be written: " + error.message());
   }
+  add_vehicle_section(run_dir / "mission.info", truth / "mission.info");
   finish_run(run_dir, how);
 }
 

@@ -23,6 +23,19 @@ TimeNs machine_time() {
 ConformanceClient::ConformanceClient(const socket::Address& address)
     : stream_(socket::connect_to(address, Wait(5000), socket::kMaxToCoreBytes)) {}
 
+ConformanceClient::~ConformanceClient() {
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  try {
+    say(socket::Bye{"checked"});
+    while (std::chrono::steady_clock::now() < until) {
+      while (stream_.next()) {
+      }
+      stream_.receive(Wait(100));
+    }
+  } catch (const LinkError&) {  // closed, as it should be
+  }
+}
+
 void ConformanceClient::say_bytes(const std::string& bytes) {
   stream_.queue_bytes(bytes);
   stream_.flush(Wait(2000));

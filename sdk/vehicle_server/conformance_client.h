@@ -18,6 +18,10 @@ struct Heard {
 class ConformanceClient {
  public:
   explicit ConformanceClient(const socket::Address& address);
+  /// Says goodbye, and waits for the vehicle to close the connection: then it is there for the next client.
+  ~ConformanceClient();
+  ConformanceClient(const ConformanceClient&) = delete;
+  ConformanceClient& operator=(const ConformanceClient&) = delete;
 
   socket::Stream& stream() { return stream_; }
   template <class M>
