@@ -210,7 +210,7 @@ void MissionControl::enter(Phase phase, const std::string& reason) {
 
 void MissionControl::on_imu(const ImuSample& s) {
   if (s.stamp > now()) return;
-  onboard_.flight.on_imu(s);
+  onboard_.flight.on_imu(s, now());
   watch_steps();
 }
 
@@ -339,11 +339,13 @@ void MissionControl::forget_causes() {
   path_.obey(SafetyAction::none);
 }
 
+/// Each reason is recorded: it tells the operator what the vehicle waits for.
 void MissionControl::on_authority(TimeNs, Authority who, const std::string& reason) {
-  if (result_ || who == authority_) return;
-  authority_ = who;
+  if (result_ || (who == authority_ && reason == authority_reason_)) return;
+  const bool same = who == std::exchange(authority_, who);
+  authority_reason_ = reason;
   onboard_.recorder.write(now(), event::Authority{who, reason});
-  if (emergency_ || phases_.in(Phase::standby)) return;
+  if (same || emergency_ || phases_.in(Phase::standby)) return;
   if (who == Authority::core)
     take_over();
   else

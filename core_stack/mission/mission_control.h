@@ -147,6 +147,7 @@ class MissionControl final : public VehicleSink {
   int overruns_ = 0;  // of the executive, as last recorded
   bool standing_ = true;
   Authority authority_;                   // who steers
+  std::string authority_reason_;
   bool resumes_exploring_ = true;         // when the core steers again
   bool lands_lost_ = false;               // for want of a pose
   std::optional<std::string> emergency_;  // why it lands at once, if it does

@@ -60,11 +60,12 @@ Command Flight::control(TimeNs now) {
     command_ = {};
     return command(now);
   }
+  // Up to the time that the IMU would tell of by now: samples that come late are not to come too late.
+  if (now - imu_came_ > kImuMissed) estimator_.bridge(expected_imu(now - imu_lag_));
   if (!steers_) {
     command_ = {Vec3::Zero(), mass_.mass_kg() * kGravity_mps2, true};
     return command(now);
   }
-  if (now - estimator_.last_imu() > kImuMissed) estimator_.bridge(expected_imu(now));
   mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
   controller_.set_mass_kg(mass_.mass_kg());
   const Trajectory& wanted = emergency_landing_.begun() ? emergency_landing_.trajectory(now) : trajectory_;

@@ -36,8 +36,14 @@ class Flight {
  public:
   Flight(const CoreOptions& options, const VehicleDescription& vehicle);
 
-  void on_imu(const ImuSample& s) {
+  /// `now`: when the sample came; over a link that is later than its stamp.
+  void on_imu(const ImuSample& s, TimeNs now) {
+    const TimeNs before = estimator_.last_imu();
     estimator_.on_imu(s);
+    if (estimator_.last_imu() > before) {
+      imu_came_ = now;
+      imu_lag_ = now - s.stamp;
+    }
     mass_.on_specific_force(s.specific_force_mps2.z());
   }
   void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
@@ -133,6 +139,7 @@ class Flight {
   EmergencyLanding emergency_landing_;
   enum class Motors { idle, armed, off } motors_ = Motors::idle;  // off: the motors never run again
   bool braking_ = false;                                          // a braking trajectory is never slowed down
+  TimeNs imu_came_ = 0, imu_lag_ = 0;                             // of the newest sample
   bool steers_ = true;                                            // false: another does
 };
 

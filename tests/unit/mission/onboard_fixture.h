@@ -50,7 +50,8 @@ class OnboardTest : public ::testing::Test {
       executive.run_until(executive.now() + 10 * kMillisecond, [] { return false; });
       onboard.flight.control(executive.now());
       const Reference& r = onboard.flight.reference();
-      onboard.flight.on_imu({executive.now(), r.acceleration_mps2 + Vec3(0, 0, 9.81), Vec3::Zero()});
+      onboard.flight.on_imu({executive.now(), r.acceleration_mps2 + Vec3(0, 0, 9.81), Vec3::Zero()},
+                            executive.now());
       PoseSample pose;
       pose.stamp = executive.now();
       pose.T_world_body.position = r.position;

@@ -75,7 +75,7 @@ TEST_F(SensorPipelineTest, APoseSensorLocatesTheVehicleOnlyWhereNoLidarDoes) {
   const auto feed = [&](SensorPipeline& to) {
     for (int i = 0; i < 300; ++i) {
       executive.run_until(now() + 10 * kMillisecond, [] { return false; });
-      onboard.flight.on_imu({now(), Vec3(0, 0, 9.81), Vec3::Zero()});
+      onboard.flight.on_imu({now(), Vec3(0, 0, 9.81), Vec3::Zero()}, now());
       pose.stamp = now();
       to.on_pose(pose);
     }

@@ -39,7 +39,7 @@ struct SensedFlight {
   void advance(double s) {
     for (const TimeNs end = now + from_seconds(s); now < end;) {
       now += 5 * kMillisecond;
-      flight.on_imu({now, Vec3(0, 0, 9.81), Vec3::Zero()});
+      flight.on_imu({now, Vec3(0, 0, 9.81), Vec3::Zero()}, now);
       if (now % (10 * kMillisecond) == 0) flight.control(now);
       if (now % (20 * kMillisecond) == 0) flight.on_magnetometer({now, Vec3(20, 0, -40)});
       if (now % (40 * kMillisecond) == 0) flight.on_barometer({now, 0});

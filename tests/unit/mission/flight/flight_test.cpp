@@ -78,7 +78,7 @@ TEST(Flight, ThatBreaksOffItsLandingHoversWhereThePoseFoundAgainSaysNotWhereTheR
   const Vec3 found(0.5, -0.3, 1.2);
   for (int i = 0; i < 100; ++i) {
     f.now += 10 * kMillisecond;
-    f.flight.on_imu({f.now, Vec3(0, 0, 9.81), Vec3::Zero()});
+    f.flight.on_imu({f.now, Vec3(0, 0, 9.81), Vec3::Zero()}, f.now);
     PoseSample pose;
     pose.stamp = f.now;
     pose.T_world_body.position = found;

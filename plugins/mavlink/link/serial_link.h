@@ -1,0 +1,22 @@
+// MAVLink by a serial line: eight bits, no parity, one stop bit, no flow control.
+#pragma once
+#include <string>
+
+#include "plugins/mavlink/link/byte_link.h"
+#include "plugins/mavlink/link/file_descriptor.h"
+
+namespace karst::mavlink {
+
+class SerialLink final : public ByteLink {
+ public:
+  /// Throws InputError if the line cannot be opened, or has no such rate.
+  SerialLink(const std::string& device, unsigned baud);
+
+  void send(std::span<const std::uint8_t> bytes) override;
+  void receive(std::vector<std::uint8_t>& into) override;
+
+ private:
+  FileDescriptor line_;
+};
+
+}  // namespace karst::mavlink

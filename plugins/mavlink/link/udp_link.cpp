@@ -1,0 +1,77 @@
+#include "plugins/mavlink/link/udp_link.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "core_stack/common/error.h"
+
+namespace karst::mavlink {
+namespace {
+
+FileDescriptor open_socket(const std::string& address) {
+  FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) throw core::InputError(address, "", std::strerror(errno));
+  return socket;
+}
+
+const sockaddr* generic(const sockaddr_in& a) { return reinterpret_cast<const sockaddr*>(&a); }
+
+}  // namespace
+
+UdpLink::UdpLink(FileDescriptor socket, std::optional<sockaddr_in> peer)
+    : socket_(std::move(socket)), peer_(peer) {}
+
+UdpLink UdpLink::wait_at(std::uint16_t port) {
+  const std::string address = "udp:" + std::to_string(port);
+  FileDescriptor socket = open_socket(address);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_port = htons(port);
+  here.sin_addr.s_addr = htonl(INADDR_ANY);
+  if (::bind(socket.get(), generic(here), sizeof here) != 0)
+    throw core::InputError(address, "", std::strerror(errno));
+  return {std::move(socket), std::nullopt};
+}
+
+UdpLink UdpLink::to(const std::string& host, std::uint16_t port) {
+  const std::string address = "udp:" + host + ":" + std::to_string(port);
+  sockaddr_in there{};
+  there.sin_family = AF_INET;
+  there.sin_port = htons(port);
+  if (::inet_pton(AF_INET, host.c_str(), &there.sin_addr) != 1)
+    throw core::InputError(address, "", "expected an IPv4 address such as 192.168.4.1");
+  return {open_socket(address), there};
+}
+
+void UdpLink::send(std::span<const std::uint8_t> bytes) {
+  if (peer_) ::sendto(socket_.get(), bytes.data(), bytes.size(), 0, generic(*peer_), sizeof *peer_);
+}
+
+/// A datagram from elsewhere is dropped: another program must not steer, nor take over the link.
+void UdpLink::receive(std::vector<std::uint8_t>& into) {
+  std::array<std::uint8_t, 65536> datagram;
+  for (;;) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const ssize_t n = ::recvfrom(socket_.get(), datagram.data(), datagram.size(), 0,
+                                 reinterpret_cast<sockaddr*>(&from), &size);
+    if (n < 0 && errno == ECONNREFUSED) continue;  // nobody is there yet
+    if (n < 0) return;
+    if (!peer_) peer_ = from;
+    if (from.sin_addr.s_addr != peer_->sin_addr.s_addr || from.sin_port != peer_->sin_port) continue;
+    into.insert(into.end(), datagram.begin(), datagram.begin() + n);
+  }
+}
+
+std::uint16_t UdpLink::port() const {
+  sockaddr_in here{};
+  socklen_t size = sizeof here;
+  ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&here), &size);
+  return ntohs(here.sin_port);
+}
+
+}  // namespace karst::mavlink

@@ -1,0 +1,32 @@
+// MAVLink by UDP, a datagram for each frame or for several.
+#pragma once
+#include <netinet/in.h>
+
+#include <optional>
+#include <string>
+
+#include "plugins/mavlink/link/byte_link.h"
+#include "plugins/mavlink/link/file_descriptor.h"
+
+namespace karst::mavlink {
+
+class UdpLink final : public ByteLink {
+ public:
+  /// Waits at `port` for a peer, and keeps to the first. Throws InputError.
+  static UdpLink wait_at(std::uint16_t port);
+  /// Throws InputError if `host` is no IPv4 address, such as 192.168.4.1.
+  static UdpLink to(const std::string& host, std::uint16_t port);
+
+  void send(std::span<const std::uint8_t> bytes) override;
+  void receive(std::vector<std::uint8_t>& into) override;
+  /// Its own port.
+  std::uint16_t port() const;
+
+ private:
+  UdpLink(FileDescriptor socket, std::optional<sockaddr_in> peer);
+
+  FileDescriptor socket_;
+  std::optional<sockaddr_in> peer_;
+};
+
+}  // namespace karst::mavlink

@@ -1,0 +1,25 @@
+// What the core commands, as messages to the autopilot.
+#pragma once
+#include "core_stack/vehicle/command.h"
+#include "plugins/mavlink/wire/messages.h"
+
+namespace karst::mavlink {
+
+/// Milliseconds since the start, as the messages carry them.
+std::uint32_t boot_ms(core::TimeNs time);
+
+/// Body rates and thrust. `thrust_per_n`: normalized thrust over newtons.
+SetAttitudeTarget rates_target(const core::AttitudeRateCommand& rates, double thrust_per_n, core::TimeNs now);
+
+/// The reference as it will be in `ahead_s`, when the message arrives.
+SetPositionTargetLocalNed position_target(const core::Reference& reference, double ahead_s, core::TimeNs now);
+
+/// The state as external vision: pose in a local frame, velocity in the body frame. PX4 is told FRD,
+/// ArduPilot NED, the only frame that it takes; the axes are the same.
+Odometry vision(const core::State& state);
+
+// Bits of SetAttitudeTarget::type_mask and frames that a receiver needs to know.
+constexpr std::uint8_t kIgnoreAttitude = 0x80;
+constexpr std::uint8_t kLocalNed = 1, kBodyFrd = 12, kLocalFrd = 20;
+
+}  // namespace karst::mavlink
