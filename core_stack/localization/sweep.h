@@ -1,4 +1,4 @@
-// One revolution of a LiDAR as points, independent of the source: simulator, vehicle, or file.
+// One sweep of a LiDAR as points, independent of the source: simulator, vehicle, or file.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -12,14 +12,15 @@ namespace karst::core {
 struct SweepPoint {
   Vec3f position;          // lidar frame at the time it was measured
   float time_s = 0;        // relative to the sweep's stamp, <= 0
-  std::uint16_t ring = 0;  // channel
+  std::uint16_t ring = 0;  // channel; 0 without rings
   float intensity = 0;
 };
 
 struct Sweep {
   TimeNs stamp = 0;                // of the last point
-  std::vector<SweepPoint> points;  // sorted by ring; within a ring in firing order
+  std::vector<SweepPoint> points;  // sorted by ring; within a ring, or without rings, in firing order
   Pose T_body_lidar;
+  bool has_rings = true;
   bool compensated = false;  // all points are already motion-compensated to `stamp`
 };
 

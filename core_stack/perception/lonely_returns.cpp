@@ -23,18 +23,31 @@ constexpr float kTolerancePerMetre = 0.006f, kSlope = 0.3f;
 constexpr int kMinNeighbours = 3;
 constexpr float kIntensityRange_m = 25;  // where a unit's intensity has fallen to half
 
-/// The ranges with a margin of what no beam measured; rows are closed to rings.
+/// For each channel, by how many columns its scan lags so that beams of one azimuth stand in one column.
+std::vector<std::size_t> shifts_of(const LidarModel& model) {
+  std::vector<std::size_t> shifts(model.elevation_rad.size());
+  const long columns = model.columns;
+  for (std::size_t c = 0; c < model.azimuth_offset_rad.size() && c < shifts.size(); ++c) {
+    const double turns = static_cast<double>(model.azimuth_offset_rad[c]) / (2 * std::numbers::pi);
+    shifts[c] = static_cast<std::size_t>((std::lround(turns * model.columns) % columns + columns) % columns);
+  }
+  return shifts;
+}
+
+/// The ranges with a margin of what no beam measured; rows are closed to rings. Column j is column
+/// j + shift of the scan, modulo its columns.
 class Ranges {
  public:
-  explicit Ranges(const LidarScan& scan)
+  Ranges(const LidarScan& scan, const std::vector<std::size_t>& shifts)
       : width_(static_cast<std::size_t>(scan.model->columns) + 2 * kMaxColumns),
         range_(width_ * (scan.model->elevation_rad.size() + 2 * kMaxRows), kNan) {
     const auto columns = static_cast<std::size_t>(scan.model->columns);
     for (std::size_t row = 0; row < scan.model->elevation_rad.size(); ++row) {
       const float* from = scan.range_m.data() + row * columns;
       float* to = range_.data() + (row + kMaxRows) * width_;
-      std::transform(from, from + columns, to + kMaxColumns,
-                     [](float r) { return std::isfinite(r) && r > 0 ? r : kNan; });
+      const auto valid = [](float r) { return std::isfinite(r) && r > 0 ? r : kNan; };
+      float* rest = std::transform(from + shifts[row], from + columns, to + kMaxColumns, valid);
+      std::transform(from, from + shifts[row], rest, valid);
       std::copy_n(to + columns, kMaxColumns, to);
       std::copy_n(to + kMaxColumns, kMaxColumns, to + kMaxColumns + columns);
     }
@@ -111,21 +124,23 @@ void drop_lonely_returns(LidarScan& scan, const LonelyReturnOptions& options) {
   const auto columns = static_cast<std::size_t>(scan.model->columns), rows = scan.model->elevation_rad.size();
   if (columns * rows != scan.range_m.size()) return;
   const std::vector<Offset> offsets = window(*scan.model);
+  const std::vector<std::size_t> shifts = shifts_of(*scan.model);
   const auto radius_m = static_cast<float>(options.radius_m),
              fraction = static_cast<float>(options.agreement), bright = static_cast<float>(options.bright),
              tolerance_m = static_cast<float>(options.tolerance_m);
   std::vector<float> there(columns), first_there(scan.range_m.size()), agree(columns);
   // What the first round drops agrees with nobody in the second, but is still there: clumps of dust dissolve.
   for (const int round : {0, 1}) {
-    const Ranges ranges(scan);
+    const Ranges ranges(scan, shifts);
     for (std::size_t row = 0; row < rows; ++row) {
       float* neighbours = first_there.data() + row * columns;
       count_votes(ranges, row, static_cast<std::ptrdiff_t>(columns), offsets, tolerance_m,
                   {round == 0 ? neighbours : there.data(), agree.data()});
       for (std::size_t j = 0; j < columns; ++j) {
-        float& range_m = scan.range_m[row * columns + j];
+        const std::size_t beam = row * columns + (j + shifts[row]) % columns;
+        float& range_m = scan.range_m[beam];
         const float x = range_m / kIntensityRange_m;
-        const float reflectivity = scan.intensity[row * columns + j] * (1 + x * x);
+        const float reflectivity = scan.intensity[beam] * (1 + x * x);
         if (!(range_m < radius_m) || reflectivity >= bright) continue;
         if (neighbours[j] < kMinNeighbours || agree[j] < fraction * neighbours[j]) range_m = kNan;
       }

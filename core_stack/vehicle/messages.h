@@ -9,27 +9,46 @@
 
 namespace karst::core {
 
-/// Beams of a spinning multi-channel LiDAR. Lidar frame: x forward, y left, z up. Column j of n points at
-/// azimuth pi - 2 pi (j + 0.5) / n (clockwise seen from above, starting backwards).
+/// Beams of a LiDAR. Lidar frame: x forward, y left, z up.
+///
+/// A spinning LiDAR has rings: channel c of column j of n points at azimuth pi - 2 pi (j + 0.5) / n
+/// (clockwise seen from above, starting backwards), plus the channel's offset. A LiDAR without rings has no
+/// columns: each scan says where its beams pointed.
 struct LidarModel {
   std::string name;
-  int columns = 0;
-  std::vector<float> elevation_rad;  // one a channel, highest first
+  int columns = 0;  // 0: no rings
+  std::vector<float>
+      elevation_rad;  // one a channel, highest first; without rings: of the highest and lowest beam
   float min_range_m = 0.3f;
   float max_range_m = 100.0f;
   TimeNs period = 100 * kMillisecond;  // one sweep
   Pose T_body_lidar;
+  std::vector<float> azimuth_offset_rad = {};  // one a channel, counter-clockwise; empty: none
+  float beam_origin_m =
+      0;  // beams leave the unit at this distance from the z axis, at their column's azimuth
 
+  bool has_rings() const { return columns > 0; }
   int channels() const { return static_cast<int>(elevation_rad.size()); }
   Vec3f direction(int channel, int column) const;  // unit vector in the lidar frame
+  Vec3f origin(int column) const;                  // where ranges count from, lidar frame
 };
 
-/// One sweep. Arrays are channel-major: index = channel * columns + column.
+/// One sweep. With rings, arrays are channel-major: index = channel * columns + column. Without rings, there
+/// is an element for each point, in firing order.
 struct LidarScan {
-  TimeNs stamp = 0;  // end of the sweep; column j was fired at stamp - period + period * (j + 1) / columns
+  TimeNs stamp = 0;  // end of the sweep
   std::shared_ptr<const LidarModel> model;
   std::vector<float> range_m;    // +inf: nothing within max_range_m; NaN: no valid measurement
   std::vector<float> intensity;  // 0..1
+  /// When each column, or each point without rings, was fired, relative to the stamp, <= 0. Empty: column j
+  /// at -period + period * (j + 1) / columns.
+  std::vector<float> time_s = {};
+  std::vector<Vec3f> direction = {};  // without rings: unit vectors in the lidar frame, one a point
+
+  /// When column j, or point j without rings, was fired.
+  TimeNs fired(std::size_t j) const;
+  /// Whether the arrays have the sizes that the model asks for; whatever the intensities.
+  bool fits_model() const;
 };
 
 /// A depth camera, here with x along the optical axis, y left, z up. Pinhole.
