@@ -1,0 +1,35 @@
+// The scans of an Ouster sensor.
+#pragma once
+#include "plugins/lidar_drivers/ouster/sweep_assembler.h"
+#include "plugins/lidar_drivers/scan_receiver.h"
+#include "plugins/lidar_drivers/stamp_source.h"
+#include "plugins/lidar_drivers/transport/packet_source.h"
+
+namespace karst::lidar {
+
+class OusterReceiver final : public ScanReceiver {
+ public:
+  /// `lidar` and `imu` bring the packets of the two ports; `imu` may be null. `T_body_sensor`: of Ouster's
+  /// sensor frame.
+  OusterReceiver(const OusterMetadata& metadata, const core::Pose& T_body_sensor,
+                 std::unique_ptr<PacketSource> lidar, std::unique_ptr<PacketSource> imu, StampSource stamps);
+
+  const std::shared_ptr<const core::LidarModel>& model() const override { return model_; }
+  std::vector<std::shared_ptr<const core::LidarScan>> poll(core::TimeNs now) override;
+  std::vector<core::ImuSample> take_imu() override { return std::exchange(imu_samples_, {}); }
+  PacketCounts counts() const override;
+
+ private:
+  void take_imu_packet(PacketView packet);
+
+  std::shared_ptr<const core::LidarModel> model_;
+  OusterSweepAssembler assembler_;
+  std::unique_ptr<PacketSource> lidar_, imu_;
+  StampSource stamps_;
+  core::Quat R_body_imu_;
+  std::vector<core::ImuSample> imu_samples_;
+  std::int64_t last_imu_ns_ = -1;
+  std::uint64_t foreign_imu_ = 0;
+};
+
+}  // namespace karst::lidar
