@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <future>
 #include <mutex>
 #include <new>
 #include <thread>
+
+#include "core_stack/common/inheriting_mutex.h"
 
 namespace karst::core {
 
@@ -15,6 +16,7 @@ struct Executive::Periodic {
   std::string name;
   TimeNs period;
   std::function<void()> step;
+  Punctuality* punctuality = nullptr;  // in real time
 };
 
 struct Executive::Event {
@@ -28,12 +30,17 @@ struct Executive::Event {
 
 /// One thread that runs tasks first in, first out.
 struct Executive::Worker {
-  std::mutex mutex;
-  std::condition_variable wake;
-  std::deque<std::packaged_task<double()>> tasks;
+  InheritingMutex mutex;
+  Condition wake;
+  std::deque<std::packaged_task<TimeNs()>> tasks;
   bool stopping = false;
-  std::thread thread{[this] { loop(); }};
+  std::thread thread;
 
+  explicit Worker(std::function<void()> on_thread)
+      : thread([this, on_thread = std::move(on_thread)] {
+          if (on_thread) on_thread();
+          loop();
+        }) {}
   ~Worker() {
     {
       const std::lock_guard lock(mutex);
@@ -45,9 +52,9 @@ struct Executive::Worker {
   void loop() {
     for (;;) {
       std::unique_lock lock(mutex);
-      wake.wait(lock, [this] { return stopping || !tasks.empty(); });
+      wake.wait(mutex, [this] { return stopping || !tasks.empty(); });
       if (tasks.empty()) return;
-      std::packaged_task<double()> task = std::move(tasks.front());
+      std::packaged_task<TimeNs()> task = std::move(tasks.front());
       tasks.pop_front();
       lock.unlock();
       task();
@@ -57,26 +64,36 @@ struct Executive::Worker {
 
 namespace {
 
-double run_timed_ms(const std::function<void()>& f) {
-  const auto begin = std::chrono::steady_clock::now();
+TimeNs run_timed(const std::function<void()>& f) {
+  const TimeNs begin = machine_clock().now();
   f();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return machine_clock().now() - begin;
 }
 
 }  // namespace
 
 struct Executive::Job {
   std::string name;
-  std::future<double> cost;
+  Lane lane;
+  TimeNs due;
+  std::future<TimeNs> cost;
   std::function<void()> publish;
   bool ready() const { return cost.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 };
 
 const std::string Executive::kNoName;
 
-Executive::Executive(int threads, Clock clock) : clock_(clock) {
-  if (threads <= 1 && clock == Clock::lockstep) return;
-  for (auto& w : workers_) w = std::make_unique<Worker>();
+Executive::Executive(int threads, Clock clock, RealTimeSetup setup) : clock_(clock), setup_(std::move(setup)) {
+  if (threads > 1 || clock == Clock::real_time) start_workers();
+}
+
+void Executive::start_workers() {
+  for (std::size_t lane = 0; lane < workers_.size(); ++lane) {
+    std::function<void()> on_thread;
+    if (clock_ == Clock::real_time && setup_.on_lane_thread)
+      on_thread = [set_up = setup_.on_lane_thread, lane] { set_up(static_cast<Lane>(lane)); };
+    workers_[lane] = std::make_unique<Worker>(std::move(on_thread));
+  }
 }
 
 Executive::~Executive() = default;
@@ -90,9 +107,9 @@ void Executive::push(Event event) {
 }
 
 /// Out of memory it is a figure less, not a step less.
-void Executive::note_cost(const std::string& name, double milliseconds) {
+void Executive::note_cost(const std::string& name, TimeNs duration) {
   try {
-    costs_[name].milliseconds.push_back(static_cast<float>(milliseconds));
+    costs_[name].duration.add(duration);
   } catch (const std::bad_alloc&) {
   }
 }
@@ -102,13 +119,19 @@ void Executive::at(TimeNs time, std::function<void()> step) {
 }
 
 void Executive::every(std::string name, TimeNs first, TimeNs period, std::function<void()> step) {
-  periodic_.push_back(std::make_unique<Periodic>(Periodic{std::move(name), period, std::move(step)}));
+  Punctuality* punctuality = clock_ == Clock::real_time ? &punctuality_[name] : nullptr;
+  periodic_.push_back(
+      std::make_unique<Periodic>(Periodic{std::move(name), period, std::move(step), punctuality}));
   push({first, next_sequence_++, {}, periodic_.back().get()});
 }
 
 void Executive::run_periodic(const Periodic& periodic, TimeNs due) {
-  if (clock_ == Clock::real_time && wall() - due >= periodic.period) ++costs_[periodic.name].overruns;
-  note_cost(periodic.name, run_timed_ms(periodic.step));
+  if (!periodic.punctuality) return note_cost(periodic.name, run_timed(periodic.step));
+  const TimeNs lateness = wall() - due;
+  periodic.punctuality->lateness.add(lateness);
+  if (lateness >= periodic.period) ++costs_[periodic.name].overruns;
+  note_cost(periodic.name, run_timed(periodic.step));
+  if (wall() - due >= periodic.period) ++periodic.punctuality->missed_deadlines;
 }
 
 void Executive::run(const Event& event) {
@@ -128,8 +151,9 @@ int Executive::under_way(const std::string& name) const {
 
 void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
                     std::function<void()> publish) {
-  std::packaged_task<double()> task([work = std::move(work)] { return run_timed_ms(work); });
-  auto job = std::make_shared<Job>(Job{std::move(name), task.get_future(), std::move(publish)});
+  std::packaged_task<TimeNs()> task([work = std::move(work)] { return run_timed(work); });
+  auto job = std::make_shared<Job>(
+      Job{std::move(name), lane, now_ + budget, task.get_future(), std::move(publish)});
   if (const auto& worker = workers_[static_cast<std::size_t>(lane)]) {
     {
       const std::lock_guard lock(worker->mutex);
@@ -167,8 +191,19 @@ bool Executive::finish_late_job() {
   late_.erase(ready);
   now_ =
       std::max(now_, std::min(wall(), queue_.front().time));  // never past what is due: it keeps its own time
+  note_lateness(*job);
   finish(job);
   return true;
+}
+
+void Executive::note_lateness(const Job& job) {
+  TimeNs& greatest = lateness_[static_cast<std::size_t>(job.lane)];
+  greatest = std::max(greatest, now_ - job.due);
+}
+
+TimeNs Executive::take_lateness(Lane lane) {
+  for (const auto& job : late_) note_lateness(*job);
+  return std::exchange(lateness_[static_cast<std::size_t>(lane)], 0);
 }
 
 int Executive::overruns() const {
@@ -177,21 +212,26 @@ int Executive::overruns() const {
   return n;
 }
 
-TimeNs Executive::wall() const {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin_)
-      .count();
-}
+TimeNs Executive::wall() const { return setup_.clock->now() - begin_; }
 
 /// Not longer than a moment while a job is late: it may be ready any time.
 void Executive::wait_until(TimeNs time) const {
   constexpr TimeNs kMoment = kMillisecond / 2;
-  const TimeNs until = late_.empty() ? time : std::min(time, wall() + kMoment);
-  std::this_thread::sleep_until(begin_ + std::chrono::nanoseconds(until));
+  setup_.clock->sleep_until(begin_ + (late_.empty() ? time : std::min(time, wall() + kMoment)));
+}
+
+/// A loop that is far behind what is due never catches up, or floods the vehicle with what is out of date.
+void Executive::forgive(TimeNs due) {
+  constexpr TimeNs kMaxBehind = kSecond;
+  const TimeNs behind = wall() - due;
+  if (behind <= kMaxBehind) return;
+  begin_ += behind;
+  lost_time_ += behind;
 }
 
 void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
   const bool real_time = clock_ == Clock::real_time;
-  if (real_time) begin_ = std::chrono::steady_clock::now() - std::chrono::nanoseconds(now_);
+  if (real_time) begin_ = setup_.clock->now() - now_;
   while (!queue_.empty() && queue_.front().time <= limit) {
     if (real_time && finish_late_job()) {
       if (done()) return;
@@ -207,6 +247,7 @@ void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
     now_ = std::max(now_, event.time);
     run(event);
     running_ = &kNoName;
+    if (real_time) forgive(event.time);
     if (done()) return;
   }
   now_ = std::max(now_, limit);
@@ -215,8 +256,7 @@ void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
 void Executive::drain() {
   const bool threaded = workers_[0] != nullptr;
   for (auto& w : workers_) w.reset();  // all of them, before any is made anew: that may fail
-  if (threaded)
-    for (auto& w : workers_) w = std::make_unique<Worker>();
+  if (threaded) start_workers();
   late_.clear();
 }
 

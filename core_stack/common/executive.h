@@ -13,7 +13,6 @@
 #pragma once
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -21,26 +20,46 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/common/duration_histogram.h"
+#include "core_stack/common/enum_names.h"
 #include "core_stack/common/time.h"
+#include "core_stack/common/wall_clock.h"
 
 namespace karst::core {
 
 enum class Lane { sensing, localization, map, pictures };
+constexpr auto names_of(Lane) {
+  using enum Lane;
+  return std::to_array<Named<Lane>>(
+      {{sensing, "sensing"}, {localization, "localization"}, {map, "map"}, {pictures, "pictures"}});
+}
 
 /// Wall-clock cost of one named step or job, for timing.json only: nothing decides by it.
 struct Cost {
-  std::vector<float> milliseconds;
+  DurationHistogram duration;
   int overruns = 0;  // in real time: jobs not ready within their budget, steps a whole period late
 };
 
+/// How well a periodic step keeps its times, in real time.
+struct Punctuality {
+  DurationHistogram lateness;         // from when a step was due to when it began
+  std::uint64_t missed_deadlines = 0;  // steps that ended when the next one was due already, or later
+};
+
 enum class Clock { lockstep, real_time };
+
+/// What a flight in real time runs on.
+struct RealTimeSetup {
+  const WallClock* clock = &machine_clock();
+  std::function<void(Lane)> on_lane_thread = {};  // called once on each lane's thread, before its first job
+};
 
 class Executive {
  public:
   /// `threads` <= 1 runs jobs on the loop's thread at the moment they are submitted; more give each lane a
   /// thread, and no more than that.
-  /// In real time there is always a thread a lane.
-  explicit Executive(int threads, Clock clock = Clock::lockstep);
+  /// In real time there is always a thread a lane. `setup` has an effect only there.
+  explicit Executive(int threads, Clock clock = Clock::lockstep, RealTimeSetup setup = {});
   virtual ~Executive();  // virtual, as what registers work: a test has single steps and jobs fail
   Executive(const Executive&) = delete;
   Executive& operator=(const Executive&) = delete;
@@ -75,6 +94,13 @@ class Executive {
   /// In all; 0 in lockstep.
   int overruns() const;
   const std::map<std::string, Cost>& costs() const { return costs_; }
+  /// Of each periodic step; empty in lockstep.
+  const std::map<std::string, Punctuality>& punctuality() const { return punctuality_; }
+  /// The greatest time by which a job of the lane exceeded its budget since this was last asked, including those
+  /// that still run or wait. 0 in lockstep, where nothing is late.
+  TimeNs take_lateness(Lane lane);
+  /// A loop that is a second behind sets its clock back to what is due. The time lost in this way so far.
+  TimeNs lost_time() const { return lost_time_; }
 
  private:
   struct Event;
@@ -84,15 +110,22 @@ class Executive {
   void push(Event event);
   void run(const Event& event);
   void run_periodic(const Periodic& step, TimeNs due);
-  void note_cost(const std::string& name, double milliseconds);
+  void note_cost(const std::string& name, TimeNs duration);
   void finish(const std::shared_ptr<Job>& job);
   bool finish_late_job();
   TimeNs wall() const;
   void wait_until(TimeNs time) const;
 
+  void start_workers();
+  void forgive(TimeNs due);
+  void note_lateness(const Job& job);
+
   Clock clock_;
-  std::chrono::steady_clock::time_point begin_;  // of the run, in real time
-  std::vector<std::shared_ptr<Job>> late_;       // in real time: beyond their budget
+  RealTimeSetup setup_;
+  TimeNs begin_ = 0;                        // of the run by the machine's clock, in real time
+  std::vector<std::shared_ptr<Job>> late_;  // in real time: beyond their budget
+  std::array<TimeNs, 4> lateness_{};        // by lane, since last asked
+  TimeNs lost_time_ = 0;
   TimeNs now_ = 0;
   std::uint64_t next_sequence_ = 0;
   std::vector<Event> queue_;                        // heap on (time, sequence)
@@ -103,6 +136,7 @@ class Executive {
   std::atomic<std::uint64_t> events_ = 0;
   std::atomic<const std::string*> running_ = &kNoName;  // to what is never taken away
   std::map<std::string, Cost> costs_;
+  std::map<std::string, Punctuality> punctuality_;
 };
 
 }  // namespace karst::core

@@ -29,6 +29,12 @@ double length_of(const Sweep& sweep) {
   return static_cast<double>(longest);
 }
 
+FeatureOptions halved(FeatureOptions o) {
+  o.plane_sectors = std::max<std::int64_t>(1, o.plane_sectors / 2);
+  o.edge_sectors = std::max<std::int64_t>(1, o.edge_sectors / 2);
+  return o;
+}
+
 Cloud compensated(const Features& features, const SweepMotion& motion) {
   const auto moved = [&](const std::vector<Feature>& from) {
     std::vector<Vec3f> to(from.size());
@@ -78,7 +84,7 @@ Loam::Prediction Loam::predict(const Sweep& sweep, double length_s, const StateH
   return {false, T_world_last_ * pose_after(twist_, std::min(since_s, kHeld)), twist_};
 }
 
-LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
+LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted, LoamEffort effort) {
   if (last_stamp_ && sweep.stamp <= *last_stamp_) {
     LoamPose refused;
     refused.stamp = sweep.stamp;
@@ -88,10 +94,11 @@ LoamPose Loam::process(const Sweep& sweep, const StateHistory& predicted) {
   }
   last_stamp_ = sweep.stamp;
   if (!last_valid_) last_valid_ = sweep.stamp;
-  if (std::all_of(sweep.points.begin(), sweep.points.end(), is_measurement)) return locate(sweep, predicted);
+  if (std::all_of(sweep.points.begin(), sweep.points.end(), is_measurement))
+    return locate(sweep, predicted, effort);
   Sweep clean = sweep;
   std::erase_if(clean.points, [](const SweepPoint& p) { return !is_measurement(p); });
-  return locate(clean, predicted);
+  return locate(clean, predicted, effort);
 }
 
 LoamPose Loam::begin_map(const Cloud& cloud, LoamPose pose, bool bent) {
@@ -102,14 +109,15 @@ LoamPose Loam::begin_map(const Cloud& cloud, LoamPose pose, bool bent) {
   return pose;
 }
 
-LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states) {
+LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort effort) {
   const double length_s = length_of(sweep), since_s = seconds(sweep.stamp - *last_valid_);
   const Prediction prediction = predict(sweep, length_s, states);
   LoamPose out;
   out.stamp = sweep.stamp;
   out.T_world_body = prediction.T_world_body;
 
-  const Features features = find_features(sweep.points, options_.features, workspace_.threads);
+  const FeatureOptions wanted = effort == LoamEffort::full ? options_.features : halved(options_.features);
+  const Features features = find_features(sweep.points, wanted, workspace_.threads);
   const std::size_t count = features.edges.size() + features.planes.size();
   if (count < static_cast<std::size_t>(options_.registration.min_matches)) {
     out.problem = "too few features: " + counted(count, "in ") + counted(sweep.points.size(), "points");

@@ -33,6 +33,9 @@ struct LoamOptions {
 };
 void describe(OptionTable& t, LoamOptions& o);
 
+/// Half: about half the features of a sweep, where there is no time for all of them.
+enum class LoamEffort { full, half };
+
 struct LoamPose {
   TimeNs stamp = 0;
   Pose T_world_body;
@@ -52,7 +55,7 @@ class Loam {
   /// The pose at the sweep's stamp. `predicted`: states propagated with the IMU; if they do not span the time
   /// from the sweep's first point to its stamp, the last poses' velocity is held. A pose that is not valid
   /// equals the prediction and leaves the local map unchanged. The first sweep is placed at its prediction.
-  LoamPose process(const Sweep& sweep, const StateHistory& predicted);
+  LoamPose process(const Sweep& sweep, const StateHistory& predicted, LoamEffort effort = LoamEffort::full);
 
   const LocalMap& map() const { return map_; }
 
@@ -64,7 +67,7 @@ class Loam {
     Twist twist;  // used if not covered
   };
   Prediction predict(const Sweep& sweep, double length_s, const StateHistory& states) const;
-  LoamPose locate(const Sweep& sweep, const StateHistory& states);
+  LoamPose locate(const Sweep& sweep, const StateHistory& states, LoamEffort effort);
   LoamPose begin_map(const Cloud& cloud, LoamPose pose, bool bent);
   void accept(const LoamPose& pose, const Cloud& cloud);
 

@@ -165,11 +165,13 @@ MissionResult MissionControl::end() {
   attempt([this] {
     if (onboard_.vehicle.detects_objects) objects_.write();
   });
-  attempt([this] {
-    if (!onboard_.recorder.flush())
+  const auto check_record = [this](bool good) {
+    if (!good)
       throw InputError(onboard_.recorder.directory().string(), "", "cannot be written: is the disk full?");
-  });
+  };
+  attempt([&] { check_record(onboard_.recorder.flush()); });
   attempt([this] { onboard_.recorder.final_map(onboard_.map.while_idle().map()); });
+  attempt([&] { check_record(onboard_.recorder.close()); });
   result_->record_problem = problem;
   return *result_;
 }
@@ -234,6 +236,11 @@ void MissionControl::report_to_watcher() {
     onboard_.recorder.write(now(), event::Overrun{overruns - overruns_});
     overruns_ = overruns;
   }
+  if (const TimeNs lost = onboard_.executive.lost_time(); lost > lost_time_) {
+    onboard_.recorder.write(now(), event::Log{"the loop was far behind: its clock was set back by " +
+                                              std::to_string((lost - lost_time_) / kMillisecond) + " ms"});
+    lost_time_ = lost;
+  }
   if (!watch_(status)) end_flight("stopped by the operator", kAnyPath_m);
 }
 
@@ -246,10 +253,28 @@ void MissionControl::control() {
 void MissionControl::supervise() {
   supervision_watch_.came(now());
   record();
+  shed_load();
   if (emergency_) return;
   keep_safe();
   if (team_) team_->right_of_way.step();
   fly_phase();
+}
+
+/// In lockstep no lane is ever late.
+void MissionControl::shed_load() {
+  const auto note = [this](const std::optional<LaneLoad::Change>& change, Lane lane) {
+    if (!change) return;
+    const std::string behind = std::to_string(change->behind / kMillisecond) + " ms behind";
+    onboard_.recorder.write(
+        now(), event::Degraded{change->relief,
+                               change->begins ? event::DegradedState::begins : event::DegradedState::over,
+                               std::string(name_of(lane)) + (change->begins ? " is " + behind : " keeps up again"),
+                               seconds(change->since)});
+  };
+  Executive& executive = onboard_.executive;
+  note(onboard_.load.observe_map(now(), executive.take_lateness(Lane::map)), Lane::map);
+  note(onboard_.load.observe_localization(now(), executive.take_lateness(Lane::localization)),
+       Lane::localization);
 }
 
 void MissionControl::fly_phase() {

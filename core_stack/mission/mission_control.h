@@ -62,6 +62,8 @@ class MissionControl final : public VehicleSink {
   /// Brakes and lands at once, after a failure or at the operator's request, and does nothing else from then
   /// on. Allocates no memory.
   void land_now(const char* reason) noexcept;
+  /// What was left out because a lane was late.
+  const LoadShedding& load() const { return onboard_.load; }
   /// Why the vehicle went home; empty until then.
   const std::string& homing_reason() const { return return_home_.reason(); }
 
@@ -103,6 +105,7 @@ class MissionControl final : public VehicleSink {
   void supervise();
   void fly_phase();
   void watch_steps();
+  void shed_load();
   void report_to_watcher();
   void keep_safe();
   void note_verdict(const SafetyVerdict& before);
@@ -144,7 +147,8 @@ class MissionControl final : public VehicleSink {
   SafetyVerdict verdict_;
   StepWatch control_watch_, supervision_watch_;
   Watch watch_;
-  int overruns_ = 0;  // of the executive, as last recorded
+  int overruns_ = 0;      // of the executive, as last recorded
+  TimeNs lost_time_ = 0;  // likewise
   bool standing_ = true;
   Authority authority_;                   // who steers
   std::string authority_reason_;

@@ -33,16 +33,18 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
   if (!loam_) return map_scan(scan);
   if (onboard_.executive.under_way("localization") > 1)
     return;  // in real time, when localization falls behind: late scans are useless
+  if (sweeps_++ % 2 == 1 && onboard_.load.sheds(Relief::half_the_sweeps)) return;
   const double self_m = onboard_.vehicle.radius_m + kSelfMargin_m;
   loam_->job(
       "localization", kLocalizationBudget,
-      [scan, history = onboard_.flight.estimator().history(), self_m,
-       filter = onboard_.options.perception](Loam& loam) {
+      [scan, history = onboard_.flight.estimator().history(), self_m, filter = onboard_.options.perception,
+       effort = onboard_.load.sheds(Relief::half_the_features) ? LoamEffort::half
+                                                               : LoamEffort::full](Loam& loam) {
         // Only the paper's rule: robust matching copes with the remaining dust. The stricter filter of the
         // map loses true returns at edges and bumps, and triples the drift (docs/localization.md).
         LidarScan filtered = *scan;
         drop_weakest_returns(filtered, filter.percentile, filter.radius_m);
-        return loam.process(to_sweep(filtered, self_m), history);
+        return loam.process(to_sweep(filtered, self_m), history, effort);
       },
       [this, scan](const LoamPose& pose) {
         const bool accepted =
@@ -99,6 +101,10 @@ void SensorPipeline::note_localization(const LoamPose& pose, bool accepted) {
 }
 
 void SensorPipeline::map_scan(const std::shared_ptr<const LidarScan>& scan) {
+  const unsigned every = onboard_.load.sheds(Relief::quarter_the_scans) ? 4
+                         : onboard_.load.sheds(Relief::half_the_scans)  ? 2
+                                                                        : 1;
+  if (scans_++ % every != 0) return;
   integrate(scan->stamp,
             [scan, history = onboard_.flight.estimator().history(), filter = onboard_.options.perception,
              range_m = onboard_.options.mission.mapping_range_m,
@@ -110,6 +116,7 @@ void SensorPipeline::map_scan(const std::shared_ptr<const LidarScan>& scan) {
 }
 
 void SensorPipeline::on_depth(const std::shared_ptr<const DepthImage>& image) {
+  if (images_[image->model.get()]++ % 2 == 1 && onboard_.load.sheds(Relief::half_the_images)) return;
   integrate(image->stamp, [image, history = onboard_.flight.estimator().history(),
                            self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
     return to_rays(*image, history, self_m);
@@ -119,6 +126,8 @@ void SensorPipeline::on_depth(const std::shared_ptr<const DepthImage>& image) {
 /// By now the pose is as accurate as it gets: scans of that moment have been located.
 void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
   if (frame->stamp > onboard_.now() || !frame->model || closed_) return;
+  if (onboard_.load.sheds(Relief::no_pictures) || onboard_.executive.under_way("imaged surface") >= kMaxWaiting)
+    return;
   const Pose T_world_camera =
       onboard_.flight.estimator().history().pose_at(frame->stamp) * frame->model->camera.T_body_camera;
   onboard_.map.job("imaged surface", kMappingBudget,

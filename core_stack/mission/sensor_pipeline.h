@@ -2,6 +2,7 @@
 // into the map. Images are integrated at their estimated poses.
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -86,6 +87,8 @@ class SensorPipeline {
   std::optional<double> hull_clearance_m_;
   TimeNs last_seen_ = 0;            // when a scan or an image was last taken in
   int pictures_lost_ = 0;           // not kept
+  unsigned sweeps_ = 0, scans_ = 0;  // that came to be located, to be mapped
+  std::map<const CameraModel*, unsigned> images_;
   std::string localization_state_;  // as last noted in the events, as the next
   Hypothesis believed_ = Hypothesis::lidar;
 };

@@ -23,6 +23,9 @@ namespace {
 constexpr TimeNs kTick = 5 * kMillisecond;  // also the period of the IMU
 constexpr int kStepsPerTick = 5;
 constexpr TimeNs kBarometerPeriod = 40 * kMillisecond;
+/// In real time, when ray casting or drawing falls behind: measurements beyond this are not taken. In lockstep
+/// fewer wait.
+constexpr int kMaxWaiting = 8;
 constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond,
                  kPictureBudget = 100 * kMillisecond;
 
@@ -248,7 +251,7 @@ Air SimulatedVehicle::air_for(const std::string& beams) {
 
 void SimulatedVehicle::fire_lidar() {
   const SensorFaults::InjectedFaults injected = faults_of(Sensor::lidar);
-  if (injected.lost()) return;
+  if (injected.lost() || executive_->under_way("lidar") >= kMaxWaiting) return;
   auto scan = std::make_shared<core::LidarScan>();
   executive_->job(
       "lidar", Lane::sensing, kLidarBudget,
@@ -263,7 +266,7 @@ void SimulatedVehicle::fire_lidar() {
 }
 
 void SimulatedVehicle::fire_camera(std::size_t index) {
-  if (faults_of(Sensor::camera).lost()) return;
+  if (faults_of(Sensor::camera).lost() || executive_->under_way("depth camera") >= kMaxWaiting) return;
   auto image = std::make_shared<core::DepthImage>();
   const auto& camera = cameras_[index];
   look_for_objects(camera->model(), Light::own);
@@ -280,7 +283,7 @@ void SimulatedVehicle::fire_camera(std::size_t index) {
 
 /// Runs on a separate lane: a picture takes longer than a sweep, and nothing in flight waits for it.
 void SimulatedVehicle::take_picture() {
-  if (faults_of(Sensor::camera).lost()) return;
+  if (faults_of(Sensor::camera).lost() || executive_->under_way("rgb camera") >= kMaxWaiting) return;
   const core::Pose& T_world_body = quadrotor_.state().T_world_body;
   look_for_objects({rgb_->model(), &rgb_->model()->camera}, Light::lamp);
   log_.picture(now(), T_world_body * rgb_->model()->camera.T_body_camera, *rgb_->model());

@@ -4,6 +4,7 @@
 #include "core_stack/mission/flight/flight.h"
 #include "core_stack/mission/onboard/explorer.h"
 #include "core_stack/mission/recording/recorder.h"
+#include "core_stack/mission/state/load_shedding.h"
 
 namespace karst::core {
 
@@ -18,7 +19,11 @@ struct Onboard {
         executive(e),
         recorder(r),
         flight(o, description),
-        map(e, Lane::map, o, description, policy) {}
+        map(e, Lane::map, o, description, policy),
+        load({.maps_scans = description.lidar != nullptr,
+              .locates_scans = description.lidar && o.localization.source == PoseSource::lidar,
+              .depth_images = !description.cameras.empty(),
+              .pictures = description.rgb != nullptr}) {}
 
   TimeNs now() const { return executive.now(); }
 
@@ -28,6 +33,7 @@ struct Onboard {
   Recorder& recorder;
   Flight flight;
   LaneBound<Explorer> map;  // on the map lane
+  LoadShedding load;        // what is left out while a lane is late
 };
 
 }  // namespace karst::core

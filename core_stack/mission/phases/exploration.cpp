@@ -78,7 +78,8 @@ void Exploration::choose() {
   PathExecution& path = parts_.path;
   const GoalTracker& goals = parts_.goals;
   if (path.detour_due() && !flight.at_rest(now)) return begin_cycle(Joins::at_stop);
-  if (now - last_cycle_ < kPause) return;
+  const TimeNs rarely = onboard_.load.sheds(Relief::fewer_decisions) ? 2 : 1;
+  if (now - last_cycle_ < rarely * kPause) return;
   if (flight.at_rest(now)) {
     path.take_no_detour();
     // The sensors observe this place before the next goal is chosen.
@@ -91,12 +92,12 @@ void Exploration::choose() {
   if (goals.goal() && !goals.frontier_open()) return begin_cycle(Joins::at_stop);
   if (steers()) {
     // Plans end short of the goal: nothing can be appended, and the next goal is wanted in flight.
-    if (!goals.goal() || now - last_cycle_ > kSteeredPeriod) begin_cycle(Joins::at_stop);
+    if (!goals.goal() || now - last_cycle_ > rarely * kSteeredPeriod) begin_cycle(Joins::at_stop);
   } else if (flight.remaining_s(now) < o.append_before_s) {
     // An appended path's speed limit applies from here on: do not append while the current path has one.
     if (o.append && !append_tried_ && !path.speed_limited()) begin_cycle(Joins::at_end);
     append_tried_ = true;
-  } else if (now - last_cycle_ > from_seconds(o.decision_period_s)) {
+  } else if (now - last_cycle_ > rarely * from_seconds(o.decision_period_s)) {
     begin_cycle(Joins::at_stop);
   }
 }

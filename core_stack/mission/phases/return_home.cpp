@@ -47,7 +47,7 @@ void ReturnHome::begin(const std::string& reason) {
 }
 
 void ReturnHome::watch_time() {
-  if (onboard_.now() % kSecond != 0) return;
+  if (onboard_.now() % kSecond != 0 || onboard_.executive.under_way("home estimate") > 1) return;
   onboard_.map.job(
       "home estimate", kEstimateBudget,
       [from = onboard_.flight.reference().position, come_m = parts_.flown_path.length_m()](

@@ -3,11 +3,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_text.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
+#include "core_stack/mission/recording/map_cells.h"
 
 namespace karst::core {
 namespace {
@@ -19,26 +21,22 @@ std::string formatted(const char* format, Numbers... numbers) {
   return {line.data(), static_cast<std::size_t>(n)};
 }
 
-std::ofstream open(const std::filesystem::path& path) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  if (!out) throw InputError(path.string(), "", "cannot be written");
-  return out;
-}
-
 }  // namespace
 
-Recorder::Recorder(const std::filesystem::path& run_dir) : directory_(run_dir) {
+Recorder::Recorder(const std::filesystem::path& run_dir, Durability durability) : directory_(run_dir) {
   std::error_code error;
   std::filesystem::create_directories(run_dir, error);
   if (error) throw InputError(run_dir.string(), "", "the run directory cannot be made: " + error.message());
   if (std::filesystem::exists(run_dir / "events.jsonl"))
     throw InputError(run_dir.string(), "", "holds another run already; choose another --out or remove it");
-  events_ = open(run_dir / "events.jsonl");
-  trajectory_ = open(run_dir / "trajectory.tum");
-  telemetry_ = open(run_dir / "telemetry.csv");
-  localization_ = open(run_dir / "localization.csv");
-  growth_ = open(run_dir / "map_growth.bin");
-  decisions_ = open(run_dir / "decisions.csv");
+  if (durability == Durability::survives_a_power_cut) disk_ = std::make_unique<DiskWriter>(run_dir);
+  events_.open(run_dir / "events.jsonl", disk_.get());
+  trajectory_.open(run_dir / "trajectory.tum", disk_.get());
+  telemetry_.open(run_dir / "telemetry.csv", disk_.get());
+  localization_.open(run_dir / "localization.csv", disk_.get());
+  growth_.open(run_dir / "map_growth.bin", disk_.get());
+  decisions_.open(run_dir / "decisions.csv", disk_.get());
+  if (disk_) cells_.open(run_dir / kMapCellsName, disk_.get());
   telemetry_ << "t_s,phase,x,y,z,vx,vy,vz,heading_rad,ref_x,ref_y,ref_z,battery_fraction,seconds_left,"
                 "explored_m3,home_distance_m\n";
   localization_
@@ -71,7 +69,7 @@ void Recorder::unsurveyed(TimeNs t, double volume_m3) {
   const std::string volume = formatted("%.3f", volume_m3);
   if (volume == last_unsurveyed_) return;
   if (!unsurveyed_.is_open()) {
-    unsurveyed_.open(directory_ / "unsurveyed.csv", std::ios::binary | std::ios::trunc);
+    unsurveyed_.open(directory_ / "unsurveyed.csv", disk_.get());
     unsurveyed_ << "t_s,unsurveyed_m3\n";
   }
   unsurveyed_ << formatted("%.2f,", seconds(t)) << volume << '\n';
@@ -88,16 +86,18 @@ void Recorder::located(const Located& r) {
 
 void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
   const auto ms = static_cast<std::int32_t>(t / kMillisecond);
+  if (cells_.is_open())
+    for (const CellChange& c : changes) cells_ << bytes_of(MapCellRecord{c.key, c.after, ms});
   for (const CellChange& c : changes) {
     if (c.before != Cell::occupied && c.after != Cell::occupied) continue;
     const std::array<std::int32_t, 4> record{c.key.x, c.key.y, c.key.z, c.after == Cell::occupied ? ms : -ms};
-    growth_.write(reinterpret_cast<const char*>(record.data()), sizeof record);
+    growth_ << std::string_view(reinterpret_cast<const char*>(record.data()), sizeof record);
   }
 }
 
 void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& file) {
   if (!frames_.is_open()) {
-    frames_.open(directory_ / "frames.csv", std::ios::binary | std::ios::trunc);  // flush() tells if it fails
+    frames_.open(directory_ / "frames.csv", disk_.get());
     frames_ << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n";
   }
   const CameraModel& c = frame.model->camera;
@@ -110,7 +110,9 @@ void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& fi
 }
 
 void Recorder::objects(const nlohmann::ordered_json& objects) {
-  open(directory_ / "objects.json") << json_text(objects, 2) << '\n';
+  std::ofstream out(directory_ / "objects.json", std::ios::binary | std::ios::trunc);
+  if (!out) throw InputError((directory_ / "objects.json").string(), "", "cannot be written");
+  out << json_text(objects, 2) << '\n';
 }
 
 void Recorder::decision_cost(TimeNs t, double decide_ms, double plan_ms) {
@@ -122,14 +124,21 @@ void Recorder::final_map(const VoxelMap& map) {
   write_ply(map, (directory_ / "map.ply").string());
 }
 
+std::array<RecordFile*, 9> Recorder::files() {
+  return {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &cells_, &decisions_, &frames_,
+          &unsurveyed_};
+}
+
 bool Recorder::flush() {
   bool good = true;
-  for (std::ofstream* f :
-       {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &decisions_, &frames_, &unsurveyed_}) {
-    f->flush();
-    good = good && f->good();
-  }
+  for (RecordFile* f : files()) good = f->flush() && good;
   return good;
+}
+
+bool Recorder::close() {
+  bool good = true;
+  for (RecordFile* f : files()) good = f->close() && good;
+  return (!disk_ || disk_->finish()) && good;
 }
 
 }  // namespace karst::core

@@ -1,14 +1,17 @@
 // The run directory, written as the flight goes: complete up to the last second whatever happens.
 // docs/run_directory.md describes every file.
 #pragma once
+#include <array>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mission/recording/disk_writer.h"
+#include "core_stack/mission/recording/record_file.h"
 #include "core_stack/mission/recording/run_event.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
 
@@ -34,10 +37,16 @@ struct Located {
   Hypothesis believed = Hypothesis::lidar;
 };
 
+/// Where the record is once flush() has returned: with the file system, which a killed process does not affect;
+/// or on its way to the disk, which it reaches within a second, so that a power cut costs no more. The second also
+/// records every known cell of the map (map_cells.bin), and no call waits for the disk.
+enum class Durability { survives_a_crash, survives_a_power_cut };
+
 class Recorder {
  public:
   /// Creates the directory; throws InputError if it cannot be written or holds another run's files.
-  explicit Recorder(const std::filesystem::path& run_dir);
+  explicit Recorder(const std::filesystem::path& run_dir,
+                    Durability durability = Durability::survives_a_crash);
 
   /// A line of events.jsonl.
   void write(TimeNs t, const event::Event& event);
@@ -58,14 +67,19 @@ class Recorder {
   void decision_cost(TimeNs t, double decide_ms, double plan_ms);
   /// Final map in all its formats.
   void final_map(const VoxelMap& map);
-  /// Pushes what is buffered to the file system; false once a write has failed (disk full, removed).
+  /// Hands on what is buffered; false once a write has failed (disk full, removed).
   bool flush();
+  /// Waits until all of it is where the durability says.
+  bool close();
 
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
+  std::array<RecordFile*, 9> files();
+
   std::filesystem::path directory_;
-  std::ofstream events_, trajectory_, telemetry_, localization_, growth_, decisions_, frames_, unsurveyed_;
+  std::unique_ptr<DiskWriter> disk_;  // to survive a power cut
+  RecordFile events_, trajectory_, telemetry_, localization_, growth_, cells_, decisions_, frames_, unsurveyed_;
   std::string last_unsurveyed_;  // as written
 };
 

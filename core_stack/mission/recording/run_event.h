@@ -20,6 +20,7 @@
 #include "core_stack/common/time.h"
 #include "core_stack/localization/hypothesis.h"
 #include "core_stack/mission/policy/decision.h"
+#include "core_stack/mission/state/load_shedding.h"
 #include "core_stack/mission/state/phase.h"
 #include "core_stack/mission/state/safety_action.h"
 #include "core_stack/objects/object_state.h"
@@ -215,6 +216,23 @@ struct Overrun {
   static constexpr auto fields() { return std::make_tuple(Field{"count", &Overrun::count}); }
 };
 
+enum class DegradedState { begins, over };
+constexpr auto names_of(DegradedState) {
+  using enum DegradedState;
+  return std::to_array<Named<DegradedState>>({{begins, "begins"}, {over, "over"}});
+}
+struct Degraded {
+  static constexpr const char* kKind = "degraded";
+  Relief what{};
+  DegradedState state{};
+  std::string reason;
+  double since_s = kUnknown;
+  static constexpr auto fields() {
+    return std::make_tuple(Field{"what", &Degraded::what}, Field{"state", &Degraded::state},
+                           Field{"reason", &Degraded::reason}, Field{"since", &Degraded::since_s});
+  }
+};
+
 enum class LocalizationState { lost, found };
 constexpr auto names_of(LocalizationState) {
   using enum LocalizationState;
@@ -300,7 +318,7 @@ struct Outcome {
 };
 
 using Event = std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log,
-                           Homing, Safety, Authority, Overrun, Localization, Landing, Drop, Team, Outcome>;
+                           Homing, Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team, Outcome>;
 
 /// The line without its end: {"t": ..., "kind": ..., and the fields by name}.
 std::string line_of(TimeNs t, const Event& event);

@@ -125,7 +125,7 @@ TEST_P(ExecutiveThreads, ResultsArePublishedExactlyAtTheEndOfTheBudget) {
   e.run_until(57, kNever);
   EXPECT_EQ(published, 57);
   EXPECT_EQ(seen, 42);
-  EXPECT_EQ(e.costs().at("work").milliseconds.size(), 1u);
+  EXPECT_EQ(e.costs().at("work").duration.count(), 1u);
 }
 
 TEST_P(ExecutiveThreads, JobsOfOneLaneRunInTheOrderSubmitted) {

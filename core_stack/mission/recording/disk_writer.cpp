@@ -1,0 +1,150 @@
+#include "core_stack/mission/recording/disk_writer.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include "core_stack/common/error.h"
+
+namespace karst::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kPeriod{500};
+
+bool write_all(int descriptor, const std::string& bytes) {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::write(descriptor, bytes.data() + done, bytes.size() - done);
+    if (n > 0)
+      done += static_cast<std::size_t>(n);
+    else if (errno != EINTR)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+DiskWriter::DiskWriter(fs::path folder) : folder_(std::move(folder)), thread_([this] { run(); }) {}
+
+DiskWriter::~DiskWriter() {
+  finish();
+  for (const int d : descriptors_) ::close(d);
+}
+
+DiskWriter::File DiskWriter::open(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor < 0)
+    throw InputError(path.string(), "", std::string("cannot be written: ") + std::strerror(errno));
+  const std::lock_guard lock(mutex_);
+  descriptors_.push_back(descriptor);
+  return descriptors_.size() - 1;
+}
+
+bool DiskWriter::append(File file, std::string& bytes) {
+  const std::lock_guard lock(mutex_);
+  return take(file, bytes);
+}
+
+bool DiskWriter::try_append(File file, std::string& bytes) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  return !lock || take(file, bytes);
+}
+
+bool DiskWriter::take(File file, std::string& bytes) {
+  if (pending_bytes_ + bytes.size() > kMaxPending) failed_ = true;
+  if (failed_ || over_) bytes.clear();
+  if (!bytes.empty()) {
+    pending_bytes_ += bytes.size();
+    pending_.push_back({file, std::exchange(bytes, {})});
+  }
+  return !failed_;
+}
+
+bool DiskWriter::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  return !failed_;
+}
+
+void DiskWriter::run() {
+  for (bool last = false; !last;) {
+    std::vector<Pending> batch;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, kPeriod, [this] { return over_; });
+      last = over_;
+      batch.swap(pending_);
+      pending_bytes_ = 0;
+    }
+    if (!write(batch)) {
+      const std::lock_guard lock(mutex_);
+      failed_ = true;
+    }
+    sync_others();
+  }
+}
+
+/// A file that cannot be written does not prevent the others from being written.
+bool DiskWriter::write(const std::vector<Pending>& batch) {
+  std::vector<int> descriptors;
+  {
+    const std::lock_guard lock(mutex_);
+    descriptors = descriptors_;
+  }
+  std::set<int> written;
+  bool good = true;
+  for (const Pending& p : batch) {
+    good = write_all(descriptors[p.file], p.bytes) && good;
+    written.insert(descriptors[p.file]);
+  }
+  for (const int d : written) good = (fdatasync(d) == 0 || errno == EINVAL) && good;  // EINVAL: no disk below it
+  return good;
+}
+
+/// What is not this writer's is synced as far as possible: the flight does not depend on it.
+void DiskWriter::sync_others() {
+  std::error_code error;
+  std::set<fs::path> grown;  // folders with new files
+  for (fs::recursive_directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+    struct stat is {};
+    if (lstat(at->path().c_str(), &is) != 0 || !S_ISREG(is.st_mode)) continue;
+    const Seen now{static_cast<std::uintmax_t>(is.st_size),
+                   std::int64_t{is.st_mtim.tv_sec} * 1'000'000'000 + is.st_mtim.tv_nsec};
+    const auto [found, is_new] = seen_.try_emplace(at->path());
+    if (is_new) grown.insert(at->path().parent_path());
+    if (!is_new && found->second.size == now.size && found->second.changed_ns == now.changed_ns) continue;
+    found->second = now;
+    sync(at->path());
+  }
+  for (const fs::path& folder : grown) sync_folder(folder);
+  if (!grown.empty()) sync_folder(folder_);
+}
+
+void DiskWriter::sync(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (descriptor < 0) return;
+  fdatasync(descriptor);
+  ::close(descriptor);
+}
+
+void DiskWriter::sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC | O_DIRECTORY);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace karst::core
