@@ -3,11 +3,14 @@
 namespace karst::core {
 
 StallWatch::StallWatch(std::vector<const Executive*> executives, std::chrono::milliseconds patience,
-                       Report report)
+                       Report report, std::function<void()> on_thread)
     : executives_(std::move(executives)),
       patience_(patience),
       report_(std::move(report)),
-      thread_([this] { watch(); }) {}
+      thread_([this, on_thread = std::move(on_thread)] {
+        if (on_thread) on_thread();
+        watch();
+      }) {}
 
 StallWatch::~StallWatch() {
   {

@@ -21,7 +21,9 @@ class StallWatch {
   /// Called once on the watch's thread, with the name of what the loop is busy with.
   using Report = std::function<void(const std::string& running)>;
   /// The executives take turns, as those of a team do: all must stand still. They outlive the watch.
-  StallWatch(std::vector<const Executive*> executives, std::chrono::milliseconds patience, Report report);
+  /// `on_thread` is called once on the watch's thread, before it begins.
+  StallWatch(std::vector<const Executive*> executives, std::chrono::milliseconds patience, Report report,
+             std::function<void()> on_thread = {});
   ~StallWatch();
   StallWatch(const StallWatch&) = delete;
   StallWatch& operator=(const StallWatch&) = delete;

@@ -1,7 +1,10 @@
 #include "sdk/flight/fly.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -10,6 +13,7 @@
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/team/run_ending.h"
 #include "sdk/flight/known_survey.h"
+#include "sdk/flight/real_time.h"
 #include "sdk/flight/run_files.h"
 #include "sdk/flight/status_line.h"
 #include "sdk/flight/team_metrics.h"
@@ -24,11 +28,14 @@ namespace fs = std::filesystem;
 
 // The time that a step or job may take before the flight is aborted: longer than any decision or plan takes
 // on any machine.
-constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};
+constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};  // here: in its end (RealTimeOptions)
 
 /// Ends the process because the step or job `running` does not return: objects in use by the hanging code
-/// cannot be destroyed. The record is complete up to the last second.
+/// cannot be destroyed. The record is complete up to the last second. Even if nobody reads what it prints, the
+/// process ends within a second: the vehicle comes down only when it gets no more commands.
 [[noreturn]] void end_stalled(const std::string& running, const fs::path& run_dir) {
+  std::signal(SIGALRM, SIG_DFL);
+  alarm(1);
   std::fprintf(stderr,
                "karst: %s does not return: the flight is given up\nkarst: its record ends early: %s\n",
                running.empty() ? "a step" : ("\"" + running + "\"").c_str(), run_dir.c_str());
@@ -54,10 +61,25 @@ void compare_radio_with_belief(const Mission& mission) {
         real.c_str(), believed.c_str());
 }
 
+/// What a flight in real time was granted, on a page.
+std::string page_of(const RealTimeProcess& process, const ServiceManager& service, double hang_limit_s) {
+  std::array<char, 200> more;
+  std::snprintf(more.data(), more.size(),
+                "  watchdog     karst ends if the loop hangs for %.1f s%s\n"
+                "  record       on the disk within a second\n",
+                hang_limit_s,
+                !service.listens()                 ? ""
+                : service.watchdog().count() == 0 ? "; systemd is told when it is ready"
+                                                  : "; systemd gets signs of life, too");
+  return "Real time:\n" + process.page() + more.data();
+}
+
 }  // namespace
 
 /// The objects of a flight, in order of construction; they are destroyed in reverse order.
 struct MissionFlight::Running {
+  ServiceManager service = ServiceManager::of_environment();
+  std::optional<RealTimeProcess> real_time;
   std::optional<RunClaim> claim;
   std::vector<std::unique_ptr<RunClaim>> own_claims;  // of a team's members, in folders below
   std::vector<std::unique_ptr<core::Recorder>> recorders;
@@ -107,7 +129,9 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const fs::path own = member_run_dir(run_dir, mission_, i);
     if (own != run_dir) r.own_claims.push_back(std::make_unique<RunClaim>(own));
-    r.recorders.push_back(std::make_unique<core::Recorder>(own));
+    r.recorders.push_back(std::make_unique<core::Recorder>(
+        own, request_.clock == core::Clock::real_time ? core::Durability::survives_a_power_cut
+                                                      : core::Durability::survives_a_crash));
   }
   r.vehicles = make_vehicles(mission_, members_, run_dir, request_.clock);
   write_mission(run_dir / "mission.info", as_flown(mission_));
@@ -140,9 +164,24 @@ std::vector<Seat> MissionFlight::seats() const {
   return seats;
 }
 
+RealTime MissionFlight::real_time() const {
+  const RealTimeProcess& process = *running_->real_time;
+  RealTime how;
+  how.setup.on_lane_thread = [&process](core::Lane lane) { process.prepare_thread(role_of(lane)); };
+  how.on_loop_thread = [&process] { process.prepare_thread(ThreadRole::loop); };
+  how.on_watch_thread = [&process] { process.prepare_thread(ThreadRole::watchdog); };
+  how.hang_limit = std::chrono::milliseconds(static_cast<long>(1e3 * mission_.real_time.hang_limit_s));
+  how.on_hang = [this](const std::string& running) { end_stalled(running, request_.run_dir); };
+  return how;
+}
+
 void MissionFlight::assemble() {
   Running& r = *running_;
   LockstepOptions how{request_.threads, request_.clock};
+  if (request_.clock == core::Clock::real_time) {
+    r.real_time.emplace(mission_.real_time, mission_.file);
+    how.real_time = real_time();
+  }
   if (r.vehicles.world) {
     r.team.emplace(TeamFlightSetup{mission_.core, mission_.faults, static_cast<std::uint64_t>(mission_.seed),
                                    *key_, request_.run_dir},
@@ -162,7 +201,11 @@ void MissionFlight::assemble() {
 }
 
 /// Returns when the flight is over, by its clock.
-core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) const {
+core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) {
+  const Running& r = *running_;
+  if (r.real_time && request_.notes)
+    print_error("%s", page_of(*r.real_time, r.service, mission_.real_time.hang_limit_s).c_str());
+  r.service.notify("READY=1\nSTATUS=flying");
   std::optional<StatusLine> line;
   if (request_.status_line) line.emplace(members_.size());
   std::vector<const core::Executive*> executives;
@@ -170,18 +213,33 @@ core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) const {
   const core::StallWatch stall(
       executives, request_.clock == core::Clock::real_time ? kStallInRealTime : kStallInLockstep,
       [this](const std::string& running) { end_stalled(running, request_.run_dir); });
+  in_the_air_ = true;
   const core::TimeNs end = running_->lockstep->run([&](core::TimeNs now, const auto& all) {
     if (line) line->show(now, all);
     return !interrupted.load();
   });
+  in_the_air_ = false;
   if (line) line->end();
+  if (r.real_time) r.real_time->release_thread();
+  r.service.notify("STATUS=evaluating the flight");
   return end;
 }
 
 nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, double wall_s) const {
   const fs::path& run_dir = request_.run_dir;
   const core::MissionResult& result = *running_->lockstep->state(0).ended;
-  write_timing(run_dir, running_->lockstep->executive(0), wall_s);
+  const SeatState& state = running_->lockstep->state(0);
+  const core::Executive& executive = running_->lockstep->executive(0);
+  if (running_->real_time) {
+    const RealTimeTiming timing{running_->real_time->grants(), state.degraded};
+    write_timing(run_dir, executive, wall_s, &timing);
+    outcome.real_time.emplace();
+    if (const auto control = executive.punctuality().find("control"); control != executive.punctuality().end())
+      outcome.real_time->control = control->second;
+    outcome.real_time->degraded = state.degraded;
+  } else {
+    write_timing(run_dir, executive, wall_s);
+  }
   const nlohmann::json metrics = finish_run(
       run_dir, {mission_.cave, mission_.start, request_.report, request_.cave_cache, mission_.mesh});
   outcome.endings = evaluation::read_endings(run_dir);
@@ -227,6 +285,18 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
   prepare(interrupted);
   assemble();
   FlightOutcome outcome;
+  // While the vehicle flies, the loop must live; before and after, the process.
+  const ServiceWatchdog signs_of_life(
+      running_->service,
+      [this, before = std::uint64_t{0}]() mutable {
+        const std::uint64_t events = running_->lockstep->executive(0).events();
+        const bool lives = !in_the_air_ || events != before;
+        before = events;
+        return lives;
+      },
+      [this] {
+        if (running_->real_time) running_->real_time->prepare_thread(ThreadRole::watchdog);
+      });
   try {
     const auto begin = std::chrono::steady_clock::now();
     const core::TimeNs end = run(interrupted);

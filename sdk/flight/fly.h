@@ -13,11 +13,18 @@
 #include "sdk/evaluation/metrics/ending.h"
 #include "sdk/flight/flight_setup.h"
 #include "sdk/flight/loaded_policies.h"
+#include "sdk/flight/service_manager.h"
 #include "sdk/flight/team_flight.h"
 
 namespace karst::flight {
 
 constexpr int kNotAsMeant = 2;  // exit code of a flight whose mission did not go as planned
+
+/// Of a flight in real time.
+struct RealTimeOutcome {
+  core::Punctuality control;   // of the control step
+  std::vector<std::pair<core::Relief, int>> degraded;  // and how often
+};
 
 struct FlightOutcome {
   bool as_meant = false;  // the mission went so, of every vehicle, and the record is complete
@@ -25,6 +32,7 @@ struct FlightOutcome {
   nlohmann::ordered_json metrics;           // null if they could not be computed
   std::optional<TeamResult> team;           // for a team's flight
   std::vector<PolicyPrinted> printed;       // of each vehicle whose policy's process printed something
+  std::optional<RealTimeOutcome> real_time;
   std::string record_problem;               // why the record is incomplete; "" if it is not
 };
 
@@ -49,7 +57,8 @@ class MissionFlight {
   void prepare(const std::atomic<bool>& interrupted);
   void assemble();
   std::vector<Seat> seats() const;
-  core::TimeNs run(const std::atomic<bool>& interrupted) const;
+  RealTime real_time() const;
+  core::TimeNs run(const std::atomic<bool>& interrupted);
   nlohmann::ordered_json finish_alone(FlightOutcome& outcome, double wall_s) const;
   nlohmann::ordered_json finish_members(FlightOutcome& outcome, double wall_s) const;
   std::vector<PolicyPrinted> printed() const;
@@ -59,6 +68,7 @@ class MissionFlight {
   std::vector<Mission> members_;
   LoadedPolicies loaded_;
   std::optional<core::MissionKey> key_;  // of a team
+  std::atomic<bool> in_the_air_ = false;
   std::unique_ptr<Running> running_;     // kept after the flight: see hangs()
 };
 

@@ -17,7 +17,8 @@ constexpr TimeNs kStep = 100 * core::kMillisecond;  // between two exchanges
 }  // namespace
 
 struct Lockstep::Vehicle {
-  Vehicle(const Seat& s, int threads, core::Clock clock) : seat(s), executive(threads, clock) {}
+  Vehicle(const Seat& s, int threads, const LockstepOptions& how)
+      : seat(s), executive(threads, how.clock, how.real_time.setup) {}
 
   void fly_to(TimeNs time) {
     if (control->advance(time - seat.starts_at)) return;
@@ -26,6 +27,8 @@ struct Lockstep::Vehicle {
   void end(TimeNs time) {
     state.ended = control->end();
     state.ended_at = time;
+    for (const auto& [relief, name] : names_of(core::Relief{}))
+      if (const int times = control->load().times(relief); times > 0) state.degraded.emplace_back(relief, times);
   }
 
   Seat seat;
@@ -39,7 +42,7 @@ Lockstep::Lockstep(const core::CoreOptions& options, const LockstepOptions& how,
     : options_(options), how_(how), hooks_(hooks) {
   const int threads_each = seats.size() == 1 ? how.threads : 1;
   for (const Seat& seat : seats)
-    vehicles_.push_back(std::make_unique<Vehicle>(seat, threads_each, how.clock));
+    vehicles_.push_back(std::make_unique<Vehicle>(seat, threads_each, how));
 }
 
 Lockstep::~Lockstep() = default;
@@ -52,15 +55,24 @@ TimeNs Lockstep::run(const FlightWatch& watch) {
   return now_;
 }
 
-/// No vehicle waits for another: the whole flight is one step.
+/// No vehicle waits for another: the whole flight is one step. The loop is watched only while it flies: the map
+/// takes longer to write.
 void Lockstep::run_in_real_time(const FlightWatch& watch) {
   Vehicle& vehicle = *vehicles_.front();
+  const RealTime& how = how_.real_time;
   vehicle.control = std::make_unique<core::MissionControl>(options_, *vehicle.seat.vehicle, vehicle.executive,
                                                            *vehicle.seat.policy, *vehicle.seat.recorder);
-  vehicle.control->fly([&](const core::MissionStatus& status) {
-    vehicle.state.status = status;
-    return watch(status.time, {status});
-  });
+  {
+    std::optional<core::StallWatch> stall;
+    if (how.on_hang)
+      stall.emplace(std::vector<const core::Executive*>{&vehicle.executive}, how.hang_limit, how.on_hang,
+                    how.on_watch_thread);
+    if (how.on_loop_thread) how.on_loop_thread();
+    vehicle.control->fly([&](const core::MissionStatus& status) {
+      vehicle.state.status = status;
+      return watch(status.time, {status});
+    });
+  }
   now_ = vehicle.executive.now();
   vehicle.end(now_);
 }

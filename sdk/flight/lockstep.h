@@ -4,12 +4,14 @@
 // and radio messages. In between each vehicle runs independently, so it does not matter which thread runs it
 // when: the same mission gives the same bytes with any number of threads. A single vehicle needs no hooks.
 #pragma once
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core_stack/common/stall_watch.h"
 #include "core_stack/mission/mission_control.h"
 
 namespace karst::flight {
@@ -33,6 +35,7 @@ struct SeatState {
   bool stopped = false;       // it was ordered to land, or not to start
   std::optional<core::MissionResult> ended;
   std::optional<core::TimeNs> ended_at;
+  std::vector<std::pair<core::Relief, int>> degraded;  // after its end: what was left out, and how often
 };
 
 class Lockstep;
@@ -53,11 +56,20 @@ class StepHooks {
 /// Called every second of the flight with every vehicle's status; returns false to have them all land.
 using FlightWatch = std::function<bool(core::TimeNs now, const std::vector<core::MissionStatus>&)>;
 
+/// For a flight in real time.
+struct RealTime {
+  core::RealTimeSetup setup;
+  std::function<void()> on_loop_thread, on_watch_thread;  // called once on these, before the flight
+  std::chrono::milliseconds hang_limit{2000};
+  core::StallWatch::Report on_hang;  // if the loop hangs for so long; empty: nobody watches
+};
+
 struct LockstepOptions {
   /// Threads for the jobs of a single vehicle, or for the vehicles of a team, which run their own jobs.
   int threads = 1;
   core::Clock clock = core::Clock::lockstep;  // in real time only one vehicle can fly
   core::TimeNs linger = 0;                    // time for which the hooks run on after the last landing
+  RealTime real_time = {};
 };
 
 class Lockstep {

@@ -73,6 +73,7 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
     p.section("auto.cave", auto_keys->fixed);
   });
   describe(t, m.core);
+  t.section("real_time", m.real_time);
   t.section("team", m.core.team);
   t.section("team", m.faults);
   t.section("homing", m.core.homing);

@@ -16,6 +16,7 @@
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/mesh_keys.h"
 #include "core_stack/vehicle/vehicle.h"
+#include "sdk/flight/real_time_options.h"
 #include "sdk/flight/team_faults.h"
 
 namespace karst::flight {
@@ -54,6 +55,7 @@ struct Mission {
   std::int64_t policy_memory_limit_mib = 2048;
   core::CoreOptions core;
   TeamFaults faults;
+  RealTimeOptions real_time;
   core::VehiclePlugin* vehicle_plugin = nullptr;
   boost::property_tree::ptree policy_parameters;
   boost::property_tree::ptree auto_policy;  // policy.auto, as given (auto_policy.h)

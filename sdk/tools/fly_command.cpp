@@ -122,6 +122,24 @@ void print_output_files(const std::vector<flight::PolicyPrinted>& printed) {
     print_out("  %s   what the policy printed\n", p.file.c_str());
 }
 
+/// How punctual the control step was, and what was left out.
+void print_real_time(const flight::RealTimeOutcome& real_time) {
+  const core::DurationHistogram& late = real_time.control.lateness;
+  const auto ms = [&](core::TimeNs t) { return 1e3 * core::seconds(t); };
+  print_out(
+      "  control steps    late by p50 %.2f, p99 %.2f, p99.9 %.2f, at most %.2f ms; %llu of %llu missed their "
+      "deadline\n",
+      ms(late.quantile(0.5)), ms(late.quantile(0.99)), ms(late.quantile(0.999)), ms(late.max()),
+      static_cast<unsigned long long>(real_time.control.missed_deadlines),
+      static_cast<unsigned long long>(late.count()));
+  if (real_time.degraded.empty()) return;
+  std::string what;
+  for (const auto& [relief, times] : real_time.degraded)
+    what += (what.empty() ? "" : ", ") + std::string(core::name_of(relief)) + " (" +
+            core::counted(times, "time") + ")";
+  print_wrapped(stdout, 19, "  degraded         %s\n", what.c_str());
+}
+
 void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequest& request) {
   const nlohmann::ordered_json& metrics = outcome.metrics;
   const auto number = [&](const char* key, const char* format) {
@@ -139,6 +157,7 @@ void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequ
     print_out(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
   print_out("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
   print_objects(metrics);
+  if (outcome.real_time) print_real_time(*outcome.real_time);
   print_out("Look next at:\n");
   if (request.report == flight::Report::written)
     print_out("  %s   the flight in 3D with plots; open it in a browser\n",
@@ -342,8 +361,9 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
       ->check(CLI::Range(1, 256));
   fly_app->add_flag(
       "--real-time", args->real_time,
-      "a second of flight takes a second, as on a vehicle: what is not ready in time counts as an "
-      "overrun (timing.json), and no two flights are the same");
+      "a second of flight takes a second, as on a vehicle, with real-time priorities and locked memory where "
+      "they are allowed; no two flights are the same: " +
+          core::doc_path("docs/real_time.md"));
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->quiet, "no status line, no notes, nothing on what policy auto chose");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
