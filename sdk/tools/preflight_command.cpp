@@ -20,6 +20,7 @@
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 #include "sdk/tools/mesh_options.h"
+#include "sdk/tools/vehicle_preflight.h"
 
 namespace karst::tools {
 namespace {
@@ -34,6 +35,7 @@ struct PreflightArguments {
   std::string vehicle, battery, page;
   preflight::LookOptions look;
   MeshOptions mesh;
+  VehiclePreflightArguments real;  // of a vehicle plugin; only its own options are set
   bool json = false, quiet = false;
 };
 
@@ -83,7 +85,24 @@ std::string fly_command(const PreflightArguments& args, const preflight::PolicyF
   return command;
 }
 
+/// `--vehicle` names a vehicle plugin; `named_policy`: not the default of a cave's preflight.
+int run_of_vehicle(const PreflightArguments& args, bool named_policy) {
+  VehiclePreflightArguments real = args.real;
+  real.mission_file = args.overrides.cave;
+  real.overrides = args.overrides;
+  real.overrides.cave.clear();
+  if (!named_policy) real.overrides.policy.clear();
+  add_setting(real.overrides, "--vehicle", "vehicle", args.vehicle);
+  real.plugins = args.look.plugins;
+  real.page = args.page;
+  real.json = args.json;
+  real.quiet = args.quiet;
+  return vehicle_preflight(real) ? 0 : kNoGo;
+}
+
 int run(const PreflightArguments& args) {
+  if (args.overrides.cave.empty())
+    throw InputError("karst preflight", "", "needs a CAVE, or --vehicle with the name of a vehicle plugin");
   const flight::Mission mission = mission_of(args);
   preflight::LookOptions look = args.look;
   if (!args.quiet && !args.json)
@@ -103,6 +122,23 @@ int run(const PreflightArguments& args) {
   return preflight::is_go(findings) ? 0 : kNoGo;
 }
 
+/// For the --vehicle of a plugin.
+void add_listening_options(CLI::App& app, VehiclePreflightArguments& real) {
+  app.add_option("--seconds", real.rest_s, "of a vehicle plugin: how long it is listened to while it stands, s")
+      ->check(number_in(3, 600))
+      ->capture_default_str();
+  app.add_flag("--motion", real.motion,
+               "of a vehicle plugin: then turn it by hand, for the mounting and the delay of the LiDAR, and the compass");
+  app.add_option("--motion-seconds", real.motion_s, "how long it is turned, s")
+      ->check(number_in(10, 120))
+      ->capture_default_str();
+  app.add_flag("--real-time", real.real_time, "of a vehicle plugin: by the computer's clock, as all but simulators need");
+  app.add_option("--out", real.run_folder, "of a vehicle plugin: where its flight will be recorded, to check the space there")
+      ->type_name(kFolder)
+      ->check(not_empty())
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_preflight_command(CLI::App& app) {
@@ -112,12 +148,14 @@ void add_preflight_command(CLI::App& app) {
       "preflight",
       "Say go or no-go for a mission: cave, battery, vehicle, policy, time of return\n\n"
       "  karst preflight caves/demo.info --battery \"8 min\"\n"
-      "  karst preflight scan.ply --start \"1 2 1.5\" --policy nearest_frontier --page preflight.html\n\n"
-      "Nothing is flown. What is said, and by which rules: " +
+      "  karst preflight scan.ply --start \"1 2 1.5\" --policy nearest_frontier --page preflight.html\n"
+      "  karst preflight --vehicle mavlink mission.info --real-time --motion --page checklist.html\n\n"
+      "The last one listens to a real vehicle and checks its sensors, without a command to it. Nothing is flown. What is said, and by which rules: " +
           core::doc_path("docs/preflight.md") + ".\n\nExit code: 0 go, 3 no-go, 1 an error.");
-  preflight_app->add_option("cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
+  preflight_app
+      ->add_option("cave", args->overrides.cave,
+                   "cave .info file or mesh (STL, PLY, OBJ, DAE); with the --vehicle of a plugin: a mission file")
       ->type_name(kFile)
-      ->required()
       ->check(not_empty());
   preflight_app
       ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
@@ -125,7 +163,8 @@ void add_preflight_command(CLI::App& app) {
   add_mesh_options(*preflight_app, args->mesh);
   preflight_app
       ->add_option("--vehicle", args->vehicle,
-                   "what the vehicle carries: lidar_uav, lidar_only_uav or camera_uav (simulator.vehicle)")
+                   "what the vehicle carries: lidar_uav, lidar_only_uav or camera_uav (simulator.vehicle); or a "
+                   "vehicle plugin such as mavlink: the vehicle itself is checked")
       ->check(not_empty());
   preflight_app
       ->add_option("--battery", args->battery,
@@ -154,11 +193,15 @@ void add_preflight_command(CLI::App& app) {
   preflight_app->add_option("--page", args->page, "write the summary as a page to print, an HTML file")
       ->type_name(kFile)
       ->check(not_empty());
+  add_listening_options(*preflight_app, args->real);
   preflight_app->add_flag("--json", args->json, "Write JSON");
   preflight_app->add_flag("--quiet", args->quiet, "no progress on standard error");
-  preflight_app->callback([args] {
+  preflight_app->callback([args, preflight_app] {
     host::take_policy_file(args->overrides.policy, args->look.plugins);
-    if (const int code = run(*args); code != 0) throw CLI::RuntimeError(code);
+    const bool named_policy = preflight_app->count("--policy") > 0;
+    const bool of_cave = !is_vehicle(args->vehicle) && (args->vehicle.empty() || !args->overrides.cave.empty());
+    const int code = of_cave ? run(*args) : run_of_vehicle(*args, named_policy);
+    if (code != 0) throw CLI::RuntimeError(code);
   });
 }
 

@@ -1,0 +1,20 @@
+// The checks of a vehicle in words, as the terminal shows them, and as JSON.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "sdk/preflight/vehicle/vehicle_rules.h"
+
+namespace karst::preflight {
+
+/// "GO", "GO, with 2 things to watch for", "NO-GO, for 1 reason".
+std::string verdict_text(const std::vector<Check>& checks);
+
+/// The verdict, what is wrong with what to do, what passed, and what only a person can check.
+std::string checks_text(const VehicleMeasurements& m, const std::vector<Check>& checks);
+
+/// Schema karst.vehicle_preflight/1 (docs/preflight.md).
+nlohmann::ordered_json to_json(const VehicleMeasurements& m, const std::vector<Check>& checks);
+
+}  // namespace karst::preflight
