@@ -47,14 +47,15 @@ double mean_length(std::span<const VectorSample> vectors) {
   return vectors.empty() ? 0 : sum / static_cast<double>(vectors.size());
 }
 
-/// The best of all maps by `scatter`, a function of the map.
+/// The best of the maps by `scatter`, a function of the map.
 template <class Scatter>
-AxisTest best_axes(std::span<const VectorSample> vectors, const Scatter& scatter) {
+AxisTest best_axes(std::span<const VectorSample> vectors, const std::vector<Matrix3d>& maps,
+                   const Scatter& scatter) {
   AxisTest test;
   test.samples = static_cast<int>(vectors.size());
   test.strength = mean_length(vectors);
   test.scatter = test.scatter_as_is = scatter(Matrix3d(Matrix3d::Identity()));
-  for (const Matrix3d& map : axis_maps())
+  for (const Matrix3d& map : maps)
     if (const double s = scatter(map); s < test.scatter) {
       test.scatter = s;
       test.best = map;
@@ -97,7 +98,10 @@ bool AxisTest::turned() const {
 
 AxisTest axes_of_vectors(std::span<const VectorSample> vectors, std::span<const Orientation> track) {
   if (vectors.empty() || track.empty()) return {};
-  return best_axes(vectors, [&](const Matrix3d& map) { return scatter_of(vectors, track, map); });
+  std::vector<Matrix3d> turns;
+  std::copy_if(axis_maps().begin(), axis_maps().end(), std::back_inserter(turns),
+               [](const Matrix3d& m) { return m.determinant() > 0; });
+  return best_axes(vectors, turns, [&](const Matrix3d& map) { return scatter_of(vectors, track, map); });
 }
 
 AxisTest axes_of_gyroscope(std::span<const core::ImuSample> samples, const Vec3& bias_radps) {
@@ -105,7 +109,7 @@ AxisTest axes_of_gyroscope(std::span<const core::ImuSample> samples, const Vec3&
   for (const core::ImuSample& s : samples)
     if (s.specific_force_mps2.allFinite()) force.push_back({s.stamp, s.specific_force_mps2});
   if (force.empty() || gyro_track(samples, bias_radps).empty()) return {};
-  return best_axes(force, [&](const Matrix3d& map) {
+  return best_axes(force, axis_maps(), [&](const Matrix3d& map) {
     return scatter_of(force, gyro_track(samples, bias_radps, map), Matrix3d::Identity());
   });
 }

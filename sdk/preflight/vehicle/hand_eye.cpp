@@ -135,7 +135,9 @@ std::optional<HandEye> hand_eye(std::span<const Orientation> track, std::span<co
   for (std::size_t k = 0; k < pairs.size(); ++k) squares += (pairs[k].turn - error * turns[k]).squaredNorm();
   const double variance = squares / (3.0 * static_cast<double>(pairs.size()) - 3);
   const Eigen::SelfAdjointEigenSolver<Matrix3d> turned(f.gg);
-  out.weakest_turn_rad = std::sqrt(std::max(0.0, turned.eigenvalues()[0]));
+  double squared_s2 = 0;
+  for (const Pair& p : pairs) squared_s2 += core::seconds(p.to - p.from) * core::seconds(p.to - p.from);
+  out.weakest_rate_radps = std::sqrt(std::max(0.0, turned.eigenvalues()[0]) / squared_s2);
   const Matrix3d information = f.gg.trace() * Matrix3d::Identity() - f.gg;
   const double least = Eigen::SelfAdjointEigenSolver<Matrix3d>(information).eigenvalues()[0];
   out.sigma_rad = least > 0 ? std::sqrt(variance / least) : std::numbers::pi;

@@ -27,7 +27,7 @@ struct HandEye {
   core::Vec3 error_rad = core::Vec3::Zero();          // rotation vector of E, body frame
   double sigma_rad = 0;                // of the worst axis of E
   double scale = 1;                    // mean length of A: LiDAR over gyroscope
-  double weakest_turn_rad = 0;         // root of the sum of squares of g about the axis turned about least
+  double weakest_rate_radps = 0;       // root mean square about the axis turned about least
 };
 
 /// Nothing if there are too few pairs. `track` is the gyroscope's, `lidar` by scan matching.

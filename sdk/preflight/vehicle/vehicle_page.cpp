@@ -76,12 +76,9 @@ std::string list_of(const std::vector<Check>& checks, Outcome outcome, const cha
 std::string table_of_passed(const std::vector<Check>& checks) {
   std::string rows;
   for (const auto& part : names_of(Part{})) {
-    std::string cell;
-    for (const Check& c : checks)
-      if (c.part == part.value && c.outcome == Outcome::pass)
-        cell += (cell.empty() ? "" : "; ") + xml_text(c.what) + " " + xml_text(c.measured);
+    const std::string cell = passed_text(checks, part.value);
     if (!cell.empty())
-      rows += std::string("<tr><th scope=\"row\">") + part.name + "</th><td>" + cell + "</td></tr>\n";
+      rows += std::string("<tr><th scope=\"row\">") + part.name + "</th><td>" + xml_text(cell) + "</td></tr>\n";
   }
   return rows.empty() ? "" : "<h2>Passed</h2>\n<table>\n" + rows + "</table>\n";
 }

@@ -152,7 +152,7 @@ void judge_imu(const VehicleMeasurements& m, Judge& judge) {
 /// Whether the gyroscope's axes contradict the accelerometer's: then it is not the LiDAR that is wrong.
 bool gyroscope_is_turned(const MotionFigures& motion) { return motion.gyroscope_axes.turned(); }
 
-constexpr double kLeastTurn_rad = 1.0;  // root of a sum of squares: 20 s at 0.7 rad/s give about 1 rad and more
+constexpr double kLeastRate_radps = 0.1;  // root mean square, about each axis
 
 void judge_mounting(const HandEye& h, const MotionFigures& motion, Judge& judge) {
   const Eigen::Matrix3d axes = nearest_axis_map(h.map);
@@ -202,9 +202,10 @@ void judge_motion(const VehicleMeasurements& m, Judge& judge) {
     return;
   }
   const HandEye& h = *motion.hand_eye;
-  const bool enough = h.weakest_turn_rad >= kLeastTurn_rad;
-  judge.add(Part::lidar, "turned about all axes", format_text("%.1f rad about the least one", h.weakest_turn_rad),
-            format_text("at least %.1f rad", kLeastTurn_rad), watch_if(!enough),
+  const bool enough = h.weakest_rate_radps >= kLeastRate_radps;
+  judge.add(Part::lidar, "turned about all axes",
+            format_text("%.1f deg/s (rms) about the least one", h.weakest_rate_radps / kDegree),
+            format_text("at least %.1f deg/s", kLeastRate_radps / kDegree), watch_if(!enough),
             "repeat: nod, roll and turn it, each several times by 30 deg and more");
   judge.add(Part::lidar, "turns agree with the gyroscope's", format_text("%.1f %%", 100 * h.explained), "at least 95 %",
             at_least(h.explained, 0.95, 0.8),

@@ -61,6 +61,14 @@ ordered_json json_of(const MotionFigures& motion) {
 
 }  // namespace
 
+std::string passed_text(const std::vector<Check>& checks, Part part) {
+  std::string out;
+  for (const Check& c : checks)
+    if (c.part == part && c.outcome == Outcome::pass)
+      out += (out.empty() ? "" : "; ") + c.what + " " + c.measured;
+  return out;
+}
+
 std::string verdict_text(const std::vector<Check>& checks) {
   if (const std::size_t n = count_of(checks, Outcome::no_go); n > 0)
     return "NO-GO, for " + core::counted(n, "reason");
@@ -75,7 +83,10 @@ std::string checks_text(const VehicleMeasurements& m, const std::vector<Check>& 
                     (m.motion ? core::format_text(" and %.0f s in motion", m.motion_s) : "") + "\n";
   out += with_outcome(checks, Outcome::no_go, "Reasons:\n");
   out += with_outcome(checks, Outcome::watch, "Watch for:\n");
-  out += with_outcome(checks, Outcome::pass, "Passed:\n");
+  out += "Passed:\n";
+  for (const auto& part : names_of(Part{}))
+    if (const std::string line = passed_text(checks, part.value); !line.empty())
+      out += std::string("  ") + part.name + ": " + line + "\n";
   out += "For a person to check:\n";
   for (const std::string& box : boxes_for_persons(m)) out += "  [ ] " + box + "\n";
   return out;

@@ -11,6 +11,9 @@ namespace karst::preflight {
 /// "GO", "GO, with 2 things to watch for", "NO-GO, for 1 reason".
 std::string verdict_text(const std::vector<Check>& checks);
 
+/// What passed of a part, in one line: a list of all checks is long.
+std::string passed_text(const std::vector<Check>& checks, Part part);
+
 /// The verdict, what is wrong with what to do, what passed, and what only a person can check.
 std::string checks_text(const VehicleMeasurements& m, const std::vector<Check>& checks);
 
