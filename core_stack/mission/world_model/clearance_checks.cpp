@@ -39,9 +39,10 @@ int blocked_segment(const VoxelMap& map, const ClearanceLimits& limits, const st
   return -1;
 }
 
-std::optional<double> hull_clearance_m(const VoxelMap& map, const ClearanceLimits& limits, const Vec3& p) {
+std::optional<double> hull_clearance_m(const VoxelMap& map, const ClearanceLimits& limits, const Vec3& p,
+                                       Confined confined) {
   const double limit_m = limits.hull_radius_m + 0.5;
-  FreeTiles free(map.resolution_m());
+  FreeTiles free(map.resolution_m(), confined);
   free.load_near(map, p, limit_m);
   const double distance_m = free.nearest(p, limit_m).distance_m - map.resolution_m() / 2;
   if (distance_m >= limit_m - map.resolution_m()) return std::nullopt;
@@ -56,7 +57,7 @@ Vec3 hover_below(const VoxelMap& map, const ClearanceLimits& limits, const Vec3&
   for (Vec3 p = highest; max_m < enough_m; p.z() -= kStep_m) {
     const double above_ground_m = p.z() - limits.ground_z_m;
     if (above_ground_m <= max_m) break;
-    const double room_m = std::min(above_ground_m, hull_clearance_m(map, limits, p).value_or(above_ground_m));
+    const double room_m = std::min(above_ground_m, hull_clearance_m(map, limits, p, Confined::yes).value_or(above_ground_m));
     if (room_m <= max_m) continue;
     max_m = room_m;
     best = p;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/planning/free_space/free_tiles.h"
 #include "core_stack/planning/path/path.h"
 #include "core_stack/vehicle/vehicle.h"
 
@@ -27,8 +28,10 @@ int touching_segment(const VoxelMap& map, const ClearanceLimits& limits, const s
 int blocked_segment(const VoxelMap& map, const ClearanceLimits& limits, const std::vector<Vec3>& points,
                     const std::vector<Vec3>& narrow_places);
 
-/// Distance of the vehicle's hull at `p` from the nearest obstacle cell; nothing if that is far.
-std::optional<double> hull_clearance_m(const VoxelMap& map, const ClearanceLimits& limits, const Vec3& p);
+/// Distance of the vehicle's hull at `p` from the nearest obstacle cell, or also from the border of the map's
+/// region; nothing if that is far.
+std::optional<double> hull_clearance_m(const VoxelMap& map, const ClearanceLimits& limits, const Vec3& p,
+                                       Confined confined = Confined::no);
 
 /// Where to hover straight below `highest`: as high as the usual clearance above and below allows, or halfway
 /// between floor and roof where there is less room.

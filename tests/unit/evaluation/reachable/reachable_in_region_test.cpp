@@ -41,13 +41,15 @@ TEST(ReachableInRegion, OnlyWhatLiesInsideCounts) {
   FlightRegion::Limits limits;
   limits.keep_in = core::box({-1, -1, -1}, {17, 20, 9});
   limits.keep_out = {core::box({7, 8, -1}, {14, 20, 9})};
-  limits.margin_m = 0.5;
+  limits.margin_m = 0.53;  // no cell's centre lies just there
   const FlightRegion region(limits);
   const Reachable r = reachable_in_region(all, region, kStart, "junction");
   std::size_t expected = 0;
   all.flyable.for_each([&](const CellKey& k) {
     const Vec3 p = center_of(k, 0.2);
-    const bool in = p.x() <= 17 - 1.1 && p.y() <= 8 - 1.1;  // the margin and the clearance
+    const Vec3 beside = p.cwiseMax(Vec3(7, 8, -1)).cwiseMin(Vec3(14, 20, 9));  // of the box to keep out of
+    const double least_m = 0.53 + 0.6;  // the margin and the clearance
+    const bool in = p.x() <= 17 - least_m && (p - beside).norm() >= least_m;
     EXPECT_EQ(r.flyable.contains(k), in);
     expected += in;
   });
