@@ -29,7 +29,9 @@ struct Flown {
 Flown fly(const std::string& name, const std::string& cave, const std::string& keys) {
   Flown f;
   f.run = fresh_folder("region_" + name) / "run";
-  f.out = run_karst("fly --cave " + cave + " --quiet --no-report --out " + f.run.string() + " " + keys);
+  // Between smooth walls LOAM loses its way; the estimate is not what is tested here.
+  f.out = run_karst("fly --cave " + cave + " --set simulator.pose.fitted=always --set localization.source=pose_sensor --quiet --no-report --out " +
+                    f.run.string() + " " + keys);
   if (!fs::exists(f.run / "mission.info")) return f;
   f.events = bytes_of(f.run / "events.jsonl");
   f.metrics = nlohmann::json::parse(bytes_of(f.run / "metrics.json"));
@@ -117,7 +119,7 @@ TEST(RegionFlight, ARecedingHorizonKeepsToIt) {
   const std::string cave = passage_cave(fresh_folder("region_horizon_cave"));
   const Flown f = fly("horizon", cave,
                       "--set 'region.keep_in=box -6 -6 -2 18 6 6' --set motion.trajectory=horizon "
-                      "--set mission.max_flight_time=80s");
+                      "--set mission.max_flight_time=45s");
   expect_kept(f);
 }
 
@@ -125,7 +127,7 @@ TEST(RegionFlight, ABadRegionIsRefusedBeforeTakeOff) {
   const std::string cave = passage_cave(fresh_folder("region_bad_cave"));
   for (const auto& [keys, reason] : std::vector<std::pair<std::string, std::string>>{
            {"'region.keep_in=box 5 -6 -2 18 6 6'", "region.keep_in: leaves no room for the vehicle's start"},
-           {"'region.keep_in=box -6 -6 -2 18 6 1.4'", "region.keep_in: leaves no room for the take-off"},
+           {"'region.keep_in=box -6 -6 -2 18 6 1.2'", "region.keep_in: leaves no room for the take-off"},
            {"'region.keep_in=box -6 -6 -2 18 6 2.2'", "region.keep_in: leaves no room for the first hover"},
            {"'region.keep_out=box -1 -1 2 1 1 4'", "number 1 of region.keep_out: leaves no room for"},
            {"'region.keep_in=polygon 0 0 1 1 1 0 0 1'", "region.keep_in: its edge from (0, 0)"},
