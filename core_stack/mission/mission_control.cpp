@@ -266,10 +266,10 @@ void MissionControl::shed_load() {
     if (!change) return;
     const std::string behind = std::to_string(change->behind / kMillisecond) + " ms behind";
     onboard_.recorder.write(
-        now(), event::Degraded{change->relief,
-                               change->begins ? event::DegradedState::begins : event::DegradedState::over,
-                               std::string(name_of(lane)) + (change->begins ? " is " + behind : " keeps up again"),
-                               seconds(change->since)});
+        now(), event::Degraded{
+                   change->relief, change->begins ? event::DegradedState::begins : event::DegradedState::over,
+                   std::string(name_of(lane)) + (change->begins ? " is " + behind : " keeps up again"),
+                   seconds(change->since)});
   };
   Executive& executive = onboard_.executive;
   note(onboard_.load.observe_map(now(), executive.take_lateness(Lane::map)), Lane::map);

@@ -84,7 +84,6 @@ void describe_radio(OptionTable& table, core::VehiclePlugin& plugin) {
     table.under("radio", [teams](OptionTable& t) { teams->describe_radio(t); });
 }
 
-
 /// The sections that apply to teams only.
 constexpr const char* kTeamSections[] = {"team", "homing", "radio"};
 

@@ -30,8 +30,10 @@ Flown fly(const std::string& name, const std::string& cave, const std::string& k
   Flown f;
   f.run = fresh_folder("region_" + name) / "run";
   // Between smooth walls LOAM loses its way; the estimate is not what is tested here.
-  f.out = run_karst("fly --cave " + cave + " --set simulator.pose.fitted=always --set localization.source=pose_sensor --quiet --no-report --out " +
-                    f.run.string() + " " + keys);
+  f.out = run_karst(
+      "fly --cave " + cave +
+      " --set simulator.pose.fitted=always --set localization.source=pose_sensor --quiet --no-report --out " +
+      f.run.string() + " " + keys);
   if (!fs::exists(f.run / "mission.info")) return f;
   f.events = bytes_of(f.run / "events.jsonl");
   f.metrics = nlohmann::json::parse(bytes_of(f.run / "metrics.json"));
@@ -62,12 +64,13 @@ double farthest_x(const Flown& f) {
 
 TEST(RegionFlight, InABoxItExploresTheBoxAndEndsAsExplored) {
   const std::string cave = passage_cave(fresh_folder("region_box_cave"));
-  const Flown f = fly("box", cave, "--set 'region.keep_in=box -6 -6 -2 18 6 6' --set mission.max_flight_time=120s");
+  const Flown f =
+      fly("box", cave, "--set 'region.keep_in=box -6 -6 -2 18 6 6' --set mission.max_flight_time=120s");
   expect_kept(f);
   EXPECT_TRUE(f.says("explored"));
-  EXPECT_GT(farthest_x(f), 12);                                // it goes up to the border
-  EXPECT_GT(f.metrics["coverage"].get<double>(), 0.97);        // of what lies inside
-  EXPECT_GT(f.metrics["explored_volume_m3"].get<double>(),     // and maps what it sees beyond
+  EXPECT_GT(farthest_x(f), 12);                             // it goes up to the border
+  EXPECT_GT(f.metrics["coverage"].get<double>(), 0.97);     // of what lies inside
+  EXPECT_GT(f.metrics["explored_volume_m3"].get<double>(),  // and maps what it sees beyond
             1.2 * f.metrics["reachable_volume_m3"].get<double>());
 }
 
@@ -85,9 +88,8 @@ TEST(RegionFlight, APolygonWithHeightsHoldsInAShaft) {
 
 TEST(RegionFlight, APassageToKeepOutOfAtAJunctionIsNotEntered) {
   // West to east, with a side passage to the north at x = 12.
-  const std::string cave =
-      draw_cave(fresh_folder("region_junction_cave"),
-                {{{-4, -3, 0}, {26, 3, 3}}, {{9, 2, 0}, {15, 24, 3}}}, {0, 0, 1});
+  const std::string cave = draw_cave(fresh_folder("region_junction_cave"),
+                                     {{{-4, -3, 0}, {26, 3, 3}}, {{9, 2, 0}, {15, 24, 3}}}, {0, 0, 1});
   const Flown f = fly("junction", cave,
                       "--set 'region.keep_out=box 8 5 -1 16 30 5 | box 22 -4 -1 30 4 5' "
                       "--set mission.max_flight_time=100s");

@@ -100,7 +100,8 @@ Ground ground_below(const VoxelMap& map, const Vec3& place, double vehicle_radiu
   if (!floor || floor->z == top.z) return out;
   if (map.at(*floor) != Cell::occupied) return refused(GroundVerdict::unknown);
   out.ground = {place.x(), place.y(), map.center_of(*floor).z() + res / 2};
-  if (!descends_inside(map, place, out.ground.z(), vehicle_radius_m)) return refused(GroundVerdict::obstructed);
+  if (!descends_inside(map, place, out.ground.z(), vehicle_radius_m))
+    return refused(GroundVerdict::obstructed);
   // Ground may drop by the full step and slope; farther down it does not count.
   const double fall_m =
       options.max_step_m + 2 * radius_m * std::tan(options.max_slope_deg * std::numbers::pi / 180);

@@ -77,11 +77,12 @@ class VoxelMap {
   /// storage or drawn by hand. Cells of the cube outside the world are ignored.
   void assign(const CellKey& low, std::int32_t edge_cells, float log_odds);
 
-  /// Confines the vehicle to a region from now on; null: everywhere. Cells keep their class, and the map grows
-  /// beyond the region. Only what asks where it may fly takes note.
+  /// Confines the vehicle to a region from now on; null: everywhere. Cells keep their class, and the map
+  /// grows beyond the region. Only what asks where it may fly takes note.
   void confine(std::shared_ptr<const FlightRegion> region);
   const FlightRegion* region() const;  // null: everywhere
-  /// Whether a path may count the cell as free: it is free, and its centre lies in the region with its margin.
+  /// Whether a path may count the cell as free: it is free, and its centre lies in the region with its
+  /// margin.
   bool may_fly(const CellKey& k) const;
 
   std::size_t free_cells() const;

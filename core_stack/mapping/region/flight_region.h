@@ -14,8 +14,8 @@ class FlightRegion {
   struct Limits {
     std::optional<Prism> keep_in;
     std::vector<Prism> keep_out;
-    double margin_m = 0;                // kept from the border by paths, beyond their clearance
-    std::optional<double> max_home_m;   // length of the path home
+    double margin_m = 0;               // kept from the border by paths, beyond their clearance
+    std::optional<double> max_home_m;  // length of the path home
   };
   explicit FlightRegion(Limits limits) : limits_(std::move(limits)) {}
 

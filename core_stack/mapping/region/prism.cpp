@@ -32,8 +32,8 @@ double side(const Edge& e, const Point& p) {
 
 bool cross_or_touch(const Edge& e, const Edge& f) {
   const bool cross = (side(e, f.a) > 0) != (side(e, f.b) > 0) && (side(f, e.a) > 0) != (side(f, e.b) > 0);
-  return cross || std::min({distance_m(e, f.a), distance_m(e, f.b), distance_m(f, e.a), distance_m(f, e.b)}) <
-                      kSame_m;
+  return cross ||
+         std::min({distance_m(e, f.a), distance_m(e, f.b), distance_m(f, e.a), distance_m(f, e.b)}) < kSame_m;
 }
 
 double area_m2(const Outline& outline) {
@@ -78,7 +78,8 @@ Prism box(const Vec3& a, const Vec3& b) {
 
 std::optional<std::string> flaw_of(const Prism& prism) {
   const Outline& o = prism.outline;
-  if (o.size() < 3) return "a polygon has at least three corners, and this one has " + std::to_string(o.size());
+  if (o.size() < 3)
+    return "a polygon has at least three corners, and this one has " + std::to_string(o.size());
   if (!(prism.low_m < prism.high_m))
     return format_text("its lowest height, %g m, is not below its highest, %g m", prism.low_m, prism.high_m);
   for (std::size_t i = 0; i < o.size(); ++i)
@@ -89,7 +90,7 @@ std::optional<std::string> flaw_of(const Prism& prism) {
       const bool neighbours = j == i + 1 || (i == 0 && j + 1 == o.size());
       const Edge e = edge(o, i), f = edge(o, j);
       // Edges with a common corner may meet nowhere else: one would run back along the other.
-      const bool meet = !neighbours ? cross_or_touch(e, f)
+      const bool meet = !neighbours  ? cross_or_touch(e, f)
                         : j == i + 1 ? distance_m(e, f.b) < kSame_m || distance_m(f, e.a) < kSame_m
                                      : distance_m(e, f.a) < kSame_m || distance_m(f, e.b) < kSame_m;
       if (meet)

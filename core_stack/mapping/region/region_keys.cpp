@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kGrammar =
     "expected \"box X Y Z X Y Z\" or \"polygon X Y X Y X Y ... [from LOW] [to HIGH]\", in metres";
-constexpr double kFarthest_m = 1e5;      // of a coordinate; no cave is so long
+constexpr double kFarthest_m = 1e5;       // of a coordinate; no cave is so long
 constexpr std::size_t kMaxCorners = 200;  // each costs time with each question
 
 std::string shortened(const std::string& text) {

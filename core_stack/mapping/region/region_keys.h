@@ -10,8 +10,8 @@ namespace karst::core {
 
 /// A body is `box X Y Z X Y Z` (two opposite corners) or `polygon X Y X Y X Y ... [from LOW] [to HIGH]`.
 struct RegionKeys {
-  std::string keep_in;   // a body; "": everywhere
-  std::string keep_out;  // bodies with | between them; "": none
+  std::string keep_in;    // a body; "": everywhere
+  std::string keep_out;   // bodies with | between them; "": none
   double max_home_m = 0;  // 0: no limit
   double margin_m = 0.5;
 

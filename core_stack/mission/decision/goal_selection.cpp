@@ -87,7 +87,8 @@ std::optional<std::string> GoalSelection::objection(const GoalQuery& query, cons
   if (!is_clear(map, p, query.roadmap->clearance_m()))
     return map.region() && map.region()->depth_m(p) - map.region()->limits().margin_m <
                                query.roadmap->clearance_m() + map.resolution_m()
-               ? "it is too near to the border of " + map.region()->nearest_part(p) + ", rock or unknown space"
+               ? "it is too near to the border of " + map.region()->nearest_part(p) +
+                     ", rock or unknown space"
                : "it is too near to rock or unknown space";
   if (const auto why = ledger_->closed(map, p, query.rules)) return "it was tried before: " + *why;
   return std::nullopt;

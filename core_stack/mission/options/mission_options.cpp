@@ -92,18 +92,20 @@ void check_region(const std::string& source, const CoreOptions& o, const Vehicle
   const auto require = [&](const Vec3& p, double least_m, const char* what) {
     const double depth_m = o.region->depth_m(p);
     if (depth_m >= least_m) return;
-    throw InputError(source, o.region->nearest_part(p),
-                     format_text("leaves no room for %s at (%.2f, %.2f, %.2f): %.2f m from its border%s, where "
-                                 "%.2f m are needed",
-                                 what, p.x(), p.y(), p.z(), std::abs(depth_m), depth_m < 0 ? " and outside" : "",
-                                 least_m));
+    throw InputError(
+        source, o.region->nearest_part(p),
+        format_text("leaves no room for %s at (%.2f, %.2f, %.2f): %.2f m from its border%s, where "
+                    "%.2f m are needed",
+                    what, p.x(), p.y(), p.z(), std::abs(depth_m), depth_m < 0 ? " and outside" : "",
+                    least_m));
   };
   require(start, vehicle.radius_m, "the vehicle's start");
   constexpr double kStep_m = 0.05;
   const double top_m = o.mission.takeoff_height_m;
   for (double up_m = kStep_m; up_m < top_m; up_m += kStep_m)
     require(start + Vec3(0, 0, up_m), vehicle.radius_m, "the take-off");
-  // A path begins and ends there, with its clearance and the margin. A cell may reach half its diagonal beyond.
+  // A path begins and ends there, with its clearance and the margin. A cell may reach half its diagonal
+  // beyond.
   const double hover_m = o.planning.clearance_m + o.region->limits().margin_m + 0.87 * o.map.resolution_m;
   require(start + Vec3(0, 0, top_m), hover_m, "the first hover");
 }

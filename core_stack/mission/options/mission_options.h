@@ -65,8 +65,8 @@ void describe(OptionTable& t, CoreOptions& o);
 /// Throws InputError if individually valid settings contradict each other or do not fit the vehicle.
 void check(const CoreOptions& o, const VehicleDescription& vehicle);
 
-/// Throws InputError with `source` if the region leaves no room for the vehicle where it stands, above that, or
-/// where it hovers after take-off.
+/// Throws InputError with `source` if the region leaves no room for the vehicle where it stands, above that,
+/// or where it hovers after take-off.
 void check_region(const std::string& source, const CoreOptions& o, const VehicleDescription& vehicle);
 
 }  // namespace karst::core

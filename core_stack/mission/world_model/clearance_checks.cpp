@@ -57,7 +57,8 @@ Vec3 hover_below(const VoxelMap& map, const ClearanceLimits& limits, const Vec3&
   for (Vec3 p = highest; max_m < enough_m; p.z() -= kStep_m) {
     const double above_ground_m = p.z() - limits.ground_z_m;
     if (above_ground_m <= max_m) break;
-    const double room_m = std::min(above_ground_m, hull_clearance_m(map, limits, p, Confined::yes).value_or(above_ground_m));
+    const double room_m =
+        std::min(above_ground_m, hull_clearance_m(map, limits, p, Confined::yes).value_or(above_ground_m));
     if (room_m <= max_m) continue;
     max_m = room_m;
     best = p;

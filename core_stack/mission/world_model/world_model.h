@@ -53,8 +53,8 @@ class WorldModel {
   Path plan(const ClearanceRoadmap& on, const Vec3& from, const Vec3& to) const;
   /// Plans a path home or around a new obstacle; through narrow passages if there is no other path.
   Path plan_to(const Vec3& from, const Vec3& to);
-  /// Whether the region's greatest path length home is exceeded at a place, or on the way along points; also if
-  /// no path home is known from the last one.
+  /// Whether the region's greatest path length home is exceeded at a place, or on the way along points; also
+  /// if no path home is known from the last one.
   bool too_far_from_home(const ClearanceRoadmap& on, const Vec3& p) const;
   bool leads_too_far(const ClearanceRoadmap& on, const std::vector<Vec3>& points) const;
   /// Total length of the parts of `path` in narrow passages, where flight is slow.

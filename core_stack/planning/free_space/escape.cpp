@@ -67,9 +67,8 @@ std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles
   const CellKey first = free.key_of(start);
   if (!anywhere.at(first)) return std::nullopt;
   // Between two cells the distance may fall by a fraction of a cell below the distance at either.
-  const double kept_m = std::min(
-      clearance_m,
-      std::max(0.0, anywhere.nearest(start, clearance_m).distance_m - 0.25 * free.resolution_m()));
+  const double kept_m = std::min(clearance_m, std::max(0.0, anywhere.nearest(start, clearance_m).distance_m -
+                                                                0.25 * free.resolution_m()));
 
   std::map<CellKey, Visit> visits{{first, {0, first}}};
   std::set<std::pair<double, CellKey>> open{{0.0, first}};
@@ -90,7 +89,8 @@ std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles
       const Vec3 q = free.center_of(n);
       const double further_m = length_m + (q - p).norm();
       const auto known = visits.find(n);
-      if (n == first || further_m > kLongest_m || (known != visits.end() && known->second.length_m <= further_m) ||
+      if (n == first || further_m > kLongest_m ||
+          (known != visits.end() && known->second.length_m <= further_m) ||
           !anywhere.segment_clear(p, q, kept_m))
         continue;
       if (known != visits.end()) open.erase({known->second.length_m, n});

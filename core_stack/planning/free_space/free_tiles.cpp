@@ -24,7 +24,8 @@ void confine(TileBits& tile, const FlightRegion& region, const CellKey& corner, 
     return Vec3((Vec3(k.x, k.y, k.z).array() + 0.5) * resolution_m);
   };
   // The depth changes by no more than the distance: mostly the tile's centre decides for all of its cells.
-  const Vec3 last = center_of(corner + CellKey{kTileX - 1, kTileY - 1, kTileZ - 1}), first = center_of(corner);
+  const Vec3 last = center_of(corner + CellKey{kTileX - 1, kTileY - 1, kTileZ - 1}),
+             first = center_of(corner);
   const double beyond_m = region.depth_m((first + last) / 2) - region.limits().margin_m;
   if (beyond_m >= (last - first).norm() / 2) return;
   for (std::uint32_t i = 0; i < kTileCells; ++i)

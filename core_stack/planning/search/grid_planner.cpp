@@ -114,8 +114,8 @@ bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double cle
   const Vec3 half = Vec3::Constant(0.5);
   // Near the region's border each cell is asked: the depth changes by no more than the distance.
   const double reach_m = (b - a).norm() / 2 + clearance_m + res;
-  const bool at_border = map.region() && !(map.region()->depth_m((a + b) / 2) >=
-                                           map.region()->limits().margin_m + reach_m);
+  const bool at_border =
+      map.region() && !(map.region()->depth_m((a + b) / 2) >= map.region()->limits().margin_m + reach_m);
   const auto free = [&](const CellKey& k) { return at_border ? map.may_fly(k) : map.at(k) == Cell::free; };
   const bool near_free =
       all_rows_near_segment(a / res - half, b / res - half, clearance_m / res,

@@ -6,7 +6,8 @@
 namespace karst::evaluation {
 
 /// What is left of `all` for a vehicle that starts at `start` and keeps to the region:
-/// - flyable: flyable cells with a centre at least the margin and the clearance inside, 6-connected to the one
+/// - flyable: flyable cells with a centre at least the margin and the clearance inside, 6-connected to the
+/// one
 ///   nearest to the start, and no farther from that one than the greatest path length home, in steps between
 ///   26 neighbours;
 /// - reachable: free cells with a centre in the region that are flyable or seen from there as before.

@@ -373,7 +373,8 @@ AttitudeRateCommand hold(const FakeVehicle& vehicle, const Vec3& wanted_mps = Ve
   const Vec3 tilt = vehicle.pose().orientation * Vec3::UnitZ();
   const Vec3 to = (Vec3(0, 0, 9.81) - 2 * (vehicle.velocity_mps() - wanted_mps)).normalized();
   return {6 * (vehicle.pose().orientation.conjugate() * tilt.cross(to)),
-          vehicle.description().mass_kg * (9.81 - 2 * (vehicle.velocity_mps() - wanted_mps).z()) / tilt.z(), true};
+          vehicle.description().mass_kg * (9.81 - 2 * (vehicle.velocity_mps() - wanted_mps).z()) / tilt.z(),
+          true};
 }
 
 TEST_F(MissionControlTest, WaitsForThePilotAndTheTimeAllowedCountsFromThen) {

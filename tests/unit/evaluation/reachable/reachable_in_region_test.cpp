@@ -48,7 +48,7 @@ TEST(ReachableInRegion, OnlyWhatLiesInsideCounts) {
   all.flyable.for_each([&](const CellKey& k) {
     const Vec3 p = center_of(k, 0.2);
     const Vec3 beside = p.cwiseMax(Vec3(7, 8, -1)).cwiseMin(Vec3(14, 20, 9));  // of the box to keep out of
-    const double least_m = 0.53 + 0.6;  // the margin and the clearance
+    const double least_m = 0.53 + 0.6;                                         // the margin and the clearance
     const bool in = p.x() <= 17 - least_m && (p - beside).norm() >= least_m;
     EXPECT_EQ(r.flyable.contains(k), in);
     expected += in;
@@ -79,7 +79,8 @@ TEST(ReachableInRegion, TheWayHomeIsLimitedAroundTheCorner) {
   limits.max_home_m = 12;
   const Reachable r = reachable_in_region(all, FlightRegion(limits), kStart, "junction");
   const auto flyable_at = [&](const Vec3& p) {
-    return r.flyable.contains({static_cast<int>(std::floor(p.x() / 0.2)), static_cast<int>(std::floor(p.y() / 0.2)),
+    return r.flyable.contains({static_cast<int>(std::floor(p.x() / 0.2)),
+                               static_cast<int>(std::floor(p.y() / 0.2)),
                                static_cast<int>(std::floor(p.z() / 0.2))});
   };
   EXPECT_TRUE(flyable_at({13.9, 2.5, 1.9}));

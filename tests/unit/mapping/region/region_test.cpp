@@ -64,8 +64,8 @@ TEST(Prism, DepthIsTheDistanceFromItsSurfaceWithTheSignOfTheSide) {
     const Prism prism = random_prism(random);
     RC_ASSERT(!flaw_of(prism));
     for (int i = 0; i < 40; ++i) {
-      const Vec3 p(prism.outline[0].x() + random.uniform(-12, 12), prism.outline[0].y() + random.uniform(-12, 12),
-                   random.uniform(-8, 14));
+      const Vec3 p(prism.outline[0].x() + random.uniform(-12, 12),
+                   prism.outline[0].y() + random.uniform(-12, 12), random.uniform(-8, 14));
       const double depth = depth_in(prism, p), sampled = sampled_distance(prism, p, 0.02);
       RC_ASSERT(std::abs(std::abs(depth) - sampled) < 0.02);
       if (sampled > 1e-6) RC_ASSERT((depth > 0) == is_inside(prism, p));
@@ -120,7 +120,7 @@ TEST(Prism, WhatIsNoPolygonIsFoundOut) {
   EXPECT_NE(flaw({}).find("three corners"), std::string::npos);
   EXPECT_NE(flaw({{0, 0}, {1, 0}}).find("three corners"), std::string::npos);
   EXPECT_NE(flaw({{0, 0}, {0, 0}, {1, 0}, {1, 1}}).find("two corners"), std::string::npos);
-  EXPECT_NE(flaw({{0, 0}, {1, 0}, {2, 0}}).find("meets"), std::string::npos);           // runs back
+  EXPECT_NE(flaw({{0, 0}, {1, 0}, {2, 0}}).find("meets"), std::string::npos);                  // runs back
   EXPECT_NE(flaw({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}).find("meets"), std::string::npos);  // touches
   EXPECT_NE(flaw({{0, 0}, {1, 0}, {1, 1}}, 2, 2).find("not below"), std::string::npos);
   EXPECT_NE(flaw({{0, 0}, {1, 0}, {1, 1}}, 2, 1).find("not below"), std::string::npos);

@@ -42,7 +42,8 @@ TEST(OptionsCheck, ARegionMustHoldTheStartTheTakeOffAndTheFirstHover) {
   // The hover is 0.7 m up, and needs clearance, margin and nearly a cell on all sides: 1.28 m.
   EXPECT_EQ(refusal_of_region(box({0, 0, 0.4}, {9, 9, 3})), "");
   for (const auto& [region, what] :
-       {std::pair{box({1.8, 0, 0}, {9, 9, 9}), "the vehicle's start at (2.00, 3.00, 1.00): 0.20 m from its border"},
+       {std::pair{box({1.8, 0, 0}, {9, 9, 9}),
+                  "the vehicle's start at (2.00, 3.00, 1.00): 0.20 m from its border"},
         std::pair{box({2.5, 0, 0}, {9, 9, 9}), "0.50 m from its border and outside, where 0.30 m are needed"},
         std::pair{box({0, 0, 0}, {9, 9, 1.5}), "the take-off"},
         std::pair{box({0, 0, 0}, {9, 9, 2.9}), "the first hover"},
@@ -55,7 +56,8 @@ TEST(OptionsCheck, ARegionMustHoldTheStartTheTakeOffAndTheFirstHover) {
   const Prism wide = box({-9, -9, -9}, {9, 9, 9});
   EXPECT_EQ(refusal_of_region(wide, {box({2, 3, 5}, {3, 4, 6}), box({4, 4, 1}, {5, 5, 2})}), "");
   const std::string why = refusal_of_region(wide, {box({4, 4, 1}, {5, 5, 2}), box({2, 3, 1.5}, {3, 4, 1.6})});
-  EXPECT_NE(why.find("number 2 of region.keep_out: leaves no room for the take-off"), std::string::npos) << why;
+  EXPECT_NE(why.find("number 2 of region.keep_out: leaves no room for the take-off"), std::string::npos)
+      << why;
 }
 
 TEST(OptionsCheck, AVehicleThatCannotLocateItselfIsRefused) {

@@ -29,7 +29,8 @@ std::shared_ptr<const FlightRegion> random_region(Random& random, const CellKey&
   if (random.uniform() < 0.8) limits.keep_in = box(between(-0.2, 0.3), between(0.6, 1.2));
   const Vec3 middle = between(0, 1);
   if (random.uniform() < 0.8)
-    limits.keep_out.push_back(box(middle - Vec3::Constant(random.uniform(0.1, 0.6)), middle + Vec3::Constant(0.3)));
+    limits.keep_out.push_back(
+        box(middle - Vec3::Constant(random.uniform(0.1, 0.6)), middle + Vec3::Constant(0.3)));
   return std::make_shared<const FlightRegion>(limits);
 }
 
@@ -101,7 +102,8 @@ TEST(Region, NoPathLeavesIt) {
           region->limits().margin_m + kOptions.clearance_m - 0.05 - 2 * 0.87 * map.resolution_m();
       for (std::size_t k = path.escape_points + 1; k < path.points.size(); ++k)
         for (double t = 0; t <= 1; t += 0.1)
-          RC_ASSERT(region->depth_m(path.points[k - 1] + t * (path.points[k] - path.points[k - 1])) >= least_m);
+          RC_ASSERT(region->depth_m(path.points[k - 1] + t * (path.points[k] - path.points[k - 1])) >=
+                    least_m);
     }
   }));
   EXPECT_GT(found, 10);
@@ -110,8 +112,8 @@ TEST(Region, NoPathLeavesIt) {
 VoxelMap hall(const CellKey& size) {
   VoxelMap map{MapOptions{}};
   draw(map, {0, 0, 0}, {size.x - 1, size.y - 1, size.z - 1}, [&](const CellKey& k) {
-    const bool wall = k.x == 0 || k.y == 0 || k.z == 0 || k.x == size.x - 1 || k.y == size.y - 1 ||
-                      k.z == size.z - 1;
+    const bool wall =
+        k.x == 0 || k.y == 0 || k.z == 0 || k.x == size.x - 1 || k.y == size.y - 1 || k.z == size.z - 1;
     return wall ? Cell::occupied : Cell::free;
   });
   return map;
