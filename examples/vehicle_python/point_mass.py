@@ -254,6 +254,8 @@ class Client:
 class Server:
     """Serves one client after another; a second one is refused meanwhile."""
 
+    clocks = (1, 1)  # flies in lockstep, and in real time
+
     def __init__(self, address, make_vehicle):
         self.make_vehicle = make_vehicle
         if address.startswith("unix:"):
@@ -302,7 +304,7 @@ class Server:
                     if struct.unpack_from("<H", body, 4)[0] != VERSION:
                         raise Gone("this vehicle speaks version 1 of the protocol")
                     clock = body[6]
-                    client.send(message(WELCOME, struct.pack("<IHBB", MAGIC, VERSION, 1, 1) + vehicle.description()))
+                    client.send(message(WELCOME, struct.pack("<IHBB", MAGIC, VERSION, *self.clocks) + vehicle.description()))
                 elif kind == START:
                     return self.lockstep(client, vehicle) if clock == LOCKSTEP else self.real_time(client, vehicle)
                 elif kind == PING:

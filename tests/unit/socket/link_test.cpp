@@ -1,0 +1,592 @@
+// Core and vehicle over a real socket: the order of what happens, and what each side does when the other is bad.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <thread>
+
+#include "core_stack/common/error.h"
+#include "plugins/socket/lockstep_vehicle.h"
+#include "plugins/socket/real_time_vehicle.h"
+#include "plugins/socket/vehicle_server.h"
+
+namespace karst::socket {
+namespace {
+
+using core::kMillisecond;
+using core::kSecond;
+using core::TimeNs;
+
+const std::atomic<bool> kGoOn{false};
+
+/// A folder for sockets, and a thread that plays the other side.
+class Peer {
+ public:
+  using Play = std::function<void(Listener&)>;
+  explicit Peer(Play play)
+      : folder_("/tmp/karst_link_" + std::to_string(getpid()) + "_" + std::to_string(++count)),
+        listener_(parse_address("unix:" + folder_)),
+        thread_([this, play = std::move(play)] { play(listener_); }) {}
+  const Address& address() const { return listener_.address(); }
+
+ private:
+  static inline int count = 0;
+  std::string folder_;
+  Listener listener_;
+  std::jthread thread_;
+};
+
+/// Writes down what it is told, with the time.
+class Log final : public core::VehicleSink {
+ public:
+  std::vector<std::string> lines;
+  core::Executive* executive = nullptr;
+  std::function<void()> on_each = [] {};
+  std::vector<TimeNs> imu_stamps, imu_ages;
+
+  void note(const std::string& what) {
+    lines.push_back(std::to_string(executive->now()) + " " + what);
+    on_each();
+  }
+  void on_lidar(std::shared_ptr<const core::LidarScan> s) override { note("lidar " + std::to_string(s->stamp)); }
+  void on_depth(std::shared_ptr<const core::DepthImage> s) override {
+    note("depth of " + s->model->name + " " + std::to_string(s->stamp));
+  }
+  void on_imu(const core::ImuSample& s) override {
+    imu_stamps.push_back(s.stamp);
+    imu_ages.push_back(executive->now() - s.stamp);
+    note("imu " + std::to_string(s.stamp));
+  }
+  void on_magnetometer(const core::MagnetometerSample&) override { note("magnetometer"); }
+  void on_pose(const core::PoseSample&) override { note("pose"); }
+  void on_battery(const core::BatteryStatus& s) override { note("battery " + std::to_string(s.power_w)); }
+  void on_ground(TimeNs) override { note("ground"); }
+  void on_lift_off(TimeNs) override { note("lift-off"); }
+  void on_authority(TimeNs, core::Authority who, const std::string& reason) override {
+    note(std::string("authority ") + core::name_of(who) + ": " + reason);
+  }
+  void on_lost(TimeNs, core::MissionOutcome outcome, const std::string& reason) override {
+    note(std::string(core::name_of(outcome)) + ": " + reason);
+  }
+  bool says(const std::string& part) const {
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const std::string& line) { return line.find(part) != std::string::npos; });
+  }
+};
+
+core::VehicleDescription description() {
+  core::VehicleDescription v;
+  v.name = "fake";
+  core::LidarModel lidar;
+  lidar.columns = 2;
+  lidar.elevation_rad = {0};
+  v.lidar = std::make_shared<const core::LidarModel>(lidar);
+  return v;
+}
+
+/// A vehicle that does what a seed says: periodic steps, single ones and jobs, some due at the same time. It lands
+/// and lifts off, and writes down when commands reached it.
+class FakeVehicle final : public core::Vehicle {
+ public:
+  explicit FakeVehicle(std::uint64_t seed, std::vector<std::string>* heard = nullptr)
+      : random_(seed), heard_(heard), description_(socket::description()) {}
+  core::VehicleDescription description() const override { return description_; }
+  void start(core::Executive& e, core::VehicleSink& sink) override {
+    executive_ = &e;
+    sink_ = &sink;
+    e.at(e.now(), [this] { sink_->on_ground(executive_->now()); });
+    for (const TimeNs period : {5 * kMillisecond, 15 * kMillisecond})
+      e.every("fake", period, period, [this] { tick(); });
+  }
+  void command(const core::Command& c) override {
+    commanded_at_ = executive_->now();
+    armed_ = c.rates.armed;
+    if (heard_) heard_->push_back(std::to_string(executive_->now()) + " " + std::to_string(c.rates.thrust_n));
+  }
+  void finish() override {
+    if (heard_) heard_->push_back("finished");
+  }
+
+ private:
+  std::size_t one_of(std::size_t n) { return random_() % n; }
+  void tick() {
+    const TimeNs now = executive_->now();
+    core::ImuSample imu;
+    imu.stamp = now;
+    sink_->on_imu(imu);
+    if (armed_ && now - commanded_at_ > core::kCommandTimeout) {
+      armed_ = false;
+      if (heard_) heard_->push_back("came down");
+      sink_->on_ground(now);
+    }
+    switch (one_of(6)) {
+      case 0:
+        return executive_->at(now + static_cast<TimeNs>(one_of(4)) * 5 * kMillisecond, [this] {
+          core::BatteryStatus b;
+          b.power_w = static_cast<double>(one_of(100));
+          sink_->on_battery(b);
+        });
+      case 1:
+        return executive_->job("fake", core::Lane::sensing, 10 * kMillisecond, [] {}, [this, now] {
+          auto scan = std::make_shared<core::LidarScan>();
+          scan->stamp = now;
+          scan->range_m = {1, 2};
+          scan->intensity = {0, 1};
+          sink_->on_lidar(scan);
+        });
+      case 2:
+        return sink_->on_lift_off(now);
+      default:
+        return;
+    }
+  }
+  std::mt19937_64 random_;
+  std::vector<std::string>* heard_;
+  core::VehicleDescription description_;
+  core::Executive* executive_ = nullptr;
+  core::VehicleSink* sink_ = nullptr;
+  TimeNs commanded_at_ = 0;
+  bool armed_ = false;
+};
+
+/// A core that commands at 100 Hz and at each lift-off, and schedules much at the same times as the vehicle.
+std::vector<std::string> fly(core::Vehicle& vehicle, TimeNs length) {
+  core::Executive executive(1);
+  Log log;
+  log.executive = &executive;
+  double thrust = 0;
+  const auto command = [&] {
+    core::Command c;
+    c.rates.thrust_n = ++thrust;
+    vehicle.command(c);
+  };
+  log.on_each = [&] {
+    if (log.lines.back().ends_with("lift-off")) command();
+    if (log.lines.size() % 3 == 0)
+      executive.at(executive.now() + 10 * kMillisecond, [&log] { log.lines.push_back("core's own"); });
+  };
+  vehicle.start(executive, log);
+  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] {
+    log.lines.push_back(std::to_string(executive.now()) + " control");
+    command();
+  });
+  executive.run_until(length, [] { return false; });
+  vehicle.finish();
+  return log.lines;
+}
+
+std::unique_ptr<VehicleLink> link_to(const Address& address, FlightClock clock = FlightClock::lockstep) {
+  Hello hello;
+  hello.clock = clock;
+  return std::make_unique<VehicleLink>(address, hello, Wait(5000));
+}
+
+TEST(Lockstep, IsInTheOrderOfOneProcess) {
+  rc::check([] {
+    const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+    const TimeNs length = *rc::gen::inRange<TimeNs>(1, 500) * kMillisecond;
+    std::vector<std::string> heard, heard_by_socket;
+    FakeVehicle in_process(seed, &heard);
+    const auto expected = fly(in_process, length);
+    std::vector<std::string> got;
+    {
+      const Peer peer([&](Listener& listener) {
+        auto client = listener.accept(Wait(5000));
+        serve_client(*client, [&](const Hello&) { return std::make_unique<FakeVehicle>(seed, &heard_by_socket); }, {},
+                     kGoOn);
+      });
+      LockstepVehicle vehicle(link_to(peer.address()), Wait(5000));
+      got = fly(vehicle, length);
+    }
+    RC_ASSERT(got == expected);
+    RC_ASSERT(heard_by_socket == heard);
+  });
+}
+
+/// What `play` sends instead of a greeting makes the core refuse to fly.
+std::string refusal(std::function<void(Stream&)> play) {
+  const Peer peer([&play](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    play(*client);
+    try {
+      for (;;) client->receive(Wait(5000));
+    } catch (const LinkError&) {
+    }
+  });
+  try {
+    Hello hello;
+    const VehicleLink link(peer.address(), hello, Wait(300));
+    return "";
+  } catch (const core::InputError& e) {
+    const std::string words = e.what();
+    EXPECT_TRUE(words.starts_with(peer.address().text() + ": ")) << words;
+    return words.substr(peer.address().text().size() + 2);
+  }
+}
+
+template <class M>
+void say(Stream& stream, const M& message) {
+  stream.queue(message);
+  stream.flush(Wait(1000));
+}
+void say_bytes(Stream& stream, const std::string& bytes) {
+  stream.queue_bytes(bytes);
+  stream.flush(Wait(1000));
+}
+Welcome welcome() {
+  Welcome w;
+  w.lockstep = w.real_time = true;
+  w.description = description();
+  return w;
+}
+
+TEST(BadVehicle, IsRefusedBeforeTakeOffWithTheReason) {
+  EXPECT_EQ(refusal([](Stream& s) { say_bytes(s, std::string(40, 'G')); }),
+            "this is no message of the protocol: type 18247 with 1195853639 bytes");
+  EXPECT_EQ(refusal([](Stream& s) { say_bytes(s, std::string("\x05\0\0\0\x20\0\0\0ab", 10)); }),
+            "connected, but it does not greet");
+  EXPECT_EQ(refusal([](Stream& s) { say(s, Done{}); }), "what answers there is no vehicle of karst");
+  EXPECT_EQ(refusal([](Stream& s) { say(s, Refuse{"rotors are off\x1b[2J"}); }),
+            "the vehicle refuses: rotors are off?[2J");
+  EXPECT_EQ(refusal([](Stream& s) {
+              Welcome w = welcome();
+              w.version = 7;
+              say(s, w);
+            }),
+            "it speaks version 7 of the protocol, and this karst 1");
+  EXPECT_EQ(refusal([](Stream& s) {
+              Welcome w = welcome();
+              w.lockstep = false;
+              say(s, w);
+            }),
+            "this vehicle flies in real time only: fly with --real-time");
+  EXPECT_EQ(refusal([](Stream& s) {
+              Welcome w = welcome();
+              core::LidarModel lidar = *w.description.lidar;
+              lidar.columns = 0;
+              w.description.lidar = std::make_shared<const core::LidarModel>(lidar);
+              say(s, w);
+            }),
+            "its description is wrong: lidar: columns: expected 1 to 65536");
+  EXPECT_EQ(refusal([](Stream&) {}), "connected, but it does not greet");
+}
+
+TEST(BadVehicle, ThatIsNotThereIsAnError) {
+  Hello hello;
+  try {
+    const VehicleLink link(parse_address("unix:/tmp/karst_nobody_listens_here"), hello, Wait(1));
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_STREQ(e.what(), "unix:/tmp/karst_nobody_listens_here: no vehicle answers there: No such file or directory");
+  }
+}
+
+/// A vehicle that greets well, and then does `play` after start. Returns what the core was told.
+std::vector<std::string> flown_with(std::function<void(Stream&)> play, Wait patience = Wait(5000)) {
+  const Peer peer([&play](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    say(*client, welcome());
+    play(*client);
+    try {
+      for (;;)
+        if (!client->receive(Wait(2000))) return;
+    } catch (const LinkError&) {
+    }
+  });
+  LockstepVehicle vehicle(link_to(peer.address()), patience);
+  auto lines = fly(vehicle, 50 * kMillisecond);
+  std::erase_if(lines, [&](std::string& line) {
+    if (const auto at = line.find(peer.address().text() + ": "); at != std::string::npos)
+      line.erase(at, peer.address().text().size() + 2);
+    return line.find("control") != std::string::npos || line == "core's own";
+  });
+  return lines;
+}
+
+TEST(BadVehicle, InFlightIsLostWithTheReason) {
+  using Lines = std::vector<std::string>;
+  const auto begins = [](Stream& s) {
+    say(s, Schedule{0, 20 * kMillisecond, 20 * kMillisecond});
+    say(s, Done{});
+  };
+  EXPECT_EQ(flown_with([](Stream&) {}, Wait(100)),
+            Lines{"0 lost: the vehicle has not answered for 0 s"});
+  EXPECT_EQ(flown_with([&](Stream& s) {
+              begins(s);
+              say_bytes(s, std::string(16, '\xff'));
+            }),
+            Lines{"20000000 lost: this is no message of the protocol: type 65535 with 4294967295 bytes"});
+  EXPECT_EQ(flown_with([&](Stream& s) {
+              begins(s);
+              say_bytes(s, std::string("\x03\0\0\0\x30\0\0\0abc", 11));
+            }),
+            Lines{"20000000 lost: it sent what is no message: imu: stamp is cut off or not valid"});
+  EXPECT_EQ(flown_with([&](Stream& s) {
+              begins(s);
+              say(s, Bye{"no fuel"});
+            }),
+            Lines{"20000000 lost: the vehicle left: no fuel"});
+  EXPECT_EQ(flown_with([&](Stream& s) {
+              begins(s);
+              say(s, Schedule{1, 10 * kMillisecond, 0});
+            }),
+            Lines{"20000000 lost: the vehicle schedules what cannot be: a time that is past, or a period below 1 ms"});
+}
+
+TEST(BadVehicle, WhoseNumbersCannotBeLosesTheMessageOnly) {
+  const auto lines = flown_with([](Stream& s) {
+    say(s, Schedule{0, 20 * kMillisecond, 0});
+    say(s, Done{});
+    core::ImuSample imu;
+    say(s, imu);
+    imu.specific_force_mps2.x() = std::nan("");
+    say(s, imu);
+    say(s, Done{20 * kMillisecond});
+  });
+  EXPECT_EQ(lines, std::vector<std::string>{"20000000 imu 0"});
+}
+
+TEST(BadVehicle, ThatNeverLetsTimePassIsLost) {
+  const auto lines = flown_with([](Stream& s) {
+    say(s, Schedule{0, 0, 0});
+    say(s, Done{});
+    for (int i = 0; i < 2000; ++i) {
+      s.queue(Schedule{0, 0, 0});
+      s.queue(Done{});
+    }
+    s.flush(Wait(2000));
+  });
+  EXPECT_EQ(lines, std::vector<std::string>{"0 lost: the vehicle schedules without end, so that no time passes"});
+}
+
+/// What the vehicle's side does of a client that says `play`: its ending, and what the vehicle heard.
+struct ServedClient {
+  Served served;
+  std::vector<std::string> vehicle;
+  bool came_down() const { return std::find(vehicle.begin(), vehicle.end(), "came down") != vehicle.end(); }
+};
+ServedClient serve(std::function<void(Stream&)> play, const ServeOptions& options = {}) {
+  ServedClient all;
+  {
+    const Peer peer([&](Listener& listener) {
+      auto client = listener.accept(Wait(5000));
+      all.served = serve_client(
+          *client, [&](const Hello&) { return std::make_unique<FakeVehicle>(1, &all.vehicle); }, options, kGoOn);
+    });
+    Stream stream = connect_to(peer.address(), Wait(5000), kMaxToCoreBytes);
+    try {
+      play(stream);
+    } catch (const LinkError&) {  // the vehicle's side has closed
+    }
+  }
+  return all;
+}
+/// Waits for an answer's end.
+void wait_for_done(Stream& stream) {
+  for (;;) {
+    while (const auto frame = stream.next()) {
+      if (frame->type == kType<Done>.id) return;
+      if (frame->type == kType<Pause>.id) say(stream, Resume{});
+    }
+    if (!stream.receive(Wait(5000))) throw LinkError("no done");
+  }
+}
+void greet_and_arm(Stream& stream) {
+  say(stream, Hello{});
+  say(stream, Start{});
+  wait_for_done(stream);
+  say(stream, socket::Run{0, 0});
+  wait_for_done(stream);
+  core::Command c;
+  c.rates.armed = true;
+  say(stream, c);
+}
+
+TEST(BadClient, IsRefusedWithTheReason) {
+  EXPECT_EQ(serve([](Stream& s) { say_bytes(s, std::string(64, 'x')); }).served.ending,
+            "this is no message of the protocol: type 30840 with 2021161080 bytes");
+  EXPECT_EQ(serve([](Stream& s) { say(s, socket::Run{}); }).served.ending,
+            "expected a greeting of the protocol of karst vehicles");
+  EXPECT_EQ(serve([](Stream& s) {
+              Hello hello;
+              hello.version = 2;
+              say(s, hello);
+            }).served.ending,
+            "this vehicle speaks version 1 of the protocol, and the client 2");
+  ServeOptions hasty;
+  hasty.greeting_patience = Wait(50);
+  EXPECT_EQ(serve([](Stream&) { std::this_thread::sleep_for(Wait(400)); }, hasty).served.ending,
+            "the client has sent nothing for 0 s");
+  EXPECT_EQ(serve([](Stream& s) {
+              say(s, Hello{});
+              say(s, core::Command{});
+              while (s.receive(Wait(300))) {
+              }
+            }).served.ending,
+            "the client sent a message that has no place there");
+}
+
+TEST(BadClient, InFlightLeavesAVehicleThatComesDown) {
+  const auto leaves = serve([](Stream& s) { greet_and_arm(s); });
+  EXPECT_TRUE(leaves.served.flew);
+  EXPECT_EQ(leaves.served.ending, "the other side closed the connection");
+  EXPECT_TRUE(leaves.came_down());
+  EXPECT_EQ(leaves.vehicle.back(), "finished");
+
+  const auto garbage = serve([](Stream& s) {
+    greet_and_arm(s);
+    say_bytes(s, std::string(64, '\xff'));
+  });
+  EXPECT_EQ(garbage.served.ending, "this is no message of the protocol: type 65535 with 4294967295 bytes");
+  EXPECT_TRUE(garbage.came_down());
+
+  const auto cut = serve([](Stream& s) {
+    greet_and_arm(s);
+    say_bytes(s, std::string("\x0c\0\0\0\x03\0\0\0\x01", 9));
+  });
+  EXPECT_EQ(cut.served.ending, "the other side closed the connection within a message");
+  EXPECT_TRUE(cut.came_down());
+
+  const auto out_of_order = serve([](Stream& s) {
+    greet_and_arm(s);
+    say(s, socket::Run{77, kMillisecond});
+    while (s.receive(Wait(300))) {
+    }
+  });
+  EXPECT_EQ(out_of_order.served.ending, "the client asked for a slot that is not due next");
+  EXPECT_TRUE(out_of_order.came_down());
+
+  ServeOptions hasty;
+  hasty.lockstep_patience = Wait(50);
+  const auto silent = serve(
+      [](Stream& s) {
+        greet_and_arm(s);
+        std::this_thread::sleep_for(Wait(400));
+      },
+      hasty);
+  EXPECT_EQ(silent.served.ending, "the client has sent nothing for 0 s");
+  EXPECT_TRUE(silent.came_down());
+}
+
+TEST(BadClient, WhoseCommandIsNoNumberIsNotObeyed) {
+  const auto all = serve([](Stream& s) {
+    greet_and_arm(s);
+    core::Command c;
+    c.rates.thrust_n = std::nan("");
+    say(s, c);
+    say(s, Bye{"done"});
+  });
+  EXPECT_EQ(all.vehicle.front(), "0 0.000000");
+  EXPECT_EQ(std::count_if(all.vehicle.begin(), all.vehicle.end(),
+                          [](const std::string& line) { return line.find("nan") != std::string::npos; }),
+            0);
+}
+
+TEST(Server, RefusesASecondClientMeanwhile) {
+  const Peer peer([&](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    const Doorkeeper doorkeeper(listener);
+    serve_client(*client, [](const Hello&) { return std::make_unique<FakeVehicle>(1); }, {}, kGoOn);
+  });
+  auto first = link_to(peer.address());
+  try {
+    link_to(peer.address());
+    FAIL();
+  } catch (const core::InputError& e) {
+    EXPECT_EQ(std::string(e.what()),
+              peer.address().text() + ": the vehicle refuses: another client flies this vehicle");
+  }
+  first->leave("done");
+}
+
+/// The vehicle's clock is a second ahead or behind: stamps are those of the core.
+TEST(RealTime, StampsAreOfTheCoresClock) {
+  for (const TimeNs ahead : {kSecond, -kSecond}) {
+    const Peer peer([ahead](Listener& listener) {
+      auto client = listener.accept(Wait(5000));
+      const auto begin = std::chrono::steady_clock::now();
+      const auto now = [&] {
+        return ahead + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin).count();
+      };
+      try {
+        say(*client, welcome());
+        for (;;) {
+          client->receive(Wait(1));
+          while (const auto frame = client->next()) {
+            std::string problem;
+            const auto message = read_message<ToVehicle>(*frame, problem);
+            if (const auto* ping = std::get_if<Ping>(&*message)) say(*client, Pong{ping->sent, now(), now()});
+            if (std::holds_alternative<Bye>(*message)) return;
+          }
+          core::ImuSample imu;
+          imu.stamp = now();
+          say(*client, imu);
+        }
+      } catch (const LinkError&) {
+      }
+    });
+    RealTimeVehicle vehicle(link_to(peer.address(), FlightClock::real_time), Wait(5000), {});
+    core::Executive executive(1, core::Clock::real_time);
+    Log log;
+    log.executive = &executive;
+    vehicle.start(executive, log);
+    executive.run_until(60 * kSecond, [&] { return log.imu_stamps.size() > 150; });
+    vehicle.finish();
+    ASSERT_GT(log.imu_stamps.size(), 150u);
+    for (const TimeNs age : log.imu_ages) EXPECT_GE(age, 0) << "a stamp of the future";
+    auto ages = log.imu_ages;
+    std::nth_element(ages.begin(), ages.begin() + 75, ages.end());
+    EXPECT_LT(ages[75], kSecond / 2) << "a clock that is not converted would be a second off";
+    EXPECT_TRUE(std::is_sorted(log.imu_stamps.begin(), log.imu_stamps.end()));
+  }
+}
+
+/// Silent for longer than `silence`: the autopilot steers; heard again: the core does; silent for good: lost.
+TEST(RealTime, ASilentVehicleIsGivenToItsAutopilotAndThenLost) {
+  const Peer peer([](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    try {
+      say(*client, welcome());
+      std::this_thread::sleep_for(Wait(300));
+      say(*client, Pong{});
+      for (;;)
+        if (!client->receive(Wait(5000))) return;
+    } catch (const LinkError&) {
+    }
+  });
+  RealTimeVehicle vehicle(link_to(peer.address(), FlightClock::real_time), Wait(5000),
+                          {kSecond / 10, 3 * kSecond / 2});
+  core::Executive executive(1, core::Clock::real_time);
+  Log log;
+  log.executive = &executive;
+  vehicle.start(executive, log);
+  executive.run_until(60 * kSecond, [&] { return log.says("lost"); });
+  ASSERT_GE(log.lines.size(), 4u);
+  EXPECT_NE(log.lines[0].find("authority autopilot: no message from the vehicle for 0.1 s"), std::string::npos);
+  EXPECT_NE(log.lines[1].find("authority core: the vehicle is heard again"), std::string::npos);
+  EXPECT_NE(log.lines[2].find("authority autopilot"), std::string::npos);
+  EXPECT_NE(log.lines[3].find("no message from the vehicle for 1.5 s"), std::string::npos);
+}
+
+/// In real time the vehicle hears nothing for longer than kCommandTimeout, and comes down.
+TEST(RealTime, AVehicleWhoseClientIsGoneComesDown) {
+  const auto all = serve([](Stream& s) {
+    Hello hello;
+    hello.clock = FlightClock::real_time;
+    say(s, hello);
+    say(s, Start{});
+    wait_for_done(s);
+    core::Command c;
+    c.rates.armed = true;
+    say(s, c);
+    s.receive(Wait(100));
+  });
+  EXPECT_TRUE(all.served.flew);
+  EXPECT_EQ(all.vehicle.back(), "finished");
+}
+
+}  // namespace
+}  // namespace karst::socket
