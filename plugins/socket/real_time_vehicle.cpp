@@ -13,6 +13,7 @@ namespace {
 constexpr TimeNs kStep = 2 * kMillisecond;
 constexpr TimeNs kPingPeriod = 100 * kMillisecond, kFirstPings = 10 * kMillisecond;
 constexpr int kQuickPings = 16;             // at the start, until the offset is known well
+constexpr TimeNs kCaughtUp = 100 * kMillisecond;
 constexpr std::size_t kMessagesAStep = 64;  // so that no vehicle can hold up the control
 
 /// Where a message has its stamp; null for those without.
@@ -41,7 +42,8 @@ RealTimeVehicle::RealTimeVehicle(std::unique_ptr<VehicleLink> link, Wait patienc
 void RealTimeVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
   executive_ = &executive;
   sink_ = &sink;
-  heard_at_ = executive.now();
+  clock_.note_step(executive.now());
+  heard_at_ = clock_.now();
   executive.every("vehicle messages", executive.now() + kStep, kStep, [this] { step(); });
   try {
     link_->stream().queue(Start{});
@@ -54,6 +56,8 @@ void RealTimeVehicle::start(core::Executive& executive, core::VehicleSink& sink)
 void RealTimeVehicle::step() {
   clock_.note_step(executive_->now());
   if (lost_) return;
+  if (late() > core::kCommandTimeout)
+    give_away("the core was " + in_seconds(core::kCommandTimeout) + " late, so the vehicle comes down by itself");
   try {
     for (std::size_t i = 0; i < kMessagesAStep && !lost_; ++i) {
       std::optional<ToCore> message = link_->receive(Wait(0));
@@ -84,7 +88,10 @@ void RealTimeVehicle::take(ToCore message) {
                           !std::holds_alternative<core::BatteryStatus>(message);
     if (measured && !offset_.known()) return;
   }
-  if (const auto* change = std::get_if<AuthorityChange>(&message)) steers_ = change->who;
+  if (const auto* change = std::get_if<AuthorityChange>(&message)) {
+    steers_ = change->who;
+    if (away_) return;  // told when both hear each other again
+  }
   if (std::holds_alternative<Lost>(message)) lost_ = true;
   deliver(std::move(message), link_->description(), *sink_);
 }
@@ -95,27 +102,37 @@ void RealTimeVehicle::ping() {
   next_ping_ = now + (++pings_ < kQuickPings ? kFirstPings : kPingPeriod);
 }
 
+/// By the machine's clock: a core that stood still hears what came meanwhile first.
 void RealTimeVehicle::judge_silence() {
   if (lost_) return;
-  const TimeNs now = executive_->now();
   if (link_->heard()) {
-    heard_at_ = now;
-    if (std::exchange(silent_, false)) sink_->on_authority(now, steers_, "the vehicle is heard again");
+    heard_at_ = clock_.now();
+    if (away_ && late() < kCaughtUp) {
+      away_ = false;
+      sink_->on_authority(executive_->now(), steers_, "the vehicle and the core hear each other again");
+    }
     return;
   }
-  const TimeNs silence = now - heard_at_;
-  if (!silent_ && silence >= limits_.autopilot_steers) {
-    silent_ = true;
-    sink_->on_authority(now, core::Authority::autopilot,
-                        "no message from the vehicle for " + in_seconds(limits_.autopilot_steers));
-  }
+  const TimeNs silence = clock_.now() - heard_at_;
+  if (silence >= limits_.autopilot_steers)
+    give_away("no message from the vehicle for " + in_seconds(limits_.autopilot_steers));
   if (silence >= limits_.vehicle_is_lost)
     lose("no message from the vehicle for " + in_seconds(limits_.vehicle_is_lost));
 }
 
-/// What cannot be sent at once is not sent at all: the next command is newer.
+/// The vehicle's own reaction to silence steers it now.
+void RealTimeVehicle::give_away(const std::string& reason) {
+  if (std::exchange(away_, true)) return;
+  sink_->on_authority(executive_->now(), core::Authority::autopilot, reason);
+}
+
+/// By how much the steps of the core are behind the machine's clock.
+TimeNs RealTimeVehicle::late() const { return clock_.now() - executive_->now(); }
+
+/// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago: a vehicle
+/// that came down by itself must not be lifted off by commands for where it was.
 void RealTimeVehicle::command(const core::Command& c) {
-  if (lost_ || link_->stream().backlog_bytes() > 0) return;
+  if (lost_ || link_->stream().backlog_bytes() > 0 || late() > kCaughtUp) return;
   core::Command sent = c;
   if (offset_.known()) {
     const TimeNs ahead = offset_.offset(clock_.now());

@@ -33,6 +33,8 @@ class RealTimeVehicle final : public core::Vehicle {
   void take(ToCore message);
   void ping();
   void judge_silence();
+  void give_away(const std::string& reason);
+  core::TimeNs late() const;
   void lose(const std::string& reason);
 
   std::unique_ptr<VehicleLink> link_;
@@ -43,10 +45,10 @@ class RealTimeVehicle final : public core::Vehicle {
   std::vector<core::VehicleCheck> checks_;
   MachineClock clock_;
   ClockOffset offset_;
-  core::TimeNs next_ping_ = 0, heard_at_ = 0;
+  core::TimeNs next_ping_ = 0, heard_at_ = 0;  // by clock_
   int pings_ = 0;
   core::Authority steers_ = core::Authority::core;  // as the vehicle says
-  bool silent_ = false, lost_ = false;
+  bool away_ = false, lost_ = false;  // steered by its autopilot because of silence
 };
 
 }  // namespace karst::socket

@@ -161,8 +161,15 @@ bool wait_for_phase(const fs::path& run, const std::string& phase) {
   }
   return false;
 }
-/// A mission that is home and landing soon enough to wait for it in real time.
-const char* const kShort = "mission { max_flight_time \"14 s\" }\n";
+/// A mission that explores for some 9 s, and is home and landing soon enough to wait for it in real time.
+const char* const kShort = "mission { max_flight_time \"40 s\" }\n";
+
+/// Waits until it has been in a phase for some time: in `explore` it flies at full speed then.
+bool wait_until_in(const fs::path& run, const std::string& phase) {
+  if (!wait_for_phase(run, phase)) return false;
+  if (phase == "explore") sleep(4);
+  return true;
+}
 
 TEST_P(VehicleDies, TheCoreEndsWithTheReason) {
   const std::string phase = GetParam();
@@ -172,13 +179,16 @@ TEST_P(VehicleDies, TheCoreEndsWithTheReason) {
   Background flight(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + run.string() +
                         " & echo listening; wait $!",
                     folder / "fly.log");
-  ASSERT_TRUE(wait_for_phase(run, phase)) << bytes_of(folder / "fly.log");
+  ASSERT_TRUE(wait_until_in(run, phase)) << bytes_of(folder / "fly.log");
   server.send(SIGKILL);
   server.end();
   EXPECT_EQ(flight.end(), 2) << bytes_of(folder / "fly.log");
   EXPECT_EQ(outcome(run).value("outcome", ""), "lost");
   EXPECT_NE(outcome(run).value("reason", "").find("the other side closed the connection"), std::string::npos)
       << outcome(run).dump();
+  const auto phases = events(run / "events.jsonl", "kind", "phase");
+  ASSERT_GE(phases.size(), 2u);
+  EXPECT_EQ(phases[phases.size() - 2].value("phase", ""), phase) << "the one before done";
   for (const char* kept : {"trajectory.tum", "telemetry.csv", "map.bt", "metrics.json"})
     EXPECT_TRUE(fs::exists(run / kept)) << kept;
 }
@@ -196,11 +206,12 @@ TEST_P(CoreDies, TheVehicleComesDown) {
     Background flight(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + run.string() +
                           " & echo listening; trap 'kill -9 $!' TERM; wait $!",
                       folder / "fly.log");
-    ASSERT_TRUE(wait_for_phase(run, phase)) << bytes_of(folder / "fly.log");
+    ASSERT_TRUE(wait_until_in(run, phase)) << bytes_of(folder / "fly.log");
     flight.send(SIGTERM);
     flight.end();
   }
   EXPECT_EQ(server.end(), 0) << server.text();
+  EXPECT_TRUE(truth_says(folder, "autopilot")) << server.text();
   EXPECT_TRUE(truth_says(folder, "landed")) << server.text();
   EXPECT_FALSE(truth_says(folder, "contact")) << server.text();
 }
@@ -216,14 +227,14 @@ class CoreStops : public ::testing::TestWithParam<Stop> {};
 TEST_P(CoreStops, TheVehicleIsSafe) {
   const Stop stop = GetParam();
   const fs::path folder = fresh_folder(std::string("socket_core_stops_") + stop.name), run = folder / "run";
-  const std::string file = mission(folder, generated_cave("small", 7), "mission { max_flight_time \"25 s\" }\n");
+  const std::string file = mission(folder, generated_cave("small", 7), kShort);
   const std::string address = address_of(stop.name);
   Background server(serve(file, address, folder) + " --once", folder / "serve.log");
   Background flight(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + run.string() +
                         " & echo listening; trap 'kill -STOP $!' USR1; trap 'kill -CONT $!' USR2; "
                         "wait $!; while kill -0 $! 2>/dev/null; do wait $!; done",
                     folder / "fly.log");
-  ASSERT_TRUE(wait_for_phase(run, "explore")) << bytes_of(folder / "fly.log");
+  ASSERT_TRUE(wait_until_in(run, "explore")) << bytes_of(folder / "fly.log");
   flight.send(SIGUSR1);
   usleep(static_cast<useconds_t>(stop.milliseconds) * 1000);
   flight.send(SIGUSR2);
@@ -232,7 +243,11 @@ TEST_P(CoreStops, TheVehicleIsSafe) {
   EXPECT_TRUE(truth_says(folder, "landed")) << server.text();
   EXPECT_FALSE(truth_says(folder, "contact")) << server.text();
   EXPECT_EQ(truth_says(folder, "autopilot"), stop.milliseconds > 700) << "it takes over after half a second";
-  EXPECT_FALSE(outcome(run).is_null()) << bytes_of(folder / "fly.log");
+  const std::string ending = outcome(run).value("outcome", "") + ": " + outcome(run).value("reason", "");
+  if (stop.milliseconds < 5000)
+    EXPECT_EQ(ending, "landed: at the start");
+  else
+    EXPECT_NE(ending.find("aborted: landed by the autopilot"), std::string::npos) << ending;
 }
 INSTANTIATE_TEST_SUITE_P(Silence, CoreStops, ::testing::Values(Stop{"s01", 100}, Stop{"s1", 1000}, Stop{"s10", 11000}),
                          [](const auto& stop) { return std::string(stop.param.name); });

@@ -566,9 +566,54 @@ TEST(RealTime, ASilentVehicleIsGivenToItsAutopilotAndThenLost) {
   executive.run_until(60 * kSecond, [&] { return log.says("lost"); });
   ASSERT_GE(log.lines.size(), 4u);
   EXPECT_NE(log.lines[0].find("authority autopilot: no message from the vehicle for 0.1 s"), std::string::npos);
-  EXPECT_NE(log.lines[1].find("authority core: the vehicle is heard again"), std::string::npos);
+  EXPECT_NE(log.lines[1].find("authority core: the vehicle and the core hear each other again"), std::string::npos);
   EXPECT_NE(log.lines[2].find("authority autopilot"), std::string::npos);
   EXPECT_NE(log.lines[3].find("no message from the vehicle for 1.5 s"), std::string::npos);
+}
+
+/// A core that stood still for longer than kCommandTimeout says so before it takes what came meanwhile, sends nothing of
+/// what was due then, and does not take its own silence for the vehicle's.
+TEST(RealTime, ACoreThatStoodStillGivesTheVehicleToItsAutopilotFirst) {
+  std::atomic<int> late_commands = 0;
+  std::atomic<bool> stands_still = false;
+  const Peer peer([&](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    try {
+      say(*client, welcome());
+      for (;;) {
+        client->receive(Wait(5));
+        while (const auto frame = client->next()) {
+          std::string problem;
+          const auto message = read_message<ToVehicle>(*frame, problem);
+          if (const auto* ping = std::get_if<Ping>(&*message)) say(*client, Pong{ping->sent, 1, 1});
+          if (std::holds_alternative<core::Command>(*message) && stands_still) ++late_commands;
+          if (std::holds_alternative<Bye>(*message)) return;
+        }
+        say(*client, core::BatteryStatus{});
+      }
+    } catch (const LinkError&) {
+    }
+  });
+  RealTimeVehicle vehicle(link_to(peer.address(), FlightClock::real_time), Wait(5000), {kSecond, 2 * kSecond});
+  core::Executive executive(1, core::Clock::real_time);
+  Log log;
+  log.executive = &executive;
+  vehicle.start(executive, log);
+  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] { vehicle.command({}); });
+  executive.at(kSecond / 5, [&] {
+    std::this_thread::sleep_for(Wait(500));  // until what was sent before has come
+    stands_still = true;
+    std::this_thread::sleep_for(Wait(2500));  // in all longer than a vehicle may be silent
+  });
+  executive.at(5 * kSecond / 2, [&] { stands_still = false; });
+  executive.run_until(30 * kSecond, [&] { return log.says("hear each other again"); });
+  vehicle.finish();
+  EXPECT_FALSE(log.says("lost"));
+  const auto given = std::find_if(log.lines.begin(), log.lines.end(), [](const std::string& line) {
+    return line.find("authority autopilot: the core was 0.5 s late") != std::string::npos;
+  });
+  ASSERT_NE(given, log.lines.end());
+  EXPECT_EQ(late_commands, 0);
 }
 
 /// In real time the vehicle hears nothing for longer than kCommandTimeout, and comes down.

@@ -146,6 +146,16 @@ TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
               {"sdk/", "policies/", "core_stack/mapping", "core_stack/planning", "core_stack/mission"});
 }
 
+// A vehicle behind a socket is any vehicle; what is simulated is put behind it elsewhere.
+TEST(IncludeDirection, TheSocketKnowsNoOtherPluginAndTheServerNoCommand) {
+  for (const Include& i : includes_below("plugins/socket"))
+    EXPECT_TRUE(!i.target.starts_with("plugins/") || i.target.starts_with("plugins/socket/"))
+        << i.file << " includes " << i.target;
+  expect_none("sdk/vehicle_server", {"sdk/tools", "sdk/campaign", "sdk/check", "plugins/simulator", "CLI/"});
+  for (const char* below : {"plugins", "sdk/host", "sdk/evaluation", "sdk/flight"})
+    expect_none(below, {"sdk/vehicle_server"});
+}
+
 // A file that includes PCL takes a quarter of a minute and a gigabyte to compile.
 TEST(IncludeDirection, FewSourcesAndNoHeaderIncludePcl) {
   std::set<std::string> files;
