@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core_stack/perception/lonely_points.h"
+
 namespace karst::core {
 
 void describe(OptionTable& t, LonelyReturnOptions& o) {
@@ -120,6 +122,7 @@ void count_votes(const Ranges& ranges, std::size_t row, std::ptrdiff_t columns,
 }  // namespace
 
 void drop_lonely_returns(LidarScan& scan, const LonelyReturnOptions& options) {
+  if (scan.model && !scan.model->has_rings()) return drop_lonely_points(scan, options);
   if (!scan.model || scan.model->columns < 3 || scan.intensity.size() != scan.range_m.size()) return;
   const auto columns = static_cast<std::size_t>(scan.model->columns), rows = scan.model->elevation_rad.size();
   if (columns * rows != scan.range_m.size()) return;

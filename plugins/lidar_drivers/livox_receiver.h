@@ -1,5 +1,7 @@
 // The scans of a Livox Mid-360.
 #pragma once
+#include <utility>
+
 #include "plugins/lidar_drivers/livox/frame_assembler.h"
 #include "plugins/lidar_drivers/scan_receiver.h"
 #include "plugins/lidar_drivers/stamp_source.h"

@@ -1,5 +1,7 @@
 // The scans of an Ouster sensor.
 #pragma once
+#include <utility>
+
 #include "plugins/lidar_drivers/ouster/sweep_assembler.h"
 #include "plugins/lidar_drivers/scan_receiver.h"
 #include "plugins/lidar_drivers/stamp_source.h"

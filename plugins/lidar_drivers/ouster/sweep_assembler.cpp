@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "plugins/lidar_drivers/packet/plausible.h"
 #include "plugins/lidar_drivers/packet/range_corrected.h"

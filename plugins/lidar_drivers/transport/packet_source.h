@@ -1,6 +1,7 @@
 // Where a sensor's packets come from.
 #pragma once
 #include <functional>
+#include <utility>
 
 #include "plugins/lidar_drivers/packet/little_endian_bytes.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "plugins/lidar_drivers/transport/packet_source.h"
 

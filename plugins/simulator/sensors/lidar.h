@@ -1,4 +1,4 @@
-// A spinning multi-channel LiDAR.
+// A LiDAR: a spinning one with channels, or one with a pattern that does not repeat.
 #pragma once
 #include "core_stack/common/options.h"
 #include "core_stack/common/random.h"
@@ -18,7 +18,8 @@ struct LidarOptions {
 };
 void describe(core::OptionTable& t, LidarOptions& o);
 
-/// vlp16, os0_32, os0_64, os1_64 and os0_128: channels, vertical field of view and range of well-known units.
+/// vlp16, os0_32, os0_64, os1_64, os0_128, xt32 and mid360: channels, vertical field of view and range of
+/// well-known units. The mid360 has no columns, and sends 200,000 points a second whatever the options say.
 std::shared_ptr<const core::LidarModel> lidar_model(const LidarOptions& o);
 
 class Lidar {
@@ -38,10 +39,18 @@ class Lidar {
   };
   /// The return of a beam through clouds, given its return in clear air: the strongest echo is reported.
   Return through(const CloudyPath& path, const Return& clear, core::Random& random) const;
+  /// What the unit says of a beam that meets `hit`: NaN without a valid measurement.
+  Return measured(const cave::Cave& cave, const cave::Ray& ray, const cave::Hit& hit, core::Random& random,
+                  Air& air, CloudyPath& path) const;
+  /// Whether light that rock reflects at this range is too weak to be detected in clear air.
+  bool is_too_dark(double reflected, double range_m) const;
+  core::LidarScan sweep_of_points(const cave::Cave& cave, const PoseTrack& T_world_body, core::TimeNs stamp,
+                                  core::Random random, Air air) const;
 
   LidarOptions options_;
   std::shared_ptr<const core::LidarModel> model_;
-  std::vector<core::Vec3f> beams_;  // unit vectors in the lidar frame, channel-major
+  std::vector<core::Vec3f> beams_;  // unit vectors in the lidar frame, channel-major; none without rings
+  double dark_range_m_;             // see is_too_dark; 0: nothing is
 };
 
 /// Returned fraction of light: reflectivity * cos(incidence) / (1 + (range / 25 m)^2).

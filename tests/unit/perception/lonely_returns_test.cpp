@@ -161,5 +161,63 @@ TEST(LonelyReturns, ScansItCannotJudgeAreLeftAlone) {
   EXPECT_EQ(one_row.range_m, std::vector<float>(128, 2.0f));
 }
 
+// Channels of uneven azimuths are compared with the beams that lie beside them, not with those of their column.
+TEST(LonelyReturns, ChannelsWithAzimuthsOfTheirOwnLoseNoWalls) {
+  auto uneven = std::make_shared<LidarModel>(*unit(1024, 64, 0.39));
+  for (int c = 0; c < 64; ++c) uneven->azimuth_offset_rad.push_back(0.07f * static_cast<float>(c % 4) - 0.1f);
+  LidarScan scan = room(uneven, 0.4);
+  const LidarScan before = scan;
+  drop_lonely_returns(scan, {});
+  EXPECT_LT(dropped_fraction(before, scan), 0.003);
+}
+
+/// The room, seen by beams scattered over a belt of the sphere; a share of them returns from dust before it.
+LidarScan scattered_room(double dust, std::vector<char>& is_dust) {
+  auto model = std::make_shared<LidarModel>();
+  model->elevation_rad = {0.9f, -0.12f};
+  LidarScan scan{0, model, {}, {}};
+  Random random(4);
+  for (int i = 0; i < 20000; ++i) {
+    const double azimuth = 2.399963 * i, z = -0.12 + 0.9 * std::fmod(0.754877 * i, 1.0);
+    const Vec3f d = Vec3(std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z).cast<float>();
+    const float wall = (Vec3f(5, 2.5f, 2).array() / d.array().abs()).minCoeff();
+    is_dust.push_back(random.uniform() < dust);
+    scan.range_m.push_back(is_dust.back() ? static_cast<float>(random.uniform(0.3, 1.5)) : wall + 0.02f * static_cast<float>(random.normal()));
+    scan.intensity.push_back(0.05f);
+    scan.direction.push_back(d);
+    scan.time_s.push_back(0);
+  }
+  return scan;
+}
+
+TEST(LonelyPoints, DimWallsStayAndDustGoes) {
+  for (const double dust : {0.0, 0.02, 0.1}) {
+    std::vector<char> is_dust;
+    LidarScan scan = scattered_room(dust, is_dust);
+    drop_lonely_returns(scan, {});
+    double walls = 0, walls_lost = 0, dusts = 0, dusts_left = 0;
+    for (std::size_t i = 0; i < is_dust.size(); ++i) {
+      const bool left = std::isfinite(scan.range_m[i]);
+      (is_dust[i] ? dusts : walls) += 1;
+      if (is_dust[i] && left) ++dusts_left;
+      if (!is_dust[i] && !left) ++walls_lost;
+    }
+    EXPECT_LT(walls_lost / walls, 0.02) << dust;
+    EXPECT_LE(dusts_left, 0.12 * dusts) << dust;
+  }
+}
+
+TEST(LonelyPoints, BrightAndFarPointsStayAndAScanThatDoesNotFitIsLeft) {
+  std::vector<char> is_dust;
+  LidarScan scan = scattered_room(0.1, is_dust);
+  LidarScan bright = scan, broken = scan;
+  std::fill(bright.intensity.begin(), bright.intensity.end(), 0.4f);
+  drop_lonely_returns(bright, {});
+  EXPECT_EQ(bright.range_m, scan.range_m);
+  broken.direction.pop_back();
+  drop_lonely_returns(broken, {});
+  EXPECT_EQ(broken.range_m, scan.range_m);
+}
+
 }  // namespace
 }  // namespace karst::core

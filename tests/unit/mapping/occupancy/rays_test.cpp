@@ -51,6 +51,52 @@ TEST(LidarRays, StartAtTheSensorAndEndAtTheReturn) {
     }
 }
 
+TEST(LidarRays, OfUnevenBeamsStartOffTheAxisAndPointAsTheModelSays) {
+  const auto model = lidar();
+  model->azimuth_offset_rad = {0.2f, -0.1f, 0.05f, 0.3f};
+  model->beam_origin_m = 0.03f;
+  const LidarScan scan{kSecond / 2, model, std::vector<float>(64, 5.0f), {}};
+  const auto rays = to_rays(scan, resting(Pose{}), 0.5, 100);
+  ASSERT_EQ(rays.size(), 64u);
+  std::size_t i = 0;
+  for (int column = 0; column < 16; ++column)
+    for (int channel = 0; channel < 4; ++channel, ++i) {
+      const Vec3 from = model->T_body_lidar * model->origin(column).cast<double>();
+      const Vec3 to = from + model->T_body_lidar.orientation * (5 * model->direction(channel, column)).cast<double>();
+      EXPECT_LT((rays[i].origin.cast<double>() - from).norm(), 1e-6);
+      EXPECT_LT((rays[i].end.cast<double>() - to).norm(), 1e-5);
+    }
+}
+
+TEST(LidarRays, OfPointsWithoutRingsStartFromWhereTheVehicleWasThen) {
+  const auto model = lidar();
+  model->columns = 0;
+  model->T_body_lidar = Pose{};
+  StateHistory history;
+  for (int i = 0; i <= 100; ++i) {  // 4 m/s along x
+    State s;
+    s.stamp = i * 10 * kMillisecond;
+    s.position = {4 * seconds(s.stamp), 0, 0};
+    history.push(s);
+  }
+  LidarScan scan{kSecond / 2, model, {}, {}};
+  for (int i = 0; i < 100; ++i) {
+    scan.range_m.push_back(i == 50 ? kNan : i == 51 ? kInf : 6.0f);
+    scan.direction.push_back(i % 2 == 0 ? Vec3f::UnitY() : Vec3f::UnitZ());
+    scan.time_s.push_back(-0.001f * static_cast<float>(99 - i));
+  }
+  const auto rays = to_rays(scan, history, 0.5, 20);
+  ASSERT_EQ(rays.size(), 99u);
+  for (std::size_t i = 0; i < 50; ++i) {
+    const Vec3 from(4 * (0.5 - 0.001 * (99 - static_cast<double>(i))), 0, 0);
+    EXPECT_LT((rays[i].origin.cast<double>() - from).norm(), 1e-5);
+    EXPECT_LT((rays[i].end.cast<double>() - from - 6 * scan.direction[i].cast<double>()).norm(), 1e-5);
+    EXPECT_TRUE(rays[i].hit);
+  }
+  EXPECT_FALSE(rays[50].hit);  // +inf clears as far as the map goes
+  EXPECT_NEAR((rays[50].end - rays[50].origin).norm(), 20, 1e-4);
+}
+
 TEST(LidarRays, EachColumnStartsFromWhereTheVehicleWasThen) {
   const auto model = lidar();
   model->T_body_lidar = Pose{};

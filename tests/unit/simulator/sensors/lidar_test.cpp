@@ -40,7 +40,62 @@ TEST_P(LidarUnits, RangesInABoxAreTheClosedForm) {
           << c << " " << j;  // whole millimetres
     }
 }
-INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os0_64", "os1_64", "os0_128"));
+INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os0_64", "os1_64", "os0_128", "xt32"));
+
+// From Hesai's data sheet: 32 channels a degree apart, from 15 degrees up to 16 down.
+TEST(Lidar, TheXt32SeesADegreeFartherDownThanUp) {
+  const auto m = sim::lidar_model(exact("xt32", 2000));
+  ASSERT_EQ(m->channels(), 32);
+  for (int c = 0; c < 32; ++c)
+    EXPECT_NEAR(m->elevation_rad[static_cast<std::size_t>(c)] * 180 / std::numbers::pi, 15 - c, 1e-4);
+}
+
+TEST(Lidar, TheMid360ScattersTwentyThousandPointsOverItsFieldOfView) {
+  const cave::Cave box = make_cave(box_mesh(kLow, kHigh));
+  const Lidar lidar(exact("mid360", 256));
+  EXPECT_FALSE(lidar.model()->has_rings());
+  const Pose pose{{1, -1, 0.5}, core::from_heading(0.4)};
+  const LidarScan scan = lidar.sweep(box, {{0, pose}, {kEnd, pose}}, kEnd, core::Random(1));
+  ASSERT_TRUE(scan.fits_model());
+  ASSERT_EQ(scan.range_m.size(), 20000u);  // all in reach
+  const Pose T_world_lidar = pose * lidar.model()->T_body_lidar;
+  std::vector<int> around(36), above(6);
+  for (std::size_t i = 0; i < scan.range_m.size(); ++i) {
+    const Vec3 d = scan.direction[i].cast<double>();
+    ASSERT_NEAR(scan.range_m[i], range_in_box(kLow, kHigh, T_world_lidar.position, T_world_lidar.orientation * d), 6e-4);
+    EXPECT_NEAR(scan.time_s[i], -0.1 + 5e-6 * static_cast<double>(i), 1e-8);
+    const double elevation_deg = std::asin(d.z()) * 180 / std::numbers::pi;
+    ASSERT_GE(elevation_deg, -7.001);
+    ASSERT_LE(elevation_deg, 52.001);
+    ++around[static_cast<std::size_t>((std::atan2(d.y(), d.x()) + std::numbers::pi) / (2 * std::numbers::pi) * 35.999)];
+    ++above[static_cast<std::size_t>((elevation_deg + 7.01) / 59.02 * 6)];
+  }
+  for (const int n : around) EXPECT_NEAR(n, 20000 / 36.0, 60);
+  for (const int n : above) EXPECT_GT(n, 1000);  // the pattern is thinner at its borders
+  // It does not repeat: the next sweep looks elsewhere.
+  const LidarScan next = lidar.sweep(box, {{0, pose}, {2 * kEnd, pose}}, 2 * kEnd, core::Random(1));
+  int same = 0;
+  for (std::size_t i = 0; i < 20000; ++i) same += (scan.direction[i] - next.direction[i]).norm() < 0.002f;
+  EXPECT_LT(same, 200);
+}
+
+// 40 m at 10 %, 70 m at 80 %: the data sheet of the Mid-360. Light falls with the square of the range.
+TEST(Lidar, TheMid360SeesDarkRockLessFar) {
+  for (const auto& [reflectivity, range_m] : {std::pair{0.1, 40.0}, std::pair{0.05, 28.28}, std::pair{0.8, 70.0}}) {
+    cave::Cave hall = make_cave(box_mesh({-200, -200, -200}, {range_m * 0.97, 200, 200}));
+    hall.description.reflectivity = reflectivity;
+    const auto ahead = [&](const cave::Cave& cave) {
+      int n = 0;
+      const LidarScan scan = Lidar(exact("mid360", 256)).sweep(cave, {{0, {}}}, kEnd, core::Random(1));
+      for (const Vec3f& d : scan.direction) n += d.x() > 0.9999f;
+      return n;
+    };
+    EXPECT_GT(ahead(hall), 0) << reflectivity;
+    cave::Cave farther = make_cave(box_mesh({-200, -200, -200}, {range_m * 1.03, 200, 200}));
+    farther.description.reflectivity = reflectivity;
+    EXPECT_EQ(ahead(farther), 0) << reflectivity;
+  }
+}
 
 TEST(Lidar, UnitsHaveTheirChannelsAndFieldOfView) {
   const auto check = [](const char* unit, int channels, double half_fov_deg) {
