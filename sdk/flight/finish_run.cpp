@@ -41,6 +41,17 @@ std::shared_ptr<const core::FlightRegion> region_of_run(const fs::path& run_dir)
   return core::region_in(file, core::read_info(file));
 }
 
+/// The keys of the cave's mesh, as far as the run recorded them.
+core::MeshKeys recorded_mesh_keys(const fs::path& file, const boost::property_tree::ptree& mission) {
+  core::MeshKeys keys;
+  core::OptionTable table;
+  table.section("cave", keys);
+  for (const auto& row : table.rows())
+    if (const auto value = mission.get_optional<std::string>(row.key))
+      table.set(file.string(), row.key, *value);
+  return keys;
+}
+
 double cell_size_m(const fs::path& run_dir) {
   core::MapOptions map;
   core::OptionTable table;
@@ -119,17 +130,6 @@ void write_team_telemetry(const evaluation::TeamRecord& team) {
   evaluation::write_whole_file(team.directory / "telemetry.csv", text);
 }
 
-/// The keys of the cave's mesh, as far as the run recorded them.
-core::MeshKeys recorded_mesh_keys(const fs::path& file, const boost::property_tree::ptree& mission) {
-  core::MeshKeys keys;
-  core::OptionTable table;
-  table.section("cave", keys);
-  for (const auto& row : table.rows())
-    if (const auto value = mission.get_optional<std::string>(row.key))
-      table.set(file.string(), row.key, *value);
-  return keys;
-}
-
 std::string bytes_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -154,18 +154,27 @@ constexpr const char* kTruthFiles[] = {"ground_truth.tum", "truth.csv", "truth_e
 
 }  // namespace
 
-Finishing recorded_cave(const fs::path& mission_info, Report report) {
-  const auto info = core::read_info(mission_info.string());
-  Finishing how{info.get("cave.file", ""), info.get("cave.start", "")};
-  how.report = report;
-  how.mesh = recorded_mesh_keys(mission_info, info);
-  return how;
+Finishing recorded_finishing(const fs::path& run_dir, Report report) {
+  const fs::path file = run_dir / "mission.info";
+  std::error_code absent;
+  if (!fs::exists(file, absent)) {
+    print_wrapped(stderr, 7, "karst: %s: is not there: the cave is not known\n", file.c_str());
+    return {"", "", report};
+  }
+  try {
+    const auto mission = core::read_info(file.string());
+    return {mission.get("cave.file", ""), mission.get("cave.start", ""), report, {},
+            recorded_mesh_keys(file, mission)};
+  } catch (const core::InputError& e) {
+    print_wrapped(stderr, 7, "karst: %s: the cave is not known\n", e.what());
+    return {"", "", report};
+  }
 }
 
 void take_truth(const fs::path& run_dir, const fs::path& truth, Report report) {
   if (!fs::is_regular_file(truth / "ground_truth.tum"))
     throw core::InputError(truth.string(), "", "holds no ground_truth.tum: is it a folder of karst vehicle serve --truth?");
-  const Finishing how = recorded_cave(truth / "mission.info", report);
+  const Finishing how = recorded_finishing(truth, report);
   for (const char* file : kTruthFiles) {
     if (!fs::is_regular_file(truth / file)) continue;
     std::error_code error;

@@ -17,8 +17,8 @@ struct Finishing {
   core::MeshKeys mesh = {};               // of a cave that is a bare mesh
 };
 
-/// The cave of the mission that a folder recorded, as far as its mission.info names it.
-Finishing recorded_cave(const std::filesystem::path& mission_info, Report report = Report::written);
+/// As mission.info says. One that is damaged is reported on standard error: then the cave is not known.
+Finishing recorded_finishing(const std::filesystem::path& run_dir, Report report);
 
 /// Completes a run with the ground truth that the vehicle's own process wrote into `truth` (karst vehicle serve), and
 /// evaluates it again. Throws core::InputError if that folder has none, or the run has other truth already.

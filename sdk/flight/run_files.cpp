@@ -1,5 +1,9 @@
 #include "sdk/flight/run_files.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <array>
 #include <boost/property_tree/ptree.hpp>
 #include <cerrno>
@@ -23,6 +27,7 @@ constexpr std::array kRunFiles = {"events.jsonl",
                                   "requests.bin",
                                   "policy_output.txt",
                                   "map_growth.bin",
+                                  "map_cells.bin",
                                   "unsurveyed.csv",
                                   "frames.csv",
                                   "frames",
@@ -111,6 +116,17 @@ void refuse_taken(const fs::path& run_dir) {
                                "); choose another --out, or replace the flight with karst fly --force");
 }
 
+void remove_stale_lock(const fs::path& run_dir) {
+  const fs::path file = run_dir / kLock;
+  const int lock = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (lock < 0) return;
+  const bool is_held = flock(lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(lock);
+  if (is_held) throw core::InputError(run_dir.string(), kLock, "a flight still writes there");
+  std::error_code ignored;
+  fs::remove(file, ignored);
+}
+
 RunClaim::RunClaim(fs::path run_dir, OldRun old) : run_dir_(std::move(run_dir)) {
   if (old == OldRun::replaced)
     refuse_to_replace(run_dir_);
@@ -121,15 +137,14 @@ RunClaim::RunClaim(fs::path run_dir, OldRun old) : run_dir_(std::move(run_dir)) 
   fs::create_directories(run_dir_, error);
   if (error)
     throw core::InputError(run_dir_.string(), "", "the run directory cannot be made: " + error.message());
-  std::FILE* lock = std::fopen((run_dir_ / kLock).c_str(), "wxe");
-  if (lock)
-    std::fclose(lock);
-  else if (errno == EEXIST)
+  lock_ = ::open((run_dir_ / kLock).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (lock_ < 0 && errno == EEXIST)
     throw core::InputError(run_dir_.string(), kLock,
                            "another karst writes there, or was killed; choose another --out or remove it");
-  else
+  if (lock_ < 0)
     throw core::InputError((run_dir_ / kLock).string(), "",
                            std::string("cannot be written: ") + std::strerror(errno));
+  flock(lock_, LOCK_EX | LOCK_NB);  // tells remove_stale_lock that this process lives
   if (old == OldRun::replaced) remove_run(run_dir_);  // behind the lock: no flight writes there now
 }
 
@@ -137,6 +152,7 @@ RunClaim::~RunClaim() {
   std::error_code ignored;
   if (!kept_) remove_run_files(run_dir_);
   fs::remove(run_dir_ / kLock, ignored);
+  if (lock_ >= 0) ::close(lock_);
   if (!kept_ && !was_there_) fs::remove(run_dir_, ignored);
 }
 

@@ -33,7 +33,12 @@ class RunClaim {
 
  private:
   std::filesystem::path run_dir_;
+  int lock_ = -1;  // descriptor of run.lock, locked as long as the process lives
   bool was_there_ = false, kept_ = false;
 };
+
+/// Removes the run.lock that a flight left behind when it was killed. Throws core::InputError if the flight still
+/// writes there.
+void remove_stale_lock(const std::filesystem::path& run_dir);
 
 }  // namespace karst::flight

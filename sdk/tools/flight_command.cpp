@@ -15,6 +15,7 @@
 #include "sdk/tools/fly_command.h"
 #include "sdk/tools/karst_command.h"
 #include "sdk/tools/policy_command.h"
+#include "sdk/tools/recover_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/root_command.h"
 #include "sdk/tools/table_command.h"
@@ -55,6 +56,7 @@ std::shared_ptr<CLI::App> karst_command() {
   CLI::App& policy = add_policy_command(*app);
   CLI::App& cave = add_cave_command(*app);
   add_report_command(*app, refuse_campaign);
+  add_recover_command(*app);
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);

@@ -25,6 +25,7 @@
 #include "sdk/tools/preflight_command.h"
 #include "sdk/tools/python_command.h"
 #include "sdk/tools/replay_command.h"
+#include "sdk/tools/recover_command.h"
 #include "sdk/tools/report_command.h"
 #include "sdk/tools/request_replay_command.h"
 #include "sdk/tools/root_command.h"
@@ -60,6 +61,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_from_cloud_command(cave);
   add_from_survey_command(cave);
   add_report_command(*app, campaign_page);
+  add_recover_command(*app);
   add_draw_command(*app);
   add_table_command(*app);
   add_explain_command(*app);

@@ -9,7 +9,6 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/json_file.h"
 #include "core_stack/common/options.h"
-#include "core_stack/vehicle/mesh_keys.h"
 #include "sdk/evaluation/team/team_folders.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/team_metrics.h"
@@ -83,11 +82,11 @@ void add_report_command(CLI::App& app, CampaignPage campaign_page) {
       print_out("%s\n", page->c_str());
       return;
     }
-    if (!fs::exists(run / "mission.info"))
+    if (!fs::exists(run / "mission.info") && !fs::exists(run / "events.jsonl"))
       throw core::InputError(args->run, "",
                              "no run directory, as it holds no mission.info, nor a campaign's folder");
-    const flight::Finishing how = flight::recorded_cave(
-        run / "mission.info", args->no_report ? flight::Report::none : flight::Report::written);
+    const flight::Finishing how = flight::recorded_finishing(
+        run, args->no_report ? flight::Report::none : flight::Report::written);
     if (evaluation::is_team(run)) {
       report_team(run, how);
       return;

@@ -48,13 +48,22 @@ std::vector<OccupiedSpan> read_map_growth(const std::filesystem::path& file,
     std::int32_t t_ms;
   };
   std::vector<Change> changes;
-  std::size_t implausible = 0;
+  std::size_t implausible = 0, empty = 0;
   for (std::size_t i = 0; i + kRecordBytes <= bytes.size(); i += kRecordBytes) {
     const char* p = bytes.data() + i;
     const core::CellKey key{little_endian(p), little_endian(p + 4), little_endian(p + 8)};
-    if (plausible(key)) changes.push_back({key, little_endian(p + 12)});
-    implausible += !plausible(key);
+    const std::int32_t t_ms = little_endian(p + 12);
+    // No cell changes at 0 ms: a power cut left zeros where data did not reach the disk.
+    if (key == core::CellKey{} && t_ms == 0)
+      ++empty;
+    else if (plausible(key))
+      changes.push_back({key, t_ms});
+    else
+      ++implausible;
   }
+  if (empty > 0)
+    problems.push_back(file.filename().string() + ": " + std::to_string(empty) +
+                       " records were never written, and are zeros; left out");
   if (implausible > 0)
     problems.push_back(file.filename().string() + ": " + std::to_string(implausible) +
                        " records name cells out of this world; left out");

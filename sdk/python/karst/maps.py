@@ -76,9 +76,14 @@ def read_growth(file: Path, resolution_m: float, problems: list[str]) -> pd.Data
     if len(data) % 16:
         problems.append(f"{file}: byte {16 * whole}: a record is cut off; left out")
     records = np.frombuffer(data, dtype="<i4", count=4 * whole).reshape(-1, 4)
+    written = records.any(axis=1)  # no cell changes at 0 ms: a power cut left zeros
+    if not written.all():
+        problems.append(f"{file}: {int((~written).sum())} records were never written; left out")
     far = np.abs(records[:, :3].astype(np.int64)).max(axis=1, initial=0) >= _FARTHEST_CELL
     if far.any():
         raise Error.at(file, f"byte {16 * int(far.argmax())}", "is damaged: a cell out of this world")
+    records = records[written]
+    whole = len(records)
     # The file is in order of time. A stable sort by cell keeps each cell's changes in that order.
     records = records[np.lexsort((records[:, 2], records[:, 1], records[:, 0]))]
     cell, appears = records[:, :3], records[:, 3] >= 0

@@ -144,11 +144,16 @@ def _as_array(name: str, value):
 
 
 def _whole_lines(file: Path, problems: list[str]) -> list[str]:
-    """Lines without their ends. Half a line at the end is left out and reported."""
+    """Lines without their ends. Left out and reported: half a line at the end; lines with zeros, as a power cut
+    leaves them where data did not reach the disk."""
     lines = read_text(file).split("\n")
     if lines[-1]:
         problems.append(f"{file}: line {len(lines)}: is cut off; left out")
-    return lines[:-1]
+    lines = lines[:-1]
+    lost = [number for number, line in enumerate(lines, 1) if "\0" in line]
+    if lost:
+        problems.append(f"{file}: line {lost[0]}: holds zeros, as do {len(lost) - 1} others; left out")
+    return [line for line in lines if "\0" not in line]
 
 
 def _floats(cells: list[str], name: str, numbers: list[int], file: Path) -> np.ndarray:

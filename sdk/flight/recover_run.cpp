@@ -1,0 +1,79 @@
+#include "sdk/flight/recover_run.h"
+
+#include "core_stack/common/error.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
+#include "core_stack/mission/recording/map_cells.h"
+#include "sdk/evaluation/record/map_cells.h"
+#include "sdk/evaluation/record/run_record.h"
+#include "sdk/evaluation/team/team_folders.h"
+#include "sdk/flight/run_files.h"
+
+namespace karst::flight {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "" if it can be read.
+std::string problem_of_map(const fs::path& file) {
+  try {
+    core::read_octomap(file.string());
+    return "";
+  } catch (const core::InputError& e) {
+    return e.what();
+  }
+}
+
+bool has_whole_map(const fs::path& run_dir, RecoveredMap& out) {
+  bool whole = true;
+  for (const char* name : {"map.bt", "map.ot"}) {
+    std::error_code error;
+    if (!fs::exists(run_dir / name, error)) {
+      whole = false;
+      continue;
+    }
+    const std::string problem = problem_of_map(run_dir / name);
+    if (!problem.empty()) out.notes.push_back(problem);
+    whole = whole && problem.empty();
+  }
+  return whole;
+}
+
+/// Occupied cells alone: a flight in lockstep does not record the free ones.
+core::VoxelMap rock_of(const evaluation::RunRecord& run) {
+  core::MapOptions options;
+  options.resolution_m = run.map_resolution_m();
+  core::VoxelMap map(options);
+  for (const evaluation::OccupiedSpan& s : run.growth)
+    if (s.until_ms == evaluation::OccupiedSpan::kNever) map.assign(s.key, 1, 1.0f);
+  return map;
+}
+
+}  // namespace
+
+RecoveredMap recover_map(const fs::path& run_dir) {
+  if (evaluation::is_team(run_dir))
+    throw core::InputError(run_dir.string(), "", "is the run of a team: karst report evaluates what it kept");
+  RecoveredMap out;
+  const evaluation::RunRecord run = evaluation::read_run(run_dir);
+  if (run.settings.empty() && run.events.empty() && run.telemetry.rows == 0 && run.growth.empty() &&
+      !fs::exists(run_dir / core::kMapCellsName))
+    throw core::InputError(run_dir.string(), "", "holds nothing of a flight");
+  remove_stale_lock(run_dir);
+  if (has_whole_map(run_dir, out)) return out;
+  if (run.setting("map.resolution").empty())
+    out.notes.emplace_back("mission.info: has no map.resolution; 0.2 m is assumed");
+  if (const auto map = evaluation::read_map_cells(run_dir / core::kMapCellsName, run.map_resolution_m(), out.notes)) {
+    core::write_octomap(*map, (run_dir / "map").string());
+    core::write_ply(*map, (run_dir / "map.ply").string());
+    out.written = {run_dir / "map.bt", run_dir / "map.ot", run_dir / "map.ply"};
+  } else if (const core::VoxelMap rock = rock_of(run); rock.occupied_cells() > 0) {
+    core::write_ply(rock, (run_dir / "map.ply").string());
+    out.written = {run_dir / "map.ply"};
+    out.notes.emplace_back("map_cells.bin: is not there, or holds nothing: only the rock of map_growth.bin is known");
+  } else {
+    out.notes.emplace_back("no map: neither map_cells.bin nor map_growth.bin holds a cell");
+  }
+  return out;
+}
+
+}  // namespace karst::flight

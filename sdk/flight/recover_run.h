@@ -1,0 +1,19 @@
+// A run directory whose flight was cut off, by a power cut or a kill: what can be made of what was kept.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace karst::flight {
+
+struct RecoveredMap {
+  std::vector<std::filesystem::path> written;
+  std::vector<std::string> notes;  // what is missing, and what was left out
+};
+
+/// Writes map.bt, map.ot and map.ply of map_cells.bin, or map.ply alone of map_growth.bin, unless there is a map that
+/// can be read. Changes no other file but run.lock, which it removes. Throws core::InputError if a flight still
+/// writes there, for a team, and if a file cannot be written.
+RecoveredMap recover_map(const std::filesystem::path& run_dir);
+
+}  // namespace karst::flight

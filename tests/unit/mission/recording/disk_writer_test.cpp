@@ -1,0 +1,110 @@
+#include "core_stack/mission/recording/disk_writer.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "core_stack/common/error.h"
+#include "core_stack/mission/recording/recorder.h"
+
+namespace karst::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const std::string& name) {
+  const fs::path dir = fs::path(KARST_BINARY_DIR) / "test_runs" / name;
+  fs::remove_all(dir);
+  fs::create_directories(dir);
+  return dir;
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(DiskWriter, WritesWhatItWasGivenInOrder) {
+  const fs::path dir = folder_of("disk_writer");
+  std::string expected_a, expected_b;
+  {
+    DiskWriter disk(dir);
+    const auto a = disk.open(dir / "a"), b = disk.open(dir / "b");
+    std::string pending;
+    for (int i = 0; i < 1000; ++i) {
+      pending += std::to_string(i) + ",";
+      expected_a += std::to_string(i) + ",";
+      EXPECT_TRUE(disk.try_append(a, pending)) << "what it does not take stays in `pending`";
+      std::string other = "x";
+      expected_b += other;
+      EXPECT_TRUE(disk.append(b, other));
+      EXPECT_TRUE(other.empty());
+    }
+    EXPECT_TRUE(disk.append(a, pending));
+    EXPECT_TRUE(disk.finish());
+  }
+  EXPECT_EQ(content_of(dir / "a"), expected_a);
+  EXPECT_EQ(content_of(dir / "b"), expected_b);
+}
+
+TEST(DiskWriter, SaysThatTheDiskIsFullAndWritesTheOtherFiles) {
+  const fs::path dir = folder_of("disk_writer_full");
+  DiskWriter disk(dir);
+  const auto full = disk.open("/dev/full"), good = disk.open(dir / "good");
+  std::string one = "one", two = "two";
+  disk.append(full, one);
+  disk.append(good, two);
+  EXPECT_FALSE(disk.finish());
+  EXPECT_EQ(content_of(dir / "good"), "two");
+  std::string more = "more";
+  EXPECT_FALSE(disk.append(good, more));
+  EXPECT_TRUE(more.empty()) << "what is lost needs no memory";
+}
+
+TEST(DiskWriter, ABacklogDoesNotGrowWithoutBound) {
+  const fs::path dir = folder_of("disk_writer_backlog");
+  DiskWriter disk(dir);
+  const auto file = disk.open(dir / "a");
+  std::string huge(DiskWriter::kMaxPending + 1, 'x');
+  EXPECT_FALSE(disk.append(file, huge));
+  EXPECT_TRUE(huge.empty());
+}
+
+TEST(DiskWriter, AFileThatCannotBeMadeIsAnError) {
+  const fs::path dir = folder_of("disk_writer_error");
+  DiskWriter disk(dir);
+  EXPECT_THROW(disk.open(dir / "no" / "such"), InputError);
+}
+
+TEST(Recorder, WritesTheSameBytesWhateverItIsToSurvive) {
+  std::vector<fs::path> folders;
+  for (const auto durability : {Durability::survives_a_crash, Durability::survives_a_power_cut}) {
+    folders.push_back(folder_of("recorder_durability_" + std::to_string(folders.size())));
+    Recorder recorder(folders.back(), durability);
+    for (int i = 1; i < 200; ++i) {
+      const TimeNs t = i * 100 * kMillisecond;
+      recorder.write(t, event::Log{"line " + std::to_string(i)});
+      recorder.pose({.stamp = t});
+      Telemetry row;
+      row.stamp = t;
+      recorder.telemetry(row);
+      recorder.unsurveyed(t, i);
+      recorder.decision_cost(t, 1, 2);
+      recorder.map_changes(t, std::vector<CellChange>{{{i, 0, 0}, Cell::unknown, Cell::occupied}});
+      EXPECT_TRUE(recorder.flush());
+    }
+    EXPECT_TRUE(recorder.close());
+  }
+  for (const char* name : {"events.jsonl", "trajectory.tum", "telemetry.csv", "localization.csv", "map_growth.bin",
+                           "decisions.csv", "unsurveyed.csv"}) {
+    EXPECT_GT(fs::file_size(folders[0] / name), 50u) << name;
+    EXPECT_EQ(content_of(folders[0] / name), content_of(folders[1] / name)) << name;
+  }
+  EXPECT_FALSE(fs::exists(folders[0] / "map_cells.bin"));
+  EXPECT_EQ(fs::file_size(folders[1] / "map_cells.bin"), 199u * 16);
+}
+
+}  // namespace
+}  // namespace karst::core
