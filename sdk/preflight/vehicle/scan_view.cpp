@@ -21,6 +21,11 @@ constexpr int kLeastScans = 5;          // for noise
 constexpr double kColumnMargin_m = 0.1, kLookAbove_m = 4, kLookAround_m = 3;
 constexpr std::size_t kStrayReturns = 5;  // so many nearest returns may be noise
 
+/// Of the vehicle itself: within its hull, or nearer to the sensor than anything outside usually is.
+bool is_own(double range_m, const Vec3& p_body, double hull_radius_m) {
+  return std::min(range_m, p_body.norm()) < hull_radius_m + kHullMargin_m;
+}
+
 /// Unit vectors of the beams in the body frame, channel-major.
 std::vector<Vec3> beams_of(const LidarModel& model) {
   std::vector<Vec3> beams;
@@ -73,8 +78,9 @@ class Surroundings {
         climb_m_(climb_m) {}
 
   Vec3 level(const Vec3& p_body) const { return q_level_body_ * p_body; }
-  void add(const Vec3& p_body) {
-    if (p_body.norm() < radius_m_ + kHullMargin_m) return;
+  void add(const Vec3& origin_body, const Vec3& ray_m) {
+    const Vec3 p_body = origin_body + ray_m;
+    if (is_own(ray_m.norm(), p_body, radius_m_)) return;
     any_ = true;
     const Vec3 p = level(p_body);
     const double aside_m = p.head<2>().norm();
@@ -118,10 +124,9 @@ void add_scan(const LidarScan& scan, Surroundings& around, PadRoom& room, bool d
     const auto range_m = static_cast<double>(scan.range_m[i]);
     if (!std::isnan(range_m) && !room.seen_above) room.seen_above = around.in_column(origin, beams[i]);
     if (!std::isfinite(range_m) || range_m <= 0) continue;
-    const Vec3 p = origin + range_m * beams[i];
-    around.add(p);
+    around.add(origin, range_m * beams[i]);
     if (!draw || i % step != 0) continue;
-    const Eigen::Vector3f q = around.level(p).cast<float>();
+    const Eigen::Vector3f q = around.level(origin + range_m * beams[i]).cast<float>();
     room.points.push_back({q.x(), q.y(), q.z()});
   }
 }
@@ -138,7 +143,7 @@ void add_image(const core::DepthImage& image, Surroundings& around, PadRoom& roo
       const Vec3 beam = model.T_body_camera.orientation * model.direction(row, column).cast<double>();
       if (!std::isnan(range_m) && !room.seen_above)
         room.seen_above = around.in_column(model.T_body_camera.position, beam);
-      if (std::isfinite(range_m) && range_m > 0) around.add(model.T_body_camera.position + range_m * beam);
+      if (std::isfinite(range_m) && range_m > 0) around.add(model.T_body_camera.position, range_m * beam);
     }
 }
 
@@ -165,8 +170,7 @@ LidarView lidar_view(std::span<const std::shared_ptr<const LidarScan>> scans, do
       ++beams_in[sector];
       const auto range_m = static_cast<double>(scan->range_m[i]);
       if (!std::isfinite(range_m) || range_m <= 0) continue;
-      // Within the hull, or nearer to the sensor than anything outside of a hull that carries it can be.
-      if (std::min(range_m, (origin + range_m * beams[i]).norm()) < hull_radius_m + kHullMargin_m) {
+      if (is_own(range_m, origin + range_m * beams[i], hull_radius_m)) {
         ++hull[sector];
         continue;
       }

@@ -47,7 +47,10 @@ Timeline timeline_of(std::span<const Arrival> arrivals, core::TimeNs begin, core
   t.first_after_s = core::seconds(first - begin);
   if (!last) return t;
   t.longest_gap_s = std::max(t.longest_gap_s, core::seconds(end - last->came));
-  if (end > first) t.rate_hz = (t.messages - 1) / core::seconds(end - first);
+  // Up to the last message, or to the end if it is overdue: then the sensor fell silent.
+  core::TimeNs span = last->came - first;
+  if (t.messages < 2 || end - last->came > 2 * span / (t.messages - 1)) span = end - first;
+  if (span > 0) t.rate_hz = (t.messages - 1) / core::seconds(span);
   t.latency_s = median(latency_s);
   t.jump_s = jump_of(latency_s);
   const double usual_s = median(interval_s);

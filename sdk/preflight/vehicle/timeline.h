@@ -10,7 +10,7 @@ namespace karst::preflight {
 struct Timeline {
   int messages = 0;
   double first_after_s = 0;  // from the beginning to the first message
-  double rate_hz = 0;        // from the first message to the end
+  double rate_hz = 0;        // from the first message on
   double longest_gap_s = 0;  // without a message, up to the end
   double jitter_s = 0;       // 95th percentile of the deviation of stamp intervals from their median
   int backward = 0;          // stamps that are not later than the one before

@@ -67,7 +67,7 @@ std::string list_of(const std::vector<Check>& checks, Outcome outcome, const cha
   for (const Check& c : checks) {
     if (c.outcome != outcome) continue;
     items += std::string("<li><b>") + core::name_of(c.part) + ", " + xml_text(c.what) + "</b>: " +
-             xml_text(c.measured) + " (required: " + xml_text(c.required) + "). " + xml_text(c.remedy) + "</li>\n";
+             xml_text(c.measured) + " (required: " + xml_text(c.required) + "). To do: " + xml_text(c.remedy) + "</li>\n";
   }
   return items.empty() ? "" : std::string("<h2>") + title + "</h2>\n<ul>\n" + items + "</ul>\n";
 }

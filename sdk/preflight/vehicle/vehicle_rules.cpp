@@ -119,7 +119,7 @@ constexpr double kGravity_mps2 = 9.81;  // 9.78 at the equator, 9.83 at the pole
 void judge_imu(const VehicleMeasurements& m, Judge& judge) {
   const ImuAtRest& imu = m.imu;
   if (imu.samples == 0) return;
-  judge.add(Part::imu, "numbers", format_text("%d samples are none", imu.invalid), "0", no_go_if(imu.invalid > 0),
+  judge.add(Part::imu, "values that are no numbers", format_text("%d", imu.invalid), "0", no_go_if(imu.invalid > 0),
             "look for a fault of the driver");
   const bool still = imu.rate_noise_radps < 0.05 && imu.force_noise_mps2 < 1 && imu.force_drift_mps2 < 0.3;
   judge.add(Part::imu, "standing still",

@@ -23,7 +23,7 @@ std::string with_outcome(const std::vector<Check>& checks, Outcome outcome, cons
   for (const Check& c : checks) {
     if (c.outcome != outcome) continue;
     out += std::string("  ") + core::name_of(c.part) + ", " + c.what + ": " + c.measured + " (required: " +
-           c.required + ")" + (c.remedy.empty() ? "" : ". " + c.remedy) + "\n";
+           c.required + ")" + (c.remedy.empty() ? "" : ". To do: " + c.remedy) + "\n";
   }
   return out.empty() ? "" : title + out;
 }

@@ -254,6 +254,58 @@ TEST(PreflightCommand, TheVehicleDecidesWhatIsSeen) {
   EXPECT_LT(looks_up_rad("lidar_only_uav"), 1.5);
 }
 
+/// A mission in the two rooms, for the preflight of a vehicle.
+std::string mission_file() {
+  const std::string file = (own_folder() / "mission.info").string();
+  std::ofstream(file) << "seed 3\ncave { file " << rooms() << " start \"" << kStart << "\" }\n";
+  return file;
+}
+
+const nlohmann::json* check_of(const nlohmann::json& j, const std::string& what) {
+  for (const nlohmann::json& c : j["checks"])
+    if (c["what"] == what) return &c;
+  return nullptr;
+}
+
+TEST(PreflightCommand, OfAVehiclePluginListensToTheVehicle) {
+  const Said said = run({"--vehicle", "simulator", mission_file(), "--seconds", "3", "--json"});
+  EXPECT_EQ(said.code, 0) << said.text;
+  const nlohmann::json j = json_of(said);
+  EXPECT_EQ(j["schema"], "karst.vehicle_preflight/1");
+  EXPECT_EQ(j["vehicle"], "lidar_uav");
+  EXPECT_EQ(j["rest_s"], 3);
+  EXPECT_TRUE(j["motion"].is_null());
+  const nlohmann::json* mounting = check_of(j, "mounting and delay");
+  ASSERT_NE(mounting, nullptr);
+  EXPECT_EQ((*mounting)["outcome"], "watch") << "nobody turned it";
+  for (const nlohmann::json& c : j["checks"])
+    if (&c != mounting) {
+      EXPECT_EQ(c["outcome"], "pass") << c;
+    }
+}
+
+TEST(PreflightCommand, OfAVehicleTakesSettingsAndWritesTheChecklist) {
+  const std::string page = (own_folder() / "checklist.html").string();
+  const Said said = run({"--vehicle", "simulator", mission_file(), "--seconds", "3", "--page", page, "--set",
+                         "simulator.lidar.rate=5 Hz", "--policy", "nowhere"});
+  EXPECT_EQ(said.code, 3) << said.text;
+  EXPECT_TRUE(said.text.starts_with("NO-GO, for 2 reasons")) << said.text;
+  const std::string text = unwrapped(said.text);
+  EXPECT_TRUE(contains(text, "LiDAR, rate: 5.0 Hz (required: 10 Hz, at least 9 Hz)")) << said.text;
+  EXPECT_TRUE(contains(text, "policy, loads: nowhere")) << said.text;
+  std::ifstream in(page);
+  const std::string html{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  EXPECT_TRUE(contains(html, "NO-GO, for 2 reasons") && contains(html, "class=\"box\""));
+}
+
+TEST(PreflightCommand, OfAVehicleHasTheErrorsOfAMission) {
+  EXPECT_TRUE(contains(error_of({"--vehicle", "submarine"}), "no vehicle \"submarine\" here; there is:"));
+  EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", "nowhere.info"}), "nowhere.info"));
+  EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", mission_file(), "--set", "team.robots=2"}),
+                       "for one vehicle, not for a team"));
+  EXPECT_TRUE(contains(error_of({}), "needs a CAVE, or --vehicle"));
+}
+
 TEST(PreflightCommand, BadInputIsAnError) {
   const std::string cave = rooms();
   const auto error_with = [&](std::vector<std::string> more) {

@@ -30,7 +30,7 @@ TEST(VehicleWords, SaysWhatWasMeasuredWhatIsRequiredAndWhatToDo) {
   const VehicleMeasurements m = with_low_battery();
   const std::string text = checks_text(m, checks_of(m));
   EXPECT_TRUE(text.starts_with("NO-GO, for 1 reason: vehicle known <vehicle>"));
-  EXPECT_TRUE(contains(text, "battery, charge: 30 % (required: at least 90 %). charge it, or take another"));
+  EXPECT_TRUE(contains(text, "battery, charge: 30 % (required: at least 90 %). To do: charge it, or take another"));
   EXPECT_TRUE(contains(text, "  IMU: rate 200.0 Hz; ")) << text;
   EXPECT_TRUE(contains(text, "  [ ] Props"));
 }

@@ -99,7 +99,7 @@ TEST(VehicleRules, TheImuAtRest) {
   expect_only([](auto& m) { m.imu.mean_rate_radps.y() = 0.12; }, Outcome::no_go, Part::imu, "bias of the gyroscope");
   expect_only([](auto& m) { m.imu.rate_noise_radps = 0.03; }, Outcome::watch, Part::imu, "noise of the gyroscope");
   expect_only([](auto& m) { m.imu.rate_noise_radps = 0.3; }, Outcome::no_go, Part::imu, "standing still");
-  expect_only([](auto& m) { m.imu.invalid = 1; }, Outcome::no_go, Part::imu, "numbers");
+  expect_only([](auto& m) { m.imu.invalid = 1; }, Outcome::no_go, Part::imu, "values that are no numbers");
   expect_only([](auto& m) { m.imu.repeated = 0.5; }, Outcome::no_go, Part::imu, "repeated samples");
   expect_only([](auto& m) { m.motion->clipped = 0.05; }, Outcome::watch, Part::imu,
               "samples at the limit of its range");
