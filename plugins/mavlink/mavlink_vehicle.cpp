@@ -174,6 +174,7 @@ void MavlinkVehicle::command(const core::Command& c) {
   if (executive_ == nullptr) return;
   state_ = c.state;
   state_known_ = c.state_is_known;
+  commanded_ = true;
   if (c.state_is_known && c.state.stamp > 0 && due(vision_at_, options_.vision_rate_hz))
     connection_.send(vision(c.state));
   if (hand_over_.steering(now()).who == Authority::core) {
@@ -229,6 +230,8 @@ std::vector<core::VehicleCheck> MavlinkVehicle::checks() const {
   constexpr double kMaxLoss_percent = 5;
   add("messages lost", "at most 5 %", received > 0 ? text("%.1f %%", lost_percent) : "",
       received > 0 && lost_percent <= kMaxLoss_percent);
+  // The core's state comes with its commands: a preflight, which gives none, has nothing to compare with.
+  if (!commanded_) return all;
   // Frames or an origin that differ are flown into the rock.
   const auto& position = telemetry_.position();
   const double off_m = position && state_known_ ? (*position - state_.position).norm() : 0;

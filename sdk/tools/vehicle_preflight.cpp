@@ -68,7 +68,7 @@ bool vehicle_preflight(const VehiclePreflightArguments& args) {
   machine.policy = mission.policy;
   machine.policy_problem = policy_problem(mission, request);
 
-  const flight::Vehicles vehicles = flight::make_vehicles(mission, {mission}, "");
+  const flight::Vehicles vehicles = flight::make_vehicles(mission, {mission}, "", request.clock);
   preflight::ListenOptions how;
   how.rest = core::from_seconds(args.rest_s);
   how.motion = args.motion ? core::from_seconds(args.motion_s) : 0;

@@ -26,12 +26,24 @@ bool is_own(double range_m, const Vec3& p_body, double hull_radius_m) {
   return std::min(range_m, p_body.norm()) < hull_radius_m + kHullMargin_m;
 }
 
-/// Unit vectors of the beams in the body frame, channel-major.
-std::vector<Vec3> beams_of(const LidarModel& model) {
-  std::vector<Vec3> beams;
+/// Of the body frame.
+struct Beam {
+  Vec3 origin = Vec3::Zero(), direction = Vec3::UnitX();
+  Vec3 at(double range_m) const { return origin + range_m * direction; }
+};
+
+/// As the scan's ranges. With rings the beams of all scans are the same.
+std::vector<Beam> beams_of(const LidarScan& scan) {
+  const LidarModel& model = *scan.model;
+  const Pose& T = model.T_body_lidar;
+  std::vector<Beam> beams;
+  beams.reserve(scan.range_m.size());
+  for (const core::Vec3f& d : scan.direction) beams.push_back({T.position, T.orientation * d.cast<double>()});
+  if (!model.has_rings()) return beams;
+  beams.clear();
   for (int c = 0; c < model.channels(); ++c)
     for (int j = 0; j < model.columns; ++j)
-      beams.push_back(model.T_body_lidar.orientation * model.direction(c, j).cast<double>());
+      beams.push_back({T * model.origin(j).cast<double>(), T.orientation * model.direction(c, j).cast<double>()});
   return beams;
 }
 
@@ -60,6 +72,12 @@ BlockedArc widest_arc(const std::array<double, kSectors>& clear, const std::arra
 struct BeamStatistics {
   int returns = 0;
   double sum_m = 0, squares_m2 = 0;
+
+  void add(double range_m) {
+    ++returns;
+    sum_m += range_m;
+    squares_m2 += range_m * range_m;
+  }
 };
 
 /// The k-th least of the values, or `most` if there are fewer.
@@ -110,23 +128,17 @@ class Surroundings {
   std::vector<double> above_m_, around_m_;
 };
 
-bool fits(const LidarScan& scan) {
-  return scan.model && scan.range_m.size() == static_cast<std::size_t>(scan.model->columns) *
-                                                  scan.model->elevation_rad.size();
-}
-
 void add_scan(const LidarScan& scan, Surroundings& around, PadRoom& room, bool draw) {
   constexpr std::size_t kDrawn = 3000;
-  const std::vector<Vec3> beams = beams_of(*scan.model);
-  const Vec3& origin = scan.model->T_body_lidar.position;
+  const std::vector<Beam> beams = beams_of(scan);
   const std::size_t step = std::max<std::size_t>(1, beams.size() / kDrawn);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const auto range_m = static_cast<double>(scan.range_m[i]);
-    if (!std::isnan(range_m) && !room.seen_above) room.seen_above = around.in_column(origin, beams[i]);
+    if (!std::isnan(range_m) && !room.seen_above) room.seen_above = around.in_column(beams[i].origin, beams[i].direction);
     if (!std::isfinite(range_m) || range_m <= 0) continue;
-    around.add(origin, range_m * beams[i]);
+    around.add(beams[i].origin, range_m * beams[i].direction);
     if (!draw || i % step != 0) continue;
-    const Eigen::Vector3f q = around.level(origin + range_m * beams[i]).cast<float>();
+    const Eigen::Vector3f q = around.level(beams[i].at(range_m)).cast<float>();
     room.points.push_back({q.x(), q.y(), q.z()});
   }
 }
@@ -154,31 +166,26 @@ LidarView lidar_view(std::span<const std::shared_ptr<const LidarScan>> scans, do
   std::array<double, kSectors> clear{}, hull{}, beams_in{};
   std::vector<double> intensities;
   std::vector<BeamStatistics> statistics;
-  std::vector<Vec3> beams;
+  std::vector<Beam> beams;
+  const bool repeats = !scans.empty() && scans.front()->model && scans.front()->model->has_rings();
   for (const auto& scan : scans) {
-    if (!fits(*scan) || (view.scans > 0 && scan->range_m.size() != beams.size())) {
+    if (!scan->fits_model() || (repeats && view.scans > 0 && scan->range_m.size() != beams.size())) {
       ++view.misshapen;
       continue;
     }
-    if (view.scans++ == 0) {
-      beams = beams_of(*scan->model);
-      statistics.resize(beams.size());
-    }
-    const Vec3& origin = scan->model->T_body_lidar.position;
+    if (view.scans++ == 0 || !repeats) beams = beams_of(*scan);
+    if (repeats) statistics.resize(beams.size());
     for (std::size_t i = 0; i < beams.size(); ++i) {
-      const std::size_t sector = sector_of(beams[i]);
+      const std::size_t sector = sector_of(beams[i].direction);
       ++beams_in[sector];
       const auto range_m = static_cast<double>(scan->range_m[i]);
       if (!std::isfinite(range_m) || range_m <= 0) continue;
-      if (is_own(range_m, origin + range_m * beams[i], hull_radius_m)) {
+      if (is_own(range_m, beams[i].at(range_m), hull_radius_m)) {
         ++hull[sector];
         continue;
       }
       ++clear[sector];
-      BeamStatistics& s = statistics[i];
-      ++s.returns;
-      s.sum_m += range_m;
-      s.squares_m2 += range_m * range_m;
+      if (repeats) statistics[i].add(range_m);
       if (i < scan->intensity.size() && std::isfinite(scan->intensity[i]))
         intensities.push_back(static_cast<double>(scan->intensity[i]));
     }
@@ -210,7 +217,7 @@ PadRoom pad_room(const VehicleRecord& record, const Vec3& up, double climb_m) {
   PadRoom room;
   Surroundings around(record, up, climb_m);
   for (std::size_t i = 0; i < std::min(kScans, record.scans_at_rest.size()); ++i)
-    if (fits(*record.scans_at_rest[i]))
+    if (record.scans_at_rest[i]->fits_model())
       add_scan(*record.scans_at_rest[i], around, room, room.points.empty());
   for (const CameraRecord& camera : record.cameras)
     for (const auto& image : camera.images) add_image(*image, around, room);

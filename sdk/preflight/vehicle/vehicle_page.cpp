@@ -24,7 +24,7 @@ h2 { font-size: 10pt; margin: 2.5mm 0 1mm; border-bottom: .3mm solid #111; }
 .verdict { font-size: 13pt; font-weight: 700; padding: 1.2mm 3mm; border: .6mm solid #111; margin: 1.5mm 0; }
 .no_go { border-width: 1.4mm; }
 table { border-collapse: collapse; width: 100%; }
-th { text-align: left; font-weight: 600; vertical-align: top; padding: .3mm 2mm .3mm 0; }
+th { text-align: left; font-weight: 600; width: 22mm; white-space: nowrap; vertical-align: top; padding: .3mm 2mm .3mm 0; }
 td { vertical-align: top; padding: .3mm 2mm .3mm 0; }
 ul { margin: 0; padding-left: 5mm; }
 ul.boxes { list-style: none; padding: 0; columns: 2; column-gap: 6mm; }
@@ -35,7 +35,7 @@ ul.boxes li { padding-left: 6mm; text-indent: -6mm; margin-bottom: .8mm; break-i
 svg { display: block; width: 100%; height: auto; }
 .plot text { font-size: 2.7px; font-family: system-ui, "DejaVu Sans", sans-serif; }
 .plot .frame { fill: none; stroke: #999; stroke-width: .2; }
-.plot .curve { fill: none; stroke-width: .4; }
+.plot .curve { fill: none; stroke-width: .4; } .plot .wide { stroke-width: 1.6; }
 .pad path { fill: none; stroke-linecap: round; }
 .pad .floor { stroke: #bbb; stroke-width: .03; } .pad .walls { stroke: #111; stroke-width: .05; }
 .pad .hull { fill: none; stroke: #111; stroke-width: .04; }

@@ -38,8 +38,8 @@ class Plot {
     for (const auto& [x, y] : curve.points)
       d += format_text("%c%.2f %.2f", d.empty() ? 'M' : 'L', x_of(x), y_of(std::clamp(y, 0.0, top_)));
     const double y = kTop + 3 + 4.0 * curves_++;
-    body_ += "<path class=\"curve\" " + curve.style + " d=\"" + d + "\"/>\n" +
-             format_text("<path class=\"curve\" %s d=\"M%g %gh6\"/>\n", curve.style.c_str(), kLeft + kWidth + 3, y - 1) +
+    body_ += "<path " + curve.style + " d=\"" + d + "\"/>\n" +
+             format_text("<path %s d=\"M%g %gh6\"/>\n", curve.style.c_str(), kLeft + kWidth + 3, y - 1) +
              format_text("<text x=\"%g\" y=\"%g\">", kLeft + kWidth + 10, y) + core::xml_text(curve.name) +
              "</text>\n";
   }
@@ -66,13 +66,19 @@ class Plot {
 
 /// Lines that a printer without colours tells apart.
 std::string style_of(std::size_t i) {
-  constexpr const char* kStyles[] = {"stroke=\"#111\"",
-                                     "stroke=\"#111\" stroke-dasharray=\"2 1\"",
-                                     "stroke=\"#888\"",
-                                     "stroke=\"#888\" stroke-dasharray=\"2 1\"",
-                                     "stroke=\"#111\" stroke-dasharray=\"0.5 0.8\"",
-                                     "stroke=\"#888\" stroke-dasharray=\"0.5 0.8\""};
+  constexpr const char* kStyles[] = {
+      "class=\"curve\" stroke=\"#111\"", "class=\"curve\" stroke=\"#111\" stroke-dasharray=\"2 1\"",
+      "class=\"curve\" stroke=\"#888\"", "class=\"curve\" stroke=\"#888\" stroke-dasharray=\"2 1\"",
+      "class=\"curve\" stroke=\"#111\" stroke-dasharray=\"0.5 0.8\""};
   return kStyles[i % std::size(kStyles)];
+}
+
+/// Behind another one that should lie on it.
+constexpr const char* kBehind = "class=\"curve wide\" stroke=\"#bbb\"";
+
+/// Those of which a flight needs every message.
+bool is_drawn(Sensor sensor) {
+  return sensor == Sensor::imu || sensor == Sensor::lidar || sensor == Sensor::camera || sensor == Sensor::pose;
 }
 
 }  // namespace
@@ -82,8 +88,8 @@ std::string rates_svg(const VehicleMeasurements& m) {
   Plot plot(m.rest_s + m.motion_s, kTop, "messages in a second, % of what is required");
   std::size_t i = 0;
   for (const SensorTimeline& s : m.sensors) {
-    if (s.timeline.messages == 0 || s.sensor == Sensor::battery || s.sensor == Sensor::barometer) continue;
-    Curve curve{s.name.empty() ? core::name_of(s.sensor) : s.name, style_of(i++), {}};
+    if (s.timeline.messages == 0 || !is_drawn(s.sensor)) continue;
+    Curve curve{s.name.empty() ? core::name_of(s.sensor) : "camera " + s.name, style_of(i++), {}};
     for (std::size_t k = 0; k < s.timeline.per_second.size(); ++k)
       curve.points.emplace_back(static_cast<double>(k) + 0.5, 100 * s.timeline.per_second[k] / s.required_hz);
     plot.add(curve);
@@ -98,8 +104,8 @@ std::string turns_svg(const VehicleMeasurements& m) {
   const core::TimeNs begin = m.motion->gyroscope_rates.front().stamp;
   constexpr double kDegree = std::numbers::pi / 180;
   double top = 10;
-  const auto curve_of = [&](const char* name, std::size_t style, const std::vector<TurnRate>& rates) {
-    Curve curve{name, style_of(style), {}};
+  const auto curve_of = [&](const char* name, const std::string& style, const std::vector<TurnRate>& rates) {
+    Curve curve{name, style, {}};
     for (const TurnRate& r : rates) {
       if (r.stamp < begin) continue;
       curve.points.emplace_back(core::seconds(r.stamp - begin), r.radps / kDegree);
@@ -107,8 +113,8 @@ std::string turns_svg(const VehicleMeasurements& m) {
     }
     return curve;
   };
-  const Curve gyroscope = curve_of("gyroscope", 2, m.motion->gyroscope_rates),
-              lidar = curve_of("LiDAR", 0, m.motion->lidar_rates);
+  const Curve gyroscope = curve_of("gyroscope", kBehind, m.motion->gyroscope_rates),
+              lidar = curve_of("LiDAR", style_of(0), m.motion->lidar_rates);
   Plot plot(m.motion_s, 20 * std::ceil(std::min(top, 400.0) / 20), "rate of rotation, deg/s");
   plot.add(gyroscope);
   plot.add(lidar);

@@ -8,7 +8,9 @@
 #include <string>
 
 #include "sdk/preflight/preflight_page.h"
+#include "sdk/preflight/vehicle/vehicle_page.h"
 #include "tests/unit/preflight/known_mission.h"
+#include "tests/unit/preflight/vehicle/known_vehicle.h"
 
 namespace karst::preflight {
 namespace {
@@ -16,13 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// How many pages chromium makes of it; 0 if it makes none.
-std::size_t printed_pages(const Preflight& p) {
+std::size_t printed_pages(const std::string& html) {
   const fs::path folder = fs::path(KARST_BINARY_DIR) / "test_runs" / "preflight_printed" /
                           ::testing::UnitTest::GetInstance()->current_test_info()->name();
   fs::remove_all(folder);
   fs::create_directories(folder);
   const std::string page = (folder / "page.html").string(), pdf = (folder / "page.pdf").string();
-  std::ofstream(page) << preflight_page(p, findings_of(p));
+  std::ofstream(page) << html;
   const std::string command =
       "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
       "--disable-background-networking --disable-component-update --user-data-dir='" +
@@ -34,6 +36,9 @@ std::size_t printed_pages(const Preflight& p) {
   const std::size_t at = bytes.find(count);
   return at == std::string::npos ? 0 : std::stoul(bytes.substr(at + count.size()));
 }
+
+std::size_t printed_pages(const Preflight& p) { return printed_pages(preflight_page(p, findings_of(p))); }
+std::size_t printed_pages(const VehicleMeasurements& m) { return printed_pages(vehicle_page(m, checks_of(m))); }
 
 /// As much text as there is: all figures, the longest reasons, and findings about all.
 Preflight wordy_mission() {
@@ -68,6 +73,21 @@ TEST(PrintedPreflight, IsOnePageWithATallCave) {
   p.cave->plan.runs.clear();
   for (int y = 0; y < 300; ++y) p.cave->plan.runs.push_back({0, y, 20});
   EXPECT_EQ(printed_pages(p), 1u);
+}
+
+TEST(PrintedChecklist, IsOnePage) { EXPECT_EQ(printed_pages(test::known_vehicle()), 1u); }
+
+TEST(PrintedChecklist, IsOnePageWithFindingsOfManyParts) {
+  VehicleMeasurements m = test::known_vehicle();
+  for (SensorTimeline& s : m.sensors) s.timeline.jump_s = 1;
+  m.imu.mean_force_mps2 *= 1.1;
+  m.motion->hand_eye->error_rad = {0.1, 0, 0};
+  m.battery->fraction_left = 0.2;
+  m.room.above_m = 0.5;
+  m.room.seen_above = false;
+  for (const char* name : {"COM_OF_LOSS_T", "COM_OBL_RC_ACT", "EKF2_EV_CTRL", "SYS_HAS_GPS", "round trip"})
+    m.checks.push_back({name, "at most 1 s", "5 s", false});
+  EXPECT_EQ(printed_pages(m), 1u);
 }
 
 }  // namespace

@@ -101,6 +101,25 @@ TEST(LidarView, CountsScansOfAnotherSize) {
   EXPECT_EQ(v.scans, 8);
 }
 
+TEST(LidarView, OfALidarWithoutRings) {
+  auto model = test::lidar_of();
+  LidarScan ringed = test::scan_of({}, model);
+  put(ringed, 40, 80, NAN);
+  auto loose = std::make_shared<core::LidarModel>(*model);
+  LidarScan scan = ringed;
+  for (int c = 0; c < model->channels(); ++c)
+    for (int j = 0; j < model->columns; ++j) scan.direction.push_back(model->direction(c, j));
+  scan.time_s.assign(scan.range_m.size(), 0.0f);
+  loose->columns = 0;
+  scan.model = loose;
+  const std::vector<std::shared_ptr<const LidarScan>> scans(3, std::make_shared<const LidarScan>(scan));
+  const LidarView v = lidar_view(scans, 0.3);
+  EXPECT_EQ(v.scans, 3);
+  EXPECT_EQ(v.misshapen, 0);
+  EXPECT_NEAR(v.blocked.from_rad, 40 * kDegree, 1e-6);
+  EXPECT_NEAR(v.blocked.width_rad, 40 * kDegree, 1e-6);
+}
+
 TEST(LidarView, OfNoScan) {
   EXPECT_EQ(lidar_view({}, 0.3).scans, 0);
 }
