@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sdk/cave_drawing/svg_sheet.h"
 #include "tests/unit/cave_drawing/box_maps.h"
 #include "tests/unit/cave_drawing/drawn_lines.h"
 
@@ -44,6 +45,29 @@ TEST(MapDrawings, EntranceFindsAndPathAreDrawnWhereTheyAre) {
   ASSERT_EQ(drawings.plan.paths.size(), 1u);
   EXPECT_EQ(drawings.plan.paths[0][1], Point(30, 1.5));
   EXPECT_TRUE(drawings.extended.paths.empty());
+}
+
+TEST(MapDrawings, TheRegionOfTheFlightIsDrawnInPlanAndProfile) {
+  core::FlightRegion::Limits limits;
+  limits.keep_in = core::box({5, -20, -50}, {30, 20, 2.5});
+  limits.keep_out = {{{{10, 0}, {12, 0}, {11, 2}}, 0.5, 1}};
+  FlightRecord record = record_of();
+  record.region = std::make_shared<const core::FlightRegion>(limits);
+  const double entrance_z = record.entrance->z(), entrance_x = record.entrance->x();
+  const CaveDrawings drawings = map_drawings(tunnel(), record, std::numbers::pi / 2, "map");
+  ASSERT_EQ(drawings.plan.borders.size(), 2u);
+  EXPECT_EQ(drawings.plan.borders[1], (Line{{10, 0}, {12, 0}, {11, 2}, {10, 0}}));
+  ASSERT_EQ(drawings.projected.borders.size(), 2u);
+  const Line& aside = drawings.projected.borders[0];
+  EXPECT_NEAR((aside[2] - Point(30 - entrance_x, 2.5 - entrance_z)).norm(), 0, 1e-9);
+  EXPECT_NEAR((aside[0] - Point(5 - entrance_x, 0 - entrance_z)).norm(), 0, 0.41) << "it ends with the map";
+  EXPECT_EQ(drawings.plan.walls, map_drawings(tunnel(), record_of(), {}, "map").plan.walls);
+  const std::string page = svg_sheet(drawings.plan, drawings.facts, {}, "map");
+  EXPECT_NE(page.find("class=\"borders\""), std::string::npos);
+  EXPECT_NE(page.find("limits of the flight"), std::string::npos);
+  EXPECT_EQ(
+      svg_sheet(map_drawings(tunnel(), record_of(), {}, "map").plan, drawings.facts, {}, "map").find("clip"),
+      std::string::npos);
 }
 
 TEST(MapDrawings, TheFiguresAreThoseOfTheRoom) {
