@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "core_stack/common/direction_cells.h"
 #include "core_stack/localization/parallel.h"
@@ -33,14 +34,17 @@ class Window {
   void gather(const DirectionCells& cells, const std::vector<Vec3f>& directions,
               const std::vector<float>& ranges, std::size_t centre, float radius_rad) {
     count_ = 0;
+    runs_.clear();
     std::size_t candidates = 0;
-    cells.for_each_run(directions[centre], radius_rad,
-                       [&](std::size_t first, std::size_t end) { candidates += end - first; });
+    cells.for_each_run(directions[centre], radius_rad, [&](std::size_t first, std::size_t end) {
+      runs_.emplace_back(first, end);
+      candidates += end - first;
+    });
     // Cells at the border of the window hold points outside: about a third of all.
     const std::size_t step = std::max<std::size_t>(1, 2 * candidates / (3 * kMostInWindow));
     const float radius2 = radius_rad * radius_rad;
     std::size_t skip = 0;
-    cells.for_each_run(directions[centre], radius_rad, [&](std::size_t first, std::size_t end) {
+    for (const auto& [first, end] : runs_) {
       std::size_t at = first + skip;
       for (; at < end && count_ < members_.size(); at += step) {
         const std::size_t i = cells.order()[at];
@@ -49,13 +53,14 @@ class Window {
         if (i != centre && distance2 <= radius2) members_[count_++] = {offset, distance2, ranges[i]};
       }
       skip = at - end;
-    });
+    }
   }
   std::span<const WindowPoint> members() const { return {members_.data(), count_}; }
 
  private:
   std::array<WindowPoint, kMostInWindow + kMostInWindow / 2> members_;
   std::size_t count_ = 0;
+  std::vector<std::pair<std::size_t, std::size_t>> runs_;  // of the cells in reach
 };
 
 /// Whether the sorted ranges of the window and of its centre have no gap that only an occlusion makes.
@@ -70,8 +75,8 @@ bool is_one_surface(std::span<const WindowPoint> members, float range, float jum
   return true;
 }
 
-float sharpness_of(std::span<const WindowPoint> members, const Vec3f& direction, float range, float radius_rad,
-                   const FeatureOptions& o) {
+float sharpness_of(std::span<const WindowPoint> members, const Vec3f& direction, float range,
+                   float radius_rad, const FeatureOptions& o) {
   if (members.size() < kFewestInWindow) return kNoSharpness;
   Vec3f mean = Vec3f::Zero();
   for (const WindowPoint& m : members) mean += m.offset;

@@ -145,6 +145,11 @@ TEST(IncludeDirection, TheSimulatorKnowsNoPolicyAndNoHost) {
   expect_none("plugins",
               {"sdk/", "policies/", "core_stack/mapping", "core_stack/planning", "core_stack/mission"});
 }
+// Drivers of real sensors know their formats and the core's messages only.
+TEST(IncludeDirection, LidarDriversKnowTheCoresMessagesOnly) {
+  expect_none("plugins/lidar_drivers", {"plugins/simulator", "plugins/replay", "core_stack/localization",
+                                        "core_stack/perception", "core_stack/team"});
+}
 
 // A vehicle behind a socket is any vehicle; what is simulated is put behind it elsewhere.
 TEST(IncludeDirection, TheSocketKnowsNoOtherPluginAndTheServerNoCommand) {
