@@ -88,7 +88,7 @@ struct VehicleSetup {
   std::string run_dir;  // it may write its own files here, such as ground truth; "" for none
   double climb_m = 0;   // by which it will rise from where it stands, before anything is known
   std::uint64_t seed = 1;
-  MeshKeys mesh = {};  // of a cave that is a bare mesh
+  MeshKeys mesh = {};             // of a cave that is a bare mesh
   Clock clock = Clock::lockstep;  // of the executive that it will be started in
 };
 

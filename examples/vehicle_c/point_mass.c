@@ -1,11 +1,12 @@
 /* A vehicle for karst in one file of C, without a dependency: a point mass in a room, with a LiDAR.
  *
  *   cc -O2 -std=c11 -o point_mass point_mass.c -lm && ./point_mass tcp:127.0.0.1:14660
- *   karst fly --set vehicle=socket --set socket.address=tcp:14660 --set localization.source=pose_sensor --time 60s
- *   karst vehicle check tcp:127.0.0.1:14660 --fly
+ *   karst fly --set vehicle=socket --set socket.address=tcp:14660 --set localization.source=pose_sensor
+ * --time 60s karst vehicle check tcp:127.0.0.1:14660 --fly
  *
- * It flies in lockstep and in real time. The protocol is that of docs/vehicle_protocol.md, version 1, for a machine
- * whose numbers are little-endian. Replace the part "the vehicle" to put one of your own behind it. */
+ * It flies in lockstep and in real time. The protocol is that of docs/vehicle_protocol.md, version 1, for a
+ * machine whose numbers are little-endian. Replace the part "the vehicle" to put one of your own behind it.
+ */
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
 #include <errno.h>
@@ -32,7 +33,8 @@ static const uint16_t kVersion = 1;
 static const double kPi = 3.14159265358979323846;
 static const int64_t kMs = 1000000, kSecond = 1000000000;
 
-/* -- messages ------------------------------------------------------------------------------------------------------ */
+/* -- messages
+ * ------------------------------------------------------------------------------------------------------ */
 
 typedef struct {
   unsigned char bytes[1 << 18];
@@ -70,9 +72,11 @@ typedef struct {
   bool armed;
 } Command;
 
-/* -- the vehicle --------------------------------------------------------------------------------------------------- */
+/* -- the vehicle
+ * --------------------------------------------------------------------------------------------------- */
 
-static const double kGravity = 9.81, kMass_kg = 1.5, kMaxThrust_n = 30, kMaxRate = 6, kRadius_m = 0.3, kDrag = 0.2;
+static const double kGravity = 9.81, kMass_kg = 1.5, kMaxThrust_n = 30, kMaxRate = 6, kRadius_m = 0.3,
+                    kDrag = 0.2;
 static const double kRoomMin[3] = {-4, -3, 0}, kRoomMax[3] = {8, 5, 4};
 static const double kStanding_m = 0.1; /* of the body's centre above the floor */
 static const double kBattery_wh = 40, kHover_w = 150;
@@ -183,7 +187,8 @@ static void put_scan(Out* o, const Vehicle* v, int64_t now) {
       double d[3], nearest = INFINITY;
       rotate(v->q, beam, d);
       for (int i = 0; i < 3; ++i)
-        if (fabs(d[i]) > 1e-9) nearest = fmin(nearest, ((d[i] > 0 ? kRoomMax[i] : kRoomMin[i]) - v->p[i]) / d[i]);
+        if (fabs(d[i]) > 1e-9)
+          nearest = fmin(nearest, ((d[i] > 0 ? kRoomMax[i] : kRoomMin[i]) - v->p[i]) / d[i]);
       /* NaN: no valid measurement; infinite: nothing within the range */
       put_f32(o, nearest < kLidarMin_m ? NAN : nearest > kLidarMax_m ? INFINITY : (float)nearest);
     }
@@ -219,7 +224,8 @@ static void touch(Vehicle* v, Out* o, int64_t now) {
     return;
   }
   for (int i = 0; i < 3; ++i)
-    if (v->p[i] < kRoomMin[i] + (i == 2 ? kStanding_m : kRadius_m) - 1e-9 || v->p[i] > kRoomMax[i] - kRadius_m) {
+    if (v->p[i] < kRoomMin[i] + (i == 2 ? kStanding_m : kRadius_m) - 1e-9 ||
+        v->p[i] > kRoomMax[i] - kRadius_m) {
       lose(v, o, now, "touched a wall");
       return;
     }
@@ -294,13 +300,15 @@ static void vehicle_step(Vehicle* v, Out* o, int64_t now) {
     }
     touch(v, o, now);
   }
-  const double felt[3] = {(v->v[0] - before[0]) / dt, (v->v[1] - before[1]) / dt, (v->v[2] - before[2]) / dt + kGravity};
+  const double felt[3] = {(v->v[0] - before[0]) / dt, (v->v[1] - before[1]) / dt,
+                          (v->v[2] - before[2]) / dt + kGravity};
   to_body(v->q, felt, v->force);
   v->energy_wh = fmax(0, v->energy_wh - (v->standing ? 5 : kHover_w) * dt / 3600);
   put_measurements(v, o, now);
 }
 
-/* -- the connection ------------------------------------------------------------------------------------------------ */
+/* -- the connection
+ * ------------------------------------------------------------------------------------------------ */
 
 typedef struct {
   int fd;
@@ -546,7 +554,8 @@ int main(int argc, char** argv) {
     client.fd = accept(listener, NULL, NULL);
     if (client.fd < 0) continue;
     client.size = out.size = 0;
-    setsockopt(client.fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* fails on a unix socket, where it is not needed */
+    setsockopt(client.fd, IPPROTO_TCP, TCP_NODELAY, &on,
+               sizeof on); /* fails on a unix socket, where it is not needed */
     const char* why = serve(listener, &client, &out, &message);
     tell(client.fd, &out, REFUSE, why);
     close(client.fd);

@@ -26,18 +26,21 @@ Address parse_address(const std::string& text) {
   if (text.starts_with("unix:")) {
     a.family = Address::Family::unix_path;
     a.path = text.substr(5);
-    if (a.path.empty() || a.path.size() >= sizeof(sockaddr_un::sun_path)) refuse(text, "the path is empty or too long");
+    if (a.path.empty() || a.path.size() >= sizeof(sockaddr_un::sun_path))
+      refuse(text, "the path is empty or too long");
     return a;
   }
   if (!text.starts_with("tcp:")) refuse(text, text.empty() ? "is missing" : "names no kind of socket");
   const std::string rest = text.substr(4);
   const std::size_t colon = rest.rfind(':');
   a.host = colon == std::string::npos ? "127.0.0.1" : rest.substr(0, colon);
-  if (a.host.size() > 1 && a.host.front() == '[' && a.host.back() == ']') a.host = a.host.substr(1, a.host.size() - 2);
+  if (a.host.size() > 1 && a.host.front() == '[' && a.host.back() == ']')
+    a.host = a.host.substr(1, a.host.size() - 2);
   if (a.host.empty()) refuse(text, "the host is empty");
   const std::string port = colon == std::string::npos ? rest : rest.substr(colon + 1);
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), a.port);
-  if (error != std::errc() || end != port.data() + port.size()) refuse(text, "the port is no number up to 65535");
+  if (error != std::errc() || end != port.data() + port.size())
+    refuse(text, "the port is no number up to 65535");
   return a;
 }
 

@@ -1,6 +1,6 @@
-// By how much the vehicle's clock is ahead of the core's, from round trips of pings, as NTP does it (D. L. Mills, RFC
-// 5905, sections 8 and 10): of the last eight round trips the one with the least delay counts, because delays only
-// ever add to it. The true offset is within half of that delay.
+// By how much the vehicle's clock is ahead of the core's, from round trips of pings, as NTP does it (D. L.
+// Mills, RFC 5905, sections 8 and 10): of the last eight round trips the one with the least delay counts,
+// because delays only ever add to it. The true offset is within half of that delay.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -20,8 +20,9 @@ class ClockOffset {
   /// Ignores a round trip that ended before it began.
   void add(const RoundTrip& trip);
   bool known() const { return count_ > 0; }
-  /// The vehicle's clock minus the core's. Between two round trips it moves slowly, and only forward in time, so that
-  /// stamps keep their order: by one part in a hundred of what has passed, but at once if it is off by more than 50 ms.
+  /// The vehicle's clock minus the core's. Between two round trips it moves slowly, and only forward in time,
+  /// so that stamps keep their order: by one part in a hundred of what has passed, but at once if it is off
+  /// by more than 50 ms.
   core::TimeNs offset(core::TimeNs now);
   /// Bound of the offset's error: half the delay of the round trip that counts, and 15 ppm of its age.
   core::TimeNs error_bound(core::TimeNs now) const;

@@ -1,5 +1,6 @@
-// The fields of each message and of the structures inside, in the order of the wire. One list serves the encoder, the
-// decoder and the test of the schema: a visitor is called with the name and the value of each field.
+// The fields of each message and of the structures inside, in the order of the wire. One list serves the
+// encoder, the decoder and the test of the schema: a visitor is called with the name and the value of each
+// field.
 #pragma once
 #include <concepts>
 #include <type_traits>

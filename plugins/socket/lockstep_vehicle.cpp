@@ -24,6 +24,12 @@ void LockstepVehicle::command(const core::Command& c) {
   if (!lost_) link_->stream().queue(c);
 }
 
+std::vector<core::VehicleCheck> LockstepVehicle::checks() const {
+  std::vector<core::VehicleCheck> all = checks_;
+  all.push_back(link_->plausibility());
+  return all;
+}
+
 void LockstepVehicle::finish() {
   if (!lost_) link_->leave("the mission is over");
 }

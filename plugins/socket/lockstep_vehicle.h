@@ -1,8 +1,9 @@
 // A vehicle in another process that flies in lockstep: its clock moves only when the core's does.
 //
-// The vehicle tells what it has scheduled, as slots. Each slot is mirrored in the core's executive, in the order in
-// which the vehicle scheduled them; when a slot is due, the vehicle runs it, and the core takes what it measured there.
-// So whatever is due at one time runs in the order in which it would run in one process, and gives the same bytes.
+// The vehicle tells what it has scheduled, as slots. Each slot is mirrored in the core's executive, in the
+// order in which the vehicle scheduled them; when a slot is due, the vehicle runs it, and the core takes what
+// it measured there. So whatever is due at one time runs in the order in which it would run in one process,
+// and gives the same bytes.
 #pragma once
 #include <memory>
 
@@ -18,7 +19,7 @@ class LockstepVehicle final : public core::Vehicle {
   core::VehicleDescription description() const override { return link_->description(); }
   void start(core::Executive& executive, core::VehicleSink& sink) override;
   void command(const core::Command& c) override;
-  std::vector<core::VehicleCheck> checks() const override { return checks_; }
+  std::vector<core::VehicleCheck> checks() const override;
   void finish() override;
 
  private:

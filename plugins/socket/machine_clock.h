@@ -1,4 +1,5 @@
-// An executive's time, read between its steps: its now() stands still within a step, and is when the step was due.
+// An executive's time, read between its steps: its now() stands still within a step, and is when the step was
+// due.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -9,8 +10,8 @@ namespace karst::socket {
 
 class MachineClock {
  public:
-  /// To be called in each step, at once: the step that was least late says how the clocks stand. The difference may
-  /// grow by 1 us a step, as the executive's clock loses time with a failure.
+  /// To be called in each step, at once: the step that was least late says how the clocks stand. The
+  /// difference may grow by 1 us a step, as the executive's clock loses time with a failure.
   void note_step(core::TimeNs executive_now) {
     const core::TimeNs seen = machine() - executive_now;
     begun_ = noted_ ? std::min(begun_ + 1000, seen) : seen;

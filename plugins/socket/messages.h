@@ -1,5 +1,5 @@
-// What the core and a vehicle in another process tell each other (docs/vehicle_protocol.md). Times are nanoseconds of
-// the clock of whoever sends the message.
+// What the core and a vehicle in another process tell each other (docs/vehicle_protocol.md). Times are
+// nanoseconds of the clock of whoever sends the message.
 #pragma once
 #include <array>
 #include <cstdint>

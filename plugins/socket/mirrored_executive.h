@@ -1,5 +1,5 @@
-// The executive of a vehicle that flies in lockstep with a client: it tells the client what is scheduled, in the order
-// of the vehicle's calls, and runs one slot at a time, when the client asks for it.
+// The executive of a vehicle that flies in lockstep with a client: it tells the client what is scheduled, in
+// the order of the vehicle's calls, and runs one slot at a time, when the client asks for it.
 #pragma once
 #include <optional>
 
@@ -25,7 +25,8 @@ class MirroredExecutive final : public core::Executive {
     Executive::job(std::move(name), lane, budget, std::move(work), noted(slot, std::move(publish)));
   }
 
-  /// Runs what is due next. False if that is not `slot`, or not at `time`: then the client's clock is not ours.
+  /// Runs what is due next. False if that is not `slot`, or not at `time`: then the client's clock is not
+  /// ours.
   bool run(std::uint32_t slot, core::TimeNs time) {
     ran_.reset();
     run_until(time, [] { return true; });

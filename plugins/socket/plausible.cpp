@@ -26,7 +26,8 @@ std::string implausible_lidar(const core::LidarModel& m) {
   for (int i = 0; i < m.channels(); ++i) {
     if (!within(m.elevation_rad[i], -std::numbers::pi / 2, std::numbers::pi / 2))
       return "elevation_rad: expected -pi/2 to pi/2";
-    if (i > 0 && m.elevation_rad[i] >= m.elevation_rad[i - 1]) return "elevation_rad: expected the highest first";
+    if (i > 0 && m.elevation_rad[i] >= m.elevation_rad[i - 1])
+      return "elevation_rad: expected the highest first";
   }
   if (!ranges(m.min_range_m, m.max_range_m)) return "max_range_m: expected more than min_range_m";
   if (!period(m.period)) return "period: expected 1 ms to 60 s";
@@ -94,14 +95,17 @@ struct Judge {
     if (!vehicle.rgb) return "the vehicle has no colour camera";
     const core::CameraModel& camera = vehicle.rgb->camera;
     const std::size_t bytes = 3 * static_cast<std::size_t>(camera.width) * camera.height;
-    return m.rgb.empty() || m.rgb.size() == bytes ? "" : "rgb: expected none or " + std::to_string(bytes) + " bytes";
+    return m.rgb.empty() || m.rgb.size() == bytes
+               ? ""
+               : "rgb: expected none or " + std::to_string(bytes) + " bytes";
   }
   std::string operator()(const Objects& m) const {
     const bool there = m.camera == kRgbCamera ? vehicle.rgb != nullptr : m.camera < vehicle.cameras.size();
     if (!there) return "camera: the vehicle has no such camera";
     for (const core::ObjectDetection& o : m.look.found) {
       if (o.kind == core::ObjectKind::none) return "kind: is none";
-      if (!finite(o.direction) || std::abs(o.direction.norm() - 1) > 1e-6) return "direction: is no unit vector";
+      if (!finite(o.direction) || std::abs(o.direction.norm() - 1) > 1e-6)
+        return "direction: is no unit vector";
       if (!within(o.range_m, 0, 10000) || !within(o.confidence, 0, 1) || !within(o.range_sigma_m, 0, 1000) ||
           !within(o.bearing_sigma_rad, 0, 4))
         return "found: is no number, or out of range";
@@ -125,7 +129,8 @@ std::string implausible(const core::VehicleDescription& v) {
   if (v.lidar)
     if (const std::string why = implausible_lidar(*v.lidar); !why.empty()) return named("lidar", why);
   for (const auto& camera : v.cameras)
-    if (const std::string why = implausible_camera(*camera); !why.empty()) return named("camera " + camera->name, why);
+    if (const std::string why = implausible_camera(*camera); !why.empty())
+      return named("camera " + camera->name, why);
   if (v.rgb)
     if (const std::string why = implausible_camera(v.rgb->camera); !why.empty()) return named("rgb", why);
   if (v.rgb && !within(v.rgb->max_incidence_rad, 0, std::numbers::pi / 2))
@@ -144,8 +149,8 @@ std::string implausible(const core::Command& c) {
     if (!finite(v)) return "reference: is no number";
   if (!std::isfinite(r.heading_rad) || !std::isfinite(r.heading_rate_radps)) return "reference: is no number";
   const core::State& s = c.state;
-  if (c.state_is_known && !(finite(s.position) && finite(s.velocity_mps) && finite(s.body_rate_radps) &&
-                            rotation(s.orientation)))
+  if (c.state_is_known &&
+      !(finite(s.position) && finite(s.velocity_mps) && finite(s.body_rate_radps) && rotation(s.orientation)))
     return "state: is no number";
   return "";
 }

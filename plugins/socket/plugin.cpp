@@ -42,7 +42,8 @@ class SocketPlugin final : public core::VehiclePlugin {
       return std::make_unique<socket::LockstepVehicle>(std::move(link), wait_of(options_.answer_timeout_s));
     return std::make_unique<socket::RealTimeVehicle>(
         std::move(link), wait_of(options_.answer_timeout_s),
-        socket::SilenceLimits{core::from_seconds(options_.silence_s), core::from_seconds(options_.lost_after_s)});
+        socket::SilenceLimits{core::from_seconds(options_.silence_s),
+                              core::from_seconds(options_.lost_after_s)});
   }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr TimeNs kStep = 2 * kMillisecond;
 constexpr TimeNs kPingPeriod = 100 * kMillisecond, kFirstPings = 10 * kMillisecond;
-constexpr int kQuickPings = 16;             // at the start, until the offset is known well
+constexpr int kQuickPings = 16;  // at the start, until the offset is known well
 constexpr TimeNs kCaughtUp = 100 * kMillisecond;
 constexpr std::size_t kMessagesAStep = 64;  // so that no vehicle can hold up the control
 
@@ -22,9 +22,7 @@ struct StampOf {
   TimeNs* operator()(Depth& m) const { return &m.image.stamp; }
   TimeNs* operator()(Objects& m) const { return &m.look.stamp; }
   template <class M>
-  requires requires(M& m) {
-    m.stamp;
-  }
+  requires requires(M& m) { m.stamp; }
   TimeNs* operator()(M& m) const { return &m.stamp; }
 };
 
@@ -36,7 +34,8 @@ std::string in_seconds(TimeNs t) {
 
 }  // namespace
 
-RealTimeVehicle::RealTimeVehicle(std::unique_ptr<VehicleLink> link, Wait patience, const SilenceLimits& limits)
+RealTimeVehicle::RealTimeVehicle(std::unique_ptr<VehicleLink> link, Wait patience,
+                                 const SilenceLimits& limits)
     : link_(std::move(link)), patience_(patience), limits_(limits), steers_(link_->description().authority) {}
 
 void RealTimeVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
@@ -57,7 +56,8 @@ void RealTimeVehicle::step() {
   clock_.note_step(executive_->now());
   if (lost_) return;
   if (late() > core::kCommandTimeout)
-    give_away("the core was " + in_seconds(core::kCommandTimeout) + " late, so the vehicle comes down by itself");
+    give_away("the core was " + in_seconds(core::kCommandTimeout) +
+              " late, so the vehicle comes down by itself");
   try {
     for (std::size_t i = 0; i < kMessagesAStep && !lost_; ++i) {
       std::optional<ToCore> message = link_->receive(Wait(0));
@@ -81,11 +81,12 @@ void RealTimeVehicle::take(ToCore message) {
   }
   if (TimeNs* stamp = std::visit(StampOf{}, message)) {
     // Before the first round trip nothing is known of the vehicle's clock: only what it is and does counts.
-    *stamp = offset_.known() ? std::min(*stamp - offset_.offset(clock_.now()), executive_->now()) : executive_->now();
-    const bool measured = !std::holds_alternative<Ground>(message) && !std::holds_alternative<LiftOff>(message) &&
-                          !std::holds_alternative<AuthorityChange>(message) &&
-                          !std::holds_alternative<Lost>(message) &&
-                          !std::holds_alternative<core::BatteryStatus>(message);
+    *stamp = offset_.known() ? std::min(*stamp - offset_.offset(clock_.now()), executive_->now())
+                             : executive_->now();
+    const bool measured =
+        !std::holds_alternative<Ground>(message) && !std::holds_alternative<LiftOff>(message) &&
+        !std::holds_alternative<AuthorityChange>(message) && !std::holds_alternative<Lost>(message) &&
+        !std::holds_alternative<core::BatteryStatus>(message);
     if (measured && !offset_.known()) return;
   }
   if (const auto* change = std::get_if<AuthorityChange>(&message)) {
@@ -129,8 +130,8 @@ void RealTimeVehicle::give_away(const std::string& reason) {
 /// By how much the steps of the core are behind the machine's clock.
 TimeNs RealTimeVehicle::late() const { return clock_.now() - executive_->now(); }
 
-/// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago: a vehicle
-/// that came down by itself must not be lifted off by commands for where it was.
+/// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago: a
+/// vehicle that came down by itself must not be lifted off by commands for where it was.
 void RealTimeVehicle::command(const core::Command& c) {
   if (lost_ || link_->stream().backlog_bytes() > 0 || late() > kCaughtUp) return;
   core::Command sent = c;
@@ -149,10 +150,11 @@ void RealTimeVehicle::command(const core::Command& c) {
 
 std::vector<core::VehicleCheck> RealTimeVehicle::checks() const {
   std::vector<core::VehicleCheck> all = checks_;
+  all.push_back(link_->plausibility());
   const TimeNs error = offset_.error_bound(clock_.now());
   constexpr TimeNs kMostError = 5 * kMillisecond;
-  all.push_back({"clock offset", "known to 5 ms",
-                 offset_.known() ? in_seconds(error) : "", offset_.known() && error <= kMostError});
+  all.push_back({"clock offset", "known to 5 ms", offset_.known() ? in_seconds(error) : "",
+                 offset_.known() && error <= kMostError});
   return all;
 }
 

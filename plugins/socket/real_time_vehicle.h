@@ -1,7 +1,8 @@
 // A vehicle in another process, or on another computer, with a clock of its own.
 //
-// Messages are read in a short periodic step. The stamps are converted to the core's clock (clock_offset.h), and are
-// never later than the step that reads them. Pings go out ten times a second and serve as the heartbeat, too.
+// Messages are read in a short periodic step. The stamps are converted to the core's clock (clock_offset.h),
+// and are never later than the step that reads them. Pings go out ten times a second and serve as the
+// heartbeat, too.
 #pragma once
 #include <memory>
 #include <optional>
@@ -48,7 +49,7 @@ class RealTimeVehicle final : public core::Vehicle {
   core::TimeNs next_ping_ = 0, heard_at_ = 0;  // by clock_
   int pings_ = 0;
   core::Authority steers_ = core::Authority::core;  // as the vehicle says
-  bool away_ = false, lost_ = false;  // steered by its autopilot because of silence
+  bool away_ = false, lost_ = false;                // steered by its autopilot because of silence
 };
 
 }  // namespace karst::socket

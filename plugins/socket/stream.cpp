@@ -29,8 +29,8 @@ std::string reason_of(int error) { return std::strerror(error); }
 bool wait_for(int fd, short events, Wait patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    const auto left =
-        std::chrono::duration_cast<Wait>(until - std::chrono::steady_clock::now() + std::chrono::microseconds(999));
+    const auto left = std::chrono::duration_cast<Wait>(until - std::chrono::steady_clock::now() +
+                                                       std::chrono::microseconds(999));
     pollfd one{fd, events, 0};
     const int n = ::poll(&one, 1, static_cast<int>(std::max<Wait::rep>(0, left.count())));
     if (n > 0) return true;
@@ -72,7 +72,8 @@ SocketName resolve(const Address& a) {
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_family = AF_UNSPEC;
   const int error = ::getaddrinfo(a.host.c_str(), std::to_string(a.port).c_str(), &hints, &found);
-  if (error != 0) throw core::InputError(a.text(), "", std::string("the host is not known: ") + gai_strerror(error));
+  if (error != 0)
+    throw core::InputError(a.text(), "", std::string("the host is not known: ") + gai_strerror(error));
   SocketName name;
   std::memcpy(&name.storage, found->ai_addr, found->ai_addrlen);
   name.size = found->ai_addrlen;
@@ -179,7 +180,7 @@ namespace {
 
 /// A socket file that is left over from a process that is gone is in the way of a new one.
 void remove_abandoned(const Address& a) {
-  struct stat what{};
+  struct stat what {};
   if (::lstat(a.path.c_str(), &what) != 0 || !S_ISSOCK(what.st_mode)) return;
   const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const SocketName name = name_of_path(a.path);

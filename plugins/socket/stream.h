@@ -1,4 +1,5 @@
-// A connection that carries messages, and the socket that waits for one. Times to wait are by the machine's clock.
+// A connection that carries messages, and the socket that waits for one. Times to wait are by the machine's
+// clock.
 #pragma once
 #include <chrono>
 #include <memory>
@@ -64,16 +65,18 @@ class Stream {
   std::uint32_t max_body_;
   std::string unsent_;
   std::size_t sent_ = 0;
-  std::vector<char> bytes_;                // received, from `begin_` to `end_`
+  std::vector<char> bytes_;  // received, from `begin_` to `end_`
   std::size_t begin_ = 0, end_ = 0;
 };
 
-/// Tries again until something listens there, or `patience` is over. Throws core::InputError naming the address.
+/// Tries again until something listens there, or `patience` is over. Throws core::InputError naming the
+/// address.
 Stream connect_to(const Address& address, Wait patience, std::uint32_t max_body);
 
 class Listener {
  public:
-  /// Throws core::InputError if the address cannot be had. A socket file that nobody listens at any more is replaced.
+  /// Throws core::InputError if the address cannot be had. A socket file that nobody listens at any more is
+  /// replaced.
   explicit Listener(const Address& address);
   ~Listener();
   Listener(const Listener&) = delete;

@@ -29,8 +29,8 @@ Welcome VehicleLink::greet(const Hello& hello, Wait patience) {
   auto* welcome = std::get_if<Welcome>(&*answer);
   if (!welcome || welcome->magic != kMagic) throw LinkError("what answers there is no vehicle of karst");
   if (welcome->version != kVersion)
-    throw LinkError("it speaks version " + std::to_string(welcome->version) + " of the protocol, and this karst " +
-                    std::to_string(kVersion));
+    throw LinkError("it speaks version " + std::to_string(welcome->version) +
+                    " of the protocol, and this karst " + std::to_string(kVersion));
   if (hello.clock == FlightClock::lockstep && !welcome->lockstep)
     throw LinkError("this vehicle flies in real time only: fly with --real-time");
   if (hello.clock == FlightClock::real_time && !welcome->real_time)
@@ -63,6 +63,12 @@ std::optional<ToCore> VehicleLink::receive(Wait patience) {
     if (why.empty()) return message;
     if (dropped_++ == 0) first_dropped_ = "message " + std::to_string(frame->type) + ": " + why;
   }
+}
+
+core::VehicleCheck VehicleLink::plausibility() const {
+  const std::string found =
+      dropped_ == 0 ? "all" : std::to_string(dropped_) + " dropped, the first: " + first_dropped_;
+  return {"plausible messages", "all", found, dropped_ == 0};
 }
 
 void VehicleLink::leave(const std::string& reason) {

@@ -9,22 +9,21 @@ namespace karst::socket {
 
 class VehicleLink {
  public:
-  /// Connects, greets, and waits for the vehicle's description, each for `patience` at most. Throws core::InputError
-  /// naming the address if there is no vehicle, if it refuses, or if it cannot be flown.
+  /// Connects, greets, and waits for the vehicle's description, each for `patience` at most. Throws
+  /// core::InputError naming the address if there is no vehicle, if it refuses, or if it cannot be flown.
   VehicleLink(const Address& address, const Hello& hello, Wait patience);
 
   const core::VehicleDescription& description() const { return welcome_.description; }
   const std::string& address() const { return address_; }
   Stream& stream() { return stream_; }
-  /// The next message, if one comes within `patience`. One whose numbers the core must not take is dropped. Throws
-  /// LinkError if the vehicle is gone, says goodbye, or sends what is no message.
+  /// The next message, if one comes within `patience`. One whose numbers the core must not take is dropped.
+  /// Throws LinkError if the vehicle is gone, says goodbye, or sends what is no message.
   std::optional<ToCore> receive(Wait patience);
   /// Whether any bytes came since the last call.
   bool heard() { return std::exchange(heard_, false); }
 
-  /// Messages that were dropped, and why the first one was.
-  std::size_t dropped() const { return dropped_; }
-  const std::string& first_dropped() const { return first_dropped_; }
+  /// Holds unless messages were dropped; says how many, and why the first one was.
+  core::VehicleCheck plausibility() const;
 
   /// Says goodbye, if the vehicle still listens.
   void leave(const std::string& reason);

@@ -17,9 +17,9 @@ using core::TimeNs;
 
 namespace {
 
-constexpr Wait kPiece{100};                       // between two looks at `interrupted`
+constexpr Wait kPiece{100};  // between two looks at `interrupted`
 constexpr TimeNs kComesDownWithin = 120 * kSecond;
-constexpr TimeNs kReadPeriod = kMillisecond;            // of reading, in real time
+constexpr TimeNs kReadPeriod = kMillisecond;  // of reading, in real time
 constexpr const char* kStopped = "stopped by its operator";
 constexpr std::size_t kMessagesAtOnce = 64;
 
@@ -260,8 +260,8 @@ Hello read_hello(const Frame& frame) {
   std::memcpy(&version, frame.body.data() + 4, 2);
   if (magic != kMagic) throw LinkError("expected a greeting of the protocol of karst vehicles");
   if (version != kVersion)
-    throw LinkError("this vehicle speaks version " + std::to_string(kVersion) + " of the protocol, and the client " +
-                    std::to_string(version));
+    throw LinkError("this vehicle speaks version " + std::to_string(kVersion) +
+                    " of the protocol, and the client " + std::to_string(version));
   std::string problem;
   const auto message = read_message<ToVehicle>(frame, problem);
   if (!message) throw LinkError(problem);

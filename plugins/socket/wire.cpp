@@ -23,8 +23,7 @@ bool read_as(const Frame& frame, std::optional<Variant>& message, std::string& p
 template <class Variant, std::size_t... kIndex>
 std::optional<Variant> read_any(const Frame& frame, std::string& problem, std::index_sequence<kIndex...>) {
   std::optional<Variant> message;
-  const bool known =
-      (read_as<std::variant_alternative_t<kIndex, Variant>>(frame, message, problem) || ...);
+  const bool known = (read_as<std::variant_alternative_t<kIndex, Variant>>(frame, message, problem) || ...);
   if (!known) problem = "type " + std::to_string(frame.type) + ": there is no such message here";
   return message;
 }

@@ -1,5 +1,5 @@
-// Messages as bytes: a header of the body's length (u32), the type (u16) and two bytes of zero, then the fields one
-// after another, little-endian, without padding. docs/vehicle_protocol.json lists them all.
+// Messages as bytes: a header of the body's length (u32), the type (u16) and two bytes of zero, then the
+// fields one after another, little-endian, without padding. docs/vehicle_protocol.json lists them all.
 #pragma once
 #include <cstring>
 #include <limits>
@@ -74,15 +74,14 @@ class Writer {
     for (const auto& one : all) put(*one);
   }
   template <class T>
-  requires requires(const T& t, Writer& w) {
-    fields(t, w);
-  }
+  requires requires(const T& t, Writer& w) { fields(t, w); }
   void put(const T& value) { fields(value, *this); }
 
   std::string& bytes_;
 };
 
-/// Reads fields from `bytes`. After a field that is not there or not valid, ok() is false and nothing more is read.
+/// Reads fields from `bytes`. After a field that is not there or not valid, ok() is false and nothing more is
+/// read.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -157,7 +156,8 @@ class Reader {
       all.resize(count);
       return count == 0 || take(all.data(), count * sizeof(T));
     } else {
-      return get_all(all, [this](T& one) { return get(one); }, 1);
+      return get_all(
+          all, [this](T& one) { return get(one); }, 1);
     }
   }
   template <class T>
@@ -184,9 +184,7 @@ class Reader {
     return true;
   }
   template <class T>
-  requires requires(T& t, Reader& r) {
-    fields(t, r);
-  }
+  requires requires(T& t, Reader& r) { fields(t, r); }
   bool get(T& value) {
     fields(value, *this);
     return problem_.empty();
@@ -215,8 +213,9 @@ struct Frame {
   std::string_view body;
 };
 
-/// Reads one message of the variant's types. Returns nothing, and says why, if it is none of them, or its body is
-/// shorter or longer than its fields, or a value is not valid. `plausible.h` checks what the numbers mean.
+/// Reads one message of the variant's types. Returns nothing, and says why, if it is none of them, or its
+/// body is shorter or longer than its fields, or a value is not valid. `plausible.h` checks what the numbers
+/// mean.
 template <class Variant>
 std::optional<Variant> read_message(const Frame& frame, std::string& problem);
 extern template std::optional<ToVehicle> read_message<ToVehicle>(const Frame&, std::string&);

@@ -135,7 +135,8 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The options of the vehicle's own mission: some metrics need its battery. A mission of another vehicle ignores them.
+/// The options of the vehicle's own mission: some metrics need its battery. A mission of another vehicle
+/// ignores them.
 void add_vehicle_section(const fs::path& mission_info, const fs::path& vehicle_mission_info) {
   const auto vehicle = core::read_info(vehicle_mission_info.string());
   const std::string name = vehicle.get("vehicle", "");
@@ -173,13 +174,15 @@ Finishing recorded_finishing(const fs::path& run_dir, Report report) {
 
 void take_truth(const fs::path& run_dir, const fs::path& truth, Report report) {
   if (!fs::is_regular_file(truth / "ground_truth.tum"))
-    throw core::InputError(truth.string(), "", "holds no ground_truth.tum: is it a folder of karst vehicle serve --truth?");
+    throw core::InputError(truth.string(), "",
+                           "holds no ground_truth.tum: is it a folder of karst vehicle serve --truth?");
   const Finishing how = recorded_finishing(truth, report);
   for (const char* file : kTruthFiles) {
     if (!fs::is_regular_file(truth / file)) continue;
     std::error_code error;
     if (fs::exists(run_dir / file) && bytes_of(run_dir / file) != bytes_of(truth / file))
-      throw core::InputError((run_dir / file).string(), "", "is there, and differs from that of " + truth.string());
+      throw core::InputError((run_dir / file).string(), "",
+                             "is there, and differs from that of " + truth.string());
     fs::copy_file(truth / file, run_dir / file, fs::copy_options::overwrite_existing, error);
     if (error) throw core::InputError((run_dir / file).string(), "", "cannot be written: " + error.message());
   }

@@ -120,7 +120,9 @@ void evaluate(const EvaluateArguments& args) {
   const bool truth_of_vehicle = fs::is_directory(args.truth);
   if (truth_of_vehicle) {
     if (!is_run) throw core::InputError(args.truth, "", "a folder of truth completes a run directory only");
-    flight::take_truth(run, args.truth, fs::is_regular_file(run / "report.html") ? flight::Report::written : flight::Report::none);
+    flight::take_truth(
+        run, args.truth,
+        fs::is_regular_file(run / "report.html") ? flight::Report::written : flight::Report::none);
     truth_file.clear();
     if (reference.empty()) reference = cave_of(args.truth);
   }
@@ -184,7 +186,10 @@ void add_evaluate_command(CLI::App& app) {
       ->type_name(kFile)
       ->required()
       ->check(not_empty());
-  command->add_option("--truth", args->truth, "true poses, or a folder of karst vehicle serve --truth, which completes the run; default: the run's "
+  command
+      ->add_option("--truth", args->truth,
+                   "true poses, or a folder of karst vehicle serve --truth, which completes the run; "
+                   "default: the run's "
                    "ground_truth.tum")
       ->type_name(kFile)
       ->check(not_empty());

@@ -65,7 +65,9 @@ void add_serve(CLI::App& vehicle) {
       "  karst evaluate run --truth truth/1\n\n"
       "Serves one mission after another until Ctrl-C. The seed is the client's. The protocol: " +
           core::doc_path("docs/vehicle_protocol.md"));
-  app->add_option("mission", args->mission_file, "mission file (.info)")->type_name(kFile)->check(not_empty());
+  app->add_option("mission", args->mission_file, "mission file (.info)")
+      ->type_name(kFile)
+      ->check(not_empty());
   app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
       ->type_name(kFile)
       ->check(not_empty());
@@ -97,23 +99,26 @@ void add_check(CLI::App& vehicle) {
       "Check that a vehicle behind a socket keeps the protocol\n\n"
       "  karst vehicle check tcp:127.0.0.1:14660 --fly\n\n"
       "Exit code: 0 it does, as far as this can tell; 2 it does not; 1 nothing answers there.");
-  app->add_option("address", args->address, "tcp:HOST:PORT, tcp:PORT or unix:PATH")->required()->check(not_empty());
-  app->add_flag("--fly", args->options.takes_off,
-                "arm it, lift off by a few decimetres, and give no more commands: not with a real vehicle indoors");
+  app->add_option("address", args->address, "tcp:HOST:PORT, tcp:PORT or unix:PATH")
+      ->required()
+      ->check(not_empty());
+  app->add_flag(
+      "--fly", args->options.takes_off,
+      "arm it, lift off by a few decimetres, and give no more commands: not with a real vehicle indoors");
   app->add_option("--seconds", args->options.seconds, "to watch it, in lockstep and in real time")
       ->capture_default_str()
       ->check(number_in(1.0, 600.0));
   app->callback([args] {
     watch_for_interrupt();  // a closed connection must not end the process
     bool conforms = true;
-    vehicle_server::check_vehicle(socket::parse_address(args->address), args->options,
-                                  [&conforms](const vehicle_server::Finding& f) {
-                                    using enum vehicle_server::Verdict;
-                                    const char* verdict = f.verdict == passed ? "ok  " : f.verdict == failed ? "FAIL" : "skip";
-                                    print_out("%s  %s: %s\n", verdict, f.name.c_str(), f.detail.c_str());
-                                    std::fflush(stdout);
-                                    conforms = conforms && f.verdict != failed;
-                                  });
+    vehicle_server::check_vehicle(
+        socket::parse_address(args->address), args->options, [&conforms](const vehicle_server::Finding& f) {
+          using enum vehicle_server::Verdict;
+          const char* verdict = f.verdict == passed ? "ok  " : f.verdict == failed ? "FAIL" : "skip";
+          print_out("%s  %s: %s\n", verdict, f.name.c_str(), f.detail.c_str());
+          std::fflush(stdout);
+          conforms = conforms && f.verdict != failed;
+        });
     print_out("%s\n", conforms ? "the vehicle conforms" : "the vehicle does not conform");
     if (!conforms) throw CLI::RuntimeError(kDoesNotConform);
   });

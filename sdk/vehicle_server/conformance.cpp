@@ -44,12 +44,8 @@ std::vector<const M*> all_of(const std::vector<Heard>& heard) {
 TimeNs stamp_of(const socket::Depth& m) { return m.image.stamp; }
 TimeNs stamp_of(const socket::Objects& m) { return m.look.stamp; }
 template <class M>
-requires requires(const M& m) {
-  m.stamp;
-}
-TimeNs stamp_of(const M& m) {
-  return m.stamp;
-}
+requires requires(const M& m) { m.stamp; }
+TimeNs stamp_of(const M& m) { return m.stamp; }
 
 /// "" if the stamps grow from one message to the next.
 template <class M>
@@ -112,7 +108,8 @@ class Examination {
       }
       if (welcome_.magic != socket::kMagic || welcome_.version != socket::kVersion)
         throw LinkError(words("version %d, expected %d", welcome_.version, socket::kVersion));
-      if (!welcome_.lockstep && !welcome_.real_time) throw LinkError("flies neither in lockstep nor in real time");
+      if (!welcome_.lockstep && !welcome_.real_time)
+        throw LinkError("flies neither in lockstep nor in real time");
       return welcome_.description.name + (welcome_.lockstep ? ", lockstep" : "") +
              (welcome_.real_time ? ", real time" : "");
     });
@@ -128,7 +125,9 @@ class Examination {
     return good;
   }
 
-  FlightClock usual_clock() const { return welcome_.lockstep ? FlightClock::lockstep : FlightClock::real_time; }
+  FlightClock usual_clock() const {
+    return welcome_.lockstep ? FlightClock::lockstep : FlightClock::real_time;
+  }
 
   std::string second_client() {
     ConformanceClient first(address_);
@@ -161,7 +160,8 @@ class Examination {
       client.say_bytes(std::string(64, '\xff'));
       try {
         for (int i = 0; i < 10; ++i)
-          if (!client.hear(Wait(10'000))) throw core::InputError(address_.text(), "", "64 bytes of 255 are taken");
+          if (!client.hear(Wait(10'000)))
+            throw core::InputError(address_.text(), "", "64 bytes of 255 are taken");
       } catch (const LinkError&) {  // so it should
       }
     }
@@ -232,7 +232,8 @@ class Examination {
 
   std::string rates(const std::vector<Heard>& heard) const {
     const double imu_hz = rate_hz(all_of<core::ImuSample>(heard));
-    if (imu_hz < kLeastImuRate_hz) throw LinkError(words("imu: %.1f Hz; the core needs 50 Hz or more", imu_hz));
+    if (imu_hz < kLeastImuRate_hz)
+      throw LinkError(words("imu: %.1f Hz; the core needs 50 Hz or more", imu_hz));
     std::string said = words("imu %.0f Hz", imu_hz);
     if (all_of<core::BatteryStatus>(heard).empty()) throw LinkError("battery: nothing");
     if (const auto& lidar = welcome_.description.lidar)
@@ -261,10 +262,12 @@ class Examination {
       force += s->specific_force_mps2 / static_cast<double>(imu.size());
       rate += s->body_rate_radps / static_cast<double>(imu.size());
     }
-    const core::Vec3 up = welcome_.description.T_world_start.orientation.conjugate() * core::Vec3(0, 0, kGravity_mps2);
+    const core::Vec3 up =
+        welcome_.description.T_world_start.orientation.conjugate() * core::Vec3(0, 0, kGravity_mps2);
     if ((force - up).norm() > 1.5)
-      throw LinkError(words("imu: specific force (%.2f %.2f %.2f) m/s^2; standing it is about (%.2f %.2f %.2f)",
-                            force.x(), force.y(), force.z(), up.x(), up.y(), up.z()));
+      throw LinkError(
+          words("imu: specific force (%.2f %.2f %.2f) m/s^2; standing it is about (%.2f %.2f %.2f)",
+                force.x(), force.y(), force.z(), up.x(), up.y(), up.z()));
     if (rate.norm() > 0.1) throw LinkError(words("imu: turns by %.2f rad/s while it stands", rate.norm()));
     return words("specific force %.2f m/s^2, rate %.3f rad/s", force.norm(), rate.norm());
   }
@@ -276,7 +279,8 @@ class Examination {
           [&](const auto& m) {
             if constexpr (requires { stamp_of(m); }) {
               if (stamp_of(m) > h.at)
-                throw LinkError(words("a stamp of %.3f s at %.3f s", core::seconds(stamp_of(m)), core::seconds(h.at)));
+                throw LinkError(
+                    words("a stamp of %.3f s at %.3f s", core::seconds(stamp_of(m)), core::seconds(h.at)));
               oldest = std::max(oldest, h.at - stamp_of(m));
             }
           },
@@ -300,7 +304,8 @@ class Examination {
     const TimeNs ahead = offset.offset(last);
     for (const Heard& h : heard)
       if (const auto* s = std::get_if<core::ImuSample>(&h.message))
-        if (const TimeNs late = h.at - (s->stamp - ahead); late < -2 * bound - 5 * kMillisecond || late > kSecond)
+        if (const TimeNs late = h.at - (s->stamp - ahead);
+            late < -2 * bound - 5 * kMillisecond || late > kSecond)
           throw LinkError(words("imu: its stamp differs by %.3f s from when it came", core::seconds(late)));
     return words("offset known to %.2f ms", 1e3 * core::seconds(bound));
   }
@@ -323,7 +328,8 @@ class Examination {
     heard.clear();
     for (TimeNs silent = 0; silent < kComesDownWithin; silent += kSecond / 2) {
       fly_on(kSecond / 2, std::nullopt);
-      if (!all_of<socket::Lost>(heard).empty()) throw LinkError("it was lost: " + all_of<socket::Lost>(heard)[0]->reason);
+      if (!all_of<socket::Lost>(heard).empty())
+        throw LinkError("it was lost: " + all_of<socket::Lost>(heard)[0]->reason);
       if (!all_of<socket::Ground>(heard).empty())
         return words("stands %.1f s after the last command", core::seconds(silent + kSecond / 2));
     }

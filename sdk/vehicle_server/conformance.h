@@ -21,7 +21,8 @@ struct ConformanceOptions {
   double seconds = 3;      // of watching in each mode
 };
 
-/// Connects several times, and reports each finding as it is known. Throws core::InputError if nothing answers.
+/// Connects several times, and reports each finding as it is known. Throws core::InputError if nothing
+/// answers.
 std::vector<Finding> check_vehicle(const socket::Address& address, const ConformanceOptions& options,
                                    const std::function<void(const Finding&)>& report);
 

@@ -14,7 +14,8 @@ constexpr TimeNs kCommandPeriod = 10 * core::kMillisecond, kPingPeriod = 100 * c
 constexpr Wait kPatience{10'000};
 
 TimeNs machine_time() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
@@ -99,7 +100,8 @@ void ConformanceClient::take_answer(std::vector<Heard>& heard) {
   }
 }
 
-void ConformanceClient::fly(TimeNs until, const std::optional<core::Command>& command, std::vector<Heard>& heard) {
+void ConformanceClient::fly(TimeNs until, const std::optional<core::Command>& command,
+                            std::vector<Heard>& heard) {
   if (slots_.empty()) throw LinkError("the vehicle has scheduled nothing");
   while (!slots_.empty() && slots_.begin()->first.first <= until) {
     const auto [key, slot] = *slots_.begin();

@@ -35,11 +35,13 @@ class ConformanceClient {
   /// Greets and returns the welcome; throws socket::LinkError with what came instead.
   socket::Welcome greet(socket::FlightClock clock);
 
-  /// In lockstep: starts it, or flies on until `until`, with `command` each 10 ms if there is one. Keeps all that came.
+  /// In lockstep: starts it, or flies on until `until`, with `command` each 10 ms if there is one. Keeps all
+  /// that came.
   void start();
   void fly(core::TimeNs until, const std::optional<core::Command>& command, std::vector<Heard>& heard);
   /// In real time, for `time`.
-  void fly_real_time(core::TimeNs time, const std::optional<core::Command>& command, std::vector<Heard>& heard);
+  void fly_real_time(core::TimeNs time, const std::optional<core::Command>& command,
+                     std::vector<Heard>& heard);
 
   core::TimeNs now() const { return now_; }
   std::size_t schedules() const { return schedules_; }

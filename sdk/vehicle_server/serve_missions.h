@@ -21,12 +21,13 @@ struct ServeRequest {
 struct ServeNotes {
   std::function<void(const std::string& address)> listening;
   std::function<void(const std::string& ending, const std::filesystem::path& truth)> mission_over;
-  std::function<void(const std::string& why)> not_flown;  // a client that left before the start, or was refused
+  std::function<void(const std::string& why)>
+      not_flown;  // a client that left before the start, or was refused
 };
 
-/// Serves until `interrupted`, or once. The cave, the start and the vehicle's options are the mission's; the seed and
-/// the height of the take-off are the client's. Throws core::InputError if the vehicle cannot be made or the address
-/// cannot be had.
+/// Serves until `interrupted`, or once. The cave, the start and the vehicle's options are the mission's; the
+/// seed and the height of the take-off are the client's. Throws core::InputError if the vehicle cannot be
+/// made or the address cannot be had.
 void serve_missions(const flight::Mission& mission, const ServeRequest& request, const ServeNotes& notes,
                     const std::atomic<bool>& interrupted);
 

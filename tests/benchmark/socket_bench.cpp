@@ -1,6 +1,6 @@
-// What a vehicle in another process costs a step: a vehicle that computes nothing, with an IMU at 200 Hz, a sweep of
-// 128 x 1024 beams and an image of 320 x 240 at 10 Hz, flown in lockstep in this process, over a Unix socket and over
-// TCP, in turns.
+// What a vehicle in another process costs a step: a vehicle that computes nothing, with an IMU at 200 Hz, a
+// sweep of 128 x 1024 beams and an image of 320 x 240 at 10 Hz, flown in lockstep in this process, over a
+// Unix socket and over TCP, in turns.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -98,7 +98,8 @@ StepCost fly(core::Vehicle& vehicle) {
   for (core::TimeNs t = 5 * kMillisecond; t <= kLength; t += 5 * kMillisecond) {
     const auto begin = std::chrono::steady_clock::now();
     executive.run_until(t, [] { return false; });
-    const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    const double us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     (t % (100 * kMillisecond) == 0 ? sweeps : plain).push_back(us);
   }
   vehicle.finish();
@@ -112,11 +113,13 @@ StepCost fly_by(const std::string& address) {
   if (child == 0) {
     static const std::atomic<bool> go_on{false};
     auto client = listener->accept(socket::Wait(10'000));
-    socket::serve_client(*client, [](const socket::Hello&) { return std::make_unique<IdleVehicle>(); }, {}, go_on);
+    socket::serve_client(
+        *client, [](const socket::Hello&) { return std::make_unique<IdleVehicle>(); }, {}, go_on);
     _exit(0);
   }
-  socket::LockstepVehicle vehicle(std::make_unique<socket::VehicleLink>(where, socket::Hello{}, socket::Wait(10'000)),
-                                  socket::Wait(10'000));
+  socket::LockstepVehicle vehicle(
+      std::make_unique<socket::VehicleLink>(where, socket::Hello{}, socket::Wait(10'000)),
+      socket::Wait(10'000));
   const StepCost cost = fly(vehicle);
   waitpid(child, nullptr, 0);
   return cost;
@@ -132,7 +135,8 @@ int main() {
     all["unix"].push_back(fly_by("unix:/tmp/karst_socket_bench"));
     all["tcp"].push_back(fly_by("tcp:0"));
   }
-  std::printf("us a step of 5 ms, median of %d rounds of %.0f s each (least and most)\n", kRounds, core::seconds(kLength));
+  std::printf("us a step of 5 ms, median of %d rounds of %.0f s each (least and most)\n", kRounds,
+              core::seconds(kLength));
   for (const auto& [name, costs] : all) {
     std::vector<double> plain, sweep;
     for (const StepCost& c : costs) {
@@ -141,8 +145,8 @@ int main() {
     }
     const auto [plain_least, plain_most] = std::minmax_element(plain.begin(), plain.end());
     const auto [sweep_least, sweep_most] = std::minmax_element(sweep.begin(), sweep.end());
-    std::printf("%-12s imu %7.1f (%.1f to %.1f)   with sweep and image %7.0f (%.0f to %.0f)\n", name.c_str(), median(plain),
-                *plain_least, *plain_most, median(sweep), *sweep_least, *sweep_most);
+    std::printf("%-12s imu %7.1f (%.1f to %.1f)   with sweep and image %7.0f (%.0f to %.0f)\n", name.c_str(),
+                median(plain), *plain_least, *plain_most, median(sweep), *sweep_least, *sweep_most);
   }
   return 0;
 }

@@ -1,5 +1,5 @@
-// Missions whose vehicle is another process: the same bytes as in one process, and what becomes of a vehicle or a core
-// that fails in flight.
+// Missions whose vehicle is another process: the same bytes as in one process, and what becomes of a vehicle
+// or a core that fails in flight.
 #include <signal.h>
 
 #include <nlohmann/json.hpp>
@@ -62,7 +62,8 @@ std::string mission(const fs::path& folder, const std::string& cave, const std::
   return file;
 }
 std::string serve(const std::string& mission_file, const std::string& address, const fs::path& folder) {
-  return "exec " + kKarst + "vehicle serve " + mission_file + " --listen " + address + " --truth " + (folder / "truth").string();
+  return "exec " + kKarst + "vehicle serve " + mission_file + " --listen " + address + " --truth " +
+         (folder / "truth").string();
 }
 std::string by_socket(const std::string& address) {
   return " --set vehicle=socket --set socket.address=" + address + " --quiet --no-report ";
@@ -73,7 +74,8 @@ std::vector<json> events(const fs::path& file, const char* key, const std::strin
   std::vector<json> found;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
-    if (const json event = json::parse(line, nullptr, false); event.is_object() && event.value(key, "") == what)
+    if (const json event = json::parse(line, nullptr, false);
+        event.is_object() && event.value(key, "") == what)
       found.push_back(event);
   return found;
 }
@@ -93,7 +95,8 @@ struct Kind {
   const char* settings;
 };
 const Kind kKinds[] = {
-    {"lidar_and_cameras_in_gusts", "small", 7, "mission { max_flight_time \"40 s\" }\nsimulator { gust \"3 m/s\" }\n"},
+    {"lidar_and_cameras_in_gusts", "small", 7,
+     "mission { max_flight_time \"40 s\" }\nsimulator { gust \"3 m/s\" }\n"},
     {"cameras_only", "small", 3, "mission { max_flight_time \"40 s\" }\nsimulator { vehicle camera_uav }\n"},
     {"lidar_only_with_pictures_and_objects", "small", 11,
      "mission { max_flight_time \"40 s\" }\npolicy { name information_gain }\n"
@@ -107,25 +110,31 @@ TEST_P(SameBytes, AsInOneProcess) {
   const Kind& kind = GetParam();
   const fs::path folder = fresh_folder(std::string("socket_") + kind.name);
   const std::string file = mission(folder, generated_cave(kind.preset, kind.cave_seed), kind.settings);
-  const Output alone = run_karst("fly " + file + " --quiet --no-report --threads 2 --out " + (folder / "alone").string());
+  const Output alone =
+      run_karst("fly " + file + " --quiet --no-report --threads 2 --out " + (folder / "alone").string());
   ASSERT_TRUE(alone.code == 0 || alone.code == 2) << alone.text;
   const std::string address = address_of("same");
   Background server(serve(file, address, folder) + " --threads 4", folder / "serve.log");
   int flight = 0;
   for (const char* threads : {"1", "4"}) {
     const fs::path run = folder / (std::string("socket_") + threads);
-    const Output out = run_karst("fly " + file + by_socket(address) + "--threads " + threads + " --out " + run.string());
+    const Output out =
+        run_karst("fly " + file + by_socket(address) + "--threads " + threads + " --out " + run.string());
     EXPECT_EQ(out.code, alone.code) << out.text;
-    for (int i = 0; i < 100 && server.text().find("truth/" + std::to_string(flight + 1)) == std::string::npos; ++i)
+    for (int i = 0; i < 100 && server.text().find("truth/" + std::to_string(flight + 1)) == std::string::npos;
+         ++i)
       usleep(50'000);
-    const Output evaluated =
-        run_karst("evaluate " + run.string() + " --truth " + (folder / "truth" / std::to_string(++flight)).string());
+    const Output evaluated = run_karst("evaluate " + run.string() + " --truth " +
+                                       (folder / "truth" / std::to_string(++flight)).string());
     EXPECT_EQ(evaluated.code, 0) << evaluated.text;
     int compared = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "alone")) {
       const fs::path name = fs::relative(entry.path(), folder / "alone");
-      if (!entry.is_regular_file() || name == "timing.json" || name == "decisions.csv" || name == "mission.info") continue;
-      EXPECT_TRUE(bytes_of(entry.path()) == bytes_of(run / name)) << name << " with " << threads << " threads";
+      if (!entry.is_regular_file() || name == "timing.json" || name == "decisions.csv" ||
+          name == "mission.info")
+        continue;
+      EXPECT_TRUE(bytes_of(entry.path()) == bytes_of(run / name))
+          << name << " with " << threads << " threads";
       ++compared;
     }
     EXPECT_GT(compared, 8);
@@ -138,12 +147,14 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SameBytes, ::testing::ValuesIn(kKinds),
 
 TEST(SocketFlight, FliesInRealTimeByTcp) {
   const fs::path folder = fresh_folder("socket_real_time");
-  const std::string file = mission(folder, generated_cave("small", 7), "mission { max_flight_time \"20 s\" }\n");
+  const std::string file =
+      mission(folder, generated_cave("small", 7), "mission { max_flight_time \"20 s\" }\n");
   Background server(serve(file, "tcp:0", folder) + " --once", folder / "serve.log");
   std::smatch port;
   const std::string said = server.text();
   ASSERT_TRUE(std::regex_search(said, port, std::regex("listening at (tcp:127.0.0.1:\\d+)"))) << said;
-  const Output out = run_karst("fly --real-time " + file + by_socket(port[1]) + "--out " + (folder / "run").string());
+  const Output out =
+      run_karst("fly --real-time " + file + by_socket(port[1]) + "--out " + (folder / "run").string());
   EXPECT_TRUE(out.says("landed")) << out.text;
   EXPECT_EQ(server.end(), 0);
   EXPECT_TRUE(truth_says(folder, "landed"));
@@ -174,7 +185,8 @@ bool wait_until_in(const fs::path& run, const std::string& phase) {
 TEST_P(VehicleDies, TheCoreEndsWithTheReason) {
   const std::string phase = GetParam();
   const fs::path folder = fresh_folder("socket_vehicle_dies_" + phase), run = folder / "run";
-  const std::string file = mission(folder, generated_cave("small", 7), kShort), address = address_of("v" + phase);
+  const std::string file = mission(folder, generated_cave("small", 7), kShort),
+                    address = address_of("v" + phase);
   Background server(serve(file, address, folder), folder / "serve.log");
   Background flight(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + run.string() +
                         " & echo listening; wait $!",
@@ -200,7 +212,8 @@ class CoreDies : public ::testing::TestWithParam<const char*> {};
 TEST_P(CoreDies, TheVehicleComesDown) {
   const std::string phase = GetParam();
   const fs::path folder = fresh_folder("socket_core_dies_" + phase), run = folder / "run";
-  const std::string file = mission(folder, generated_cave("small", 7), kShort), address = address_of("c" + phase);
+  const std::string file = mission(folder, generated_cave("small", 7), kShort),
+                    address = address_of("c" + phase);
   Background server(serve(file, address, folder) + " --once", folder / "serve.log");
   {
     Background flight(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + run.string() +
@@ -249,18 +262,20 @@ TEST_P(CoreStops, TheVehicleIsSafe) {
   else
     EXPECT_NE(ending.find("aborted: landed by the autopilot"), std::string::npos) << ending;
 }
-INSTANTIATE_TEST_SUITE_P(Silence, CoreStops, ::testing::Values(Stop{"s01", 100}, Stop{"s1", 1000}, Stop{"s10", 11000}),
+INSTANTIATE_TEST_SUITE_P(Silence, CoreStops,
+                         ::testing::Values(Stop{"s01", 100}, Stop{"s1", 1000}, Stop{"s10", 11000}),
                          [](const auto& stop) { return std::string(stop.param.name); });
 
 TEST(SocketFlight, ASecondClientIsRefusedAndTheFirstFliesOn) {
   const fs::path folder = fresh_folder("socket_two_clients");
   const std::string file = mission(folder, generated_cave("small", 7), kShort), address = address_of("two");
   Background server(serve(file, address, folder) + " --once", folder / "serve.log");
-  Background first(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + (folder / "first").string() +
-                       " & echo listening; wait $!",
+  Background first(kKarst + "fly --real-time " + file + by_socket(address) + "--out " +
+                       (folder / "first").string() + " & echo listening; wait $!",
                    folder / "fly.log");
   ASSERT_TRUE(wait_for_phase(folder / "first", "takeoff"));
-  const Output second = run_karst("fly " + file + by_socket(address) + "--out " + (folder / "second").string());
+  const Output second =
+      run_karst("fly " + file + by_socket(address) + "--out " + (folder / "second").string());
   EXPECT_EQ(second.code, 1);
   EXPECT_TRUE(second.says("another client flies this vehicle")) << second.text;
   EXPECT_FALSE(fs::exists(folder / "second"));
@@ -275,7 +290,9 @@ TEST(SocketFlight, ReasonsAreSaidBeforeAnythingIsWritten) {
   EXPECT_EQ(none.code, 1);
   EXPECT_TRUE(none.says("is missing; expected tcp:HOST:PORT")) << none.text;
   const Output nobody = run_karst(
-      "fly --set vehicle=socket --set socket.address=unix:/tmp/karst_nobody --set socket.connect_timeout=0.2s" + out);
+      "fly --set vehicle=socket --set socket.address=unix:/tmp/karst_nobody --set "
+      "socket.connect_timeout=0.2s" +
+      out);
   EXPECT_EQ(nobody.code, 1);
   EXPECT_TRUE(nobody.says("no vehicle answers there")) << nobody.text;
   EXPECT_FALSE(fs::exists(folder / "run"));
@@ -288,10 +305,12 @@ TEST(SocketFlight, ReasonsAreSaidBeforeAnythingIsWritten) {
 class Example : public ::testing::TestWithParam<const char*> {
  protected:
   static std::string command(const std::string& language) {
-    const std::string source = std::string(KARST_SOURCE_DIR) + "/examples/vehicle_" + language + "/point_mass.";
+    const std::string source =
+        std::string(KARST_SOURCE_DIR) + "/examples/vehicle_" + language + "/point_mass.";
     if (language == "python") return "python3 " + source + "py ";
     const std::string program = std::string(KARST_BINARY_DIR) + "/test_runs/point_mass";
-    const Output made = run_command("cc -O2 -std=c11 -Wall -Wextra -Werror -o " + program + " " + source + "c -lm");
+    const Output made =
+        run_command("cc -O2 -std=c11 -Wall -Wextra -Werror -o " + program + " " + source + "c -lm");
     EXPECT_EQ(made.code, 0) << made.text;
     return program + " ";
   }
@@ -305,8 +324,8 @@ TEST_P(Example, KeepsTheProtocolAndIsFlown) {
   const Output check = run_karst("vehicle check " + address + " --fly --seconds 2");
   EXPECT_EQ(check.code, 0) << check.text;
   EXPECT_TRUE(check.says("the vehicle conforms"));
-  const Output out = run_karst("fly --set localization.source=pose_sensor --time 60s" + by_socket(address) + "--out " +
-                               (folder / "run").string());
+  const Output out = run_karst("fly --set localization.source=pose_sensor --time 60s" + by_socket(address) +
+                               "--out " + (folder / "run").string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(outcome(folder / "run").value("outcome", ""), "landed");
   const json metrics = json::parse(bytes_of(folder / "run" / "metrics.json"));
@@ -318,7 +337,8 @@ INSTANTIATE_TEST_SUITE_P(Languages, Example, ::testing::Values("c", "python"));
 TEST(SocketFlight, TheSimulatorKeepsTheProtocol) {
   const fs::path folder = fresh_folder("socket_conformance");
   const std::string address = address_of("conf");
-  const Background server(serve(mission(folder, generated_cave("small", 7), ""), address, folder), folder / "serve.log");
+  const Background server(serve(mission(folder, generated_cave("small", 7), ""), address, folder),
+                          folder / "serve.log");
   const Output check = run_karst("vehicle check " + address + " --fly --seconds 2");
   EXPECT_EQ(check.code, 0) << check.text;
 }

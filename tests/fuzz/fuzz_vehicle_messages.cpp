@@ -1,5 +1,5 @@
-// Any bytes from the socket, at both ends: they are refused, or what was read can be written again as it came. The
-// first byte says which end reads; then follow frames, as Stream cuts them.
+// Any bytes from the socket, at both ends: they are refused, or what was read can be written again as it
+// came. The first byte says which end reads; then follow frames, as Stream cuts them.
 #include <cstdlib>
 #include <cstring>
 #include <variant>

@@ -69,9 +69,7 @@ class Filler {
     }
   }
   template <class T>
-  requires requires(T& t, Filler& f) {
-    fields(t, f);
-  }
+  requires requires(T& t, Filler& f) { fields(t, f); }
   void fill(T& value) { fields(value, *this); }
 };
 

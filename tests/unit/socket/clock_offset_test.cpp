@@ -14,8 +14,8 @@ using core::TimeNs;
 
 /// Two clocks and a link between them, with known truth.
 struct TwoClocks {
-  TimeNs ahead;       // of the vehicle's clock at time 0
-  double drift = 0;   // of the vehicle's clock
+  TimeNs ahead;      // of the vehicle's clock at time 0
+  double drift = 0;  // of the vehicle's clock
   std::mt19937_64 random{7};
 
   TimeNs vehicle(TimeNs core) const {

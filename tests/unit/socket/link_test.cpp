@@ -1,4 +1,5 @@
-// Core and vehicle over a real socket: the order of what happens, and what each side does when the other is bad.
+// Core and vehicle over a real socket: the order of what happens, and what each side does when the other is
+// bad.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <unistd.h>
@@ -51,7 +52,9 @@ class Log final : public core::VehicleSink {
     lines.push_back(std::to_string(executive->now()) + " " + what);
     on_each();
   }
-  void on_lidar(std::shared_ptr<const core::LidarScan> s) override { note("lidar " + std::to_string(s->stamp)); }
+  void on_lidar(std::shared_ptr<const core::LidarScan> s) override {
+    note("lidar " + std::to_string(s->stamp));
+  }
   void on_depth(std::shared_ptr<const core::DepthImage> s) override {
     note("depth of " + s->model->name + " " + std::to_string(s->stamp));
   }
@@ -87,8 +90,8 @@ core::VehicleDescription description() {
   return v;
 }
 
-/// A vehicle that does what a seed says: periodic steps, single ones and jobs, some due at the same time. It lands
-/// and lifts off, and writes down when commands reached it.
+/// A vehicle that does what a seed says: periodic steps, single ones and jobs, some due at the same time. It
+/// lands and lifts off, and writes down when commands reached it.
 class FakeVehicle final : public core::Vehicle {
  public:
   explicit FakeVehicle(std::uint64_t seed, std::vector<std::string>* heard = nullptr)
@@ -130,13 +133,15 @@ class FakeVehicle final : public core::Vehicle {
           sink_->on_battery(b);
         });
       case 1:
-        return executive_->job("fake", core::Lane::sensing, 10 * kMillisecond, [] {}, [this, now] {
-          auto scan = std::make_shared<core::LidarScan>();
-          scan->stamp = now;
-          scan->range_m = {1, 2};
-          scan->intensity = {0, 1};
-          sink_->on_lidar(scan);
-        });
+        return executive_->job(
+            "fake", core::Lane::sensing, 10 * kMillisecond, [] {},
+            [this, now] {
+              auto scan = std::make_shared<core::LidarScan>();
+              scan->stamp = now;
+              scan->range_m = {1, 2};
+              scan->intensity = {0, 1};
+              sink_->on_lidar(scan);
+            });
       case 2:
         return sink_->on_lift_off(now);
       default:
@@ -195,8 +200,9 @@ TEST(Lockstep, IsInTheOrderOfOneProcess) {
     {
       const Peer peer([&](Listener& listener) {
         auto client = listener.accept(Wait(5000));
-        serve_client(*client, [&](const Hello&) { return std::make_unique<FakeVehicle>(seed, &heard_by_socket); }, {},
-                     kGoOn);
+        serve_client(
+            *client, [&](const Hello&) { return std::make_unique<FakeVehicle>(seed, &heard_by_socket); }, {},
+            kGoOn);
       });
       LockstepVehicle vehicle(link_to(peer.address()), Wait(5000));
       got = fly(vehicle, length);
@@ -280,7 +286,8 @@ TEST(BadVehicle, ThatIsNotThereIsAnError) {
     const VehicleLink link(parse_address("unix:/tmp/karst_nobody_listens_here"), hello, Wait(1));
     FAIL();
   } catch (const core::InputError& e) {
-    EXPECT_STREQ(e.what(), "unix:/tmp/karst_nobody_listens_here: no vehicle answers there: No such file or directory");
+    EXPECT_STREQ(e.what(),
+                 "unix:/tmp/karst_nobody_listens_here: no vehicle answers there: No such file or directory");
   }
 }
 
@@ -312,8 +319,7 @@ TEST(BadVehicle, InFlightIsLostWithTheReason) {
     say(s, Schedule{0, 20 * kMillisecond, 20 * kMillisecond});
     say(s, Done{});
   };
-  EXPECT_EQ(flown_with([](Stream&) {}, Wait(100)),
-            Lines{"0 lost: the vehicle has not answered for 0 s"});
+  EXPECT_EQ(flown_with([](Stream&) {}, Wait(100)), Lines{"0 lost: the vehicle has not answered for 0 s"});
   EXPECT_EQ(flown_with([&](Stream& s) {
               begins(s);
               say_bytes(s, std::string(16, '\xff'));
@@ -333,20 +339,37 @@ TEST(BadVehicle, InFlightIsLostWithTheReason) {
               begins(s);
               say(s, Schedule{1, 10 * kMillisecond, 0});
             }),
-            Lines{"20000000 lost: the vehicle schedules what cannot be: a time that is past, or a period below 1 ms"});
+            Lines{"20000000 lost: the vehicle schedules what cannot be: a time that is past, or a period "
+                  "below 1 ms"});
 }
 
 TEST(BadVehicle, WhoseNumbersCannotBeLosesTheMessageOnly) {
-  const auto lines = flown_with([](Stream& s) {
-    say(s, Schedule{0, 20 * kMillisecond, 0});
-    say(s, Done{});
+  const Peer peer([](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    say(*client, welcome());
+    say(*client, Schedule{0, 20 * kMillisecond, 0});
+    say(*client, Checks{{{"rotors", "four", "four", true}}});
+    say(*client, Done{});
     core::ImuSample imu;
-    say(s, imu);
+    say(*client, imu);
     imu.specific_force_mps2.x() = std::nan("");
-    say(s, imu);
-    say(s, Done{20 * kMillisecond});
+    say(*client, imu);
+    say(*client, Done{20 * kMillisecond});
+    try {
+      while (client->receive(Wait(2000))) {
+      }
+    } catch (const LinkError&) {
+    }
   });
+  LockstepVehicle vehicle(link_to(peer.address()), Wait(5000));
+  auto lines = fly(vehicle, 50 * kMillisecond);
+  std::erase_if(lines, [](const std::string& line) { return line.find("imu") == std::string::npos; });
   EXPECT_EQ(lines, std::vector<std::string>{"20000000 imu 0"});
+  const auto checks = vehicle.checks();
+  ASSERT_EQ(checks.size(), 2u);
+  EXPECT_EQ(checks[0].name, "rotors");
+  EXPECT_EQ(checks[1].found, "1 dropped, the first: message 48: is no number");
+  EXPECT_FALSE(checks[1].holds);
 }
 
 TEST(BadVehicle, ThatNeverLetsTimePassIsLost) {
@@ -359,7 +382,8 @@ TEST(BadVehicle, ThatNeverLetsTimePassIsLost) {
     }
     s.flush(Wait(2000));
   });
-  EXPECT_EQ(lines, std::vector<std::string>{"0 lost: the vehicle schedules without end, so that no time passes"});
+  EXPECT_EQ(lines,
+            std::vector<std::string>{"0 lost: the vehicle schedules without end, so that no time passes"});
 }
 
 /// What the vehicle's side does of a client that says `play`: its ending, and what the vehicle heard.
@@ -374,7 +398,8 @@ ServedClient serve(std::function<void(Stream&)> play, const ServeOptions& option
     const Peer peer([&](Listener& listener) {
       auto client = listener.accept(Wait(5000));
       all.served = serve_client(
-          *client, [&](const Hello&) { return std::make_unique<FakeVehicle>(1, &all.vehicle); }, options, kGoOn);
+          *client, [&](const Hello&) { return std::make_unique<FakeVehicle>(1, &all.vehicle); }, options,
+          kGoOn);
     });
     Stream stream = connect_to(peer.address(), Wait(5000), kMaxToCoreBytes);
     try {
@@ -489,7 +514,8 @@ TEST(Server, RefusesASecondClientMeanwhile) {
   const Peer peer([&](Listener& listener) {
     auto client = listener.accept(Wait(5000));
     const Doorkeeper doorkeeper(listener);
-    serve_client(*client, [](const Hello&) { return std::make_unique<FakeVehicle>(1); }, {}, kGoOn);
+    serve_client(
+        *client, [](const Hello&) { return std::make_unique<FakeVehicle>(1); }, {}, kGoOn);
   });
   auto first = link_to(peer.address());
   try {
@@ -509,7 +535,9 @@ TEST(RealTime, StampsAreOfTheCoresClock) {
       auto client = listener.accept(Wait(5000));
       const auto begin = std::chrono::steady_clock::now();
       const auto now = [&] {
-        return ahead + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin).count();
+        return ahead +
+               std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin)
+                   .count();
       };
       try {
         say(*client, welcome());
@@ -565,14 +593,16 @@ TEST(RealTime, ASilentVehicleIsGivenToItsAutopilotAndThenLost) {
   vehicle.start(executive, log);
   executive.run_until(60 * kSecond, [&] { return log.says("lost"); });
   ASSERT_GE(log.lines.size(), 4u);
-  EXPECT_NE(log.lines[0].find("authority autopilot: no message from the vehicle for 0.1 s"), std::string::npos);
-  EXPECT_NE(log.lines[1].find("authority core: the vehicle and the core hear each other again"), std::string::npos);
+  EXPECT_NE(log.lines[0].find("authority autopilot: no message from the vehicle for 0.1 s"),
+            std::string::npos);
+  EXPECT_NE(log.lines[1].find("authority core: the vehicle and the core hear each other again"),
+            std::string::npos);
   EXPECT_NE(log.lines[2].find("authority autopilot"), std::string::npos);
   EXPECT_NE(log.lines[3].find("no message from the vehicle for 1.5 s"), std::string::npos);
 }
 
-/// A core that stood still for longer than kCommandTimeout says so before it takes what came meanwhile, sends nothing of
-/// what was due then, and does not take its own silence for the vehicle's.
+/// A core that stood still for longer than kCommandTimeout says so before it takes what came meanwhile, sends
+/// nothing of what was due then, and does not take its own silence for the vehicle's.
 TEST(RealTime, ACoreThatStoodStillGivesTheVehicleToItsAutopilotFirst) {
   std::atomic<int> late_commands = 0;
   std::atomic<bool> stands_still = false;
@@ -594,18 +624,19 @@ TEST(RealTime, ACoreThatStoodStillGivesTheVehicleToItsAutopilotFirst) {
     } catch (const LinkError&) {
     }
   });
-  RealTimeVehicle vehicle(link_to(peer.address(), FlightClock::real_time), Wait(5000), {kSecond, 2 * kSecond});
+  RealTimeVehicle vehicle(link_to(peer.address(), FlightClock::real_time), Wait(5000),
+                          {600 * kMillisecond, 800 * kMillisecond});
   core::Executive executive(1, core::Clock::real_time);
   Log log;
   log.executive = &executive;
   vehicle.start(executive, log);
   executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] { vehicle.command({}); });
   executive.at(kSecond / 5, [&] {
-    std::this_thread::sleep_for(Wait(500));  // until what was sent before has come
+    std::this_thread::sleep_for(Wait(200));  // until what was sent before has come
     stands_still = true;
-    std::this_thread::sleep_for(Wait(2500));  // in all longer than a vehicle may be silent
+    std::this_thread::sleep_for(Wait(700));  // in all longer than a vehicle may be silent
   });
-  executive.at(5 * kSecond / 2, [&] { stands_still = false; });
+  executive.at(900 * kMillisecond, [&] { stands_still = false; });
   executive.run_until(30 * kSecond, [&] { return log.says("hear each other again"); });
   vehicle.finish();
   EXPECT_FALSE(log.says("lost"));

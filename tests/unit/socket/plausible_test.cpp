@@ -52,7 +52,8 @@ std::string why(Change change) {
 TEST(Plausible, DescriptionsThatLieAreRefused) {
   EXPECT_EQ(implausible(vehicle()), "");
   EXPECT_EQ(why_lidar([](auto& l) { l.columns = 0; }), "lidar: columns: expected 1 to 65536");
-  EXPECT_EQ(why_lidar([](auto& l) { l.elevation_rad.clear(); }), "lidar: elevation_rad: expected 1 to 1024 channels");
+  EXPECT_EQ(why_lidar([](auto& l) { l.elevation_rad.clear(); }),
+            "lidar: elevation_rad: expected 1 to 1024 channels");
   EXPECT_NE(why_lidar([](auto& l) { l.columns = 65536, l.elevation_rad.assign(1000, 0); }), "");
   EXPECT_NE(why_lidar([](auto& l) { l.elevation_rad = {0.1f, 0.1f}; }), "");
   EXPECT_NE(why_lidar([](auto& l) { l.elevation_rad[0] = kNan; }), "");

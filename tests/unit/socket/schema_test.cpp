@@ -144,9 +144,7 @@ class Collector {
     if (value) note(*value);
   }
   template <class T>
-  requires requires(const T& t, Collector& c) {
-    fields(t, c);
-  }
+  requires requires(const T& t, Collector& c) { fields(t, c); }
   void note(const T& value) { fields(value, *this); }
 };
 
@@ -240,7 +238,8 @@ TEST(Schema, NumbersTheValuesOfEnumerationsAsTheCodeDoes) {
 std::string fields_in_words(const json& fields) {
   std::string words;
   for (const json& f : fields)
-    words += (words.empty() ? "`" : ", `") + f["name"].get<std::string>() + "` " + f["type"].get<std::string>();
+    words +=
+        (words.empty() ? "`" : ", `") + f["name"].get<std::string>() + "` " + f["type"].get<std::string>();
   return words.empty() ? "none" : words;
 }
 
