@@ -26,6 +26,14 @@ struct StampOf {
   TimeNs* operator()(M& m) const { return &m.stamp; }
 };
 
+TimeNs* stamp_of(ToCore& message) { return std::visit(StampOf{}, message); }
+
+bool measured(const ToCore& m) {
+  return !std::holds_alternative<Ground>(m) && !std::holds_alternative<LiftOff>(m) &&
+         !std::holds_alternative<AuthorityChange>(m) && !std::holds_alternative<Lost>(m) &&
+         !std::holds_alternative<core::BatteryStatus>(m);
+}
+
 std::string in_seconds(TimeNs t) {
   char text[32];
   std::snprintf(text, sizeof text, "%g s", core::seconds(t));
@@ -60,9 +68,9 @@ void RealTimeVehicle::step() {
               " late, so the vehicle comes down by itself");
   try {
     for (std::size_t i = 0; i < kMessagesAStep && !lost_; ++i) {
-      std::optional<ToCore> message = link_->receive(Wait(0));
-      if (!message) break;
-      take(std::move(*message));
+      if (!next_ && !(next_ = receive())) break;
+      if (const TimeNs* stamp = stamp_of(*next_); stamp && *stamp > executive_->now()) break;
+      take(*std::exchange(next_, std::nullopt));
     }
     if (clock_.now() >= next_ping_) ping();
     link_->stream().flush(Wait(0));
@@ -72,22 +80,28 @@ void RealTimeVehicle::step() {
   judge_silence();
 }
 
+/// The next message for the core, with its stamp by the core's clock. Before the first round trip nothing is
+/// known of the vehicle's clock: only what it is and does counts then, and not what it measures.
+std::optional<ToCore> RealTimeVehicle::receive() {
+  while (std::optional<ToCore> message = link_->receive(Wait(0))) {
+    if (const auto* pong = std::get_if<Pong>(&*message)) {
+      offset_.add({pong->ping_sent, clock_.now(), pong->received, pong->sent});
+      continue;
+    }
+    TimeNs* stamp = stamp_of(*message);
+    if (!stamp) return message;
+    if (!offset_.known() && measured(*message)) continue;
+    const TimeNs now = clock_.now();
+    *stamp = offset_.known() ? std::min(*stamp - offset_.offset(now), now) : executive_->now();
+    return message;
+  }
+  return std::nullopt;
+}
+
 void RealTimeVehicle::take(ToCore message) {
-  if (const auto* pong = std::get_if<Pong>(&message))
-    return offset_.add({pong->ping_sent, clock_.now(), pong->received, pong->sent});
   if (auto* checks = std::get_if<Checks>(&message)) {
     checks_ = std::move(checks->checks);
     return;
-  }
-  if (TimeNs* stamp = std::visit(StampOf{}, message)) {
-    // Before the first round trip nothing is known of the vehicle's clock: only what it is and does counts.
-    *stamp = offset_.known() ? std::min(*stamp - offset_.offset(clock_.now()), executive_->now())
-                             : executive_->now();
-    const bool measured =
-        !std::holds_alternative<Ground>(message) && !std::holds_alternative<LiftOff>(message) &&
-        !std::holds_alternative<AuthorityChange>(message) && !std::holds_alternative<Lost>(message) &&
-        !std::holds_alternative<core::BatteryStatus>(message);
-    if (measured && !offset_.known()) return;
   }
   if (const auto* change = std::get_if<AuthorityChange>(&message)) {
     steers_ = change->who;
