@@ -152,6 +152,8 @@ static void put_description(Out* o) {
   put_f32(o, kLidarMax_m);
   put_i64(o, LIDAR_PERIOD);
   put_pose(o, origin, none);
+  put_u32(o, 0); /* offsets of azimuth */
+  put_f32(o, 0); /* beams begin at the origin */
   put_u32(o, 0); /* depth cameras */
   put_u8(o, 0);  /* colour camera */
   put_u8(o, 1);  /* pose sensor */
@@ -194,6 +196,8 @@ static void put_scan(Out* o, const Vehicle* v, int64_t now) {
     }
   put_u32(o, COLUMNS * CHANNELS);
   for (int i = 0; i < COLUMNS * CHANNELS; ++i) put_f32(o, 0.5f); /* intensity */
+  put_u32(o, 0);                                                 /* fired evenly */
+  put_u32(o, 0);                                                 /* in the directions of the description */
   end(o);
 }
 

@@ -110,7 +110,7 @@ class PointMass:
     def description(self):
         lidar = text("room scanner") + struct.pack("<I", COLUMNS)
         lidar += floats(array("f", ELEVATIONS)) + struct.pack("<ffq", LIDAR_MIN_M, LIDAR_MAX_M, LIDAR_PERIOD)
-        lidar += pose((0, 0, 0), (0, 0, 0, 1))
+        lidar += pose((0, 0, 0), (0, 0, 0, 1)) + struct.pack("<If", 0, 0.0)  # no offsets of azimuth or origin
         return (text("point mass") + struct.pack("<4d", RADIUS_M, MASS_KG, MAX_THRUST_N, 6.0)
                 + b"\x01" + lidar + struct.pack("<I", 0)   # a LiDAR, no depth cameras
                 + b"\x00" + b"\x01" + b"\x00" + b"\x00"    # no colour camera, a pose sensor, no detector, core steers
@@ -216,7 +216,8 @@ class PointMass:
                 ranges[n] = math.nan                          # no valid measurement
             else:
                 ranges[n] = nearest if nearest <= LIDAR_MAX_M else math.inf
-        return message(LIDAR, struct.pack("<q", now) + floats(ranges) + floats(array("f", [0.5]) * len(BEAMS)))
+        return message(LIDAR, struct.pack("<q", now) + floats(ranges) + floats(array("f", [0.5]) * len(BEAMS))
+                       + struct.pack("<II", 0, 0))          # fired evenly; directions as described
 
 
 # -- the connection ---------------------------------------------------------------------------------------------------

@@ -100,7 +100,8 @@ class RosVehicle(Node):
                 elif r < self.min_range_m:
                     r = math.nan                              # no valid measurement
                 ranges.append(r)
-        self.tell(karst.LIDAR, struct.pack("<q", self.stamp(m.header)) + karst.floats(ranges) + karst.floats(intensity))
+        self.tell(karst.LIDAR, struct.pack("<q", self.stamp(m.header)) + karst.floats(ranges) + karst.floats(intensity)
+                  + struct.pack("<II", 0, 0))
 
     def on_battery(self, m):
         power_w = max(1.0, -m.voltage * m.current)
@@ -124,7 +125,7 @@ class RosVehicle(Node):
         lidar = karst.text("ros scan") + struct.pack("<I", self.columns)
         lidar += karst.floats(array("f", [math.radians(e) for e in self.elevation_deg]))
         lidar += struct.pack("<ffq", self.min_range_m, self.max_range_m, self.lidar_period_ns)
-        lidar += karst.pose(self.lidar_offset_m, (0, 0, 0, 1))
+        lidar += karst.pose(self.lidar_offset_m, (0, 0, 0, 1)) + struct.pack("<If", 0, 0.0)
         return (karst.text("ros vehicle")
                 + struct.pack("<4d", self.radius_m, self.mass_kg, self.max_thrust_n, self.max_rate)
                 + b"\x01" + lidar + struct.pack("<I", 0) + b"\x00\x00\x00"

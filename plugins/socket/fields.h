@@ -27,6 +27,8 @@ void fields(M& m, V&& v) {
   v("max_range_m", m.max_range_m);
   v("period", m.period);
   v("T_body_lidar", m.T_body_lidar);
+  v("azimuth_offset_rad", m.azimuth_offset_rad);
+  v("beam_origin_m", m.beam_origin_m);
 }
 template <Of<core::CameraModel> M, class V>
 void fields(M& m, V&& v) {
@@ -205,6 +207,8 @@ void fields(M& m, V&& v) {
   v("stamp", m.stamp);
   v("range_m", m.range_m);
   v("intensity", m.intensity);
+  v("time_s", m.time_s);
+  v("direction", m.direction);
 }
 template <class M, class V>
 requires Of<M, Depth> || Of<M, DepthView>

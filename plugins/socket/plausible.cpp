@@ -20,15 +20,22 @@ bool ranges(float low_m, float high_m) { return low_m >= 0 && high_m > low_m && 
 bool period(core::TimeNs t) { return t >= kShortestPeriod && t <= kLongestPeriod; }
 
 std::string implausible_lidar(const core::LidarModel& m) {
-  if (m.columns < 1 || m.columns > kMaxColumns) return "columns: expected 1 to 65536";
+  if (m.columns < 0 || m.columns > kMaxColumns) return "columns: expected 0 (no rings) to 65536";
   if (m.channels() < 1 || m.channels() > kMaxChannels) return "elevation_rad: expected 1 to 1024 channels";
+  if (!m.has_rings() && m.channels() != 2)
+    return "elevation_rad: expected two without rings, of the highest and the lowest beam";
   if (static_cast<long>(m.columns) * m.channels() > kMaxBeams) return "columns: more than 4000000 beams";
-  for (int i = 0; i < m.channels(); ++i) {
+  for (std::size_t i = 0; i < m.elevation_rad.size(); ++i) {
     if (!within(m.elevation_rad[i], -std::numbers::pi / 2, std::numbers::pi / 2))
       return "elevation_rad: expected -pi/2 to pi/2";
     if (i > 0 && m.elevation_rad[i] >= m.elevation_rad[i - 1])
       return "elevation_rad: expected the highest first";
   }
+  if (!m.azimuth_offset_rad.empty() && m.azimuth_offset_rad.size() != m.elevation_rad.size())
+    return "azimuth_offset_rad: expected none, or one a channel";
+  for (const float offset : m.azimuth_offset_rad)
+    if (!within(offset, -std::numbers::pi, std::numbers::pi)) return "azimuth_offset_rad: expected -pi to pi";
+  if (!within(m.beam_origin_m, 0, 1)) return "beam_origin_m: expected 0 to 1";
   if (!ranges(m.min_range_m, m.max_range_m)) return "max_range_m: expected more than min_range_m";
   if (!period(m.period)) return "period: expected 1 ms to 60 s";
   if (!pose(m.T_body_lidar)) return "T_body_lidar: is no pose";
@@ -80,10 +87,23 @@ struct Judge {
   }
   std::string operator()(const core::LidarScan& m) const {
     if (!vehicle.lidar) return "the vehicle has no LiDAR";
-    const auto beams = static_cast<std::size_t>(vehicle.lidar->columns) * vehicle.lidar->elevation_rad.size();
+    const core::LidarModel& lidar = *vehicle.lidar;
+    const auto columns = static_cast<std::size_t>(lidar.columns);
+    const std::size_t beams = lidar.has_rings() ? columns * lidar.elevation_rad.size() : m.range_m.size();
+    const std::size_t times = lidar.has_rings() ? columns : beams;
+    if (beams > kMaxBeams) return "range_m: more than 4000000 beams";
     if (m.intensity.size() != beams) return "intensity: expected " + std::to_string(beams) + " values";
     for (const float i : m.intensity)
       if (!(i >= 0 && i <= 1)) return "intensity: expected 0 to 1";
+    if (m.time_s.size() != times && !(m.time_s.empty() && lidar.has_rings()))
+      return "time_s: expected " + std::to_string(times) + " times";
+    for (const float t : m.time_s)
+      if (!within(t, -2 * core::seconds(lidar.period), 0))
+        return "time_s: expected at most two periods before";
+    if (m.direction.size() != (lidar.has_rings() ? 0 : beams))
+      return "direction: expected one a point without rings";
+    for (const core::Vec3f& d : m.direction)
+      if (!d.allFinite() || std::abs(d.norm() - 1) > 1e-3f) return "direction: is no unit vector";
     return implausible_ranges(m.range_m, beams);
   }
   std::string operator()(const Depth& m) const {

@@ -1,8 +1,8 @@
 // A vehicle in another process, or on another computer, with a clock of its own.
 //
-// Messages are read in a short periodic step. The stamps are converted to the core's clock (clock_offset.h),
-// and are never later than the step that reads them. Pings go out ten times a second and serve as the
-// heartbeat, too.
+// Messages are read in a short periodic step. The stamps are converted to the core's clock (clock_offset.h).
+// A message waits until the core's time has reached its stamp: a core that is late takes what came meanwhile
+// as if it were not. Pings go out ten times a second and serve as the heartbeat, too.
 #pragma once
 #include <memory>
 #include <optional>
@@ -32,6 +32,7 @@ class RealTimeVehicle final : public core::Vehicle {
  private:
   void step();
   std::optional<ToCore> receive();
+  std::optional<ToCore> receive();
   void take(ToCore message);
   void ping();
   void judge_silence();
@@ -47,6 +48,7 @@ class RealTimeVehicle final : public core::Vehicle {
   std::vector<core::VehicleCheck> checks_;
   MachineClock clock_;
   ClockOffset offset_;
+  std::optional<ToCore> next_;                 // waits until the core's time has reached its stamp
   core::TimeNs next_ping_ = 0, heard_at_ = 0;  // by clock_
   int pings_ = 0;
   core::Authority steers_ = core::Authority::core;  // as the vehicle says

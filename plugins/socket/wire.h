@@ -52,6 +52,9 @@ class Writer {
   void put(const core::Vec3& p) {
     for (int i = 0; i < 3; ++i) put(p[i]);
   }
+  void put(const core::Vec3f& p) {
+    bytes_.append(reinterpret_cast<const char*>(p.data()), 3 * sizeof(float));
+  }
   void put(const core::Quat& q) {
     for (int i = 0; i < 4; ++i) put(q.coeffs()[i]);  // x y z w
   }
@@ -135,6 +138,7 @@ class Reader {
     return true;
   }
   bool get(core::Vec3& p) { return take(p.data(), 3 * sizeof(double)); }
+  bool get(core::Vec3f& p) { return take(p.data(), 3 * sizeof(float)); }
   bool get(core::Quat& q) { return take(q.coeffs().data(), 4 * sizeof(double)); }
   /// The count comes first: nothing is allocated for elements that cannot be there.
   template <class T, class Element>

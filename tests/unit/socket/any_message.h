@@ -42,6 +42,9 @@ class Filler {
   void fill(core::Vec3& v) {
     for (int i = 0; i < 3; ++i) fill(v[i]);
   }
+  void fill(core::Vec3f& v) {
+    for (int i = 0; i < 3; ++i) fill(v[i]);
+  }
   void fill(core::Quat& q) {
     for (int i = 0; i < 4; ++i) fill(q.coeffs()[i]);
   }

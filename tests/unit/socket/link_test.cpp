@@ -272,11 +272,11 @@ TEST(BadVehicle, IsRefusedBeforeTakeOffWithTheReason) {
   EXPECT_EQ(refusal([](Stream& s) {
               Welcome w = welcome();
               core::LidarModel lidar = *w.description.lidar;
-              lidar.columns = 0;
+              lidar.columns = -1;
               w.description.lidar = std::make_shared<const core::LidarModel>(lidar);
               say(s, w);
             }),
-            "its description is wrong: lidar: columns: expected 1 to 65536");
+            "its description is wrong: lidar: columns: expected 0 (no rings) to 65536");
   EXPECT_EQ(refusal([](Stream&) {}), "connected, but it does not greet");
 }
 

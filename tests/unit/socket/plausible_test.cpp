@@ -51,7 +51,10 @@ std::string why(Change change) {
 
 TEST(Plausible, DescriptionsThatLieAreRefused) {
   EXPECT_EQ(implausible(vehicle()), "");
-  EXPECT_EQ(why_lidar([](auto& l) { l.columns = 0; }), "lidar: columns: expected 1 to 65536");
+  EXPECT_EQ(why_lidar([](auto& l) { l.columns = -1; }), "lidar: columns: expected 0 (no rings) to 65536");
+  EXPECT_EQ(why_lidar([](auto& l) { l.columns = 0; }), "") << "a LiDAR without rings";
+  EXPECT_NE(why_lidar([](auto& l) { l.columns = 0, l.elevation_rad = {0}; }), "");
+  EXPECT_NE(why_lidar([](auto& l) { l.azimuth_offset_rad = {0}; }), "");
   EXPECT_EQ(why_lidar([](auto& l) { l.elevation_rad.clear(); }),
             "lidar: elevation_rad: expected 1 to 1024 channels");
   EXPECT_NE(why_lidar([](auto& l) { l.columns = 65536, l.elevation_rad.assign(1000, 0); }), "");
@@ -82,6 +85,19 @@ TEST(Plausible, MessagesMustFitTheDescription) {
   EXPECT_EQ(implausible(scan, v), "range_m: is negative");
   scan.range_m.resize(7);
   EXPECT_EQ(implausible(scan, v), "range_m: expected 8 ranges, got 7");
+  core::VehicleDescription ringless = v;
+  core::LidarModel lidar = *v.lidar;
+  lidar.columns = 0;
+  ringless.lidar = std::make_shared<const core::LidarModel>(lidar);
+  core::LidarScan points;
+  points.range_m = {1, 2};
+  points.intensity = {0, 1};
+  EXPECT_NE(implausible(points, ringless), "") << "no directions";
+  points.time_s = {-0.1f, 0};
+  points.direction = {core::Vec3f::UnitX(), core::Vec3f::UnitY()};
+  EXPECT_EQ(implausible(points, ringless), "");
+  points.direction[0] *= 2;
+  EXPECT_EQ(implausible(points, ringless), "direction: is no unit vector");
   Depth depth;
   depth.image.range_m.assign(6, 1.0f);
   EXPECT_EQ(implausible(depth, v), "");

@@ -76,6 +76,10 @@ class SchemaReader {
       for (int i = 0; i < (type == "vec3" ? 3 : 4); ++i) note(take<double>());
       return;
     }
+    if (type == "vec3f") {
+      for (int i = 0; i < 3; ++i) note(take<float>());
+      return;
+    }
     if (type == "text") {
       const auto size = take<std::uint16_t>();
       if (at_ + size > body_.size()) {
@@ -131,6 +135,9 @@ class Collector {
   void note(const std::string& text) { values.push_back(text); }
   void note(const core::Vec3& v) {
     for (const double x : {v.x(), v.y(), v.z()}) note(x);
+  }
+  void note(const core::Vec3f& v) {
+    for (const float x : {v.x(), v.y(), v.z()}) note(x);
   }
   void note(const core::Quat& q) {
     for (const double x : {q.x(), q.y(), q.z(), q.w()}) note(x);
