@@ -269,14 +269,16 @@ TEST(BadVehicle, IsRefusedBeforeTakeOffWithTheReason) {
               say(s, w);
             }),
             "this vehicle flies in real time only: fly with --real-time");
-  EXPECT_EQ(refusal([](Stream& s) {
-              Welcome w = welcome();
-              core::LidarModel lidar = *w.description.lidar;
-              lidar.columns = -1;
-              w.description.lidar = std::make_shared<const core::LidarModel>(lidar);
-              say(s, w);
-            }),
-            "its description is wrong: lidar: columns: expected 0 (no rings) to 65536");
+  EXPECT_EQ(
+      refusal([](Stream& s) {
+        Welcome w = welcome();
+        core::LidarModel lidar = *w.description.lidar;
+        lidar.columns = 0;
+        w.description.lidar = std::make_shared<const core::LidarModel>(lidar);
+        say(s, w);
+      }),
+      "its description is wrong: lidar: elevation_rad: expected two without rings, of the highest and the "
+      "lowest beam");
   EXPECT_EQ(refusal([](Stream&) {}), "connected, but it does not greet");
 }
 
