@@ -38,6 +38,16 @@ bool has_whole_map(const fs::path& run_dir, RecoveredMap& out) {
   return whole;
 }
 
+/// What no other reader misses.
+void note_missing(const fs::path& run_dir, std::vector<std::string>& notes) {
+  for (const char* name : {"mission.info", "events.jsonl", "telemetry.csv", "trajectory.tum", "localization.csv",
+                           "decisions.csv", "map_growth.bin", core::kMapCellsName}) {
+    std::error_code error;
+    if (!fs::exists(run_dir / name, error)) notes.push_back(std::string(name) + ": is not there");
+  }
+  evaluation::read_table(run_dir / "localization.csv", {"believed", "problem"}, notes);
+}
+
 /// Occupied cells alone: a flight in lockstep does not record the free ones.
 core::VoxelMap rock_of(const evaluation::RunRecord& run) {
   core::MapOptions options;
@@ -59,6 +69,7 @@ RecoveredMap recover_map(const fs::path& run_dir) {
       !fs::exists(run_dir / core::kMapCellsName))
     throw core::InputError(run_dir.string(), "", "holds nothing of a flight");
   remove_stale_lock(run_dir);
+  note_missing(run_dir, out.notes);
   if (has_whole_map(run_dir, out)) return out;
   if (run.setting("map.resolution").empty())
     out.notes.emplace_back("mission.info: has no map.resolution; 0.2 m is assumed");

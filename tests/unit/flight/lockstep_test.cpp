@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 namespace karst::flight {
 namespace {
@@ -112,6 +116,36 @@ TEST(Lockstep, InRealTimeOneVehicleFliesToItsEnd) {
   Lockstep flight({}, {.clock = core::Clock::real_time}, crew.seats());
   EXPECT_GE(flight.run(watch_on), 50 * kMillisecond);
   EXPECT_EQ(flight.state(0).ended->reason, "hit a rock");
+}
+
+/// Its loop does not return from a step.
+class HangingVehicle final : public core::Vehicle {
+ public:
+  core::VehicleDescription description() const override { return {}; }
+  void start(core::Executive& executive, core::VehicleSink&) override {
+    executive.every("vehicle", 0, kSecond, [] {
+      for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    });
+  }
+  void command(const core::Command&) override {}
+};
+
+TEST(LockstepDeathTest, InRealTimeALoopThatHangsIsReportedByName) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto fly = [] {
+    const Crew crew({VehiclePlan{}});
+    HangingVehicle vehicle;
+    std::vector<Seat> seats = crew.seats();
+    seats.front().vehicle = &vehicle;
+    LockstepOptions how{.clock = core::Clock::real_time};
+    how.real_time.hang_limit = std::chrono::milliseconds(100);
+    how.real_time.on_hang = [](const std::string& running) {
+      std::fprintf(stderr, "%s hangs\n", running.c_str());
+      std::_Exit(2);
+    };
+    Lockstep({}, how, seats).run(watch_on);
+  };
+  EXPECT_EXIT(fly(), testing::ExitedWithCode(2), "vehicle hangs");
 }
 
 std::vector<std::string> notes_of_three(int threads) {
