@@ -153,5 +153,28 @@ TEST_F(SensorPipelineTest, WhatIsSeenOfAnotherVehicleIsNoRock) {
   EXPECT_GT(seen, 0u);
 }
 
+/// How many of 40 scans are mapped with what the load leaves out.
+TEST_F(SensorPipelineTest, WhatALateMapLaneLeavesOutIsNotMapped) {
+  const auto mapped_of_40 = [this] {
+    news.clear();
+    for (int i = 0; i < 40; ++i) {
+      advance(0.1);
+      sensors.on_lidar(scan(now()));
+    }
+    advance(0.2);
+    return news.size();
+  };
+  const auto late_for_a_second = [this, t = TimeNs{0}]() mutable {
+    for (int i = 0; i < 10; ++i) onboard.load.observe_map(t += 100 * kMillisecond, kSecond);
+  };
+  EXPECT_EQ(mapped_of_40(), 40u);
+  late_for_a_second();
+  ASSERT_TRUE(onboard.load.sheds(Relief::half_the_scans));
+  EXPECT_EQ(mapped_of_40(), 20u);
+  late_for_a_second();
+  ASSERT_TRUE(onboard.load.sheds(Relief::quarter_the_scans));
+  EXPECT_EQ(mapped_of_40(), 10u);
+}
+
 }  // namespace
 }  // namespace karst::core

@@ -4,7 +4,7 @@
 function endedWell(outcome) { return outcome === "landed" || outcome === "replayed"; }
 
 function isTrouble(e) {
-  return e.kind === "safety" || (e.kind === "log" && / broke, and was started once more: /.test(e.text)) || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" ||
+  return e.kind === "safety" || (e.kind === "log" && / broke, and was started once more: /.test(e.text)) || (e.kind === "truth" && /^(contact|battery)/.test(e.text)) || e.kind === "contact" || e.kind === "overrun" || e.kind === "degraded" ||
     (e.kind === "goal" && /rejected|unreachable|abandoned/.test(e.state)) ||
     (e.kind === "outcome" && !endedWell(e.outcome));
 }
@@ -142,6 +142,20 @@ function showTiming() {
     rows.append(make("tr", {}, make("td", {}, name), make("td", { className: "number" }, String(j.count ?? "")), cell(j.p50_ms), cell(j.p99_ms), cell(j.max_ms)));
   }
   box.append(rows);
+  if (timing.real_time && typeof timing.real_time === "object") showRealTime(box, timing.real_time);
+}
+
+/** How late the steps of a flight in real time were, what the computer granted, and what was left out. */
+function showRealTime(box, realTime) {
+  const cell = (v) => make("td", { className: "number" }, typeof v === "number" ? numberText(v) : "");
+  const rows = make("table", {}, make("tr", {}, ...["step", "late: p50 ms", "p99 ms", "p99.9 ms", "max ms", "missed"].map((t) => make("th", {}, t))));
+  for (const [name, l] of Object.entries(realTime.lateness || {}))
+    rows.append(make("tr", {}, make("td", {}, name), cell(l.p50_ms), cell(l.p99_ms), cell(l.p99_9_ms), cell(l.max_ms), cell(l.missed_deadlines)));
+  box.append(rows);
+  const left = Object.entries(realTime.degraded || {}).map(([what, times]) => `${what} (${times})`);
+  box.append(make("p", {}, left.length ? `left out while a lane was late: ${left.join(", ")}` : "nothing was left out"));
+  for (const [what, grant] of Object.entries(realTime.granted || {}))
+    box.append(make("p", { className: "quiet" }, `${what}: ${grant.text}`));
 }
 
 /** Name, value and unit of each figure that has a value; one line names the others. */
