@@ -1,7 +1,7 @@
 // How long something takes, or how late it is: counts of durations in fixed memory, however long a flight is.
 //
-// Buckets are linear below 64 ns, and beyond that there are 32 in each octave. A quantile is therefore too high by
-// 1/32 (3 %) at most, and never too low.
+// Buckets are linear below 64 ns, and beyond that there are 32 in each octave. A quantile is therefore too
+// high by 1/32 (3 %) at most, and never too low.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,8 +18,8 @@ class DurationHistogram {
   std::uint64_t count() const { return count_; }
   TimeNs max() const { return max_; }
   TimeNs total() const { return total_; }
-  /// The least duration that the share `q` (0 to 1) of all durations does not exceed (nearest rank), rounded up
-  /// to the end of its bucket; 0 if there is none.
+  /// The least duration that the share `q` (0 to 1) of all durations does not exceed (nearest rank), rounded
+  /// up to the end of its bucket; 0 if there is none.
   TimeNs quantile(double q) const;
 
  private:

@@ -83,7 +83,8 @@ struct Executive::Job {
 
 const std::string Executive::kNoName;
 
-Executive::Executive(int threads, Clock clock, RealTimeSetup setup) : clock_(clock), setup_(std::move(setup)) {
+Executive::Executive(int threads, Clock clock, RealTimeSetup setup)
+    : clock_(clock), setup_(std::move(setup)) {
   if (threads > 1 || clock == Clock::real_time) start_workers();
 }
 
@@ -152,8 +153,8 @@ int Executive::under_way(const std::string& name) const {
 void Executive::job(std::string name, Lane lane, TimeNs budget, std::function<void()> work,
                     std::function<void()> publish) {
   std::packaged_task<TimeNs()> task([work = std::move(work)] { return run_timed(work); });
-  auto job = std::make_shared<Job>(
-      Job{std::move(name), lane, now_ + budget, task.get_future(), std::move(publish)});
+  auto job =
+      std::make_shared<Job>(Job{std::move(name), lane, now_ + budget, task.get_future(), std::move(publish)});
   if (const auto& worker = workers_[static_cast<std::size_t>(lane)]) {
     {
       const std::lock_guard lock(worker->mutex);

@@ -42,7 +42,7 @@ struct Cost {
 
 /// How well a periodic step keeps its times, in real time.
 struct Punctuality {
-  DurationHistogram lateness;         // from when a step was due to when it began
+  DurationHistogram lateness;          // from when a step was due to when it began
   std::uint64_t missed_deadlines = 0;  // steps that ended when the next one was due already, or later
 };
 
@@ -96,8 +96,8 @@ class Executive {
   const std::map<std::string, Cost>& costs() const { return costs_; }
   /// Of each periodic step; empty in lockstep.
   const std::map<std::string, Punctuality>& punctuality() const { return punctuality_; }
-  /// The greatest time by which a job of the lane exceeded its budget since this was last asked, including those
-  /// that still run or wait. 0 in lockstep, where nothing is late.
+  /// The greatest time by which a job of the lane exceeded its budget since this was last asked, including
+  /// those that still run or wait. 0 in lockstep, where nothing is late.
   TimeNs take_lateness(Lane lane);
   /// A loop that is a second behind sets its clock back to what is due. The time lost in this way so far.
   TimeNs lost_time() const { return lost_time_; }

@@ -1,8 +1,8 @@
 // A mutex and a condition for threads of different priorities.
 //
-// The loop of a flight in real time shares a queue with threads of lower priority. With a usual mutex, one that
-// is preempted while it holds the mutex keeps the loop waiting for as long as others run (priority inversion).
-// With priority inheritance the holder runs at the priority of who waits.
+// The loop of a flight in real time shares a queue with threads of lower priority. With a usual mutex, one
+// that is preempted while it holds the mutex keeps the loop waiting for as long as others run (priority
+// inversion). With priority inheritance the holder runs at the priority of who waits.
 #pragma once
 #include <pthread.h>
 

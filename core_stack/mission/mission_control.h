@@ -150,7 +150,7 @@ class MissionControl final : public VehicleSink {
   int overruns_ = 0;      // of the executive, as last recorded
   TimeNs lost_time_ = 0;  // likewise
   bool standing_ = true;
-  Authority authority_;                   // who steers
+  Authority authority_;  // who steers
   std::string authority_reason_;
   bool resumes_exploring_ = true;         // when the core steers again
   bool lands_lost_ = false;               // for want of a pose

@@ -38,8 +38,8 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
   loam_->job(
       "localization", kLocalizationBudget,
       [scan, history = onboard_.flight.estimator().history(), self_m, filter = onboard_.options.perception,
-       effort = onboard_.load.sheds(Relief::half_the_features) ? LoamEffort::half
-                                                               : LoamEffort::full](Loam& loam) {
+       effort =
+           onboard_.load.sheds(Relief::half_the_features) ? LoamEffort::half : LoamEffort::full](Loam& loam) {
         // Only the paper's rule: robust matching copes with the remaining dust. The stricter filter of the
         // map loses true returns at edges and bumps, and triples the drift (docs/localization.md).
         LidarScan filtered = *scan;
@@ -126,7 +126,8 @@ void SensorPipeline::on_depth(const std::shared_ptr<const DepthImage>& image) {
 /// By now the pose is as accurate as it gets: scans of that moment have been located.
 void SensorPipeline::on_rgb(const std::shared_ptr<const RgbFrame>& frame) {
   if (frame->stamp > onboard_.now() || !frame->model || closed_) return;
-  if (onboard_.load.sheds(Relief::no_pictures) || onboard_.executive.under_way("imaged surface") >= kMaxWaiting)
+  if (onboard_.load.sheds(Relief::no_pictures) ||
+      onboard_.executive.under_way("imaged surface") >= kMaxWaiting)
     return;
   const Pose T_world_camera =
       onboard_.flight.estimator().history().pose_at(frame->stamp) * frame->model->camera.T_body_camera;

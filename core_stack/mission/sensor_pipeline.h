@@ -85,8 +85,8 @@ class SensorPipeline {
   double explored_m3_ = 0;
   std::optional<double> unsurveyed_m3_;
   std::optional<double> hull_clearance_m_;
-  TimeNs last_seen_ = 0;            // when a scan or an image was last taken in
-  int pictures_lost_ = 0;           // not kept
+  TimeNs last_seen_ = 0;             // when a scan or an image was last taken in
+  int pictures_lost_ = 0;            // not kept
   unsigned sweeps_ = 0, scans_ = 0;  // that came to be located, to be mapped
   std::map<const CameraModel*, unsigned> images_;
   std::string localization_state_;  // as last noted in the events, as the next

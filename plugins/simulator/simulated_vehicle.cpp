@@ -23,8 +23,8 @@ namespace {
 constexpr TimeNs kTick = 5 * kMillisecond;  // also the period of the IMU
 constexpr int kStepsPerTick = 5;
 constexpr TimeNs kBarometerPeriod = 40 * kMillisecond;
-/// In real time, when ray casting or drawing falls behind: measurements beyond this are not taken. In lockstep
-/// fewer wait.
+/// In real time, when ray casting or drawing falls behind: measurements beyond this are not taken. In
+/// lockstep fewer wait.
 constexpr int kMaxWaiting = 8;
 constexpr TimeNs kLidarBudget = 20 * kMillisecond, kCameraBudget = 10 * kMillisecond,
                  kPictureBudget = 100 * kMillisecond;

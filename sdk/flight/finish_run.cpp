@@ -164,7 +164,10 @@ Finishing recorded_finishing(const fs::path& run_dir, Report report) {
   }
   try {
     const auto mission = core::read_info(file.string());
-    return {mission.get("cave.file", ""), mission.get("cave.start", ""), report, {},
+    return {mission.get("cave.file", ""),
+            mission.get("cave.start", ""),
+            report,
+            {},
             recorded_mesh_keys(file, mission)};
   } catch (const core::InputError& e) {
     print_wrapped(stderr, 7, "karst: %s: the cave is not known\n", e.what());

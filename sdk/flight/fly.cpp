@@ -28,11 +28,12 @@ namespace fs = std::filesystem;
 
 // The time that a step or job may take before the flight is aborted: longer than any decision or plan takes
 // on any machine.
-constexpr std::chrono::seconds kStallInLockstep{600}, kStallInRealTime{30};  // here: in its end (RealTimeOptions)
+constexpr std::chrono::seconds kStallInLockstep{600},
+    kStallInRealTime{30};  // here: in its end (RealTimeOptions)
 
 /// Ends the process because the step or job `running` does not return: objects in use by the hanging code
-/// cannot be destroyed. The record is complete up to the last second. Even if nobody reads what it prints, the
-/// process ends within a second: the vehicle comes down only when it gets no more commands.
+/// cannot be destroyed. The record is complete up to the last second. Even if nobody reads what it prints,
+/// the process ends within a second: the vehicle comes down only when it gets no more commands.
 [[noreturn]] void end_stalled(const std::string& running, const fs::path& run_dir) {
   std::signal(SIGALRM, SIG_DFL);
   alarm(1);
@@ -68,7 +69,7 @@ std::string page_of(const RealTimeProcess& process, const ServiceManager& servic
                 "  watchdog     karst ends if the loop hangs for %.1f s%s\n"
                 "  record       on the disk within a second\n",
                 hang_limit_s,
-                !service.listens()                 ? ""
+                !service.listens()                ? ""
                 : service.watchdog().count() == 0 ? "; systemd is told when it is ready"
                                                   : "; systemd gets signs of life, too");
   return "Real time:\n" + process.page() + more.data();
@@ -129,9 +130,9 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const fs::path own = member_run_dir(run_dir, mission_, i);
     if (own != run_dir) r.own_claims.push_back(std::make_unique<RunClaim>(own));
-    r.recorders.push_back(std::make_unique<core::Recorder>(
-        own, request_.clock == core::Clock::real_time ? core::Durability::survives_a_power_cut
-                                                      : core::Durability::survives_a_crash));
+    r.recorders.push_back(std::make_unique<core::Recorder>(own, request_.clock == core::Clock::real_time
+                                                                    ? core::Durability::survives_a_power_cut
+                                                                    : core::Durability::survives_a_crash));
   }
   r.vehicles = make_vehicles(mission_, members_, run_dir, request_.clock);
   write_mission(run_dir / "mission.info", as_flown(mission_));
@@ -234,7 +235,8 @@ nlohmann::ordered_json MissionFlight::finish_alone(FlightOutcome& outcome, doubl
     const RealTimeTiming timing{running_->real_time->grants(), state.degraded};
     write_timing(run_dir, executive, wall_s, &timing);
     outcome.real_time.emplace();
-    if (const auto control = executive.punctuality().find("control"); control != executive.punctuality().end())
+    if (const auto control = executive.punctuality().find("control");
+        control != executive.punctuality().end())
       outcome.real_time->control = control->second;
     outcome.real_time->degraded = state.degraded;
   } else {

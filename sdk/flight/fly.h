@@ -22,7 +22,7 @@ constexpr int kNotAsMeant = 2;  // exit code of a flight whose mission did not g
 
 /// Of a flight in real time.
 struct RealTimeOutcome {
-  core::Punctuality control;   // of the control step
+  core::Punctuality control;                           // of the control step
   std::vector<std::pair<core::Relief, int>> degraded;  // and how often
 };
 
@@ -33,7 +33,7 @@ struct FlightOutcome {
   std::optional<TeamResult> team;           // for a team's flight
   std::vector<PolicyPrinted> printed;       // of each vehicle whose policy's process printed something
   std::optional<RealTimeOutcome> real_time;
-  std::string record_problem;               // why the record is incomplete; "" if it is not
+  std::string record_problem;  // why the record is incomplete; "" if it is not
 };
 
 class MissionFlight {
@@ -69,7 +69,7 @@ class MissionFlight {
   LoadedPolicies loaded_;
   std::optional<core::MissionKey> key_;  // of a team
   std::atomic<bool> in_the_air_ = false;
-  std::unique_ptr<Running> running_;     // kept after the flight: see hangs()
+  std::unique_ptr<Running> running_;  // kept after the flight: see hangs()
 };
 
 }  // namespace karst::flight

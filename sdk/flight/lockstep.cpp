@@ -28,7 +28,8 @@ struct Lockstep::Vehicle {
     state.ended = control->end();
     state.ended_at = time;
     for (const auto& [relief, name] : names_of(core::Relief{}))
-      if (const int times = control->load().times(relief); times > 0) state.degraded.emplace_back(relief, times);
+      if (const int times = control->load().times(relief); times > 0)
+        state.degraded.emplace_back(relief, times);
   }
 
   Seat seat;
@@ -41,8 +42,7 @@ Lockstep::Lockstep(const core::CoreOptions& options, const LockstepOptions& how,
                    const std::vector<Seat>& seats, StepHooks* hooks)
     : options_(options), how_(how), hooks_(hooks) {
   const int threads_each = seats.size() == 1 ? how.threads : 1;
-  for (const Seat& seat : seats)
-    vehicles_.push_back(std::make_unique<Vehicle>(seat, threads_each, how));
+  for (const Seat& seat : seats) vehicles_.push_back(std::make_unique<Vehicle>(seat, threads_each, how));
 }
 
 Lockstep::~Lockstep() = default;
@@ -55,8 +55,8 @@ TimeNs Lockstep::run(const FlightWatch& watch) {
   return now_;
 }
 
-/// No vehicle waits for another: the whole flight is one step. The loop is watched only while it flies: the map
-/// takes longer to write.
+/// No vehicle waits for another: the whole flight is one step. The loop is watched only while it flies: the
+/// map takes longer to write.
 void Lockstep::run_in_real_time(const FlightWatch& watch) {
   Vehicle& vehicle = *vehicles_.front();
   const RealTime& how = how_.real_time;

@@ -22,7 +22,7 @@ namespace karst::flight {
 namespace {
 
 constexpr std::array kPriorities = {45, 40, 30, 25, 20, 10};  // by role
-constexpr std::size_t kStackBytes = 512 * 1024;               // of the loop's thread, touched before the flight
+constexpr std::size_t kStackBytes = 512 * 1024;  // of the loop's thread, touched before the flight
 
 /// 0, or the reason why not.
 int set_fifo(int priority) {
@@ -54,7 +54,8 @@ std::string kernel_text() {
   uname(&name);
   int real_time = 0;
   std::ifstream("/sys/kernel/realtime") >> real_time;
-  return std::string(name.sysname) + " " + name.release + (real_time == 1 ? ", PREEMPT_RT" : ", without PREEMPT_RT");
+  return std::string(name.sysname) + " " + name.release +
+         (real_time == 1 ? ", PREEMPT_RT" : ", without PREEMPT_RT");
 }
 
 std::string list_of(const cpu_set_t& set) {
@@ -133,13 +134,15 @@ Grant RealTimeProcess::try_priorities() {
     set_usual();
     return {"priorities", false,
             std::string("not granted (") + std::strerror(error) + "): all threads are equal; rtprio " +
-                std::to_string(kPriorities.front()) + " in limits.conf, or LimitRTPRIO in the unit, allows them"};
+                std::to_string(kPriorities.front()) +
+                " in limits.conf, or LimitRTPRIO in the unit, allows them"};
   }
   set_usual();
   has_priorities_ = true;
   std::string text = "SCHED_FIFO:";
   for (const auto& [role, name] : names_of(ThreadRole{}))
-    text += std::string(role == ThreadRole::watchdog ? " " : ", ") + name + " " + std::to_string(priority_of(role));
+    text += std::string(role == ThreadRole::watchdog ? " " : ", ") + name + " " +
+            std::to_string(priority_of(role));
   return {"priorities", true, text};
 }
 
@@ -149,9 +152,10 @@ Grant RealTimeProcess::lock_memory() {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
   if (limit.rlim_cur != RLIM_INFINITY && !may_lock_any_memory())
-    return {"memory", false,
-            "not locked, as only " + std::to_string(limit.rlim_cur / 1024) +
-                " KiB may be: memlock unlimited in limits.conf, or LimitMEMLOCK=infinity in the unit, allows it"};
+    return {
+        "memory", false,
+        "not locked, as only " + std::to_string(limit.rlim_cur / 1024) +
+            " KiB may be: memlock unlimited in limits.conf, or LimitMEMLOCK=infinity in the unit, allows it"};
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
     return {"memory", false, std::string("not locked: ") + std::strerror(errno)};
   has_locked_ = true;
@@ -181,7 +185,8 @@ Grant RealTimeProcess::choose_cpus(const std::string& mission_file) {
   const std::string text = CPU_EQUAL(&loop_cpus_, &all_cpus_) && CPU_EQUAL(&job_cpus_, &all_cpus_)
                                ? "any of " + list_of(all_cpus_)
                                : "loop on " + list_of(loop_cpus_) + ", jobs on " + list_of(job_cpus_);
-  return {"processors", missing.empty(), text + (missing.empty() ? "" : "; this process may not use " + missing)};
+  return {"processors", missing.empty(),
+          text + (missing.empty() ? "" : "; this process may not use " + missing)};
 }
 
 void RealTimeProcess::prepare_thread(ThreadRole role) const {

@@ -1,5 +1,5 @@
-// What a flight in real time asks of the computer: priorities, locked memory, processors. What is not granted costs
-// punctuality, never the flight, and page() says so.
+// What a flight in real time asks of the computer: priorities, locked memory, processors. What is not granted
+// costs punctuality, never the flight, and page() says so.
 #pragma once
 #include <sched.h>
 
@@ -11,8 +11,8 @@
 
 namespace karst::flight {
 
-/// Highest priority first. The watchdog must see a loop that spins. All are below 50, the priority of the kernel's
-/// interrupt threads with PREEMPT_RT, which bring the vehicle's messages.
+/// Highest priority first. The watchdog must see a loop that spins. All are below 50, the priority of the
+/// kernel's interrupt threads with PREEMPT_RT, which bring the vehicle's messages.
 enum class ThreadRole { watchdog, loop, localization, sensing, map, pictures };
 constexpr auto names_of(ThreadRole) {
   using enum ThreadRole;
@@ -35,15 +35,15 @@ struct Grant {
 
 class RealTimeProcess {
  public:
-  /// Tries priorities on the calling thread, and locks the memory of the process. Throws core::InputError only for a
-  /// list of processors that is none.
+  /// Tries priorities on the calling thread, and locks the memory of the process. Throws core::InputError
+  /// only for a list of processors that is none.
   RealTimeProcess(const RealTimeOptions& options, const std::string& mission_file);
   ~RealTimeProcess();
   RealTimeProcess(const RealTimeProcess&) = delete;
   RealTimeProcess& operator=(const RealTimeProcess&) = delete;
 
-  /// Gives the calling thread its priority and processors, as far as they were granted. What it starts later has
-  /// neither. From any thread.
+  /// Gives the calling thread its priority and processors, as far as they were granted. What it starts later
+  /// has neither. From any thread.
   void prepare_thread(ThreadRole role) const;
   /// The calling thread becomes a usual one again: evaluating a flight is no real-time work.
   void release_thread() const;

@@ -40,8 +40,8 @@ bool has_whole_map(const fs::path& run_dir, RecoveredMap& out) {
 
 /// What no other reader misses.
 void note_missing(const fs::path& run_dir, std::vector<std::string>& notes) {
-  for (const char* name : {"mission.info", "events.jsonl", "telemetry.csv", "trajectory.tum", "localization.csv",
-                           "decisions.csv", "map_growth.bin", core::kMapCellsName}) {
+  for (const char* name : {"mission.info", "events.jsonl", "telemetry.csv", "trajectory.tum",
+                           "localization.csv", "decisions.csv", "map_growth.bin", core::kMapCellsName}) {
     std::error_code error;
     if (!fs::exists(run_dir / name, error)) notes.push_back(std::string(name) + ": is not there");
   }
@@ -73,14 +73,16 @@ RecoveredMap recover_map(const fs::path& run_dir) {
   if (has_whole_map(run_dir, out)) return out;
   if (run.setting("map.resolution").empty())
     out.notes.emplace_back("mission.info: has no map.resolution; 0.2 m is assumed");
-  if (const auto map = evaluation::read_map_cells(run_dir / core::kMapCellsName, run.map_resolution_m(), out.notes)) {
+  if (const auto map =
+          evaluation::read_map_cells(run_dir / core::kMapCellsName, run.map_resolution_m(), out.notes)) {
     core::write_octomap(*map, (run_dir / "map").string());
     core::write_ply(*map, (run_dir / "map.ply").string());
     out.written = {run_dir / "map.bt", run_dir / "map.ot", run_dir / "map.ply"};
   } else if (const core::VoxelMap rock = rock_of(run); rock.occupied_cells() > 0) {
     core::write_ply(rock, (run_dir / "map.ply").string());
     out.written = {run_dir / "map.ply"};
-    out.notes.emplace_back("map_cells.bin: is not there, or holds nothing: only the rock of map_growth.bin is known");
+    out.notes.emplace_back(
+        "map_cells.bin: is not there, or holds nothing: only the rock of map_growth.bin is known");
   } else {
     out.notes.emplace_back("no map: neither map_cells.bin nor map_growth.bin holds a cell");
   }

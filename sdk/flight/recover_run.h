@@ -11,9 +11,9 @@ struct RecoveredMap {
   std::vector<std::string> notes;  // what is missing, and what was left out
 };
 
-/// Writes map.bt, map.ot and map.ply of map_cells.bin, or map.ply alone of map_growth.bin, unless there is a map that
-/// can be read. Changes no other file but run.lock, which it removes. Throws core::InputError if a flight still
-/// writes there, for a team, and if a file cannot be written.
+/// Writes map.bt, map.ot and map.ply of map_cells.bin, or map.ply alone of map_growth.bin, unless there is a
+/// map that can be read. Changes no other file but run.lock, which it removes. Throws core::InputError if a
+/// flight still writes there, for a team, and if a file cannot be written.
 RecoveredMap recover_map(const std::filesystem::path& run_dir);
 
 }  // namespace karst::flight

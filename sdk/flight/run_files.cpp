@@ -144,7 +144,7 @@ RunClaim::RunClaim(fs::path run_dir, OldRun old) : run_dir_(std::move(run_dir)) 
   if (lock_ < 0)
     throw core::InputError((run_dir_ / kLock).string(), "",
                            std::string("cannot be written: ") + std::strerror(errno));
-  flock(lock_, LOCK_EX | LOCK_NB);  // tells remove_stale_lock that this process lives
+  flock(lock_, LOCK_EX | LOCK_NB);                    // tells remove_stale_lock that this process lives
   if (old == OldRun::replaced) remove_run(run_dir_);  // behind the lock: no flight writes there now
 }
 

@@ -37,8 +37,8 @@ class RunClaim {
   bool was_there_ = false, kept_ = false;
 };
 
-/// Removes the run.lock that a flight left behind when it was killed. Throws core::InputError if the flight still
-/// writes there.
+/// Removes the run.lock that a flight left behind when it was killed. Throws core::InputError if the flight
+/// still writes there.
 void remove_stale_lock(const std::filesystem::path& run_dir);
 
 }  // namespace karst::flight

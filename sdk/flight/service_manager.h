@@ -11,7 +11,8 @@ namespace karst::flight {
 
 class ServiceManager {
  public:
-  /// `socket`: a path, or @name for an abstract one; "": none. `watchdog`: within which a sign of life is due; 0: none.
+  /// `socket`: a path, or @name for an abstract one; "": none. `watchdog`: within which a sign of life is
+  /// due; 0: none.
   ServiceManager(std::string socket, std::chrono::microseconds watchdog)
       : socket_(std::move(socket)), watchdog_(watchdog) {}
   /// Of NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID.
@@ -31,7 +32,8 @@ class ServiceManager {
 class ServiceWatchdog {
  public:
   /// `lives` is called on the thread of the watchdog, and `on_thread` once, before.
-  ServiceWatchdog(const ServiceManager& manager, std::function<bool()> lives, std::function<void()> on_thread = {});
+  ServiceWatchdog(const ServiceManager& manager, std::function<bool()> lives,
+                  std::function<void()> on_thread = {});
   ~ServiceWatchdog();
   ServiceWatchdog(const ServiceWatchdog&) = delete;
   ServiceWatchdog& operator=(const ServiceWatchdog&) = delete;

@@ -16,7 +16,8 @@ std::string file_of(const std::string& name) {
   if (!fs::is_directory(name)) return name;
   for (const char* map : {"map.ot", "map.bt", "map.ply"})
     if (fs::is_regular_file(fs::path(name) / map)) return (fs::path(name) / map).string();
-  throw InputError(name, "", "holds no map.ot, map.bt or map.ply; karst recover makes them of a flight that was cut off");
+  throw InputError(
+      name, "", "holds no map.ot, map.bt or map.ply; karst recover makes them of a flight that was cut off");
 }
 
 std::string ply_bytes(const std::vector<core::Vec3f>& points) {

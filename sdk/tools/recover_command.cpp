@@ -23,7 +23,8 @@ void add_recover_command(CLI::App& app) {
   CLI::App* recover = app.add_subcommand(
       "recover",
       "Make map, metrics and report of a flight that was cut off\n\n"
-      "After a power cut or a kill. Writes map.bt, map.ot and map.ply of what the flight kept, then metrics.json "
+      "After a power cut or a kill. Writes map.bt, map.ot and map.ply of what the flight kept, then "
+      "metrics.json "
       "and report.html, and says what is missing. Changes no file that the flight wrote.\n\n"
       "  karst recover runs/demo");
   recover->add_option("run", args->run, "run directory")->type_name(kFolder)->required();

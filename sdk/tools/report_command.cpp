@@ -85,8 +85,8 @@ void add_report_command(CLI::App& app, CampaignPage campaign_page) {
     if (!fs::exists(run / "mission.info") && !fs::exists(run / "events.jsonl"))
       throw core::InputError(args->run, "",
                              "no run directory, as it holds no mission.info, nor a campaign's folder");
-    const flight::Finishing how = flight::recorded_finishing(
-        run, args->no_report ? flight::Report::none : flight::Report::written);
+    const flight::Finishing how =
+        flight::recorded_finishing(run, args->no_report ? flight::Report::none : flight::Report::written);
     if (evaluation::is_team(run)) {
       report_team(run, how);
       return;

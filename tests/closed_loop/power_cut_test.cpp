@@ -1,5 +1,5 @@
-// A flight in real time that is killed, and whose files then look as a power cut leaves them: whatever is lost, what
-// is there is read, and what is missing is said.
+// A flight in real time that is killed, and whose files then look as a power cut leaves them: whatever is
+// lost, what is there is read, and what is missing is said.
 #include <unistd.h>
 
 #include <chrono>
@@ -15,9 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kRecord{"events.jsonl",     "telemetry.csv",  "trajectory.tum", "localization.csv",
-                                       "decisions.csv",    "map_growth.bin", "map_cells.bin",  "mission.info",
-                                       "truth.csv",        "ground_truth.tum", "truth_events.jsonl"};
+const std::vector<std::string> kRecord{"events.jsonl",     "telemetry.csv",     "trajectory.tum",
+                                       "localization.csv", "decisions.csv",     "map_growth.bin",
+                                       "map_cells.bin",    "mission.info",      "truth.csv",
+                                       "ground_truth.tum", "truth_events.jsonl"};
 
 nlohmann::json metrics_of(const fs::path& run) {
   return nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false);
@@ -30,8 +31,8 @@ const fs::path& killed_run() {
     const std::string karst = std::string(KARST_BINARY_DIR) + "/bin/karst", cave = generated_cave("small", 7);
     const pid_t child = fork();
     if (child == 0) {
-      execl(karst.c_str(), "karst", "fly", "--real-time", "--cave", cave.c_str(), "--quiet", "--out", killed.c_str(),
-            nullptr);
+      execl(karst.c_str(), "karst", "fly", "--real-time", "--cave", cave.c_str(), "--quiet", "--out",
+            killed.c_str(), nullptr);
       _exit(127);
     }
     std::error_code none;
@@ -104,7 +105,8 @@ std::string damaged(const std::string& bytes, core::Random& random) {
   return "";  // made, and nothing written
 }
 
-// Not one case: files are missing, cut off at any byte, or filled with zeros from any byte on, in many mixtures.
+// Not one case: files are missing, cut off at any byte, or filled with zeros from any byte on, in many
+// mixtures.
 TEST(PowerCut, WhateverIsLostWhatIsThereIsReadAndWhatIsMissingIsSaid) {
   core::Random random(5);
   const int trials = std::max(12, 6 * seeds());
@@ -124,11 +126,13 @@ TEST(PowerCut, WhateverIsLostWhatIsThereIsReadAndWhatIsMissingIsSaid) {
         if (shows && name != "mission.info") touched.push_back(name);
       }
     }
-    if (trial % 3 == 0) std::ofstream(run / "map.bt", std::ios::binary) << "# Octomap OcTree binary file\nid Oc";
+    if (trial % 3 == 0)
+      std::ofstream(run / "map.bt", std::ios::binary) << "# Octomap OcTree binary file\nid Oc";
     const Output recovered = run_karst("recover --no-report " + run.string());
     if (recovered.says("holds nothing of a flight")) continue;
     ASSERT_EQ(recovered.code, 0) << recovered.text;
-    for (const std::string& name : touched) EXPECT_TRUE(recovered.says(name)) << name << "\n" << recovered.text;
+    for (const std::string& name : touched)
+      EXPECT_TRUE(recovered.says(name)) << name << "\n" << recovered.text;
     ASSERT_TRUE(metrics_of(run).is_object());
     const Output report = run_karst("report " + run.string());
     if (fs::exists(run / "mission.info") || fs::exists(run / "events.jsonl")) {

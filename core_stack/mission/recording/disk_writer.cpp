@@ -110,7 +110,8 @@ bool DiskWriter::write(const std::vector<Pending>& batch) {
     good = write_all(descriptors[p.file], p.bytes) && good;
     written.insert(descriptors[p.file]);
   }
-  for (const int d : written) good = (fdatasync(d) == 0 || errno == EINVAL) && good;  // EINVAL: no disk below it
+  for (const int d : written)
+    good = (fdatasync(d) == 0 || errno == EINVAL) && good;  // EINVAL: no disk below it
   return good;
 }
 

@@ -1,10 +1,10 @@
 // Writes the files of a run directory from a thread of its own, and has them on the disk within a second.
 //
-// The loop of a flight in real time must wait neither for the file system nor for the disk, and what it recorded
-// must survive a power cut. So it only hands bytes on. The writer's thread writes them and calls fdatasync. Once a
-// second it does so, too, for all other files of the directory that have grown, such as those of the vehicle, and
-// calls fsync for the directory if a file is new. The thread has no priority: a real-time thread does not wait
-// for it.
+// The loop of a flight in real time must wait neither for the file system nor for the disk, and what it
+// recorded must survive a power cut. So it only hands bytes on. The writer's thread writes them and calls
+// fdatasync. Once a second it does so, too, for all other files of the directory that have grown, such as
+// those of the vehicle, and calls fsync for the directory if a file is new. The thread has no priority: a
+// real-time thread does not wait for it.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -31,8 +31,8 @@ class DiskWriter {
   /// Takes `bytes`, which is empty afterwards. False once a write has failed, or the disk is so slow that
   /// kMaxPending is not written yet: then what comes later is lost.
   bool append(File file, std::string& bytes);
-  /// The same without ever waiting: while the thread looks at what there is, the bytes stay where they are, for the
-  /// next call.
+  /// The same without ever waiting: while the thread looks at what there is, the bytes stay where they are,
+  /// for the next call.
   bool try_append(File file, std::string& bytes);
   /// Waits until everything is on the disk, and ends the thread. False if something is not.
   bool finish();

@@ -1,9 +1,9 @@
 // map_cells.bin: every change of a cell of the map, of which the map of a flight that was cut off is made.
 //
-// Records of four little-endian int32: the key x, y, z of a cell, and 4 t + c with the time t in milliseconds and
-// its class c from then on: 0 unknown, 1 free, 2 occupied. A record that is written is never zero in its fourth
-// number, as no cell changes in the first millisecond: a file system may have left zeros where data did not reach
-// the disk before a power cut.
+// Records of four little-endian int32: the key x, y, z of a cell, and 4 t + c with the time t in milliseconds
+// and its class c from then on: 0 unknown, 1 free, 2 occupied. A record that is written is never zero in its
+// fourth number, as no cell changes in the first millisecond: a file system may have left zeros where data
+// did not reach the disk before a power cut.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -11,7 +11,8 @@ namespace karst::core {
 
 class RecordFile {
  public:
-  /// Makes the file, emptied. Through `disk`, if given, which outlives it. Throws InputError if it cannot be made.
+  /// Makes the file, emptied. Through `disk`, if given, which outlives it. Throws InputError if it cannot be
+  /// made.
   void open(const std::filesystem::path& path, DiskWriter* disk);
   bool is_open() const { return disk_ != nullptr || out_.is_open(); }
 

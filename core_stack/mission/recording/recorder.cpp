@@ -125,8 +125,8 @@ void Recorder::final_map(const VoxelMap& map) {
 }
 
 std::array<RecordFile*, 9> Recorder::files() {
-  return {&events_, &trajectory_, &telemetry_, &localization_, &growth_, &cells_, &decisions_, &frames_,
-          &unsurveyed_};
+  return {&events_, &trajectory_, &telemetry_, &localization_, &growth_,
+          &cells_,  &decisions_,  &frames_,    &unsurveyed_};
 }
 
 bool Recorder::flush() {

@@ -37,9 +37,9 @@ struct Located {
   Hypothesis believed = Hypothesis::lidar;
 };
 
-/// Where the record is once flush() has returned: with the file system, which a killed process does not affect;
-/// or on its way to the disk, which it reaches within a second, so that a power cut costs no more. The second also
-/// records every known cell of the map (map_cells.bin), and no call waits for the disk.
+/// Where the record is once flush() has returned: with the file system, which a killed process does not
+/// affect; or on its way to the disk, which it reaches within a second, so that a power cut costs no more.
+/// The second also records every known cell of the map (map_cells.bin), and no call waits for the disk.
 enum class Durability { survives_a_crash, survives_a_power_cut };
 
 class Recorder {
@@ -79,7 +79,8 @@ class Recorder {
 
   std::filesystem::path directory_;
   std::unique_ptr<DiskWriter> disk_;  // to survive a power cut
-  RecordFile events_, trajectory_, telemetry_, localization_, growth_, cells_, decisions_, frames_, unsurveyed_;
+  RecordFile events_, trajectory_, telemetry_, localization_, growth_, cells_, decisions_, frames_,
+      unsurveyed_;
   std::string last_unsurveyed_;  // as written
 };
 

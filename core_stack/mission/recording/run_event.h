@@ -317,8 +317,9 @@ struct Outcome {
   }
 };
 
-using Event = std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log,
-                           Homing, Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team, Outcome>;
+using Event =
+    std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log, Homing,
+                 Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team, Outcome>;
 
 /// The line without its end: {"t": ..., "kind": ..., and the fields by name}.
 std::string line_of(TimeNs t, const Event& event);

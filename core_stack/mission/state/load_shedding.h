@@ -1,7 +1,8 @@
 // What the core leaves out while a lane cannot keep up, in real time.
 //
-// A lane that is late is relieved of one measure after another, in the order of the list below, and takes them
-// back one by one, the last first, when there is room. In lockstep nothing is late, so nothing is ever left out.
+// A lane that is late is relieved of one measure after another, in the order of the list below, and takes
+// them back one by one, the last first, when there is room. In lockstep nothing is late, so nothing is ever
+// left out.
 #pragma once
 #include <array>
 #include <optional>
@@ -44,13 +45,15 @@ class LaneLoad {
     TimeNs since = 0;     // from when on it has been in force
     TimeNs behind = 0;    // the lane's lateness, as last observed
   };
-  /// `reliefs` in order. An observation beyond `tolerated` counts as late: more than a burst of work explains.
-  LaneLoad(std::vector<Relief> reliefs, TimeNs tolerated) : reliefs_(std::move(reliefs)), tolerated_(tolerated) {}
+  /// `reliefs` in order. An observation beyond `tolerated` counts as late: more than a burst of work
+  /// explains.
+  LaneLoad(std::vector<Relief> reliefs, TimeNs tolerated)
+      : reliefs_(std::move(reliefs)), tolerated_(tolerated) {}
 
-  /// `behind`: the greatest lateness since the last observation. One more relief is taken once the lane was late
-  /// for a second in all, where time in which it was not counts half against that. The last one is over after
-  /// five seconds in which the lane was never late; if it was needed again at once, that takes twice as long
-  /// the next time, up to 80 s.
+  /// `behind`: the greatest lateness since the last observation. One more relief is taken once the lane was
+  /// late for a second in all, where time in which it was not counts half against that. The last one is over
+  /// after five seconds in which the lane was never late; if it was needed again at once, that takes twice as
+  /// long the next time, up to 80 s.
   std::optional<Change> observe(TimeNs now, TimeNs behind);
   bool sheds(Relief relief) const;
 
@@ -78,7 +81,9 @@ class LoadShedding {
   };
   explicit LoadShedding(const Sensors& sensors);
 
-  std::optional<LaneLoad::Change> observe_map(TimeNs now, TimeNs behind) { return note(map_.observe(now, behind)); }
+  std::optional<LaneLoad::Change> observe_map(TimeNs now, TimeNs behind) {
+    return note(map_.observe(now, behind));
+  }
   std::optional<LaneLoad::Change> observe_localization(TimeNs now, TimeNs behind) {
     return note(localization_.observe(now, behind));
   }

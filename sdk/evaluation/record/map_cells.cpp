@@ -11,7 +11,9 @@
 namespace karst::evaluation {
 namespace {
 
-float log_odds_of(double probability) { return static_cast<float>(std::log(probability / (1 - probability))); }
+float log_odds_of(double probability) {
+  return static_cast<float>(std::log(probability / (1 - probability)));
+}
 
 }  // namespace
 
@@ -39,7 +41,8 @@ std::optional<core::VoxelMap> read_map_cells(const std::filesystem::path& file, 
     if (record) last[record->key] = record->cell;
   }
   if (damaged > 0)
-    problems.push_back(name + ": " + std::to_string(damaged) + " records are damaged, such as zeros; left out");
+    problems.push_back(name + ": " + std::to_string(damaged) +
+                       " records are damaged, such as zeros; left out");
   core::MapOptions options;
   options.resolution_m = resolution_m;
   core::VoxelMap map(options);

@@ -22,7 +22,8 @@ TEST(Cpus, AListHoldsNumbersAndRanges) {
 }
 
 TEST(Cpus, WhatIsNoListIsRefusedWithItsPlace) {
-  for (const char* bad : {"a", "1,", ",1", "1-", "-1", "3-1", "1 2", "1--2", "99999", "1-2-3", "99999999999999999999"}) {
+  for (const char* bad :
+       {"a", "1,", ",1", "1-", "-1", "3-1", "1 2", "1--2", "99999", "1-2-3", "99999999999999999999"}) {
     try {
       cpus_of(bad, "mission.info");
       FAIL() << bad;

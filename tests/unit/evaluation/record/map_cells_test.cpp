@@ -27,8 +27,8 @@ std::vector<core::MapCellRecord> some_records(int count) {
   std::vector<core::MapCellRecord> records;
   for (int i = 0; i < count; ++i) {
     const auto near = [&] { return static_cast<std::int32_t>(random.uniform(-6, 6)); };
-    records.push_back({{near(), near(), near()}, static_cast<Cell>(static_cast<int>(random.uniform(0, 2.999))),
-                       100 + i});
+    records.push_back(
+        {{near(), near(), near()}, static_cast<Cell>(static_cast<int>(random.uniform(0, 2.999))), 100 + i});
   }
   return records;
 }
@@ -93,8 +93,8 @@ TEST_F(CellsFile, NothingIsNoMap) {
 
 TEST_F(CellsFile, ZerosBehindTheGrowthOfAMapAreNoCell) {
   const auto file = folder.path() / "map_growth.bin";
-  std::ofstream(file, std::ios::binary) << std::string("\1\0\0\0\2\0\0\0\3\0\0\0\x64\0\0\0", 16)
-                                        << std::string(64, '\0');
+  std::ofstream(file, std::ios::binary)
+      << std::string("\1\0\0\0\2\0\0\0\3\0\0\0\x64\0\0\0", 16) << std::string(64, '\0');
   const auto spans = read_map_growth(file, problems);
   ASSERT_EQ(spans.size(), 1u);
   EXPECT_EQ(spans[0].key, (CellKey{1, 2, 3}));
