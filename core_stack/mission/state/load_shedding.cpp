@@ -1,6 +1,7 @@
 #include "core_stack/mission/state/load_shedding.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace karst::core {
 namespace {

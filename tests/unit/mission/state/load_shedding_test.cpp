@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core_stack/common/random.h"
 
 namespace karst::core {
