@@ -124,16 +124,20 @@ int run(const PreflightArguments& args) {
 
 /// For the --vehicle of a plugin.
 void add_listening_options(CLI::App& app, VehiclePreflightArguments& real) {
-  app.add_option("--seconds", real.rest_s, "of a vehicle plugin: how long it is listened to while it stands, s")
+  app.add_option("--seconds", real.rest_s,
+                 "of a vehicle plugin: how long it is listened to while it stands, s")
       ->check(number_in(3, 600))
       ->capture_default_str();
   app.add_flag("--motion", real.motion,
-               "of a vehicle plugin: then turn it by hand, for the mounting and the delay of the LiDAR, and the compass");
+               "of a vehicle plugin: then turn it by hand, for the mounting and the delay of the LiDAR, and "
+               "the compass");
   app.add_option("--motion-seconds", real.motion_s, "how long it is turned, s")
       ->check(number_in(10, 120))
       ->capture_default_str();
-  app.add_flag("--real-time", real.real_time, "of a vehicle plugin: by the computer's clock, as all but simulators need");
-  app.add_option("--out", real.run_folder, "of a vehicle plugin: where its flight will be recorded, to check the space there")
+  app.add_flag("--real-time", real.real_time,
+               "of a vehicle plugin: by the computer's clock, as all but simulators need");
+  app.add_option("--out", real.run_folder,
+                 "of a vehicle plugin: where its flight will be recorded, to check the space there")
       ->type_name(kFolder)
       ->check(not_empty())
       ->capture_default_str();
@@ -150,11 +154,13 @@ void add_preflight_command(CLI::App& app) {
       "  karst preflight caves/demo.info --battery \"8 min\"\n"
       "  karst preflight scan.ply --start \"1 2 1.5\" --policy nearest_frontier --page preflight.html\n"
       "  karst preflight --vehicle mavlink mission.info --real-time --motion --page checklist.html\n\n"
-      "The last one listens to a real vehicle and checks its sensors, without a command to it. Nothing is flown. What is said, and by which rules: " +
+      "The last one listens to a real vehicle and checks its sensors, without a command to it. Nothing is "
+      "flown. What is said, and by which rules: " +
           core::doc_path("docs/preflight.md") + ".\n\nExit code: 0 go, 3 no-go, 1 an error.");
   preflight_app
-      ->add_option("cave", args->overrides.cave,
-                   "cave .info file or mesh (STL, PLY, OBJ, DAE); with the --vehicle of a plugin: a mission file")
+      ->add_option(
+          "cave", args->overrides.cave,
+          "cave .info file or mesh (STL, PLY, OBJ, DAE); with the --vehicle of a plugin: a mission file")
       ->type_name(kFile)
       ->check(not_empty());
   preflight_app
@@ -162,9 +168,10 @@ void add_preflight_command(CLI::App& app) {
       ->check(not_empty());
   add_mesh_options(*preflight_app, args->mesh);
   preflight_app
-      ->add_option("--vehicle", args->vehicle,
-                   "what the vehicle carries: lidar_uav, lidar_only_uav or camera_uav (simulator.vehicle); or a "
-                   "vehicle plugin such as mavlink: the vehicle itself is checked")
+      ->add_option(
+          "--vehicle", args->vehicle,
+          "what the vehicle carries: lidar_uav, lidar_only_uav or camera_uav (simulator.vehicle); or a "
+          "vehicle plugin such as mavlink: the vehicle itself is checked")
       ->check(not_empty());
   preflight_app
       ->add_option("--battery", args->battery,
@@ -199,7 +206,8 @@ void add_preflight_command(CLI::App& app) {
   preflight_app->callback([args, preflight_app] {
     host::take_policy_file(args->overrides.policy, args->look.plugins);
     const bool named_policy = preflight_app->count("--policy") > 0;
-    const bool of_cave = !is_vehicle(args->vehicle) && (args->vehicle.empty() || !args->overrides.cave.empty());
+    const bool of_cave =
+        !is_vehicle(args->vehicle) && (args->vehicle.empty() || !args->overrides.cave.empty());
     const int code = of_cave ? run(*args) : run_of_vehicle(*args, named_policy);
     if (code != 0) throw CLI::RuntimeError(code);
   });

@@ -40,16 +40,18 @@ std::string policy_problem(flight::Mission mission, const flight::FlightRequest&
 /// Goes to standard error: a person must see it, whatever is done with the output.
 void instruct(preflight::ListenStep step, const VehiclePreflightArguments& args) {
   if (step == preflight::ListenStep::rest)
-    print_wrapped(stderr, 2,
-                  "Props off. The vehicle stands on its pad, and nobody touches it for %.0f s. It is not armed "
-                  "and not commanded.\n",
-                  args.rest_s);
+    print_wrapped(
+        stderr, 2,
+        "Props off. The vehicle stands on its pad, and nobody touches it for %.0f s. It is not armed "
+        "and not commanded.\n",
+        args.rest_s);
   else
-    print_wrapped(stderr, 2,
-                  "Now take it into your hands, and for %.0f s roll it, nod it and turn it, each several times "
-                  "by 30 deg and more, gently, within 5 m of walls. Keep hands and sleeves out of the LiDAR's "
-                  "view.\n",
-                  args.motion_s);
+    print_wrapped(
+        stderr, 2,
+        "Now take it into your hands, and for %.0f s roll it, nod it and turn it, each several times "
+        "by 30 deg and more, gently, within 5 m of walls. Keep hands and sleeves out of the LiDAR's "
+        "view.\n",
+        args.motion_s);
 }
 
 }  // namespace
@@ -76,7 +78,8 @@ bool vehicle_preflight(const VehiclePreflightArguments& args) {
   if (args.motion || !args.quiet) how.begins = [&args](preflight::ListenStep step) { instruct(step, args); };
   const std::atomic<bool>& interrupted = watch_for_interrupt();
   const preflight::VehicleRecord record = preflight::listen(*vehicles.alone, how, interrupted);
-  if (interrupted) throw core::InputError(mission.vehicle, "", "the preflight was interrupted: it says nothing");
+  if (interrupted)
+    throw core::InputError(mission.vehicle, "", "the preflight was interrupted: it says nothing");
 
   preflight::VehicleMeasurements m =
       preflight::measure(record, {.climb_m = mission.core.mission.takeoff_height_m,
@@ -91,7 +94,8 @@ bool vehicle_preflight(const VehiclePreflightArguments& args) {
   } else {
     constexpr std::size_t kColumnsOfAFile = 100;
     const std::size_t columns = terminal_columns(stdout);
-    print_out("%s", wrapped(preflight::checks_text(m, checks), columns > 0 ? columns : kColumnsOfAFile, 4).c_str());
+    print_out("%s",
+              wrapped(preflight::checks_text(m, checks), columns > 0 ? columns : kColumnsOfAFile, 4).c_str());
   }
   return preflight::verdict_of(checks) != preflight::Outcome::no_go;
 }

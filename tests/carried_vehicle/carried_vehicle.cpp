@@ -32,7 +32,8 @@ sim::LidarOptions lidar_options(const CarriedOptions& o) {
 }
 
 /// The model as described; the fault is that the LiDAR is mounted otherwise.
-std::shared_ptr<const core::LidarModel> claimed_model(const CarriedOptions& o, const core::LidarModel& true_model) {
+std::shared_ptr<const core::LidarModel> claimed_model(const CarriedOptions& o,
+                                                      const core::LidarModel& true_model) {
   auto claimed = std::make_shared<core::LidarModel>(true_model);
   constexpr double kDegree = std::numbers::pi / 180;
   Vec3 error = Vec3::Zero();
@@ -150,8 +151,7 @@ void CarriedVehicle::sense_imu() {
   const double dt_s = core::seconds(kTick);
   const core::Pose before = motion_.at(now() - kTick), here = motion_.at(now());
   const core::Pose middle = motion_.at(now() - kTick / 2);
-  const Vec3 acceleration =
-      (here.position - 2 * middle.position + before.position) / (dt_s * dt_s / 4);
+  const Vec3 acceleration = (here.position - 2 * middle.position + before.position) / (dt_s * dt_s / 4);
   Vec3 force = middle.orientation.conjugate() * (acceleration + Vec3(0, 0, kGravity_mps2));
   Vec3 rate = core::log_so3(before.orientation.conjugate() * here.orientation) / dt_s;
   core::ImuSample s = imu_.sample(now(), force, rate, dt_s);
@@ -176,7 +176,8 @@ void CarriedVehicle::deliver(core::LidarScan scan) {
   if (has(PlantedFault::lidar_ahead)) scan.stamp += 200 * kMillisecond;
   if (has(PlantedFault::lidar_clock_jumps) && now() > core::from_seconds(options_.lifted_after_s / 2))
     scan.stamp -= 400 * kMillisecond;
-  if (has(PlantedFault::lidar_covered)) cover(scan, 0.3, 0.3 + 40 / 360.0, std::numeric_limits<float>::quiet_NaN());
+  if (has(PlantedFault::lidar_covered))
+    cover(scan, 0.3, 0.3 + 40 / 360.0, std::numeric_limits<float>::quiet_NaN());
   if (has(PlantedFault::lidar_sees_hull)) cover(scan, 0.6, 0.6 + 40 / 360.0, 0.32f);
   if (has(PlantedFault::lidar_dirty)) make_dirty(scan, random_at("dirt"));
   scan.model = claimed_;

@@ -33,14 +33,16 @@ HandMotion::HandMotion(const core::Pose& T_world_start, core::TimeNs begins, cor
     : T_world_start_(T_world_start), begins_(begins) {
   turn_phase_ = phases(random);
   shift_phase_ = phases(random);
-  for (int axis = 0; axis < 3; ++axis) turn_hz_[axis] = Vec3(0.23, 0.29, 0.13)[axis] * random.uniform(0.9, 1.1);
+  for (int axis = 0; axis < 3; ++axis)
+    turn_hz_[axis] = Vec3(0.23, 0.29, 0.13)[axis] * random.uniform(0.9, 1.1);
 }
 
 core::Pose HandMotion::at(core::TimeNs t) const {
   const double since_s = core::seconds(t - begins_);
   if (since_s <= 0) return T_world_start_;
   const double w = blend(since_s / kBlend_s);
-  const Vec3 angle = w * kTurn_rad.cwiseProduct((kTwoPi * turn_hz_ * since_s + turn_phase_).array().sin().matrix());
+  const Vec3 angle =
+      w * kTurn_rad.cwiseProduct((kTwoPi * turn_hz_ * since_s + turn_phase_).array().sin().matrix());
   const Vec3 shift =
       w * (kShift_m.cwiseProduct((Vec3(2.1, 2.7, 3.3) * since_s + shift_phase_).array().sin().matrix()) +
            kLift_m * Vec3::UnitZ());

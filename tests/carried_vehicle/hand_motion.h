@@ -1,8 +1,8 @@
-// How a person moves a vehicle in front of them: first it stands, then it is lifted, rolled, nodded and turned,
-// all at once and each at its own pace.
+// How a person moves a vehicle in front of them: first it stands, then it is lifted, rolled, nodded and
+// turned, all at once and each at its own pace.
 #pragma once
-#include "core_stack/common/random.h"
 #include "core_stack/common/geometry.h"
+#include "core_stack/common/random.h"
 #include "core_stack/common/time.h"
 
 namespace karst::test {

@@ -45,7 +45,8 @@ std::vector<Check> wrong_of(const preflight::VehicleMeasurements& m) {
 std::string text_of(const std::vector<Check>& checks) {
   std::string text;
   for (const Check& c : checks)
-    text += std::string(core::name_of(c.outcome)) + " " + core::name_of(c.part) + ", " + c.what + ": " + c.measured + "\n";
+    text += std::string(core::name_of(c.outcome)) + " " + core::name_of(c.part) + ", " + c.what + ": " +
+            c.measured + "\n";
   return text;
 }
 
@@ -72,23 +73,23 @@ TEST_P(Planted, IsFoundAndNamed) {
 using enum PlantedFault;
 INSTANTIATE_TEST_SUITE_P(
     AtRest, Planted,
-    testing::Values(
-        Expected{lidar_ahead, false, Outcome::no_go, Part::lidar, "stamps in the future"},
-        Expected{lidar_slow, false, Outcome::no_go, Part::lidar, "rate"},
-        Expected{lidar_covered, false, Outcome::no_go, Part::lidar, "blocked sector"},
-        Expected{lidar_sees_hull, false, Outcome::no_go, Part::lidar, "blocked sector"},
-        Expected{lidar_dirty, false, Outcome::watch, Part::lidar, "noise of ranges"},
-        Expected{lidar_clock_jumps, false, Outcome::no_go, Part::lidar, "steadiness of the clock"},
-        Expected{imu_half_rate, false, Outcome::watch, Part::imu, "rate"},
-        Expected{imu_gap, false, Outcome::no_go, Part::imu, "longest gap"},
-        Expected{imu_upside_down, false, Outcome::no_go, Part::imu, "direction of gravity"},
-        Expected{accelerometer_scaled, false, Outcome::no_go, Part::imu, "length of gravity"},
-        Expected{compass_missing, false, Outcome::watch, Part::compass, "messages"},
-        Expected{barometer_stuck, false, Outcome::watch, Part::barometer, "noise at rest"},
-        Expected{battery_low, false, Outcome::no_go, Part::battery, "charge"},
-        Expected{no_room_above, false, Outcome::no_go, Part::pad, "room above"},
-        Expected{parameter_wrong, false, Outcome::no_go, Part::link, "COM_OF_LOSS_T"},
-        Expected{link_slow, false, Outcome::no_go, Part::link, "latency of the IMU's messages"}));
+    testing::Values(Expected{lidar_ahead, false, Outcome::no_go, Part::lidar, "stamps in the future"},
+                    Expected{lidar_slow, false, Outcome::no_go, Part::lidar, "rate"},
+                    Expected{lidar_covered, false, Outcome::no_go, Part::lidar, "blocked sector"},
+                    Expected{lidar_sees_hull, false, Outcome::no_go, Part::lidar, "blocked sector"},
+                    Expected{lidar_dirty, false, Outcome::watch, Part::lidar, "noise of ranges"},
+                    Expected{lidar_clock_jumps, false, Outcome::no_go, Part::lidar,
+                             "steadiness of the clock"},
+                    Expected{imu_half_rate, false, Outcome::watch, Part::imu, "rate"},
+                    Expected{imu_gap, false, Outcome::no_go, Part::imu, "longest gap"},
+                    Expected{imu_upside_down, false, Outcome::no_go, Part::imu, "direction of gravity"},
+                    Expected{accelerometer_scaled, false, Outcome::no_go, Part::imu, "length of gravity"},
+                    Expected{compass_missing, false, Outcome::watch, Part::compass, "messages"},
+                    Expected{barometer_stuck, false, Outcome::watch, Part::barometer, "noise at rest"},
+                    Expected{battery_low, false, Outcome::no_go, Part::battery, "charge"},
+                    Expected{no_room_above, false, Outcome::no_go, Part::pad, "room above"},
+                    Expected{parameter_wrong, false, Outcome::no_go, Part::link, "COM_OF_LOSS_T"},
+                    Expected{link_slow, false, Outcome::no_go, Part::link, "latency of the IMU's messages"}));
 INSTANTIATE_TEST_SUITE_P(
     InMotion, Planted,
     testing::Values(
@@ -123,7 +124,8 @@ TEST(HealthyVehicle, TheErrorOfTheMountingIsMeasuredInEachAxis) {
 }
 
 TEST(CarriedVehicle, ThePreflightIsTheSameTwice) {
-  const auto once = measured(generated_cave("small", 3), none, true), again = measured(generated_cave("small", 3), none, true);
+  const auto once = measured(generated_cave("small", 3), none, true),
+             again = measured(generated_cave("small", 3), none, true);
   ASSERT_TRUE(once.motion->hand_eye && again.motion->hand_eye);
   EXPECT_EQ(once.motion->hand_eye->error_rad, again.motion->hand_eye->error_rad);
   EXPECT_EQ(once.imu.mean_force_mps2, again.imu.mean_force_mps2);

@@ -72,9 +72,8 @@ const std::vector<Matrix3d>& axis_maps() {
 
 Matrix3d nearest_axis_map(const Matrix3d& m) {
   const auto likeness = [&m](const Matrix3d& map) { return map.cwiseProduct(m).sum(); };
-  return *std::max_element(axis_maps().begin(), axis_maps().end(), [&](const Matrix3d& a, const Matrix3d& b) {
-    return likeness(a) < likeness(b);
-  });
+  return *std::max_element(axis_maps().begin(), axis_maps().end(),
+                           [&](const Matrix3d& a, const Matrix3d& b) { return likeness(a) < likeness(b); });
 }
 
 bool is_identity(const Matrix3d& map) { return map.isApprox(Matrix3d::Identity()); }

@@ -36,9 +36,9 @@ struct AxisTest {
   bool turned() const;
 };
 
-/// Maps of the vectors: of the magnetic field against `track`, which is of another sensor. Only of the 24 that
-/// are rotations, as a vector with all components inverted stands still as well: a mirrored map is found as
-/// its negative, and one that inverts all axes cannot be found.
+/// Maps of the vectors: of the magnetic field against `track`, which is of another sensor. Only of the 24
+/// that are rotations, as a vector with all components inverted stands still as well: a mirrored map is found
+/// as its negative, and one that inverts all axes cannot be found.
 AxisTest axes_of_vectors(std::span<const VectorSample> vectors, std::span<const Orientation> track);
 
 /// Maps of the gyroscope against the accelerometer of the same IMU, by gravity; accelerations by hand are

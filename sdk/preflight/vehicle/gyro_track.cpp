@@ -17,7 +17,8 @@ std::vector<Orientation> gyro_track(std::span<const core::ImuSample> samples, co
       track.push_back({s.stamp, core::Quat::Identity()});
     } else {
       const double dt_s = core::seconds(s.stamp - track.back().stamp);
-      track.push_back({s.stamp, (track.back().q * core::exp_so3(0.5 * dt_s * (last_rate + rate))).normalized()});
+      track.push_back(
+          {s.stamp, (track.back().q * core::exp_so3(0.5 * dt_s * (last_rate + rate))).normalized()});
     }
     last_rate = rate;
   }

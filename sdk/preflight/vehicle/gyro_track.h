@@ -13,8 +13,8 @@ struct Orientation {
   core::Quat q = core::Quat::Identity();  // body to a frame that stands still
 };
 
-/// The integral of `map` * (rate - bias), from the identity at the first sample on. Samples that are not later
-/// than the one before, or not finite, are left out.
+/// The integral of `map` * (rate - bias), from the identity at the first sample on. Samples that are not
+/// later than the one before, or not finite, are left out.
 std::vector<Orientation> gyro_track(std::span<const core::ImuSample> samples, const core::Vec3& bias_radps,
                                     const Eigen::Matrix3d& map = Eigen::Matrix3d::Identity());
 

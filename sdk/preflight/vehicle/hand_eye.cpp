@@ -30,7 +30,8 @@ Vec3 turn_between(const core::Quat& from, const core::Quat& to) {
   return core::log_so3((from.conjugate() * to).normalized());
 }
 
-std::vector<Vec3> gyro_turns(std::span<const Orientation> track, const std::vector<Pair>& pairs, TimeNs delay) {
+std::vector<Vec3> gyro_turns(std::span<const Orientation> track, const std::vector<Pair>& pairs,
+                             TimeNs delay) {
   std::vector<Vec3> turns;
   turns.reserve(pairs.size());
   for (const Pair& p : pairs)
@@ -66,8 +67,8 @@ Matrix3d nearest_rotation(const Matrix3d& m) {
 }
 
 /// The delay with the least residual, in steps of `step` around `centre`.
-TimeNs best_delay(std::span<const Orientation> track, const std::vector<Pair>& pairs, TimeNs centre, TimeNs reach,
-                  TimeNs step) {
+TimeNs best_delay(std::span<const Orientation> track, const std::vector<Pair>& pairs, TimeNs centre,
+                  TimeNs reach, TimeNs step) {
   TimeNs best = centre;
   double least = std::numeric_limits<double>::infinity();
   for (TimeNs d = centre - reach; d <= centre + reach; d += step)
@@ -96,7 +97,8 @@ double delay_sigma_s(std::span<const Orientation> track, const std::vector<Pair>
   constexpr TimeNs kAside = 20 * kMillisecond;
   const auto residual = [&](TimeNs d) { return fit(pairs, gyro_turns(track, pairs, d)).residual; };
   const double aside_s = core::seconds(kAside),
-               curvature = (residual(delay - kAside) + residual(delay + kAside) - 2 * least) / (2 * aside_s * aside_s);
+               curvature = (residual(delay - kAside) + residual(delay + kAside) - 2 * least) /
+                           (2 * aside_s * aside_s);
   return curvature > 0 ? std::sqrt(least / (3.0 * static_cast<double>(pairs.size())) / curvature) : 1;
 }
 

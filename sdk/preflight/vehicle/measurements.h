@@ -47,10 +47,10 @@ struct BarometerFigures {
 
 /// What is compared while the vehicle is turned by hand.
 struct MotionFigures {
-  int scans = 0, matched = 0;      // of them, by scan matching
-  std::optional<HandEye> hand_eye;  // nothing if too few scans were matched
-  AxisTest gyroscope_axes;          // by gravity
-  double clipped = 0;               // of the IMU's samples
+  int scans = 0, matched = 0;                          // of them, by scan matching
+  std::optional<HandEye> hand_eye;                     // nothing if too few scans were matched
+  AxisTest gyroscope_axes;                             // by gravity
+  double clipped = 0;                                  // of the IMU's samples
   std::vector<TurnRate> gyroscope_rates, lidar_rates;  // for a drawing
 };
 

@@ -43,7 +43,8 @@ std::vector<Beam> beams_of(const LidarScan& scan) {
   beams.clear();
   for (int c = 0; c < model.channels(); ++c)
     for (int j = 0; j < model.columns; ++j)
-      beams.push_back({T * model.origin(j).cast<double>(), T.orientation * model.direction(c, j).cast<double>()});
+      beams.push_back(
+          {T * model.origin(j).cast<double>(), T.orientation * model.direction(c, j).cast<double>()});
   return beams;
 }
 
@@ -134,7 +135,8 @@ void add_scan(const LidarScan& scan, Surroundings& around, PadRoom& room, bool d
   const std::size_t step = std::max<std::size_t>(1, beams.size() / kDrawn);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const auto range_m = static_cast<double>(scan.range_m[i]);
-    if (!std::isnan(range_m) && !room.seen_above) room.seen_above = around.in_column(beams[i].origin, beams[i].direction);
+    if (!std::isnan(range_m) && !room.seen_above)
+      room.seen_above = around.in_column(beams[i].origin, beams[i].direction);
     if (!std::isfinite(range_m) || range_m <= 0) continue;
     around.add(beams[i].origin, range_m * beams[i].direction);
     if (!draw || i % step != 0) continue;

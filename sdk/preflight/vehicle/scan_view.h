@@ -19,13 +19,13 @@ struct BlockedArc {
 
 struct LidarView {
   int scans = 0;
-  int misshapen = 0;                      // scans whose arrays do not fit their model
-  std::array<double, kSectors> clear{};   // fraction of beams that return from outside of the hull
-  BlockedArc blocked;                     // the widest run of sectors in which nearly none do
+  int misshapen = 0;                     // scans whose arrays do not fit their model
+  std::array<double, kSectors> clear{};  // fraction of beams that return from outside of the hull
+  BlockedArc blocked;                    // the widest run of sectors in which nearly none do
   // Of a LiDAR with rings, whose beams repeat from scan to scan; 0 of others.
-  double noise_m = 0;  // standard deviation of a beam's range: median of the beams
-  double flicker = 0;  // fraction of beams that return in some scans and not in others
-  double intensity = 0;                   // median
+  double noise_m = 0;    // standard deviation of a beam's range: median of the beams
+  double flicker = 0;    // fraction of beams that return in some scans and not in others
+  double intensity = 0;  // median
 };
 LidarView lidar_view(std::span<const std::shared_ptr<const core::LidarScan>> scans, double hull_radius_m);
 

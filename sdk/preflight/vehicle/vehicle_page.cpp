@@ -66,8 +66,9 @@ std::string list_of(const std::vector<Check>& checks, Outcome outcome, const cha
   std::string items;
   for (const Check& c : checks) {
     if (c.outcome != outcome) continue;
-    items += std::string("<li><b>") + core::name_of(c.part) + ", " + xml_text(c.what) + "</b>: " +
-             xml_text(c.measured) + " (required: " + xml_text(c.required) + "). To do: " + xml_text(c.remedy) + "</li>\n";
+    items += std::string("<li><b>") + core::name_of(c.part) + ", " + xml_text(c.what) +
+             "</b>: " + xml_text(c.measured) + " (required: " + xml_text(c.required) +
+             "). To do: " + xml_text(c.remedy) + "</li>\n";
   }
   return items.empty() ? "" : std::string("<h2>") + title + "</h2>\n<ul>\n" + items + "</ul>\n";
 }
@@ -78,7 +79,8 @@ std::string table_of_passed(const std::vector<Check>& checks) {
   for (const auto& part : names_of(Part{})) {
     const std::string cell = passed_text(checks, part.value);
     if (!cell.empty())
-      rows += std::string("<tr><th scope=\"row\">") + part.name + "</th><td>" + xml_text(cell) + "</td></tr>\n";
+      rows +=
+          std::string("<tr><th scope=\"row\">") + part.name + "</th><td>" + xml_text(cell) + "</td></tr>\n";
   }
   return rows.empty() ? "" : "<h2>Passed</h2>\n<table>\n" + rows + "</table>\n";
 }
@@ -106,8 +108,9 @@ std::string vehicle_page(const VehicleMeasurements& m, const std::vector<Check>&
   for (const std::string& box : boxes_for_persons(m))
     body += "<li><span class=\"box\"></span>" + xml_text(box) + "</li>\n";
   body += "</ul>\n" + plots_of(m) + table_of_passed(checks);
-  body += "<p class=\"sign\">Date, time and place: ______________________ Pilot: ____________________ Go: "
-          "<span class=\"box\"></span></p>\n";
+  body +=
+      "<p class=\"sign\">Date, time and place: ______________________ Pilot: ____________________ Go: "
+      "<span class=\"box\"></span></p>\n";
   const std::string markup = kChecklistHead + body + "</body>\n</html>\n";
   return evaluation::assemble_page(
       {.markup = markup, .styles = {kChecklistStyle}, .libraries = {}, .scripts = {}}, to_json(m, checks));

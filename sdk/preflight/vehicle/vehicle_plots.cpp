@@ -22,14 +22,16 @@ struct Curve {
 class Plot {
  public:
   Plot(double end_s, double top, std::string y_title) : end_s_(std::max(end_s, 1e-3)), top_(top) {
-    body_ = format_text("<path class=\"frame\" d=\"M%g %gh%gv%gh%gz\"/>\n", kLeft, kTop, kWidth, kHeight, -kWidth);
-    body_ += format_text("<text x=\"%g\" y=\"%g\">", kLeft, kTop - 1.5) + core::xml_text(y_title) + "</text>\n";
+    body_ = format_text("<path class=\"frame\" d=\"M%g %gh%gv%gh%gz\"/>\n", kLeft, kTop, kWidth, kHeight,
+                        -kWidth);
+    body_ +=
+        format_text("<text x=\"%g\" y=\"%g\">", kLeft, kTop - 1.5) + core::xml_text(y_title) + "</text>\n";
     for (int i = 0; i <= 2; ++i)
       body_ += format_text("<text x=\"%g\" y=\"%g\" text-anchor=\"end\">%.3g</text>\n", kLeft - 1,
                            y_of(top_ * i / 2) + 1, top_ * i / 2);
     for (int i = 0; i <= 4; ++i)
-      body_ += format_text("<text x=\"%g\" y=\"%g\" text-anchor=\"middle\">%.3g</text>\n", x_of(end_s_ * i / 4),
-                           kTop + kHeight + 3.5, end_s_ * i / 4);
+      body_ += format_text("<text x=\"%g\" y=\"%g\" text-anchor=\"middle\">%.3g</text>\n",
+                           x_of(end_s_ * i / 4), kTop + kHeight + 3.5, end_s_ * i / 4);
     body_ += format_text("<text x=\"%g\" y=\"%g\" text-anchor=\"end\">s</text>\n", kLeft + kWidth + 4,
                          kTop + kHeight + 3.5);
   }
@@ -44,7 +46,8 @@ class Plot {
              "</text>\n";
   }
   void mark(double x) {
-    body_ += format_text("<path class=\"frame\" stroke-dasharray=\"1 1\" d=\"M%.2f %gv%g\"/>\n", x_of(x), kTop, kHeight);
+    body_ += format_text("<path class=\"frame\" stroke-dasharray=\"1 1\" d=\"M%.2f %gv%g\"/>\n", x_of(x),
+                         kTop, kHeight);
   }
   std::string svg(const char* label) const {
     return format_text(
@@ -78,7 +81,8 @@ constexpr const char* kBehind = "class=\"curve wide\" stroke=\"#bbb\"";
 
 /// Those of which a flight needs every message.
 bool is_drawn(Sensor sensor) {
-  return sensor == Sensor::imu || sensor == Sensor::lidar || sensor == Sensor::camera || sensor == Sensor::pose;
+  return sensor == Sensor::imu || sensor == Sensor::lidar || sensor == Sensor::camera ||
+         sensor == Sensor::pose;
 }
 
 }  // namespace
@@ -128,18 +132,22 @@ std::string pad_svg(const VehicleMeasurements& m) {
   for (const PlanPoint& p : m.room.points) {
     if (std::abs(p.x) > kReach_m || std::abs(p.y) > kReach_m) continue;
     const bool beside = p.z > 0 && p.z < m.climb_m + m.vehicle.radius_m;
-    (beside ? walls : floor) += format_text("M%.2f %.2fh.01", -static_cast<double>(p.y), -static_cast<double>(p.x));
+    (beside ? walls : floor) +=
+        format_text("M%.2f %.2fh.01", -static_cast<double>(p.y), -static_cast<double>(p.x));
   }
   return format_text(
-             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pad\" role=\"img\" aria-label=\"A scan around the "
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pad\" role=\"img\" aria-label=\"A scan "
+             "around the "
              "pad, from above\" viewBox=\"%g %g %g %g\">\n",
              -kReach_m, -kReach_m, 2 * kReach_m, 2 * kReach_m) +
          "<path class=\"floor\" d=\"" + floor + "\"/>\n<path class=\"walls\" d=\"" + walls + "\"/>\n" +
-         format_text("<circle class=\"hull\" r=\"%.2f\"/><circle class=\"room\" r=\"%.2f\"/>\n", m.vehicle.radius_m,
-                     m.vehicle.radius_m + 0.3) +
+         format_text("<circle class=\"hull\" r=\"%.2f\"/><circle class=\"room\" r=\"%.2f\"/>\n",
+                     m.vehicle.radius_m, m.vehicle.radius_m + 0.3) +
          format_text("<path class=\"hull\" d=\"M0 0V%.2f\"/>\n", -m.vehicle.radius_m) +
-         format_text("<path class=\"bar\" d=\"M%g %gh1\"/><text x=\"%g\" y=\"%g\" font-size=\"0.3\">1 m</text>\n</svg>\n",
-                     -kReach_m + 0.2, kReach_m - 0.2, -kReach_m + 0.2, kReach_m - 0.3);
+         format_text(
+             "<path class=\"bar\" d=\"M%g %gh1\"/><text x=\"%g\" y=\"%g\" font-size=\"0.3\">1 "
+             "m</text>\n</svg>\n",
+             -kReach_m + 0.2, kReach_m - 0.2, -kReach_m + 0.2, kReach_m - 0.3);
 }
 
 }  // namespace karst::preflight

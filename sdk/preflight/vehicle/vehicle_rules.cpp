@@ -19,8 +19,8 @@ class Judge {
   void add(Part part, std::string what, std::string measured, std::string required, Outcome outcome,
            std::string remedy) {
     if (outcome == Outcome::pass) remedy.clear();
-    checks_.push_back({part, std::move(what), std::move(measured), std::move(required), outcome,
-                       std::move(remedy)});
+    checks_.push_back(
+        {part, std::move(what), std::move(measured), std::move(required), outcome, std::move(remedy)});
   }
   std::vector<Check> take() { return std::move(checks_); }
 
@@ -40,8 +40,8 @@ Outcome watch_if(bool wrong) { return wrong ? Outcome::watch : Outcome::pass; }
 /// What a sensor's messages may be like.
 struct TimelineLimits {
   Part part = Part::vehicle;
-  bool needed = true;  // to fly
-  double least_rate = 0.8;             // of the required one; below it no-go
+  bool needed = true;                   // to fly
+  double least_rate = 0.8;              // of the required one; below it no-go
   double gap_s = 1, longest_gap_s = 3;  // watch, no-go
   double latency_s = 0.3, longest_latency_s = 1;
 };
@@ -75,11 +75,11 @@ void judge_timeline(const SensorTimeline& s, core::Clock clock, Judge& judge) {
   const Timeline& t = s.timeline;
   const std::string of = s.name.empty() ? "" : " (" + s.name + ")";
   if (t.messages == 0) {
-    judge.add(limits.part, "messages" + of, "none", "at least " + format_text("%.3g Hz", s.required_hz),
-              limits.needed ? Outcome::no_go : Outcome::watch,
-              std::string("check its power, its cable and its address") +
-                  (clock == core::Clock::lockstep ? "; a vehicle that is not simulated needs --real-time"
-                                                  : ""));
+    judge.add(
+        limits.part, "messages" + of, "none", "at least " + format_text("%.3g Hz", s.required_hz),
+        limits.needed ? Outcome::no_go : Outcome::watch,
+        std::string("check its power, its cable and its address") +
+            (clock == core::Clock::lockstep ? "; a vehicle that is not simulated needs --real-time" : ""));
     return;
   }
   const double worst_rate = limits.least_rate * s.required_hz;
@@ -88,19 +88,22 @@ void judge_timeline(const SensorTimeline& s, core::Clock clock, Judge& judge) {
             at_least(t.rate_hz, 0.9 * s.required_hz, worst_rate),
             "set the rate in the sensor or the autopilot, and look for a link that is too slow");
   judge.add(limits.part, "longest gap" + of, format_text("%.3f s", t.longest_gap_s),
-            format_text("at most %.2f s", limits.gap_s), at_most(t.longest_gap_s, limits.gap_s, limits.longest_gap_s),
+            format_text("at most %.2f s", limits.gap_s),
+            at_most(t.longest_gap_s, limits.gap_s, limits.longest_gap_s),
             "look for a loose cable, a busy computer or a full link");
   if (t.first_after_s > kFirstAfter_s)
     judge.add(limits.part, "first message" + of, format_text("after %.1f s", t.first_after_s),
               format_text("after at most %.0f s", kFirstAfter_s), Outcome::watch,
               "wait for it before you hand over");
   if (t.messages < kFewMessages) return;
-  judge.add(limits.part, "regularity of stamps" + of, format_text("%.1f ms off", 1000 * t.jitter_s),
-            format_text("at most %.0f %% of the period", 100 * kJitter),
-            watch_if(t.jitter_s * s.required_hz > kJitter && t.jitter_s > 0.002 && s.sensor != Sensor::battery),
-            "have the sensor stamp its messages, and not the program that receives them");
+  judge.add(
+      limits.part, "regularity of stamps" + of, format_text("%.1f ms off", 1000 * t.jitter_s),
+      format_text("at most %.0f %% of the period", 100 * kJitter),
+      watch_if(t.jitter_s * s.required_hz > kJitter && t.jitter_s > 0.002 && s.sensor != Sensor::battery),
+      "have the sensor stamp its messages, and not the program that receives them");
   judge.add(limits.part, "order of stamps" + of, format_text("%d not after the one before", t.backward), "0",
-            no_go_if(t.backward > 0), "look for two sources of the same messages, and for a clock that is set");
+            no_go_if(t.backward > 0),
+            "look for two sources of the same messages, and for a clock that is set");
   judge.add(limits.part, "stamps in the future" + of, format_text("%.0f ms", 1000 * t.future_s),
             format_text("at most %.0f ms", 1000 * kFuture_s), no_go_if(t.future_s > kFuture_s),
             "synchronize the sensor's clock with the computer's (PTP, NTP)");
@@ -109,7 +112,8 @@ void judge_timeline(const SensorTimeline& s, core::Clock clock, Judge& judge) {
             "find what sets this clock while it runs: it must be set before the flight, and then left alone");
   judge.add(s.sensor == Sensor::imu ? Part::link : limits.part,
             (s.sensor == Sensor::imu ? "latency of the IMU's messages" : "latency") + of,
-            format_text("%.0f ms", 1000 * t.latency_s), format_text("at most %.0f ms", 1000 * limits.latency_s),
+            format_text("%.0f ms", 1000 * t.latency_s),
+            format_text("at most %.0f ms", 1000 * limits.latency_s),
             at_most(t.latency_s, limits.latency_s, limits.longest_latency_s),
             "use a faster link (a serial line of 921600 baud, Ethernet), and send less over it");
 }
@@ -119,13 +123,14 @@ constexpr double kGravity_mps2 = 9.81;  // 9.78 at the equator, 9.83 at the pole
 void judge_imu(const VehicleMeasurements& m, Judge& judge) {
   const ImuAtRest& imu = m.imu;
   if (imu.samples == 0) return;
-  judge.add(Part::imu, "values that are no numbers", format_text("%d", imu.invalid), "0", no_go_if(imu.invalid > 0),
-            "look for a fault of the driver");
+  judge.add(Part::imu, "values that are no numbers", format_text("%d", imu.invalid), "0",
+            no_go_if(imu.invalid > 0), "look for a fault of the driver");
   const bool still = imu.rate_noise_radps < 0.05 && imu.force_noise_mps2 < 1 && imu.force_drift_mps2 < 0.3;
-  judge.add(Part::imu, "standing still",
-            format_text("%.3f rad/s, %.2f m/s² (standard deviation)", imu.rate_noise_radps, imu.force_noise_mps2),
-            "less than 0.05 rad/s and 1 m/s²", no_go_if(!still),
-            "let it stand on the pad, touch nothing, and repeat; if it stood, the IMU is broken");
+  judge.add(
+      Part::imu, "standing still",
+      format_text("%.3f rad/s, %.2f m/s² (standard deviation)", imu.rate_noise_radps, imu.force_noise_mps2),
+      "less than 0.05 rad/s and 1 m/s²", no_go_if(!still),
+      "let it stand on the pad, touch nothing, and repeat; if it stood, the IMU is broken");
   if (!still) return;
   const double error_mps2 = std::abs(imu.gravity_mps2() - kGravity_mps2);
   judge.add(Part::imu, "length of gravity", format_text("%.3f m/s²", imu.gravity_mps2()),
@@ -135,16 +140,18 @@ void judge_imu(const VehicleMeasurements& m, Judge& judge) {
             format_text("%.1f deg from the body's z axis (x %.2f, y %.2f, z %.2f)", imu.tilt_rad() / kDegree,
                         imu.mean_force_mps2.x(), imu.mean_force_mps2.y(), imu.mean_force_mps2.z()),
             "at most 10 deg", at_most(imu.tilt_rad() / kDegree, 10, 25),
-            imu.tilt_rad() > 45 * kDegree ? "axes are swapped or turned: set the mounting of the IMU or of the "
-                                            "autopilot (x forward, y left, z up)"
-                                          : "level the pad; if it is level, calibrate the accelerometer");
+            imu.tilt_rad() > 45 * kDegree
+                ? "axes are swapped or turned: set the mounting of the IMU or of the "
+                  "autopilot (x forward, y left, z up)"
+                : "level the pad; if it is level, calibrate the accelerometer");
   const double bias_dps = imu.mean_rate_radps.norm() / kDegree;
   judge.add(Part::imu, "bias of the gyroscope", format_text("%.2f deg/s", bias_dps), "at most 1 deg/s",
             at_most(bias_dps, 1, 5), "let the vehicle stand while it starts, and calibrate the gyroscope");
   judge.add(Part::imu, "noise of the accelerometer", format_text("%.3f m/s²", imu.force_noise_mps2),
             "at most 0.3 m/s²", watch_if(imu.force_noise_mps2 > 0.3), "look for a fan or a loose mounting");
   judge.add(Part::imu, "noise of the gyroscope", format_text("%.4f rad/s", imu.rate_noise_radps),
-            "at most 0.02 rad/s", watch_if(imu.rate_noise_radps > 0.02), "look for a fan or a loose mounting");
+            "at most 0.02 rad/s", watch_if(imu.rate_noise_radps > 0.02),
+            "look for a fan or a loose mounting");
   judge.add(Part::imu, "repeated samples", format_text("%.0f %%", 100 * imu.repeated), "at most 5 %",
             at_most(imu.repeated, 0.05, 0.3), "have each sample sent once");
 }
@@ -157,14 +164,14 @@ constexpr double kLeastRate_radps = 0.1;  // root mean square, about each axis
 void judge_mounting(const HandEye& h, const MotionFigures& motion, Judge& judge) {
   const Eigen::Matrix3d axes = nearest_axis_map(h.map);
   const double error_deg = h.error_rad.norm() / kDegree, sigma_deg = h.sigma_rad / kDegree;
-  const std::string measured =
-      format_text("%.2f deg (x %+.2f, y %+.2f, z %+.2f), uncertain by %.2f deg", error_deg,
-                  h.error_rad.x() / kDegree, h.error_rad.y() / kDegree, h.error_rad.z() / kDegree, 2 * sigma_deg);
+  const std::string measured = format_text("%.2f deg (x %+.2f, y %+.2f, z %+.2f), uncertain by %.2f deg",
+                                           error_deg, h.error_rad.x() / kDegree, h.error_rad.y() / kDegree,
+                                           h.error_rad.z() / kDegree, 2 * sigma_deg);
   if (gyroscope_is_turned(motion)) return;  // said already
   if (!is_identity(axes)) {
-    judge.add(Part::lidar, "axes of LiDAR and IMU", "seen from the LiDAR, the IMU's " + axis_words(axes.transpose()),
-              "x is x, y is y, z is z", Outcome::no_go,
-              "set the mounting of the LiDAR or of the IMU: they differ by right angles");
+    judge.add(Part::lidar, "axes of LiDAR and IMU",
+              "seen from the LiDAR, the IMU's " + axis_words(axes.transpose()), "x is x, y is y, z is z",
+              Outcome::no_go, "set the mounting of the LiDAR or of the IMU: they differ by right angles");
     return;
   }
   // A fault only if the uncertainty does not explain it, and a pass only if it could have been seen.
@@ -194,7 +201,8 @@ void judge_motion(const VehicleMeasurements& m, Judge& judge) {
             "set the axes of the gyroscope: they differ from the accelerometer's");
   if (!m.vehicle.lidar) return;
   judge.add(Part::lidar, "scans that can be matched", format_text("%d of %d", motion.matched, motion.scans),
-            "90 %", at_least(motion.scans > 0 ? static_cast<double>(motion.matched) / motion.scans : 0, 0.9, 0.5),
+            "90 %",
+            at_least(motion.scans > 0 ? static_cast<double>(motion.matched) / motion.scans : 0, 0.9, 0.5),
             "turn it more gently, near structured walls");
   if (!motion.hand_eye) {
     judge.add(Part::lidar, "mounting and delay", "not measured: too few scans", "measured by hand",
@@ -207,8 +215,8 @@ void judge_motion(const VehicleMeasurements& m, Judge& judge) {
             format_text("%.1f deg/s (rms) about the least one", h.weakest_rate_radps / kDegree),
             format_text("at least %.1f deg/s", kLeastRate_radps / kDegree), watch_if(!enough),
             "repeat: nod, roll and turn it, each several times by 30 deg and more");
-  judge.add(Part::lidar, "turns agree with the gyroscope's", format_text("%.1f %%", 100 * h.explained), "at least 95 %",
-            at_least(h.explained, 0.95, 0.8),
+  judge.add(Part::lidar, "turns agree with the gyroscope's", format_text("%.1f %%", 100 * h.explained),
+            "at least 95 %", at_least(h.explained, 0.95, 0.8),
             "look for stamps that vary and for a LiDAR that is loose, and turn it more gently");
   const double delay_ms = 1000 * h.delay_s;
   judge.add(Part::lidar, "delay of its stamps behind the IMU's",
@@ -231,8 +239,9 @@ void judge_lidar(const LidarView& v, Judge& judge) {
   const double width_deg = v.blocked.width_rad / kDegree;
   judge.add(Part::lidar, "blocked sector", width_deg > 0 ? arc_text(v.blocked) : "none", "less than 10 deg",
             at_most(width_deg, 5, 15),
-            v.blocked.hull ? "something of the vehicle is in front of it: move it, or leave the sector out"
-                           : "uncover and clean it; or the vehicle stands in the open, where nothing returns");
+            v.blocked.hull
+                ? "something of the vehicle is in front of it: move it, or leave the sector out"
+                : "uncover and clean it; or the vehicle stands in the open, where nothing returns");
   judge.add(Part::lidar, "noise of ranges", format_text("%.3f m", v.noise_m), "at most 0.05 m",
             at_most(v.noise_m, 0.05, 0.15), "clean its window, and wait for dust to settle");
   judge.add(Part::lidar, "beams that come and go", format_text("%.1f %%", 100 * v.flicker), "at most 15 %",
@@ -252,11 +261,12 @@ void judge_room(const VehicleMeasurements& m, Judge& judge) {
   const auto height = [](double free_m, double looked_m) {
     return format_text(free_m < looked_m ? "%.2f m" : "more than %.1f m", free_m);
   };
-  judge.add(Part::pad, "room above",
-            height(r.above_m, r.above_looked_m) + (r.seen_above ? "" : " as far as seen: no sensor looks there"),
-            format_text("%.2f m above its centre (mission.takeoff_height %.1f m, the hull and 0.2 m)", least_m,
-                        m.climb_m),
-            no_go_if(r.above_m < least_m), "find another place, or lower mission.takeoff_height");
+  judge.add(
+      Part::pad, "room above",
+      height(r.above_m, r.above_looked_m) + (r.seen_above ? "" : " as far as seen: no sensor looks there"),
+      format_text("%.2f m above its centre (mission.takeoff_height %.1f m, the hull and 0.2 m)", least_m,
+                  m.climb_m),
+      no_go_if(r.above_m < least_m), "find another place, or lower mission.takeoff_height");
   judge.add(Part::pad, "room around", height(r.around_m, r.around_looked_m), "0.3 m beside the hull",
             at_most(-r.around_m, -0.3, -0.1), "move away from walls, people and gear");
 }
@@ -265,15 +275,16 @@ void judge_compass(const CompassFigures& c, const std::optional<MotionFigures>& 
   judge.add(Part::compass, "field strength", format_text("%.1f uT", c.strength_ut), "22 to 67 uT",
             watch_if(c.strength_ut < 20 || c.strength_ut > 70),
             "move away from iron and cables, and calibrate the compass (unit: microtesla)");
-  judge.add(Part::compass, "horizontal part", format_text("%.1f uT (dip %.0f deg)", c.strength_ut * std::cos(c.dip_rad),
-                                                          c.dip_rad / kDegree),
+  judge.add(Part::compass, "horizontal part",
+            format_text("%.1f uT (dip %.0f deg)", c.strength_ut * std::cos(c.dip_rad), c.dip_rad / kDegree),
             "at least 5 uT", watch_if(c.strength_ut * std::cos(c.dip_rad) < 5),
             "near the poles there is no heading; elsewhere calibrate the compass");
-  judge.add(Part::compass, "noise", format_text("%.2f uT", c.noise_ut), "at most 2 uT", watch_if(c.noise_ut > 2),
-            "move it away from power cables");
+  judge.add(Part::compass, "noise", format_text("%.2f uT", c.noise_ut), "at most 2 uT",
+            watch_if(c.noise_ut > 2), "move it away from power cables");
   if (!motion || (!c.by_gyroscope && !c.by_lidar)) return;
   judge.add(Part::compass, "strength while turned", format_text("varies by %.1f %%", 100 * c.strength_spread),
-            "at most 10 %", watch_if(c.strength_spread > 0.1), "calibrate the compass: the vehicle's iron shows");
+            "at most 10 %", watch_if(c.strength_spread > 0.1),
+            "calibrate the compass: the vehicle's iron shows");
   // Accused only if all that it is compared with agree. A gyroscope with wrong axes is no witness.
   const AxisTest* gyroscope = c.by_gyroscope && !gyroscope_is_turned(*motion) ? &*c.by_gyroscope : nullptr;
   const AxisTest* lidar = c.by_lidar ? &*c.by_lidar : nullptr;
@@ -288,13 +299,15 @@ void judge_compass(const CompassFigures& c, const std::optional<MotionFigures>& 
   double error_rad = 10;
   for (const AxisTest* w : {gyroscope, lidar})
     if (w && w->strength > 0) error_rad = std::min(error_rad, w->scatter_as_is / w->strength);
-  judge.add(Part::compass, "direction while turned", format_text("off by %.1f deg (rms)", error_rad / kDegree),
-            "at most 8 deg", watch_if(error_rad > 8 * kDegree),
+  judge.add(Part::compass, "direction while turned",
+            format_text("off by %.1f deg (rms)", error_rad / kDegree), "at most 8 deg",
+            watch_if(error_rad > 8 * kDegree),
             "calibrate the compass, and move it away from cables and iron");
 }
 
 void judge_barometer(const BarometerFigures& b, Judge& judge) {
-  judge.add(Part::barometer, "noise at rest", b.frozen ? "none: always the same" : format_text("%.2f m", b.noise_m),
+  judge.add(Part::barometer, "noise at rest",
+            b.frozen ? "none: always the same" : format_text("%.2f m", b.noise_m),
             "more than 0, at most 0.5 m", watch_if(b.frozen || !(b.noise_m <= 0.5)),
             "cover it with foam; if it never changes, its driver is stuck");
   judge.add(Part::barometer, "drift at rest", format_text("%+.2f m", b.drift_m), "within 1 m",
@@ -334,8 +347,9 @@ std::vector<Check> checks_of(const VehicleMeasurements& m) {
     judge.add(Part::vehicle, "stands", "it left the ground", "on the pad", Outcome::no_go,
               "disarm it, take off its props, and find out who armed it");
   for (const core::VehicleCheck& c : m.checks)
-    judge.add(Part::link, c.name, c.found.empty() ? "no answer" : c.found, c.required, no_go_if(!c.holds),
-              c.found.empty() ? "the autopilot did not answer: see the link" : "set it, and restart the autopilot");
+    judge.add(
+        Part::link, c.name, c.found.empty() ? "no answer" : c.found, c.required, no_go_if(!c.holds),
+        c.found.empty() ? "the autopilot did not answer: see the link" : "set it, and restart the autopilot");
   for (const SensorTimeline& s : m.sensors) judge_timeline(s, m.clock, judge);
   judge_imu(m, judge);
   if (m.lidar) judge_lidar(*m.lidar, judge);
@@ -366,9 +380,8 @@ std::vector<std::string> boxes_for_persons(const VehicleMeasurements& m) {
       "The pilot holds the transmitter, sees the vehicle and knows what it will do",
       "Everybody near wears a helmet and glasses, and knows where to step back to"};
   if ((m.vehicle.lidar || !m.vehicle.cameras.empty()) && !m.room.seen_above)
-    boxes.push_back(format_text(
-        "Straight above, where no sensor looks: %.1f m and more are free (look up)",
-        m.climb_m + m.vehicle.radius_m + 0.2));
+    boxes.push_back(format_text("Straight above, where no sensor looks: %.1f m and more are free (look up)",
+                                m.climb_m + m.vehicle.radius_m + 0.2));
   return boxes;
 }
 

@@ -13,7 +13,20 @@ constexpr auto names_of(Outcome) {
   return std::to_array<core::Named<Outcome>>({{pass, "pass"}, {watch, "watch"}, {no_go, "no_go"}});
 }
 
-enum class Part { vehicle, imu, lidar, camera, pose, compass, barometer, battery, link, pad, machine, policy };
+enum class Part {
+  vehicle,
+  imu,
+  lidar,
+  camera,
+  pose,
+  compass,
+  barometer,
+  battery,
+  link,
+  pad,
+  machine,
+  policy
+};
 constexpr auto names_of(Part) {
   using enum Part;
   return std::to_array<core::Named<Part>>({{vehicle, "vehicle"},

@@ -22,8 +22,8 @@ std::string with_outcome(const std::vector<Check>& checks, Outcome outcome, cons
   std::string out;
   for (const Check& c : checks) {
     if (c.outcome != outcome) continue;
-    out += std::string("  ") + core::name_of(c.part) + ", " + c.what + ": " + c.measured + " (required: " +
-           c.required + ")" + (c.remedy.empty() ? "" : ". To do: " + c.remedy) + "\n";
+    out += std::string("  ") + core::name_of(c.part) + ", " + c.what + ": " + c.measured +
+           " (required: " + c.required + ")" + (c.remedy.empty() ? "" : ". To do: " + c.remedy) + "\n";
   }
   return out.empty() ? "" : title + out;
 }

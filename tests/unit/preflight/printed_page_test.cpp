@@ -38,7 +38,9 @@ std::size_t printed_pages(const std::string& html) {
 }
 
 std::size_t printed_pages(const Preflight& p) { return printed_pages(preflight_page(p, findings_of(p))); }
-std::size_t printed_pages(const VehicleMeasurements& m) { return printed_pages(vehicle_page(m, checks_of(m))); }
+std::size_t printed_pages(const VehicleMeasurements& m) {
+  return printed_pages(vehicle_page(m, checks_of(m)));
+}
 
 /// As much text as there is: all figures, the longest reasons, and findings about all.
 Preflight wordy_mission() {

@@ -53,13 +53,14 @@ inline core::LidarScan scan_of(const BoxRoom& room, const std::shared_ptr<const 
 }
 
 /// Of `scans` in the room, at rest.
-inline preflight::VehicleRecord record_in(const BoxRoom& room, const std::shared_ptr<const core::LidarModel>& model,
+inline preflight::VehicleRecord record_in(const BoxRoom& room,
+                                          const std::shared_ptr<const core::LidarModel>& model,
                                           int scans = 10) {
   preflight::VehicleRecord record;
   record.vehicle.lidar = model;
   for (int i = 0; i < scans; ++i)
-    record.scans_at_rest.push_back(
-        std::make_shared<const core::LidarScan>(scan_of(room, model, 0.02, static_cast<std::uint64_t>(i + 1))));
+    record.scans_at_rest.push_back(std::make_shared<const core::LidarScan>(
+        scan_of(room, model, 0.02, static_cast<std::uint64_t>(i + 1))));
   return record;
 }
 

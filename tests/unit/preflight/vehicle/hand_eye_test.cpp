@@ -53,7 +53,8 @@ TEST_P(WrongMounting, IsFoundWithinItsUncertainty) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AboutEachAxis, WrongMounting,
-                         testing::Values(Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, -3, 0), Vec3(0, 0, 3), Vec3(5, -4, 20)));
+                         testing::Values(Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, -3, 0), Vec3(0, 0, 3),
+                                         Vec3(5, -4, 20)));
 
 TEST(HandEye, FindsDelaysOfBothSigns) {
   const auto track = gyro_track(test::imu_of_motion(25), Vec3::Zero());

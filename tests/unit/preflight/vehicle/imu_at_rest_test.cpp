@@ -76,8 +76,9 @@ TEST(ClippedFraction, SeesAnAxisThatStaysAtItsLimit) {
   for (int i = 0; i < 1000; ++i) {
     const double rate = 5 * std::sin(0.05 * i);
     if (std::abs(rate) > 4.36) ++beyond;
-    samples.push_back({i, Vec3(0.01 * std::cos(i), 0.02 * std::sin(i), 9.8 + 0.01 * std::sin(1.3 * i)),
-                       Vec3(std::clamp(rate, -4.36, 4.36), 0.1 * std::sin(0.07 * i), 0.1 * std::cos(0.03 * i))});
+    samples.push_back(
+        {i, Vec3(0.01 * std::cos(i), 0.02 * std::sin(i), 9.8 + 0.01 * std::sin(1.3 * i)),
+         Vec3(std::clamp(rate, -4.36, 4.36), 0.1 * std::sin(0.07 * i), 0.1 * std::cos(0.03 * i))});
   }
   EXPECT_NEAR(clipped_fraction(samples), beyond / 1000.0, 1e-9);
   EXPECT_EQ(clipped_fraction(still({0, 0, 9.81}, Vec3::Zero())), 0);

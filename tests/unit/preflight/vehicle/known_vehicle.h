@@ -27,8 +27,9 @@ inline preflight::VehicleMeasurements known_vehicle() {
   m.vehicle.lidar = std::make_shared<core::LidarModel>();
   m.rest_s = 15;
   m.motion_s = 25;
-  m.sensors = {steady(Sensor::imu, 200), steady(Sensor::lidar, 10), steady(Sensor::camera, 5, "up"),
-               steady(Sensor::magnetometer, 10), steady(Sensor::barometer, 5), steady(Sensor::battery, 0.5)};
+  m.sensors = {steady(Sensor::imu, 200),        steady(Sensor::lidar, 10),
+               steady(Sensor::camera, 5, "up"), steady(Sensor::magnetometer, 10),
+               steady(Sensor::barometer, 5),    steady(Sensor::battery, 0.5)};
   m.imu.samples = 3000;
   m.imu.mean_force_mps2 = {0.1, -0.05, 9.8};
   m.imu.force_noise_mps2 = 0.05;
@@ -50,7 +51,8 @@ inline preflight::VehicleMeasurements known_vehicle() {
   m.motion->hand_eye->explained = 0.999;
   m.motion->hand_eye->sigma_rad = 0.001;
   m.motion->hand_eye->weakest_rate_radps = 0.4;
-  m.motion->gyroscope_rates = m.motion->lidar_rates = {{0, 0.1}, {core::kSecond, 0.5}, {2 * core::kSecond, 0.3}};
+  m.motion->gyroscope_rates =
+      m.motion->lidar_rates = {{0, 0.1}, {core::kSecond, 0.5}, {2 * core::kSecond, 0.3}};
   m.compass.emplace();
   m.compass->strength_ut = 49;
   m.compass->noise_ut = 0.3;

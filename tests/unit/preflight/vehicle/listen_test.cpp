@@ -26,7 +26,9 @@ class FakeVehicle final : public core::Vehicle {
     });
   }
   void command(const core::Command&) override { ++commands; }
-  std::vector<core::VehicleCheck> checks() const override { return {{"P", "1", started ? "1" : "", started > 0}}; }
+  std::vector<core::VehicleCheck> checks() const override {
+    return {{"P", "1", started ? "1" : "", started > 0}};
+  }
   void finish() override { ++finished; }
 
   core::VehicleDescription described;
@@ -56,11 +58,12 @@ TEST(Listen, RecordsAndNeverCommands) {
 TEST(Listen, KeepsAllScansOfTheMotion) {
   FakeVehicle vehicle;
   std::string steps;
-  const VehicleRecord r = listen(
-      vehicle,
-      {.rest = 3 * kSecond, .motion = 6 * kSecond,
-       .begins = [&](ListenStep s) { steps += s == ListenStep::rest ? 'R' : 'M'; }},
-      kNotInterrupted);
+  const VehicleRecord r =
+      listen(vehicle,
+             {.rest = 3 * kSecond,
+              .motion = 6 * kSecond,
+              .begins = [&](ListenStep s) { steps += s == ListenStep::rest ? 'R' : 'M'; }},
+             kNotInterrupted);
   EXPECT_EQ(steps, "RM");
   EXPECT_TRUE(r.has_motion());
   EXPECT_EQ(r.scans_in_motion.size(), 60u);

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "core_stack/common/so3.h"
-#include "tests/unit/preflight/vehicle/degree.h"
 #include "tests/unit/preflight/vehicle/box_room.h"
+#include "tests/unit/preflight/vehicle/degree.h"
 
 namespace karst::preflight {
 namespace {
@@ -50,7 +50,8 @@ TEST(LidarView, OfACleanLidar) {
 }
 
 TEST(LidarView, FindsASectorWithoutReturns) {
-  for (const float nothing : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0.0f}) {
+  for (const float nothing :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0.0f}) {
     const LidarView v = view_of([&](LidarScan& s, int) { put(s, 40, 80, nothing); });
     EXPECT_NEAR(v.blocked.from_rad, 40 * kDegree, 1e-6);
     EXPECT_NEAR(v.blocked.width_rad, 40 * kDegree, 1e-6);
@@ -120,13 +121,12 @@ TEST(LidarView, OfALidarWithoutRings) {
   EXPECT_NEAR(v.blocked.width_rad, 40 * kDegree, 1e-6);
 }
 
-TEST(LidarView, OfNoScan) {
-  EXPECT_EQ(lidar_view({}, 0.3).scans, 0);
-}
+TEST(LidarView, OfNoScan) { EXPECT_EQ(lidar_view({}, 0.3).scans, 0); }
 
 TEST(PadRoom, MeasuresTheRoomAroundTheHull) {
   for (const double half_width_m : {0.8, 1.5, 2.5}) {
-    const PadRoom r = pad_room(test::record_in({.half_width_m = half_width_m}, test::lidar_of()), Vec3(0, 0, 9.81), 0.7);
+    const PadRoom r =
+        pad_room(test::record_in({.half_width_m = half_width_m}, test::lidar_of()), Vec3(0, 0, 9.81), 0.7);
     EXPECT_TRUE(r.known);
     EXPECT_NEAR(r.around_m, half_width_m - 0.3, 0.08) << "noise of 2 cm, the nearest of many returns";
     EXPECT_FALSE(r.points.empty());
@@ -173,9 +173,7 @@ TEST(PadRoom, UpIsAgainstGravityAndNotAlongTheBody) {
   EXPECT_NEAR(leaning.above_m, 1.2 / std::cos(30 * kDegree) - 0.4 * std::tan(30 * kDegree), 0.12);
 }
 
-TEST(PadRoom, IsUnknownWithoutReturns) {
-  EXPECT_FALSE(pad_room({}, Vec3::UnitZ(), 0.7).known);
-}
+TEST(PadRoom, IsUnknownWithoutReturns) { EXPECT_FALSE(pad_room({}, Vec3::UnitZ(), 0.7).known); }
 
 }  // namespace
 }  // namespace karst::preflight

@@ -30,7 +30,8 @@ inline std::vector<core::ImuSample> imu_of_motion(double duration_s, const Synth
     const double t = i / 200.0, h = 1e-3;
     const core::Quat q = turned(t, imu.amplitude_rad);
     const core::Vec3 rate =
-        core::log_so3(turned(t - h, imu.amplitude_rad).conjugate() * turned(t + h, imu.amplitude_rad)) / (2 * h);
+        core::log_so3(turned(t - h, imu.amplitude_rad).conjugate() * turned(t + h, imu.amplitude_rad)) /
+        (2 * h);
     samples.push_back({core::from_seconds(t),
                        q.conjugate() * core::Vec3(0, 0, 9.81) + imu.force_noise_mps2 * normal_vector(random),
                        rate + imu.bias_radps + imu.rate_noise_radps * normal_vector(random)});
@@ -40,14 +41,16 @@ inline std::vector<core::ImuSample> imu_of_motion(double duration_s, const Synth
 
 /// Orientations at 10 Hz by a sensor whose claimed mounting is wrong by `error`, whose stamps are late by
 /// `delay_s`, and whose orientations have this noise.
-inline std::vector<preflight::Orientation> track_of_motion(double duration_s, const core::Vec3& error_rad = {0, 0, 0},
+inline std::vector<preflight::Orientation> track_of_motion(double duration_s,
+                                                           const core::Vec3& error_rad = {0, 0, 0},
                                                            double delay_s = 0, double noise_rad = 0) {
   std::vector<preflight::Orientation> track;
   core::Random random(9);
   const core::Quat error = core::exp_so3(error_rad);
   for (int i = 0; i <= static_cast<int>(10 * duration_s); ++i)
-    track.push_back({core::from_seconds(i / 10.0 + delay_s),
-                     error * turned(i / 10.0) * core::exp_so3(noise_rad * normal_vector(random)) * error.conjugate()});
+    track.push_back(
+        {core::from_seconds(i / 10.0 + delay_s),
+         error * turned(i / 10.0) * core::exp_so3(noise_rad * normal_vector(random)) * error.conjugate()});
   return track;
 }
 

@@ -11,7 +11,9 @@
 namespace karst::preflight {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 VehicleMeasurements with_low_battery() {
   VehicleMeasurements m = test::known_vehicle();
@@ -23,14 +25,16 @@ TEST(VehicleWords, TheVerdictCountsWhatSpeaksAgainstIt) {
   EXPECT_EQ(verdict_text(std::vector<Check>{}), "GO");
   EXPECT_EQ(verdict_text({test::check_with(Outcome::watch), test::check_with(Outcome::watch)}),
             "GO, with 2 things to watch for");
-  EXPECT_EQ(verdict_text({test::check_with(Outcome::no_go), test::check_with(Outcome::watch)}), "NO-GO, for 1 reason");
+  EXPECT_EQ(verdict_text({test::check_with(Outcome::no_go), test::check_with(Outcome::watch)}),
+            "NO-GO, for 1 reason");
 }
 
 TEST(VehicleWords, SaysWhatWasMeasuredWhatIsRequiredAndWhatToDo) {
   const VehicleMeasurements m = with_low_battery();
   const std::string text = checks_text(m, checks_of(m));
   EXPECT_TRUE(text.starts_with("NO-GO, for 1 reason: vehicle known <vehicle>"));
-  EXPECT_TRUE(contains(text, "battery, charge: 30 % (required: at least 90 %). To do: charge it, or take another"));
+  EXPECT_TRUE(
+      contains(text, "battery, charge: 30 % (required: at least 90 %). To do: charge it, or take another"));
   EXPECT_TRUE(contains(text, "  IMU: rate 200.0 Hz; ")) << text;
   EXPECT_TRUE(contains(text, "  [ ] Props"));
 }

@@ -66,18 +66,21 @@ TEST(VehicleRules, SensorsThatAreSilent) {
 }
 
 TEST(VehicleRules, RatesAndGaps) {
-  const auto rate = [](Sensor s, double hz) { return [=](VehicleMeasurements& m) { timeline(m, s).rate_hz = hz; }; };
+  const auto rate = [](Sensor s, double hz) {
+    return [=](VehicleMeasurements& m) { timeline(m, s).rate_hz = hz; };
+  };
   expect_only(rate(Sensor::imu, 100), Outcome::watch, Part::imu, "rate");
   expect_only(rate(Sensor::imu, 50), Outcome::no_go, Part::imu, "rate");
   expect_only(rate(Sensor::lidar, 5), Outcome::no_go, Part::lidar, "rate");
   expect_only(rate(Sensor::lidar, 8.5), Outcome::watch, Part::lidar, "rate");
-  expect_only([](auto& m) { timeline(m, Sensor::imu).longest_gap_s = 0.3; }, Outcome::no_go, Part::imu, "longest gap");
+  expect_only([](auto& m) { timeline(m, Sensor::imu).longest_gap_s = 0.3; }, Outcome::no_go, Part::imu,
+              "longest gap");
   expect_only([](auto& m) { timeline(m, Sensor::lidar).longest_gap_s = 0.6; }, Outcome::watch, Part::lidar,
               "longest gap");
 }
 
 TEST(VehicleRules, Stamps) {
-  const auto with = [](double Timeline::* field, double value) {
+  const auto with = [](double Timeline::*field, double value) {
     return [=](VehicleMeasurements& m) { timeline(m, Sensor::lidar).*field = value; };
   };
   expect_only(with(&Timeline::future_s, 0.1), Outcome::no_go, Part::lidar, "stamps in the future");
@@ -92,12 +95,20 @@ TEST(VehicleRules, Stamps) {
 
 TEST(VehicleRules, TheImuAtRest) {
   expect_only([](auto& m) { m.imu.mean_force_mps2 *= 1.05; }, Outcome::no_go, Part::imu, "length of gravity");
-  expect_only([](auto& m) { m.imu.mean_force_mps2 = {0, 0, -9.81}; }, Outcome::no_go, Part::imu,
-              "direction of gravity");
-  expect_only([](auto& m) { m.imu.mean_force_mps2 = {9.81 * std::sin(15 * kDegree), 0, 9.81 * std::cos(15 * kDegree)}; },
-              Outcome::watch, Part::imu, "direction of gravity");
-  expect_only([](auto& m) { m.imu.mean_rate_radps.y() = 0.12; }, Outcome::no_go, Part::imu, "bias of the gyroscope");
-  expect_only([](auto& m) { m.imu.rate_noise_radps = 0.03; }, Outcome::watch, Part::imu, "noise of the gyroscope");
+  expect_only(
+      [](auto& m) {
+        m.imu.mean_force_mps2 = {0, 0, -9.81};
+      },
+      Outcome::no_go, Part::imu, "direction of gravity");
+  expect_only(
+      [](auto& m) {
+        m.imu.mean_force_mps2 = {9.81 * std::sin(15 * kDegree), 0, 9.81 * std::cos(15 * kDegree)};
+      },
+      Outcome::watch, Part::imu, "direction of gravity");
+  expect_only([](auto& m) { m.imu.mean_rate_radps.y() = 0.12; }, Outcome::no_go, Part::imu,
+              "bias of the gyroscope");
+  expect_only([](auto& m) { m.imu.rate_noise_radps = 0.03; }, Outcome::watch, Part::imu,
+              "noise of the gyroscope");
   expect_only([](auto& m) { m.imu.rate_noise_radps = 0.3; }, Outcome::no_go, Part::imu, "standing still");
   expect_only([](auto& m) { m.imu.invalid = 1; }, Outcome::no_go, Part::imu, "values that are no numbers");
   expect_only([](auto& m) { m.imu.repeated = 0.5; }, Outcome::no_go, Part::imu, "repeated samples");
@@ -130,12 +141,15 @@ TEST(VehicleRules, WhatTheMotionShows) {
               "turns agree with the gyroscope's");
   expect_only([](auto& m) { m.motion->hand_eye->weakest_rate_radps = 0.01; }, Outcome::watch, Part::lidar,
               "turned about all axes");
-  expect_only([](auto& m) { m.motion->matched = 150; }, Outcome::watch, Part::lidar, "scans that can be matched");
+  expect_only([](auto& m) { m.motion->matched = 150; }, Outcome::watch, Part::lidar,
+              "scans that can be matched");
   expect_only([](auto& m) { m.motion->hand_eye.reset(); }, Outcome::no_go, Part::lidar, "mounting and delay");
   expect_only([](auto& m) { m.motion.reset(); }, Outcome::watch, Part::lidar, "mounting and delay");
 }
 
-Eigen::Matrix3d quarter_turn() { return Eigen::AngleAxisd(90 * kDegree, core::Vec3::UnitZ()).toRotationMatrix(); }
+Eigen::Matrix3d quarter_turn() {
+  return Eigen::AngleAxisd(90 * kDegree, core::Vec3::UnitZ()).toRotationMatrix();
+}
 
 AxisTest turned_axes(double strength) {
   AxisTest t;
@@ -150,8 +164,8 @@ AxisTest turned_axes(double strength) {
 TEST(VehicleRules, AxesThatAreTurned) {
   expect_only([](auto& m) { m.motion->hand_eye->map = quarter_turn(); }, Outcome::no_go, Part::lidar,
               "axes of LiDAR and IMU");
-  expect_only([](auto& m) { m.compass->by_gyroscope = m.compass->by_lidar = turned_axes(49); }, Outcome::no_go,
-              Part::compass, "axes, by turning");
+  expect_only([](auto& m) { m.compass->by_gyroscope = m.compass->by_lidar = turned_axes(49); },
+              Outcome::no_go, Part::compass, "axes, by turning");
   // The gyroscope is wrong by gravity: neither the LiDAR nor the compass is to blame.
   expect_only(
       [](auto& m) {
@@ -174,18 +188,26 @@ TEST(VehicleRules, TheCompass) {
   expect_only([](auto& m) { m.compass->dip_rad = 1.55; }, Outcome::watch, Part::compass, "horizontal part");
   expect_only([](auto& m) { m.compass->strength_spread = 0.2; }, Outcome::watch, Part::compass,
               "strength while turned");
-  expect_only([](auto& m) { m.compass->by_lidar->scatter_as_is = m.compass->by_gyroscope->scatter_as_is = 10; },
-              Outcome::watch, Part::compass, "direction while turned");
+  expect_only(
+      [](auto& m) { m.compass->by_lidar->scatter_as_is = m.compass->by_gyroscope->scatter_as_is = 10; },
+      Outcome::watch, Part::compass, "direction while turned");
 }
 
 TEST(VehicleRules, TheViewOfTheLidar) {
-  expect_only([](auto& m) { m.lidar->blocked = {0.5, 40 * kDegree, false}; }, Outcome::no_go, Part::lidar,
-              "blocked sector");
-  expect_only([](auto& m) { m.lidar->blocked = {0.5, 10 * kDegree, true}; }, Outcome::watch, Part::lidar,
-              "blocked sector");
+  expect_only(
+      [](auto& m) {
+        m.lidar->blocked = {0.5, 40 * kDegree, false};
+      },
+      Outcome::no_go, Part::lidar, "blocked sector");
+  expect_only(
+      [](auto& m) {
+        m.lidar->blocked = {0.5, 10 * kDegree, true};
+      },
+      Outcome::watch, Part::lidar, "blocked sector");
   expect_only([](auto& m) { m.lidar->noise_m = 0.1; }, Outcome::watch, Part::lidar, "noise of ranges");
   expect_only([](auto& m) { m.lidar->flicker = 0.5; }, Outcome::watch, Part::lidar, "beams that come and go");
-  expect_only([](auto& m) { m.lidar->intensity = 0.001; }, Outcome::watch, Part::lidar, "intensity of returns");
+  expect_only([](auto& m) { m.lidar->intensity = 0.001; }, Outcome::watch, Part::lidar,
+              "intensity of returns");
   expect_only([](auto& m) { m.lidar->misshapen = 3; }, Outcome::no_go, Part::lidar, "size of scans");
 }
 
@@ -205,7 +227,8 @@ TEST(VehicleRules, BatteryBarometerMachinePolicyAndAutopilot) {
   expect_only([](auto& m) { m.barometer->drift_m = -2; }, Outcome::watch, Part::barometer, "drift at rest");
   expect_only([](auto& m) { m.machine.free_bytes = 100u << 20; }, Outcome::no_go, Part::machine,
               "free space for runs");
-  expect_only([](auto& m) { m.machine.free_bytes.reset(); }, Outcome::no_go, Part::machine, "free space for runs");
+  expect_only([](auto& m) { m.machine.free_bytes.reset(); }, Outcome::no_go, Part::machine,
+              "free space for runs");
   expect_only([](auto& m) { m.machine.clock_plausible = false; }, Outcome::watch, Part::machine, "date");
   expect_only([](auto& m) { m.machine.policy_problem = "no such policy"; }, Outcome::no_go, Part::policy,
               "loads: nearest_frontier");
