@@ -32,7 +32,6 @@ class RealTimeVehicle final : public core::Vehicle {
  private:
   void step();
   std::optional<ToCore> receive();
-  std::optional<ToCore> receive();
   void take(ToCore message);
   void ping();
   void judge_silence();
