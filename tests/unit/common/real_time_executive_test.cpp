@@ -1,5 +1,5 @@
-// The executive in real time, by a clock that only sleeping and the test's own steps move: nothing here depends on
-// how fast the machine is.
+// The executive in real time, by a clock that only sleeping and the test's own steps move: nothing here
+// depends on how fast the machine is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +81,8 @@ TEST_F(RealTime, ALaneIsAsLateAsItsOldestJobIsBeyondItsBudget) {
   finish.set_value();
   executive.run_until(100 * kSecond, [&] { return published; });
   ASSERT_TRUE(published);
-  EXPECT_GE(executive.take_lateness(Lane::map), 140 * kMillisecond) << "what was late and is done counts once";
+  EXPECT_GE(executive.take_lateness(Lane::map), 140 * kMillisecond)
+      << "what was late and is done counts once";
   EXPECT_EQ(executive.take_lateness(Lane::map), 0);
 }
 
@@ -93,7 +94,8 @@ TEST_F(RealTime, ALoopThatIsFarBehindSetsItsClockBack) {
   executive.run_until(kSecond, kNever);
   EXPECT_EQ(ticks, 100) << "none is left out";
   EXPECT_EQ(executive.lost_time(), 7 * kSecond);
-  EXPECT_EQ(executive.punctuality().at("tick").lateness.max(), 0) << "those after it are due by the new clock";
+  EXPECT_EQ(executive.punctuality().at("tick").lateness.max(), 0)
+      << "those after it are due by the new clock";
   EXPECT_EQ(executive.punctuality().at("tick").missed_deadlines, 1u);
 }
 

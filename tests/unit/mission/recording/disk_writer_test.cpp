@@ -97,8 +97,8 @@ TEST(Recorder, WritesTheSameBytesWhateverItIsToSurvive) {
     }
     EXPECT_TRUE(recorder.close());
   }
-  for (const char* name : {"events.jsonl", "trajectory.tum", "telemetry.csv", "localization.csv", "map_growth.bin",
-                           "decisions.csv", "unsurveyed.csv"}) {
+  for (const char* name : {"events.jsonl", "trajectory.tum", "telemetry.csv", "localization.csv",
+                           "map_growth.bin", "decisions.csv", "unsurveyed.csv"}) {
     EXPECT_GT(fs::file_size(folders[0] / name), 50u) << name;
     EXPECT_EQ(content_of(folders[0] / name), content_of(folders[1] / name)) << name;
   }

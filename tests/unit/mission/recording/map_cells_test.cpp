@@ -30,7 +30,8 @@ TEST(MapCells, ZerosAndWhatIsOutOfThisWorldAreNoRecords) {
   EXPECT_FALSE(map_cell_of(std::string(15, '\1')));
   const std::string good{std::string_view(bytes_of({{1, 2, 3}, Cell::free, 5}))};
   ASSERT_TRUE(map_cell_of(good));
-  // A power cut leaves zeros from some byte on: the time is last, so the record is none from its first byte on.
+  // A power cut leaves zeros from some byte on: the time is last, so the record is none from its first byte
+  // on.
   for (std::size_t whole = 0; whole <= 12; ++whole) {
     std::string torn = good;
     std::fill(torn.begin() + static_cast<std::ptrdiff_t>(whole), torn.end(), '\0');

@@ -10,7 +10,8 @@ namespace karst::core {
 namespace {
 
 constexpr TimeNs kPeriod = 100 * kMillisecond, kTolerated = 300 * kMillisecond;
-const std::vector<Relief> kReliefs{Relief::half_the_scans, Relief::quarter_the_scans, Relief::fewer_decisions};
+const std::vector<Relief> kReliefs{Relief::half_the_scans, Relief::quarter_the_scans,
+                                   Relief::fewer_decisions};
 
 struct Lane1 {
   LaneLoad load{kReliefs, kTolerated};
@@ -134,7 +135,8 @@ TEST(LoadShedding, LeavesOutOnlyWhatTheVehicleHas) {
   using enum Relief;
   EXPECT_EQ(all_of(LoadShedding({})), std::vector{fewer_decisions});
   EXPECT_EQ(all_of(LoadShedding({.depth_images = true})), (std::vector{half_the_images, fewer_decisions}));
-  EXPECT_EQ(all_of(LoadShedding({.maps_scans = true, .locates_scans = true, .depth_images = true, .pictures = true})),
+  EXPECT_EQ(all_of(LoadShedding(
+                {.maps_scans = true, .locates_scans = true, .depth_images = true, .pictures = true})),
             (std::vector{half_the_scans, quarter_the_scans, half_the_images, fewer_decisions, no_pictures,
                          half_the_features, half_the_sweeps}));
 }
