@@ -164,7 +164,7 @@ TEST_F(SensorPipelineTest, WhatALateMapLaneLeavesOutIsNotMapped) {
     advance(0.2);
     return news.size();
   };
-  const auto late_for_a_second = [this, t = TimeNs{0}]() mutable {
+  auto late_for_a_second = [this, t = TimeNs{0}]() mutable {
     for (int i = 0; i < 10; ++i) onboard.load.observe_map(t += 100 * kMillisecond, kSecond);
   };
   EXPECT_EQ(mapped_of_40(), 40u);
