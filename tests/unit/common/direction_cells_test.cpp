@@ -12,8 +12,10 @@ namespace {
 std::vector<Vec3f> random_directions(std::size_t n) {
   Random random(5);
   std::vector<Vec3f> out;
-  while (out.size() < n) out.push_back(Vec3(random.normal(), random.normal(), random.normal()).normalized().cast<float>());
-  for (const Vec3f& pole : {Vec3f(0, 0, 1), Vec3f(0, 0, -1), Vec3f(-1, 0, 0), Vec3f(-1, -1e-9f, 0)}) out.push_back(pole);
+  while (out.size() < n)
+    out.push_back(Vec3(random.normal(), random.normal(), random.normal()).normalized().cast<float>());
+  for (const Vec3f& pole : {Vec3f(0, 0, 1), Vec3f(0, 0, -1), Vec3f(-1, 0, 0), Vec3f(-1, -1e-9f, 0)})
+    out.push_back(pole);
   return out;
 }
 

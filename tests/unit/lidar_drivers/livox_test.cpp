@@ -153,7 +153,8 @@ TEST(Livox, ASimulatedFrameArrivesAsItWas) {
     EXPECT_EQ(b.frames[f].sensor_ns, sent[f].stamp);
     ASSERT_EQ(got.range_m.size(), sent[f].range_m.size());
     for (std::size_t i = 0; i < got.range_m.size(); ++i) {
-      EXPECT_LT((got.range_m[i] * got.direction[i] - sent[f].range_m[i] * sent[f].direction[i]).norm(), 1e-3f);
+      EXPECT_LT((got.range_m[i] * got.direction[i] - sent[f].range_m[i] * sent[f].direction[i]).norm(),
+                1e-3f);
       EXPECT_NEAR(got.time_s[i], sent[f].time_s[i], 1e-8);
     }
   }

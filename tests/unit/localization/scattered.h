@@ -1,5 +1,5 @@
-// A LiDAR without rings in a world in closed form: its beams are scattered evenly over a belt of the sphere, and
-// elsewhere in each sweep.
+// A LiDAR without rings in a world in closed form: its beams are scattered evenly over a belt of the sphere,
+// and elsewhere in each sweep.
 #pragma once
 #include "tests/unit/localization/worlds.h"
 
@@ -13,9 +13,10 @@ inline std::shared_ptr<core::LidarModel> scattered_lidar() {
   return model;
 }
 
-inline core::LidarScan scattered_scan(const World& world, const std::shared_ptr<const core::LidarModel>& model,
-                                      const Motion& T_world_body, TimeNs stamp, double noise_m, core::Random random,
-                                      int points = 20000) {
+inline core::LidarScan scattered_scan(const World& world,
+                                      const std::shared_ptr<const core::LidarModel>& model,
+                                      const Motion& T_world_body, TimeNs stamp, double noise_m,
+                                      core::Random random, int points = 20000) {
   core::LidarScan scan{stamp, model, {}, {}};
   const double low = std::sin(static_cast<double>(model->elevation_rad.back())),
                high = std::sin(static_cast<double>(model->elevation_rad.front()));

@@ -40,12 +40,16 @@ TEST(Sweep, UnevenBeamsLeaveOffTheAxisAtTheirOwnAzimuthsAndTimes) {
   EXPECT_TRUE(sweep.has_rings);
   for (std::size_t i = 0; i < 24; ++i) {
     const int ring = static_cast<int>(i) / 8, column = static_cast<int>(i) % 8;
-    EXPECT_LT((sweep.points[i].position - model->origin(column) - 4 * model->direction(ring, column)).norm(), 1e-6f);
+    EXPECT_LT((sweep.points[i].position - model->origin(column) - 4 * model->direction(ring, column)).norm(),
+              1e-6f);
     EXPECT_EQ(sweep.points[i].time_s, scan.time_s[i % 8]);
   }
   const double turned = std::atan2(model->direction(0, 3).y(), model->direction(0, 3).x());
   EXPECT_NEAR(turned, std::numbers::pi * (1 - 2 * 3.5 / 8) + 0.2, 1e-6);
-  EXPECT_LT((model->origin(3) - 0.03f * Vec3f(std::cos(std::numbers::pi_v<float> / 8), std::sin(std::numbers::pi_v<float> / 8), 0)).norm(), 1e-7f);
+  EXPECT_LT((model->origin(3) - 0.03f * Vec3f(std::cos(std::numbers::pi_v<float> / 8),
+                                              std::sin(std::numbers::pi_v<float> / 8), 0))
+                .norm(),
+            1e-7f);
 }
 
 TEST(Sweep, PointsWithoutRingsKeepTheirOwnDirectionsAndTimes) {

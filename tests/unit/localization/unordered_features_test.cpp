@@ -17,7 +17,8 @@ Features features_in(const World& world, double noise_m = 0, int threads = 1) {
   const auto model = scattered_lidar();
   model->T_body_lidar = Pose{};
   return find_unordered_features(
-      to_sweep(scattered_scan(world, model, standing_at({}), kSecond, noise_m, Random(2)), 0.1).points, {}, threads);
+      to_sweep(scattered_scan(world, model, standing_at({}), kSecond, noise_m, Random(2)), 0.1).points, {},
+      threads);
 }
 
 /// Distance to the nearest edge of a hollow box that is parallel to an axis.
@@ -37,12 +38,14 @@ TEST(UnorderedFeatures, WallsArePlanesAndTheirCornersAreEdges) {
     EXPECT_GT(f.surface.size(), 15000u);
     for (const Feature& e : f.edges) EXPECT_LT(to_box_edge(e.position.cast<double>(), low, high), 0.12);
     double nearest = 1;
-    for (const Feature& p : f.planes) nearest = std::min(nearest, to_box_edge(p.position.cast<double>(), low, high));
+    for (const Feature& p : f.planes)
+      nearest = std::min(nearest, to_box_edge(p.position.cast<double>(), low, high));
     EXPECT_GT(nearest, 0.03);
   }
 }
 
-// A screen hides part of a wall behind it. Neither its silhouette nor the border of its shadow may become features.
+// A screen hides part of a wall behind it. Neither its silhouette nor the border of its shadow may become
+// features.
 TEST(UnorderedFeatures, WhereOneSurfaceHidesAnotherThereIsNothing) {
   const Features f = features_in(room({{-9, -9, -9}, {8, 9, 9}}, {{{3, -1, -9}, {3.1, 1, 9}}}));
   int on_screen = 0;
@@ -74,7 +77,8 @@ TEST(UnorderedFeatures, AreTheSameForAnyNumberOfThreads) {
   const auto same = [](const std::vector<Feature>& a, const std::vector<Feature>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Feature)) == 0;
   };
-  EXPECT_TRUE(same(one.edges, three.edges) && same(one.planes, three.planes) && same(one.surface, three.surface));
+  EXPECT_TRUE(same(one.edges, three.edges) && same(one.planes, three.planes) &&
+              same(one.surface, three.surface));
 }
 
 RC_GTEST_PROP(UnorderedFeatures, AnyFinitePointsGiveFeaturesOutOfTheirMidst, ()) {
@@ -87,7 +91,8 @@ RC_GTEST_PROP(UnorderedFeatures, AnyFinitePointsGiveFeaturesOutOfTheirMidst, ())
   const Features f = find_unordered_features(points, {}, 1);
   for (const auto* list : {&f.edges, &f.planes, &f.surface})
     for (const Feature& feature : *list)
-      RC_ASSERT(std::any_of(points.begin(), points.end(), [&](const SweepPoint& p) { return p.position == feature.position; }));
+      RC_ASSERT(std::any_of(points.begin(), points.end(),
+                            [&](const SweepPoint& p) { return p.position == feature.position; }));
 }
 
 // The same lap as with rings (loam_test.cpp), and the same bounds of the error.
@@ -104,7 +109,8 @@ TEST(UnorderedLoam, FollowsAFlightInARoomWithinMillimetres) {
   for (int i = 1; i <= 30; ++i) {
     const TimeNs stamp = i * 100 * kMillisecond;
     const Sweep sweep = to_sweep(
-        scattered_scan(furnished_room(), model, lap, stamp, 0.02, Random(static_cast<std::uint64_t>(i))), 0.2);
+        scattered_scan(furnished_room(), model, lap, stamp, 0.02, Random(static_cast<std::uint64_t>(i))),
+        0.2);
     ASSERT_FALSE(sweep.has_rings);
     const LoamPose pose = loam.process(sweep, states_of(lap, stamp, i == 1 ? Pose{} : error));
     ASSERT_TRUE(pose.valid) << pose.problem;

@@ -161,7 +161,8 @@ TEST(LonelyReturns, ScansItCannotJudgeAreLeftAlone) {
   EXPECT_EQ(one_row.range_m, std::vector<float>(128, 2.0f));
 }
 
-// Channels of uneven azimuths are compared with the beams that lie beside them, not with those of their column.
+// Channels of uneven azimuths are compared with the beams that lie beside them, not with those of their
+// column.
 TEST(LonelyReturns, ChannelsWithAzimuthsOfTheirOwnLoseNoWalls) {
   auto uneven = std::make_shared<LidarModel>(*unit(1024, 64, 0.39));
   for (int c = 0; c < 64; ++c) uneven->azimuth_offset_rad.push_back(0.07f * static_cast<float>(c % 4) - 0.1f);
@@ -179,10 +180,13 @@ LidarScan scattered_room(double dust, std::vector<char>& is_dust) {
   Random random(4);
   for (int i = 0; i < 20000; ++i) {
     const double azimuth = 2.399963 * i, z = -0.12 + 0.9 * std::fmod(0.754877 * i, 1.0);
-    const Vec3f d = Vec3(std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z).cast<float>();
+    const Vec3f d =
+        Vec3(std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z)
+            .cast<float>();
     const float wall = (Vec3f(5, 2.5f, 2).array() / d.array().abs()).minCoeff();
     is_dust.push_back(random.uniform() < dust);
-    scan.range_m.push_back(is_dust.back() ? static_cast<float>(random.uniform(0.3, 1.5)) : wall + 0.02f * static_cast<float>(random.normal()));
+    scan.range_m.push_back(is_dust.back() ? static_cast<float>(random.uniform(0.3, 1.5))
+                                          : wall + 0.02f * static_cast<float>(random.normal()));
     scan.intensity.push_back(0.05f);
     scan.direction.push_back(d);
     scan.time_s.push_back(0);

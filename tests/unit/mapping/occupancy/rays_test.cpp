@@ -62,7 +62,8 @@ TEST(LidarRays, OfUnevenBeamsStartOffTheAxisAndPointAsTheModelSays) {
   for (int column = 0; column < 16; ++column)
     for (int channel = 0; channel < 4; ++channel, ++i) {
       const Vec3 from = model->T_body_lidar * model->origin(column).cast<double>();
-      const Vec3 to = from + model->T_body_lidar.orientation * (5 * model->direction(channel, column)).cast<double>();
+      const Vec3 to =
+          from + model->T_body_lidar.orientation * (5 * model->direction(channel, column)).cast<double>();
       EXPECT_LT((rays[i].origin.cast<double>() - from).norm(), 1e-6);
       EXPECT_LT((rays[i].end.cast<double>() - to).norm(), 1e-5);
     }

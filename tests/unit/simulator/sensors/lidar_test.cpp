@@ -40,7 +40,8 @@ TEST_P(LidarUnits, RangesInABoxAreTheClosedForm) {
           << c << " " << j;  // whole millimetres
     }
 }
-INSTANTIATE_TEST_SUITE_P(All, LidarUnits, testing::Values("vlp16", "os0_32", "os0_64", "os1_64", "os0_128", "xt32"));
+INSTANTIATE_TEST_SUITE_P(All, LidarUnits,
+                         testing::Values("vlp16", "os0_32", "os0_64", "os1_64", "os0_128", "xt32"));
 
 // From Hesai's data sheet: 32 channels a degree apart, from 15 degrees up to 16 down.
 TEST(Lidar, TheXt32SeesADegreeFartherDownThanUp) {
@@ -62,12 +63,14 @@ TEST(Lidar, TheMid360ScattersTwentyThousandPointsOverItsFieldOfView) {
   std::vector<int> around(36), above(6);
   for (std::size_t i = 0; i < scan.range_m.size(); ++i) {
     const Vec3 d = scan.direction[i].cast<double>();
-    ASSERT_NEAR(scan.range_m[i], range_in_box(kLow, kHigh, T_world_lidar.position, T_world_lidar.orientation * d), 6e-4);
+    ASSERT_NEAR(scan.range_m[i],
+                range_in_box(kLow, kHigh, T_world_lidar.position, T_world_lidar.orientation * d), 6e-4);
     EXPECT_NEAR(scan.time_s[i], -0.1 + 5e-6 * static_cast<double>(i), 1e-8);
     const double elevation_deg = std::asin(d.z()) * 180 / std::numbers::pi;
     ASSERT_GE(elevation_deg, -7.001);
     ASSERT_LE(elevation_deg, 52.001);
-    ++around[static_cast<std::size_t>((std::atan2(d.y(), d.x()) + std::numbers::pi) / (2 * std::numbers::pi) * 35.999)];
+    ++around[static_cast<std::size_t>((std::atan2(d.y(), d.x()) + std::numbers::pi) / (2 * std::numbers::pi) *
+                                      35.999)];
     ++above[static_cast<std::size_t>((elevation_deg + 7.01) / 59.02 * 6)];
   }
   for (const int n : around) EXPECT_NEAR(n, 20000 / 36.0, 60);
@@ -81,7 +84,8 @@ TEST(Lidar, TheMid360ScattersTwentyThousandPointsOverItsFieldOfView) {
 
 // 40 m at 10 %, 70 m at 80 %: the data sheet of the Mid-360. Light falls with the square of the range.
 TEST(Lidar, TheMid360SeesDarkRockLessFar) {
-  for (const auto& [reflectivity, range_m] : {std::pair{0.1, 40.0}, std::pair{0.05, 28.28}, std::pair{0.8, 70.0}}) {
+  for (const auto& [reflectivity, range_m] :
+       {std::pair{0.1, 40.0}, std::pair{0.05, 28.28}, std::pair{0.8, 70.0}}) {
     cave::Cave hall = make_cave(box_mesh({-200, -200, -200}, {range_m * 0.97, 200, 200}));
     hall.description.reflectivity = reflectivity;
     const auto ahead = [&](const cave::Cave& cave) {
