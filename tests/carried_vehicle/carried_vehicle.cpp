@@ -18,13 +18,6 @@ namespace {
 constexpr TimeNs kTick = 5 * kMillisecond;
 constexpr double kRadius_m = 0.3, kGravity_mps2 = 9.81;
 
-cave::Cave cave_of(const CarriedOptions& o, const core::VehicleSetup& setup) {
-  cave::Cave cave = cave::load_cave(setup.cave, setup.start, setup.mesh);
-  if (o.fault != PlantedFault::no_room_above) return cave;
-  const Vec3 pad = sim::set_down(cave, kRadius_m).T_world_start.position;
-  return {cave.description, cave.scene.with_boulders({{pad + Vec3(0, 0, 1.3), 0.4}})};
-}
-
 sim::LidarOptions lidar_options(const CarriedOptions& o) {
   sim::LidarOptions lidar;
   if (o.fault == PlantedFault::lidar_slow) lidar.rate_hz = 5;
@@ -73,7 +66,7 @@ void describe(core::OptionTable& t, CarriedOptions& o) {
 CarriedVehicle::CarriedVehicle(const CarriedOptions& o, const core::VehicleSetup& setup)
     : options_(o),
       seed_(setup.seed),
-      cave_(cave_of(o, setup)),
+      cave_(cave::load_cave(setup.cave, setup.start, setup.mesh)),
       site_(sim::set_down(cave_, kRadius_m)),
       motion_(site_.T_world_start, core::from_seconds(o.lifted_after_s), Random::stream(setup.seed, "hand")),
       lidar_(lidar_options(o)),
@@ -82,6 +75,9 @@ CarriedVehicle::CarriedVehicle(const CarriedOptions& o, const core::VehicleSetup
       magnetometer_random_(Random::stream(setup.seed, "magnetometer")),
       barometer_({}, Random::stream(setup.seed, "barometer")),
       claimed_(claimed_model(o, *lidar_.model())) {
+  if (has(PlantedFault::no_room_above))  // after it was set down: otherwise it would stand on that rock
+    cave_ = {cave_.description,
+             cave_.scene.with_boulders({{site_.T_world_start.position + Vec3(0, 0, 1.3), 0.4}})};
   if (has(PlantedFault::lidar_slow)) {  // described as if it were as fast as it should be
     auto model = std::make_shared<core::LidarModel>(*claimed_);
     model->period = 100 * kMillisecond;
