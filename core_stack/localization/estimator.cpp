@@ -26,6 +26,9 @@ constexpr TimeNs kStale = 200 * kMillisecond;
 /// both persist from one pose to the next: 0.07 m/s and 0.025 rad in 0.1 s, which this noise covers with 0.2
 /// m/s and 0.01 rad. With a smaller factor the predicted samples would overrule the LiDAR.
 constexpr double kBridgeNoise = 60;
+/// The same if another steers: turns of 1.5 rad/s and accelerations of 3 m/s^2 are 0.15 rad and 0.3 m/s in
+/// 0.1 s, which this covers with 0.1 rad and 2 m/s. The poses of the LiDAR alone tell then where it is.
+constexpr double kAnotherSteersNoise = 600;
 
 // Standard deviations above which health is degraded, and above which it is lost.
 constexpr double kPositionDegraded_m = 0.4, kPositionLost_m = 1.5, kHeadingDegraded_rad = 0.25;
@@ -38,10 +41,10 @@ bool is_finite(const Pose& p) {
 }
 
 /// Adds the sensor's biases to a predicted sample; the learnt mass already contains the bias along z.
-void stand_in(InertialFilter& filter, ImuSample sample) {
+void stand_in(InertialFilter& filter, ImuSample sample, double noise) {
   sample.specific_force_mps2.head<2>() += filter.accel_bias_mps2().head<2>();
   sample.body_rate_radps += filter.gyro_bias_radps();
-  filter.on_imu(sample, kBridgeNoise);
+  filter.on_imu(sample, noise);
 }
 
 }  // namespace
@@ -88,11 +91,12 @@ void Estimator::on_imu(const ImuSample& imu) {
   if (newcomer_) newcomer_->on_imu(imu);
 }
 
-void Estimator::bridge(const ImuSample& expected) {
+void Estimator::bridge(const ImuSample& expected, Expected how) {
   if (!lidar_.started() || !is_finite(expected) || expected.stamp <= state().stamp) return;
-  stand_in(lidar_, expected);
-  stand_in(magnetic_, expected);
-  if (newcomer_) stand_in(*newcomer_, expected);
+  const double noise = how == Expected::as_commanded ? kBridgeNoise : kAnotherSteersNoise;
+  stand_in(lidar_, expected, noise);
+  stand_in(magnetic_, expected, noise);
+  if (newcomer_) stand_in(*newcomer_, expected, noise);
 }
 
 void Estimator::on_pose(const PoseSample& pose) {

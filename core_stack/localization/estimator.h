@@ -43,8 +43,10 @@ class Estimator {
   Estimator(const EstimatorOptions& options, const Pose& T_world_start);
   /// Ignores samples that are not finite or not newer than the last one.
   void on_imu(const ImuSample& imu);
-  /// While the IMU delivers no data: takes the measurement expected from the last command and the mass.
-  void bridge(const ImuSample& expected);
+  /// While the IMU delivers no data: takes the measurement expected from the last command and the mass, or of
+  /// a hover if another steers, who may do anything.
+  enum class Expected { as_commanded, another_steers };
+  void bridge(const ImuSample& expected, Expected how = Expected::as_commanded);
   /// Ignores poses that are not finite, not newer than the last one, or older than a second.
   void on_pose(const PoseSample& pose);
   /// The same for a LiDAR pose with its covariance. Returns true if the pose was accepted.

@@ -8,11 +8,13 @@ namespace karst::mavlink {
 namespace {
 
 using core::Authority;
+using core::kMillisecond;
 using core::kSecond;
 using core::TimeNs;
 
-/// Telemetry comes many times a second, heartbeats once: three of them may be missing.
-constexpr TimeNs kSilence = kSecond, kHeartbeatsMissing = 3 * kSecond + kSecond / 2;
+/// Telemetry comes two hundred times a second, heartbeats once: three of them may be missing. The sooner a
+/// lost link is known, the less the core takes for flown what it commanded to nobody.
+constexpr TimeNs kSilence = 400 * kMillisecond, kHeartbeatsMissing = 3 * kSecond + kSecond / 2;
 /// A text explains a change of mode that comes up to so much later.
 constexpr TimeNs kTextMatters = 3 * kSecond;
 constexpr TimeNs kAskAgain = kSecond;

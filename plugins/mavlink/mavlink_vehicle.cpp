@@ -23,7 +23,7 @@ constexpr double kGravity_mps2 = 9.81;
 constexpr TimeNs kStreamFirst = kSecond + 200 * kMillisecond, kStreamBroken = kSecond / 2;
 constexpr TimeNs kNever = -3600 * kSecond;  // long before the start
 /// There and back, up to which the form of control was flown (docs/results/mavlink_flights.md).
-constexpr double kMaxRoundTrip_ms = 210, kMaxRatesRoundTrip_ms = 20;
+constexpr double kMaxRoundTrip_ms = 210, kMaxRatesRoundTrip_ms = 30;
 
 std::string text(const char* format, double value) {
   char out[60];
@@ -178,7 +178,8 @@ void MavlinkVehicle::command(const core::Command& c) {
   if (c.state_is_known && c.state.stamp > 0 && due(vision_at_, options_.vision_rate_hz))
     connection_.send(vision(c.state));
   if (hand_over_.steering(now()).who == Authority::core) {
-    if (!c.rates.armed && flown_) return disarm_on_ground();
+    landed_ = flown_ && !c.rates.armed;
+    if (landed_) return disarm_on_ground();
     flown_ = flown_ || c.rates.armed;
     lift_off(c);
   }
@@ -206,11 +207,12 @@ void MavlinkVehicle::lift_off(const core::Command& c) {
   add_command(Cmd::nav_takeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(climb_m_)});
 }
 
-/// The core has landed.
+/// The core has landed. Sent at once and without waiting for an answer: the flight ends here.
 void MavlinkVehicle::disarm_on_ground() {
-  if (telemetry_.standing() && !commands_.waits_for(Cmd::component_arm_disarm) &&
-      due(disarm_at_, kDisarmAgain_hz))
-    add_command(Cmd::component_arm_disarm, {});
+  if (!telemetry_.standing() || !hand_over_.armed() || !due(disarm_at_, kDisarmAgain_hz)) return;
+  CommandLong m;
+  m.command = static_cast<std::uint16_t>(Cmd::component_arm_disarm);
+  connection_.send(addressed(m));
 }
 
 std::vector<core::VehicleCheck> MavlinkVehicle::checks() const {
@@ -249,6 +251,11 @@ std::vector<core::VehicleCheck> MavlinkVehicle::checks() const {
 }
 
 void MavlinkVehicle::finish() {
+  constexpr int kMayBeLost = 3;
+  for (int i = 0; i < kMayBeLost && landed_; ++i) {
+    disarm_at_ = kNever;
+    disarm_on_ground();
+  }
   if (!run_dir_.empty() && executive_ != nullptr)
     write_link_record(run_dir_ + "/mavlink.json", connection_, clock_, now() - started_);
 }

@@ -81,8 +81,8 @@ class MavlinkVehicle final : public core::Vehicle {
   std::optional<core::TimeNs> streams_since_, setpoint_at_;
   // When each was sent last.
   core::TimeNs heartbeat_at_, timesync_at_, vision_at_, target_at_, telemetry_at_, take_off_at_, disarm_at_;
-  bool flown_ = false;            // by the core
-  std::uint64_t imu_before_ = 0;  // samples when telemetry was asked for
+  bool flown_ = false, landed_ = false;  // by the core
+  std::uint64_t imu_before_ = 0;         // samples when telemetry was asked for
 };
 
 }  // namespace karst::mavlink

@@ -46,6 +46,7 @@ std::vector<ParameterRule> px4_rules(Control control, double hover_thrust) {
       bits("EKF2_EV_CTRL", "bits 0, 1 and 3 set: position, height and yaw by external vision", 11),
       one_of("EKF2_HGT_REF", "3 (vision)", {3}),
       one_of("EKF2_GPS_CTRL", "0: no GPS", {0}),
+      within("EKF2_NOAID_TOUT", "10000000 us: dead reckoning for 10 s while the link is lost", 10e6, kAny),
       within("MPC_TILTMAX_AIR", "at least 20 deg", 20, 90),
       within("MPC_XY_VEL_MAX", "at least 2 m/s", 2, kAny),
       within("MPC_Z_VEL_MAX_UP", "at least 1 m/s", 1, kAny),

@@ -31,13 +31,21 @@ float f(double v) { return static_cast<float>(v); }
 std::map<std::string, double> parameters_of(const AutopilotFirmwareOptions& o, double hover_thrust) {
   std::map<std::string, double> p;
   if (o.firmware == mavlink::Firmware::px4)
-    p = {{"COM_OF_LOSS_T", 1},      {"COM_OBL_RC_ACT", o.offboard_loss == OffboardLoss::land ? 4 : 5},
-         {"COM_RCL_EXCEPT", 4},     {"NAV_RCL_ACT", 3},
-         {"NAV_DLL_ACT", 0},        {"COM_LOW_BAT_ACT", 2},
-         {"EKF2_EV_CTRL", 15},      {"EKF2_HGT_REF", 3},
-         {"EKF2_GPS_CTRL", 0},      {"MPC_TILTMAX_AIR", 35},
-         {"MPC_XY_VEL_MAX", 5},     {"MPC_Z_VEL_MAX_UP", 3},
-         {"MPC_Z_VEL_MAX_DN", 1.5}, {"MPC_THR_HOVER", hover_thrust}};
+    p = {{"COM_OF_LOSS_T", 1},
+         {"COM_OBL_RC_ACT", o.offboard_loss == OffboardLoss::land ? 4 : 5},
+         {"COM_RCL_EXCEPT", 4},
+         {"NAV_RCL_ACT", 3},
+         {"NAV_DLL_ACT", 0},
+         {"COM_LOW_BAT_ACT", 2},
+         {"EKF2_EV_CTRL", 15},
+         {"EKF2_HGT_REF", 3},
+         {"EKF2_GPS_CTRL", 0},
+         {"EKF2_NOAID_TOUT", 10e6},
+         {"MPC_TILTMAX_AIR", 35},
+         {"MPC_XY_VEL_MAX", 5},
+         {"MPC_Z_VEL_MAX_UP", 3},
+         {"MPC_Z_VEL_MAX_DN", 1.5},
+         {"MPC_THR_HOVER", hover_thrust}};
   else
     p = {{"VISO_TYPE", 1},
          {"EK3_SRC1_POSXY", 6},
@@ -89,8 +97,15 @@ TimeNs Autopilot::own_time(TimeNs time) const {
          core::from_seconds(options_.clock_offset_s + 1e-6 * options_.clock_drift_ppm * core::seconds(time));
 }
 
+/// PX4 has a parameter for it, in microseconds.
+bool Autopilot::position_known() const {
+  constexpr double kArduPilot_s = 10;
+  const bool px4 = options_.firmware == mavlink::Firmware::px4;
+  return observer_.position_known(px4 ? 1e-6 * parameters_.at("EKF2_NOAID_TOUT") : kArduPilot_s);
+}
+
 ModeInputs Autopilot::inputs() const {
-  return {now_, observer_.position_known(), standing_, setpoint_at_, streams_since_, battery_.fraction_left};
+  return {now_, position_known(), standing_, setpoint_at_, streams_since_, battery_.fraction_left};
 }
 
 core::AttitudeRateCommand Autopilot::step(const core::ImuSample& imu) {
@@ -271,7 +286,7 @@ RateTarget Autopilot::control(double dt_s) {
     control_.reset();
     return {};
   }
-  if (!observer_.position_known()) return control_.level(-kLanding_mps, m, dt_s);
+  if (!position_known()) return control_.level(-kLanding_mps, m, dt_s);
   PositionTarget target = hover_;
   if (flown_ == FlightMode::land) {
     target.position->z() = m.position.z();
@@ -366,7 +381,7 @@ void Autopilot::report_imu() {
 void Autopilot::report_motion() {
   const Motion& motion = observer_.motion();
   const std::uint32_t ms = mavlink::boot_ms(own_time(now_));
-  if (due(mavlink::LocalPositionNed::kId) && observer_.position_known()) {
+  if (due(mavlink::LocalPositionNed::kId) && position_known()) {
     const core::Vec3f p = motion.position.cast<float>(), v = motion.velocity_mps.cast<float>();
     connection_.send(mavlink::LocalPositionNed{ms, p.x(), p.y(), p.z(), v.x(), v.y(), v.z()});
   }

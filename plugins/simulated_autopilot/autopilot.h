@@ -45,6 +45,7 @@ class Autopilot {
   };
 
   core::TimeNs own_time(core::TimeNs time) const;
+  bool position_known() const;
   ModeInputs inputs() const;
   void take(const mavlink::Frame& frame);
   void take_vision(const mavlink::Odometry& m);

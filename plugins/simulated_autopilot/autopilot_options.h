@@ -22,8 +22,8 @@ struct AutopilotFirmwareOptions {
   OffboardLoss offboard_loss = OffboardLoss::hold;
   double battery_failsafe = 0;  // fraction at which it lands
   double clock_offset_s = 1234.5, clock_drift_ppm = 20;
-  bool other_system = false;  // another vehicle speaks on the link
-  std::string parameters;     // "NAME=VALUE NAME=VALUE": that differ from what should be
+  bool other_system = false;    // another vehicle speaks on the link
+  std::string parameters = {};  // "NAME=VALUE NAME=VALUE": that differ from what should be
 };
 void describe(core::OptionTable& t, AutopilotFirmwareOptions& o);
 

@@ -13,7 +13,7 @@ using core::Vec3;
 const Vec3 kGravity(0, 0, 9.81);  // NED
 // Fractions of the error that one pose corrects, at about 40 poses a second.
 constexpr double kPosition = 0.2, kVelocity = 0.15, kAttitude = 0.08, kForceBias = 0.02, kRateBias = 0.02;
-constexpr double kKnown_s = 5, kReset_m = 1;
+constexpr double kReset_m = 1;
 constexpr core::TimeNs kTooOld = core::kSecond;
 
 }  // namespace
@@ -23,9 +23,9 @@ std::optional<double> Observer::without_vision_s() const {
   return core::seconds(motion_.stamp - *vision_at_);
 }
 
-bool Observer::position_known() const {
+bool Observer::position_known(double lasts_s) const {
   const auto s = without_vision_s();
-  return s && *s < kKnown_s;
+  return s && *s < lasts_s;
 }
 
 /// At rest the measured force points up.

@@ -27,8 +27,8 @@ class Observer {
   const Motion& motion() const { return motion_; }
   /// Since the last vision; nothing before the first.
   std::optional<double> without_vision_s() const;
-  /// By dead reckoning the position lasts for five seconds, as PX4's does by default (EKF2_NOAID_TOUT).
-  bool position_known() const;
+  /// By dead reckoning the position lasts for `lasts_s`.
+  bool position_known(double lasts_s) const;
 
  private:
   void level(const core::Vec3& force_frd);

@@ -71,7 +71,8 @@ class SimulatedLink::Port final : public mavlink::ByteLink {
   std::size_t end_;
 };
 
-SimulatedLink::SimulatedLink(const SimulatedLinkOptions& options, std::uint64_t seed, std::function<TimeNs()> now)
+SimulatedLink::SimulatedLink(const SimulatedLinkOptions& options, std::uint64_t seed,
+                             std::function<TimeNs()> now)
     : line_(new Line{options,
                      std::move(now),
                      {Line::Way{{}, core::Random::stream(seed, "link to the core")},

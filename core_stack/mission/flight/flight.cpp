@@ -61,7 +61,9 @@ Command Flight::control(TimeNs now) {
     return command(now);
   }
   // Up to the time that the IMU would tell of by now: samples that come late are not to come too late.
-  if (now - imu_came_ > kImuMissed) estimator_.bridge(expected_imu(now - imu_lag_));
+  if (now - imu_came_ > kImuMissed)
+    estimator_.bridge(expected_imu(now - imu_lag_),
+                      steers_ ? Estimator::Expected::as_commanded : Estimator::Expected::another_steers);
   if (!steers_) {
     command_ = {Vec3::Zero(), mass_.mass_kg() * kGravity_mps2, true};
     return command(now);
