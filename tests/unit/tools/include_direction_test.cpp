@@ -151,6 +151,12 @@ TEST(IncludeDirection, LidarDriversKnowTheCoresMessagesOnly) {
                                         "core_stack/perception", "core_stack/team"});
 }
 
+// A real vehicle knows no simulator.
+TEST(IncludeDirection, AVehicleByMavlinkKnowsTheCoresMessagesAndTheLidarsDriversOnly) {
+  expect_none("plugins/mavlink", {"plugins/simulator", "plugins/simulated_autopilot", "plugins/replay",
+                                  "plugins/socket", "core_stack/localization", "core_stack/mission"});
+}
+
 // A vehicle behind a socket is any vehicle; what is simulated is put behind it elsewhere.
 TEST(IncludeDirection, TheSocketKnowsNoOtherPluginAndTheServerNoCommand) {
   for (const Include& i : includes_below("plugins/socket"))
