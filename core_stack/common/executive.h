@@ -11,6 +11,7 @@
 // An exception in a step or a job leaves run_until(), which may be called again: periodic steps come all the
 // same, and no memory is allocated to repeat them.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -65,6 +66,9 @@ class Executive {
   Executive& operator=(const Executive&) = delete;
 
   TimeNs now() const { return now_; }
+  /// In real time, the machine's time on the same clock: at or after now(), which is when the step that runs
+  /// was due. What comes from outside is stamped by it. In lockstep, now().
+  TimeNs measured_now() const { return clock_ == Clock::real_time ? std::max(now_, wall()) : now_; }
   /// Threads that do jobs: one a lane, or 1, the loop's own.
   int threads() const;
 

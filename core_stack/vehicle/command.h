@@ -35,10 +35,10 @@ struct AttitudeRateCommand {
 
 /// The same motion in each form that an autopilot may take.
 struct Command {
-  AttitudeRateCommand rates;     // by the core's own controllers
-  Reference reference;           // for an autopilot with controllers of its own
-  State state;                   // for an autopilot without a position of its own
-  bool state_is_known = false;   // false: the core does not know where it is
+  AttitudeRateCommand rates;    // by the core's own controllers
+  Reference reference;          // for an autopilot with controllers of its own
+  State state;                  // for an autopilot without a position of its own
+  bool state_is_known = false;  // false: the core does not know where it is
 };
 
 }  // namespace karst::core

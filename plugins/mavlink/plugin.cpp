@@ -26,8 +26,9 @@ class MavlinkPlugin final : public core::VehiclePlugin {
 
   std::unique_ptr<core::Vehicle> create(const core::VehicleSetup& setup) override {
     if (setup.clock == core::Clock::lockstep)
-      throw core::InputError("vehicle mavlink", "",
-                             "flies by the machine's clock only: add --real-time, or fly simulated_autopilot");
+      throw core::InputError(
+          "vehicle mavlink", "",
+          "flies by the machine's clock only: add --real-time, or fly simulated_autopilot");
     if (lidar_.unit == lidar::LidarUnit::none)
       throw core::InputError("vehicle mavlink", "mavlink.lidar.unit",
                              "is none: without a LiDAR the core cannot tell where it is");
@@ -61,7 +62,8 @@ core::Pose MavlinkPlugin::start_of(const std::string& text) {
   const int n = std::sscanf(text.c_str(), "%lf %lf %lf %n%lf %n", &x, &y, &z, &read, &heading_deg, &read);
   const core::Vec3 position(x, y, z);
   if (n < 3 || text.c_str()[read] != '\0' || !position.allFinite() || !std::isfinite(heading_deg))
-    throw core::InputError("vehicle mavlink", "cave.start", "expected \"x y z [heading_deg]\", got \"" + text + "\"");
+    throw core::InputError("vehicle mavlink", "cave.start",
+                           "expected \"x y z [heading_deg]\", got \"" + text + "\"");
   return {position, core::from_heading(heading_deg * std::numbers::pi / 180)};
 }
 

@@ -102,7 +102,9 @@ int run_of_vehicle(const PreflightArguments& args, bool named_policy) {
 
 int run(const PreflightArguments& args) {
   if (args.overrides.cave.empty())
-    throw InputError("karst preflight", "", "needs a CAVE, or --vehicle with the name of a vehicle plugin");
+    throw InputError("karst preflight", "",
+                     "argument cave is missing, or --vehicle with the name of a vehicle plugin; "
+                     "`karst preflight --help` says more");
   const flight::Mission mission = mission_of(args);
   preflight::LookOptions look = args.look;
   if (!args.quiet && !args.json)

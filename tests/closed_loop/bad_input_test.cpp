@@ -314,7 +314,9 @@ TEST(BadInput, UsageErrorsNameTheWord) {
 TEST(BadInput, UsageErrorsNameTheCommandAndWhereToReadMore) {
   for (const auto& [arguments, said] :
        {std::pair{"preflight",
-                  "karst: karst preflight: argument cave is missing; `karst preflight --help` says more\n"},
+                  "karst: karst preflight: argument cave is missing, or --vehicle with the name of a vehicle "
+                  "plugin; `karst "
+                  "preflight --help` says more\n"},
         std::pair{"fly a b c",
                   "karst: karst fly: \"b\" is more than it takes; `karst fly --help` says more\n"},
         std::pair{"fly --out",

@@ -40,8 +40,7 @@ std::vector<std::uint8_t> to_wire(const Frame& f) {
   std::copy(header.begin(), header.end(), out.begin());
   std::copy_n(f.bytes.begin(), f.size, out.begin() + kHeader);
   const std::size_t checked = kHeader + f.size;
-  const std::uint16_t crc =
-      checksum(std::span(out).subspan(1, checked - 1), crc_extra_of(f.id).value_or(0));
+  const std::uint16_t crc = checksum(std::span(out).subspan(1, checked - 1), crc_extra_of(f.id).value_or(0));
   out[checked] = static_cast<std::uint8_t>(crc);
   out[checked + 1] = static_cast<std::uint8_t>(crc >> 8);
   return out;
