@@ -68,7 +68,7 @@ class Executive {
   TimeNs now() const { return now_; }
   /// In real time, the machine's time on the same clock: at or after now(), which is when the step that runs
   /// was due. What comes from outside is stamped by it. In lockstep, now().
-  TimeNs measured_now() const { return clock_ == Clock::real_time ? std::max(now_, wall()) : now_; }
+  TimeNs measured_now() const { return begin_ != 0 ? std::max(now_, wall()) : now_; }
   /// Threads that do jobs: one a lane, or 1, the loop's own.
   int threads() const;
 
