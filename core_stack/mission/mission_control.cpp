@@ -254,6 +254,7 @@ void MissionControl::supervise() {
   supervision_watch_.came(now());
   record();
   shed_load();
+  if (authority_ != Authority::core) onboard_.flight.hover_here(now());  // no jump when it is the core again
   if (emergency_) return;
   keep_safe();
   if (team_) team_->right_of_way.step();
@@ -280,8 +281,12 @@ void MissionControl::shed_load() {
 void MissionControl::fly_phase() {
   switch (phase()) {
     case Phase::standby:
-      if (authority_ != Authority::core) return endurance_.begin(now());
+      if (authority_ != Authority::core) {
+        return_home_.watch_time();  // the roadmaps follow the map
+        return endurance_.begin(now());
+      }
       if (now() - phases_.since() < kSettling || (team_ && !team_->sharing.airspace_clear())) break;
+      if (!may_fly()) return endurance_.begin(now());
       take_off_.begin();
       enter(Phase::takeoff, "");
       break;
@@ -303,12 +308,24 @@ void MissionControl::fly_phase() {
       land();
       break;
     case Phase::manual:
-      onboard_.flight.hover_here(now());
+      return_home_.watch_time();  // and the roadmaps follow the map
       break;
     case Phase::done:
     case Phase::replay:
       break;
   }
+}
+
+/// Whether the vehicle's own checks hold. What does not is recorded once.
+bool MissionControl::may_fly() {
+  std::string why_not;
+  for (const VehicleCheck& check : vehicle_.checks())
+    if (!check.holds)
+      why_not += (why_not.empty() ? "it waits on the ground: " : "; ") + check.name + " must be " +
+                 check.required + (check.found.empty() ? ", and is not known" : ", and is " + check.found);
+  if (why_not != why_not_ && !why_not.empty()) onboard_.recorder.write(now(), event::Log{why_not});
+  why_not_ = why_not;
+  return why_not.empty();
 }
 
 void MissionControl::take_off() {
@@ -370,7 +387,7 @@ void MissionControl::on_authority(TimeNs, Authority who, const std::string& reas
   const bool same = who == std::exchange(authority_, who);
   authority_reason_ = reason;
   onboard_.recorder.write(now(), event::Authority{who, reason});
-  if (same || emergency_ || phases_.in(Phase::standby)) return;
+  if (same || phases_.in(Phase::standby)) return;
   if (who == Authority::core)
     take_over();
   else
@@ -380,16 +397,29 @@ void MissionControl::on_authority(TimeNs, Authority who, const std::string& reas
 /// Another steers. The vehicle still localizes and maps, and is ready to hover wherever it is.
 void MissionControl::let_go(const std::string& reason) {
   onboard_.flight.let_go();
-  if (phases_.in(Phase::manual)) return;
-  resumes_exploring_ = !phases_.in(Phase::home) && !phases_.in(Phase::land);
+  if (phases_.in(Phase::manual) || emergency_) return;
+  resumes_ = phases_.in(Phase::home) || phases_.in(Phase::land)     ? Phase::home
+             : phases_.in(Phase::explore) || onboard_.vehicle.lidar ? Phase::explore
+                                                                    : Phase::look;
   path_.brake(now());  // nothing that was planned before is flown later
   onboard_.flight.hover_here(now());
   goals_.drop_next(GoalFate::superseded, reason, now());
   goals_.close_goal(GoalFate::superseded, reason, now());
   enter(Phase::manual, reason);
+  if (standing_) wait_on_ground();  // it had not left the ground
+}
+
+/// As before the first take-off.
+void MissionControl::wait_on_ground() {
+  onboard_.flight.stand_down();
+  enter(Phase::standby, "on the ground again");
 }
 
 void MissionControl::take_over() {
+  if (emergency_) {
+    onboard_.flight.take_over(now());
+    return onboard_.flight.land_now(now(), kDoubtfulPath_m);
+  }
   if (!phases_.in(Phase::manual)) return;
   forget_causes();
   path_.unblock();
@@ -399,8 +429,9 @@ void MissionControl::take_over() {
     flown_path_.begin(here);
     return_home_.set_home(here);
   }
-  if (resumes_exploring_) return enter(Phase::explore, "the core steers again");
-  return_home_.begin("the core steers again");
+  if (resumes_ == Phase::home) return return_home_.begin("the core steers again");
+  if (resumes_ == Phase::look) onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
+  enter(resumes_, "the core steers again");
 }
 
 MapQuestion MissionControl::map_question() const {
@@ -509,8 +540,7 @@ void MissionControl::record() {
 void MissionControl::on_ground(TimeNs stamp) {
   standing_ = true;
   if (phases_.in(Phase::manual) && !flown_path_.begun()) {  // set down again before it was handed over
-    onboard_.flight.stand_down();
-    return enter(Phase::standby, "on the ground again");
+    return wait_on_ground();
   }
   const bool takes_off = !flown_path_.begun() && !phases_.in(Phase::land);  // it may touch the ground again
   if (!takes_off && !phases_.in(Phase::done)) touch_down(stamp);

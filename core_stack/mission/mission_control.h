@@ -115,7 +115,9 @@ class MissionControl final : public VehicleSink {
   void land_here(const std::string& reason);
   void land();
   bool found_again() const;
+  bool may_fly();
   void let_go(const std::string& reason);
+  void wait_on_ground();
   void take_over();
   void forget_causes();
   MapQuestion map_question() const;
@@ -152,7 +154,8 @@ class MissionControl final : public VehicleSink {
   bool standing_ = true;
   Authority authority_;  // who steers
   std::string authority_reason_;
-  bool resumes_exploring_ = true;         // when the core steers again
+  Phase resumes_ = Phase::explore;        // when the core steers again
+  std::string why_not_;                   // it may not fly, as recorded last
   bool lands_lost_ = false;               // for want of a pose
   std::optional<std::string> emergency_;  // why it lands at once, if it does
   std::optional<MissionResult> result_;

@@ -16,7 +16,8 @@
 
 namespace karst::core {
 
-/// Something that must hold of a vehicle before the core may fly it, such as a parameter of its autopilot.
+/// Something that must hold of a vehicle before the core takes off with it, such as a parameter of its
+/// autopilot.
 struct VehicleCheck {
   std::string name;      // "COM_OF_LOSS_T"
   std::string required;  // "at most 1 s"

@@ -56,7 +56,7 @@ Command Flight::command(TimeNs now) const {
 }
 
 Command Flight::control(TimeNs now) {
-  if (motors_ != Motors::armed) {
+  if (motors_ == Motors::off || (motors_ == Motors::idle && steers_)) {
     command_ = {};
     return command(now);
   }
@@ -133,7 +133,8 @@ void Flight::arm(TimeNs now) {
 
 void Flight::take_over(TimeNs now) {
   if (motors_ == Motors::off) return;
-  arm(now);
+  if (motors_ == Motors::idle) arm(now);
+  controller_.reset();
   hover_here(now);
   steers_ = true;
 }

@@ -69,7 +69,8 @@ class PathExecution {
   bool braked_since(TimeNs t) const { return held() || (braked_at_ && *braked_at_ >= t); }
   /// The same, or another vehicle has the right of way.
   bool outdated(TimeNs t) const { return yields_ || braked_since(t); }
-  bool has_braked() const { return braked_at_.has_value(); }
+  /// It has braked itself since then.
+  bool brakes_since(TimeNs t) const { return braked_at_ && *braked_at_ >= t; }
 
  private:
   RouteStart start(Flight::CommittedSegment committed, TimeNs at) const;

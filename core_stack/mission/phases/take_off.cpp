@@ -11,13 +11,15 @@ std::string metres(double m) { return std::to_string(m).substr(0, 4) + " m"; }
 }  // namespace
 
 void TakeOff::begin() {
+  below_roof_ = false;
+  begun_ = onboard_.now();
   onboard_.flight.climb(onboard_.now(), onboard_.options.mission.takeoff_height_m, kClimbSpeed_mps);
 }
 
 TakeOff::State TakeOff::step(bool standing) {
   if (!onboard_.flight.at_rest(onboard_.now() - kSettling)) return State::climbs;
   if (standing) return State::does_not_lift;
-  if (path_.has_braked() && !below_roof_) choose_hover();
+  if (path_.brakes_since(begun_) && !below_roof_) choose_hover();
   return onboard_.executive.under_way("hover") > 0 ? State::climbs : State::hovers;
 }
 

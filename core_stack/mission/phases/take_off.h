@@ -25,6 +25,7 @@ class TakeOff {
   const PhaseMachine& phases_;
   const PathExecution& path_;
   bool below_roof_ = false;
+  TimeNs begun_ = 0;
 };
 
 }  // namespace karst::core

@@ -21,6 +21,8 @@ constexpr std::array kTransitions{
     Transition{Phase::land, Phase::home, "the pose is known again, for want of which it came down"},
     Transition{{}, Phase::manual, "the pilot or the autopilot steers"},
     Transition{Phase::manual, Phase::standby, "the pilot has set it down again before the first hand-over"},
+    Transition{Phase::manual, Phase::look,
+               "the core steers again, and its cameras have not looked around yet"},
     Transition{Phase::manual, Phase::explore, "the core steers again, and had not turned back"},
     Transition{Phase::manual, Phase::home, "the core steers again, and had turned back"},
     Transition{{}, Phase::land, "the safety supervisor, an error or the operator ends the flight"},

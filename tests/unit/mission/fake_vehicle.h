@@ -61,6 +61,7 @@ class FakeVehicle final : public Vehicle {
   double load_kg = 0;                              // that the description does not know of
   Vec3 wind_push_mps2 = Vec3::Zero();              // world frame
   std::optional<AttitudeRateCommand> pilot_rates;  // in place of the core's
+  std::vector<VehicleCheck> checked;
 
   const Pose& pose() const { return pose_; }
   const Vec3& velocity_mps() const { return velocity_mps_; }
@@ -72,6 +73,7 @@ class FakeVehicle final : public Vehicle {
     told_ = command;
   }
   const Command& told() const { return told_; }
+  std::vector<VehicleCheck> checks() const override { return checked; }
   void steered_by(Authority who) { description_.authority = who; }
   void start(Executive& executive, VehicleSink& sink) override {
     executive.at(0, [&sink] { sink.on_ground(0); });

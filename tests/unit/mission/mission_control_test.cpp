@@ -451,6 +451,90 @@ TEST_F(MissionControlTest, ThePilotTakesOffSetsItDownTakesOffAgainAndHandsOverIn
   EXPECT_EQ(phases(), (Texts{"standby", "manual", "standby", "manual", "explore", "home", "land", "done"}));
 }
 
+// As it was: the core neither took over nor came down, and commanded a hover for ever.
+TEST_F(MissionControlTest, AnEmergencyWhileThePilotSteersLandsWhenTheCoreSteersAgain) {
+  TimeNs taken = 0;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    const TimeNs now = executive.now();
+    if (taken == 0 && mission.phase() == Phase::explore && vehicle.pose().position.x() > 5) {
+      taken = now;
+      mission.on_authority(now, Authority::pilot, "mode stabilized");
+    }
+    if (taken == 0) return;
+    vehicle.pilot_rates = hold(vehicle);
+    if (now - taken == 2 * kSecond) mission.land_now("a failure");
+    if (now - taken < 6 * kSecond) {
+      EXPECT_LT((vehicle.told().reference.position - vehicle.pose().position).norm(), 0.5);
+      return;
+    }
+    vehicle.pilot_rates.reset();
+    mission.on_authority(now, Authority::core, "mode offboard");
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::aborted);
+  EXPECT_TRUE(result.reason.starts_with("a failure: on the ground")) << result.reason;
+  EXPECT_TRUE(result.stands);
+}
+
+// As it was: the next hand-over began to explore on the ground, or took the first one's braking for a roof.
+TEST_F(MissionControlTest, TakenFromTheCoreBeforeItLiftsOffWaitsOnTheGroundAndTakesOffAgain) {
+  bool taken = false;
+  vehicle.load_kg = 100;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    if (!taken && mission.phase() == Phase::takeoff) {
+      taken = true;
+      vehicle.load_kg = 0;
+      vehicle.pilot_rates = AttitudeRateCommand{};
+      mission.on_authority(executive.now(), Authority::pilot, "disarmed");
+      EXPECT_EQ(mission.phase(), Phase::standby);
+    }
+    if (vehicle.pilot_rates && executive.now() > 10 * kSecond) {
+      vehicle.pilot_rates.reset();
+      mission.on_authority(executive.now(), Authority::core, "armed, mode offboard");
+    }
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed) << result.reason;
+  EXPECT_EQ(phases(),
+            (Texts{"standby", "takeoff", "manual", "standby", "takeoff", "explore", "home", "land", "done"}));
+  EXPECT_EQ(told("log", "text"), Texts{});
+}
+
+// As it was: thrust 0, which an autopilot flies that is switched to the core.
+TEST_F(MissionControlTest, WhileThePilotFliesBeforeTheFirstHandOverTheCommandIsAHover) {
+  vehicle.steered_by(Authority::pilot);
+  bool watched = false;
+  fly([&](MissionControl& mission) {
+    const double t = seconds(executive.now());
+    if (t < 3) {
+      EXPECT_FALSE(vehicle.told().rates.armed);
+      return;
+    }
+    if (t < 8) {
+      vehicle.pilot_rates = hold(vehicle);
+      if (t < 5) vehicle.pilot_rates->thrust_n += 2;
+      if (t < 4) return;
+      watched = true;
+      EXPECT_TRUE(vehicle.told().rates.armed);
+      EXPECT_NEAR(vehicle.told().rates.thrust_n, 9.81 * vehicle.description().mass_kg, 0.5);
+      return;
+    }
+    if (!vehicle.pilot_rates) return;
+    vehicle.pilot_rates.reset();
+    mission.on_authority(executive.now(), Authority::core, "mode offboard");
+  });
+  EXPECT_TRUE(watched);
+}
+
+TEST_F(MissionControlTest, DoesNotTakeOffBeforeTheVehiclesChecksHold) {
+  vehicle.checked = {{"COM_OF_LOSS_T", "at most 1 s", "5 s", false}, {"heartbeat", "comes", "comes", true}};
+  fly([&](MissionControl& mission) {
+    if (executive.now() < 20 * kSecond) EXPECT_EQ(mission.phase(), Phase::standby);
+    if (executive.now() >= 20 * kSecond) vehicle.checked.front().holds = true;
+  });
+  EXPECT_EQ(phases(), kWholeMission);
+  EXPECT_EQ(told("log", "text"),
+            Texts{"it waits on the ground: COM_OF_LOSS_T must be at most 1 s, and is 5 s"});
+}
+
 TEST_F(MissionControlTest, LandedByTheAutopilotIsAborted) {
   bool failsafe = false;
   const MissionResult result = fly([&](MissionControl& mission) {

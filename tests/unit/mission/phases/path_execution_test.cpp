@@ -23,7 +23,7 @@ TEST_F(PathExecutionTest, APlaceClosedFarAheadIsFlownAroundAndOneNearByIsBrakedF
   path.avoid(25, phases, now());
   EXPECT_TRUE(path.detour_due());
   EXPECT_FALSE(path.blocked());
-  EXPECT_FALSE(path.has_braked());
+  EXPECT_FALSE(path.brakes_since(0));
   EXPECT_EQ(told("replan"), 1u);
   path.avoid(24, phases, now());
   EXPECT_EQ(told("replan"), 1u) << "said once";
@@ -70,7 +70,7 @@ TEST_F(PathExecutionTest, ABrakeOutdatesWhatWasPlannedBeforeIt) {
 TEST_F(PathExecutionTest, WhoStandsIsNotBraked) {
   hover();
   path.stop(now());
-  EXPECT_FALSE(path.has_braked());
+  EXPECT_FALSE(path.brakes_since(0));
 }
 
 TEST_F(PathExecutionTest, ARouteIsFollowedFromWhereItJoinsTheTrajectoryToItsEnd) {

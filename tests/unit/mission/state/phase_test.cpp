@@ -17,8 +17,8 @@ TEST(PhaseMachine, GoesFromPhaseToPhaseAsTheMissionDoesAndNoOtherWay) {
   const std::set<std::pair<Phase, Phase>> allowed{
       {Phase::standby, Phase::takeoff}, {Phase::takeoff, Phase::look},   {Phase::takeoff, Phase::explore},
       {Phase::look, Phase::explore},    {Phase::explore, Phase::home},   {Phase::land, Phase::home},
-      {Phase::manual, Phase::standby},  {Phase::manual, Phase::explore}, {Phase::manual, Phase::home},
-      {Phase::standby, Phase::standby}};
+      {Phase::manual, Phase::standby},  {Phase::manual, Phase::look},    {Phase::manual, Phase::explore},
+      {Phase::manual, Phase::home},     {Phase::standby, Phase::standby}};
   const std::map<Phase, std::vector<Phase>> path_there{
       {Phase::standby, {}},
       {Phase::takeoff, {Phase::takeoff}},

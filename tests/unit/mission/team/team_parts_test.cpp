@@ -52,7 +52,7 @@ TEST_F(TeamPartsTest, ItYieldsToARobotThatGoesFirstAndGoesOnOnceThatIsAway) {
   right_of_way.step();
   EXPECT_TRUE(path.yields());
   EXPECT_TRUE(path.blocked());
-  EXPECT_TRUE(path.has_braked());
+  EXPECT_TRUE(path.brakes_since(0));
   EXPECT_EQ(told("give way"), 1u);
   for (int i = 0; i < 300 && path.yields(); ++i) {
     advance(0.1);
@@ -118,7 +118,7 @@ TEST_F(TeamPartsTest, ItYieldsToAVehicleThatItSeesAndDoesNotHear) {
   }
   right_of_way.step();
   EXPECT_TRUE(path.yields());
-  EXPECT_TRUE(path.has_braked());
+  EXPECT_TRUE(path.brakes_since(0));
   const auto bodies = sharing.others_at(now());
   ASSERT_EQ(bodies.size(), 1u) << "it leaves no ghost in the map";
   advance(5);
