@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plugins/socket/messages.h"
+
 namespace karst::socket {
 
 using core::TimeNs;
@@ -10,16 +12,20 @@ namespace {
 
 constexpr TimeNs kJump = 50 * core::kMillisecond;
 constexpr TimeNs kSlewDivisor = 100;
-constexpr std::size_t kUnsettled = 8;  // round trips until the offset no longer jumps to the best one
 constexpr double kDrift = 15e-6;       // of a clock, as in NTP
 
 }  // namespace
 
 void ClockOffset::add(const RoundTrip& t) {
+  for (const TimeNs time : {t.sent, t.answered, t.peer_received, t.peer_sent})
+    if (!is_plausible_time(time)) return;
   const TimeNs delay = (t.answered - t.sent) - (t.peer_sent - t.peer_received);
   if (t.answered < t.sent || t.peer_sent < t.peer_received || delay < 0) return;
   const TimeNs out = t.peer_received - t.sent, back = t.peer_sent - t.answered;
-  samples_[count_ % samples_.size()] = {out + (back - out) / 2, delay, t.answered};
+  const Sample sample{out + (back - out) / 2, delay, t.answered};
+  // Each is right within half of its delay, and clocks drift by far less than 50 ms meanwhile.
+  if (count_ > 0 && std::abs(sample.offset - best().offset) > (sample.delay + best().delay) / 2 + kJump) forget();
+  samples_[count_ % samples_.size()] = sample;
   ++count_;
 }
 
@@ -35,7 +41,7 @@ TimeNs ClockOffset::offset(TimeNs now) {
   const TimeNs most = settled_ ? std::max<TimeNs>(0, now - moved_at_) / kSlewDivisor : std::abs(wrong);
   offset_ += std::abs(wrong) > kJump ? wrong : std::clamp(wrong, -most, most);
   moved_at_ = std::max(moved_at_, now);
-  settled_ = count_ >= kUnsettled;
+  settled_ = true;
   return offset_;
 }
 

@@ -76,7 +76,8 @@ void LockstepVehicle::take(ToCore message) {
 }
 
 void LockstepVehicle::mirror(const Schedule& s) {
-  if (s.due < executive_->now() || (s.period != 0 && s.period < kMinPeriod))
+  const bool can_be = is_plausible_time(s.due) && is_plausible_time(s.period);
+  if (!can_be || s.due < executive_->now() || (s.period != 0 && s.period < kMinPeriod))
     throw LinkError("the vehicle schedules what cannot be: a time that is past, or a period below 1 ms");
   if (s.period == 0)
     executive_->at(s.due, [this, slot = s.slot] { run_slot(slot); });

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -107,6 +108,24 @@ using ToCore =
     std::variant<Welcome, Refuse, Checks, Schedule, Pause, Done, Pong, Bye, core::ImuSample,
                  core::MagnetometerSample, core::BarometerSample, core::PoseSample, core::BatteryStatus,
                  core::LidarScan, Depth, core::RgbFrame, Objects, Ground, LiftOff, AuthorityChange, Lost>;
+
+/// A peer's times beyond this (73 years) are refused: no sum or difference of those within it overflows.
+constexpr core::TimeNs kMaxTime = core::TimeNs{1} << 61;
+constexpr bool is_plausible_time(core::TimeNs t) { return t > -kMaxTime && t < kMaxTime; }
+
+/// Where a message has its stamp; null for those without.
+struct StampOf {
+  const core::TimeNs* operator()(const auto&) const { return nullptr; }
+  const core::TimeNs* operator()(const Depth& m) const { return &m.image.stamp; }
+  const core::TimeNs* operator()(const Objects& m) const { return &m.look.stamp; }
+  template <class M>
+  requires requires(const M& m) { m.stamp; }
+  const core::TimeNs* operator()(const M& m) const { return &m.stamp; }
+};
+inline const core::TimeNs* stamp_of(const ToCore& message) { return std::visit(StampOf{}, message); }
+inline core::TimeNs* stamp_of(ToCore& message) {
+  return const_cast<core::TimeNs*>(stamp_of(std::as_const(message)));
+}
 
 /// What a type is called, and its number on the wire.
 struct MessageType {

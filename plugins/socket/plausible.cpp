@@ -66,6 +66,9 @@ struct Judge {
   const core::VehicleDescription& vehicle;
 
   std::string operator()(const auto&) const { return ""; }
+  std::string operator()(const Pong& m) const {
+    return is_plausible_time(m.received) && is_plausible_time(m.sent) ? "" : "sent: is no time";
+  }
   std::string operator()(const core::ImuSample& m) const {
     return finite(m.specific_force_mps2) && finite(m.body_rate_radps) ? "" : "is no number";
   }
@@ -159,12 +162,15 @@ std::string implausible(const core::VehicleDescription& v) {
 }
 
 std::string implausible(const ToCore& message, const core::VehicleDescription& vehicle) {
+  if (const core::TimeNs* stamp = stamp_of(message); stamp && !is_plausible_time(*stamp))
+    return "stamp: is no time";
   return std::visit(Judge{vehicle}, message);
 }
 
 std::string implausible(const core::Command& c) {
   if (!finite(c.rates.body_rate_radps) || !std::isfinite(c.rates.thrust_n)) return "rates: is no number";
   const core::Reference& r = c.reference;
+  if (!is_plausible_time(r.stamp) || !is_plausible_time(c.state.stamp)) return "stamp: is no time";
   for (const core::Vec3& v : {r.position, r.velocity_mps, r.acceleration_mps2, r.jerk_mps3})
     if (!finite(v)) return "reference: is no number";
   if (!std::isfinite(r.heading_rad) || !std::isfinite(r.heading_rate_radps)) return "reference: is no number";

@@ -12,21 +12,8 @@ namespace {
 
 constexpr TimeNs kStep = 2 * kMillisecond;
 constexpr TimeNs kPingPeriod = 100 * kMillisecond, kFirstPings = 10 * kMillisecond;
-constexpr int kQuickPings = 16;  // at the start, until the offset is known well
 constexpr TimeNs kCaughtUp = 100 * kMillisecond;
 constexpr std::size_t kMessagesAStep = 64;  // so that no vehicle can hold up the control
-
-/// Where a message has its stamp; null for those without.
-struct StampOf {
-  TimeNs* operator()(auto&) const { return nullptr; }
-  TimeNs* operator()(Depth& m) const { return &m.image.stamp; }
-  TimeNs* operator()(Objects& m) const { return &m.look.stamp; }
-  template <class M>
-  requires requires(M& m) { m.stamp; }
-  TimeNs* operator()(M& m) const { return &m.stamp; }
-};
-
-TimeNs* stamp_of(ToCore& message) { return std::visit(StampOf{}, message); }
 
 bool measured(const ToCore& m) {
   return !std::holds_alternative<Ground>(m) && !std::holds_alternative<LiftOff>(m) &&
@@ -49,8 +36,8 @@ RealTimeVehicle::RealTimeVehicle(std::unique_ptr<VehicleLink> link, Wait patienc
 void RealTimeVehicle::start(core::Executive& executive, core::VehicleSink& sink) {
   executive_ = &executive;
   sink_ = &sink;
-  clock_.note_step(executive.now());
-  heard_at_ = clock_.now();
+  lost_time_ = executive.lost_time();
+  heard_at_ = executive.measured_now();
   executive.every("vehicle messages", executive.now() + kStep, kStep, [this] { step(); });
   try {
     link_->stream().queue(Start{});
@@ -61,18 +48,24 @@ void RealTimeVehicle::start(core::Executive& executive, core::VehicleSink& sink)
 }
 
 void RealTimeVehicle::step() {
-  clock_.note_step(executive_->now());
   if (lost_) return;
+  note_lost_time();
   if (late() > core::kCommandTimeout)
     give_away("the core was " + in_seconds(core::kCommandTimeout) +
               " late, so the vehicle comes down by itself");
   try {
-    for (std::size_t i = 0; i < kMessagesAStep && !lost_; ++i) {
-      if (!next_ && !(next_ = receive())) break;
+    for (std::size_t read = 0; read < kMessagesAStep && !lost_;) {
+      if (!next_) {
+        std::optional<Received> received = link_->receive_one(Wait(0));
+        if (!received) break;
+        ++read;
+        if (received->message) next_ = for_core(std::move(*received->message));
+        if (!next_) continue;
+      }
       if (const TimeNs* stamp = stamp_of(*next_); stamp && *stamp > executive_->now()) break;
       take(*std::exchange(next_, std::nullopt));
     }
-    if (clock_.now() >= next_ping_) ping();
+    if (executive_->measured_now() >= next_ping_) ping();
     link_->stream().flush(Wait(0));
   } catch (const LinkError& e) {
     lose(e.what());
@@ -80,22 +73,35 @@ void RealTimeVehicle::step() {
   judge_silence();
 }
 
-/// The next message for the core, with its stamp by the core's clock. Before the first round trip nothing is
-/// known of the vehicle's clock: only what it is and does counts then, and not what it measures.
-std::optional<ToCore> RealTimeVehicle::receive() {
-  while (std::optional<ToCore> message = link_->receive(Wait(0))) {
-    if (const auto* pong = std::get_if<Pong>(&*message)) {
-      offset_.add({pong->ping_sent, clock_.now(), pong->received, pong->sent});
-      continue;
-    }
-    TimeNs* stamp = stamp_of(*message);
-    if (!stamp) return message;
-    if (!offset_.known() && measured(*message)) continue;
-    const TimeNs now = clock_.now();
-    *stamp = offset_.known() ? std::min(*stamp - offset_.offset(now), now) : executive_->now();
-    return message;
+/// The core's clock was set back. What was noted by it may lie in its future now.
+void RealTimeVehicle::note_lost_time() {
+  const TimeNs lost = executive_->lost_time() - lost_time_;
+  if (lost == 0) return;
+  lost_time_ += lost;
+  const TimeNs now = executive_->measured_now();
+  heard_at_ = std::min(heard_at_, now);
+  next_ping_ = now;
+  outstanding_.clear();
+  offset_.forget();
+  if (next_ && measured(*next_)) next_.reset();
+  if (TimeNs* stamp = next_ ? stamp_of(*next_) : nullptr) *stamp = std::min(*stamp, now);
+  give_away("the core stood still for " + in_seconds(lost) + ", so the vehicle comes down by itself");
+}
+
+/// The message with its stamp by the core's clock, if the core is to take it. Until the offset is
+/// known, so is nothing of the vehicle's clock: only what it is and does counts then, and not what it measures.
+std::optional<ToCore> RealTimeVehicle::for_core(ToCore message) {
+  const TimeNs now = executive_->measured_now();
+  if (const auto* pong = std::get_if<Pong>(&message)) {
+    if (outstanding_.answered(pong->ping_sent))
+      offset_.add({pong->ping_sent, now, pong->received, pong->sent});
+    return std::nullopt;
   }
-  return std::nullopt;
+  TimeNs* stamp = stamp_of(message);
+  if (!stamp) return message;
+  if (!offset_.known() && measured(message)) return std::nullopt;
+  *stamp = offset_.known() ? std::min(*stamp - offset_.offset(now), now) : executive_->now();
+  return message;
 }
 
 void RealTimeVehicle::take(ToCore message) {
@@ -111,24 +117,27 @@ void RealTimeVehicle::take(ToCore message) {
   deliver(std::move(message), link_->description(), *sink_);
 }
 
+/// Behind other messages it would measure how long they take.
 void RealTimeVehicle::ping() {
-  const TimeNs now = clock_.now();
+  if (link_->stream().backlog_bytes() > 0) return;
+  const TimeNs now = executive_->measured_now();
   link_->stream().queue(Ping{now});
-  next_ping_ = now + (++pings_ < kQuickPings ? kFirstPings : kPingPeriod);
+  outstanding_.note(now);
+  next_ping_ = now + (offset_.known() ? kPingPeriod : kFirstPings);
 }
 
 /// By the machine's clock: a core that stood still hears what came meanwhile first.
 void RealTimeVehicle::judge_silence() {
   if (lost_) return;
   if (link_->heard()) {
-    heard_at_ = clock_.now();
-    if (away_ && late() < kCaughtUp) {
+    heard_at_ = executive_->measured_now();
+    if (away_ && late() < kCaughtUp && offset_.known()) {
       away_ = false;
       sink_->on_authority(executive_->now(), steers_, "the vehicle and the core hear each other again");
     }
     return;
   }
-  const TimeNs silence = clock_.now() - heard_at_;
+  const TimeNs silence = executive_->measured_now() - heard_at_;
   if (silence >= limits_.autopilot_steers)
     give_away("no message from the vehicle for " + in_seconds(limits_.autopilot_steers));
   if (silence >= limits_.vehicle_is_lost)
@@ -142,18 +151,18 @@ void RealTimeVehicle::give_away(const std::string& reason) {
 }
 
 /// By how much the steps of the core are behind the machine's clock.
-TimeNs RealTimeVehicle::late() const { return clock_.now() - executive_->now(); }
+TimeNs RealTimeVehicle::late() const { return executive_->measured_now() - executive_->now(); }
 
-/// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago: a
-/// vehicle that came down by itself must not be lifted off by commands for where it was.
+/// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago,
+/// nor before both hear each other: a vehicle that came down by itself must not be lifted off by commands for
+/// where it was.
 void RealTimeVehicle::command(const core::Command& c) {
-  if (lost_ || link_->stream().backlog_bytes() > 0 || late() > kCaughtUp) return;
+  if (lost_ || executive_->lost_time() != lost_time_) return;
+  if (link_->stream().backlog_bytes() > 0 || late() > kCaughtUp || !offset_.known()) return;
   core::Command sent = c;
-  if (offset_.known()) {
-    const TimeNs ahead = offset_.offset(clock_.now());
-    sent.reference.stamp += ahead;
-    sent.state.stamp += ahead;
-  }
+  const TimeNs ahead = offset_.offset(executive_->measured_now());
+  sent.reference.stamp += ahead;
+  sent.state.stamp += ahead;
   try {
     link_->stream().queue(sent);
     link_->stream().flush(Wait(0));
@@ -165,7 +174,7 @@ void RealTimeVehicle::command(const core::Command& c) {
 std::vector<core::VehicleCheck> RealTimeVehicle::checks() const {
   std::vector<core::VehicleCheck> all = checks_;
   all.push_back(link_->plausibility());
-  const TimeNs error = offset_.error_bound(clock_.now());
+  const TimeNs error = offset_.known() ? offset_.error_bound(executive_->measured_now()) : 0;
   constexpr TimeNs kMostError = 5 * kMillisecond;
   all.push_back({"clock offset", "known to 5 ms", offset_.known() ? in_seconds(error) : "",
                  offset_.known() && error <= kMostError});

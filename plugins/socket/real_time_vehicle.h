@@ -3,12 +3,16 @@
 // Messages are read in a short periodic step. The stamps are converted to the core's clock (clock_offset.h).
 // A message waits until the core's time has reached its stamp: a core that is late takes what came meanwhile
 // as if it were not. Pings go out ten times a second and serve as the heartbeat, too.
+//
+// An executive that loses time (Executive::lost_time()) sets its clock back, and what was measured meanwhile is
+// out of date. The clocks are compared anew then. Until the first answer, nothing that is measured is taken and
+// no command is sent: it would be for where the vehicle was.
 #pragma once
 #include <memory>
 #include <optional>
 
 #include "plugins/socket/clock_offset.h"
-#include "plugins/socket/machine_clock.h"
+#include "plugins/socket/outstanding_pings.h"
 #include "plugins/socket/vehicle_link.h"
 
 namespace karst::socket {
@@ -31,8 +35,9 @@ class RealTimeVehicle final : public core::Vehicle {
 
  private:
   void step();
-  std::optional<ToCore> receive();
+  std::optional<ToCore> for_core(ToCore message);
   void take(ToCore message);
+  void note_lost_time();
   void ping();
   void judge_silence();
   void give_away(const std::string& reason);
@@ -45,11 +50,11 @@ class RealTimeVehicle final : public core::Vehicle {
   core::Executive* executive_ = nullptr;
   core::VehicleSink* sink_ = nullptr;
   std::vector<core::VehicleCheck> checks_;
-  MachineClock clock_;
+  OutstandingPings outstanding_;
   ClockOffset offset_;
   std::optional<ToCore> next_;                 // waits until the core's time has reached its stamp
-  core::TimeNs next_ping_ = 0, heard_at_ = 0;  // by clock_
-  int pings_ = 0;
+  core::TimeNs next_ping_ = 0, heard_at_ = 0;  // by Executive::measured_now()
+  core::TimeNs lost_time_ = 0;                 // of the executive, that is reckoned with
   core::Authority steers_ = core::Authority::core;  // as the vehicle says
   bool away_ = false, lost_ = false;                // steered by its autopilot because of silence
 };

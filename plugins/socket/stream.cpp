@@ -101,11 +101,20 @@ Descriptor::~Descriptor() {
 
 Stream::Stream(Descriptor socket, std::uint32_t max_body) : socket_(std::move(socket)), max_body_(max_body) {}
 
+/// Seldom, as what is not sent moves: never for less than what is given free.
+void Stream::drop_sent() {
+  constexpr std::size_t kKept = 1 << 20;
+  if (sent_ < kKept || sent_ < backlog_bytes()) return;
+  unsent_.erase(0, sent_);
+  sent_ = 0;
+}
+
 bool Stream::flush(Wait patience) {
   while (sent_ < unsent_.size()) {
     const ssize_t n = ::send(socket_.get(), unsent_.data() + sent_, unsent_.size() - sent_, MSG_NOSIGNAL);
     if (n > 0) {
       sent_ += static_cast<std::size_t>(n);
+      drop_sent();
     } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
       if (patience.count() == 0 || !wait_for(socket_.get(), POLLOUT, patience)) return false;
     } else if (n < 0 && errno != EINTR) {

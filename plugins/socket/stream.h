@@ -51,6 +51,8 @@ class Stream {
   /// Bytes that need not be a message.
   void queue_bytes(std::string_view bytes) { unsent_ += bytes; }
   std::size_t backlog_bytes() const { return unsent_.size() - sent_; }
+  /// Bytes in memory, with those that are sent: at most twice the backlog, and 1 MiB.
+  std::size_t held_bytes() const { return unsent_.size(); }
   /// Sends what is queued, for as long as `patience`; returns whether all of it is sent. Throws LinkError.
   bool flush(Wait patience);
 
@@ -61,6 +63,8 @@ class Stream {
   bool receive(Wait patience);
 
  private:
+  void drop_sent();
+
   Descriptor socket_;
   std::uint32_t max_body_;
   std::string unsent_;

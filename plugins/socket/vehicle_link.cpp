@@ -50,19 +50,24 @@ std::optional<Frame> VehicleLink::next_frame(Wait patience) {
   }
 }
 
+std::optional<Received> VehicleLink::receive_one(Wait patience) {
+  const auto frame = next_frame(patience);
+  if (!frame) return std::nullopt;
+  std::string problem;
+  std::optional<ToCore> message = read_message<ToCore>(*frame, problem);
+  if (!message) throw LinkError("it sent what is no message: " + problem);
+  if (const auto* bye = std::get_if<Bye>(&*message))
+    throw LinkError("the vehicle left: " + core::printable(bye->reason));
+  const std::string why = implausible(*message, description());
+  if (why.empty()) return Received{std::move(message)};
+  if (dropped_++ == 0) first_dropped_ = "message " + std::to_string(frame->type) + ": " + why;
+  return Received{};
+}
+
 std::optional<ToCore> VehicleLink::receive(Wait patience) {
-  for (;;) {
-    const auto frame = next_frame(patience);
-    if (!frame) return std::nullopt;
-    std::string problem;
-    std::optional<ToCore> message = read_message<ToCore>(*frame, problem);
-    if (!message) throw LinkError("it sent what is no message: " + problem);
-    if (const auto* bye = std::get_if<Bye>(&*message))
-      throw LinkError("the vehicle left: " + core::printable(bye->reason));
-    const std::string why = implausible(*message, description());
-    if (why.empty()) return message;
-    if (dropped_++ == 0) first_dropped_ = "message " + std::to_string(frame->type) + ": " + why;
-  }
+  while (auto received = receive_one(patience))
+    if (received->message) return std::move(received->message);
+  return std::nullopt;
 }
 
 core::VehicleCheck VehicleLink::plausibility() const {

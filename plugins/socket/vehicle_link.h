@@ -7,6 +7,11 @@
 
 namespace karst::socket {
 
+/// A message that came.
+struct Received {
+  std::optional<ToCore> message;  // none: its numbers are such that the core must not take it
+};
+
 class VehicleLink {
  public:
   /// Connects, greets, and waits for the vehicle's description, each for `patience` at most. Throws
@@ -16,8 +21,10 @@ class VehicleLink {
   const core::VehicleDescription& description() const { return welcome_.description; }
   const std::string& address() const { return address_; }
   Stream& stream() { return stream_; }
-  /// The next message, if one comes within `patience`. One whose numbers the core must not take is dropped.
-  /// Throws LinkError if the vehicle is gone, says goodbye, or sends what is no message.
+  /// What the next message is, if one comes within `patience`. Throws LinkError if the vehicle is gone, says
+  /// goodbye, or sends what is no message.
+  std::optional<Received> receive_one(Wait patience);
+  /// The next message that the core may take.
   std::optional<ToCore> receive(Wait patience);
   /// Whether any bytes came since the last call.
   bool heard() { return std::exchange(heard_, false); }

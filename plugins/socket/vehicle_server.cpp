@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "core_stack/common/error.h"
-#include "plugins/socket/machine_clock.h"
 #include "plugins/socket/mirrored_executive.h"
 #include "plugins/socket/plausible.h"
 #include "plugins/socket/sending_sink.h"
@@ -62,10 +61,14 @@ class Client {
 
   /// A last word, if the client still listens.
   template <class M>
-  void dismiss(const M& message) {
+  void dismiss(const M& message, Wait patience = Wait(1000)) {
+    stream_.queue(message);
+    finish(patience);
+  }
+  /// What is not sent yet, if the client still listens.
+  void finish(Wait patience) {
     try {
-      stream_.queue(message);
-      stream_.flush(Wait(1000));
+      stream_.flush(patience);
     } catch (const LinkError&) {
     }
   }
@@ -190,12 +193,12 @@ class RealTimeService {
     tell_checks();
     executive_.run_until(std::numeric_limits<TimeNs>::max() / 2, [this] { return over(); });
     executive_.drain();
+    client_.finish(Wait(1000));
     return ending_;
   }
 
  private:
   void step() {
-    clock_.note_step(executive_.now());
     if (!ending_.empty()) return;
     if (interrupted_) return end(kStopped);
     try {
@@ -218,20 +221,23 @@ class RealTimeService {
     if (const auto* bye = std::get_if<Bye>(&message)) return end("the client left: " + bye->reason);
     const auto* ping = std::get_if<Ping>(&message);
     if (!ping) throw LinkError("the client sent a message that has no place there");
-    const TimeNs now = clock_.now();
-    client_.stream().queue(Pong{ping->sent, now, clock_.now()});
+    const TimeNs now = executive_.measured_now();
+    if (!full()) client_.stream().queue(Pong{ping->sent, now, executive_.measured_now()});
   }
 
   void tell_checks() {
-    if (!ending_.empty()) return;
+    if (!ending_.empty() || full()) return;
     if (const auto checks = vehicle_.checks(); !checks.empty()) client_.stream().queue(Checks{checks});
   }
 
-  /// From now on it comes down by itself.
+  /// A client that takes nothing for long gets no answers either.
+  bool full() const { return client_.stream().backlog_bytes() >= kMaxToCoreBytes; }
+
+  /// From now on it comes down by itself. Nothing waits for the client meanwhile: this is a step of the vehicle.
   void end(const std::string& why) {
     ending_ = why;
     ended_at_ = executive_.now();
-    client_.dismiss(Bye{why});
+    client_.dismiss(Bye{why}, Wait(0));
     sink_.mute();
   }
   bool over() const {
@@ -245,7 +251,6 @@ class RealTimeService {
   const std::atomic<bool>& interrupted_;
   core::Executive executive_;
   SendingSink sink_;
-  MachineClock clock_;
   TimeNs heard_at_ = 0, ended_at_ = 0;
   std::string ending_;  // "": not yet
 };

@@ -201,17 +201,18 @@ core::LidarScan Lidar::sweep_of_points(const cave::Cave& cave, const PoseTrack& 
   std::vector<cave::Hit> hits(kBatch);
   CloudyPath path;
   for (std::int64_t shot = end - shots; shot < end; shot += static_cast<std::int64_t>(kBatch)) {
-    const TimeNs middle = (shot + static_cast<std::int64_t>(kBatch) / 2) * kMid360Step;
+    const std::size_t batch = std::min(kBatch, static_cast<std::size_t>(end - shot));
+    const TimeNs middle = (shot + static_cast<std::int64_t>(batch) / 2) * kMid360Step;
     const core::Pose T_world_lidar = pose_at(T_world_body, middle) * model_->T_body_lidar;
     const Eigen::Matrix3f rotation = T_world_lidar.orientation.toRotationMatrix().cast<float>();
     directions.clear();
     rays.clear();
-    for (std::size_t i = 0; i < kBatch; ++i) {
+    for (std::size_t i = 0; i < batch; ++i) {
       directions.push_back(mid360_direction(shot + static_cast<std::int64_t>(i)));
       rays.push_back({T_world_lidar.position.cast<float>(), rotation * directions.back()});
     }
-    cave.scene.cast(rays, model_->max_range_m, hits);
-    for (std::size_t i = 0; i < kBatch; ++i) {
+    cave.scene.cast(rays, model_->max_range_m, std::span(hits).first(batch));
+    for (std::size_t i = 0; i < batch; ++i) {
       const Return r = measured(cave, rays[i], hits[i], random, air, path);
       if (!std::isfinite(r.range_m)) continue;
       scan.range_m.push_back(r.range_m);

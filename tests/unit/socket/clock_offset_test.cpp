@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace karst::socket {
@@ -91,6 +92,49 @@ TEST(ClockOffset, BelievesTheQuickestRoundTrip) {
                 sent + slow + kMillisecond / 2 + kSecond});
   }
   EXPECT_EQ(offset.offset(kSecond), kSecond);
+}
+
+TEST(ClockOffset, ForgetsWhatWasBeforeAClockWasSet) {
+  ClockOffset offset;
+  for (int i = 0; i < 20; ++i) offset.add({i * kSecond, i * kSecond + 10, i * kSecond, i * kSecond});
+  EXPECT_EQ(offset.offset(20 * kSecond), -5);
+  offset.forget();
+  EXPECT_FALSE(offset.known());
+  // The core's clock was set back by 10 s: slow answers are enough.
+  for (int i = 0; i < 8; ++i) {
+    const TimeNs sent = 10 * kSecond + i * kMillisecond;
+    offset.add({sent, sent + 4000, sent + 10 * kSecond + 2000, sent + 10 * kSecond + 2000});
+  }
+  EXPECT_EQ(offset.offset(11 * kSecond), 10 * kSecond);
+}
+
+/// Without being told: the vehicle set its clock. What it measured is not taken by the old offset.
+TEST(ClockOffset, FollowsAtOnceIfTwoAnswersCannotBothBeTrue) {
+  ClockOffset offset;
+  for (int i = 0; i < 8; ++i) offset.add({i * kSecond, i * kSecond + 10, i * kSecond, i * kSecond});
+  for (int i = 8; i < 16; ++i) {
+    EXPECT_NE(offset.known(), i > 8);
+    offset.add({i * kSecond, i * kSecond + 40 * kMillisecond, (i - 5) * kSecond, (i - 5) * kSecond});
+  }
+  EXPECT_EQ(offset.offset(17 * kSecond), -5 * kSecond - 20 * kMillisecond);
+}
+
+TEST(ClockOffset, IgnoresTimesNearTheEndsOf64Bits) {
+  const TimeNs least = std::numeric_limits<TimeNs>::min(), most = std::numeric_limits<TimeNs>::max();
+  const TimeNs times[] = {least, least + 1, -(TimeNs{1} << 61), TimeNs{1} << 61, most - 1, most};
+  ClockOffset offset;
+  for (const TimeNs a : times)
+    for (const TimeNs b : times) {
+      offset.add({0, 10, a, b});
+      offset.add({a, b, 0, 0});
+      offset.add({0, 10, 0, b});
+    }
+  EXPECT_FALSE(offset.known());
+  for (const TimeNs far : {(TimeNs{1} << 61) - 1, -(TimeNs{1} << 61) + 1}) {
+    for (int i = 0; i < 8; ++i) offset.add({0, 10, far, far});
+    ASSERT_TRUE(offset.known());
+    EXPECT_EQ(offset.offset(40), far - 5);
+  }
 }
 
 }  // namespace

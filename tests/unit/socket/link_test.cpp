@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -581,7 +582,15 @@ TEST(RealTime, ASilentVehicleIsGivenToItsAutopilotAndThenLost) {
     try {
       say(*client, welcome());
       std::this_thread::sleep_for(Wait(300));
-      say(*client, Pong{});
+      for (int answered = 0; answered < 8;) {
+        while (const auto frame = client->next()) {
+          std::string problem;
+          const auto message = read_message<ToVehicle>(*frame, problem);
+          const auto* ping = std::get_if<Ping>(&*message);
+          if (ping && answered++ < 8) say(*client, Pong{ping->sent, 0, 0});
+        }
+        client->receive(Wait(5000));
+      }
       for (;;)
         if (!client->receive(Wait(5000))) return;
     } catch (const LinkError&) {
@@ -664,6 +673,338 @@ TEST(RealTime, AVehicleWhoseClientIsGoneComesDown) {
   });
   EXPECT_TRUE(all.served.flew);
   EXPECT_EQ(all.vehicle.back(), "finished");
+}
+
+/// Time that passes only when the executive waits, or a step of the test says so.
+class FakeClock final : public core::WallClock {
+ public:
+  TimeNs now() const override { return now_; }
+  void sleep_until(TimeNs time) const override { now_ = std::max(now_, time); }
+  void pass(TimeNs duration) { now_ += duration; }
+
+ private:
+  mutable TimeNs now_ = 12345 * kSecond;
+};
+
+/// Core and vehicle in real time on one thread, with a clock of the test. The vehicle's clock is a second
+/// ahead; it answers pings at once, and says what it measures every 10 ms.
+struct OneThread {
+  FakeClock clock;
+  core::Executive executive{1, core::Clock::real_time, {.clock = &clock}};
+  Log log;
+  std::optional<Stream> vehicle;  // its end
+  std::unique_ptr<RealTimeVehicle> core;
+  VehicleLink* link = nullptr;  // of `core`
+  bool answers = true;
+  int commands = 0;
+
+  OneThread() {
+    Peer greeter([this](Listener& listener) {
+      vehicle = listener.accept(Wait(5000));
+      say(*vehicle, welcome());
+    });
+    auto made = link_to(greeter.address(), FlightClock::real_time);
+    link = made.get();
+    core = std::make_unique<RealTimeVehicle>(std::move(made), Wait(5000), SilenceLimits{});
+    log.executive = &executive;
+  }
+  void start() {
+    core->start(executive, log);
+    executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [this] { core->command({}); });
+    executive.every("peer", kMillisecond, kMillisecond, [this] { answer(); });
+    executive.every("peer measures", 10 * kMillisecond, 10 * kMillisecond, [this] { measure(); });
+  }
+  void run_until(TimeNs time) {
+    executive.run_until(time, [] { return false; });
+  }
+  TimeNs vehicle_now() const { return clock.now() + kSecond; }
+  void measure() {
+    core::ImuSample imu;
+    imu.stamp = vehicle_now();
+    say(*vehicle, imu);
+  }
+  void answer() {
+    while (vehicle->receive(Wait(0))) {
+    }
+    while (const auto frame = vehicle->next()) {
+      std::string problem;
+      const auto message = read_message<ToVehicle>(*frame, problem);
+      if (const auto* ping = std::get_if<Ping>(&*message); ping && answers)
+        say(*vehicle, Pong{ping->sent, vehicle_now(), vehicle_now()});
+      if (std::holds_alternative<core::Command>(*message)) ++commands;
+    }
+  }
+};
+
+/// Executive::lost_time(): no step sees that it is late, and the clock is set back. Commands were not sent for
+/// half an hour after that.
+TEST(RealTime, ACoreWhoseClockWasSetBackSteersAgainAndStampsByTheNewClock) {
+  OneThread t;
+  t.start();
+  t.executive.at(500 * kMillisecond, [&] {
+    for (int i = 0; i < 150; ++i) {  // what the vehicle measures while the core stands still
+      t.clock.pass(10 * kMillisecond);
+      t.measure();
+    }
+  });
+  t.run_until(499 * kMillisecond);
+  EXPECT_GT(t.commands, 35);
+  t.run_until(kSecond);
+  EXPECT_EQ(t.executive.lost_time(), 1500 * kMillisecond);
+  EXPECT_TRUE(t.log.says("authority autopilot: the core stood still for 1.5 s")) << t.log.lines.size();
+  EXPECT_TRUE(t.log.says("authority core: the vehicle and the core hear each other again"));
+  t.commands = 0;
+  t.run_until(2 * kSecond);
+  EXPECT_GE(t.commands, 99) << "a hundred a second";
+  EXPECT_TRUE(std::is_sorted(t.log.imu_stamps.begin(), t.log.imu_stamps.end()));
+  for (const TimeNs age : t.log.imu_ages) {
+    EXPECT_GE(age, 0);
+    EXPECT_LE(age, 5 * kMillisecond);
+  }
+  EXPECT_LE(t.log.imu_ages.size(), 201u) << "what was measured meanwhile is out of date";
+  EXPECT_FALSE(t.log.says("lost"));
+}
+
+/// A vehicle cannot hold up a step, whatever it sends: the core reads 64 messages a step.
+TEST(BadVehicle, WhosePongsFloodTheCoreHoldsUpNoStep) {
+  OneThread t;
+  t.start();
+  t.run_until(100 * kMillisecond);
+  for (int i = 0; i < 1000; ++i) say(*t.vehicle, Pong{i, i, i});
+  say(*t.vehicle, Lost{});
+  const TimeNs began = t.executive.now();
+  t.executive.run_until(60 * kSecond, [&] { return t.log.says("lost: "); });
+  EXPECT_GE(t.executive.now() - began, 1000 / 64 * 2 * kMillisecond);
+  EXPECT_LE(t.executive.now() - began, 100 * kMillisecond);
+}
+
+TEST(BadVehicle, WhoseImplausibleMessagesFloodTheCoreHoldsUpNoStep) {
+  OneThread t;
+  t.start();
+  t.run_until(100 * kMillisecond);
+  core::ImuSample imu;
+  imu.specific_force_mps2.x() = std::nan("");
+  for (int i = 0; i < 1000; ++i) say(*t.vehicle, imu);
+  t.run_until(t.executive.now() + 4 * kMillisecond);
+  const std::string found = t.link->plausibility().found;
+  EXPECT_GE(std::stoi(found), 64) << found;
+  EXPECT_LE(std::stoi(found), 3 * 64) << found;
+}
+
+TEST(BadVehicle, WhoseMeasurementsFloodTheCoreBeforeItsFirstPongHoldsUpNoStep) {
+  OneThread t;
+  t.answers = false;
+  t.start();
+  for (int i = 0; i < 1000; ++i) t.measure();
+  say(*t.vehicle, Lost{});
+  t.executive.run_until(60 * kSecond, [&] { return t.log.says("lost: "); });
+  EXPECT_GE(t.executive.now(), 1000 / 64 * 2 * kMillisecond);
+  EXPECT_LE(t.executive.now(), 100 * kMillisecond);
+  EXPECT_TRUE(t.log.imu_stamps.empty());
+}
+
+/// Times near the ends of 64 bits, and answers to pings that were never sent, are not believed.
+TEST(BadVehicle, WhoseTimesCannotBeIsNotBelieved) {
+  OneThread t;
+  t.start();
+  t.run_until(500 * kMillisecond);
+  const TimeNs least = std::numeric_limits<TimeNs>::min(), most = std::numeric_limits<TimeNs>::max();
+  for (const TimeNs wild : {least, least + 1, -kMaxTime, kMaxTime, most - 1, most}) {
+    for (const TimeNs other : {least, TimeNs{0}, most}) say(*t.vehicle, Pong{wild, other, other});
+    say(*t.vehicle, Pong{t.executive.now(), wild, wild});
+    say(*t.vehicle, Pong{t.executive.now() - 10 * kMillisecond, 7 * kSecond, 7 * kSecond});
+    core::ImuSample imu;
+    imu.stamp = wild;
+    say(*t.vehicle, imu);
+  }
+  t.run_until(kSecond);
+  ASSERT_FALSE(t.log.imu_ages.empty());
+  for (const TimeNs age : t.log.imu_ages) {
+    EXPECT_GE(age, 0);
+    EXPECT_LE(age, 5 * kMillisecond);
+  }
+}
+
+TEST(OutstandingPings, AreAnsweredOnce) {
+  OutstandingPings pings;
+  EXPECT_FALSE(pings.answered(0));
+  EXPECT_FALSE(pings.answered(-1)) << "none";
+  for (TimeNs t = 0; t < 70; ++t) pings.note(t);
+  EXPECT_FALSE(pings.answered(5)) << "given up";
+  EXPECT_TRUE(pings.answered(6));
+  EXPECT_FALSE(pings.answered(6));
+  EXPECT_TRUE(pings.answered(69));
+  EXPECT_FALSE(pings.answered(70));
+  pings.clear();
+  EXPECT_FALSE(pings.answered(50));
+}
+
+/// What is sent was kept until all was sent, which never is for a client that always lags.
+TEST(Stream, ForAClientThatAlwaysLagsKeepsOnlyWhatIsNotSent) {
+  std::optional<Stream> writer;
+  std::optional<Stream> reader;
+  {
+    const Peer peer([&](Listener& listener) { writer = listener.accept(Wait(5000)); });
+    reader = connect_to(peer.address(), Wait(5000), kMaxToCoreBytes);
+  }
+  const std::string piece = [] {
+    std::string bytes;
+    core::LidarScan scan;
+    scan.range_m.assign(250'000, 1);
+    append_message(bytes, scan);
+    return bytes;
+  }();
+  std::size_t read = 0, written = 0;
+  for (int i = 0; i < 12; ++i, ++written) writer->queue_bytes(piece);
+  for (int round = 0; round < 60; ++round, ++written) {
+    writer->queue_bytes(piece);
+    for (const std::size_t before = read; read == before;) {
+      EXPECT_FALSE(writer->flush(Wait(0))) << "it always lags";
+      while (reader->next()) ++read;
+      reader->receive(Wait(0));
+    }
+    EXPECT_LE(writer->held_bytes(), 2 * writer->backlog_bytes() + (1 << 20));
+  }
+  while (read < written) {
+    writer->flush(Wait(0));
+    while (reader->next()) ++read;
+    reader->receive(Wait(0));
+  }
+  EXPECT_EQ(writer->held_bytes(), 0u);
+}
+
+/// Sends `scans` of 8 MB each at its first steps, 5 ms apart, and stands after 600 ms.
+class LoudVehicle final : public core::Vehicle {
+ public:
+  LoudVehicle(int scans, std::atomic<int>& steps, TimeNs& longest_pause)
+      : scans_(scans), steps_(steps), longest_pause_(longest_pause) {}
+  core::VehicleDescription description() const override { return socket::description(); }
+  void start(core::Executive& e, core::VehicleSink& sink) override {
+    e.at(e.now(), [&] { sink.on_lift_off(e.now()); });
+    e.at(600 * kMillisecond, [&] { sink.on_ground(e.now()); });
+    e.every("loud", 5 * kMillisecond, 5 * kMillisecond, [&] {
+      const TimeNs now = core::machine_clock().now();
+      longest_pause_ = std::max(longest_pause_, now - std::exchange(before_, now));
+      if (++steps_ > scans_) return;
+      auto scan = std::make_shared<core::LidarScan>();
+      scan->range_m.assign(2'000'000, 1);
+      sink.on_lidar(scan);
+    });
+  }
+  void command(const core::Command&) override {}
+
+ private:
+  int scans_;
+  std::atomic<int>& steps_;
+  TimeNs& longest_pause_;
+  TimeNs before_ = core::machine_clock().now();
+};
+
+/// A client in real time that reads nothing for the first `scans` steps of a loud vehicle, and then does
+/// `play`. Returns the longest time between two steps of the vehicle.
+TimeNs longest_pause_with(int scans, std::function<void(Stream&)> play) {
+  std::atomic<int> steps = 0;
+  TimeNs longest_pause = 0;
+  const Peer peer([&](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    serve_client(
+        *client, [&](const Hello&) { return std::make_unique<LoudVehicle>(scans, steps, longest_pause); }, {},
+        kGoOn);
+  });
+  Stream stream = connect_to(peer.address(), Wait(5000), kMaxToCoreBytes);
+  Hello hello;
+  hello.clock = FlightClock::real_time;
+  say(stream, hello);
+  say(stream, Start{});
+  while (steps < scans + 2) std::this_thread::sleep_for(Wait(5));
+  play(stream);
+  return longest_pause;
+}
+
+/// The goodbye to a client that reads nothing was waited for a second long, in a step of the vehicle.
+TEST(BadClient, ThatReadsNothingHoldsUpNoStepWithTheGoodbye) {
+  TimeNs pause = kSecond;
+  for (int attempt = 0; attempt < 5 && pause > 800 * kMillisecond; ++attempt)  // the machine may pause, too
+    pause = longest_pause_with(3, [](Stream& s) {
+      say(s, Bye{"enough"});
+      std::this_thread::sleep_for(Wait(1200));
+    });
+  EXPECT_LT(pause, 800 * kMillisecond);
+}
+
+/// Of a client whose 64 MiB are full, pings are not answered either; once it reads, they are.
+TEST(BadClient, ThatReadsNothingFillsNoMemoryWithPongs) {
+  int pongs_while_full = 0, pongs_later = 0;
+  longest_pause_with(12, [&](Stream& s) {
+    for (TimeNs t = 0; t < 1000; ++t) s.queue(Ping{t});
+    say(s, Ping{1000});
+    std::this_thread::sleep_for(Wait(100));
+    bool asked = false;
+    for (;;) {
+      while (const auto frame = s.next())
+        if (frame->type == kType<Pong>.id) ++(asked ? pongs_later : pongs_while_full);
+      if (pongs_later > 0) break;
+      if (!s.receive(Wait(200))) {  // all is read
+        if (std::exchange(asked, true)) break;
+        say(s, Ping{2000});
+      }
+    }
+    say(s, Bye{"enough"});
+  });
+  EXPECT_LT(pongs_while_full, 900) << "those that were read before it was full may be answered";
+  EXPECT_EQ(pongs_later, 1);
+}
+
+/// A vehicle that stands still for longer than a second sets its clock back: its answers to pings are by the
+/// same clock as its stamps.
+TEST(Server, StampsAndPongsAreOfOneClockAfterItsClockWasSetBack) {
+  class Stands final : public core::Vehicle {
+   public:
+    core::VehicleDescription description() const override { return socket::description(); }
+    void start(core::Executive& e, core::VehicleSink& sink) override {
+      e.at(e.now(), [] { std::this_thread::sleep_for(Wait(1300)); });
+      e.every("imu", 5 * kMillisecond, 5 * kMillisecond, [&] {
+        core::ImuSample imu;
+        imu.stamp = e.now();
+        sink.on_imu(imu);
+      });
+    }
+    void command(const core::Command&) override {}
+  };
+  const Peer peer([](Listener& listener) {
+    auto client = listener.accept(Wait(5000));
+    serve_client(
+        *client, [](const Hello&) { return std::make_unique<Stands>(); }, {}, kGoOn);
+  });
+  Stream s = connect_to(peer.address(), Wait(5000), kMaxToCoreBytes);
+  Hello hello;
+  hello.clock = FlightClock::real_time;
+  say(s, hello);
+  say(s, Start{});
+  // In order on the wire: no pong is earlier than the stamp before it, nor later than those after it.
+  TimeNs before = -1;
+  std::optional<TimeNs> pong;
+  for (int checked = 0; checked < 10;) {
+    while (const auto frame = s.next()) {
+      std::string problem;
+      const auto message = read_message<ToCore>(*frame, problem);
+      if (const auto* answer = std::get_if<Pong>(&*message)) {
+        EXPECT_GE(answer->received, before);
+        pong = answer->received;
+      } else if (const auto* imu = std::get_if<core::ImuSample>(&*message)) {
+        before = imu->stamp;
+        if (!pong || before <= *pong) {
+          if (!pong) say(s, Ping{1});
+          continue;
+        }
+        EXPECT_LE(before - *pong, kSecond / 2);
+        pong.reset();
+        ++checked;
+      }
+    }
+    ASSERT_TRUE(s.receive(Wait(5000)));
+  }
+  say(s, Bye{"enough"});
 }
 
 }  // namespace

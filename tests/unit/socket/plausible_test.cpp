@@ -123,5 +123,25 @@ TEST(Plausible, CommandsAreNumbers) {
   EXPECT_NE(implausible(c), "");
 }
 
+TEST(Plausible, TimesNearTheEndsOf64BitsAreRefused) {
+  const core::TimeNs least = std::numeric_limits<core::TimeNs>::min();
+  for (const core::TimeNs wild : {least, -kMaxTime, kMaxTime, std::numeric_limits<core::TimeNs>::max()}) {
+    core::ImuSample imu;
+    imu.stamp = wild;
+    Depth depth;
+    depth.image.stamp = wild;
+    Objects objects;
+    objects.look.stamp = wild;
+    for (const ToCore& m : {ToCore(imu), ToCore(depth), ToCore(objects), ToCore(Ground{wild}), ToCore(Lost{wild, {}, {}})})
+      EXPECT_EQ(implausible(m, vehicle()), "stamp: is no time");
+    EXPECT_EQ(implausible(ToCore(Pong{0, wild, 0}), vehicle()), "sent: is no time");
+    EXPECT_EQ(implausible(ToCore(Pong{0, 0, wild}), vehicle()), "sent: is no time");
+    core::Command command;
+    command.reference.stamp = wild;
+    EXPECT_EQ(implausible(command), "stamp: is no time");
+  }
+  EXPECT_EQ(implausible(ToCore(Ground{kMaxTime - 1}), vehicle()), "");
+}
+
 }  // namespace
 }  // namespace karst::socket
