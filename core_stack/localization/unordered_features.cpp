@@ -129,8 +129,8 @@ std::vector<Feature> best_of_cells(const std::vector<SweepPoint>& points,
 
 }  // namespace
 
-Features find_unordered_features(const std::vector<SweepPoint>& points, const FeatureOptions& o,
-                                 int threads) {
+Features find_unordered_features(const std::vector<SweepPoint>& points, const FeatureOptions& o, int threads,
+                                 double fraction) {
   std::vector<Vec3f> directions(points.size());
   std::vector<float> ranges(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -158,10 +158,11 @@ Features find_unordered_features(const std::vector<SweepPoint>& points, const Fe
     flatness[i] = has ? -sharpness[i] : -std::numeric_limits<float>::infinity();
     if (has) out.surface.push_back({points[i].position, points[i].time_s});
   }
-  out.edges =
-      best_of_cells(points, directions, sharpness, kEdgeCell_rad, static_cast<float>(o.min_sharpness));
-  out.planes =
-      best_of_cells(points, directions, flatness, kPlaneCell_rad, -static_cast<float>(o.max_flatness));
+  const auto scale = static_cast<float>(1 / std::sqrt(fraction));
+  out.edges = best_of_cells(points, directions, sharpness, scale * kEdgeCell_rad,
+                            static_cast<float>(o.min_sharpness));
+  out.planes = best_of_cells(points, directions, flatness, scale * kPlaneCell_rad,
+                             -static_cast<float>(o.max_flatness));
   return out;
 }
 

@@ -81,6 +81,23 @@ TEST(UnorderedFeatures, AreTheSameForAnyNumberOfThreads) {
               same(one.surface, three.surface));
 }
 
+// A computer that is too slow asks for half the features: nothing was left out without rings.
+TEST(UnorderedFeatures, HalfAreAboutHalfAndAmongThePlacesOfAll) {
+  const auto model = scattered_lidar();
+  model->T_body_lidar = Pose{};
+  const Sweep sweep = to_sweep(
+      scattered_scan(room({{-3, -4, -3}, {5, 4, 3}}), model, standing_at({}), kSecond, 0.02, Random(2)), 0.1);
+  const Features all = find_unordered_features(sweep.points, {}, 1);
+  const Features half = find_unordered_features(sweep.points, {}, 1, 0.5);
+  const auto share = [](const auto& a, const auto& b) {
+    return static_cast<double>(a.size()) / static_cast<double>(b.size());
+  };
+  EXPECT_NEAR(share(half.planes, all.planes), 0.5, 0.1);
+  EXPECT_LT(share(half.edges, all.edges), 0.85) << "edges lie on lines: 0.7";
+  EXPECT_GT(share(half.edges, all.edges), 0.5);
+  EXPECT_EQ(half.surface.size(), all.surface.size());
+}
+
 RC_GTEST_PROP(UnorderedFeatures, AnyFinitePointsGiveFeaturesOutOfTheirMidst, ()) {
   const auto count = *rc::gen::inRange<std::size_t>(0, 300);
   std::vector<SweepPoint> points;
@@ -96,7 +113,8 @@ RC_GTEST_PROP(UnorderedFeatures, AnyFinitePointsGiveFeaturesOutOfTheirMidst, ())
 }
 
 // The same lap as with rings (loam_test.cpp), and the same bounds of the error.
-TEST(UnorderedLoam, FollowsAFlightInARoomWithinMillimetres) {
+class UnorderedLoam : public testing::TestWithParam<LoamEffort> {};
+TEST_P(UnorderedLoam, FollowsAFlightInARoomWithinMillimetres) {
   const Motion lap = [](TimeNs t) {
     const double s = seconds(t);
     return Pose{{1.5 + 2 * std::cos(0.5 * s), -0.5 + 1.2 * std::sin(0.5 * s), 0.3 * std::sin(0.7 * s)},
@@ -112,7 +130,7 @@ TEST(UnorderedLoam, FollowsAFlightInARoomWithinMillimetres) {
         scattered_scan(furnished_room(), model, lap, stamp, 0.02, Random(static_cast<std::uint64_t>(i))),
         0.2);
     ASSERT_FALSE(sweep.has_rings);
-    const LoamPose pose = loam.process(sweep, states_of(lap, stamp, i == 1 ? Pose{} : error));
+    const LoamPose pose = loam.process(sweep, states_of(lap, stamp, i == 1 ? Pose{} : error), GetParam());
     ASSERT_TRUE(pose.valid) << pose.problem;
     EXPECT_EQ(pose.free_directions, 0);
     const PoseError e = error_between(pose.T_world_body, lap(stamp));
@@ -121,5 +139,6 @@ TEST(UnorderedLoam, FollowsAFlightInARoomWithinMillimetres) {
   EXPECT_LT(worst_m, 0.012);
   EXPECT_LT(worst_rad, 0.002);
 }
+INSTANTIATE_TEST_SUITE_P(Efforts, UnorderedLoam, testing::Values(LoamEffort::full, LoamEffort::half));
 
 }  // namespace
