@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "plugins/simulator/sensors/mid360_pattern.h"
 #include "plugins/simulator/sensors/range_noise.h"

@@ -82,6 +82,20 @@ TEST(Lidar, TheMid360ScattersTwentyThousandPointsOverItsFieldOfView) {
   EXPECT_LT(same, 200);
 }
 
+// 125 ms are 25,000 shots of 5 us: the last batch of 16 has 8. The others belonged to the next sweep.
+TEST(Lidar, ASweepOfTheMid360EndsWithItsPeriodWhateverItsBatches) {
+  const cave::Cave box = make_cave(box_mesh(kLow, kHigh));
+  LidarOptions o = exact("mid360", 256);
+  o.rate_hz = 8;
+  const Lidar lidar(o);
+  const core::TimeNs end = 125 * core::kMillisecond;
+  ASSERT_EQ(lidar.model()->period, end);
+  const LidarScan scan = lidar.sweep(box, {{0, {}}, {end, {}}}, end, core::Random(1));
+  ASSERT_EQ(scan.range_m.size(), 25000u);
+  EXPECT_NEAR(scan.time_s.front(), -0.125, 1e-8);
+  EXPECT_NEAR(scan.time_s.back(), -5e-6, 1e-8);
+}
+
 // 40 m at 10 %, 70 m at 80 %: the data sheet of the Mid-360. Light falls with the square of the range.
 TEST(Lidar, TheMid360SeesDarkRockLessFar) {
   for (const auto& [reflectivity, range_m] :
