@@ -189,7 +189,7 @@ core::Pose pose_of(const OusterMetadata::Transform& t) {
 }
 
 // Ouster's lidar frame: column m is fired when the encoder stands at -2 pi m / n, and beam i points at the
-// azimuth -2 pi m / n - azimuth_i (user manual, "XYZ coordinates"). karst's lidar frame is the same, turned
+// azimuth -2 pi m / n - azimuth_i (Ouster SDK 0.11, make_xyz_lut). karst's lidar frame is the same, turned
 // by pi about z:
 //
 //   pi - 2 pi m / n - azimuth_i = (pi - 2 pi (m + 1/2) / n) + (pi / n - azimuth_i)
@@ -206,7 +206,7 @@ core::LidarModel lidar_model(const OusterMetadata& m, const core::Pose& T_body_s
   }
   if (!offset) model.azimuth_offset_rad.clear();
   model.beam_origin_m = static_cast<float>(m.beam_origin_mm / 1000);
-  // Data sheets, revision 7: OS0 35 m, OS1 90 m, OS2 200 m at 10 % reflectivity.
+  // Nominal values for dark rock, not read off a data sheet: to be checked against that of the unit.
   const auto is = [&](const char* line) { return m.product.starts_with(line); };
   model.min_range_m = 0.3f;
   model.max_range_m = is("OS-0") ? 35.0f : is("OS-2") ? 200.0f : 90.0f;

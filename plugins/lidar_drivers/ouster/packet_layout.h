@@ -1,5 +1,5 @@
-// Where the fields of an Ouster lidar packet lie. Sources of the formats: Ouster Firmware User Manual, v2.5
-// and v3.1, "Sensor Data": LEGACY, RNG19_RFL8_SIG16_NIR16, its DUAL, and RNG15_RFL8_NIR8.
+// Where the fields of an Ouster lidar packet lie, of the profiles LEGACY, RNG19_RFL8_SIG16_NIR16, its DUAL,
+// and RNG15_RFL8_NIR8. Source of the formats: the source of Ouster SDK 0.11.
 //
 // LEGACY: columns only; each has a header of 16 bytes (timestamp u64, measurement id u16, frame id u16,
 // encoder u32), pixels of 12 bytes, and a status u32. The others: a header of 32 bytes (packet type u16 = 1,

@@ -106,7 +106,7 @@ std::optional<std::int64_t> OusterSweepAssembler::take(PacketView packet, core::
       const float range_m = static_cast<float>(pixel.range_mm) / 1000 - model_->beam_origin_m;
       if (pixel.range_mm == 0 || range_m < model_->min_range_m) continue;
       const std::size_t at = static_cast<std::size_t>(p) * columns + h.measurement_id;
-      // Reflectivity: 0 to 100 is per cent of a diffuse surface, more are retroreflectors (user manual).
+      // Reflectivity: 0 to 100 is per cent of a diffuse surface, more are retroreflectors.
       sweep->scan.range_m[at] = range_m;
       sweep->scan.intensity[at] =
           std::min(static_cast<float>(pixel.reflectivity) / 100, 1.0f) / intensity_fall_off(range_m);

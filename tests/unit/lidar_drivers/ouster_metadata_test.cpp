@@ -101,8 +101,8 @@ TEST(OusterMetadata, WhatCannotBeIsRefusedByItsKey) {
   }
 }
 
-// The manual's own formula: point = (r - n) direction + n (cos encoder, sin encoder), in Ouster's frames.
-TEST(OusterMetadata, BeamsLieWhereTheManualPutsThem) {
+// The formula of Ouster SDK 0.11: point = (r - n) direction + n (cos encoder, sin encoder), in Ouster's frames.
+TEST(OusterMetadata, BeamsLieWhereTheSdkPutsThem) {
   const OusterMetadata m = test::uneven_ouster(OusterProfile::single, 1024);
   const core::LidarModel model = lidar_model(m, {});
   const double rad = std::numbers::pi / 180, n = m.beam_origin_mm, r_mm = 4321;

@@ -15,8 +15,8 @@ OusterMetadata with_pixels(OusterProfile profile, int pixels) {
   return m;
 }
 
-// From the tables of the manual.
-TEST(OusterPackets, HaveTheSizesOfTheManual) {
+// Worked out by hand from the sizes of header, columns, pixels and footer in Ouster SDK 0.11.
+TEST(OusterPackets, HaveTheSizesOfTheirParts) {
   const auto bytes = [](OusterProfile p, int pixels) {
     return OusterLayout(with_pixels(p, pixels)).packet_bytes();
   };
@@ -33,8 +33,8 @@ void put(Packet& p, std::size_t at, std::uint64_t value, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; ++i) p[at + i] = static_cast<std::uint8_t>(value >> 8 * i);
 }
 
-// Offsets are counted by hand from the manual's figures: column 2 of packets with 8 pixels, pixel 3.
-TEST(OusterPackets, FieldsLieAtTheBytesOfTheManual) {
+// Offsets are counted by hand from those in Ouster SDK 0.11: column 2 of packets with 8 pixels, pixel 3.
+TEST(OusterPackets, FieldsLieAtTheBytesOfTheSdk) {
   struct Case {
     OusterProfile profile;
     std::size_t column, pixel, reflectivity;
