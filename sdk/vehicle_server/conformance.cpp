@@ -275,16 +275,11 @@ class Examination {
   static std::string not_of_the_future(const std::vector<Heard>& heard) {
     TimeNs oldest = 0;
     for (const Heard& h : heard)
-      std::visit(
-          [&](const auto& m) {
-            if constexpr (requires { stamp_of(m); }) {
-              if (stamp_of(m) > h.at)
-                throw LinkError(
-                    words("a stamp of %.3f s at %.3f s", core::seconds(stamp_of(m)), core::seconds(h.at)));
-              oldest = std::max(oldest, h.at - stamp_of(m));
-            }
-          },
-          h.message);
+      if (const TimeNs* stamp = socket::stamp_of(h.message)) {
+        if (*stamp > h.at)
+          throw LinkError(words("a stamp of %.3f s at %.3f s", core::seconds(*stamp), core::seconds(h.at)));
+        oldest = std::max(oldest, h.at - *stamp);
+      }
     return words("the oldest came after %.0f ms", 1e3 * core::seconds(oldest));
   }
 
@@ -296,7 +291,7 @@ class Examination {
       if (const auto* p = std::get_if<socket::Pong>(&h.message))
         offset.add({p->ping_sent, h.at, p->received, p->sent});
     }
-    if (!offset.known()) throw LinkError("no ping was answered");
+    if (!offset.known()) throw LinkError("fewer than eight pings were answered");
     const TimeNs bound = offset.error_bound(last);
     if (bound > 20 * kMillisecond)
       throw LinkError(words("the offset is known to %.1f ms only: pings must be answered at once",
